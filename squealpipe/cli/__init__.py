@@ -30,6 +30,7 @@ from squealpipe.cli.models import choose, infer
 from squealpipe.cli.motions import backbone, branch, cycle, simulate
 from squealpipe.cli.project import init
 from squealpipe.cli.project import run as run_study
+from squealpipe.cli.structures import modes
 from squealpipe.cli.study import archive, compare, explain, verify
 from squealpipe.cli.sweep import sweep
 
@@ -51,6 +52,7 @@ COMMANDS: dict[str, Callable[..., int]] = {
     "branch": branch,
     "basin": basin,
     "disturbance": disturbance,
+    "modes": modes,
     "choose": choose,
     "infer": infer,
     "refine": refine,

@@ -29,6 +29,10 @@ def read_brake(_: App, __: tuple[str, ...], arguments: ArgumentCollection) -> No
     that of a preload there.
     """
     options = {argument.name: argument for argument in arguments}
+    if (
+        "--config" not in options
+    ):  # a command without a brake, whose --mu may be a range
+        return
     physical = {name: options[flag] for name, flag in FLAGS.items() if flag in options}
     texts = {
         name: argument.tokens[-1].value

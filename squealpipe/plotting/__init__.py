@@ -10,6 +10,8 @@ from squealpipe.plotting.assess import draw_settled_orbit
 from squealpipe.plotting.assess import figure as assess_figure
 from squealpipe.plotting.curves import draw_curves
 from squealpipe.plotting.cycles import draw_backbone, draw_branch, draw_cycle
+from squealpipe.plotting.modes import draw_modes
+from squealpipe.plotting.modes import figure as modes_figure
 from squealpipe.plotting.propensity import draw_shares
 from squealpipe.plotting.propensity import figure as propensity_figure
 from squealpipe.plotting.quantities import SHOWN, draw_quantity, mark_changed, shown
@@ -18,6 +20,7 @@ from squealpipe.plotting.run import figure as run_figure
 from squealpipe.plotting.style import COLUMN, SETTINGS, new_figure
 from squealpipe.plotting.systems import draw_ensemble, draw_path, draw_states
 from squealpipe.schema import SYSTEM
+from squealpipe.schema.structures import COMPLEX_MODES
 from squealpipe.validation import checked
 
 DRAWN: dict[str, Callable[[Axes, xr.Dataset], None]] = {
@@ -34,6 +37,7 @@ DRAWN: dict[str, Callable[[Axes, xr.Dataset], None]] = {
     "regime_chart": draw_curves,
     "stability_boundaries": draw_curves,
     "propensity": draw_shares,
+    **dict.fromkeys((schema.name for schema in COMPLEX_MODES), draw_modes),
     SYSTEM + "simulate": draw_states,
     SYSTEM + "ensemble": draw_ensemble,
     SYSTEM + "limit cycle": draw_path,
@@ -46,6 +50,7 @@ FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
     "assess": assess_figure,
     "simulation": run_figure,
     "propensity": propensity_figure,
+    **dict.fromkeys((schema.name for schema in COMPLEX_MODES), modes_figure),
 }
 """Schema → its picture of several panels."""
 

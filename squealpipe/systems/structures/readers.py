@@ -81,12 +81,28 @@ def read_matrix(path: Path, key: str, variable: str | None = None) -> Labelled:
 def _mtx(path: Path, key: str) -> Labelled:
     """Matrix Market or Abaqus; both end in ``.mtx``."""
     with path.open(encoding="utf-8", errors="replace") as file:
-        first = next((line for line in file if line.strip()), "")
+        lines = (line for line in file if line.strip() and not line.startswith("**"))
+        first = next(lines, "")
     if first.startswith("%%MatrixMarket"):
+        _refuse_missing_entries(path)
         return Labelled(scipy.io.mmread(path))
     if first.startswith("*"):
         return _substructure(path, key)
     return _abaqus(path)
+
+
+def _refuse_missing_entries(path: Path) -> None:
+    """Count the lines of a Matrix Market file: a cut-off array is filled with zeros when read."""
+    rows, columns, stated, form, _, symmetry = scipy.io.mminfo(path)
+    if form == "array":
+        stated = {
+            "general": rows * columns,
+            "skew-symmetric": rows * (rows - 1) // 2,
+        }.get(symmetry, rows * (rows + 1) // 2)
+    with path.open(encoding="utf-8", errors="replace") as file:
+        lines = sum(1 for line in file if line.strip() and not line.startswith("%"))
+    if lines - 1 != stated:
+        raise ValueError(f"{lines - 1} entries, but its size says {stated}")
 
 
 def _abaqus(path: Path) -> Labelled:
@@ -146,6 +162,10 @@ def _numbers(path: Path) -> np.ndarray:
     with path.open(encoding="utf-8", errors="replace") as file:
         for number, line in enumerate(file, 1):
             words = line.replace(",", " ").split()
+            if not line.endswith("\n"):  # a number may be cut off within its digits
+                raise ValueError(
+                    f"line {number}, the last, has no end; add one if the file is whole"
+                )
             if not words or words[0].startswith(("*", "#")):
                 continue
             try:

@@ -1,0 +1,87 @@
+"""``squealpipe modes``: complex modes of a structure in a file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+from cyclopts import Parameter
+
+from squealpipe.cli.arguments import Force, Numbers, Output, Whole
+from squealpipe.cli.console import DONE, answer, say, working
+from squealpipe.cli.output import PICTURES, check_output, write
+
+LISTED = 20
+"""Unstable modes that are printed."""
+
+
+def modes(
+    file: Path,
+    /,
+    *,
+    mu: Numbers = None,
+    belt_speed: Numbers = None,
+    frequency_max: float | None = None,
+    n_modes: Whole | None = None,
+    output: Output = Path("modes.nc"),
+    picture: Annotated[Path | None, Parameter(name=["--picture", "-p"])] = None,
+    force: Force = False,
+) -> int:
+    """Compute complex modes of a structure; write a dataset and a picture.
+
+    Example: `squealpipe modes pad.yaml --mu 0:0.8:81 -o modes.nc`
+
+    Args:
+        file: structure, which names its matrices and contacts (see the gallery's page).
+        mu: friction, a number or first:last:count; that of the file by default.
+        belt_speed: likewise, m/s.
+        frequency_max: modes up to there, Hz.
+        n_modes: so many modes; this or the other limit is needed beyond 1000 degrees of freedom.
+        picture: picture to write (png, svg or pdf); by default beside the output.
+    """
+    check_output(output, force=force)
+    drawn = picture or output.with_suffix(".png")
+    check_output(drawn, force=force, kinds=PICTURES, option="--picture")
+
+    from squealpipe import Structure
+    from squealpipe.plotting import picture as draw
+    from squealpipe.plotting.style import save_figure
+
+    structure = Structure.read(file)
+    asked: dict[str, Any] = {
+        "mu": _one_or_more(mu),
+        "belt_speed": _one_or_more(belt_speed),
+        "frequency_max": frequency_max,
+        "n_modes": n_modes,
+    }
+    options = {name: value for name, value in asked.items() if value is not None}
+    with working("complex modes"):
+        dataset = write(
+            lambda: structure.complex_modes(**options),
+            output,
+            config={"parameters": structure.as_dict(), **options},
+        )
+    save_figure(draw(dataset), [drawn])
+    unstable = dataset.unstable
+    ever = unstable.any([dim for dim in unstable.dims if dim != "mode"])
+    answer(f"{int(ever.sum())} of {ever.size} modes are unstable somewhere")
+    for number in dataset.mode.values[ever.values][:LISTED]:
+        answer(_line(dataset.sel(mode=number)))
+    say(f"wrote {output} and {drawn}")
+    return DONE
+
+
+def _one_or_more(values: list[float] | None) -> Any:
+    return values[0] if values is not None and len(values) == 1 else values
+
+
+def _line(mode: Any) -> str:
+    """A mode where it grows fastest, and its critical friction."""
+    fastest = mode.growth_rate.where(mode.unstable).argmax(...)
+    at = mode.isel(fastest)
+    critical = at.critical_mu.item()
+    onset = f", from mu = {critical:.6g} on" if critical == critical else ""
+    return (
+        f"mode {int(mode.mode)}: {at.frequency.item():.6g} Hz, growth rate "
+        f"{at.growth_rate.item():.6g} 1/s at mu = {at.mu.item():g}{onset}"
+    )

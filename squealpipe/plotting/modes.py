@@ -1,0 +1,90 @@
+"""Complex modes: growth over frequency, or frequency and growth over friction or belt speed."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from squealpipe.plotting import style
+from squealpipe.plotting.quantities import label
+
+FACTORS = ("mu", "belt_speed")
+GROWTH = "growth rate (1/s)"
+DEEPEST = 1.5
+"""Fastest decay shown, over the fastest growth."""
+
+
+def draw_modes(axes: Axes, modes: xr.Dataset) -> None:
+    """Growth over frequency of one spectrum; of several, frequency over the first factor."""
+    dims = [dim for dim in FACTORS if dim in modes.growth_rate.dims]
+    if not dims:
+        _draw_spectrum(axes, modes)
+    else:
+        _draw_along(axes, _one_way(modes, dims), "frequency", dims[0])
+
+
+def figure(modes: xr.Dataset) -> Figure:
+    """One panel of growth over frequency, or two: frequency and growth over a factor."""
+    dims = [dim for dim in FACTORS if dim in modes.growth_rate.dims]
+    if not dims:
+        made, axes = style.new_figure(style.COLUMN, 3.0)
+        _draw_spectrum(axes[0, 0], modes)
+        return made
+    made, axes = style.new_figure(style.COLUMN, 5.0, nrows=2)
+    one = _one_way(modes, dims)
+    for panel, name in zip(axes[:, 0], ("frequency", "growth_rate"), strict=True):
+        _draw_along(panel, one, name, dims[0])
+    return made
+
+
+def _one_way(modes: xr.Dataset, dims: list[str]) -> xr.Dataset:
+    """Along the first factor, at the first value of the second."""
+    return modes.isel(dict.fromkeys(dims[1:], 0))
+
+
+def _draw_spectrum(axes: Axes, modes: xr.Dataset) -> None:
+    unstable = modes.unstable.values
+    frequency, growth = modes.frequency.values / 1e3, modes.growth_rate.values
+    if not np.isfinite(growth).any():
+        style.say_instead(axes, "no mode within the limits")
+        return
+    axes.axhline(0.0, color=style.GREY, linewidth=0.6)
+    axes.plot(
+        frequency[~unstable], growth[~unstable], ".", color=style.BLUE, label="stable"
+    )
+    axes.plot(
+        frequency[unstable], growth[unstable], "o", color=style.RED, label="unstable"
+    )
+    _show_what_grows(axes, growth)
+    axes.set(xlabel="frequency (kHz)", ylabel=GROWTH)
+    axes.legend()
+
+
+def _draw_along(axes: Axes, modes: xr.Dataset, name: str, dim: str) -> None:
+    """All modes along a factor; where one is unstable it is red, its onset a mark."""
+    values = modes[name].transpose(dim, "mode").values
+    unstable = modes.unstable.transpose(dim, "mode").values
+    x, unit = modes[dim].values, 1e3 if name == "frequency" else 1.0
+    if not np.isfinite(values).any():
+        style.say_instead(axes, "no mode within the limits")
+        return
+    axes.plot(x, values / unit, color=style.BLUE, linewidth=0.7)
+    axes.plot(x, np.where(unstable, values, np.nan) / unit, ".-", color=style.RED, ms=3)
+    if dim == "mu":
+        onsets = modes.critical_mu.values
+        for place in np.flatnonzero(np.isfinite(onsets)):
+            at = np.interp(onsets[place], x, values[:, place] / unit)
+            at = at if name == "frequency" else 0.0
+            axes.plot(onsets[place], at, "D", color=style.BLACK, ms=3)
+    if name == "growth_rate":
+        axes.axhline(0.0, color=style.GREY, linewidth=0.6)
+        _show_what_grows(axes, values)
+    words = "frequency (kHz)" if name == "frequency" else GROWTH
+    axes.set(xlabel=label(modes[dim]), ylabel=words)
+
+
+def _show_what_grows(axes: Axes, growth: np.ndarray) -> None:
+    """Cut off decay that is much faster than the growth, which would not be seen beside it."""
+    largest, fastest = float(np.nanmax(growth)), -float(np.nanmin(growth))
+    if 0 < DEEPEST * largest < fastest:
+        axes.set_ylim(-DEEPEST * largest, 1.15 * largest)

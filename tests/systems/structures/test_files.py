@@ -1,0 +1,262 @@
+"""Structures from files of other programs: each is read right or refused."""
+
+import numpy as np
+import pytest
+import scipy.io
+import scipy.sparse as sp
+
+from squealpipe import Structure, load
+from squealpipe.cli import run
+from squealpipe.structures import elastic_pad
+
+MASS = np.array([[2.0, 0.5, 0.0], [0.5, 3.0, 0.25], [0.0, 0.25, 1.0]])
+STIFFNESS = np.array([[40.0, -10.0, -5.0], [-10.0, 30.0, -8.0], [-5.0, -8.0, 20.0]])
+CONTACTS = (
+    "name,normal,tangential,stiffness,preload,speed\nedge,2:1 3:-0.5,1:1,4.0,1.5,-2\n"
+)
+LABELS = ["3.1", "3.2", "17.1"]
+
+
+def structure_of(
+    folder, text="mass: M.mtx\nstiffness: K.mtx\ncontacts: contacts.csv\n"
+):
+    (folder / "contacts.csv").write_text(CONTACTS)
+    (folder / "pad.yaml").write_text(text)
+    return Structure.read(folder / "pad.yaml")
+
+
+def assert_read(structure, scale=1.0):
+    assert structure.mass.toarray() == pytest.approx(MASS * scale)
+    assert structure.stiffness.toarray() == pytest.approx(STIFFNESS * scale)
+
+
+def lower(matrix, write):
+    """One line an entry of the lower triangle."""
+    return "".join(
+        write(i, j, matrix[i, j])
+        for i in range(3)
+        for j in range(i + 1)
+        if matrix[i, j]
+    )
+
+
+def as_calculix(folder):
+    for name, matrix in (("pad.mas", MASS), ("pad.sti", STIFFNESS)):
+        (folder / name).write_text(
+            lower(matrix, lambda i, j, v: f"{i + 1} {j + 1} {v:.15e}\n")
+        )
+    (folder / "pad.dof").write_text("\n".join(LABELS) + "\n")
+    return "mass: pad.mas\nstiffness: pad.sti\ncontacts: contacts.csv\n"
+
+
+def as_abaqus(folder):
+    def line(i, j, value):
+        return (
+            ",".join([*LABELS[i].split("."), *LABELS[j].split("."), f" {value:.15e}"])
+            + "\n"
+        )
+
+    (folder / "M.mtx").write_text(lower(MASS, line))
+    (folder / "K.mtx").write_text("** rows of MATRIX INPUT\n" + lower(STIFFNESS, line))
+    return "mass: M.mtx\nstiffness: K.mtx\ncontacts: contacts.csv\n"
+
+
+def as_abaqus_substructure(folder):
+    pytest.importorskip("abaqus_mtx_parser", reason="needs the extra [fe]")
+
+    def rows(matrix):
+        values = [f"{v:.12e}" for v in matrix[np.tril_indices(3)]]
+        return "".join(f" {', '.join(values[i : i + 4])}\n" for i in range(0, 6, 4))
+
+    (folder / "pad.mtx").write_text(
+        "** Z1, 3 nodes\n*USER ELEMENT,NODES=3,LINEAR\n** ELEMENT NODES\n**  3,  17,  20\n 1\n"
+        f"*MATRIX,TYPE=STIFFNESS\n{rows(STIFFNESS)}*MATRIX,TYPE=MASS\n{rows(MASS)}"
+    )
+    return "mass: pad.mtx\nstiffness: pad.mtx\ncontacts: contacts.csv\n"
+
+
+def as_scipy(folder):
+    sp.save_npz(folder / "M.npz", sp.csr_array(MASS))
+    sp.save_npz(folder / "K.npz", sp.csr_array(STIFFNESS))
+    return "mass: M.npz\nstiffness: K.npz\ncontacts: contacts.csv\n"
+
+
+def as_matlab(folder):
+    content = {"M": sp.csc_array(MASS), "K": STIFFNESS}
+    scipy.io.savemat(folder / "pad.mat", content)
+    return (
+        "mass: {file: pad.mat, variable: M}\nstiffness: {file: pad.mat, variable: K}\n"
+        "contacts: contacts.csv\n"
+    )
+
+
+def as_matlab_73(folder):
+    h5py = pytest.importorskip("h5py", reason="needs the extra [fe]")
+    path, sparse = folder / "pad.mat", sp.csc_array(MASS)
+    with h5py.File(path, "w", userblock_size=512) as file:
+        file["K"] = STIFFNESS.T
+        group = file.create_group("M")
+        group["data"], group["ir"], group["jc"] = (
+            sparse.data,
+            sparse.indices,
+            sparse.indptr,
+        )
+        group.attrs["MATLAB_sparse"] = np.uint64(3)
+    head = b"MATLAB 7.3 MAT-file".ljust(124) + b"\x00\x02IM"
+    with path.open("r+b") as file:
+        file.write(head)
+    return (
+        "mass: {file: pad.mat, variable: M}\nstiffness: {file: pad.mat, variable: K}\n"
+        "contacts: contacts.csv\n"
+    )
+
+
+def as_matrix_market(folder):
+    scipy.io.mmwrite(folder / "M.mtx", sp.coo_array(MASS), symmetry="symmetric")
+    scipy.io.mmwrite(folder / "K.mtx", STIFFNESS)
+    return "mass: M.mtx\nstiffness: K.mtx\ncontacts: contacts.csv\n"
+
+
+FORMS = (
+    as_matrix_market, as_scipy, as_matlab, as_matlab_73, as_calculix, as_abaqus,
+    as_abaqus_substructure,
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_each_programs_form_is_read(tmp_path, form):
+    structure = structure_of(tmp_path, form(tmp_path))
+    assert_read(structure)
+    (edge,) = structure.contacts
+    assert structure.normals[:, 0] == pytest.approx([0.0, 1.0, -0.5])
+    assert structure.tangentials[:, 0] == pytest.approx([1.0, 0.0, 0.0])
+    assert (edge.stiffness, edge.preload, edge.speed) == (4.0, 1.5, -2.0)
+
+
+def test_directions_are_named_by_node_where_the_matrices_have_labels(tmp_path):
+    text = as_abaqus(tmp_path)
+    by_row = structure_of(tmp_path, text)
+    table = CONTACTS.replace("2:1 3:-0.5,1:1", "3.2:1 17.1:-0.5,3.1:1")
+    (tmp_path / "contacts.csv").write_text(table)
+    by_node = Structure.read(tmp_path / "pad.yaml")
+    assert np.array_equal(by_node.normals, by_row.normals)
+    assert np.array_equal(by_node.tangentials, by_row.tangentials)
+
+
+def test_millimetres_tonnes_and_seconds_become_si(tmp_path):
+    text = as_matrix_market(tmp_path) + "belt_speed: 2000.0\n"
+    whole = structure_of(tmp_path, text + "units: mm-t-s\n")
+    assert_read(whole, scale=1e3)  # t to kg, and N/mm to N/m
+    assert whole.belt_speed == pytest.approx(2.0)
+    assert whole.contacts[0].stiffness == pytest.approx(4e3)
+    assert whole.contacts[0].preload == pytest.approx(1.5)
+    plain = structure_of(tmp_path, text).complex_modes(mu=0.3)
+    assert whole.complex_modes(mu=0.3).frequency.values == pytest.approx(
+        plain.frequency.values
+    )
+
+
+def replaced(path, old, new):
+    content = path.read_text()
+    assert old in content
+    path.write_text(content.replace(old, new, 1))
+
+
+def one_triangle(folder):
+    scipy.io.mmwrite(folder / "K.mtx", sp.coo_array(np.triu(STIFFNESS)))
+
+
+def complex_entries(folder):
+    scipy.io.mmwrite(folder / "K.mtx", sp.coo_array(STIFFNESS * (1 + 0.02j)))
+
+
+def not_a_number(folder):
+    scipy.io.mmwrite(folder / "K.mtx", np.where(STIFFNESS == 30.0, np.nan, STIFFNESS))
+
+
+def cut_off(folder):
+    content = (folder / "K.mtx").read_text().splitlines()
+    (folder / "K.mtx").write_text("\n".join(content[:-3]))
+
+
+def another_size(folder):
+    scipy.io.mmwrite(folder / "K.mtx", STIFFNESS[:2, :2])
+
+
+def without_mass(folder):
+    scipy.io.mmwrite(folder / "M.mtx", sp.coo_array(np.diag([1.0, 0.0, 2.0])))
+
+
+def wrong_units(folder):
+    replaced(folder / "pad.yaml", "contacts:", "units: mm-N-s\ncontacts:")
+
+
+def unknown_key(folder):
+    replaced(folder / "pad.yaml", "stiffness:", "stifness:")
+
+
+def no_such_row(folder):
+    replaced(folder / "contacts.csv", "1:1,", "7:1,")
+
+
+@pytest.mark.parametrize(
+    ("spoil", "words"),
+    [
+        (one_triangle, "triangle: mirror"),
+        (complex_entries, "complex entries"),
+        (not_a_number, "finite numbers"),
+        (cut_off, "cut off"),
+        (another_size, "3 × 3"),
+        (without_mass, "no.* mass|mass is singular"),
+        (wrong_units, "no mass"),
+        (unknown_key, "stiffness"),
+        (no_such_row, "1 to 3 in files"),
+    ],
+)
+def test_a_bad_file_is_refused_with_its_remedy(tmp_path, spoil, words):
+    structure_of(tmp_path, as_matrix_market(tmp_path))
+    spoil(tmp_path)
+    with pytest.raises(ValueError, match=words):
+        Structure.read(tmp_path / "pad.yaml")
+
+
+def test_the_remedies_for_one_triangle_work(tmp_path):
+    text = as_matrix_market(tmp_path)
+    one_triangle(tmp_path)
+    assert_read(structure_of(tmp_path, text + "triangle: mirror\n"))
+    kept = structure_of(tmp_path, text + "triangle: keep\n")
+    assert kept.stiffness.toarray() == pytest.approx(np.triu(STIFFNESS))
+
+
+def test_a_cut_off_file_of_one_triangle_never_becomes_half_a_matrix(tmp_path):
+    text = as_abaqus(tmp_path)
+    lines = (tmp_path / "K.mtx").read_text().splitlines()
+    (tmp_path / "K.mtx").write_text("\n".join(lines[:-1])[:-9])
+    with pytest.raises(ValueError, match=r"K\.mtx"):
+        structure_of(tmp_path, text)
+
+
+def test_the_command_writes_what_python_computes(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    structure = structure_of(tmp_path, as_matrix_market(tmp_path))
+    assert run(["modes", "pad.yaml", "--mu", "0:0.8:5", "-o", "modes.nc"]) == 0
+    assert "modes are unstable somewhere" in capsys.readouterr().out
+    written = load("modes.nc")
+    computed = structure.complex_modes(mu=np.linspace(0, 0.8, 5))
+    assert np.array_equal(written.growth_rate, computed.growth_rate)
+    assert written.mu.dims == ("mu",)
+    assert (tmp_path / "modes.png").stat().st_size > 10000
+
+
+def test_contacts_that_are_open_or_dependent_are_named():
+    pad = elastic_pad(elements=(6, 2), contacts=3)
+    first, *others = pad.contacts
+    pulled = pad.with_(load=pad.load + 600.0 * pad.normals[:, 0])
+    modes = pulled.complex_modes(frequency_max=60e3)
+    assert modes.attrs["open_contacts"] == "p1"
+    assert modes.normal_force.sel(contact="p1") == 0
+    alone = pad.with_(contacts=others).complex_modes(frequency_max=60e3)
+    assert modes.frequency.values == pytest.approx(alone.frequency.values, rel=1e-9)
+    twice = type(first)("again", first.normal, first.tangential, 1.0, 1.0)
+    with pytest.raises(ValueError, match="p1, again are dependent"):
+        pad.with_(contacts=[first, *others, twice])
