@@ -114,9 +114,7 @@ def run(arguments: Sequence[str]) -> int:
                 return DONE
             raise
         except KeyboardInterrupt:
-            print(
-                "squealpipe: interrupted; run the same command again", file=sys.stderr
-            )
+            print(f"squealpipe: interrupted; {SESSION.remedy}", file=sys.stderr)
             return INTERRUPTED
         except Exception as error:  # noqa: BLE001 (one line, not a trace)
             with contextlib.suppress(BrokenPipeError):  # nobody reads it

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 import time
 import warnings
@@ -22,7 +23,11 @@ TRACEBACK = "SQUEALPIPE_TRACEBACK"
 """Environment variable that asks for tracebacks, as -v does."""
 LOG_EVERY = 30.0
 """Time between two lines of progress in a log, s."""
+OPTION = re.compile(r"--?[A-Za-z]")
 SWITCHES = {"-q": "quiet", "--quiet": "quiet", "-v": "verbose", "--verbose": "verbose"}
+
+
+AGAIN = "run the same command again"
 
 
 @dataclass
@@ -34,12 +39,14 @@ class _Session:
         verbose: print tracebacks and warnings.
         typed: physical parameters that stood on the command line.
         held: what ends with the command: names that it keeps to write to.
+        remedy: what to do after an interruption.
     """
 
     quiet: bool = False
     verbose: bool = False
     typed: set[str] = field(default_factory=set)
     held: ExitStack = field(default_factory=ExitStack)
+    remedy: str = AGAIN
 
 
 SESSION = _Session()
@@ -48,6 +55,7 @@ SESSION = _Session()
 @contextmanager
 def session(arguments: Sequence[str]) -> Iterator[list[str]]:
     """Apply -q and -v, which every command takes, and give the other arguments."""
+    arguments = _options_first(arguments)
     end = arguments.index("--") if "--" in arguments else len(arguments)
     found = {SWITCHES[each] for each in arguments[:end] if each in SWITCHES}
     kept = [each for each in arguments[:end] if each not in SWITCHES]
@@ -56,11 +64,22 @@ def session(arguments: Sequence[str]) -> Iterator[list[str]]:
         "",
         "0",
     }
-    SESSION.typed = set()
+    SESSION.typed, SESSION.remedy = set(), AGAIN
     with warnings.catch_warnings(), ExitStack() as SESSION.held:
         if not SESSION.verbose and not sys.warnoptions:
             warnings.simplefilter("ignore")
         yield [*map(_from_home, kept), *arguments[end:]]
+
+
+def _options_first(arguments: Sequence[str]) -> list[str]:
+    """Options that follow negative angles, ``-- -0.2pi 0.3pi --t-end 2``, before the ``--``."""
+    words = list(arguments)
+    if "--" not in words:
+        return words
+    end = words.index("--")
+    rest = words[end + 1 :]
+    first = next((at for at, word in enumerate(rest) if OPTION.match(word)), 0)
+    return [*words[:end], *rest[first:], "--", *rest[:first]] if first else words
 
 
 def _from_home(argument: str) -> str:

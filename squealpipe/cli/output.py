@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from squealpipe.cli.arguments import Drawn, Written
 from squealpipe.cli.console import SESSION, say, working
+from squealpipe.cli.long_work import say_what_it_takes
 from squealpipe.cli.reservation import reserve
 
 if TYPE_CHECKING:
@@ -91,6 +92,7 @@ def compute(
         name: dataset_id(value) if hasattr(value, "data_vars") else plain(value)
         for name, value in given.items()
     }
+    say_what_it_takes(function, brake.params, angles, given)
     with working(function.replace("_", " ")):
         dataset = write(
             lambda: getattr(squealpipe, function)(brake.params, *angles, **given),
@@ -101,6 +103,9 @@ def compute(
         from squealpipe.plotting import picture
         from squealpipe.plotting.style import save_figure
 
+        SESSION.remedy = (
+            f"{output} is written; squealpipe plot {output} -o {written[1]} draws it"
+        )
         save_figure(picture(dataset), written[1:])
     say(f"wrote {' and '.join(map(str, written))}")
     return dataset

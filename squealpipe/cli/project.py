@@ -1,6 +1,8 @@
 """``squealpipe init`` and ``squealpipe run``: a study of one's own, begun and computed."""
 
 import os
+import re
+import shlex
 import sys
 import time
 from pathlib import Path
@@ -11,6 +13,8 @@ from squealpipe.cli.output import check_output
 from squealpipe.parameters import DEFAULTS, TABLE, Row
 from squealpipe.text import duration
 
+NOT_IN_NAMES = re.compile(r"[^A-Za-z0-9._-]+")
+"""What no folder of results has in its name."""
 HEAD = """\
 # A study of your own, laid over the paper's: what stands here replaces what stands there.
 # Edit the parameters; for other keys take away the "# " of the key and of its section.
@@ -77,17 +81,21 @@ def init(
     from squealpipe.store.whole_files import whole_file
 
     check_output(file, force=force, kinds=(".yaml", ".yml"), option="FILE")
-    folder = results or f"results/{file.stem}"
+    folder = results or f"results/{NOT_IN_NAMES.sub('_', file.stem)}"
     if own:
-        text = OWN.format(file=file, results=folder)
+        text = OWN.format(file=shlex.quote(str(file)), results=folder)
     else:
         text = overlay_text(
-            PAPER.read_text(encoding="utf-8"), file=str(file), results=folder
+            PAPER.read_text(encoding="utf-8"),
+            file=shlex.quote(str(file)),
+            results=folder,
         )
     with whole_file(file) as draft:
         draft.write_text(text, encoding="utf-8")
         read_study(PAPER, draft)
-    say(f"wrote {file}; edit it, then: squealpipe run --config {file}")
+    say(
+        f"wrote {file}; edit it, then: squealpipe run --config {shlex.quote(str(file))}"
+    )
     return DONE
 
 

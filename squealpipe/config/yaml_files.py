@@ -15,11 +15,21 @@ class _Loader(yaml.SafeLoader):
 
     yaml_implicit_resolvers = {}  # noqa: RUF012 (as the parent class has it)
 
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        if self.check_event(yaml.AliasEvent):
+            event = self.peek_event()  # type: ignore[no-untyped-call]
+            what = f"alias *{event.anchor}; write the value out"
+            raise yaml.MarkedYAMLError(problem=what, problem_mark=event.start_mark)
+        return super().compose_node(parent, index)
+
     def construct_mapping(
         self, node: yaml.MappingNode, deep: bool = False
     ) -> dict[Any, Any]:
         seen = set()
         for key, _ in node.value:
+            if not isinstance(key, yaml.ScalarNode):
+                what = "a key that is a list or has keys itself; write one word"
+                raise yaml.MarkedYAMLError(problem=what, problem_mark=key.start_mark)
             if key.value in seen:
                 what = f"key {key.value!r} is a duplicate; keep one"
                 raise yaml.MarkedYAMLError(problem=what, problem_mark=key.start_mark)

@@ -191,6 +191,11 @@ def named(given: Any, columns: tuple[str, str], folder: Path = Path()) -> Any:
         given = {"python" if fspath(given).endswith(".py") else "table": fspath(given)}
     if not isinstance(given, Mapping):
         return given
+    for key in {"table", "python"} & set(given):
+        if not isinstance(given[key], str | PathLike):
+            raise ValueError(  # noqa: TRY004 (of a file, where all mistakes are values)
+                f"{key} = {given[key]!r}: write the name of a file"
+            )
     if set(given) == {"python"}:
         return (folder / given["python"]).read_text(encoding="utf-8")
     if not {"table"} <= set(given) <= {"table", "between"}:

@@ -11,6 +11,7 @@ import json
 import os
 import re
 import sys
+import time
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -112,10 +113,11 @@ def refuse_edited(output: str | os.PathLike[str]) -> None:
                     for read in file.parent.glob(each)
                 ),
             }
+    now = time.time()  # a file dated later has another clock's date, not one of an edit
     edited = [
         path.name
         for path in sorted(own)
-        if not path.exists() or path.stat().st_mtime > started
+        if not path.exists() or started < path.stat().st_mtime <= now
     ]
     if edited:
         raise RuntimeError(

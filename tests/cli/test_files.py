@@ -2,12 +2,14 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
 import time
 import warnings
 from functools import partial
+from unittest.mock import Mock
 
 import numpy as np
 import pandas as pd
@@ -213,3 +215,84 @@ def test_completion_is_offered(capsys, monkeypatch, tmp_path):
     assert run(["--install-completion", "--shell", "bash"]) == 0
     written = [path for path in tmp_path.rglob("*") if path.is_file()]
     assert any("backbone" in path.read_text(encoding="utf-8") for path in written)
+
+
+def test_a_map_that_does_not_fit_is_refused_with_what_it_would_take(capsys):
+    words = ["map", "stability", "--alpha1", "0:pi:30000", "--alpha2", "0:pi:30000"]
+    assert run([*words, "-o", "big.nc"]) == 2
+    told = capsys.readouterr().err
+    assert "900,000,000 cells would take about" in told
+    assert "fit: take fewer angles" in told
+
+
+def test_a_big_map_says_what_it_takes_before_it_begins(capsys, monkeypatch):
+    monkeypatch.setattr("squealpipe.cli.long_work.MANY", 100)
+    words = ["map", "stability", "--alpha1", "0:pi:40", "--alpha2", "0:pi:40"]
+    assert run([*words, "-o", "map.nc"]) == 0
+    assert capsys.readouterr().out.startswith("1,600 cells: at most about ")
+
+
+def test_options_may_follow_negative_angles(capsys):
+    assert run(["simulate", "-o", "a.nc", "--", "-0.2pi", "0.3pi", "--t-end", "2"]) == 0
+    assert load("a.nc").attrs["arguments"].count("-0.62831") == 1
+
+
+def test_what_init_writes_is_what_run_reads(capsys):
+    assert run(["init", "brake 1.yaml"]) == 0
+    assert "run --config 'brake 1.yaml'" in capsys.readouterr().out
+    assert read_study("brake 1.yaml").results == "results/brake_1"
+
+
+def test_an_interrupt_while_the_picture_is_drawn_tells_how_to_go_on(
+    capsys, monkeypatch, tmp_path
+):
+    with monkeypatch.context() as patch:
+        patch.setattr(
+            "squealpipe.plotting.style.save_figure", Mock(side_effect=KeyboardInterrupt)
+        )
+        assert run([*STABILITY, "-o", "a.nc"]) == 130
+    told = capsys.readouterr().err
+    remedy = re.search(r"a.nc is written; squealpipe (plot .*) draws it", told)[1]
+    assert run(remedy.split()) == 0
+    assert (tmp_path / "a.png").is_file()
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            "parameters: {friction_law: {table: }}",
+            "table = None: write the name of a file",
+        ),
+        ("parameters: {? [a, b] : 3}", "line 1 .* a key that is a list"),
+        ("a: &x [*x]", r"line 1 .* alias \*x; write the value out"),
+    ],
+)
+def test_odd_yaml_is_named_with_its_remedy(capsys, tmp_path, text, message):
+    (tmp_path / "odd.yaml").write_text(text + "\n")
+    assert run(["simulate", "1", "2", "--t-end", "1", "--config", "odd.yaml"]) == 2
+    assert re.search(message, capsys.readouterr().err)
+
+
+@pytest.mark.parametrize(
+    ("law", "message"),
+    [
+        ("def coefficient(speed, p):\n    raise KeyError('x')", "KeyError: 'x'"),
+        ("def coefficient(speed, p):\n    return 1 / 0", "ZeroDivisionError"),
+        ("def coefficient(speed, p):\n    raise SystemExit(3)", "SystemExit: 3"),
+        ("def coefficient(speed):\n    return 0.3", "takes 1 positional argument"),
+        (
+            "import helper\ndef coefficient(speed, p):\n    return 0.3",
+            "a law is one file",
+        ),
+    ],
+)
+def test_faults_inside_a_law_are_told_as_such(capsys, tmp_path, law, message):
+    (tmp_path / "law.py").write_text(law + "\n")
+    (tmp_path / "helper.py").write_text("")
+    (tmp_path / "l.yaml").write_text("parameters: {friction_law: {python: law.py}}\n")
+    assert run(["simulate", "1", "2", "--t-end", "1", "--config", "l.yaml"]) == 2
+    told = capsys.readouterr().err
+    assert message in told
+    assert "friction_law" in told
+    assert "unexpected error" not in told

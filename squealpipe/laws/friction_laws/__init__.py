@@ -5,6 +5,8 @@ or a Python file with ``coefficient(speed, p)``, of m/s and ``p.mu``
 (:mod:`squealpipe.laws.tables`).
 """
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import lru_cache
 from types import ModuleType, SimpleNamespace
 from typing import Any, Protocol, cast
@@ -82,6 +84,25 @@ class Piece:
         )
 
 
+@contextmanager
+def _faults_named(what: str) -> Iterator[None]:
+    """Whatever a user's code raises becomes an error that says where and what to do."""
+    try:
+        yield
+    except ValueError:
+        raise
+    except ImportError as error:
+        raise ValueError(
+            f"friction_law: {what} imports what is not there ({error}); a law is one file, so put "
+            "its code in there"
+        ) from error
+    except (Exception, SystemExit) as error:
+        raise ValueError(
+            f"friction_law: {what} failed with {type(error).__name__}: {error}; it must return "
+            "the coefficient for a speed in m/s and p, which has p.mu"
+        ) from error
+
+
 @lru_cache(maxsize=64)
 def _own(name: str) -> FrictionLaw | None:
     """A law of the user's own; None if the name is none."""
@@ -89,14 +110,16 @@ def _own(name: str) -> FrictionLaw | None:
         return Table(pieces_of(name))
     if "\n" not in name:
         return None
-    found = functions_of(name)
+    with _faults_named("the file of the law"):
+        found = functions_of(name)
     if "coefficient" not in found:
         raise ValueError("the file has no function coefficient(speed, p)")
 
     def coefficient(speed: Any, p: Any) -> Any:
-        return found["coefficient"](
-            speed * p.friction_speed**-1.0, SimpleNamespace(mu=p.mu)
-        )
+        with _faults_named("coefficient(speed, p)"):
+            return found["coefficient"](
+                speed * p.friction_speed**-1.0, SimpleNamespace(mu=p.mu)
+            )
 
     def slope(speed: Any, p: Any) -> Any:
         # a complex step is exact for a smooth law
