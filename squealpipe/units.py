@@ -77,6 +77,11 @@ def has_unit(text: object) -> bool:
     return False
 
 
+def is_unit(text: str) -> bool:
+    """Whether pint knows a unit."""
+    return _unit(text) is not None
+
+
 def in_si(text: str, units: str, keys: Mapping[str, str] | None = None) -> float:
     """The number of a text with a unit, in SI.
 

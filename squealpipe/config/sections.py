@@ -125,6 +125,8 @@ def _field_type(name: str, row: Row) -> Any:
             "properties": {
                 "table": {"type": "string"},
                 "between": {"enum": list(BETWEEN)},
+                f"{row.laws.COLUMNS[0]}_column": {"type": "string"},
+                "value_column": {"type": "string"},
                 "python": {"type": "string"},
             },
             "additionalProperties": False,

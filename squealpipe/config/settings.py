@@ -19,6 +19,7 @@ from squealpipe.config.quantities import scales
 from squealpipe.config.ranges import sweep_config
 from squealpipe.config.sections import Name, Section
 from squealpipe.config.yaml_files import flat, overlay, read_yaml
+from squealpipe.laws.table_files import ENDINGS
 from squealpipe.laws.tables import named, stood_for
 from squealpipe.parameters import TABLE, Parameters, Row
 from squealpipe.rerun.key import PARTS
@@ -184,7 +185,7 @@ def files_of_laws(path: Path) -> list[Path]:
         Path(file)
         for given in entries
         for file in (given.values() if isinstance(given, dict) else [given])
-        if str(file).endswith((".csv", ".py"))
+        if str(file).lower().endswith((*ENDINGS, ".py"))
     ]
 
 

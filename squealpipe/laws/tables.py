@@ -5,7 +5,6 @@ monotone cubics of Fritsch and Carlson. The content is the law: it stands in par
 datasets as the name of a formula does, so nothing depends on a file that was read once.
 """
 
-import csv
 import math
 from collections.abc import Mapping
 from functools import lru_cache
@@ -13,6 +12,8 @@ from itertools import pairwise
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, NamedTuple
+
+from squealpipe.laws.table_files import ENDINGS, read_pairs
 
 BETWEEN = ("linear", "cubic")
 
@@ -63,37 +64,20 @@ def polynomial(coefficients: Any, distance: Any, derivative: bool = False) -> An
 
 
 def read_table(
-    path: str | PathLike[str], columns: tuple[str, str], between: str = "linear"
+    path: str | PathLike[str],
+    columns: tuple[str, str],
+    between: str = "linear",
+    chosen: tuple[str | None, str | None] = (None, None),
 ) -> str:
-    """The text of a table in a CSV file.
+    """The text of a table in a file (:mod:`squealpipe.laws.table_files`).
 
     Args:
         columns: those of knots and values; of two columns that of values may have any name.
+        chosen: names of columns to take instead.
     """
     if between not in BETWEEN:
         raise ValueError(f"between = {between!r}: choose from {', '.join(BETWEEN)}")
-    pairs = []
-    with Path(path).open(encoding="utf-8-sig", newline="") as file:
-        rows = csv.DictReader(file, skipinitialspace=True)
-        names = [name.strip() for name in rows.fieldnames or []]
-        rows.fieldnames = names
-        if len(names) == 2 and columns[0] in names:
-            columns = columns[0], names[1 - names.index(columns[0])]
-        for name in columns:
-            if name not in names:
-                raise ValueError(
-                    f"{path} has no column {name!r}; its columns: {', '.join(names)}"
-                )
-        for row in rows:
-            try:
-                pairs.append([float(row[name]) for name in columns])
-            except (TypeError, ValueError):
-                given = ", ".join(str(row[name]) for name in columns)
-                raise ValueError(
-                    f"{path}, line {rows.line_num}: no numbers: {given}"
-                ) from None
-    if not pairs:
-        raise ValueError(f"{path} has no rows below its header")
+    pairs = read_pairs(path, columns, chosen)
     return between + "".join(f" {knot!r}:{value!r}" for knot, value in pairs)
 
 
@@ -182,11 +166,11 @@ def named(given: Any, columns: tuple[str, str], folder: Path = Path()) -> Any:
     """The name of a law from what a user writes: a file becomes its content.
 
     Args:
-        given: a name; the path of a CSV or Python file; or ``{"table": path, "between": "cubic"}``
-            or ``{"python": path}``.
+        given: a name; the path of a table or Python file; or ``{"table": path, "between":
+            "cubic", "speed_column": name, "value_column": name}`` or ``{"python": path}``.
     """
     if isinstance(given, PathLike) or (
-        isinstance(given, str) and given.endswith((".csv", ".py"))
+        isinstance(given, str) and given.lower().endswith((*ENDINGS, ".py"))
     ):
         given = {"python" if fspath(given).endswith(".py") else "table": fspath(given)}
     if not isinstance(given, Mapping):
@@ -198,8 +182,12 @@ def named(given: Any, columns: tuple[str, str], folder: Path = Path()) -> Any:
             )
     if set(given) == {"python"}:
         return (folder / given["python"]).read_text(encoding="utf-8")
-    if not {"table"} <= set(given) <= {"table", "between"}:
+    options = (f"{columns[0]}_column", "value_column")
+    if not {"table"} <= set(given) <= {"table", "between", *options}:
         raise ValueError(
-            "write {table: FILE.csv}, if wanted with `between: cubic`, or {python: FILE.py}"
+            "write {table: FILE.csv}, if wanted with `between: cubic`, "
+            f"`{options[0]}:` and `{options[1]}:`, or {{python: FILE.py}}"
         )
-    return read_table(folder / given["table"], columns, given.get("between", "linear"))
+    first, second = (given.get(option) for option in options)
+    between = given.get("between", "linear")
+    return read_table(folder / given["table"], columns, between, (first, second))

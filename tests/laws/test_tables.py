@@ -88,11 +88,11 @@ def test_cubic_tables_are_monotone_and_smooth():
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("speed,coefficient\n0,0.5\n0.1,0.4\n0.1,0.3\n", r"0.1 stands after 0.1"),
-        ("speed,coefficient\n0.2,0.5\n0.1,0.4\n", r"0.1 stands after 0.2"),
-        ("speed,coefficient\n0,-0.5\n", r"-0.5 in the table"),
-        ("speed,coefficient\n0,nan\n", r"nan in the table"),
-        ("speed,coefficient\n0,0.5\n1\n", r"line 3: no numbers: 1, None"),
+        ("speed,coefficient\n0,0.5\n0.1,0.4\n0.1,0.3\n", r"row 4: speed 0.1 after 0.1"),
+        ("speed,coefficient\n0.2,0.5\n0.1,0.4\n", r"row 3: speed 0.1 after 0.2"),
+        ("speed,coefficient\n0,-0.5\n", r"row 2: coefficient = -0.5"),
+        ("speed,coefficient\n0,nan\n", r"row 2: 'nan' is no number"),
+        ("speed,coefficient\n0,0.5\n1\n", r"row 3: an empty cell"),
         ("v,mu\n0,0.5\n", r"has no column 'speed'; its columns: v, mu"),
         ("speed,coefficient\n", r"has no rows"),
     ],

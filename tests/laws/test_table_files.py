@@ -1,0 +1,209 @@
+"""Tables as instruments, Excel and papers write them: read rightly, or refused with a remedy."""
+
+import re
+
+import pytest
+
+from squealpipe import Parameters
+from squealpipe.config.settings import ConfigError, read_study
+from squealpipe.laws.contact_laws import COLUMNS as CONTACT
+from squealpipe.laws.friction_laws import COLUMNS as FRICTION
+from squealpipe.laws.table_files import read_pairs
+
+SI = [(0.0, 0.5), (0.1, 0.45), (1.5, 0.3)]
+"""What every table of friction below says."""
+
+READ = {
+    "plain": "speed,coefficient\n0,0.5\n0.1,0.45\n1.5,0.3\n",
+    "any name": "speed, mu\n0, 0.5\n0.1, 0.45\n1.5, 0.3\n",
+    "German Excel": "speed;µ\n0;0,5\n0,1;0,45\n1,5;0,3\n",
+    "German, three decimals": "speed;µ\n0,000;0,500\n0,100;0,450\n1,500;0,300\n",
+    "French": "speed;coefficient de frottement\n0,0;0,50\n0,1;0,45\n1,5;0,30\n",
+    "Italian, km/h": "speed [km/h];attrito\n0;0,5\n0,36;0,45\n5,4;0,3\n",
+    "Polish, tabs": "speed\twspółczynnik\n0\t0,5\n0,1\t0,45\n1,5\t0,3\n",
+    "English, quoted": '"speed","mu"\n"0","0.5"\n"0.1","0.45"\n"1.5","0.3"\n',
+    "quoted decimal commas": 'speed,mu\n"0","0,5"\n"0,1","0,45"\n"1,5","0,3"\n',
+    "Excel's sep": "sep=;\nspeed;mu\n0;0.5\n0.1;0.45\n1.5;0.3\n",
+    "spaces": "speed   mu\n0.0     0.50\n0.1     0.45\n1.5     0.30\n",
+    "spaces and commas": "speed mu\n0,0 0,50\n0,1 0,45\n1,5 0,30\n",
+    "bars": "speed | mu\n0 | 0.5\n0.1 | 0.45\n1.5 | 0.3\n",
+    "comments": "# rig 4\nspeed,mu\n# first\n0,0.5\n0.1,0.45\n\n1.5,0.3\n",
+    "percent comments": "% rig 4\nspeed,mu\n0,0.5\n0.1,0.45\n1.5,0.3\n",
+    "preamble": "Rig;4\nDate;2024-05-01\n\nspeed;mu\n0;0,5\n0,1;0,45\n1,5;0,3\n",
+    "units in brackets": "speed (mm/s), mu (-)\n0, 0.5\n100, 0.45\n1500, 0.3\n",
+    "units by DIN": "speed / (mm/s);mu / %\n0;50\n100;45\n1500;30\n",
+    "units by in": "speed in m/s;mu in %\n0;50\n0,1;45\n1,5;30\n",
+    "units row": "speed;mu\nmm/s;-\n0;0,5\n100;0,45\n1500;0,3\n",
+    "units row in brackets": "speed;mu\n[km/h];[%]\n0;50\n0,36;45\n5,4;30\n",
+    "Windows line ends": "speed;mu\r\n0;0,5\r\n0,1;0,45\r\n1,5;0,3\r\n",
+    "exponents": "speed,mu\n0.00E+00,5.0E-01\n1.0E-01,4.5E-01\n1.5E+00,3.0E-01\n",
+    "German exponents": "speed;mu\n0,0E+0;5,0E-1\n1,0E-1;4,5E-1\n1,5E+0;3,0E-1\n",
+    "trailing separators": "speed;mu;;\n0;0,5;;\n0,1;0,45;;\n1,5;0,3;;\n",
+    "further columns": "time,speed,force,coefficient\n1,0,9,0.5\n2,0.1,9,0.45\n3,1.5,8,0.3\n",
+    "no leading zero": "speed,mu\n0,.5\n.1,.45\n1.5,.3\n",
+}  # fmt: skip
+CHOSEN = {
+    "columns by name": ("t;v (km/h);T;µ [%]\n0;0;20;50\n1;0,36;21;45\n2;5,4;22;30\n", ("v", "µ")),
+    "whole headers": ("v (km/h);µ [%]\n0;50\n0,36;45\n5,4;30\n", ("v (km/h)", "µ [%]")),
+}  # fmt: skip
+ENCODINGS = ("utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "cp1252")
+
+REFUSED = {
+    "a row longer than its header": (
+        "speed,mu\n0,0,45\n0,1,0,4\n",
+        "row 2 has 3 cells under 2 names: 0, 0, 45; with decimal commas separate the columns",
+        "speed;mu\n0;0,45\n0,1;0,4\n",
+    ),
+    "thousands by comma": (
+        "speed in mm/s;mu\n0;1\n1,500;0\n",
+        "row 3: the comma of '1,500' may separate thousands; write 1.500 or 1500",
+        "speed in mm/s;mu\n0;1\n1500;0\n",
+    ),
+    "thousands by point": (
+        "speed in mm/s;mu\n0;0,5\n1.500;0,3\n",
+        "has a comma and '1.500' in row 3 a point; write one decimal sign throughout",
+        "speed in mm/s;mu\n0;0,5\n1500;0,3\n",
+    ),
+    "thousands by apostrophe": (
+        "speed in mm/s;mu\n0;0.5\n1'500;0.3\n",
+        "row 3: \"1'500\" has separators of thousands; write it without them",
+        "speed in mm/s;mu\n0;0.5\n1500;0.3\n",
+    ),
+    "thousands by space": (
+        "speed in mm/s;mu\n0;0,5\n1 500,0;0,3\n",
+        "separators of thousands",
+        "speed in mm/s;mu\n0;0,5\n1500,0;0,3\n",
+    ),
+    "a first speed above 0": (
+        "speed,mu\n0.1,0.5\n1,0.3\n",
+        "row 2: the first speed is 0.1; add a row at speed 0, whose value limits stick",
+        "speed,mu\n0,0.5\n0.1,0.5\n1,0.3\n",
+    ),
+    "a coefficient above 2": (
+        "speed,mu\n0,50\n1,30\n",
+        "row 2: a coefficient of 50.0 is above 2; if it is in per cent, write [%] behind",
+        "speed,mu [%]\n0,50\n1,30\n",
+    ),
+    "speeds that do not ascend": (
+        "speed,mu\n0,0.5\n1,0.3\n0.5,0.4\n",
+        "row 4: speed 0.5 after 1.0; sort the rows so that it ascends",
+        "speed,mu\n0,0.5\n0.5,0.4\n1,0.3\n",
+    ),
+    "a speed twice": (
+        "speed,mu\n0,0.5\n0,0.3\n",
+        "one row for each value",
+        "speed,mu\n0,0.5\n",
+    ),
+    "an unknown column": (
+        "v,T,mu\n0,1,0.5\n1,1,0.3\n",
+        ("has no column 'speed'; its columns: v, T, mu; name one of them 'speed', or write "
+        "speed_column: with its name"),
+        "speed,T,coefficient\n0,1,0.5\n1,1,0.3\n",
+    ),
+    "a unit of another kind": (
+        "speed (mm),mu\n0,0.5\n1,0.3\n",
+        "column 'speed (mm)' in 'mm': that is a length; a speed is needed, like 7.2 km/h",
+        "speed (mm/s),mu\n0,0.5\n1,0.3\n",
+    ),
+    "an empty cell": (
+        "speed;mu\n0;0,5\n1;\n",
+        "row 3: an empty cell; write a number there, or take the row out",
+        "speed;mu\n0;0,5\n",
+    ),
+    "a word": (
+        "speed;mu\n0;0,5\n1;n/a\n",
+        "row 3: 'n/a' is no number",
+        "speed;mu\n0;0,5\n1;0,3\n",
+    ),
+    "a negative coefficient": (
+        "speed;mu\n0;0,5\n1;-0,3\n",
+        "row 3: coefficient = -0.3; finite numbers from 0 on are needed",
+        "speed;mu\n0;0,5\n1;0,3\n",
+    ),
+    "no header": (
+        "0;0,5\n1;0,3\n",
+        "has no header; write a first row like speed;coefficient",
+        "speed;coefficient\n0;0,5\n1;0,3\n",
+    ),
+    "no rows": ("speed;mu\n", "has no rows below its header", "speed;mu\n0;0,5\n"),
+}  # fmt: skip
+"""What is wrong → the file, what is said, and the file after the remedy was followed."""
+
+
+@pytest.mark.parametrize("name", READ)
+def test_tables_of_many_programs_are_read(name, tmp_path):
+    path = tmp_path / "friction.csv"
+    path.write_bytes(READ[name].encode())
+    assert read_pairs(path, FRICTION) == SI
+
+
+@pytest.mark.parametrize("encoding", ENCODINGS)
+def test_encodings_of_windows_and_instruments(encoding, tmp_path):
+    path = tmp_path / "friction.txt"
+    path.write_bytes(READ["German Excel"].encode(encoding))
+    assert read_pairs(path, FRICTION) == SI
+    assert Parameters(friction_law=str(path)).static_mu == 0.5
+
+
+@pytest.mark.parametrize("name", CHOSEN)
+def test_further_columns_are_chosen_by_name(name, tmp_path):
+    text, chosen = CHOSEN[name]
+    path = tmp_path / "friction.csv"
+    path.write_text(text, encoding="utf-8")
+    assert read_pairs(path, FRICTION, chosen) == SI
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_cannot_be_known_is_refused_and_the_remedy_works(name, tmp_path):
+    text, says, mended = REFUSED[name]
+    path = tmp_path / "bad.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ValueError, match=rf"bad\.csv.*{re.escape(says)}"):
+        read_pairs(path, FRICTION)
+    path.write_text(mended, encoding="utf-8")
+    assert read_pairs(path, FRICTION)
+
+
+def test_sheets_of_excel(tmp_path):
+    openpyxl = pytest.importorskip("openpyxl", reason="of the extra export")
+    book = openpyxl.Workbook()
+    heads = (["rig 4"], ["speed", "T", "mu"], ["km/h", "K", "%"])
+    for row in (*heads, [0, 1, 50], [0.36, 2, 45], [5.4, 3, 30]):
+        book.active.append(row)
+    path = tmp_path / "friction.xlsx"
+    book.save(path)
+    assert read_pairs(path, FRICTION, (None, "mu")) == SI
+    book.create_sheet("more")["A1"] = "something"
+    book.save(path)
+    with pytest.raises(
+        ValueError, match=r"sheets with content: Sheet, more; save the one"
+    ):
+        read_pairs(path, FRICTION, (None, "mu"))
+    path.write_text("speed,mu")
+    with pytest.raises(ValueError, match=r"friction\.xlsx is no Excel file"):
+        read_pairs(path, FRICTION)
+
+
+def test_a_contact_in_kilonewtons_over_micrometres(tmp_path):
+    path = tmp_path / "contact.csv"
+    path.write_text(
+        "compression [µm];Kraft [kN]\n0;0\n50;0,2\n100;0,9\n", encoding="utf-8"
+    )
+    assert read_pairs(path, CONTACT) == [(0.0, 0.0), (5e-5, 200.0), (1e-4, 900.0)]
+
+
+def test_a_configuration_names_columns_and_the_file_at_fault(tmp_path):
+    (tmp_path / "rig.csv").write_text(CHOSEN["columns by name"][0], encoding="utf-8")
+    study = tmp_path / "pad.yaml"
+    law = "{table: rig.csv, speed_column: v, value_column: µ}"
+    study.write_text(f"parameters:\n  friction_law: {law}\n", encoding="utf-8")
+    assert (
+        read_study(study).parameters.friction_law == "linear 0.0:0.5 0.1:0.45 1.5:0.3"
+    )
+    study.write_text(
+        "parameters:\n  friction_law: {table: rig.csv}\n", encoding="utf-8"
+    )
+    with pytest.raises(
+        ConfigError, match=r"rig\.csv has no column 'speed'; .*speed_column:"
+    ):
+        read_study(study)
