@@ -12,13 +12,10 @@ export XDG_CACHE_HOME := $(CURDIR)/.snakemake/cache
 export MPLCONFIGDIR := $(CURDIR)/.snakemake/cache/matplotlib
 endif
 
-.PHONY: reproduce quick test test-release test-processors bench env dev lock lint lint-scripts docs dictionary clean
+.PHONY: reproduce test test-release test-processors bench env dev lock lint lint-scripts docs dictionary clean
 
 reproduce: env  ## the whole study: datasets, figures, report
 	$(BIN)/snakemake
-
-quick: env  ## the same study, coarse, into results/quick
-	$(BIN)/snakemake --configfile workflow/config/quick.yaml
 
 test: dev  ## the tests of each change, minutes
 	$(TESTS)
