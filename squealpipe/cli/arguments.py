@@ -11,6 +11,7 @@ from cyclopts import Group, Parameter
 from squealpipe.config.ranges import parse_angle, parse_number, parse_range, reader
 from squealpipe.parameters import SYMBOLS, Parameters
 from squealpipe.substitutes import SUBSTITUTES
+from squealpipe.units import has_unit, in_si
 
 
 def _reader(read: Callable[[str], Any]) -> Callable[[Any, Sequence[Any]], Any]:
@@ -72,6 +73,40 @@ Lengths = Annotated[
 Speeds = Annotated[
     list[float] | None,
     _signed(partial(parse_range, one=reader("vx")), "RANGE", negative=""),
+]
+INCH = 0.0254
+
+
+def parse_size(text: str) -> tuple[float, float]:
+    """Width and height of a picture in inches from a text like ``90mm x 60mm``."""
+    sides = text.replace("×", "x").split("x")
+    if len(sides) != 2 or not all(map(has_unit, sides)):
+        raise ValueError(
+            f"{text!r} is no size of a picture; write for instance 90mmx60mm"
+        )
+    width, height = (in_si(side, "m") / INCH for side in sides)
+    if not (0.5 <= width <= 100 and 0.5 <= height <= 100):
+        raise ValueError(f"{text!r}: each side must be between 13 mm and 2.5 m")
+    return width, height
+
+
+FigureSize = Annotated[
+    tuple[float, float] | None,
+    Parameter(
+        converter=_reader(parse_size),
+        metavar="WIDTHxHEIGHT",
+        n_tokens=1,
+        help="size of the picture, like 90mmx60mm.",
+    ),
+]
+Dpi = Annotated[
+    int | None,
+    Parameter(
+        converter=_whole,
+        metavar="INT",
+        n_tokens=1,
+        help="its dots per inch; 200 by default.",
+    ),
 ]
 Tolerance = Annotated[float, Parameter(help="tolerance of the integration.")]
 Workers = Annotated[
@@ -148,6 +183,8 @@ class Drawn(Written):
             help="picture to write (png, svg or pdf); by default beside the output.",
         ),
     ] = None
+    figure_size: FigureSize = None
+    dpi: Dpi = None
 
 
 BRAKE, WRITTEN, DRAWN = Brake(), Written(), Drawn()

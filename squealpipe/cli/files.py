@@ -5,7 +5,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from squealpipe.cli.arguments import Force, OutputElsewhere
+from squealpipe.cli.arguments import Dpi, FigureSize, Force, OutputElsewhere
 from squealpipe.cli.console import DONE, say
 from squealpipe.cli.output import PICTURES, TABLES, check_output
 
@@ -16,6 +16,8 @@ def plot(
     *,
     output: OutputElsewhere = None,
     variable: str | None = None,
+    figure_size: FigureSize = None,
+    dpi: Dpi = None,
     force: Force = False,
 ) -> int:
     """Draw a dataset: a run, a map, a branch, a cycle, an ensemble of a system.
@@ -34,7 +36,7 @@ def plot(
     from squealpipe.plotting.style import save_figure
     from squealpipe.store.foreign import load_any
 
-    save_figure(picture(load_any(file), variable), [target])
+    save_figure(picture(load_any(file), variable), [target], size=figure_size, dpi=dpi)
     say(f"wrote {target}")
     return DONE
 

@@ -99,14 +99,16 @@ def compute(
             output,
             config={"parameters": brake.params.as_dict(), **stated},
         )
-    if written[1:]:
+    if isinstance(brake, Drawn):
         from squealpipe.plotting import picture
         from squealpipe.plotting.style import save_figure
 
         SESSION.remedy = (
             f"{output} is written; squealpipe plot {output} -o {written[1]} draws it"
         )
-        save_figure(picture(dataset), written[1:])
+        save_figure(
+            picture(dataset), written[1:], size=brake.figure_size, dpi=brake.dpi
+        )
     say(f"wrote {' and '.join(map(str, written))}")
     return dataset
 

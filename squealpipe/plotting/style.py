@@ -234,14 +234,28 @@ def shorten_small_ticks(figure: Figure) -> None:
                 ticks.set_powerlimits((-3, 5))
 
 
-def save_figure(figure: Figure, paths: Sequence[str | os.PathLike[str]]) -> None:
+def save_figure(
+    figure: Figure,
+    paths: Sequence[str | os.PathLike[str]],
+    *,
+    size: tuple[float, float] | None = None,
+    dpi: int | None = None,
+) -> None:
     """Write a figure to every path, atomically and without a date: equal inputs, equal files.
 
     The layout is found once, at the resolution of the first file: left to ``savefig``, each file
     would be drawn twice.
+
+    Args:
+        size: width and height in inches, those of the figure by default.
     """
     shorten_small_ticks(figure)
-    figure.set_dpi(mpl.rcParams["savefig.dpi"])
+    dots = dpi or mpl.rcParams["savefig.dpi"]
+    if not 20 <= dots <= 2400:
+        raise ValueError(f"dpi = {dots}: from 20 to 2400 dots per inch are possible")
+    if size is not None:
+        figure.set_size_inches(size)
+    figure.set_dpi(dots)
     if (engine := figure.get_layout_engine()) is not None:
         engine.execute(figure)
         figure.set_layout_engine(None)
@@ -250,4 +264,4 @@ def save_figure(figure: Figure, paths: Sequence[str | os.PathLike[str]]) -> None
             {"Date": None} if path.suffix == ".svg" else {"Software": "squealpipe"}
         )
         with whole_file(path) as temporary:
-            figure.savefig(temporary, metadata=metadata)
+            figure.savefig(temporary, metadata=metadata, dpi=dots)

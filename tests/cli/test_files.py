@@ -296,3 +296,14 @@ def test_faults_inside_a_law_are_told_as_such(capsys, tmp_path, law, message):
     assert message in told
     assert "friction_law" in told
     assert "unexpected error" not in told
+
+
+def test_a_picture_has_the_size_and_the_dots_of_a_journal(capsys):
+    from PIL import Image
+
+    look = ["--figure-size", "127mm x 101.6mm", "--dpi", "300"]
+    assert run([*STABILITY, "-o", "a.nc", *look]) == 0
+    assert run(["plot", "a.nc", "-o", "b.png", *look]) == 0
+    assert Image.open("a.png").size == Image.open("b.png").size == (1500, 1200)
+    assert run(["plot", "a.nc", "-o", "c.png", "--figure-size", "90"]) == 2
+    assert "write for instance 90mmx60mm" in capsys.readouterr().err
