@@ -16,12 +16,14 @@ from scipy.optimize import brentq
 from scipy.sparse.linalg import splu
 
 from squealpipe.systems.structures.pencil import Pencil
-from squealpipe.systems.structures.refinement import Eigenpair, polished
+from squealpipe.systems.structures.refinement import SLOW, Eigenpair, polished
 
 LOCATED = 1e-12
 """Tolerance of the friction located."""
 NARROW = 2.0**-6
 """Share of a step to which it is narrowed first, so that other modes are not nearer."""
+ASIDE = 1e-5
+"""Shift off the mean of two squares, relative: the factor of its square must not vanish."""
 TURNS = 4
 """Inverse iterations for a subspace."""
 
@@ -45,6 +47,21 @@ def onset(
         measure: Callable[[float], float] = _Subspace(pencil_at, after)
     else:
         measure = _Growth(pencil_at, before, after, (low, high))
+    measured: dict[float, float] = {}
+
+    def at(mu: float) -> float:
+        if mu not in measured:
+            measured[mu] = measure(mu)
+        return measured[mu]
+
+    try:
+        return _zero(at, low, high)
+    except RuntimeError:  # factors are singular: the mode has become another one
+        return None
+
+
+def _zero(measure: Callable[[float], float], low: float, high: float) -> float | None:
+    """Where the measure turns positive, sought from the upper end."""
     if not measure(high) > 0:
         return None
     # from the unstable side: the subspace at each place starts from that of the last
@@ -55,13 +72,10 @@ def onset(
         if measure(lower) <= 0 or lower == low:
             break
         upper, step = lower, 1.5 * step
-    if measure(lower) > 0:
+    if not measure(lower) <= 0:
         return None
-    if measure(lower) == 0:
-        return lower
-    return float(
-        brentq(measure, lower, upper, xtol=LOCATED, rtol=4 * np.finfo(float).eps)
-    )
+    zero = brentq(measure, lower, upper, xtol=LOCATED, rtol=4 * np.finfo(float).eps)
+    return float(zero)
 
 
 class _Subspace:
@@ -104,7 +118,7 @@ class _Subspace:
 
 def _solver(pencil: Pencil, square: float) -> Callable[[np.ndarray, bool], np.ndarray]:
     """Solutions with K − λ M, or its transpose."""
-    shift = square * (1.0 + 1e-9)
+    shift = square + ASIDE * max(abs(square), (SLOW * pencil.unit) ** 2)
     factors = splu(sp.csc_array(pencil.stiffness - shift * pencil.mass))
 
     def solve(right: Any, transposed: bool) -> Any:

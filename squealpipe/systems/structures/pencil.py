@@ -69,6 +69,15 @@ class Pencil:
         return not self.damping.nnz and self.modal is None
 
     @cached_property
+    def unit(self) -> float:
+        """A frequency of the matrices' entries, rad/s: what is 0 beside it is no frequency."""
+        mass, damping, stiffness = (
+            float(np.abs(each.data).max(initial=0.0))
+            for each in (self.mass, self.damping, self.stiffness)
+        )
+        return max(float(np.sqrt(stiffness / mass)), damping / mass)
+
+    @cached_property
     def dense(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """M, C and K as arrays, damping of modes included."""
         mass, damping, stiffness = (

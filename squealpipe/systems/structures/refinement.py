@@ -19,6 +19,8 @@ from squealpipe.systems.structures.pencil import Factors, Pencil
 
 OFFSET = 1e-9
 """Shift of inverse iteration off the estimate, relative: at the eigenvalue Q is singular."""
+SLOW = 1e-4
+"""Values below this share of the entries' frequency count as so much where shifts are chosen."""
 TURNS = 4
 ENOUGH = 1e-8
 """Error that needs no polishing, relative to the growth rate, below 1/s absolutely."""
@@ -97,7 +99,7 @@ def polished(
     left = right if left is None else left.astype(complex)
     change, rate = np.inf, 0j
     for _ in range(TURNS):
-        offset = OFFSET * max(abs(value), 1e-300) * (1.0 + 0.5j)
+        offset = OFFSET * max(abs(value), SLOW * pencil.unit) * (1.0 + 0.5j)
         factors = pencil.factorized(value + offset)
         before = value
         for _ in range(2):

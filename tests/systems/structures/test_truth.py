@@ -7,6 +7,7 @@ import mpmath
 import numpy as np
 import pytest
 import scipy.io
+import scipy.linalg
 import scipy.sparse as sp
 from scipy.sparse.linalg import LinearOperator, eigs, splu
 
@@ -325,6 +326,46 @@ def test_growth_at_a_sparse_structures_band_is_that_of_dense_algebra():
     )
     assert modes.growth_rate.values.ravel() == pytest.approx(
         truth.real, rel=1e-4, abs=1e-2
+    )
+
+
+def test_a_pad_has_one_critical_friction_for_both_directions_of_the_belt():
+    pad = elastic_pad(elements=(6, 2))
+    modes = pad.complex_modes(
+        mu=np.linspace(0, 0.8, 5), belt_speed=[-2.0, 2.0], frequency_max=60e3
+    )
+    one, other = (modes.isel(belt_speed=i) for i in (0, 1))
+    assert np.isfinite(one.critical_mu).sum() == 4
+    assert one.critical_mu.values == pytest.approx(
+        other.critical_mu.values, abs=1e-10, nan_ok=True
+    )
+    assert one.growth_rate.values == pytest.approx(other.growth_rate.values, abs=1e-6)
+
+
+def test_modes_that_cannot_grow_are_not_unstable_by_round_off():
+    pair = np.array([[1.0, -1.0], [-1.0, 1.0]])  # nothing holds it
+    free = Structure(np.eye(2), pair).complex_modes()
+    assert free.frequency.values == pytest.approx([0.0, 2**0.5 / (2 * np.pi)])
+    dashpot = Structure(np.eye(2), pair, 0.01 * pair).complex_modes()
+    turning = Structure(
+        np.eye(2), np.diag([1.0, 2.0]), [[0.0, 1.0], [-1.0, 0.0]]
+    ).complex_modes()
+    twins = [hoffmann(0.5, belt_speed=-1.0).stiffness.toarray()] * 2
+    contacts = [
+        Contact(name, {place + 1: -1.0}, {place: 1.0}, 4 / 3, 1.0)
+        for name, place in (("a", 0), ("b", 2))
+    ]
+    two = Structure(
+        np.eye(4),
+        scipy.linalg.block_diag(*twins),
+        contacts=contacts,
+        mu=0.5,
+        belt_speed=-1.0,
+    )
+    for modes in (free, dashpot, turning, two.complex_modes()):
+        assert not modes.unstable.any()
+    assert two.complex_modes(mu=[0.0, 0.9]).critical_mu.values == pytest.approx(
+        [0.75] * 4
     )
 
 
