@@ -15,6 +15,7 @@ from squealpipe import Contact, Structure
 from squealpipe.parameters import Parameters
 from squealpipe.schema.structures import Onset
 from squealpipe.structures import elastic_pad
+from squealpipe.systems.structures.sliding import NoSlidingError, steady_sliding
 from squealpipe.tasks.linear.maps import stability_map
 
 DRAWS = int(os.environ.get("SQUEALPIPE_DRAWS", "10"))
@@ -159,6 +160,14 @@ def random_structure(generator):
     )  # fmt: skip
 
 
+def slides(structure):
+    try:
+        steady_sliding(structure, structure.mu, structure.belt_speed)
+    except NoSlidingError:
+        return False
+    return True
+
+
 def precise_eigenvalues(structure, modes):
     """Eigenvalues in 30 digits of the pencil as the issue prints it, real ones and Im s > 0."""
     size = structure.size
@@ -199,7 +208,10 @@ def precise_eigenvalues(structure, modes):
 
 @pytest.mark.parametrize("seed", range(DRAWS))
 def test_random_structures_have_the_eigenvalues_of_30_digits(seed):
-    structure = random_structure(np.random.default_rng([46, seed]))
+    generator = np.random.default_rng([46, seed])
+    structure = random_structure(generator)
+    while not slides(structure):  # one of 140 has no steady sliding
+        structure = random_structure(generator)
     modes = structure.complex_modes()
     ours = modes.growth_rate.values + 2j * np.pi * modes.frequency.values
     truth = precise_eigenvalues(structure, modes)
