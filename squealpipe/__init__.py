@@ -19,9 +19,10 @@ if TYPE_CHECKING:
     from squealpipe.store.netcdf import load, save
     from squealpipe.store.results import open_results
     from squealpipe.store.tables import convert
+    from squealpipe.systems.components import Component, Switch
     from squealpipe.systems.structures.contact import Contact
     from squealpipe.systems.structures.structure import Structure
-    from squealpipe.systems.system import Switch, System
+    from squealpipe.systems.system import System
     from squealpipe.tasks.assess.assess import assess
     from squealpipe.tasks.backbones.backbone import backbone
     from squealpipe.tasks.backbones.orbit import periodic_orbit
@@ -56,6 +57,7 @@ _HOME = {
 
 __all__ = [
     "SCENES",
+    "Component",
     "Contact",
     "Parameters",
     "Scene",

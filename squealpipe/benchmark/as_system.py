@@ -4,7 +4,8 @@ from typing import Any
 
 from squealpipe import functions
 from squealpipe.benchmark.problems import FUNCTIONS, Problem
-from squealpipe.systems.system import Switch, System
+from squealpipe.systems.components import Switch
+from squealpipe.systems.system import System
 
 
 def system_of(problem: Problem) -> System:

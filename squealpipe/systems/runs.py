@@ -57,19 +57,21 @@ def compiled(system: System, *, tangent: bool, few: bool) -> lanes.CompiledSyste
             variables=t.variables,
             rates=t.rates,
             events=(*t.surfaces, *t.outputs),
-            parameters=(*t.parameters, *t.constants),
+            parameters=(*t.parameters, *t.all_constants),
             explicit_time=len(t.variables) > t.size,
         )
         scalar = ScalarSource(
             t.variables,
             t.rates,
             t.parameters,
-            t.constants,
+            t.all_constants,
             t.surfaces,
             t.switches,
             t.size,
         )
         sources = {"gauge": scalar.gauge(), "change": scalar.change()}
+        if t.switched:
+            sources["settle"] = scalar.settle(t.switched)
         if tangent:
             sources["jump"] = scalar.jump()
         known[tangent, few] = lanes.compile_system(
@@ -83,7 +85,7 @@ def integrate(
     values: Mapping[str, np.ndarray],
     t_end: np.ndarray,
     *,
-    regime: str | np.ndarray | None = None,
+    regime: Any = None,
     t_late: Any = math.inf,
     late_from: str | None = None,
     until: str | None = None,
@@ -110,7 +112,8 @@ def integrate(
         around: points (runs, points, 2) in the plane of the first two states around which half
             turns are counted, counterclockwise.
         most_turns: net turns around all of them that end a run, as ``BY_TURNS``.
-        regime: in which all start, or the number of each; by default what fits each.
+        regime: in which all start, by name, or the number of each in each component, (runs,
+            components); by default what fits each.
         tracked: states and outputs whose extremes are kept, by default all; after ``LARGEST`` the
             largest value alone.
         times: instants at which the state is kept, (instants,) or (runs, instants).
@@ -122,10 +125,11 @@ def integrate(
         One row a run: ``final``; ``extremes``, ``early_extremes`` and ``late_extremes`` (runs,
         tracked, smallest and largest; infinite of a part that was not reached); ``counts``,
         ``firsts`` (NaN: never) and ``peaks`` (largest magnitude of each state before the event)
-        of each kind of event; ``durations`` of regimes; ``ends``: outcome, regime, steps,
-        events; ``summary``: growth, horizon, time; ``half_turns``; ``samples`` and
-        ``sample_regimes``; ``sample_growth``, ``sample_durations``, ``sample_half_turns`` and
-        ``sample_counts``; ``event_times``, ``event_kinds``, ``event_regimes``, ``event_states``.
+        of each kind of event; ``durations`` of regimes; ``ends``: outcome, steps, events;
+        ``summary``: growth, horizon, time; ``half_turns``; ``samples`` and
+        ``sample_regimes`` (of each component); ``sample_growth``, ``sample_durations``,
+        ``sample_half_turns`` and ``sample_counts``; ``event_times``, ``event_kinds``,
+        ``event_regimes``, ``event_states``.
     """
     t, size = system.integrated, len(t_end)
     scale = system.time_scale
@@ -177,10 +181,10 @@ def integrate(
         "counts": ((size, n_kinds), "i8"),
         "firsts": ((size, n_kinds), "f8"),
         "durations": ((size, n_regimes), "f8"),
-        "ends": ((size, 4), "i8"),
+        "ends": ((size, 3), "i8"),
         "summary": ((size, 3), "f8"),
         "samples": ((size, n_samples, t.size), "f8"),
-        "sample_regimes": ((size, n_samples), "i8"),
+        "sample_regimes": ((size, n_samples, t.n_components), "i8"),
         "sample_sums": ((size, n_samples, n_sums), "f8"),
         "peaks": ((size, n_kinds, t.size), "f8"),
         "half_turns": ((size, n_points), "f8"),
@@ -195,8 +199,9 @@ def integrate(
     n_rows = (
         layout.FIXED_ROWS + len(t.variables) + t.size + 2 * len(watched) + n_regimes
     )
-    n_rows += 3 * n_points + len(t.parameters) + len(t.constants)
-    width = max(3 * len(t.surfaces), len(t.variables)) + 2
+    n_constants = len(t.all_constants)
+    n_rows += 3 * n_points + t.n_components + len(t.parameters) + n_constants
+    width = max(3 * len(t.surfaces), len(t.variables), n_constants) + 2
 
     def work(arrays: dict[str, np.ndarray], first: int, stride: int) -> None:
         for name in ("samples", "sample_sums", "event_times", "event_states", "firsts"):
@@ -204,7 +209,7 @@ def integrate(
         arrays["extremes"][first::stride] = [np.inf, -np.inf]
         for name in ("sample_regimes", "event_kinds", "event_regimes"):
             arrays[name][first::stride] = -1
-        integers = np.full((layout.FIXED_INTEGERS, LANES), -1, np.int64)
+        integers = np.full((layout.REGIMES + t.n_components, LANES), -1, np.int64)
         integers[1] = 0  # every lane asks for a job
         rows = lanes.aligned(n_rows, LANES)
         held = arrays | {
@@ -218,10 +223,13 @@ def integrate(
             "regimes": t.regimes,
             "falls": t.falls,
             "rises": t.rises,
+            "component_of": t.component_of,
+            "first_constant": t.first_constant,
+            "owner": t.owner,
             "active": np.zeros(len(t.surfaces), np.int64),
             "fresh": np.zeros(len(t.surfaces), np.int64),
             "noise": np.zeros((len(t.surfaces), 2, LANES)),
-            "scratch": np.zeros((5, width)),
+            "scratch": np.zeros((6, width)),
             "initial": initial,
             "parameters": parameters,
             "first_regime": regimes,
@@ -237,8 +245,10 @@ def integrate(
             "n_surfaces": len(t.surfaces),
             "n_tracked": len(watched),
             "n_parameters": len(t.parameters),
-            "n_constants": len(t.constants),
+            "n_constants": n_constants,
             "n_regimes": n_regimes,
+            "n_components": t.n_components,
+            "n_table": len(t.constants),
             "n_kinds": n_kinds,
             "n_samples": n_samples,
             "n_sums": n_sums,
@@ -306,10 +316,10 @@ class Motion:
     """One run with its events.
 
     Attributes:
-        regimes: the first, then that after each event.
-        times, kinds, states: of the events, the states after them.
+        regimes: numbers, in ``system.joint``, of the first ones and of those after each event.
+        times, kinds, states, entered: of the events, the states after them, the regimes entered.
         final: state at the end.
-        path, path_regimes: at the asked instants.
+        path, path_regimes: at the asked instants; the regimes of each component.
         outcome, reached, steps: how and when it ended, and after how many steps.
     """
 
@@ -317,6 +327,7 @@ class Motion:
     times: np.ndarray
     kinds: np.ndarray
     states: np.ndarray
+    entered: np.ndarray
     final: np.ndarray
     path: np.ndarray
     path_regimes: np.ndarray
@@ -330,7 +341,7 @@ def single_run(
     values: Mapping[str, float],
     t_end: float,
     *,
-    regime: str | None = None,
+    regime: Any = None,
     times: np.ndarray | None = None,
     tol: float,
     room: int = FIRST_LOG,
@@ -349,20 +360,23 @@ def single_run(
             log_events=room,
             **options,
         )
-        _, _, steps, count = (int(value) for value in raw["ends"][0])
+        _, steps, count = (int(value) for value in raw["ends"][0])
         if count <= room or not room:
             break
         room = count
-    first = system.first_regimes({TIME: np.zeros(1), **given}, 1, regime)
+    first = regime
+    if not isinstance(regime, np.ndarray):
+        first = system.first_regimes({TIME: np.zeros(1), **given}, 1, regime)
     events = {
         key: raw[f"event_{key}"][0, :count]
         for key in ("times", "kinds", "states", "regimes")
     }
     return Motion(
-        np.append(first, events["regimes"]),
+        system.joint.along(first[0].tolist(), events["regimes"].tolist()),
         events["times"],
         events["kinds"],
         events["states"],
+        events["regimes"],
         raw["final"][0],
         raw["samples"][0],
         raw["sample_regimes"][0],
@@ -418,17 +432,20 @@ def simulate(
         name: ("time", run.path[:, i], labels(f"state {name}", system.units[name]))
         for i, name in enumerate(system.states)
     }
-    found["regime"] = flag("regime", "time", run.path_regimes, names)
+    found["regime"] = regime_flag(system, "regime", ("time",), run.path_regimes)
     found["event_time"] = ("event", run.times, labels("time of the event", "s"))
     found["event_kind"] = flag("kind of the event", "event", run.kinds, kinds)
-    found["event_regime"] = flag("regime entered", "event", run.regimes[1:], names)
+    found["event_regime"] = flag("regime entered", "event", run.entered, names)
     found["outcome"] = outcome(system, (), run.outcome)
     found["end_time"] = ((), run.reached, labels("time reached", "s"))
     if sensitivity:
         from squealpipe.systems.cycles.sensitivity import sensitivities
 
         found |= sensitivities(system, sensitivity, values, run, times)
-    coordinates = {"time": ("time", times, labels("time", "s"))}
+    coordinates = {
+        "time": ("time", times, labels("time", "s")),
+        **components_of(system),
+    }
     return xr.Dataset(found, coordinates, attributes(system, "simulate", values, tol))
 
 
@@ -617,6 +634,24 @@ def flag(long_name: str, dims: Any, values: Any, table: Mapping[int, str]) -> An
         "flag_meanings": " ".join(name.replace(" ", "_") for name in table.values()),
     }
     return dims, np.asarray(values, np.int16), attributes
+
+
+def regime_flag(
+    system: System, long_name: str, dims: tuple[str, ...], regimes: np.ndarray
+) -> Any:
+    """The flag variable of regimes (…, components); over ``component`` where there are several."""
+    names = dict(enumerate(system.regimes))
+    if len(system.composition.names) == 1:
+        return flag(long_name, dims, np.asarray(regimes)[..., 0], names)
+    return flag(f"{long_name} of each component", (*dims, "component"), regimes, names)
+
+
+def components_of(system: System) -> dict[str, Any]:
+    """The coordinate of a system's components, if there are several."""
+    names = system.composition.names
+    if len(names) == 1:
+        return {}
+    return {"component": ("component", list(names), {"long_name": "component"})}
 
 
 def outcome(system: System, dims: Any, values: Any) -> Any:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import Annotated, Any, cast
+from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
@@ -16,49 +15,37 @@ from squealpipe.methods.taylor.scalar import (
     evaluate,
     numpy_function,
 )
-from squealpipe.methods.taylor.symbols import (
-    Symbol,
-    derivative,
-    in_order,
-    parameter,
-    symbol,
-)
+from squealpipe.methods.taylor.symbols import Symbol, in_order, parameter, symbol
 from squealpipe.parameters import is_finite_number
 from squealpipe.schema import Outcome
 from squealpipe.systems import basin, runs
-from squealpipe.systems.trace import (
-    TIME,
-    TIME_UNIT,
-    Names,
-    Traced,
-    Tracer,
-    check_progress,
+from squealpipe.systems.components import (
+    Begins,
+    Component,
+    Composition,
+    Function,
+    Regimes,
+    Switch,
 )
+from squealpipe.systems.joint import Joint
+from squealpipe.systems.starts import Starts
+from squealpipe.systems.trace import TIME_UNIT, Names, Traced, Tracer, check_progress
 from squealpipe.text import suggestion
 from squealpipe.validation import Identifier, Number, Positive, Word, checked, needed
 
-Function = Callable[..., Any]
 Size = Annotated[
     str | tuple[str, Positive],
     needed("a unit, or (unit, typical size greater than 0), is"),
 ]
 Output = Annotated[tuple[str, Function], needed("(unit, function) is")]
 StartValue = Annotated[
-    Number | str, needed("a finite number, or the name of a regime, is")
+    Number | str | Mapping[str, str],
+    needed("a finite number, or the name of a regime, is"),
 ]
 Field = Annotated[
     Function | Mapping[str, Function], needed("a function, or one for each regime, is")
 ]
-Target = str | tuple[str, Function | None] | tuple[str, Function | None, Word]
-Targets = Annotated[
-    str | Sequence[Target],
-    needed("a regime, or a list of (regime, condition) and a regime, is"),
-]
-Begin = str | tuple[str, Function | None] | tuple[str, Function | None, Function | None]
-Begins = Annotated[
-    Sequence[Begin], needed("a list of (regime, condition, equality) and a regime is")
-]
-MOST_STATES, MOST_SURFACES, MOST_REGIMES = 24, 16, 256
+MOST_STATES, MOST_SURFACES, MOST_REGIMES = 64, 64, 256
 RESERVED = frozenset(
     (
         *(
@@ -101,37 +88,11 @@ RESERVED = frozenset(
             "multiplier_imag",
             "sample",
             "side",
+            "component",
         ),
     )
 )
 """Arguments of the methods, dimensions and variables of what they return."""
-
-
-@dataclass(frozen=True)
-class Switch:
-    """What ends a regime.
-
-    Attributes:
-        name: of the event.
-        leaves: the regime, or regimes, in which it can fire.
-        when: surface (t, s, p, r); it fires where this falls through zero.
-        to: the next regime, or a list of (regime, condition) or (regime, condition, kind) and a
-            last regime (or (regime, None, kind)): the first whose condition is ≥ 0. ``kind``
-            renames the event.
-        reset: the states that jump, as a mapping from (t, s, p, r).
-
-    ``when``, ``to`` and ``reset`` see the state before the reset and the constants ``r`` of the
-    regime that is left.
-    """
-
-    name: Word
-    leaves: Annotated[str | Sequence[str], needed("a regime, or a list of them, is")]
-    when: Function
-    to: Targets
-    reset: Function | None = None
-
-
-Switch.__init__ = checked(Switch.__init__)  # type: ignore[method-assign]
 
 
 class System:
@@ -143,8 +104,11 @@ class System:
             the size, 1 if none is given.
         parameters: name → default.
         regimes: name → constants ``r`` that field and surfaces read; the same names in each.
+        components: in place of ``regimes``, ``switches`` and ``starts_in``: name → what has regimes
+            of its own beside the others; see :class:`squealpipe.Component`.
         field: (t, s, p, r) → rates of all states, or one such function for each regime.
-        start: state → value, and ``regime`` if it is to be given.
+        start: state → value, and ``regime`` if it is to be given, with components as
+            {component: regime}.
         starts_in: [(regime, condition) or (regime, condition, equality), …, regime], the first
             whose condition is ≥ 0 and whose equality is 0; a condition of None, as one left out,
             stands for that regime's surfaces being all ≥ 0.
@@ -166,7 +130,8 @@ class System:
         *,
         states: Mapping[Identifier, Size],
         parameters: Mapping[Identifier, Number],
-        regimes: Mapping[Word, Mapping[Identifier, Number]],
+        regimes: Regimes | None = None,
+        components: Mapping[Identifier, Component] | None = None,
         field: Field,
         switches: Sequence[Switch] = (),
         start: Mapping[str, StartValue],
@@ -187,9 +152,14 @@ class System:
             [1.0 if isinstance(v, str) else float(v[1]) for v in states.values()]
         )
         self.parameters = dict(parameters)
-        self.regimes, self.field = dict(regimes), field
-        self.switches = tuple(sorted(switches, key=lambda each: each.name))
-        self.start, self.starts_in = dict(start), list(starts_in)
+        self.field, self.start = field, dict(start)
+        self.composition = Composition.of(
+            _components(regimes, switches, starts_in, components)
+        )
+        self.regimes, self.switches = (
+            self.composition.regimes,
+            self.composition.switches,
+        )
         self.period, self.time_scale = period, time_scale
         self.outputs, self.stops = dict(outputs or {}), dict(stops or {})
         self._check_names()
@@ -277,11 +247,7 @@ class System:
 
     def check_regime(self, start: Mapping[str, Any]) -> None:
         """Refuse a start in a regime that there is not."""
-        given = start.get("regime")
-        if given is not None and not (isinstance(given, str) and given in self.regimes):
-            raise ValueError(
-                f"start: regime {given!r}: {suggestion(str(given), self.regimes)}"
-            )
+        self.composition.numbers(start.get("regime"))
 
     def check_parameter(self, name: str) -> None:
         """Refuse a parameter that there is not."""
@@ -301,6 +267,11 @@ class System:
     def _rates(self, tracer: Tracer) -> list[Symbol]:
         if not isinstance(self.field, Mapping):
             return self._complete("the field", tracer.several("the field", self.field))
+        if self.composition.names != ("",):
+            raise ValueError(
+                "a field for each regime is for a system without components; give one function, "
+                "which reads the constants of all components"
+            )
         total = [symbol(0.0)] * len(self.units)
         for regime in self.regimes:
             if regime not in self.field:
@@ -325,7 +296,7 @@ class System:
         return [found[name] for name in self.units]
 
     def _trace(self) -> Traced:
-        tracer = Tracer(self.states, self.parameters, self.regimes)
+        tracer = Tracer(self.states, self.parameters, self.composition)
         rates = self._rates(tracer)
         kinds: list[str] = []
         leaves = [self._leaves(tracer, switch) for switch in self.switches]
@@ -337,9 +308,15 @@ class System:
         outputs = [
             tracer.one(f"output {name!r}", f) for name, (_, f) in self.outputs.items()
         ]
-        starts = [self._trace_start(tracer, each) for each in self.starts_in]
-        if starts and starts[-1][1] is not None:
-            raise ValueError("starts_in has no last resort: end it with a regime alone")
+        starts = [
+            tuple(self._trace_start(tracer, each) for each in entries)
+            for entries in self.composition.starts
+        ]
+        for entries in starts:
+            if entries and entries[-1][1] is not None:
+                raise ValueError(
+                    "starts_in has no last resort: end it with a regime alone"
+                )
         every = [*rates, *stops, *outputs, *(each.surface for each in switches)]
         every += [value for each in switches for value in each.reset.values()]
         every += [c for each in switches for _, c, _ in each.targets if c is not None]
@@ -347,25 +324,27 @@ class System:
         unit = parameter(TIME_UNIT)
         if callable(self.time_scale) or self.time_scale != 1.0:
             rates = [rate * unit for rate in rates]
-        surfaces, falls, rises = self._watch(tracer, switches, leaves, stops)
+        surfaces, falls, rises, owner = self._watch(tracer, switches, leaves, stops)
         indicators = [_indicator(name) for name in self.regimes] * isinstance(
             self.field, Mapping
         )
-        table = [
-            [float(self.regimes[name][c]) for c in tracer.constants]
-            + [float(_indicator(name) == each) for each in indicators]
-            for name in self.regimes
-        ]
+        masks = np.eye(len(self.regimes))[:, : len(indicators)]
+        ends = tracer.first_constant + len(indicators) * np.arange(
+            len(tracer.first_constant)
+        )
         traced = Traced(
             variables=(*tracer.variables, *([tracer.time] * timed)),
             size=len(self.units),
             rates=(*rates, *([unit] * timed)),
             parameters=(*self.parameters, TIME_UNIT),
             constants=tuple(REGIME + c for c in (*tracer.constants, *indicators)),
-            regimes=np.array(table, float).reshape(len(self.regimes), -1),
+            regimes=np.hstack([tracer.table(), masks]),
+            component_of=self.composition.component_of,
+            first_constant=ends,
             surfaces=tuple(surfaces),
             falls=falls,
             rises=rises,
+            owner=owner,
             switches=tuple(switches),
             kinds=tuple(kinds),
             outputs=tuple(outputs),
@@ -381,12 +360,12 @@ class System:
         surface = tracer.one(f"{what}: when", switch.when)
         for regime in leaves:
             inside = tracer.one(
-                f"{what}: when", switch.when, tracer.numbers(self.states_of(regime))
+                f"{what}: when", switch.when, tracer.numbers(self.name_of(regime))
             )
             (height,) = evaluate([inside], tracer.samples(np.random.default_rng(0)))
             if not inside.varies or not np.any(height):
                 raise ValueError(
-                    f"{what}: its surface is constant in regime {self.states_of(regime)!r}; leave "
+                    f"{what}: its surface is constant in regime {self.name_of(regime)!r}; leave "
                     "that regime out of `leaves`"
                 )
         given = [switch.to] if isinstance(switch.to, str) else list(switch.to)
@@ -413,8 +392,8 @@ class System:
         places = {self.states.index(name): value for name, value in reset.items()}
         return SwitchSymbols(surface, tuple(targets), places)
 
-    def states_of(self, regime: int) -> str:
-        """The name of a regime."""
+    def name_of(self, regime: int) -> str:
+        """The name of a regime, with its component's."""
         return list(self.regimes)[regime]
 
     def _leaves(self, tracer: Tracer, switch: Switch) -> list[int]:
@@ -440,32 +419,32 @@ class System:
         switches: Sequence[SwitchSymbols],
         leaves: Sequence[Sequence[int]],
         stops: Sequence[Symbol],
-    ) -> tuple[list[Symbol], np.ndarray, np.ndarray]:
-        """Surfaces without those that another one is, but for its sign, and who watches them."""
+    ) -> tuple[list[Symbol], np.ndarray, np.ndarray, np.ndarray]:
+        """Surfaces without those that another one is, but for its sign, and who watches them.
+
+        Each has one component as its owner; the first one watches the stops.
+        """
         probe = tracer.samples(np.random.default_rng(1))
         surfaces: list[Symbol] = []
         prints: list[np.ndarray] = []
         watched: list[tuple[int, int, int, int]] = []  # regime, surface, rises, switch
-        places = [*leaves, *[range(len(self.regimes))] * len(stops)]
+        first = self.composition.regimes_of(0).tolist()
+        places = [*leaves, *[first] * len(stops)]
+        owner: list[int] = []
         every = [*(each.surface for each in switches), *stops]
         for number, (surface, regimes) in enumerate(zip(every, places, strict=True)):
             with np.errstate(all="ignore"):
                 (value,) = evaluate([surface], probe)
             mine = np.broadcast_to(value, 32)
-            same = [
-                i
-                for i, other in enumerate(prints)
-                if np.allclose(mine, other, 1e-12, 0)
-            ]
-            opposite = [
-                i
-                for i, other in enumerate(prints)
-                if np.allclose(-mine, other, 1e-12, 0)
-            ]
+            component = int(self.composition.component_of[regimes[0]]) if regimes else 0
+            others = [i for i, each in enumerate(owner) if each == component]
+            same = [i for i in others if np.allclose(mine, prints[i], 1e-12, 0)]
+            opposite = [i for i in others if np.allclose(-mine, prints[i], 1e-12, 0)]
             if not same + opposite:
                 same = [len(surfaces)]
                 surfaces.append(surface)
                 prints.append(mine)
+                owner.append(component)
             rises = int(not same)
             watched += [
                 (regime, (same + opposite)[0], rises, number) for regime in regimes
@@ -478,13 +457,14 @@ class System:
         for regime, index, rises, number in watched:
             if table[rises, regime, index] >= 0:
                 names = [each.name for each in self.switches] + list(self.stops)
-                first = names[table[rises, regime, index]]
+                earlier = names[table[rises, regime, index]]
                 raise ValueError(
-                    f"{first!r} and {names[number]!r} fire at the same surface in regime "
-                    f"{self.states_of(regime)!r}; make them one switch whose `to` decides"
+                    f"{earlier!r} and {names[number]!r} fire at the same surface in regime "
+                    f"{self.name_of(regime)!r}; make them one switch whose `to` decides"
                 )
             table[rises, regime, index] = number
-        return surfaces, np.ascontiguousarray(table[0]), np.ascontiguousarray(table[1])
+        falls, rises_ = map(np.ascontiguousarray, table)
+        return surfaces, falls, rises_, np.array(owner, np.int64)
 
     @cached_property
     def integrated(self) -> Traced:
@@ -497,6 +477,11 @@ class System:
         return numpy_function(self.integrated.derived)
 
     @cached_property
+    def at_switches(self) -> tuple[Any, list[str]]:
+        """Likewise what is computed from the regimes' constants."""
+        return numpy_function(self.integrated.switched)
+
+    @cached_property
     def text(self) -> dict[str, str]:
         """What the system is, as text: for the attributes of its datasets."""
         from squealpipe.systems.text import describe
@@ -504,101 +489,46 @@ class System:
         return describe(self)
 
     @cached_property
-    def holds(self) -> np.ndarray:
-        """(regime, surface) whether a surface is constant along the motion, as in stick."""
-        t, rng = self.traced, np.random.default_rng(2)
-        names = [TIME, *self.units, *t.parameters, *t.constants]
-        values = {name: rng.uniform(0.3, 1.7, 16) for name in names}
-        found = np.zeros((len(self.regimes), len(t.surfaces)), bool)
-
-        def at(roots: Any, regime: int) -> np.ndarray:
-            constants = dict(zip(t.constants, t.regimes[regime], strict=True))
-            with np.errstate(all="ignore"):
-                given = evaluate([symbol(root) for root in roots], values | constants)
-                return np.array([np.broadcast_to(each, 16) for each in given])
-
-        rates = [at(t.rates, regime) for regime in range(len(self.regimes))]
-        for number, surface in enumerate(t.surfaces):
-            # as those see it that watch it
-            watched = (t.falls[:, number] >= 0) | (t.rises[:, number] >= 0)
-            slopes = at(
-                [derivative(surface, z) for z in t.variables], int(np.argmax(watched))
-            )
-            found[:, number] = [
-                np.abs((slopes * rate).sum(axis=0)).max() < 1e-14 for rate in rates
-            ]
-        return found
+    def joint(self) -> Joint:
+        """The regimes of all components at once."""
+        return Joint(self.traced, self.states)
 
     @cached_property
-    def _starts(
-        self,
-    ) -> list[tuple[int, dict[str, float], list[tuple[Any, list[str], float]]]]:
-        """Regimes that a run may start in, their constants, and what is asked of the state.
-
-        Each is a function, the names that it is given, and the sign that it must not have the
-        opposite of; 0 where it must vanish.
-        """
-        traced = self.traced
-        found = []
-        entries = traced.starts or tuple(
-            (i, None, None) for i in range(len(self.regimes))
-        )
-        for place, (regime, condition, equality) in enumerate(entries):
-            asked = [] if equality is None else [(equality, 0.0)]
-            if condition is not None:
-                asked.append((condition, 1.0))
-            elif place != len(traced.starts) - 1:
-                for table, sign in (
-                    (traced.falls[regime], 1.0),
-                    (traced.rises[regime], -1.0),
-                ):
-                    watched = np.flatnonzero(
-                        (table >= 0) & (table < len(self.switches))
-                    )
-                    asked += [(traced.surfaces[index], sign) for index in watched]
-            constants = dict(
-                zip(traced.constants, traced.regimes[regime].tolist(), strict=True)
-            )
-            checks = [(*numpy_function([root]), sign) for root, sign in asked]
-            found.append((regime, constants, checks))
-        return found
+    def _starts(self) -> Starts:
+        return Starts(self.traced, self.composition)
 
     def first_regimes(
-        self, values: Mapping[str, Any], size: int, given: str | None = None
+        self, values: Mapping[str, Any], size: int, chosen: Any = None
     ) -> np.ndarray:
-        """The regime in which each run starts.
+        """The regime of each component in which each run starts, (size, components).
 
         Args:
             values: states, parameters and ``time`` as arrays of that size.
-            given: its name; by default that of the system's start, or what fits.
+            chosen: what a start gives as ``regime``; by default that of the system's start. What
+                neither gives is what fits.
         """
-        given = given or cast("str | None", self.start.get("regime"))
-        if given is not None:
-            return np.full(size, list(self.regimes).index(given), np.int64)
-        chosen = np.full(size, -1, np.int64)
-        known = {TIME_UNIT: np.ones(size), **values}
-        for regime, constants, checks in self._starts:
-            fits = chosen < 0
-            if not fits.any():
-                break
-            known |= constants
-            for function, names, sign in checks:
-                arguments = [np.asarray(known[name]) for name in names]
-                (value,) = function(*arguments)
-                fits &= (
-                    sign * value >= 0.0
-                    if sign
-                    else abs(value) <= 1e-15 * sum(map(abs, arguments))
-                )
-                if not fits.any():
-                    break
-            chosen = np.where(fits, regime, chosen)
-        if (chosen < 0).any():
+        chosen = self.start.get("regime") if chosen is None else chosen
+        return self._starts.regimes(values, size, self.composition.numbers(chosen))
+
+
+def _components(
+    regimes: Any, switches: Any, starts_in: Any, components: Any
+) -> Mapping[str, Component]:
+    """The components of a system, from what it is given."""
+    if components is None:
+        if regimes is None:
+            raise TypeError("System: regimes, or components, are needed")
+        return {"": Component(regimes, switches, starts_in)}
+    for name, value in (
+        ("regimes", regimes),
+        ("switches", switches),
+        ("starts_in", starts_in),
+    ):
+        if value:
             raise ValueError(
-                "no regime fits the start: in each, some surface is below zero; give "
-                "start={'regime': …} or starts_in"
+                f"{name}: a system with components has them there; move them into a component"
             )
-        return chosen
+    return dict(components)
 
 
 def _indicator(regime: str) -> str:

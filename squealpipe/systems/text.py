@@ -26,17 +26,20 @@ def describe(system: System) -> dict[str, str]:
         )
         found[f"{switch.name} leaves {leaves} when"] = expression(symbols.surface)
         for regime, condition, kind in symbols.targets:
-            name = system.states_of(regime)
+            name = system.name_of(regime)
             text = "otherwise" if condition is None else f"{expression(condition)} >= 0"
             found[f"{switch.name} to {name} as {traced.kinds[kind]}"] = text
         for place, value in symbols.reset.items():
             found[f"{switch.name} resets {system.states[place]}"] = expression(value)
     for name, output in zip(system.outputs, traced.outputs, strict=True):
         found[name] = expression(output)
-    for row, name in zip(traced.regimes, system.regimes, strict=True):
+    for row, component, name in zip(
+        traced.regimes, traced.component_of, system.regimes, strict=True
+    ):
+        columns = traced.columns(component)
         values = (
             f"{c.removeprefix(REGIME)}={v:g}"
-            for c, v in zip(traced.constants, row, strict=True)
+            for c, v in zip(traced.constants[columns], row[columns], strict=True)
         )
         found[f"regime {name}"] = ", ".join(values)
     return found

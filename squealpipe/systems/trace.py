@@ -17,10 +17,13 @@ from squealpipe.methods.taylor.symbols import (
     symbol,
     variables,
 )
+from squealpipe.systems.components import Composition
 from squealpipe.text import suggestion
 
 TIME, TIME_UNIT = "time", "time unit"
 """Names that no state or parameter can have: of the time, and of the unit that it is run in."""
+DERIVED, SWITCHED = "derived ", f"{REGIME}switched "
+"""Begin the names of what holds parameters alone, and parameters and regimes' constants alone."""
 
 
 class Names:
@@ -43,13 +46,18 @@ class Traced:
         variables: states, then the time if anything depends on it.
         rates: their derivatives by time in units of the system's time scale.
         parameters: names, the time unit last.
-        constants: names of a regime's constants.
-        regimes: (regime, constant) their values.
+        constants: names of the regimes' constants, component after component.
+        regimes: (regime, constant) their values; 0 for those of other components.
+        component_of: (regime,) the component of each.
+        first_constant: (component + 1,) where the constants of each begin.
         surfaces: functions whose roots switch or stop, no two the same but for sign.
         falls, rises: (regime, surface) the switch that fires there, or −1; stops follow switches.
+        owner: (surface,) the component whose regime says whether it is watched.
         outputs: tracked quantities beside the states.
-        starts: (regime, condition or None, equality or None).
+        starts: (regime, condition or None, equality or None) of each component.
         derived: what holds parameters alone, computed once a run: parameters after the given ones.
+        switched: what holds parameters and the regimes' constants alone, computed when a regime
+            is entered: after those constants.
     """
 
     variables: tuple[Symbol, ...]
@@ -58,27 +66,57 @@ class Traced:
     parameters: tuple[str, ...]
     constants: tuple[str, ...]
     regimes: np.ndarray
+    component_of: np.ndarray
+    first_constant: np.ndarray
     surfaces: tuple[Symbol, ...]
     falls: np.ndarray
     rises: np.ndarray
+    owner: np.ndarray
     switches: tuple[SwitchSymbols, ...]
     kinds: tuple[str, ...]
     outputs: tuple[Symbol, ...]
-    starts: tuple[tuple[int, Symbol | None, Symbol | None], ...]
+    starts: tuple[tuple[tuple[int, Symbol | None, Symbol | None], ...], ...]
     derived: tuple[Symbol, ...] = ()
+    switched: tuple[Symbol, ...] = ()
+
+    @property
+    def n_components(self) -> int:
+        """Number of components."""
+        return len(self.first_constant) - 1
+
+    def columns(self, component: int) -> slice:
+        """The constants of a component."""
+        return slice(*self.first_constant[component : component + 2])
+
+    def constants_in(self, regimes: Sequence[int]) -> np.ndarray:
+        """All constants where each component is in one of these regimes."""
+        return np.concatenate(
+            [self.regimes[r, self.columns(k)] for k, r in enumerate(regimes)]
+        )
 
     def with_derived(self) -> Self:
-        """The same with its constant parts as parameters, for the integrator."""
+        """The same as the integrator takes it: what is constant for long stands apart."""
+        once, derived = self.set_apart(REGIME, DERIVED)
+        made, switched = once.set_apart("", SWITCHED)
+        names = [f"{DERIVED}{i}" for i in range(len(derived))]
+        return replace(
+            made,
+            parameters=(*self.parameters[:-1], *names, TIME_UNIT),
+            derived=derived,
+            switched=switched,
+        )
+
+    def set_apart(self, skipped: str, prefix: str) -> tuple[Self, tuple[Symbol, ...]]:
+        """The same with its constant parts as parameters of their own, and those parts."""
         roots = [*self.rates, *self.surfaces, *self.outputs]
         for switch in self.switches:
             roots += [switch.surface, *switch.reset.values()]
             roots += [c for _, c, _ in switch.targets if c is not None]
-        derived = constant_parts(roots, REGIME)
-        names = [f"derived {i}" for i in range(len(derived))]
-        given = {id(n): parameter(name) for n, name in zip(derived, names, strict=True)}
+        parts = constant_parts(roots, skipped)
+        made = {id(n): parameter(f"{prefix}{i}") for i, n in enumerate(parts)}
 
         def of(root: Any) -> Any:
-            return None if root is None else substituted(root, given)
+            return None if root is None else substituted(root, made)
 
         switches = tuple(
             SwitchSymbols(
@@ -88,42 +126,77 @@ class Traced:
             )
             for each in self.switches
         )
-        return replace(
+        made_here = replace(
             self,
             rates=tuple(map(of, self.rates)),
             surfaces=tuple(map(of, self.surfaces)),
             outputs=tuple(map(of, self.outputs)),
             switches=switches,
-            parameters=(*self.parameters[:-1], *names, TIME_UNIT),
-            derived=tuple(derived),
         )
+        return made_here, tuple(parts)
+
+    @property
+    def all_constants(self) -> tuple[str, ...]:
+        """Names of the regimes' constants and of what is computed from them at switches."""
+        computed = (f"{SWITCHED}{i}" for i in range(len(self.switched)))
+        return (*self.constants, *computed)
+
+
+def _long(component: str, name: str) -> str:
+    return f"{component}.{name}" if component else name
 
 
 class Tracer:
     """Calls the functions of one system on symbols."""
 
     def __init__(
-        self,
-        states: Sequence[str],
-        parameters: Iterable[str],
-        regimes: Mapping[str, Mapping],
+        self, states: Sequence[str], parameters: Iterable[str], composition: Composition
     ) -> None:
         self.states = tuple(states)
-        self.regimes = list(regimes)
-        constants = {name for each in regimes.values() for name in each}
-        for name, each in regimes.items():
-            if missing := constants - set(each):
-                raise ValueError(
-                    f"regime {name!r} lacks the constant {min(missing)!r}, which others have"
-                )
-        self.values = regimes
+        self.composition = composition
+        self.regimes = list(composition.regimes)
         self.time, *state = variables(TIME, *self.states)
         self.variables = tuple(state)
         self.s = Names("the state", dict(zip(self.states, state, strict=True)))
         self.p = Names("the system", {name: parameter(name) for name in parameters})
-        self.constants = tuple(sorted(constants))
-        self.r = Names(
-            "a regime", {name: parameter(REGIME + name) for name in self.constants}
+        self._names = [self._constants_of(k) for k in range(len(composition.names))]
+        self.first_constant = np.cumsum([0, *map(len, self._names)])
+        self.constants = tuple(
+            _long(component, name)
+            for component, names in zip(composition.names, self._names, strict=True)
+            for name in names
+        )
+        self._symbols = [
+            {name: parameter(REGIME + _long(component, name)) for name in names}
+            for component, names in zip(composition.names, self._names, strict=True)
+        ]
+        self.r = self._constants(self._symbols)
+
+    def _constants_of(self, component: int) -> list[str]:
+        """Names of a component's constants; each of its regimes has all."""
+        regimes = {
+            self.regimes[i]: self.composition.regimes[self.regimes[i]]
+            for i in self.composition.regimes_of(component)
+        }
+        names = {name for each in regimes.values() for name in each}
+        for regime, each in regimes.items():
+            if missing := names - set(each):
+                raise ValueError(
+                    f"regime {regime!r} lacks the constant {min(missing)!r}, which others have"
+                )
+        return sorted(names)
+
+    def _constants(self, values: Sequence[Mapping[str, Any]]) -> Names:
+        """``r``, from the constants of each component."""
+        names = self.composition.names
+        if names == ("",):
+            return Names("a regime", values[0])
+        return Names(
+            "the system",
+            {
+                name: Names(f"component {name!r}", constants)
+                for name, constants in zip(names, values, strict=True)
+            },
         )
 
     def one(self, what: str, function: Callable[..., Any], r: Any = None) -> Symbol:
@@ -150,11 +223,24 @@ class Tracer:
         }
 
     def numbers(self, regime: str) -> Names:
-        """The constants of one regime as numbers."""
-        return Names(
-            "a regime",
-            {key: float(value) for key, value in self.values[regime].items()},
-        )
+        """``r`` with the constants of one regime as numbers."""
+        place = self.composition.component_of[self.regimes.index(regime)]
+        values: list[Any] = list(self._symbols)
+        constants = self.composition.regimes[regime]
+        values[place] = {key: float(value) for key, value in constants.items()}
+        return self._constants(values)
+
+    def table(self) -> np.ndarray:
+        """(regime, constant) their values."""
+        found = np.zeros((len(self.regimes), len(self.constants)))
+        for row, place, regime in zip(
+            found, self.composition.component_of, self.regimes, strict=True
+        ):
+            constants = self.composition.regimes[regime]
+            first = self.first_constant[place]
+            for column, name in enumerate(self._names[place]):
+                row[first + column] = float(constants[name])
+        return found
 
     def _call(self, what: str, function: Callable[..., Any], r: Any) -> Any:
         try:
@@ -214,8 +300,13 @@ def check_progress(
         values = tracer.samples(rng, 400)
         values |= {state: rng.uniform(-2.0, 2.0, 400) for state in tracer.states}
 
-        def held(regimes: np.ndarray) -> dict[str, np.ndarray]:
-            return dict(zip(traced.constants, traced.regimes[regimes].T, strict=True))
+        columns = traced.columns(int(traced.component_of[left[0]]))
+
+        def held(
+            regimes: np.ndarray, columns: slice = columns
+        ) -> dict[str, np.ndarray]:
+            constants = traced.regimes[regimes, columns].T
+            return dict(zip(traced.constants[columns], constants, strict=True))
 
         values |= held(rng.choice(left, 400))
         with np.errstate(all="ignore"):

@@ -40,7 +40,7 @@ def traced(data, system):
         made |= {"when": text(symbols.surface), "to": []}
         for regime, condition, kind in symbols.targets:
             made["to"].append(
-                [system.states_of(regime), text(condition), system.traced.kinds[kind]]
+                [system.name_of(regime), text(condition), system.traced.kinds[kind]]
             )
         made["reset"] = {
             system.states[i]: text(value) for i, value in symbols.reset.items()
@@ -64,7 +64,7 @@ def test_equations_are_those_of_the_system(name):
     ):  # that one starts on two surfaces, in a regime of its own
         given = {**system.parameters, **data["parameters"], **data["start"], TIME: 0.0}
         given = {key: np.array([value]) for key, value in given.items()}
-        assert ours.regime == system.states_of(int(system.first_regimes(given, 1)[0]))
+        assert ours.regime == system.name_of(int(system.first_regimes(given, 1)[0, 0]))
     for regime in ours.regimes:
         t, y = rng.uniform(), rng.uniform(0.2, 2.0, len(ours.states)).tolist()
         assert ours.field(t, y, regime) == pytest.approx(theirs.field(t, y, regime))

@@ -131,9 +131,11 @@ def test_a_rigid_pad_lifts_and_lands_when_dop853_says():
         leading, trailing = (
             float(approach(side, s, p) > 0.0) for side in (LEADING, TRAILING)
         )
-        found = rigid_pad.field(
-            t, s, p, SimpleNamespace(leading=leading, trailing=trailing)
+        r = SimpleNamespace(
+            leading=SimpleNamespace(contact=leading),
+            trailing=SimpleNamespace(contact=trailing),
         )
+        found = rigid_pad.field(t, s, p, r)
         return [found[name] for name in names]
 
     def gap(side):

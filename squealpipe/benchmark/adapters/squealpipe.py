@@ -28,7 +28,7 @@ def solve(problem: Problem, tol: float) -> Any:
         log_events=MOST_EVENTS,
         workers=1,
     )
-    outcome, _, steps, count = raw["ends"][0].tolist()
+    outcome, steps, count = raw["ends"][0].tolist()
     flag = "" if outcome == Outcome.converged else Outcome(outcome).name
     if np.isfinite(raw["summary"][0, 1]):
         flag = "beyond the horizon of predictability"

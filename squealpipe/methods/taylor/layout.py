@@ -22,25 +22,25 @@ STOPPED = 100
 BY_EVENT, BY_TURNS = 98, 99
 """Ends of runs that were to end at the first event of a kind, or after so many turns."""
 (
-    CLOCK, CORRECTION, STEP, LONGEST, T_END, T_LATE, NEXT_SAMPLE, STEPS, MOST_STEPS, ENTERED, LOST,
+    CLOCK, CORRECTION, STEP, LONGEST, T_END, T_LATE, NEXT_SAMPLE, STEPS, MOST_STEPS, LOST,
     FIXED_ROWS,
-) = range(12)  # fmt: skip
+) = range(11)  # fmt: skip
 """Rows of numbers of the lanes that every system has; those of a system follow."""
-JOB, OUTCOME, SAMPLE, REGIME, EVENTS, CHAINED, HIT, LATE, FIXED_INTEGERS = range(9)
-"""Rows of integers of the lanes."""
+JOB, OUTCOME, SAMPLE, EVENTS, CHAINED, HIT, LATE, REGIMES = range(8)
+"""Rows of integers of the lanes; the last is the first of the regimes, one a component."""
 
 ARRAYS = (
     "rows", "integers", "series", "inverses", "sizes", "tracked", "regimes", "falls", "rises",
-    "active", "fresh", "noise", "scratch", "initial", "parameters", "first_regime", "limits",
-    "final", "extremes", "counts", "firsts", "durations", "ends", "summary", "sample_times",
-    "samples", "sample_regimes", "sample_sums", "event_times", "event_kinds", "event_regimes",
-    "event_states", "peaks", "points", "half_turns", "queue",
+    "component_of", "first_constant", "owner", "active", "fresh", "noise", "scratch", "initial",
+    "parameters", "first_regime", "limits", "final", "extremes", "counts", "firsts", "durations",
+    "ends", "summary", "sample_times", "samples", "sample_regimes", "sample_sums", "event_times",
+    "event_kinds", "event_regimes", "event_states", "peaks", "points", "half_turns", "queue",
 )  # fmt: skip
-FUNCTIONS = ("perturb", "longest", "gauge", "change", "jump")
+FUNCTIONS = ("perturb", "longest", "gauge", "change", "jump", "settle")
 SIZES = (
     "n_terms", "n_jobs", "n_states", "n_variables", "n_surfaces", "n_tracked", "n_parameters",
-    "n_constants", "n_regimes", "n_kinds", "n_samples", "n_sums", "n_logged", "n_points",
-    "n_rounds", "until", "late_from", "tangent",
+    "n_constants", "n_regimes", "n_components", "n_table", "n_kinds",
+    "n_samples", "n_sums", "n_logged", "n_points", "n_rounds", "until", "late_from", "tangent",
     "take_step", *FUNCTIONS, "n_series", "n_rows",
     "n_switches",
 )  # fmt: skip

@@ -21,12 +21,12 @@ _numba: Any = numba
 _SWEEPS = 19
 """Picard's iterations for a step whose length times the rate is 1: 1/19! is round-off."""
 ARRAYS = (
-    "rows", "series", "inverses", "sizes", "regimes", "initial", "regime", "starts", "durations",
+    "rows", "series", "inverses", "sizes", "constants", "initial", "starts", "durations",
     "kept", "steps", "counts", "lanes",
 )  # fmt: skip
 SIZES = (
     "n_terms", "n_legs", "n_states", "n_variables", "n_kept", "n_parameters", "n_constants",
-    "n_regimes", "n_series", "n_steps", "take_step",
+    "n_series", "n_steps", "take_step",
 )  # fmt: skip
 TABLE = np.dtype([(name, "i8") for name in (*ARRAYS, *SIZES)])
 
@@ -36,9 +36,8 @@ class _Memory(NamedTuple):
 
     rows: Any
     c: Any
-    regimes: Any
+    constants: Any
     initial: Any
-    regime: Any
     starts: Any
     durations: Any
     kept: Any
@@ -58,7 +57,7 @@ def _begin(t: Any, m: Any, lane: int, leg: int, unit: float) -> None:
     if t.n_variables > t.n_states:
         m.c[t.n_states, 0, lane] = m.starts[leg] * unit
     for constant in range(t.n_constants):
-        m.rows[1 + t.n_parameters + constant, lane] = m.regimes[m.regime[leg], constant]
+        m.rows[1 + t.n_parameters + constant, lane] = m.constants[leg, constant]
 
 
 @part
@@ -94,9 +93,8 @@ def _advance(table: Any) -> int:
     m = _Memory(
         rows=view(t.rows, (1 + t.n_parameters + t.n_constants, LANES), np.float64),
         c=view(t.series, (t.n_series, terms, LANES), np.float64),
-        regimes=view(t.regimes, (t.n_regimes, t.n_constants), np.float64),
+        constants=view(t.constants, (t.n_legs, t.n_constants), np.float64),
         initial=view(t.initial, (t.n_legs, n), np.float64),
-        regime=view(t.regime, (t.n_legs,), np.int64),
         starts=view(t.starts, (t.n_legs,), np.float64),
         durations=view(t.durations, (t.n_legs,), np.float64),
         kept=view(t.kept, (t.n_legs, t.n_steps, t.n_kept, terms), np.float64),

@@ -18,6 +18,7 @@ from squealpipe.methods.taylor.lanes import call, compile_advance, view
 from squealpipe.methods.taylor.observation import (
     clear_extremes,
     count_turns,
+    entered_row,
     log_norm,
     observe,
     sample,
@@ -33,9 +34,11 @@ from squealpipe.methods.taylor.simd import (
 )
 from squealpipe.methods.taylor.step import cut, reaches, take_step
 from squealpipe.methods.taylor.switching import (
-    enter_regime,
+    put_into,
+    settle,
     start_from_zero,
     switch_all,
+    watch,
 )
 
 _numba: Any = numba
@@ -89,12 +92,9 @@ def _finish(
 ) -> None:
     """Write a job's results."""
     rows, job = m.rows, m.integers[layout.JOB, lane]
-    last = m.integers[layout.REGIME, lane]
-    m.ends[job, 0], m.ends[job, 1] = m.integers[layout.OUTCOME, lane], last
-    m.ends[job, 2], m.ends[job, 3] = (
-        int(rows[layout.STEPS, lane]),
-        m.integers[layout.EVENTS, lane],
-    )
+    m.ends[job, 0] = m.integers[layout.OUTCOME, lane]
+    m.ends[job, 1] = int(rows[layout.STEPS, lane])
+    m.ends[job, 2] = m.integers[layout.EVENTS, lane]
     m.summary[job, 2] = rows[layout.CLOCK, lane]
     for variable in range(t.n_states):
         m.final[job, variable] = c[variable, 0, lane]
@@ -103,9 +103,10 @@ def _finish(
             found = rows[first_extreme + 2 * index + each, lane]
             m.extremes[job, index, m.integers[layout.LATE, lane], each] = found
     first_time = first_extreme + 2 * t.n_tracked
-    rows[first_time + last, lane] += (
-        rows[layout.CLOCK, lane] - rows[layout.ENTERED, lane]
-    )
+    for component in range(t.n_components):
+        last = m.integers[layout.REGIMES + component, lane]
+        since = rows[entered_row(t) + component, lane]
+        rows[first_time + last, lane] += rows[layout.CLOCK, lane] - since
     for regime in range(t.n_regimes):
         m.durations[job, regime] = rows[first_time + regime, lane]
     for point in range(t.n_points):
@@ -123,13 +124,7 @@ def _start(
     integers[:, lane] = 0
     integers[layout.JOB, lane], integers[layout.OUTCOME, lane] = job, layout.RUNNING
     integers[layout.HIT, lane] = -1
-    for row in (
-        layout.CLOCK,
-        layout.CORRECTION,
-        layout.STEPS,
-        layout.STEP,
-        layout.ENTERED,
-    ):
+    for row in (layout.CLOCK, layout.CORRECTION, layout.STEPS, layout.STEP):
         rows[row, lane] = 0.0
     rows[layout.LONGEST, lane] = math.inf
     rows[layout.T_END, lane], rows[layout.T_LATE, lane] = (
@@ -161,7 +156,11 @@ def _start(
         rows[row + 2, lane] = 0.0
     m.summary[job, 0], m.summary[job, 1] = 0.0, math.nan
     _limit_growth(m, lane)
-    enter_regime(t, m, c, lane, m.first_regime[job], 0.0)
+    for component in range(t.n_components):
+        rows[entered_row(t) + component, lane] = 0.0
+        put_into(t, m, lane, component, m.first_regime[job, component])
+    settle(t, lane)
+    watch(t, m, c, lane, 0.0)
 
 
 @inline
@@ -277,34 +276,39 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
 def _advance(table: Any) -> int:
     """Some rounds over all lanes; returns how many are busy. The table: :data:`TABLE`."""
     t = _numba.carray(table, (1,), layout.TABLE)[0]
-    width = max(3 * t.n_surfaces, t.n_variables) + 2
+    width = max(3 * t.n_surfaces, t.n_variables, t.n_constants) + 2
     size = t.n_states
     m = layout.Memory(
         rows=view(t.rows, (t.n_rows, LANES), np.float64),
-        integers=view(t.integers, (layout.FIXED_INTEGERS, LANES), np.int64),
+        integers=view(t.integers, (layout.REGIMES + t.n_components, LANES), np.int64),
         sizes=view(t.sizes, (size,), np.float64),
         tracked=view(t.tracked, (t.n_tracked, 2), np.int64),
-        regimes=view(t.regimes, (t.n_regimes, t.n_constants), np.float64),
+        regimes=view(t.regimes, (t.n_regimes, t.n_table), np.float64),
         falls=view(t.falls, (t.n_regimes, t.n_surfaces), np.int64),
         rises=view(t.rises, (t.n_regimes, t.n_surfaces), np.int64),
+        component_of=view(t.component_of, (t.n_regimes,), np.int64),
+        first_constant=view(t.first_constant, (t.n_components + 1,), np.int64),
+        owner=view(t.owner, (t.n_surfaces,), np.int64),
         active=view(t.active, (t.n_surfaces,), np.int64),
         fresh=view(t.fresh, (t.n_surfaces,), np.int64),
         noise=view(t.noise, (t.n_surfaces, 2, LANES), np.float64),
-        scratch=view(t.scratch, (5, width), np.float64),
+        scratch=view(t.scratch, (6, width), np.float64),
         initial=view(t.initial, (t.n_jobs, size), np.float64),
         parameters=view(t.parameters, (t.n_jobs, t.n_parameters), np.float64),
-        first_regime=view(t.first_regime, (t.n_jobs,), np.int64),
+        first_regime=view(t.first_regime, (t.n_jobs, t.n_components), np.int64),
         limits=view(t.limits, (t.n_jobs, 6), np.float64),
         final=view(t.final, (t.n_jobs, size), np.float64),
         extremes=view(t.extremes, (t.n_jobs, t.n_tracked, 2, 2), np.float64),
         counts=view(t.counts, (t.n_jobs, t.n_kinds), np.int64),
         firsts=view(t.firsts, (t.n_jobs, t.n_kinds), np.float64),
         durations=view(t.durations, (t.n_jobs, t.n_regimes), np.float64),
-        ends=view(t.ends, (t.n_jobs, 4), np.int64),
+        ends=view(t.ends, (t.n_jobs, 3), np.int64),
         summary=view(t.summary, (t.n_jobs, 3), np.float64),
         sample_times=view(t.sample_times, (t.n_jobs, t.n_samples), np.float64),
         samples=view(t.samples, (t.n_jobs, t.n_samples, size), np.float64),
-        sample_regimes=view(t.sample_regimes, (t.n_jobs, t.n_samples), np.int64),
+        sample_regimes=view(
+            t.sample_regimes, (t.n_jobs, t.n_samples, t.n_components), np.int64
+        ),
         sample_sums=view(t.sample_sums, (t.n_jobs, t.n_samples, t.n_sums), np.float64),
         event_times=view(t.event_times, (t.n_jobs, t.n_logged), np.float64),
         event_kinds=view(t.event_kinds, (t.n_jobs, t.n_logged), np.int64),

@@ -150,6 +150,12 @@ def count_turns(t: Any, m: Any, first_turn: int, busy: int) -> int:
     return ended
 
 
+@inline
+def entered_row(t: Any) -> int:
+    """The first row of when each component entered its regime."""
+    return int(t.n_rows - t.n_constants - t.n_parameters - t.n_components)
+
+
 @part
 def sample(t: Any, m: Any, c: Any, lane: int, first_time: int) -> None:
     """States, and sums, at the asked instants of one job that fall into this step."""
@@ -163,7 +169,9 @@ def sample(t: Any, m: Any, c: Any, lane: int, first_time: int) -> None:
             break
         for variable in range(t.n_states):
             m.samples[job, following, variable] = evaluate(c, variable, lane, offset)
-        m.sample_regimes[job, following] = m.integers[layout.REGIME, lane]
+        for component in range(t.n_components):
+            regime = m.integers[layout.REGIMES + component, lane]
+            m.sample_regimes[job, following, component] = regime
         if t.n_sums:
             _sum(
                 t, m, lane, m.sample_sums[job, following], first_time, times[following]
@@ -184,7 +192,9 @@ def _sum(t: Any, m: Any, lane: int, sums: Any, first_time: int, time: float) -> 
     )
     for regime in range(t.n_regimes):
         sums[1 + regime] = rows[first_time + regime, lane]
-    sums[1 + m.integers[layout.REGIME, lane]] += time - rows[layout.ENTERED, lane]
+    for component in range(t.n_components):
+        since = time - rows[entered_row(t) + component, lane]
+        sums[1 + m.integers[layout.REGIMES + component, lane]] += since
     place = 1 + t.n_regimes
     for point in range(t.n_points):
         sums[place + point] = rows[first_time + t.n_regimes + 3 * point + 2, lane]

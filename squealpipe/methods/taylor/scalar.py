@@ -1,7 +1,7 @@
 """Compiled functions of one state, written from symbols: surfaces, switches, resets, saltation.
 
 Arguments are addresses: ``z`` of the state (with the time last, if it is explicit), ``p`` of a
-lane's parameters, ``r`` of a regime's constants, ``out`` of the results.
+lane's parameters, which the constants of its regimes follow, ``out`` of the results.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -110,22 +110,35 @@ class ScalarSource:
     ) -> None:
         self.place = {id(each): index for index, each in enumerate(variables)}
         self.variables, self.rates = variables, rates
-        self.parameters, self.constants = list(parameters), list(constants)
+        names = (*parameters, *constants)
+        self.rows = {name: index for index, name in enumerate(names)}
+        self.n_parameters = len(parameters)
         self.surfaces, self.switches, self.size = surfaces, switches, size
 
-    def _writer(self, prefix: str, state: str = "z", regime: str = "r") -> _Writer:
+    def _writer(self, prefix: str, state: str = "z", regime: str = "") -> _Writer:
+        """With ``regime``, constants are those kept at this address."""
+
         def load(node: Symbol) -> str:
             if node.kind == "variable":
                 return f"number({state} + {8 * self.place[id(node)]})"
             name = node.arguments[0]
-            if name.startswith(REGIME):
-                return f"number({regime} + {8 * self.constants.index(name)})"
-            return f"number(p + {simd.ROW * self.parameters.index(name)})"
+            if regime and name.startswith(REGIME):
+                return f"number({regime} + {8 * (self.rows[name] - self.n_parameters)})"
+            return f"number(p + {simd.ROW * self.rows[name]})"
 
         return _Writer(load, prefix)
 
+    def settle(self, switched: Sequence[Symbol]) -> str:
+        """``settle(p)``: what parameters and constants alone decide goes into the last rows."""
+        writer = self._writer("v")
+        first = len(self.rows) - len(switched)
+        for place, root in enumerate(switched):
+            at = simd.ROW * (first + place)
+            writer.lines.append(f"put(p + {at}, {writer.value(root)})")
+        return _function("settle(p)", writer.lines)
+
     def gauge(self) -> str:
-        """``gauge(z, sizes, p, r, out)``: value and size of the terms of each surface and its rate.
+        """``gauge(z, sizes, p, out)``: value and size of the terms of each surface and its rate.
 
         Three numbers a surface: its value, the size of its terms, and that of its rate's terms.
         """
@@ -146,10 +159,10 @@ class ScalarSource:
                 )
             ):
                 writer.lines.append(f"put(out + {24 * index + 8 * place}, {code})")
-        return _function("gauge(z, sizes, p, r, out)", writer.lines)
+        return _function("gauge(z, sizes, p, out)", writer.lines)
 
     def change(self) -> str:
-        """``change(switch, z, p, r, out)``: next regime, kind of event, state after the reset."""
+        """``change(switch, z, p, out)``: next regime, kind of event, state after the reset."""
         head = self._writer("z")
         state = [head.value(each) for each in self.variables[: self.size]]
         lines = [
@@ -169,16 +182,18 @@ class ScalarSource:
                     found = [f" {line}" for line in found]
                 body += found
             lines += [f"if switch == {index}:", *(f" {line}" for line in body)]
-        return _function("change(switch, z, p, r, out)", lines)
+        return _function("change(switch, z, p, out)", lines)
 
     def jump(self) -> str:
-        """``jump(switch, z, after, p, r, s, d, out)``: a perturbation d across a switch.
+        """``jump(switch, z, after, p, r, d, out)``: a perturbation d across a switch.
+
+        ``r`` are the constants before it.
 
         With h the surface, g the reset and f, f₊ the fields before and after: the switch comes
         δτ = −∇h·d / (∇h·f + ∂h/∂t) later, and d becomes Dg (d + f δτ) + ∂g/∂t δτ − f₊ δτ.
         """
         size = self.size
-        before, after = self._writer("b"), self._writer("a", "after", "s")
+        before, after = self._writer("b", regime="r"), self._writer("a", "after")
         rates = [before.value(rate) for rate in self.rates]
         later = [after.value(rate) for rate in self.rates]
         head = [*before.lines, *after.lines]
@@ -202,7 +217,7 @@ class ScalarSource:
                 total = " + ".join(terms) or "0.0"
                 writer.lines.append(f"put(out + {8 * i}, {total} - {later[i]} * tau)")
             lines += [f"if switch == {index}:", *(f" {line}" for line in writer.lines)]
-        return _function("jump(switch, z, after, p, r, s, d, out)", [*head, *lines])
+        return _function("jump(switch, z, after, p, r, d, out)", [*head, *lines])
 
     def _slopes(self, writer: _Writer, root: Symbol) -> list[tuple[int, str]]:
         found = [(j, symbol(derivative(root, v))) for j, v in enumerate(self.variables)]

@@ -134,9 +134,10 @@ def take_step(t: Any, active: Any, sizes: Any) -> Any:
 def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
     """When the first watched surface is crossed, whose switch goes into ``HIT``; or the step."""
     integers = m.integers
-    regime, bit = integers[layout.REGIME, lane], 1 << lane
+    bit = 1 << lane
     first, tie = step, step * 2.0**-44
     for surface in range(t.n_surfaces):
+        regime = integers[layout.REGIMES + m.owner[surface], lane]
         falls, rises = m.falls[regime, surface], m.rises[regime, surface]
         if falls < 0 and rises < 0:
             continue

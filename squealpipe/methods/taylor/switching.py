@@ -6,7 +6,7 @@ from typing import Any
 from squealpipe.methods.compiled import inline, part
 from squealpipe.methods.taylor import layout
 from squealpipe.methods.taylor.lanes import call
-from squealpipe.methods.taylor.observation import begin_late
+from squealpipe.methods.taylor.observation import begin_late, entered_row
 from squealpipe.methods.taylor.simd import ROW, first_bit
 
 SLACK = 1e-13
@@ -18,24 +18,39 @@ CHAIN = 64
 
 
 @part
-def enter_regime(t: Any, m: Any, c: Any, lane: int, regime: int, span: float) -> None:
-    """Put a lane into a regime: its constants, which surfaces it watches, which start from zero."""
-    m.integers[layout.REGIME, lane] = regime
-    bit, keep = 1 << lane, ~(1 << lane)
+def put_into(t: Any, m: Any, lane: int, component: int, regime: int) -> None:
+    """Put a component of a lane into a regime: its constants."""
+    m.integers[layout.REGIMES + component, lane] = regime
     first = t.n_rows - t.n_constants
-    for constant in range(t.n_constants):
+    for constant in range(m.first_constant[component], m.first_constant[component + 1]):
         m.rows[first + constant, lane] = m.regimes[regime, constant]
+
+
+@inline
+def parameters_of(t: Any, lane: int) -> int:
+    """Address of a lane's parameters, which the constants of its regimes follow."""
+    first = t.n_rows - t.n_constants - t.n_parameters
+    return int(t.rows + first * ROW + 8 * lane)
+
+
+@part
+def settle(t: Any, lane: int) -> None:
+    """Compute what depends on a lane's parameters and regimes alone."""
+    if t.settle:
+        call(t.settle, (parameters_of(t, lane),))
+
+
+@part
+def watch(t: Any, m: Any, c: Any, lane: int, span: float) -> None:
+    """Which surfaces a lane watches in its regimes, and which of them start from zero."""
+    bit, keep = 1 << lane, ~(1 << lane)
     z, sizes, out = m.scratch[0], m.scratch[1], m.scratch[2]
     for variable in range(t.n_variables):
         z[variable] = c[variable, 0, lane]
         sizes[variable] = abs(z[variable]) + abs(c[variable, 1, lane]) * span
-    parameters = t.rows + (first - t.n_parameters) * ROW + 8 * lane
-    constants = t.regimes + 8 * regime * t.n_constants
-    stride = m.scratch.shape[1] * 8
-    call(
-        t.gauge,
-        (t.scratch, t.scratch + stride, parameters, constants, t.scratch + 2 * stride),
-    )
+    stride, parameters = m.scratch.shape[1] * 8, parameters_of(t, lane)
+    arguments = t.scratch, t.scratch + stride, parameters, t.scratch + 2 * stride
+    call(t.gauge, arguments)
     # where an event was located to the tolerance only, the rate that follows from it is no better
     located = max(
         NOISE, layout.LOST_ERROR * math.exp(-m.limits[m.integers[layout.JOB, lane], 4])
@@ -46,13 +61,11 @@ def enter_regime(t: Any, m: Any, c: Any, lane: int, regime: int, span: float) ->
     # a state is known to round-off of its typical size, however small it has become
     for variable in range(t.n_states):
         sizes[variable] = max(sizes[variable], m.sizes[variable])
-    call(
-        t.gauge,
-        (t.scratch, t.scratch + stride, parameters, constants, t.scratch + 2 * stride),
-    )
+    call(t.gauge, arguments)
     for surface in range(t.n_surfaces):
         m.active[surface] &= keep
         m.fresh[surface] &= keep
+        regime = m.integers[layout.REGIMES + m.owner[surface], lane]
         if m.falls[regime, surface] >= 0 or m.rises[regime, surface] >= 0:
             m.active[surface] |= bit
             if abs(out[3 * surface]) <= SLACK * out[3 * surface + 1]:
@@ -84,18 +97,23 @@ def _log(t: Any, m: Any, lane: int, kind: int, regime: int) -> int:
 
 
 @part
-def _carry_over(
-    t: Any, m: Any, lane: int, tangent_row: int, regime: int, parameters: int
-) -> None:
-    """A perturbation across the switch whose states before and after are in the scratch."""
+def _note_constants(t: Any, m: Any, lane: int) -> None:
+    """Keep the constants of the regimes that are left in the scratch."""
+    first = t.n_rows - t.n_constants
+    for constant in range(t.n_constants):
+        m.scratch[5, constant] = m.rows[first + constant, lane]
+
+
+@part
+def _carry_over(t: Any, m: Any, lane: int, tangent_row: int) -> None:
+    """A perturbation across the switch whose states and constants before it are in the scratch."""
     d, out, stride = m.scratch[4], m.scratch[2], m.scratch.shape[1] * 8
     for variable in range(t.n_states):
         d[variable] = m.rows[tangent_row + variable, lane]
-    before = t.regimes + 8 * m.integers[layout.REGIME, lane] * t.n_constants
-    after = t.regimes + 8 * regime * t.n_constants
-    z, y = t.scratch, t.scratch + 3 * stride
+    z, y, constants = t.scratch, t.scratch + 3 * stride, t.scratch + 5 * stride
     at, which = t.scratch + 4 * stride, m.integers[layout.HIT, lane]
-    call(t.jump, (which, z, y, parameters, before, after, at, t.scratch + 2 * stride))
+    arguments = z, y, parameters_of(t, lane), constants, at, t.scratch + 2 * stride
+    call(t.jump, (which, *arguments))
     for variable in range(t.n_states):
         m.rows[tangent_row + variable, lane] = out[variable]
 
@@ -103,8 +121,8 @@ def _carry_over(
 @part
 def _switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
     """Carry out the switch that ended a lane's step."""
-    rows, integers, job = m.rows, m.integers, m.integers[layout.JOB, lane]
-    which, before = integers[layout.HIT, lane], integers[layout.REGIME, lane]
+    rows, integers = m.rows, m.integers
+    which = integers[layout.HIT, lane]
     if which >= t.n_switches:
         integers[layout.OUTCOME, lane] = layout.STOPPED + which - t.n_switches
         return
@@ -113,16 +131,19 @@ def _switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
     for variable in range(t.n_variables):
         z[variable] = c[variable, 0, lane]
         after[variable] = z[variable]
-    stride = m.scratch.shape[1] * 8
-    first = t.n_rows - t.n_constants - t.n_parameters
-    parameters = t.rows + first * ROW + 8 * lane
-    constants = t.regimes + 8 * before * t.n_constants
-    call(t.change, (which, t.scratch, parameters, constants, t.scratch + 2 * stride))
+    place = t.scratch + 2 * m.scratch.shape[1] * 8
+    call(t.change, (which, t.scratch, parameters_of(t, lane), place))
     regime, kind = int(out[0]), int(out[1])
     for variable in range(t.n_states):
         after[variable] = out[2 + variable]
+    component = m.component_of[regime]
+    before = integers[layout.REGIMES + component, lane]
     if t.tangent:
-        _carry_over(t, m, lane, tangent_row, regime, parameters)
+        _note_constants(t, m, lane)
+    put_into(t, m, lane, component, regime)
+    settle(t, lane)
+    if t.tangent:
+        _carry_over(t, m, lane, tangent_row)
     for variable in range(t.n_states):
         c[variable, 0, lane] = after[variable]
     integers[layout.CHAINED, lane] += 1
@@ -130,9 +151,17 @@ def _switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
         integers[layout.CHAINED, lane] = 0
     count = _log(t, m, lane, kind, regime)
     first_time = layout.FIXED_ROWS + t.n_variables + t.n_states + 2 * t.n_tracked
-    rows[first_time + before, lane] += clock - rows[layout.ENTERED, lane]
-    rows[layout.ENTERED, lane] = clock
-    enter_regime(t, m, c, lane, regime, span)
+    entered = entered_row(t) + component
+    rows[first_time + before, lane] += clock - rows[entered, lane]
+    rows[entered, lane] = clock
+    watch(t, m, c, lane, span)
+    _may_end(t, m, lane, kind, count)
+
+
+@part
+def _may_end(t: Any, m: Any, lane: int, kind: int, count: int) -> None:
+    """End a run at the event that it waits for, or that makes too many."""
+    integers, job = m.integers, m.integers[layout.JOB, lane]
     if kind == t.until:
         integers[layout.OUTCOME, lane] = layout.BY_EVENT
     elif integers[layout.CHAINED, lane] >= CHAIN:
@@ -164,14 +193,7 @@ def switch_all(t: Any, m: Any, c: Any, special: int, tangent_row: int) -> None:
         if hit == layout.LATE_BEGINS:
             begin_late(t, m, lane, tangent_row + t.n_states)
             # a surface may be crossed at this very instant
-            enter_regime(
-                t,
-                m,
-                c,
-                lane,
-                m.integers[layout.REGIME, lane],
-                m.rows[layout.STEP, lane],
-            )
+            watch(t, m, c, lane, m.rows[layout.STEP, lane])
         elif hit >= 0 and m.integers[layout.OUTCOME, lane] == layout.RUNNING:
             _switch(t, m, c, lane, tangent_row)
         m.integers[layout.HIT, lane] = -1

@@ -127,7 +127,7 @@ class Ensemble:
     predictability_horizon = _column("summary", 1, time=True)
     """Time reached, and that at which an error of ``tol`` has grown to l_pre/1000 (NaN: not before
     the end), s."""
-    steps, final_state = _column("ends", 2), _states("final")
+    steps, final_state = _column("ends", 1), _states("final")
     samples = _states("samples")
     """At ``times``; NaN past ``time``."""
     event_times, event_states = (
@@ -234,7 +234,9 @@ class Ensemble:
     @property
     def sample_regimes(self) -> np.ndarray:
         """Regimes there; −1 past ``time``."""
-        return self._shaped(self._regimes[self._raw["sample_regimes"]].astype(np.int8))
+        return self._shaped(
+            self._regimes[self._raw["sample_regimes"][..., 0]].astype(np.int8)
+        )
 
     @property
     def event_kinds(self) -> np.ndarray:
@@ -310,7 +312,7 @@ def _run(
     t_end, t_late = jobs.t_end[rows], jobs.t_late[rows]
     starts = system.first_regimes({TIME: np.zeros(len(t_end)), **values}, len(t_end))
     apart = np.array([name in {"separated", "released"} for name in system.regimes])[
-        starts
+        starts[:, 0]
     ]
     g = geometry(values["alpha1"], values["alpha2"])
     points = np.stack(fixed_ends(SimpleNamespace(**values), g), axis=-1).reshape(
@@ -345,7 +347,7 @@ def _run(
         if not log_events or not others.any():
             return raw
         # knots of a law's table are not events of A1
-        most = int(raw["ends"][:, 3].max(initial=0))
+        most = int(raw["ends"][:, 2].max(initial=0))
         if most <= room:
             return raw | _without(others, raw, log_events)
         room = most

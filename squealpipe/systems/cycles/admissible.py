@@ -52,11 +52,13 @@ def margins(cycle: Cycle) -> dict[Margin, float]:
     surfaces = path.series[:, first : first + count, 0]
     size = np.maximum(np.abs(surfaces).max(axis=0, initial=0.0), 1e-300)
     bounds = [path.ends_of(first + s) for s in range(count)]
+    joint = system.joint
     for leg, event in enumerate(events):
         entry, duration = events[leg - 1], float(parts.durations[leg])
-        for table, sign in ((t.falls, 1.0), (t.rises, -1.0)):
-            for s in np.flatnonzero(table[event.before] >= 0):
-                fresh = entry.surface == s or system.holds[entry.before, s]
+        held = joint.holds(entry.before)
+        for watched, sign in ((joint.falls, 1.0), (joint.rises, -1.0)):
+            for s in np.flatnonzero(watched(event.before) >= 0):
+                fresh = entry.surface == s or held[s]
                 begin = _LATE * duration if fresh else 0.0
                 inside = [
                     sign * turn.value
@@ -90,10 +92,10 @@ def _conditions(cycle: Cycle, leg: int) -> dict[Margin, float]:
     event, found, number = cycle.map.events[leg], {}, 0
     if event.switch == FREE:
         return {}
-    for regime, condition, kind in cycle.map.flow.system.traced.switches[
-        event.switch
-    ].targets:
-        chosen = (regime, kind) == (event.after, event.kind)
+    system = cycle.map.flow.system
+    for regime, condition, kind in system.traced.switches[event.switch].targets:
+        after = system.joint.entered(event.before, regime)
+        chosen = (after, kind) == (event.after, event.kind)
         if condition is not None:
             if condition.varies:
                 value = cycle.parts.crossings[leg].conditions[number]

@@ -611,14 +611,18 @@ def dataset(
         first = np.array([state[i] for state, _ in starts])
         label = runs.labels(f"{name} at t = 0 of the cycle", system.units[name])
         found[f"{name}_start"] = ("point", first, label)
-    names = dict(enumerate(system.regimes))
-    regimes = [regime for _, regime in starts]
-    found["start_regime"] = runs.flag(
-        "regime at t = 0 of the cycle", "point", regimes, names
+    regimes = np.array([system.joint.regimes(regime) for _, regime in starts], int)
+    found["start_regime"] = runs.regime_flag(
+        system,
+        "regime at t = 0 of the cycle",
+        ("point",),
+        regimes.reshape(len(starts), system.traced.n_components),
     )
     periods = points[0].cycle.map.periods or 1 if points else 1
     found["periods"] = ((), periods, runs.labels("forcing periods", "1"))
     found["outcome"] = outcome_of(system, "point", np.zeros(len(points), int))
     found["end"] = outcome_of(system, (), int(end))
     attributes = runs.attributes(system, "cycle branch", values, 1e-14)
-    return xr.Dataset(found, attrs=attributes | {"parameter": parameter})
+    return xr.Dataset(
+        found, runs.components_of(system), attributes | {"parameter": parameter}
+    )

@@ -261,10 +261,14 @@ def _curve_of(cycle: Cycle, label: Label) -> tuple[Curve, Vector]:
     )
     inside = [turn for turn in parts.path.turns[first + own.which] if turn.leg == leg]
     turn = min(inside, key=lambda each: abs(each.value))
-    falls = traced.falls[event.before, own.which] >= 0
-    number = int((traced.falls if falls else traced.rises)[event.before, own.which])
+    joint = equations.flow.system.joint
+    falls = joint.falls(event.before)[own.which] >= 0
+    watched = (joint.falls if falls else joint.rises)(event.before)
+    number = int(watched[own.which])
     targets = traced.switches[number].targets if number < len(traced.switches) else ()
-    stays = len(targets) == 1 and targets[0][0] == event.before
+    stays = (
+        len(targets) == 1 and joint.entered(event.before, targets[0][0]) == event.before
+    )
     kind = targets[0][2] if stays else FREE
     touch = Event(
         number if stays else FREE,
@@ -456,10 +460,10 @@ class _Way:
         elif label == Label.grazing:
             met = GRAZINGS.get(self.curve.label, met)
         system, event = cycle.map.flow.system, cycle.map.events[key.leg]
-        watched = (system.traced.falls, system.traced.rises)
+        watched = (system.joint.falls, system.joint.rises)
         number = event.switch
         if key.kind in {Kind.touch, Kind.edge}:
-            number = int(max(table[event.before, key.which] for table in watched))
+            number = int(max(of(event.before)[key.which] for of in watched))
         names = [*(each.name for each in system.switches), *system.stops]
         return met, f"order_changes_{key.kind.name}_of_{names[number]}".replace(
             " ", "_"

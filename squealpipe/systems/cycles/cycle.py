@@ -59,14 +59,14 @@ def follow(
 ) -> Motion:
     """Run a system from a state at t = 0 with all events."""
     system, regime = flow.system, options.pop("regime", None)
-    named = None if regime is None else system.states_of(regime)
+    first = None if regime is None else np.array([system.joint.regimes(regime)])
     states = dict(zip(system.states, map(float, state), strict=True))
     with np.errstate(all="ignore"):
         return single_run(
             system,
             {**values, **states},
             duration,
-            regime=named,
+            regime=first,
             tol=1e-13,
             unit_sizes=sizes_at(flow, values, state, regime or 0),
             **options,
@@ -86,19 +86,23 @@ def sizes_at(
 
 def events_of(system: System, motion: Motion, count: int) -> tuple[Event, ...]:
     """The first events of a run, each with its switch."""
-    t = system.traced
+    t, joint = system.traced, system.joint
     found: list[Event] = []
     for i in range(count):
-        before, after, kind = (
-            int(v) for v in (*motion.regimes[i : i + 2], motion.kinds[i])
+        before, after, kind, entered = (
+            int(v)
+            for v in (*motion.regimes[i : i + 2], motion.kinds[i], motion.entered[i])
         )
         fitting = (
             Event(int(switch), surface, sign, before, after, kind)
-            for table, sign in ((t.falls, 1.0), (t.rises, -1.0))
-            for surface, switch in enumerate(table[before])
+            for watched, sign in (
+                (joint.falls(before), 1.0),
+                (joint.rises(before), -1.0),
+            )
+            for surface, switch in enumerate(watched)
             if 0 <= switch < len(t.switches)
             and any(
-                (to, name) == (after, kind)
+                (to, name) == (entered, kind)
                 for to, _, name in t.switches[switch].targets
             )
         )
@@ -614,12 +618,16 @@ def dataset(
     states = np.array([cycle.parts.crossings[i].after for i in order] if cycle else [])
     states = states.reshape(-1, len(system.states))
     kinds, names = dict(enumerate(system.traced.kinds)), dict(enumerate(system.regimes))
+    joint = system.joint
     found["event_time"] = ("event", times, runs.labels("time of the event", "s"))
     found["event_kind"] = runs.flag(
         "kind of the event", "event", [e.kind for e in chosen], kinds
     )
     found["event_regime"] = runs.flag(
-        "regime entered", "event", [e.after for e in chosen], names
+        "regime entered",
+        "event",
+        [joint.entered_by(e.after, e.switch) for e in chosen],
+        names,
     )
     for i, name in enumerate(system.states):
         unit = system.units[name]
@@ -639,9 +647,13 @@ def dataset(
             first,
             runs.labels(f"{name} at t = 0 of the cycle", unit),
         )
-    found["start_regime"] = runs.flag("regime at t = 0 of the cycle", (), regime, names)
+    found["start_regime"] = runs.regime_flag(
+        system, "regime at t = 0 of the cycle", (), np.array(joint.regimes(regime))
+    )
     found["time"] = ("sample", instants, runs.labels("time", "s"))
     found["outcome"] = outcome_of(system, (), outcome)
     return xr.Dataset(
-        found, attrs=runs.attributes(system, "limit cycle", values, 1e-14)
+        found,
+        runs.components_of(system),
+        runs.attributes(system, "limit cycle", values, 1e-14),
     )

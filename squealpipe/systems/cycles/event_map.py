@@ -197,10 +197,9 @@ class EventMap:
         """
         system, state = self.flow.system, parts.states[0]
         regimes = [event.before for event in self.events]
-        for surface in np.flatnonzero(system.holds[regimes].all(axis=0)):
-            # as those see it that watch it
-            watched = system.traced.falls[:, surface] >= 0
-            seen = int(np.argmax(watched | (system.traced.rises[:, surface] >= 0)))
+        holds = np.array([system.joint.holds(regime) for regime in regimes])
+        for surface in np.flatnonzero(holds.all(axis=0)):
+            seen = system.joint.seen(regimes[0], int(surface))
             here = self.flow.crossing(
                 parts.values, FREE, int(surface), (seen, seen), state, parts.start
             )
@@ -447,9 +446,9 @@ class Cycle:
         """When that is, after the first state."""
         if self.map.periods:
             return -self.parts.start % self.period
-        holds = self.map.flow.system.holds
+        joint = self.map.flow.system.joint
         lengths = [
-            0.0 if holds[event.before].any() else duration
+            0.0 if joint.holds(event.before).any() else duration
             for event, duration in zip(
                 self.map.events, self.parts.durations, strict=True
             )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -35,19 +35,19 @@ _JUMP = 1e-2
 def label_of(cycle: Cycle, zero: dict[Margin, float]) -> Label:
     """What a change of the events is called, from the margins that vanish."""
     system = cycle.map.flow.system
-    t, found = system.traced, Label.regular
+    joint, found = system.joint, Label.regular
     for margin in zero:
         event = cycle.map.events[margin.leg]
-        held = bool(system.holds[event.before].any())
+        held = bool(joint.holds(event.before).any())
         watched = (
-            t.falls[event.before, margin.which],
-            t.rises[event.before, margin.which],
+            joint.falls(event.before)[margin.which],
+            joint.rises(event.before)[margin.which],
         )
         own = margin.kind in {Kind.condition, Kind.length}
         switch = event.switch if own else int(max(watched))
         crosses = margin.kind in {Kind.touch, Kind.speed}
         if (held or crosses or margin.kind == Kind.condition) and _of_hold(
-            system, switch
+            system, switch, event.before
         ):
             return Label.stick_onset
         if crosses:
@@ -55,15 +55,19 @@ def label_of(cycle: Cycle, zero: dict[Margin, float]) -> Label:
     return found
 
 
-def _of_hold(system: System, switch: int) -> bool:
+def _of_hold(system: System, switch: int, among: int) -> bool:
     """Whether a switch may lead to where its surface is held, as to stick, or ends that alone."""
-    t = system.traced
+    t, joint = system.traced, system.joint
     if not 0 <= switch < len(t.switches):
         return False
     leaves, surfaces = np.nonzero((t.falls == switch) | (t.rises == switch))
-    targets = [regime for regime, _, _ in t.switches[switch].targets]
-    held: Any = system.holds.any(axis=1)
-    return bool(system.holds[targets][:, surfaces].any() or held[leaves].all())
+    targets = [
+        joint.entered(among, regime) for regime, _, _ in t.switches[switch].targets
+    ]
+    left = [joint.entered(among, regime) for regime in leaves.tolist()]
+    return any(joint.holds(each)[surfaces].any() for each in targets) or all(
+        joint.holds(each).any() for each in left
+    )
 
 
 def least_margin(_: ContinuationState | None, cycle: Cycle) -> float:

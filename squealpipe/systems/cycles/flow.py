@@ -217,10 +217,9 @@ class Flow:
         return python_function(roots, self.arguments, np)
 
     def numbers(self, values: Mapping[str, float], regime: int) -> list[Any]:
-        """Parameters and a regime's constants, as the functions take them; the time unit is 1."""
-        t = self.system.traced
+        """Parameters and the regimes' constants, as the functions take them; the time unit is 1."""
         given = [np.float64(values[name]) for name in self.system.parameters]
-        return [*given, np.float64(1.0), *t.regimes[regime]]
+        return [*given, np.float64(1.0), *self.system.joint.constants(regime)]
 
     def unit(self, values: Mapping[str, float]) -> float:
         """The system's unit of time, s."""
@@ -353,7 +352,7 @@ class Flow:
 
     def _prepare(self, legs: int) -> None:
         t, code = self.system.integrated, compiled(self.system, tangent=False, few=True)
-        terms, constants = taylor_terms(TOLERANCE), len(t.constants)
+        terms, constants = taylor_terms(TOLERANCE), len(t.all_constants)
         kept = len(t.variables) + len(t.surfaces) + len(t.outputs)
         self._legs = legs
         sizes = {
@@ -364,7 +363,6 @@ class Flow:
             "n_kept": kept,
             "n_parameters": len(t.parameters),
             "n_constants": constants,
-            "n_regimes": len(t.regimes),
             "n_series": code.n_series,
             "n_steps": self._room,
             "take_step": code.address("series"),
@@ -374,9 +372,8 @@ class Flow:
             "series": aligned(code.n_series, terms, LANES),
             "inverses": INVERSES,
             "sizes": np.zeros(t.size),
-            "regimes": t.regimes if constants else np.zeros((1, 1)),
+            "constants": np.zeros((legs, max(1, constants))),
             "initial": np.zeros((legs, t.size)),
-            "regime": np.zeros(legs, np.int64),
             "starts": np.zeros(legs),
             "durations": np.zeros(legs),
             "kept": np.zeros((legs, self._room, kept, terms)),
@@ -411,7 +408,10 @@ class Flow:
         arrays["sizes"][:] = np.minimum(
             self.system.sizes, np.maximum(np.abs(states).max(axis=0), 1e-200)
         )
-        arrays["initial"][:], arrays["regime"][:] = states, regimes
+        arrays["initial"][:] = states
+        for row, regime in zip(arrays["constants"], regimes, strict=True):
+            constants = self._constants_of(regime, column)
+            row[: len(constants)] = constants
         arrays["starts"][:], arrays["durations"][:] = starts / unit, durations / unit
         drive(run_legs(), self._work)
         counts = arrays["counts"]
@@ -446,6 +446,14 @@ class Flow:
             ends,
             unit,
         )
+
+    def _constants_of(self, regime: int, parameters: Vector) -> Vector:
+        """The regimes' constants and what is computed from them, as the series take them."""
+        t, constants = self.system.integrated, self.system.joint.constants(regime)
+        known = dict(zip(t.parameters, parameters, strict=True))
+        known |= dict(zip(t.constants, constants, strict=True))
+        function, names = self.system.at_switches
+        return np.array([*constants, *function(*(known[name] for name in names))])
 
     def derivatives(self, values: Mapping[str, float], path: Path) -> Vector:
         """Of each leg's end by its start, followed parameters and the time: (legs, n, n + p)."""
@@ -484,8 +492,9 @@ class Flow:
             steps, variables, count, pieces
         )
         flat = states.transpose(1, 2, 0, 3).reshape(variables, count, -1)
-        regimes = np.repeat(path.regimes[path.leg], pieces)
-        constants = self.system.traced.regimes[regimes].T
+        joint = self.system.joint
+        of_legs = np.array([joint.constants(regime) for regime in path.regimes])
+        constants = np.repeat(of_legs[path.leg], pieces, axis=0).T
         numbers = self.numbers(values, 0)[: len(self.system.traced.parameters)]
         found = np.zeros((self.size, self._columns, *flat.shape[1:]))
         with np.errstate(all="ignore"):

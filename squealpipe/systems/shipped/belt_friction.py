@@ -9,7 +9,8 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from squealpipe.functions import exp
-from squealpipe.systems.system import Switch, System
+from squealpipe.systems.components import Switch
+from squealpipe.systems.system import System
 
 REGIMES = {
     "slower": {"direction": 1.0, "stick": 0.0},

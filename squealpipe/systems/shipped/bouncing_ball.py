@@ -1,6 +1,7 @@
 """A ball that bounces on the floor; its impacts accumulate."""
 
-from squealpipe.systems.system import Switch, System
+from squealpipe.systems.components import Switch
+from squealpipe.systems.system import System
 
 bouncing_ball = System(
     "bouncing ball",

@@ -23,7 +23,8 @@ from squealpipe.laws.tables import is_table, pieces_of
 from squealpipe.models import a1
 from squealpipe.models.variants import VARIANT_RULES, Rules
 from squealpipe.parameters import NUMBERS_OF_A1, Parameters
-from squealpipe.systems.system import Switch, System
+from squealpipe.systems.components import Switch
+from squealpipe.systems.system import System
 
 SLIP = {"slip_slower": 1.0, "slip_faster": -1.0}
 PIVOT_REACH2 = 1e-14

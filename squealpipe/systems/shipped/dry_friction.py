@@ -4,7 +4,8 @@ from math import pi
 from typing import Any
 
 from squealpipe.functions import cos
-from squealpipe.systems.system import Switch, System
+from squealpipe.systems.components import Switch
+from squealpipe.systems.system import System
 
 
 def _push(t: Any, s: Any, p: Any) -> Any:

@@ -3,7 +3,8 @@
 from math import pi
 
 from squealpipe.functions import cos
-from squealpipe.systems.system import Switch, System
+from squealpipe.systems.components import Switch
+from squealpipe.systems.system import System
 
 impact_oscillator = System(
     "impact oscillator",

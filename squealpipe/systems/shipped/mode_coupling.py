@@ -8,7 +8,8 @@ y = −approach, where the force kc (y + approach) is zero. The modes merge, and
 
 from typing import Any
 
-from squealpipe.systems.system import Switch, System
+from squealpipe.systems.components import Switch
+from squealpipe.systems.system import System
 
 
 def _field(t: Any, s: Any, p: Any, r: Any) -> dict[str, Any]:

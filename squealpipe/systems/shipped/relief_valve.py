@@ -4,7 +4,8 @@
 """
 
 from squealpipe.functions import sqrt
-from squealpipe.systems.system import Switch, System
+from squealpipe.systems.components import Switch
+from squealpipe.systems.system import System
 
 relief_valve = System(
     "pressure relief valve",

@@ -9,7 +9,8 @@ both along +x; ``work`` is what friction has done since the start.
 from typing import Any
 
 from squealpipe.functions import cos, sin, sqrt
-from squealpipe.systems.system import Switch, System
+from squealpipe.systems.components import Component, Switch
+from squealpipe.systems.system import System
 
 LEADING, TRAILING = 1.0, -1.0
 
@@ -35,9 +36,9 @@ def spring(side: float, s: Any, p: Any) -> tuple[Any, Any, Any]:
 
 def _field(t: Any, s: Any, p: Any, r: Any) -> dict[str, Any]:
     total: list[Any] = [0.0, 0.0, 0.0, 0.0]
-    for side, contact in ((LEADING, r.leading), (TRAILING, r.trailing)):
+    for side, own in ((LEADING, r.leading), (TRAILING, r.trailing)):
         x, y = edge(side, s, p)
-        normal = contact * p.contact_stiffness * approach(side, s, p)
+        normal = own.contact * p.contact_stiffness * approach(side, s, p)
         length, dx, dy = spring(side, s, p)
         pull = p.stiffness * (1.0 - p.free_length / length)
         other_x, other_y = edge(-side, s, p)
@@ -60,22 +61,15 @@ def _field(t: Any, s: Any, p: Any, r: Any) -> dict[str, Any]:
     }
 
 
-def _switches(name: str, side: float, other: str) -> list[Switch]:
-    """The edge lifts off, and lands; the other edge stays as it is."""
-    return [
-        Switch(
-            f"{name}_lifts",
-            leaves=("both", name),
-            when=lambda t, s, p, r: approach(side, s, p),
-            to=[(other, lambda t, s, p, r: getattr(r, other) - 0.5), "neither"],
-        ),
-        Switch(
-            f"{name}_lands",
-            leaves=(other, "neither"),
-            when=lambda t, s, p, r: -approach(side, s, p),
-            to=[("both", lambda t, s, p, r: getattr(r, other) - 0.5), name],
-        ),
-    ]
+def _contact(side: float) -> Component:
+    """An edge that lifts off and lands, whatever the other does."""
+    return Component(
+        regimes={"closed": {"contact": 1.0}, "open": {"contact": 0.0}},
+        switches=[
+            Switch("lifts", "closed", lambda t, s, p, r: approach(side, s, p), "open"),
+            Switch("lands", "open", lambda t, s, p, r: -approach(side, s, p), "closed"),
+        ],
+    )
 
 
 rigid_pad = System(
@@ -100,17 +94,8 @@ rigid_pad = System(
         "preload": 1.0,
         "mu": 0.4,
     },
-    regimes={
-        "both": {"leading": 1.0, "trailing": 1.0},
-        "leading": {"leading": 1.0, "trailing": 0.0},
-        "trailing": {"leading": 0.0, "trailing": 1.0},
-        "neither": {"leading": 0.0, "trailing": 0.0},
-    },
+    components={"leading": _contact(LEADING), "trailing": _contact(TRAILING)},
     field=_field,
-    switches=[
-        *_switches("leading", LEADING, "trailing"),
-        *_switches("trailing", TRAILING, "leading"),
-    ],
     start={
         "x": 0.0,
         "y": 0.0,

@@ -59,5 +59,7 @@ def _regime(scene: Scene, state: Vector) -> int:
     """The regime of the system at a state."""
     given = {name: np.array([value]) for name, value in zip(STATE, state, strict=True)}
     return int(
-        scene.system.first_regimes({**scene.values, **given, TIME: np.zeros(1)}, 1)[0]
+        scene.system.first_regimes({**scene.values, **given, TIME: np.zeros(1)}, 1)[
+            0, 0
+        ]
     )

@@ -1,0 +1,124 @@
+"""In which regimes runs start."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from squealpipe.methods.taylor.scalar import numpy_function
+from squealpipe.systems.components import Composition
+from squealpipe.systems.trace import TIME_UNIT, Traced
+
+_EQUAL = 1e-15
+"""An equality holds within this of the size of what it is computed from."""
+_SWEEPS = 4
+"""Rounds over all components, for each of them, in which the others' regimes may still change."""
+
+
+class _Asked(NamedTuple):
+    """What a regime asks of the state: a function, its arguments, and the sign that it needs.
+
+    The sign is 0 where it must vanish.
+    """
+
+    function: Any
+    names: list[str]
+    sign: float
+
+
+class Starts:
+    """The regimes that runs may start in, and what each asks of the state."""
+
+    def __init__(self, traced: Traced, composition: Composition) -> None:
+        self.traced, self.composition = traced, composition
+        self.entries = [self._entries(k) for k in range(traced.n_components)]
+
+    def _entries(self, component: int) -> list[tuple[int, list[_Asked]]]:
+        """The regimes of a component in the order in which they are tried."""
+        traced, found = self.traced, []
+        starts = traced.starts[component]
+        n_switches = len(traced.switches)
+        entries = starts or tuple(
+            (int(i), None, None) for i in self.composition.regimes_of(component)
+        )
+        for place, (regime, condition, equality) in enumerate(entries):
+            asked = [] if equality is None else [(equality, 0.0)]
+            if condition is not None:
+                asked.append((condition, 1.0))
+            elif place != len(starts) - 1:
+                for table, sign in (
+                    (traced.falls[regime], 1.0),
+                    (traced.rises[regime], -1.0),
+                ):
+                    watched = np.flatnonzero((table >= 0) & (table < n_switches))
+                    asked += [(traced.surfaces[index], sign) for index in watched]
+            checks = [_Asked(*numpy_function([root]), sign) for root, sign in asked]
+            found.append((regime, checks))
+        return found
+
+    def regimes(
+        self, values: Mapping[str, Any], size: int, chosen: np.ndarray
+    ) -> np.ndarray:
+        """The regime of each component in each run, (size, components).
+
+        What a component's regimes ask of the state may depend on those of the others: they are
+        gone through in order until none changes.
+
+        Args:
+            values: states, parameters and ``time`` as arrays of that size.
+            chosen: (components,) regimes that are known; −1 of others.
+        """
+        open_ones = np.flatnonzero(chosen < 0).tolist()
+        last = [entries[-1][0] for entries in self.entries]
+        found = np.tile(np.where(chosen < 0, last, chosen), (size, 1)).astype(np.int64)
+        known = {TIME_UNIT: np.ones(size), **values}
+        fits = np.ones((size, self.traced.n_components), bool)
+        for _ in range(_SWEEPS * len(open_ones)):
+            before = found.copy()
+            for k in open_ones:
+                first = self._first_that_fits(known, found, k)
+                fits[:, k] = first >= 0
+                found[:, k] = np.where(first >= 0, first, found[:, k])
+            if self.traced.n_components == 1 or (before == found).all():
+                break
+        if not fits.all():
+            unfit = self.composition.names[int(np.argmin(fits.all(axis=0)))]
+            of = f" of component {unfit!r}" if unfit else ""
+            raise ValueError(
+                f"no regime{of} fits the start: in each, some surface is below zero; give "
+                "start={'regime': …} or starts_in"
+            )
+        return found
+
+    def _first_that_fits(
+        self, known: Mapping[str, Any], now: np.ndarray, component: int
+    ) -> np.ndarray:
+        """The first regime of a component that fits each run; −1 where none does."""
+        traced, size = self.traced, len(now)
+        chosen = np.full(size, -1, np.int64)
+        values = dict(known)
+        for k in range(traced.n_components):
+            columns = traced.columns(k)
+            constants = traced.regimes[now[:, k], columns].T
+            values |= dict(zip(traced.constants[columns], constants, strict=True))
+        names = traced.constants[traced.columns(component)]
+        for regime, checks in self.entries[component]:
+            fits = chosen < 0
+            if not fits.any():
+                break
+            row = traced.regimes[regime, traced.columns(component)].tolist()
+            values |= dict(zip(names, row, strict=True))
+            for function, arguments, sign in checks:
+                terms = [np.asarray(values[name]) for name in arguments]
+                (value,) = function(*terms)
+                fits &= (
+                    sign * value >= 0.0
+                    if sign
+                    else abs(value) <= _EQUAL * sum(map(abs, terms))
+                )
+                if not fits.any():
+                    break
+            chosen = np.where(fits, regime, chosen)
+        return chosen
