@@ -40,6 +40,7 @@ class _Writer:
     prefix: str
     lines: list[str] = field(default_factory=list)
     names: dict[int, str] = field(default_factory=dict)
+    sizes: dict[int, str] = field(default_factory=dict)
 
     def value(self, root: Symbol) -> str:
         for node in in_order([root]):
@@ -64,11 +65,15 @@ class _Writer:
             return f"{c1} * ({a1} * {b1}) + {c2} * ({a2} * {b2})"
         return f" {node.kind} ".join(given)
 
+    def _without_size(self, root: Symbol) -> list[Symbol]:
+        """Nodes whose size no line computes yet: each is written once for all roots."""
+        return [node for node in in_order([root]) if id(node) not in self.sizes]
+
     def scale(self, root: Symbol, scale_of: Callable[[Symbol], str]) -> str:
         """Lines for the size of the terms that cancel in a sum, to which round-off is relative."""
-        sizes: dict[int, str] = {}
         self.value(root)
-        for node in in_order([root]):
+        sizes = self.sizes
+        for node in self._without_size(root):
             name = sizes[id(node)] = f"{self.prefix}z{len(self.lines)}"
             inner = [sizes[id(a)] for a in node.arguments if isinstance(a, Symbol)]
             value = self.names[id(node)]
