@@ -63,10 +63,16 @@ def draw(verdicts: xr.Dataset, answers: Mapping[str, xr.Dataset]) -> Figure:
             continue
         to = [float(np.degrees(answer[f"quiet_{key}"])) for key in ("alpha1", "alpha2")]
         if np.isfinite(to).all():
-            look = {"arrowstyle": "-|>", "color": BLACK, "lw": 1.2, "shrinkA": 0}
-            panel.annotate("", to, at, arrowprops=look)
-        panel.plot(*at, "x", color="white", markersize=10, markeredgewidth=4)
-        panel.plot(*at, "x", color=BLUE, markersize=8, markeredgewidth=2)
+            look = {
+                "arrowstyle": "-|>",
+                "color": BLACK,
+                "lw": 1.2,
+                "shrinkA": 0,
+                "shrinkB": 0,
+            }
+            panel.annotate("", to, at, arrowprops=look, zorder=5)
+        panel.plot(*at, "x", color="white", markersize=8, markeredgewidth=3)
+        panel.plot(*at, "x", color=BLUE, markersize=6, markeredgewidth=1.5)
         panel.annotate(
             name.removeprefix("assess/"), at, (6, -10), textcoords="offset points",
             color=BLUE, path_effects=HALO,

@@ -83,7 +83,7 @@ def _draw(panel: Axes, run: xr.Dataset) -> None:
     panel.text(0.0, 6.9 * belt, words, **below)
     panel.set(
         xlim=(-1.2 * scale, 1.2 * scale),
-        ylim=(-0.75 * scale, 1.1 * scale),
+        ylim=(-0.85 * scale, 1.1 * scale),
         aspect="equal",
     )
 
