@@ -9,7 +9,7 @@ from squealpipe import load
 from squealpipe.study.report import answer
 from tests.conftest import ROOT, run_snakemake
 
-pytestmark = pytest.mark.release
+pytestmark = [pytest.mark.release, pytest.mark.timeout(1800)]
 
 PAD = {
     "mass": 0.45, "k1": 1e7, "k2": 1e7, "k3": 7e6, "preload": 5.714e-4, "mu": 0.4,
