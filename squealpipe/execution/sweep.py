@@ -24,7 +24,8 @@ from squealpipe.execution.scatter import scattered_values
 from squealpipe.execution.system_sweep import SystemSweep, is_system
 from squealpipe.methods.processes import available_cores, leave_interrupts_to_the_parent
 from squealpipe.methods.progress import alone
-from squealpipe.parameters import Parameters, parameters_of
+from squealpipe.models.refusals import refuse_unread
+from squealpipe.parameters import TABLE, Parameters, parameters_of
 from squealpipe.schema import ABSENT, DatasetSchema, Outcome, build, find, meanings
 from squealpipe.schema.origin import origin
 from squealpipe.schema.sweep import OPTIONS, fill_up, is_ragged, ragged_dims, sweep_name
@@ -96,6 +97,10 @@ class Sweep:
             raise ValueError(
                 f"nothing to sweep: {self.task} maps both angles by itself; vary a parameter too"
             )
+        # a table of contact is read anew at the preload of each run
+        params, _ = self._with(self.fixed)
+        ranges = [name for name in self.vary if name in NUMBERS and name != "preload"]
+        refuse_unread(params, [name for name in ranges if TABLE[name].enters_a1])
         self._refuse_other_times()
 
     def _with(self, given: Mapping[str, Any]) -> tuple[Parameters, dict[str, Any]]:

@@ -95,6 +95,10 @@ def test_angles_and_options_can_be_swept_and_ragged_runs_are_filled_up(tmp_path)
         ({"task": "simulate"}, "simulate needs t_end once"),
         ({"fixed": {"alpha2": 0, "mu": 0.1}}, "needs mu once"),
         ({"fixed": {"alpha2": 0, "mass": -1.0}}, "mass = -1.0: must be greater than 0"),
+        (
+            {"vary": {"friction_speed": [1, 2], "alpha1": [0]}},
+            "friction_speed cannot vary: friction_law = 'coulomb' does not read it",
+        ),
     ],
 )
 def test_plans_that_cannot_work_are_refused(changes, message):

@@ -73,8 +73,10 @@ def _check_support(name: str, kind: str, frozen: Any) -> None:
         if not np.isfinite(end):
             continue
         try:
-            # of its own: how mu_static stands to mu is seen when both are known
-            Parameters(friction_law=FALLING[0]).with_(**{name: float(end) or 1e-300})
+            # of its own: how mu_static stands to mu is seen when both are known, and the laws
+            # are those that read every parameter
+            reader = Parameters(friction_law=FALLING[0], contact_law="dashpot")
+            reader.with_(**{name: float(end) or 1e-300})
         except ValueError as error:
             raise ValueError(
                 f"{name}: the {kind} distribution reaches {end:g}, which is not allowed: {error}"

@@ -212,6 +212,13 @@ def test_what_nothing_reads_is_not_spread(name):
         propensity(FORMER, *ANGLES, distributions=given, samples=64, t_end=1.0)
 
 
+def test_a_contact_dashpot_is_spread_where_its_law_reads_it():
+    given = {"damping3": {"distribution": "uniform", "low": 0.05, "high": 0.5}}
+    params = FORMER.with_(contact_law="dashpot", damping3=0.1)
+    spread = propensity(params, *ANGLES, distributions=given, samples=64, t_end=1.0)
+    assert spread.input.values.tolist() == ["damping3"]
+
+
 def test_settings_differ_from_the_paper_one_at_a_time():
     params = FORMER.with_(k2=1.3, belt_speed=-2.0)
     found = dict(variants(params))
