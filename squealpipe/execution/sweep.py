@@ -26,7 +26,15 @@ from squealpipe.methods.processes import available_cores, leave_interrupts_to_th
 from squealpipe.methods.progress import alone
 from squealpipe.models.refusals import refuse_unread
 from squealpipe.parameters import TABLE, Parameters, parameters_of
-from squealpipe.schema import ABSENT, DatasetSchema, Outcome, build, find, meanings
+from squealpipe.schema import (
+    ABSENT,
+    DatasetSchema,
+    Outcome,
+    Variable,
+    build,
+    find,
+    meanings,
+)
 from squealpipe.schema.origin import origin
 from squealpipe.schema.sweep import OPTIONS, fill_up, is_ragged, ragged_dims, sweep_name
 from squealpipe.tasks.sampling import default_times
@@ -289,7 +297,8 @@ def _merge(sweep: Sweep, runs: Callable[[], Iterator[Run]]) -> xr.Dataset:
         stored = entry.stored if entry is not None and is_ragged(entry) else types[name]
         kind = types[name] if stored.kind == "U" else stored
         data[name] = np.empty((len(sweep.points), *shapes[name]), kind)
-    for number, run in enumerate(runs()):
+    for number, arrays in enumerate(runs()):
+        run = _in_order(arrays, coords, entries)
         for name, rows in data.items():
             filled = run[name].astype(rows.dtype)
             if name in entries and is_ragged(entries[name]):
@@ -310,16 +319,23 @@ def _schema(task: str) -> str:
     return "simulation" if task == "simulate" else task
 
 
-def _in_order(run: xr.Dataset, first: xr.Dataset) -> xr.Dataset:
+def _in_order(
+    run: Run, coords: Mapping[str, np.ndarray], entries: Mapping[str, Variable]
+) -> Run:
     """A run with its words along each dimension in the order of the first one."""
-    for name, words in first.coords.items():
-        other = run[name].values
-        ours = words.values
-        if words.dtype.kind not in "UO" or np.array_equal(ours, other):
+    ordered = dict(run)
+    for dim, first in coords.items():
+        words = run.get(dim)
+        if words is None or words.dtype.kind != "U" or np.array_equal(words, first):
             continue
-        if sorted(ours) == sorted(other):
-            run = run.sel({str(name): ours})
-    return run
+        if sorted(words) != sorted(first):
+            continue
+        places = [words.tolist().index(word) for word in first]
+        for name, array in ordered.items():
+            dims = entries[name].dims if name in entries else ()
+            if dim in dims:
+                ordered[name] = np.take(array, places, axis=dims.index(dim))
+    return ordered
 
 
 def _refuse_other(name: str, array: np.ndarray, first: np.ndarray) -> None:

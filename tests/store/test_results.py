@@ -42,7 +42,8 @@ def test_nodes_are_the_datasets_by_their_names(run, keys_of):
 def test_an_unknown_run_is_told_with_those_that_there_are(tmp_path):
     (tmp_path / "results/archive/first").mkdir(parents=True)
     with pytest.raises(
-        FileNotFoundError, match=r"no archive, folder or file.*; archives: first$"
+        FileNotFoundError,
+        match=r"no archive, folder or file.*; archives: first, reference$",
     ):
         open_results("nothing", root=tmp_path)
 
