@@ -43,6 +43,18 @@ SAMPLES_PER_STEP, MOST_SAMPLES = 4, 20_001
 MOST_STEPS, MOST_EVENTS = 1e7, 1e7
 
 
+def symbolic(system: System) -> HybridSystem:
+    """What the series of a system are written from."""
+    t = system.integrated
+    return HybridSystem(
+        variables=t.variables,
+        rates=t.rates,
+        events=(*t.surfaces, *t.outputs),
+        parameters=(*t.parameters, *t.constants),
+        explicit_time=len(t.variables) > t.size,
+    )
+
+
 _COMPILED: weakref.WeakKeyDictionary[
     Any, dict[tuple[bool, bool], lanes.CompiledSystem]
 ] = weakref.WeakKeyDictionary()
@@ -53,13 +65,6 @@ def compiled(system: System, *, tangent: bool, few: bool) -> lanes.CompiledSyste
     known = _COMPILED.setdefault(system, {})
     if (tangent, few) not in known:
         t = system.integrated
-        symbolic = HybridSystem(
-            variables=t.variables,
-            rates=t.rates,
-            events=(*t.surfaces, *t.outputs),
-            parameters=(*t.parameters, *t.constants),
-            explicit_time=len(t.variables) > t.size,
-        )
         scalar = ScalarSource(
             t.variables,
             t.rates,
@@ -68,12 +73,13 @@ def compiled(system: System, *, tangent: bool, few: bool) -> lanes.CompiledSyste
             t.surfaces,
             t.switches,
             t.size,
+            t.outputs,
         )
         sources = {"gauge": scalar.gauge(), "change": scalar.change()}
         if tangent:
             sources["jump"] = scalar.jump()
         known[tangent, few] = lanes.compile_system(
-            symbolic, sources, tangent=tangent, few=few
+            symbolic(system), sources, tangent=tangent, few=few
         )
     return known[tangent, few]
 
@@ -196,7 +202,9 @@ def integrate(
         layout.FIXED_ROWS + len(t.variables) + t.size + 2 * len(watched) + n_regimes
     )
     n_rows += 3 * n_points + len(t.parameters) + len(t.constants)
-    width = max(3 * len(t.surfaces), len(t.variables)) + 2
+    n_events = len(t.surfaces) + len(t.outputs)
+    width = max(3 * n_events, len(t.variables)) + 2
+    written = symbolic(system)
 
     def work(arrays: dict[str, np.ndarray], first: int, stride: int) -> None:
         for name in ("samples", "sample_sums", "event_times", "event_states", "firsts"):
@@ -220,7 +228,15 @@ def integrate(
             "rises": t.rises,
             "active": np.zeros(len(t.surfaces), np.int64),
             "fresh": np.zeros(len(t.surfaces), np.int64),
+            "passed": np.zeros(len(t.surfaces), np.int64),
+            "beyond": np.zeros(len(t.surfaces), np.int64),
+            "marks": t.marks,
             "noise": np.zeros((len(t.surfaces), 2, LANES)),
+            "exact": lanes.aligned(t.size + n_events, LANES),
+            "steep": written.steep,
+            "degree": written.degrees,
+            "share": np.array([max(layout.SHARE * tol, layout.ROUND_OFF)]),
+            "polynomial": np.zeros(terms),
             "scratch": np.zeros((5, width)),
             "initial": initial,
             "parameters": parameters,
@@ -235,6 +251,7 @@ def integrate(
             "n_states": t.size,
             "n_variables": len(t.variables),
             "n_surfaces": len(t.surfaces),
+            "n_outputs": len(t.outputs),
             "n_tracked": len(watched),
             "n_parameters": len(t.parameters),
             "n_constants": len(t.constants),

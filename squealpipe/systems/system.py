@@ -20,6 +20,7 @@ from squealpipe.methods.taylor.symbols import (
     Symbol,
     derivative,
     in_order,
+    only,
     parameter,
     symbol,
 )
@@ -310,7 +311,7 @@ class System:
             here = parameter(REGIME + _indicator(regime))
             rates = self._complete(what, found)
             total = [
-                a if b is symbol(0.0) else a + here * b
+                a if b is symbol(0.0) else a + only(here, b)
                 for a, b in zip(total, rates, strict=True)
             ]
         return total

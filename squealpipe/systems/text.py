@@ -48,6 +48,9 @@ def expression(node: Symbol) -> str:
         return str(node.arguments[0]).removeprefix(REGIME)
     if node.kind == "number":
         return f"{node.arguments[0]:.17g}"
+    if node.kind == "only":
+        where, value = (expression(a) for a in node.arguments)
+        return f"({value} if {where} else 0)"
     inner = [
         expression(a) if isinstance(a, Symbol) else f"{a:g}" for a in node.arguments
     ]

@@ -67,6 +67,16 @@ class Traced:
     starts: tuple[tuple[int, Symbol | None, Symbol | None], ...]
     derived: tuple[Symbol, ...] = ()
 
+    @property
+    def marks(self) -> np.ndarray:
+        """(regime, switch) 2 where it changes nothing, 1 where it may do so, else 0."""
+        found = np.zeros((len(self.regimes), len(self.switches)), np.int64)
+        for number, switch in enumerate(self.switches):
+            leads = [regime for regime, _, _ in switch.targets] * (not switch.reset)
+            for regime in set(leads):
+                found[regime, number] = 1 + (leads.count(regime) == len(leads))
+        return found
+
     def with_derived(self) -> Self:
         """The same with its constant parts as parameters, for the integrator."""
         roots = [*self.rates, *self.surfaces, *self.outputs]
@@ -207,6 +217,8 @@ def check_progress(
     rng = np.random.default_rng(0)
     for name, switch, left in zip(names, traced.switches, leaves, strict=True):
         if not {regime for regime, _, _ in switch.targets} & set(left):
+            continue
+        if not switch.reset:  # a mark
             continue
         slope: Any = symbol(0.0)
         for variable, rate in zip(traced.variables, traced.rates, strict=True):

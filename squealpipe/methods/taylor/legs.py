@@ -15,18 +15,18 @@ from squealpipe.methods.compiled import compiled, part
 from squealpipe.methods.taylor.lanes import call, compile_advance, view
 from squealpipe.methods.taylor.roots import evaluate
 from squealpipe.methods.taylor.simd import FEW, LANES, ROW, smaller, store
-from squealpipe.methods.taylor.step import reach, step_length
+from squealpipe.methods.taylor.step import converged_steps, step_length
 
 _numba: Any = numba
 _SWEEPS = 19
 """Picard's iterations for a step whose length times the rate is 1: 1/19! is round-off."""
 ARRAYS = (
-    "rows", "series", "inverses", "sizes", "regimes", "initial", "regime", "starts", "durations",
+    "rows", "series", "inverses", "sizes", "degrees", "regimes", "initial", "regime", "starts", "durations",
     "kept", "steps", "counts", "lanes",
 )  # fmt: skip
 SIZES = (
     "n_terms", "n_legs", "n_states", "n_variables", "n_kept", "n_parameters", "n_constants",
-    "n_regimes", "n_series", "n_steps", "take_step",
+    "n_regimes", "n_series", "n_steps", "take_step", "shorten",
 )  # fmt: skip
 TABLE = np.dtype([(name, "i8") for name in (*ARRAYS, *SIZES)])
 
@@ -106,6 +106,7 @@ def _advance(table: Any) -> int:
         clocks=view(t.lanes + 8 * FEW, (FEW,), np.float64),
     )
     sizes = view(t.sizes, (n,), np.float64)
+    degrees = view(t.degrees, (t.n_kept - t.n_variables,), np.int64)
     unit = m.rows[t.n_parameters, 0]
     m.lanes[:] = -1
     following, busy = 0, 0
@@ -119,10 +120,14 @@ def _advance(table: Any) -> int:
             return 0
         call(t.take_step, (t.series, t.rows + ROW, t.inverses, terms))
         length = step_length(t.series, terms, n, sizes)
-        if t.n_variables > n:
-            for each in range(t.n_variables, t.n_kept):
-                length = smaller(length, reach(t.series + each * terms * ROW, terms))
+        whole = length
+        for event in range(t.n_kept - t.n_variables):
+            if degrees[event] > 1:
+                series = t.series + (t.n_variables + event) * terms * ROW
+                length = smaller(converged_steps(series, terms, whole), length)
         store(t.rows, length)
+        if t.shorten:
+            call(t.shorten, (t.series, t.rows + ROW, t.rows, terms))
         for lane in range(FEW):
             if m.lanes[lane] >= 0 and _keep(t, m, lane, unit):
                 m.lanes[lane] = -1

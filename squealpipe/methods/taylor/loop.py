@@ -14,6 +14,7 @@ import numpy as np
 
 from squealpipe.methods.compiled import inline, part
 from squealpipe.methods.taylor import layout
+from squealpipe.methods.taylor.checking import believe_or_halve, differing
 from squealpipe.methods.taylor.lanes import call, compile_advance, view
 from squealpipe.methods.taylor.observation import (
     clear_extremes,
@@ -34,6 +35,7 @@ from squealpipe.methods.taylor.simd import (
 from squealpipe.methods.taylor.step import cut, reaches, take_step
 from squealpipe.methods.taylor.switching import (
     enter_regime,
+    entered_beyond,
     start_from_zero,
     switch_all,
 )
@@ -182,6 +184,24 @@ def _go_on(t: Any) -> None:
 
 
 @inline
+def _check(t: Any, m: Any, c: Any, parameters: int, busy: int) -> int:
+    """Halve steps until their ends can be believed; returns the lanes whose steps were."""
+    store(t.rows + layout.GAP * ROW, splat(math.inf))
+    wrong, halved = busy, 0
+    while True:
+        wrong &= differing(t, m, parameters)
+        if not wrong:
+            return halved
+        bits = wrong
+        while bits:
+            lane = first_bit(bits)
+            bits ^= 1 << lane
+            if believe_or_halve(t, m, c, lane):
+                wrong ^= 1 << lane
+            halved |= 1 << lane
+
+
+@inline
 def _refill(
     t: Any, m: Any, c: Any, busy: int, ended: int, tangent_row: int, first_extreme: int
 ) -> int:
@@ -244,13 +264,15 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
                 (t.series, parameters, t.rows + layout.LONGEST * ROW, t.n_terms),
             )
         start_from_zero(t, m, c)
-        special = take_step(t, m.active, m.sizes) & busy
+        special = (take_step(t, m, parameters) | entered_beyond(t, m)) & busy
         due = reaches(t.rows, layout.NEXT_SAMPLE) & busy if t.n_samples else 0
         bits = special
         while bits:
             lane = first_bit(bits)
             bits ^= 1 << lane
             cut(t, m, c, lane)
+        if t.verify:
+            special |= _check(t, m, c, parameters, busy)
         while due:
             lane = first_bit(due)
             due ^= 1 << lane
@@ -277,7 +299,8 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
 def _advance(table: Any) -> int:
     """Some rounds over all lanes; returns how many are busy. The table: :data:`TABLE`."""
     t = _numba.carray(table, (1,), layout.TABLE)[0]
-    width = max(3 * t.n_surfaces, t.n_variables) + 2
+    n_events = t.n_surfaces + t.n_outputs
+    width = max(3 * n_events, t.n_variables) + 2
     size = t.n_states
     m = layout.Memory(
         rows=view(t.rows, (t.n_rows, LANES), np.float64),
@@ -289,7 +312,15 @@ def _advance(table: Any) -> int:
         rises=view(t.rises, (t.n_regimes, t.n_surfaces), np.int64),
         active=view(t.active, (t.n_surfaces,), np.int64),
         fresh=view(t.fresh, (t.n_surfaces,), np.int64),
+        passed=view(t.passed, (t.n_surfaces,), np.int64),
+        beyond=view(t.beyond, (t.n_surfaces,), np.int64),
+        marks=view(t.marks, (t.n_regimes, t.n_switches), np.int64),
         noise=view(t.noise, (t.n_surfaces, 2, LANES), np.float64),
+        exact=view(t.exact, (size + n_events, LANES), np.float64),
+        steep=view(t.steep, (size,), np.int64),
+        degree=view(t.degree, (n_events,), np.int64),
+        share=view(t.share, (1,), np.float64),
+        polynomial=view(t.polynomial, (1, t.n_terms, 1), np.float64),
         scratch=view(t.scratch, (5, width), np.float64),
         initial=view(t.initial, (t.n_jobs, size), np.float64),
         parameters=view(t.parameters, (t.n_jobs, t.n_parameters), np.float64),

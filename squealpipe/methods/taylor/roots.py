@@ -2,7 +2,8 @@
 
 On an interval of width w a function with |p''| ≤ M lies within w² M/8 of the chord of its ends,
 a monotone one has a root where its ends differ in sign, and one that is convex or concave has at
-most one extremum. An interval where none of this decides is halved.
+most one extremum. An interval where none of this decides is halved, down to where round-off
+decides: near a root of high multiplicity, which a shorter step from nearby resolves.
 """
 
 from typing import Any
@@ -11,7 +12,13 @@ from squealpipe.methods.compiled import part, polynomial
 
 NO_ROOT = -1.0
 FINEST = 2.0**-48
-"""Share of a step below which an undecided interval (two roots that are one to round-off) goes."""
+"""Share of a step below which round-off decides about an interval."""
+MOST_PIECES = 256
+"""Intervals that are looked at."""
+MOST_ROOTS = 256
+"""Changes of sign in one step after which they are round-off's."""
+FLAT = 1e-3
+"""Slope of a root, over its distance and size, below which round-off moves it."""
 
 
 @polynomial
@@ -48,6 +55,16 @@ def largest_third(coefficients: Any, variable: int, lane: int, step: float) -> A
 
 
 @part
+def largest_term(coefficients: Any, variable: int, lane: int, time: float) -> Any:
+    """Of those that add up to the polynomial so long after its start."""
+    most, power = 0.0, 1.0
+    for k in range(coefficients.shape[1]):
+        most = max(most, abs(coefficients[variable, k, lane]) * power)
+        power *= time
+    return most
+
+
+@part
 def first_root(
     coefficients: Any,
     variable: int,
@@ -59,13 +76,16 @@ def first_root(
     """The first t in (start, step] where the polynomial changes its sign or touches zero.
 
     A root at the start itself is where the state comes from; it does not count. ``known`` is the
-    sign just after it where round-off hides it. Returns ``NO_ROOT`` where there is none.
+    sign just after it where round-off hides it.
+
+    Returns:
+        The root, or ``NO_ROOT``; and whether that is sure: else from this time on round-off decides.
     """
-    third = largest_third(coefficients, variable, lane, step)
     left, right = start, step
     p0, s0, b0 = evaluate_twice(coefficients, variable, lane, left)
-    while True:
+    for _ in range(MOST_PIECES):
         p1, s1, b1 = evaluate_twice(coefficients, variable, lane, right)
+        third = largest_third(coefficients, variable, lane, right)
         width = right - left
         side = p0 if p0 != 0.0 else (s0 if s0 != 0.0 else b0)
         if known != 0.0 and left == start:
@@ -81,15 +101,18 @@ def first_root(
             (p0, s0, b0),
             (p1, s1, b1),
         )
-        if decided or width < FINEST * step:
-            if decided and root >= 0.0:
-                return root
-            if right >= step:
-                return NO_ROOT
+        if decided and root >= 0.0:
+            return root, True
+        if decided and right >= step:
+            return NO_ROOT, True
+        if decided:
             left, right = right, step
             p0, s0, b0 = p1, s1, b1
-        else:
+        elif width > FINEST * step:
             right = left + 0.5 * width
+        else:
+            break
+    return left, False
 
 
 @part
@@ -176,34 +199,65 @@ def first_crossing(
     fresh: bool,
     noise: float,
     drift: float = 0.0,
+    resolution: float = 0.0,
+    passed: bool = False,
 ) -> Any:
     """The first t in [0, step] where the polynomial falls, or rises, through zero as is asked.
 
     One that starts from zero (``fresh``) has the side that it first takes by more than its noise,
-    which grows by ``drift`` with time; a side that is the wrong one is a crossing at 0.
+    which grows by ``drift`` with time; a side that is the wrong one is a crossing at 0, unless that
+    has been ``passed``.
+
+    Returns:
+        The time, or ``NO_ROOT``; and whether that is sure. If not, round-off decides about the
+        sign from this time on, which is beyond ``resolution``: a shorter step has to come closer.
     """
     start, side = 0.0, coefficients[variable, 0, lane]
     if fresh:
-        start, side = _leaves_zero(coefficients, variable, lane, step, noise, drift)
-        if (side < 0.0 and falls) or (side > 0.0 and rises):
-            return 0.0
-    while side != 0.0:
-        root = first_root(coefficients, variable, lane, step, start, side)
-        if root < 0.0 or (side > 0.0 and falls) or (side < 0.0 and rises):
-            return root
-        start, side = root, -side
-    return NO_ROOT
+        start, side = _leaves_zero(
+            coefficients, variable, lane, 0.0, step, noise, drift
+        )
+        if not passed and ((side < 0.0 and falls) or (side > 0.0 and rises)):
+            return 0.0, True
+    for _ in range(MOST_ROOTS):
+        if side == 0.0:
+            return NO_ROOT, True
+        wanted = (side > 0.0 and falls) or (side < 0.0 and rises)
+        root, sure = first_root(coefficients, variable, lane, step, start, side)
+        if root < 0.0:
+            return NO_ROOT, True
+        size = largest_term(coefficients, variable, lane, root)
+        if sure:
+            _, slope, _ = evaluate_twice(coefficients, variable, lane, root)
+            sure = abs(slope) * root >= FLAT * size
+        if not sure and root > resolution:
+            return root, False
+        after, later = root, -side
+        if not sure:
+            after, later = _leaves_zero(
+                coefficients, variable, lane, root, step, 2.0**-48 * size, 0.0
+            )
+        if wanted and side * later < 0.0:
+            return root, True
+        start, side = after, later
+    return (start, False) if start > resolution else (NO_ROOT, True)
 
 
 @part
 def _leaves_zero(
-    coefficients: Any, variable: int, lane: int, step: float, noise: float, drift: float
+    coefficients: Any,
+    variable: int,
+    lane: int,
+    begin: float,
+    step: float,
+    noise: float,
+    drift: float,
 ) -> Any:
-    """When a polynomial that starts from zero first differs from it, and by what; 0 if never."""
+    """When a polynomial that is zero at a time first differs from it, and by what; 0 if never."""
     time = step * FINEST
-    while 0.0 < time <= step:
-        value, _, _ = evaluate_twice(coefficients, variable, lane, time)
+    while 0.0 < time <= step - begin:
+        value, _, _ = evaluate_twice(coefficients, variable, lane, begin + time)
         if abs(value) > noise + drift * time:
-            return time, value
+            return begin + time, value
         time *= 2.0
     return step, 0.0

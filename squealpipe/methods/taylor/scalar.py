@@ -59,6 +59,8 @@ class _Writer:
         ]
         if node.kind in FUNCTIONS:
             return f"math.{node.kind}({given[0]})"
+        if node.kind == "only":
+            return f"only({given[0]}, {given[1]})"
         if node.kind == "joined":
             c1, a1, b1, c2, a2, b2 = given
             return f"{c1} * ({a1} * {b1}) + {c2} * ({a2} * {b2})"
@@ -78,6 +80,8 @@ class _Writer:
                 code = " + ".join(inner)
             elif node.kind == "*":
                 code = " * ".join(inner)
+            elif node.kind == "only":
+                code = f"only({self.names[id(node.arguments[0])]}, {inner[1]})"
             elif node.kind == "joined":
                 first, second = inner[:3], inner[3:]
                 code = f"{' * '.join(first)} + {' * '.join(second)}"
@@ -107,11 +111,13 @@ class ScalarSource:
         surfaces: Sequence[Symbol],
         switches: Sequence[SwitchSymbols],
         size: int,
+        outputs: Sequence[Symbol] = (),
     ) -> None:
         self.place = {id(each): index for index, each in enumerate(variables)}
         self.variables, self.rates = variables, rates
         self.parameters, self.constants = list(parameters), list(constants)
         self.surfaces, self.switches, self.size = surfaces, switches, size
+        self.outputs = outputs
 
     def _writer(self, prefix: str, state: str = "z", regime: str = "r") -> _Writer:
         def load(node: Symbol) -> str:
@@ -128,6 +134,7 @@ class ScalarSource:
         """``gauge(z, sizes, p, r, out)``: value and size of the terms of each surface and its rate.
 
         Three numbers a surface: its value, the size of its terms, and that of its rate's terms.
+        Likewise of each output after them, but for its rate.
         """
         writer = self._writer("v")
 
@@ -144,6 +151,11 @@ class ScalarSource:
                     writer.scale(surface, size),
                     writer.scale(rate, size),
                 )
+            ):
+                writer.lines.append(f"put(out + {24 * index + 8 * place}, {code})")
+        for index, output in enumerate(self.outputs, len(self.surfaces)):
+            for place, code in enumerate(
+                (writer.value(output), writer.scale(output, size))
             ):
                 writer.lines.append(f"put(out + {24 * index + 8 * place}, {code})")
         return _function("gauge(z, sizes, p, r, out)", writer.lines)
@@ -172,10 +184,11 @@ class ScalarSource:
         return _function("change(switch, z, p, r, out)", lines)
 
     def jump(self) -> str:
-        """``jump(switch, z, after, p, r, s, d, out)``: a perturbation d across a switch.
+        """``jump(switch, at_once, z, after, p, r, s, d, out)``: a perturbation d across a switch.
 
         With h the surface, g the reset and f, f₊ the fields before and after: the switch comes
         δτ = −∇h·d / (∇h·f + ∂h/∂t) later, and d becomes Dg (d + f δτ) + ∂g/∂t δτ − f₊ δτ.
+        One that fires at once is not later.
         """
         size = self.size
         before, after = self._writer("b"), self._writer("a", "after", "s")
@@ -189,8 +202,8 @@ class ScalarSource:
             slopes = self._slopes(writer, switch.surface)
             rate = " + ".join(f"{s} * {rates[j]}" for j, s in slopes)
             along = " + ".join(f"{s} * d{j}" for j, s in slopes if j < size) or "0.0"
-            writer.lines += [f"w = {rate or '0.0'}", "tau = 0.0", "if w != 0.0:"]
-            writer.lines.append(f" tau = -({along}) / w")
+            writer.lines += [f"w = {rate or '0.0'}", "tau = 0.0", "if at_once == 0:"]
+            writer.lines += [" if w != 0.0:", f"  tau = -({along}) / w"]
             for i in range(size):
                 moved = self._slopes(writer, switch.reset.get(i, self.variables[i]))
                 terms = [
@@ -202,7 +215,9 @@ class ScalarSource:
                 total = " + ".join(terms) or "0.0"
                 writer.lines.append(f"put(out + {8 * i}, {total} - {later[i]} * tau)")
             lines += [f"if switch == {index}:", *(f" {line}" for line in writer.lines)]
-        return _function("jump(switch, z, after, p, r, s, d, out)", [*head, *lines])
+        return _function(
+            "jump(switch, at_once, z, after, p, r, s, d, out)", [*head, *lines]
+        )
 
     def _slopes(self, writer: _Writer, root: Symbol) -> list[tuple[int, str]]:
         found = [(j, symbol(derivative(root, v))) for j, v in enumerate(self.variables)]
@@ -215,6 +230,13 @@ class ScalarSource:
 
 def _function(head: str, lines: Sequence[str]) -> str:
     return "\n".join([f"def {head}:", *(f" {line}" for line in lines), " return\n"])
+
+
+def _only(where: Any, value: Any) -> Any:
+    """The value where something is not 0, else 0."""
+    if isinstance(where, float):
+        return value if where else 0.0 * where
+    return np.where(where != 0.0, value, 0.0)
 
 
 def evaluate(roots: Sequence[Symbol], values: Mapping[str, Any]) -> tuple[Any, ...]:
@@ -235,7 +257,7 @@ def python_function(
     source = f"def function({', '.join(names.values())}):\n" + "".join(
         f" {x}\n" for x in lines
     )
-    scope: dict[str, Any] = {"math": module}
+    scope: dict[str, Any] = {"math": module, "only": _only}
     exec(source, scope)  # noqa: S102
     return scope["function"]
 

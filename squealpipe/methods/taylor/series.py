@@ -18,6 +18,7 @@ from squealpipe.methods.taylor import simd
 from squealpipe.methods.taylor.symbols import (
     FUNCTIONS,
     Symbol,
+    degree,
     derivative,
     function,
     in_order,
@@ -50,6 +51,10 @@ PARTNERS: dict[str, Callable[[Symbol], Symbol]] = {
     "tanh": lambda node: Symbol("*", node, node),
 }
 """Whose lower orders the recurrence of a function reads in place of its own."""
+HIDDEN = {"exp": 20.0, "tanh": 10.0}
+"""Functions whose coefficients vanish to nothing, and the argument beyond which they begin to."""
+SHARE, CLOSE = 0.3, 2.0
+"""How far such an argument may go in a step: a share of what lies beyond, and at least so far."""
 TANH = "(splat(1.0) - splat(2.0) / (exp({0} + {0}) + splat(1.0)))"
 TOGETHER = 2
 """Convolutions in one loop: their sums fill the registers of AVX2."""
@@ -75,6 +80,27 @@ class HybridSystem:
     def size(self) -> int:
         """Number of the variables that are perturbed."""
         return len(self.variables) - self.explicit_time
+
+    @property
+    def steep(self) -> np.ndarray:
+        """(states,) 1 where a rate is not linear: its series does not end with the states'."""
+        rates = self.rates[: self.size]
+        return np.array([degree(rate) > 1.0 for rate in rates], np.int64)
+
+    @property
+    def degrees(self) -> np.ndarray:
+        """(events,) of polynomials in the variables, at most 3; 3 of all else."""
+        return np.array([min(degree(each), 3.0) for each in self.events], np.int64)
+
+    def checked(self) -> dict[int, Symbol]:
+        """Rates and events that a step's end is checked by, by their rows.
+
+        A linear one holds as far as the states do; a square has at most as many times their error
+        as there are orders.
+        """
+        marks = [*self.steep, *(self.degrees > 2)]
+        roots = [*self.rates[: self.size], *self.events]
+        return {i: root for i, root in enumerate(roots) if marks[i]}
 
 
 def series_source(system: HybridSystem) -> tuple[str, int]:
@@ -321,6 +347,79 @@ class _SeriesWriter:
                 )
             yield f"store({place}, {self._v(event)})"
 
+    def shorten(self) -> str:
+        """Source of ``shorten(base, parameters, row, terms)``: see :func:`shorten_source`."""
+        inner = {
+            id(n.arguments[0]): (n.arguments[0], HIDDEN[n.kind])
+            for n in self.moving
+            if n.kind in HIDDEN
+        }
+        if not inner:
+            return ""
+        nodes = in_order([node for node, _ in inner.values()])
+        lines = [f"stride = terms * {simd.ROW}", "h = load(row)"]
+        for node in nodes:
+            if node.kind == "variable":
+                code = f"load(base + {self.place[id(node)]} * stride)"
+            elif node.varies:
+                code = pointwise(node, self._v)
+            else:
+                code = constant(self.system, node, self._v)
+            lines.append(f"{self._v(node)} = {code}")
+        for node, idle in inner.values():
+            name, number = self._v(node), self.number[id(node)]
+            lines += [
+                f"s{number} = base + {self.place[id(moving_part(node))]} * stride",
+                f"u{number} = abs(load(s{number} + (terms - 1) * {simd.ROW}))",
+                "for k in range(terms - 2, 0, -1):",
+                f" w = abs(load(s{number} + k * {simd.ROW}))",
+                f" u{number} = fma(u{number}, h, w)",
+                f"u{number} = u{number} * h",
+                f"m = (abs({name}) - splat({idle!r})) * splat({SHARE!r})",
+                f"m = larger(m, splat({CLOSE!r}))",
+                f"h = smaller(h * m / u{number}, h)",  # NaN in other regimes
+            ]
+        lines.append("store(row, h)")
+        head = "def shorten(base, parameters, row, terms):"
+        return "\n".join([head, *(f" {line}" for line in lines)]) + "\n"
+
+
+def shorten_source(system: HybridSystem) -> str:
+    """Source of ``shorten(base, parameters, row, terms)``; empty where nothing can hide.
+
+    Far from where it acts, exp or tanh has coefficients that round to nothing, so that neither
+    the states' last orders nor a step's end show a layer that the step leads into, or through.
+    With U = Σ |u_k| hᵏ how far its argument u may go, the neglected orders of exp(u) are at most
+    exp(u_0 + U) Uᴷ / K!. A step may lead through a share of the way to where that counts. U(h)/h
+    grows with h, so that dividing once is enough.
+    """
+    return _SeriesWriter(system).shorten()
+
+
+def verify_source(system: HybridSystem) -> str:
+    """Source of ``verify(ends, parameters, out)``: what is checked, at the ends of steps.
+
+    ``ends`` and ``out`` are addresses of a row per variable, and of one per state and event.
+    """
+    roots = system.checked()
+    nodes = in_order(list(roots.values()))
+    number = {id(node): index for index, node in enumerate(nodes)}
+
+    def at(node: Symbol) -> str:
+        return f"v{number[id(node)]}"
+
+    lines = []
+    for node in nodes:
+        if node.kind == "variable":
+            place = system.variables.index(node) * simd.ROW
+            value = f"load(ends + {place})"
+        else:
+            value = pointwise(node, at) if node.varies else constant(system, node, at)
+        lines.append(f"{at(node)} = {value}")
+    lines += [f"store(out + {i * simd.ROW}, {at(root)})" for i, root in roots.items()]
+    head = "def verify(ends, parameters, out):"
+    return "\n".join([head, *(f" {line}" for line in lines), " return\n"])
+
 
 def _levers(node: Symbol) -> tuple[int, ...]:
     """What decides the series c₁ A₁ + c₂ A₂ of a joined node."""
@@ -455,6 +554,9 @@ def pointwise(node: Symbol, name: Name) -> str:
     if node.kind in {"+", "*"}:
         a, b = node.arguments
         return f"{name(a)} {node.kind} {name(b)}"
+    if node.kind == "only":
+        a, b = node.arguments
+        return f"only({name(a)}, {name(b)})"
     if node.kind == "joined":
         c1, a1, b1, c2, a2, b2 = (name(each) for each in node.arguments)
         return f"{c1} * ({a1} * {b1}) + {c2} * ({a2} * {b2})"
@@ -472,6 +574,8 @@ def _linear(node: Symbol, name: Name) -> str:
     a, b = node.arguments
     if node.kind == "*":
         return f"{name(a)} * {name(b)}"
+    if node.kind == "only":
+        return f"only({name(a)}, {name(b)})"
     if not a.varies:
         return name(b)
     if not b.varies:

@@ -7,15 +7,18 @@ import numpy as np
 
 from squealpipe.methods.compiled import inline, part
 from squealpipe.methods.taylor import layout
+from squealpipe.methods.taylor.lanes import call
 from squealpipe.methods.taylor.roots import (
     evaluate,
     evaluate_twice,
     first_crossing,
+    largest_term,
     largest_third,
 )
 from squealpipe.methods.taylor.simd import (
     ROW,
     bits_below,
+    choose,
     choose_below,
     fma,
     larger,
@@ -27,8 +30,10 @@ from squealpipe.methods.taylor.simd import (
     store,
 )
 
-NOTHING = 1e-30
-"""Below the round-off of any quantity."""
+FITS = 4
+"""Times that a step is fitted to the size of a series, which depends on the step."""
+COMES_CLOSER = 0.9
+"""Share of the way to a crossing that round-off hides, from where it is looked for again."""
 
 
 @inline
@@ -49,29 +54,88 @@ def step_length(base: int, terms: int, n_states: int, sizes: Any) -> Any:
 
 
 @inline
-def reach(series: int, terms: int) -> Any:
-    """Longest step of a series that is no state's, from ratios of its orders.
+def converged_steps(series: int, terms: int, step: Any) -> Any:
+    """The longest steps, up to those given, in which a series that is no state's has converged.
 
-    Where the state rests, what depends on the time alone still needs short steps. Its highest
-    order may be left out. Of a quantity that is kept at zero all orders are round-off.
+    Its last orders are to be as small beside its first ones, over the step, as those of the
+    states; the highest may be left out. Where the state rests, what depends on the time alone
+    still needs short steps.
     """
-    reach, tiny = splat(0.0), splat(1e-300)
-    for low in (0, 1, 2):
-        base, nearer = magnitude(load(series + low * ROW)), splat(np.inf)
-        if low == 0:
-            base = splat(NOTHING)
-        for high in (terms - 3, terms - 2):
-            last = magnitude(load(series + high * ROW))
-            power = rough_power(
-                larger(base, tiny) / larger(last, tiny), splat(1.0 / (high - low))
-            )
-            nearer = smaller(nearer, choose_below(tiny, last, power, splat(np.inf)))
-        reach = larger(reach, nearer)
-    return reach * math.exp(-2.0)
+    height, slope, bend = (
+        magnitude(load(series)),
+        magnitude(load(series + ROW)),
+        magnitude(load(series + 2 * ROW)),
+    )
+    last = magnitude(load(series + (terms - 3) * ROW))
+    later = magnitude(load(series + (terms - 2) * ROW))
+    tiny, shorter = splat(1e-300), step
+    for _ in range(FITS):
+        size = height + shorter * (slope + shorter * bend)
+        target = smaller(
+            _until(size, last, terms - 3.0), _until(size, later, terms - 2.0)
+        )
+        shorter = smaller(shorter, choose_below(tiny, size, target, shorter))
+    return shorter
 
 
 @inline
-def _at_end(series: int, terms: int, step: Any) -> Any:
+def _until(size: Any, last: Any, order: float) -> Any:
+    """Steps at the end of which a last order is as small beside a size as it is to be."""
+    tiny = splat(1e-300)
+    power = rough_power(larger(size, tiny) / larger(last, tiny), splat(1.0 / order))
+    return choose_below(tiny, last, power * math.exp(-2.0), splat(np.inf))
+
+
+@inline
+def _has_converged(series: int, terms: int, step: Any, power: Any) -> Any:
+    """Lanes whose steps are no longer than :func:`converged_steps`; ``power``: of order terms − 3."""
+    size = magnitude(load(series + 2 * ROW))
+    for k in (1, 0):
+        size = fma(size, step, magnitude(load(series + k * ROW)))
+    share = math.exp(-2.0 * (terms - 3.0))
+    last = magnitude(load(series + (terms - 3) * ROW)) * power
+    later = magnitude(load(series + (terms - 2) * ROW)) * power * step
+    size = size * splat(share)
+    return bits_below(last, size) & bits_below(later, size * math.exp(-2.0))
+
+
+@inline
+def shorten_steps(t: Any, m: Any, step: Any) -> Any:
+    """Steps in which the series of surfaces and outputs have converged, and no layer is hidden."""
+    terms, first = t.n_terms, t.series + t.n_variables * t.n_terms * ROW
+    power = step
+    for _ in range(terms - 4):
+        power = power * step
+    shortest = step
+    for surface in range(t.n_surfaces):
+        if m.degree[surface] > 1 and m.active[surface]:
+            series = first + surface * terms * ROW
+            bits = ~_has_converged(series, terms, step, power) & m.active[surface]
+            if bits:
+                converged = converged_steps(series, terms, step)
+                shortest = choose(bits, smaller(converged, shortest), shortest)
+    for index in range(t.n_tracked):
+        event = m.tracked[index, 0] - t.n_variables
+        if event >= 0 and m.degree[event] > 1:
+            series = first + event * terms * ROW
+            bits = ~_has_converged(series, terms, step, power)
+            if bits:
+                converged = converged_steps(series, terms, step)
+                shortest = choose(bits, smaller(converged, shortest), shortest)
+    return shortest
+
+
+@inline
+def slope_at_end(series: int, terms: int, step: Any) -> Any:
+    """A series' rate at the end of its step."""
+    value = load(series + (terms - 1) * ROW) * splat(terms - 1.0)
+    for k in range(terms - 2, 0, -1):
+        value = fma(value, step, load(series + k * ROW) * splat(1.0 * k))
+    return value
+
+
+@inline
+def at_end(series: int, terms: int, step: Any) -> Any:
     """A series' value at the end of its step."""
     value = load(series + (terms - 1) * ROW)
     for k in range(terms - 2, -1, -1):
@@ -105,55 +169,77 @@ def reaches(rows: int, instant: int) -> Any:
 
 
 @inline
-def take_step(t: Any, active: Any, sizes: Any) -> Any:
+def take_step(t: Any, m: Any, parameters: int) -> Any:
     """Ends of all lanes' steps; returns the lanes that need a look of their own."""
     terms, base, at = t.n_terms, t.series, t.rows
     step = smaller(
-        step_length(base, terms, t.n_states, sizes), load(at + layout.LONGEST * ROW)
+        step_length(base, terms, t.n_states, m.sizes), load(at + layout.LONGEST * ROW)
     )
-    if t.n_variables > t.n_states:
-        for each in range(t.n_surfaces + t.n_tracked - t.n_states):
-            step = smaller(
-                step, reach(base + (t.n_variables + each) * terms * ROW, terms)
-            )
+    left = load(at + layout.T_END * ROW) - load(at + layout.CLOCK * ROW)
+    step = smaller(step, left - load(at + layout.CORRECTION * ROW))
+    step = shorten_steps(t, m, step)
+    if t.shorten:
+        store(at + layout.STEP * ROW, step)
+        call(t.shorten, (base, parameters, at + layout.STEP * ROW, terms))
+        step = load(at + layout.STEP * ROW)
     store(at + layout.STEP * ROW, step)
     lost = step
     for variable in range(t.n_variables):
-        value = _at_end(base + variable * terms * ROW, terms, step)
+        value = at_end(base + variable * terms * ROW, terms, step)
         store(at + (layout.FIXED_ROWS + variable) * ROW, value)
         lost = lost + value * 0.0
     plain = bits_below(magnitude(lost), splat(np.inf))
     for surface in range(t.n_surfaces):
-        if active[surface]:
+        if m.active[surface]:
             series = base + (t.n_variables + surface) * terms * ROW
-            plain &= _free(series, terms, step) | ~active[surface]
+            plain &= _free(series, terms, step) | ~m.active[surface]
     return ~plain | reaches(at, layout.T_END) | reaches(at, layout.T_LATE)
 
 
 @part
+def _scaled(t: Any, m: Any, c: Any, lane: int, surface: int, step: float) -> float:
+    """Copy a surface's series of one lane, by a power of 2 if products of it would leave range."""
+    index = t.n_variables + surface
+    most, factor = largest_term(c, index, lane, step), 1.0
+    if 0.0 < most < math.inf and not 1e-70 < most < 1e70:
+        factor = 2.0 ** -math.frexp(most)[1]
+    for order in range(t.n_terms):
+        m.polynomial[0, order, 0] = c[index, order, lane] * factor
+    return factor
+
+
+@part
 def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
-    """When the first watched surface is crossed, whose switch goes into ``HIT``; or the step."""
-    integers = m.integers
+    """When the first watched surface is crossed, whose switch goes into ``HIT``; or the step.
+
+    The step ends before a crossing that round-off hides, with no switch.
+    """
+    integers, clock = m.integers, m.rows[layout.CLOCK, lane]
     regime, bit = integers[layout.REGIME, lane], 1 << lane
     first, tie = step, step * 2.0**-44
     for surface in range(t.n_surfaces):
         falls, rises = m.falls[regime, surface], m.rises[regime, surface]
         if falls < 0 and rises < 0:
             continue
-        root = first_crossing(
-            c,
-            t.n_variables + surface,
-            lane,
+        factor = _scaled(t, m, c, lane, surface, step)
+        root, sure = first_crossing(
+            m.polynomial,
+            0,
+            0,
             step,
             falls >= 0,
             rises >= 0,
             (m.fresh[surface] & bit) != 0,
-            m.noise[surface, 0, lane],
-            m.noise[surface, 1, lane],
+            m.noise[surface, 0, lane] * factor,
+            m.noise[surface, 1, lane] * factor,
+            max(tie, 2.0**-50 * abs(clock)),
+            (m.passed[surface] & bit) != 0,
         )
-        if root < 0.0 or root > first + tie:
+        if not sure and COMES_CLOSER * root < first - tie:
+            first, integers[layout.HIT, lane] = COMES_CLOSER * root, -1
+        if not sure or root < 0.0 or root > first + tie:
             continue
-        _, slope, _ = evaluate_twice(c, t.n_variables + surface, lane, root)
+        _, slope, _ = evaluate_twice(m.polynomial, 0, 0, root)
         which = falls if rises < 0 or (falls >= 0 and slope < 0.0) else rises
         earlier = root < first - tie or integers[layout.HIT, lane] < 0
         # of switches at one instant the first by name goes first, whatever their order
@@ -178,6 +264,20 @@ def _is_finite(t: Any, m: Any, c: Any, lane: int) -> bool:
 
 
 @part
+def _fires_at_once(t: Any, m: Any, c: Any, lane: int) -> bool:
+    """Whether a regime was entered beyond a surface; the first such switch goes into ``HIT``."""
+    integers = m.integers
+    regime = integers[layout.REGIME, lane]
+    for surface in range(t.n_surfaces):
+        if m.beyond[surface] & (1 << lane):
+            falls, rises = m.falls[regime, surface], m.rises[regime, surface]
+            which = falls if c[t.n_variables + surface, 0, lane] < 0.0 else rises
+            if integers[layout.HIT, lane] < 0 or which < integers[layout.HIT, lane]:
+                integers[layout.HIT, lane] = which
+    return bool(integers[layout.HIT, lane] >= 0)
+
+
+@part
 def cut(t: Any, m: Any, c: Any, lane: int) -> None:
     """End a lane's step at the first crossing, at the late time or at the end of its run."""
     rows, integers = m.rows, m.integers
@@ -190,6 +290,10 @@ def cut(t: Any, m: Any, c: Any, lane: int) -> None:
         ):  # of its series higher orders may be no numbers
             rows[layout.FIXED_ROWS + variable, lane] = c[variable, 0, lane]
         return
+    if _fires_at_once(t, m, c, lane):
+        rows[layout.STEP, lane] = 0.0
+        set_end(t, m, c, lane)
+        return
     done = rows[layout.CLOCK, lane]
     remaining = (rows[layout.T_END, lane] - done) - rows[layout.CORRECTION, lane]
     step, ends = (
@@ -201,13 +305,11 @@ def cut(t: Any, m: Any, c: Any, lane: int) -> None:
     if turns_late:
         step, ends = late, ends and late >= remaining
     first = _first_switch(t, m, c, lane, step)
-    if integers[layout.HIT, lane] >= 0:
+    if first < step or integers[layout.HIT, lane] >= 0:
         step, ends, turns_late = first, False, False
-    if turns_late:
-        rows[layout.T_LATE, lane] = math.inf
     if step != rows[layout.STEP, lane]:
         rows[layout.STEP, lane] = step
-        _set_end(t, m, c, lane)
+        set_end(t, m, c, lane)
     if turns_late:
         integers[layout.HIT, lane] = layout.LATE_BEGINS
     if ends:
@@ -215,7 +317,8 @@ def cut(t: Any, m: Any, c: Any, lane: int) -> None:
 
 
 @part
-def _set_end(t: Any, m: Any, c: Any, lane: int) -> None:
+def set_end(t: Any, m: Any, c: Any, lane: int) -> None:
+    """The variables at the end of a lane's step."""
     for variable in range(t.n_variables):
         m.rows[layout.FIXED_ROWS + variable, lane] = evaluate(
             c, variable, lane, m.rows[layout.STEP, lane]

@@ -18,6 +18,19 @@ CHAIN = 64
 
 
 @part
+def gauge(t: Any, m: Any, lane: int, regime: int) -> None:
+    """Surfaces and outputs, and the size of their terms, of the state in the scratch."""
+    first = t.n_rows - t.n_constants - t.n_parameters
+    parameters = t.rows + first * ROW + 8 * lane
+    constants = t.regimes + 8 * regime * t.n_constants
+    stride = m.scratch.shape[1] * 8
+    call(
+        t.gauge,
+        (t.scratch, t.scratch + stride, parameters, constants, t.scratch + 2 * stride),
+    )
+
+
+@part
 def enter_regime(t: Any, m: Any, c: Any, lane: int, regime: int, span: float) -> None:
     """Put a lane into a regime: its constants, which surfaces it watches, which start from zero."""
     m.integers[layout.REGIME, lane] = regime
@@ -29,13 +42,7 @@ def enter_regime(t: Any, m: Any, c: Any, lane: int, regime: int, span: float) ->
     for variable in range(t.n_variables):
         z[variable] = c[variable, 0, lane]
         sizes[variable] = abs(z[variable]) + abs(c[variable, 1, lane]) * span
-    parameters = t.rows + (first - t.n_parameters) * ROW + 8 * lane
-    constants = t.regimes + 8 * regime * t.n_constants
-    stride = m.scratch.shape[1] * 8
-    call(
-        t.gauge,
-        (t.scratch, t.scratch + stride, parameters, constants, t.scratch + 2 * stride),
-    )
+    gauge(t, m, lane, regime)
     # where an event was located to the tolerance only, the rate that follows from it is no better
     located = max(
         NOISE, layout.LOST_ERROR * math.exp(-m.limits[m.integers[layout.JOB, lane], 4])
@@ -46,17 +53,31 @@ def enter_regime(t: Any, m: Any, c: Any, lane: int, regime: int, span: float) ->
     # a state is known to round-off of its typical size, however small it has become
     for variable in range(t.n_states):
         sizes[variable] = max(sizes[variable], m.sizes[variable])
-    call(
-        t.gauge,
-        (t.scratch, t.scratch + stride, parameters, constants, t.scratch + 2 * stride),
-    )
+    gauge(t, m, lane, regime)
     for surface in range(t.n_surfaces):
         m.active[surface] &= keep
         m.fresh[surface] &= keep
-        if m.falls[regime, surface] >= 0 or m.rises[regime, surface] >= 0:
-            m.active[surface] |= bit
-            if abs(out[3 * surface]) <= SLACK * out[3 * surface + 1]:
-                m.fresh[surface] |= bit
+        m.passed[surface] &= keep
+        m.beyond[surface] &= keep
+        falls, rises = m.falls[regime, surface], m.rises[regime, surface]
+        if falls < 0 and rises < 0:
+            continue
+        m.active[surface] |= bit
+        height, slack = out[3 * surface], SLACK * out[3 * surface + 1]
+        which = falls if height < 0.0 else rises
+        if abs(height) <= slack:
+            m.fresh[surface] |= bit
+        elif which >= t.n_switches or (which >= 0 and m.marks[regime, which] < 2):
+            m.beyond[surface] |= bit
+
+
+@inline
+def entered_beyond(t: Any, m: Any) -> int:
+    """Lanes whose regime was entered beyond one of its surfaces."""
+    lanes = 0
+    for surface in range(t.n_surfaces):
+        lanes |= m.beyond[surface]
+    return lanes
 
 
 @part
@@ -84,6 +105,29 @@ def _log(t: Any, m: Any, lane: int, kind: int, regime: int) -> int:
 
 
 @part
+def _is_beyond(t: Any, m: Any, lane: int) -> bool:
+    """Whether a lane's regime was entered beyond a surface."""
+    for surface in range(t.n_surfaces):
+        if m.beyond[surface] & (1 << lane):
+            return True
+    return False
+
+
+@part
+def _pass_mark(t: Any, m: Any, lane: int, before: int, which: int) -> None:
+    """A surface that changed nothing is passed: only its next crossing counts."""
+    regime, bit = m.integers[layout.REGIME, lane], 1 << lane
+    stays = regime == before and m.marks[before, which] > 0
+    if not (stays or m.marks[regime, which] > 1):
+        return
+    for surface in range(t.n_surfaces):
+        if which in (m.falls[regime, surface], m.rises[regime, surface]):
+            m.fresh[surface] |= bit
+            m.passed[surface] |= bit
+            m.beyond[surface] &= ~bit
+
+
+@part
 def _carry_over(
     t: Any, m: Any, lane: int, tangent_row: int, regime: int, parameters: int
 ) -> None:
@@ -95,7 +139,9 @@ def _carry_over(
     after = t.regimes + 8 * regime * t.n_constants
     z, y = t.scratch, t.scratch + 3 * stride
     at, which = t.scratch + 4 * stride, m.integers[layout.HIT, lane]
-    call(t.jump, (which, z, y, parameters, before, after, at, t.scratch + 2 * stride))
+    at_once = 1 if _is_beyond(t, m, lane) else 0
+    out_at = t.scratch + 2 * stride
+    call(t.jump, (which, at_once, z, y, parameters, before, after, at, out_at))
     for variable in range(t.n_states):
         m.rows[tangent_row + variable, lane] = out[variable]
 
@@ -133,6 +179,7 @@ def _switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
     rows[first_time + before, lane] += clock - rows[layout.ENTERED, lane]
     rows[layout.ENTERED, lane] = clock
     enter_regime(t, m, c, lane, regime, span)
+    _pass_mark(t, m, lane, before, which)
     if kind == t.until:
         integers[layout.OUTCOME, lane] = layout.BY_EVENT
     elif integers[layout.CHAINED, lane] >= CHAIN:
@@ -157,6 +204,7 @@ def switch_all(t: Any, m: Any, c: Any, special: int, tangent_row: int) -> None:
     """Carry out what ended the steps of some lanes."""
     for surface in range(t.n_surfaces):
         m.fresh[surface] = 0
+        m.passed[surface] = 0
     while special:
         lane = first_bit(special)
         special ^= 1 << lane

@@ -18,7 +18,8 @@ class Symbol:
 
     Attributes:
         kind: "variable", "parameter", "number", "+", "*", "**", a function of
-            :data:`FUNCTIONS`, or "joined": Σ c A B over triples whose B differ by constants.
+            :data:`FUNCTIONS`, "joined": Σ c A B over triples whose B differ by constants, or
+            "only": the second where the first is not 0, else 0, whatever the second is there.
         arguments: symbols; of a variable or parameter its name, of a number its value, of "**"
             the base and a float.
         varies: whether it depends on a variable.
@@ -147,6 +148,12 @@ def function(name: str, value: Any) -> Symbol:
     return Symbol(name, value)
 
 
+def only(where: Symbol, value: Any) -> Symbol:
+    """The value where a parameter is not 0, else 0; it need not be a number there."""
+    value = symbol(value)
+    return value if _is(value, 0.0) else Symbol("only", where, value)
+
+
 def _is(value: Symbol, number: float) -> bool:
     return value.kind == "number" and value.arguments[0] == number
 
@@ -221,6 +228,9 @@ def derivative(value: Symbol, by: Symbol) -> Any:
     if value.kind == "*":
         a, b = value.arguments
         return derivative(a, by) * b + a * derivative(b, by)
+    if value.kind == "only":
+        where, inner = value.arguments
+        return only(where, derivative(inner, by))
     if value.kind in FUNCTIONS:
         (inner,) = value.arguments
         return _slope(value, inner) * derivative(inner, by)
@@ -243,6 +253,21 @@ def _slope(value: Symbol, inner: Symbol) -> Symbol:
     if value.kind == "cos":
         return -function("sin", inner)
     return 1.0 - value * value
+
+
+@cache
+def degree(value: Symbol) -> float:
+    """Of a polynomial in the variables; infinite of what is none."""
+    inner = [degree(a) if isinstance(a, Symbol) else 0.0 for a in value.arguments]
+    if value.kind == "variable" or not value.varies:
+        return float(value.kind == "variable")
+    if value.kind in {"+", "only"}:
+        return max(inner)
+    if value.kind == "*":
+        return sum(inner)
+    if value.kind == "joined":
+        return max(sum(inner[:3]), sum(inner[3:]))
+    return math.inf
 
 
 def in_order(roots: Sequence[Symbol]) -> list[Symbol]:
