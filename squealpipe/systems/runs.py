@@ -235,7 +235,13 @@ def integrate(
             "exact": lanes.aligned(t.size + n_events, LANES),
             "steep": written.steep,
             "degree": written.degrees,
-            "share": np.array([max(layout.SHARE * tol, layout.ROUND_OFF)]),
+            "share": np.array(
+                [
+                    max(layout.SHARE * tol, layout.ROUND_OFF),
+                    (written.degrees > 2).any(),
+                ],
+                float,
+            ),
             "polynomial": np.zeros(terms),
             "scratch": np.zeros((5, width)),
             "initial": initial,

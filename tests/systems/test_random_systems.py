@@ -271,6 +271,14 @@ GOOD = {
 }
 
 
+def until_gap(t, s, p, r):
+    return p.gap - s.x
+
+
+def on(t, s, p, r):
+    return {"v": 0.5 * s.v}
+
+
 LAST = [("free", GOOD["field"])]
 
 
@@ -324,9 +332,16 @@ def hit(when, leaves="free", to="free"):
         (hit(lambda t, s, p, r: s.x - s.x), ValueError, "constant in regime 'free'"),
         (hit(lambda t, s, p, r: p.gap - 1.0), ValueError, "constant in regime 'free'"),
         (hit(lambda t, s, p, r: s.x, to=LAST), ValueError, "no last resort"),
-        (hit(lambda t, s, p, r: p.gap - s.x), ValueError, "fire again at once"),
         (
-            {**hit(lambda t, s, p, r: p.gap - s.x), "field": {"free": GOOD["field"]}},
+            {"switches": [Switch("hit", "free", until_gap, "free", on)]},
+            ValueError,
+            "fire again at once",
+        ),
+        (
+            {
+                "switches": [Switch("hit", "free", until_gap, "free", on)],
+                "field": {"free": GOOD["field"]},
+            },
             ValueError,
             "fire again at once",
         ),

@@ -5,7 +5,6 @@ leads into. At its end rates, surfaces and outputs are computed from the state: 
 from their polynomials by more than the tolerance's share, the step is halved.
 """
 
-import math
 from typing import Any
 
 from squealpipe.methods.compiled import inline, part
@@ -102,11 +101,11 @@ def _largest_gap(t: Any, m: Any, c: Any, lane: int) -> float:
 def _is_watched(t: Any, m: Any, lane: int, event: int) -> bool:
     """Whether a surface is, or an output tracked."""
     if event < t.n_surfaces:
-        return (m.active[event] & (1 << lane)) != 0
+        return bool(m.active[event] & (1 << lane))
+    tracked = False
     for index in range(t.n_tracked):
-        if m.tracked[index, 0] == t.n_variables + event:
-            return True
-    return False
+        tracked |= m.tracked[index, 0] == t.n_variables + event
+    return bool(tracked)
 
 
 @part

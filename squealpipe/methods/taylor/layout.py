@@ -33,15 +33,17 @@ JOB, OUTCOME, SAMPLE, REGIME, EVENTS, CHAINED, HIT, LATE, FIXED_INTEGERS = range
 
 ARRAYS = (
     "rows", "integers", "series", "inverses", "sizes", "tracked", "regimes", "falls", "rises",
-    "active", "fresh", "passed", "beyond", "marks", "noise", "exact", "steep", "degree", "share", "scratch", "polynomial", "initial", "parameters", "first_regime", "limits",
+    "active", "fresh", "passed", "beyond", "marks", "noise", "exact", "steep", "degree", "share",
+    "scratch", "polynomial", "initial", "parameters", "first_regime", "limits",
     "final", "extremes", "counts", "firsts", "durations", "ends", "summary", "sample_times",
     "samples", "sample_regimes", "sample_sums", "event_times", "event_kinds", "event_regimes",
     "event_states", "peaks", "points", "half_turns", "queue",
 )  # fmt: skip
 FUNCTIONS = ("perturb", "longest", "gauge", "change", "jump", "verify", "shorten")
 SIZES = (
-    "n_terms", "n_jobs", "n_states", "n_variables", "n_surfaces", "n_outputs", "n_tracked", "n_parameters",
-    "n_constants", "n_regimes", "n_kinds", "n_samples", "n_sums", "n_logged", "n_points",
+    "n_terms", "n_jobs", "n_states", "n_variables", "n_surfaces", "n_outputs", "n_tracked",
+    "n_parameters", "n_constants", "n_regimes", "n_kinds", "n_samples",
+    "n_sums", "n_logged", "n_points",
     "n_rounds", "until", "late_from", "tangent",
     "take_step", *FUNCTIONS, "n_series", "n_rows",
     "n_switches",

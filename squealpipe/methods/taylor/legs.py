@@ -21,8 +21,8 @@ _numba: Any = numba
 _SWEEPS = 19
 """Picard's iterations for a step whose length times the rate is 1: 1/19! is round-off."""
 ARRAYS = (
-    "rows", "series", "inverses", "sizes", "degrees", "regimes", "initial", "regime", "starts", "durations",
-    "kept", "steps", "counts", "lanes",
+    "rows", "series", "inverses", "sizes", "degrees", "regimes", "initial", "regime",
+    "starts", "durations", "kept", "steps", "counts", "lanes",
 )  # fmt: skip
 SIZES = (
     "n_terms", "n_legs", "n_states", "n_variables", "n_kept", "n_parameters", "n_constants",
@@ -122,7 +122,7 @@ def _advance(table: Any) -> int:
         length = step_length(t.series, terms, n, sizes)
         whole = length
         for event in range(t.n_kept - t.n_variables):
-            if degrees[event] > 1:
+            if degrees[event] > 2:
                 series = t.series + (t.n_variables + event) * terms * ROW
                 length = smaller(converged_steps(series, terms, whole), length)
         store(t.rows, length)

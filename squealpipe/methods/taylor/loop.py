@@ -239,7 +239,7 @@ def _ended(t: Any, m: Any, special: int, busy: int) -> int:
 
 
 @inline
-def _rounds(t: Any, m: Any, c: Any) -> int:
+def _rounds(t: Any, m: Any, c: Any) -> int:  # noqa: C901 (a step in its order)
     """Steps of all lanes until none is busy, or there were enough."""
     tangent_row = layout.FIXED_ROWS + t.n_variables
     first_extreme = tangent_row + t.n_states
@@ -319,7 +319,7 @@ def _advance(table: Any) -> int:
         exact=view(t.exact, (size + n_events, LANES), np.float64),
         steep=view(t.steep, (size,), np.int64),
         degree=view(t.degree, (n_events,), np.int64),
-        share=view(t.share, (1,), np.float64),
+        share=view(t.share, (2,), np.float64),
         polynomial=view(t.polynomial, (1, t.n_terms, 1), np.float64),
         scratch=view(t.scratch, (5, width), np.float64),
         initial=view(t.initial, (t.n_jobs, size), np.float64),

@@ -79,7 +79,7 @@ def first_root(
     sign just after it where round-off hides it.
 
     Returns:
-        The root, or ``NO_ROOT``; and whether that is sure: else from this time on round-off decides.
+        The root, or ``NO_ROOT``; and whether that is sure: else round-off decides from then on.
     """
     left, right = start, step
     p0, s0, b0 = evaluate_twice(coefficients, variable, lane, left)

@@ -30,6 +30,8 @@ from squealpipe.methods.taylor.simd import (
     store,
 )
 
+SPARE = 100.0
+"""What the last orders of such a series may be more than those of the states."""
 FITS = 4
 """Times that a step is fitted to the size of a series, which depends on the step."""
 COMES_CLOSER = 0.9
@@ -88,11 +90,11 @@ def _until(size: Any, last: Any, order: float) -> Any:
 
 @inline
 def _has_converged(series: int, terms: int, step: Any, power: Any) -> Any:
-    """Lanes whose steps are no longer than :func:`converged_steps`; ``power``: of order terms − 3."""
+    """Lanes with steps up to :func:`converged_steps`; ``power`` is that of order terms − 3."""
     size = magnitude(load(series + 2 * ROW))
     for k in (1, 0):
         size = fma(size, step, magnitude(load(series + k * ROW)))
-    share = math.exp(-2.0 * (terms - 3.0))
+    share = SPARE * math.exp(-2.0 * (terms - 3.0))
     last = magnitude(load(series + (terms - 3) * ROW)) * power
     later = magnitude(load(series + (terms - 2) * ROW)) * power * step
     size = size * splat(share)
@@ -103,12 +105,13 @@ def _has_converged(series: int, terms: int, step: Any, power: Any) -> Any:
 def shorten_steps(t: Any, m: Any, step: Any) -> Any:
     """Steps in which the series of surfaces and outputs have converged, and no layer is hidden."""
     terms, first = t.n_terms, t.series + t.n_variables * t.n_terms * ROW
-    power = step
+    power = shortest = step
+    if m.share[1] == 0.0:
+        return shortest
     for _ in range(terms - 4):
         power = power * step
-    shortest = step
     for surface in range(t.n_surfaces):
-        if m.degree[surface] > 1 and m.active[surface]:
+        if m.degree[surface] > 2 and m.active[surface]:
             series = first + surface * terms * ROW
             bits = ~_has_converged(series, terms, step, power) & m.active[surface]
             if bits:
@@ -116,7 +119,7 @@ def shorten_steps(t: Any, m: Any, step: Any) -> Any:
                 shortest = choose(bits, smaller(converged, shortest), shortest)
     for index in range(t.n_tracked):
         event = m.tracked[index, 0] - t.n_variables
-        if event >= 0 and m.degree[event] > 1:
+        if event >= 0 and m.degree[event] > 2:
             series = first + event * terms * ROW
             bits = ~_has_converged(series, terms, step, power)
             if bits:
@@ -128,10 +131,11 @@ def shorten_steps(t: Any, m: Any, step: Any) -> Any:
 @inline
 def slope_at_end(series: int, terms: int, step: Any) -> Any:
     """A series' rate at the end of its step."""
-    value = load(series + (terms - 1) * ROW) * splat(terms - 1.0)
-    for k in range(terms - 2, 0, -1):
-        value = fma(value, step, load(series + k * ROW) * splat(1.0 * k))
-    return value
+    value, slope = load(series + (terms - 1) * ROW), splat(0.0)
+    for k in range(terms - 2, -1, -1):
+        slope = fma(slope, step, value)
+        value = fma(value, step, load(series + k * ROW))
+    return slope
 
 
 @inline

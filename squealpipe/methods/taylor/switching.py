@@ -107,10 +107,7 @@ def _log(t: Any, m: Any, lane: int, kind: int, regime: int) -> int:
 @part
 def _is_beyond(t: Any, m: Any, lane: int) -> bool:
     """Whether a lane's regime was entered beyond a surface."""
-    for surface in range(t.n_surfaces):
-        if m.beyond[surface] & (1 << lane):
-            return True
-    return False
+    return bool(entered_beyond(t, m) & (1 << lane))
 
 
 @part
