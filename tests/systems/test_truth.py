@@ -11,11 +11,11 @@ from scipy.linalg import expm
 
 from squealpipe.functions import sqrt
 from squealpipe.schema import Outcome
-from squealpipe.systems.basin import Motion
 from squealpipe.systems.belt_friction import exponential_oscillator
 from squealpipe.systems.bouncing_ball import bouncing_ball
 from squealpipe.systems.impact_oscillator import impact_oscillator
 from squealpipe.systems.mode_coupling import mode_coupling
+from squealpipe.systems.motion import Motion
 from squealpipe.systems.rigid_pad import LEADING, TRAILING, approach, rigid_pad, spring
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -29,11 +29,12 @@ from squealpipe.systems.cycles.admissible import (
     margins,
 )
 from squealpipe.systems.cycles.branch import started
-from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Section
+from squealpipe.systems.cycles.event_map import FREE, Event, EventMap, Section
 from squealpipe.systems.cycles.event_order import label_of, order_of, run_of
 from squealpipe.systems.cycles.flow import Flow, Vector
 from squealpipe.systems.cycles.labels import Label, Meeting
 from squealpipe.systems.cycles.line import PRECISE, STEPS, Line, flip
+from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.text import suggestion
 from squealpipe.validation import Number, Several, checked
 

@@ -17,11 +17,12 @@ from squealpipe.systems.cycles.admissible import (
     is_motion,
     margins,
 )
-from squealpipe.systems.cycles.cycle import follow, guess_of, merged, without_brief_legs
-from squealpipe.systems.cycles.event_map import Cycle, Event, EventMap
+from squealpipe.systems.cycles.event_map import Event, EventMap
 from squealpipe.systems.cycles.flow import Vector
+from squealpipe.systems.cycles.guess import follow, guess_of, merged, without_brief_legs
 from squealpipe.systems.cycles.labels import Label
 from squealpipe.systems.cycles.line import ALONG, STEPS, Line
+from squealpipe.systems.cycles.solution import Cycle
 
 if TYPE_CHECKING:
     from squealpipe.systems.system import System

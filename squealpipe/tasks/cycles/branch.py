@@ -22,8 +22,8 @@ from squealpipe.systems.cycles.branch import (
     first_point,
     in_rows,
 )
-from squealpipe.systems.cycles.event_map import Cycle
 from squealpipe.systems.cycles.labels import Label
+from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.tasks.cycles.cycle import cycle_from
 from squealpipe.tasks.cycles.onset import at, find_onset
 from squealpipe.tasks.cycles.scene import Scene

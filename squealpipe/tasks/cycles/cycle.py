@@ -13,8 +13,9 @@ from squealpipe.schema import Outcome, blank, build
 from squealpipe.schema.cycles import LIMIT_CYCLE
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.jobs import STATE
-from squealpipe.systems.cycles.cycle import find_cycle
-from squealpipe.systems.cycles.event_map import FREE, Cycle
+from squealpipe.systems.cycles.event_map import FREE
+from squealpipe.systems.cycles.find import find_cycle
+from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.tasks.cycles.scene import Scene
 from squealpipe.validation import Angle, Positive, State, one_of
 

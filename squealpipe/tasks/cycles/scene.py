@@ -14,7 +14,7 @@ from squealpipe.parameters import TABLE, Parameters
 from squealpipe.solvers.a1.ensemble import NEAR_PIVOT
 from squealpipe.solvers.a1.scaling import PHYSICAL, plain, unit_value
 from squealpipe.systems.brake import brake, parameters_of_run, regimes_of
-from squealpipe.systems.cycles.event_map import Cycle
+from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.system import System
 
 DASHPOTS = ("damping1", "damping2")
