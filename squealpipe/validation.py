@@ -117,6 +117,12 @@ def _reals(values: Any, *, infinite: bool = False) -> np.ndarray:
     return array
 
 
+def _no_truth(value: Any) -> Any:
+    if isinstance(value, np.bool_):  # which has a float, so that it passes for one
+        raise ValueError("a number is needed, not a truth value")  # noqa: TRY004
+    return value
+
+
 def _number(value: Any) -> float:
     if type(value) is float and math.isfinite(value):
         return value
@@ -229,6 +235,8 @@ Positive = Annotated[Number, Gt(0)]
 NotNegative = Annotated[Number, Ge(0)]
 Tolerance = Annotated[Number, Interval(gt=1e-18, lt=1e-2)]
 """Of the Taylor integrator, over the sizes of the states."""
+Extended = Annotated[float, BeforeValidator(_no_truth)]
+"""A number that may be infinite."""
 Whole = Annotated[int, BeforeValidator(_whole)]
 Natural = Annotated[Whole, Ge(1)]
 Several = Annotated[Whole, Ge(2)]

@@ -13,7 +13,7 @@ from squealpipe.models.variants import VARIANT_RULES
 from squealpipe.parameters import NUMBERS_OF_A1, Parameters
 from squealpipe.solvers.a1.scaling import scaled_runs
 from squealpipe.systems.system import System
-from squealpipe.validation import Tolerance, checked, one_of, real_array
+from squealpipe.validation import Extended, Tolerance, checked, one_of, real_array
 
 Model = Annotated[str, one_of(VARIANT_RULES)]
 """A nonlinear model, or a variant of it."""
@@ -78,7 +78,7 @@ def jobs_of(
     initial_state: Any = (0.0, 0.0, 0.0, 0.0),
     times: Any = None,
     stop_at_first_separation: bool = False,
-    stop_at_turns: float = math.inf,
+    stop_at_turns: Extended = math.inf,
     t_late: Any = math.inf,
 ) -> Jobs:
     """Jobs whose arguments may each differ from run to run.
