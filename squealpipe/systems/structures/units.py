@@ -5,8 +5,10 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from squealpipe.parameters import brief
+from squealpipe.units import UnitError, in_si
 
-DIMENSIONS = ("[length]", "[mass]", "[time]")
+KINDS = {"length": "m", "mass": "kg", "time": "s"}
+"""What each word of units like ``mm-t-s`` measures → its SI unit."""
 
 
 class Scales(NamedTuple):
@@ -28,26 +30,18 @@ def scales_of(units: Any) -> Scales:
     Raises:
         ValueError: they are not a length, a mass and a time.
     """
-    import pint
-
     words = str(units).split("-")
     needed = "units of length, mass and time are needed, like mm-t-s or m-kg-s"
-    if len(words) != len(DIMENSIONS):
+    if len(words) != len(KINDS):
         raise ValueError(f"units = {brief(units)}: {needed}")
-    registry: Any = pint.UnitRegistry()
     factors = []
-    for word, dimension in zip(words, DIMENSIONS, strict=True):
+    for word, (kind, si) in zip(words, KINDS.items(), strict=True):
         try:
-            unit = registry.Quantity(1.0, registry.Unit(word))
-        except (pint.errors.PintError, ValueError, AttributeError) as error:
+            factors.append(in_si(f"1 {word}", si))
+        except UnitError as error:
             raise ValueError(
-                f"units = {brief(units)}: {word!r} is no unit; {needed}"
+                f"units = {brief(units)}: {word!r} is no {kind}; {needed}"
             ) from error
-        if unit.dimensionality != {dimension: 1}:
-            raise ValueError(
-                f"units = {brief(units)}: {word!r} is no {dimension.strip('[]')}; {needed}"
-            )
-        factors.append(float(unit.to_base_units().magnitude))
     length, mass, time = factors
     return Scales(
         mass, mass / time, mass / time**2, mass * length / time**2, length / time
