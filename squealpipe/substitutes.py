@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Literal, NamedTuple
 
 from squealpipe.laws import contact_laws
+from squealpipe.laws.dashpots import critical_damping
 from squealpipe.units import with_unit
 
 
@@ -111,9 +112,8 @@ def stood_for(
     if "damping_ratio" in inputs:
         for spring in ("1", "2"):
             k = values.get(f"k{spring}") or parameter(f"k{spring}")
-            values[f"damping{spring}"] = (
-                2.0 * inputs["damping_ratio"] * math.sqrt(k * parameter("mass"))
-            )
+            critical = critical_damping(k, parameter("mass"))
+            values[f"damping{spring}"] = inputs["damping_ratio"] * critical
     force = inputs.get("preload_force")
     if "pressure" in inputs:
         force = inputs["pressure"] * inputs["area"]

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from squealpipe.laws.dashpots import critical_damping
 from squealpipe.laws.friction_laws import LAWS
 from squealpipe.laws.tables import is_table, scaled
 from squealpipe.parameters import Parameters
@@ -91,8 +92,8 @@ def with_friction(params: Parameters, factor: float) -> Parameters:
 def damping_ratio(params: Parameters) -> float:
     """Mean of both dashpots over 2 √(k m) of their springs."""
     ratios = (
-        params.damping1 / (2.0 * math.sqrt(params.k1 * params.mass)),
-        params.damping2 / (2.0 * math.sqrt(params.k2 * params.mass)),
+        params.damping1 / critical_damping(params.k1, params.mass),
+        params.damping2 / critical_damping(params.k2, params.mass),
     )
     return 0.5 * sum(ratios)
 
@@ -142,7 +143,7 @@ def _damping(design: Design) -> Cure:
             }
         else:
             changed = {
-                f"damping{i}": 2.0 * value * math.sqrt(stiffness * params.mass)
+                f"damping{i}": value * critical_damping(stiffness, params.mass)
                 for i, stiffness in ((1, params.k1), (2, params.k2))
             }
         return design._replace(params=params.with_(**changed))

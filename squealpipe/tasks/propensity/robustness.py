@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 import xarray as xr
 
+from squealpipe.laws.dashpots import critical_damping
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.inference import of_study, wilson_interval
@@ -33,7 +34,7 @@ Share = tuple[float, float, float, int, int]
 def variants(params: Parameters) -> Iterator[tuple[str, Parameters]]:
     """(name, parameters) of the variants that start at rest."""
     yield "as configured", params
-    unit = [2.0 * math.sqrt(k * params.mass) for k in (params.k1, params.k2)]
+    unit = [critical_damping(k, params.mass) for k in (params.k1, params.k2)]
     for ratio in RATIOS:
         yield (
             f"damping ratio {100 * ratio:g} %",
