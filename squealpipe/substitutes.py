@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Literal, NamedTuple
 
 from squealpipe.laws import contact_laws
-from squealpipe.laws.dashpots import critical_damping
 from squealpipe.units import with_unit
 
 
@@ -58,6 +57,11 @@ class Springs(NamedTuple):
     k: float
     alpha1: float
     alpha2: float
+
+
+def critical_damping(k: float, mass: float) -> float:
+    """2 √(k m), N s/m: the dashpot of a damping ratio of 1 beside a spring of stiffness k."""
+    return 2.0 * math.sqrt(k * mass)
 
 
 def stands_for(name: str) -> tuple[str, ...]:

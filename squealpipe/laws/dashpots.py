@@ -3,7 +3,6 @@
 The contact has none: with one, N would vanish before y = l_pre.
 """
 
-import math
 from typing import Any
 
 from squealpipe.laws.springs import (
@@ -14,11 +13,6 @@ from squealpipe.laws.springs import (
     inclined_pair,
     squared_distance,
 )
-
-
-def critical_damping(k: float, mass: float) -> float:
-    """2 √(k m), N s/m: the dashpot of a damping ratio of 1 beside a spring of stiffness k."""
-    return 2.0 * math.sqrt(k * mass)
 
 
 def dashpot_force(

@@ -51,11 +51,11 @@ def digest(text: str | bytes) -> str:
 
 def sources(*scripts: Path) -> list[Path]:
     """Scripts and modules whose code decides their results, with all that they import."""
-    packages = [
+    packages = [  # in a wheel scripts lie below the package too, in folders that are none
         folder / "__init__.py"
         for each in scripts
         for folder in each.parents
-        if folder.is_relative_to(PACKAGE)
+        if folder.is_relative_to(PACKAGE) and (folder / "__init__.py").is_file()
     ]
     imported = [path for each in scripts for path in closure(each)]
     found = dict.fromkeys([*scripts, *packages, *imported])

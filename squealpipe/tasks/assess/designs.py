@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squealpipe.laws.dashpots import critical_damping
 from squealpipe.laws.friction_laws import LAWS
 from squealpipe.laws.tables import is_table, scaled
 from squealpipe.parameters import Parameters
+from squealpipe.substitutes import critical_damping
 from squealpipe.tasks.assess.sliding import Design
 
 FACTOR = 10.0

@@ -6,12 +6,12 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 import xarray as xr
 
-from squealpipe.laws.dashpots import critical_damping
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.inference import of_study, wilson_interval
 from squealpipe.schema.origin import recorded
 from squealpipe.schema.propensity import VERDICT_ROBUSTNESS
+from squealpipe.substitutes import critical_damping
 from squealpipe.tasks.inference.candidates import Candidates
 from squealpipe.tasks.inference.consequences import CONSEQUENCES, judge_consequences
 from squealpipe.tasks.inference.constraints import CONSTRAINTS, Stage, measure
