@@ -41,7 +41,7 @@ class Chunks:
             for name, values in run.items()
         }
         content = io.BytesIO()
-        np.savez(content, allow_pickle=False, **arrays)
+        np.savez(content, **arrays)
         digest = hashlib.sha256(content.getvalue()).hexdigest()
         target = self.place / f"{first}-{first + len(runs)}-{digest}.npz"
         with whole_file(target) as temporary:
