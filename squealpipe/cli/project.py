@@ -5,6 +5,7 @@ import re
 import shlex
 import sys
 import time
+from collections.abc import Iterable
 from pathlib import Path
 
 from squealpipe.cli.arguments import Configs, Force, Switch, Whole
@@ -122,7 +123,7 @@ def _commented(name: str, row: Row) -> str:
 def run(
     *, config: Configs = None, quick: Switch = False, cores: Whole | None = None
 ) -> int:
-    """Compute a study, with Snakemake's account of the steps, and of what failed with its log.
+    """Compute a study; one line a rule with the time left, and what failed with its log.
 
     Stop it and run the same command again: it goes on where it was, rule by rule.
 
@@ -133,12 +134,14 @@ def run(
         quick: coarse grids and short horizons, for a first look.
         cores: cores to use; all by default.
     """
+    from squealpipe.execution import progress
     from squealpipe.execution.explain import snakemake_command
     from squealpipe.execution.supervised import (
         StoppedError,
         remove_stale_lock,
         run_to_its_end,
     )
+    from squealpipe.methods.processes import available_cores
 
     command, study = snakemake_command(config or [], quick=quick)
     for line in study.parameters.became():
@@ -146,10 +149,15 @@ def run(
     if removed := remove_stale_lock():
         say(removed)
     started = time.perf_counter()
-    quiet = ["--quiet", "all"] if SESSION.quiet else ["--quiet", "host", "rules"]
-    command += ["--cores", str(cores or "all"), *quiet]
+    command += ["--cores", str(cores or "all")]
+    if SESSION.quiet:
+        command += ["--quiet", "all"]
+    else:
+        command += ["--logger", "squealpipe"]
+        command += ["--logger-squealpipe-cores", str(cores or available_cores())]
+    env = {**os.environ, **_caches(), **_found_by_snakemake(progress.__path__)}
     try:
-        failed = run_to_its_end(command, {**os.environ, **_caches()})
+        failed = run_to_its_end(command, env)
     except StoppedError as stop:
         print(f"squealpipe: {stop}; run the same command again", file=sys.stderr)
         return 128 + stop.number
@@ -162,6 +170,12 @@ def run(
         f"done in {duration(time.perf_counter() - started)}: {study.results}/report/index.html"
     )
     return DONE
+
+
+def _found_by_snakemake(folders: Iterable[str]) -> dict[str, str]:
+    """A path on which Snakemake finds the plugin that writes one line a rule."""
+    there = os.environ.get("PYTHONPATH", "")
+    return {"PYTHONPATH": os.pathsep.join([*folders, *filter(None, [there])])}
 
 
 def _caches() -> dict[str, str]:

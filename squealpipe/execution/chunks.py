@@ -8,6 +8,7 @@ import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -35,7 +36,7 @@ class Chunks:
 
     def save(self, first: int, runs: list[Run]) -> None:
         """Write consecutive runs, whole or not at all."""
-        arrays = {
+        arrays: dict[str, Any] = {
             f"{number} {name}": values
             for number, run in enumerate(runs)
             for name, values in run.items()

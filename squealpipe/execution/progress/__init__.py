@@ -1,0 +1,1 @@
+"""What `squealpipe run` says while Snakemake works."""
