@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from types import SimpleNamespace
 from typing import Any
@@ -44,7 +44,7 @@ def _column(name: str, place: int | None = None, *, time: bool = False) -> Any:
 
     def values(self: Ensemble) -> np.ndarray:
         found = self._raw[name] if place is None else self._raw[name][..., place]
-        return self._shaped(found, self._jobs.time_unit if time else None)
+        return self._shaped(found, self.jobs.time_unit if time else None)
 
     return property(values)
 
@@ -53,7 +53,7 @@ def _states(name: str) -> Any:
     """States (…, 4) x, y, ẋ, ẏ, m and m/s."""
 
     def states(self: Ensemble) -> np.ndarray:
-        values, length, time = self._raw[name], self._jobs.length, self._jobs.time_unit
+        values, length, time = self._raw[name], self.jobs.length, self.jobs.time_unit
         units = np.array([length, length, length / time, length / time]).T
         return self._shaped(
             values * units.reshape(len(units), *(1,) * (values.ndim - 2), 4)
@@ -78,7 +78,7 @@ def _spent(regime: Regime, durations: str = "durations") -> Any:
 
     def time(self: Ensemble) -> np.ndarray:
         found = self._raw[durations][..., self._regimes[:-1] == regime].sum(axis=-1)
-        return self._shaped(found, self._jobs.time_unit)
+        return self._shaped(found, self.jobs.time_unit)
 
     return property(time)
 
@@ -89,9 +89,7 @@ def _largest(name: str, part: str) -> Any:
     def size(self: Ensemble) -> np.ndarray:
         ends = np.abs(self._extremes(name, part)).max(axis=0)
         unit = (
-            self._jobs.length
-            if name == "x"
-            else self._jobs.length / self._jobs.time_unit
+            self.jobs.length if name == "x" else self.jobs.length / self.jobs.time_unit
         )
         return self._shaped(np.where(np.isfinite(ends), ends, 0.0), unit)
 
@@ -139,7 +137,7 @@ class Ensemble:
     def __init__(
         self, jobs: Jobs, raw: dict[str, np.ndarray], tracked: Sequence[str]
     ) -> None:
-        self._jobs, self._raw = jobs, raw
+        self.jobs, self._raw = jobs, raw
         self._tracked = [each.removeprefix(runs.LARGEST) for each in tracked]
         system = jobs.systems[0]
         self._regimes = np.array([*regimes_of(system), -1])
@@ -151,7 +149,7 @@ class Ensemble:
         values = np.asarray(values)
         if unit is not None:
             values = values * unit.reshape(-1, *(1,) * (values.ndim - 1))
-        return np.asarray(values.reshape(self._jobs.shape + values.shape[1:]))
+        return np.asarray(values.reshape(self.jobs.shape + values.shape[1:]))
 
     def _extremes(self, name: str, part: str = "") -> tuple[np.ndarray, np.ndarray]:
         """Smallest and largest value of a tracked quantity."""
@@ -165,14 +163,14 @@ class Ensemble:
         # a state that is lost next to a pivot is so by its doing
         away = self._raw["final"][:, None, :2] - self._raw["points"]
         lengths = np.stack(
-            [self._jobs.values[name] for name in ("length1", "length2")], axis=-1
+            [self.jobs.values[name] for name in ("length1", "length2")], axis=-1
         )
         near = (np.linalg.norm(away, axis=-1) < NEAR_PIVOT * lengths).any(axis=1)
         lost = (codes >= STOPPED) | ((codes == Outcome.not_finite) & near)
         found = np.where(lost, Outcome.singular_geometry, codes)
         found[codes == BY_EVENT] = Outcome.separated
         found[codes == BY_TURNS] = Outcome.amplitude_reached
-        if self._jobs.stop_at_first_separation:
+        if self.jobs.stop_at_first_separation:
             found[self._raw["starts_apart"]] = Outcome.separated
         return self._shaped(found.astype(np.int8))
 
@@ -183,25 +181,25 @@ class Ensemble:
         lost = np.where(
             self._raw["starts_apart"], 0.0, np.fmin.reduce(firsts, 1, initial=np.nan)
         )
-        return self._shaped(lost, self._jobs.time_unit)
+        return self._shaped(lost, self.jobs.time_unit)
 
     @property
     def peak_contact_force(self) -> np.ndarray:
         """Largest N/(k3 l_pre); 0 where no step was made."""
         largest = np.maximum(self._extremes("contact_force")[1], 0.0)
-        return self._shaped(largest / self._jobs.values["k3"])
+        return self._shaped(largest / self.jobs.values["k3"])
 
     @property
     def lowest_contact_force(self) -> np.ndarray:
         """Smallest N/(k3 l_pre); 0 where contact was lost."""
-        lowest = self._extremes("contact_force")[0] / self._jobs.values["k3"]
+        lowest = self._extremes("contact_force")[0] / self.jobs.values["k3"]
         kept = np.isnan(self.first_separation_time.reshape(-1))
         return self._shaped(np.where(kept, lowest, 0.0))
 
     @property
     def return_peak_contact_force(self) -> np.ndarray:
         """The largest from the first return to the belt on; NaN: none."""
-        peak = self._extremes("contact_force", "late_")[1] / self._jobs.values["k3"]
+        peak = self._extremes("contact_force", "late_")[1] / self.jobs.values["k3"]
         return self._shaped(np.where(np.isfinite(peak), peak, np.nan))
 
     @property
@@ -211,19 +209,19 @@ class Ensemble:
             axis=1, initial=0
         )
         speed = np.where(self.contacts.reshape(-1) > 0, fastest, np.nan)
-        return self._shaped(speed, self._jobs.length / self._jobs.time_unit)
+        return self._shaped(speed, self.jobs.length / self.jobs.time_unit)
 
     @property
     def max_displacement(self) -> np.ndarray:
         """Largest √(x² + y²), m; 0 where no step was made."""
         square = np.maximum(self._extremes("reach")[1], 0.0)
-        return self._shaped(np.sqrt(square), self._jobs.length)
+        return self._shaped(np.sqrt(square), self.jobs.length)
 
     @property
     def max_vx(self) -> np.ndarray:
         """Largest ẋ, m/s."""
         return self._shaped(
-            self._extremes("vx")[1], self._jobs.length / self._jobs.time_unit
+            self._extremes("vx")[1], self.jobs.length / self.jobs.time_unit
         )
 
     @cached_property
@@ -237,6 +235,11 @@ class Ensemble:
         return self._shaped(
             self._regimes[self._raw["sample_regimes"][..., 0]].astype(np.int8)
         )
+
+    @property
+    def logged(self) -> np.ndarray:
+        """Whether the log holds all events of a run."""
+        return self._shaped(self._raw["logged"])
 
     @property
     def event_kinds(self) -> np.ndarray:
@@ -254,6 +257,7 @@ def run_ensemble(
     sums: bool = False,
     tangent: bool = False,
     log_events: Seed = 0,
+    fill_log: bool = True,
     workers: Workers = None,
     **options: Any,
 ) -> Ensemble:
@@ -265,6 +269,7 @@ def run_ensemble(
         tracked: of :data:`TRACKED`, those whose extremes are read.
         sums: keep what has added up at ``times``, too.
         log_events: number of events a run to keep.
+        fill_log: run again where knots of a law's table, which are left out, took their place.
         workers: processes; None takes all cores. The results are the same bit for bit.
     """
     jobs = jobs_of(parameters, alpha1, alpha2, **options)
@@ -274,16 +279,22 @@ def run_ensemble(
         sums=sums,
         tangent=tangent,
         log_events=log_events,
+        fill_log=fill_log,
         workers=workers,
     )
 
 
 def integrate(
-    jobs: Jobs, tracked: Sequence[str], *, log_events: int = 0, **options: Any
+    jobs: Jobs,
+    tracked: Sequence[str],
+    *,
+    log_events: int = 0,
+    fill_log: bool = True,
+    **options: Any,
 ) -> Ensemble:
-    """The results of some runs."""
+    """The results of some runs; the arguments are those of :func:`run_ensemble`."""
     parts = [
-        (rows, _run(jobs, system, rows, tracked, log_events, **options))
+        (rows, _run(jobs, system, rows, tracked, log_events, fill_log, **options))
         for system, rows in jobs.groups()
     ]
     _, raw = parts[0]
@@ -305,6 +316,7 @@ def _run(
     rows: Any,
     tracked: Sequence[str],
     log_events: int,
+    fill_log: bool,
     **options: Any,
 ) -> dict[str, np.ndarray]:
     """Raw results of the runs of one system, one row each."""
@@ -340,17 +352,17 @@ def _run(
             most_events=most_events[rows],
             **options,
         )
-        raw |= {"starts_apart": apart, "points": points}
+        count = raw["ends"][:, 2]
+        raw |= {"starts_apart": apart, "points": points, "logged": count <= room}
         others = np.array(
             [name not in Event.__members__ for name in system.traced.kinds]
         )
         if not log_events or not others.any():
             return raw
         # knots of a law's table are not events of A1
-        most = int(raw["ends"][:, 2].max(initial=0))
-        if most <= room:
+        if not fill_log or raw["logged"].all():
             return raw | _without(others, raw, log_events)
-        room = most
+        room = int(count.max())
 
 
 def _without(
@@ -377,18 +389,26 @@ def run_map(
     parameters: Parameters,
     alpha1: np.ndarray,
     alpha2: np.ndarray,
-    wanted: Sequence[str],
+    results: Callable[[Ensemble], Mapping[str, np.ndarray]],
+    *,
+    at_once: int = BLOCK,
     **options: Any,
-) -> SimpleNamespace:
-    """Some results over 1-D arrays of both angles, rad, in blocks of rows that memory holds."""
-    rows = max(1, BLOCK // alpha2.size)
-    parts: dict[str, list[np.ndarray]] = {name: [] for name in wanted}
-    for first in range(0, alpha1.size, rows):
-        run = run_ensemble(
-            parameters, alpha1[first : first + rows, None], alpha2, **options
+) -> dict[str, np.ndarray]:
+    """Results of runs over 1-D arrays of both angles, rad, made in blocks of rows.
+
+    Args:
+        results: what is kept of the runs of a block, each over (alpha1, alpha2).
+        at_once: runs in a block, at least one row.
+    """
+    rows = max(1, at_once // alpha2.size)
+    blocks = [
+        results(
+            run_ensemble(
+                parameters, alpha1[first : first + rows, None], alpha2, **options
+            )
         )
-        for name in wanted:
-            parts[name].append(getattr(run, name))
-    return SimpleNamespace(
-        **{name: np.concatenate(arrays) for name, arrays in parts.items()}
-    )
+        for first in range(0, alpha1.size, rows)
+    ]
+    return {
+        name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]
+    }

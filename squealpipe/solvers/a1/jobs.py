@@ -2,8 +2,8 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from typing import Annotated, Any
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, Self
 
 import numpy as np
 from pydantic import BeforeValidator
@@ -64,6 +64,17 @@ class Jobs:
         for index, system in enumerate(self.systems):
             alone = len(self.systems) == 1
             yield system, slice(None) if alone else np.flatnonzero(self.which == index)
+
+    def some(self, rows: np.ndarray) -> Self:
+        """Some of the runs, in one dimension."""
+        columns = ("which", "t_end", "t_late", "times", "time_unit", "length")
+        return replace(
+            self,
+            shape=rows.shape,
+            values={name: column[rows] for name, column in self.values.items()},
+            most=(self.most[0][rows], self.most[1][rows]),
+            **{name: getattr(self, name)[rows] for name in columns},
+        )
 
 
 @checked

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
 
@@ -13,13 +11,8 @@ from squealpipe.schema import build
 from squealpipe.schema.basins import STARTS, basin_schema
 from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.schema.origin import recorded
-from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
-from squealpipe.tasks.dynamics.motion import (
-    as_judged,
-    classify_motion,
-    predictability,
-    refine_labels,
-)
+from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.tasks.dynamics.motion import judge, predictability, with_log
 from squealpipe.validation import Angle, Line, NotNegative, Positive, Tolerance, Workers
 
 RUNS_AT_ONCE = 2000
@@ -102,24 +95,17 @@ def _block(
     workers: int | None,
 ) -> dict[str, np.ndarray]:
     """Variables of some starts."""
-
-    def runs(rows: Any, **options: Any) -> Ensemble:
-        return run_ensemble(
-            params,
-            alpha1,
-            alpha2,
-            **as_judged(t_end),
-            initial_state=starts[rows],
-            tol=tol,
-            workers=workers,
-            **options,
-        )
-
-    run = runs(slice(None), t_late=t_late)
-    motion, changed = classify_motion(run, params)
-    motion = refine_labels(
-        motion, run, lambda rows, room: runs(rows, tracked=(), log_events=room), t_end
+    run = run_ensemble(
+        params,
+        alpha1,
+        alpha2,
+        **with_log(t_end, params),
+        initial_state=starts,
+        t_late=t_late,
+        tol=tol,
+        workers=workers,
     )
+    motion, changed = judge(run, params, t_end, workers=workers)
     return {
         "motion": np.where(changed, MotionFlag.unsettled, motion),
         "late_max_x": run.late_max_x,

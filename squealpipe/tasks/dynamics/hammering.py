@@ -2,28 +2,20 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
+from functools import partial
 
 import numpy as np
 import xarray as xr
 
+from squealpipe.methods.recurrence import EVENTS_AT_ONCE
 from squealpipe.parameters import Parameters
 from squealpipe.schema import build
 from squealpipe.schema.dynamics.runs import HAMMERING_MAP
 from squealpipe.schema.origin import recorded
-from squealpipe.solvers.a1.ensemble import PEAK, REACH, Ensemble, run_ensemble, run_map
+from squealpipe.solvers.a1.ensemble import PEAK, REACH, Ensemble, run_map
 from squealpipe.tasks.dynamics import motion
 from squealpipe.tasks.normal_form import NormalForm
 from squealpipe.validation import Angles, Positive, Tolerance, Workers
-
-USED = (
-    *motion.USED,
-    "peak_contact_force",
-    "return_peak_contact_force",
-    "impact_speed",
-    "predictability_horizon",
-)
-"""Results of the runs that the map is made from."""
 
 
 @recorded(model="A1", method="Taylor series with located events")
@@ -66,55 +58,19 @@ def hammering_map(
     """
     form = NormalForm.of(params)
     rows, columns = form.angles(alpha1, alpha2)
-    run = run_map(
+    maps = run_map(
         form.params,
         rows,
         columns,
-        USED,
-        **motion.as_judged(t_end),
+        partial(_hammering, params=form.params, t_end=t_end, workers=workers),
+        at_once=EVENTS_AT_ONCE // motion.room_for_events(t_end, params),
+        **motion.with_log(t_end, params),
         tol=tol,
         t_late="return",
         tracked=(PEAK, REACH),
         workers=workers,
     )
-    shape = run.outcome.shape
-    cells = [angles.ravel() for angles in np.broadcast_arrays(rows[:, None], columns)]
-    flat = SimpleNamespace(
-        **{
-            name: values.reshape(-1, *values.shape[2:])
-            for name, values in vars(run).items()
-        }
-    )
-
-    def again(some: np.ndarray, room: int) -> Ensemble:
-        return run_ensemble(
-            form.params,
-            *(angles[some] for angles in cells),
-            t_end=t_end,
-            tol=tol,
-            tangent=True,
-            tracked=(),
-            log_events=room,
-            workers=workers,
-        )
-
-    kinds, changed = motion.classify_motion(flat, form.params)
-    kinds = motion.refine_labels(kinds, flat, again, t_end)
-    # A run that ended early is averaged over the time that it lasted.
-    time = np.maximum(run.time, np.finfo(float).tiny)
-    maps = {
-        "impact_rate": run.contacts / time,
-        "separated_fraction": run.separated_time / time,
-        "peak_contact_force": run.peak_contact_force,
-        "return_peak_contact_force": run.return_peak_contact_force,
-        "impact_speed": run.impact_speed,
-        "stick_fraction": run.stick_time / time,
-        "max_displacement": run.max_displacement,
-        "turns": form.sign * run.turns,
-        "motion": kinds.reshape(shape),
-        "motion_changed": changed.reshape(shape),
-        **motion.predictability(run),
-    }
+    maps["turns"] = form.sign * maps["turns"]
     return build(
         HAMMERING_MAP,
         {**{name: form.back(values) for name, values in maps.items()}, "t_end": t_end},
@@ -125,3 +81,25 @@ def hammering_map(
             )
         },
     )
+
+
+def _hammering(
+    run: Ensemble, *, params: Parameters, t_end: float, workers: int | None
+) -> dict[str, np.ndarray]:
+    """Variables of some runs."""
+    kinds, changed = motion.judge(run, params, t_end, workers=workers)
+    # A run that ended early is averaged over the time that it lasted.
+    time = np.maximum(run.time, np.finfo(float).tiny)
+    return {
+        "impact_rate": run.contacts / time,
+        "separated_fraction": run.separated_time / time,
+        "peak_contact_force": run.peak_contact_force,
+        "return_peak_contact_force": run.return_peak_contact_force,
+        "impact_speed": run.impact_speed,
+        "stick_fraction": run.stick_time / time,
+        "max_displacement": run.max_displacement,
+        "turns": run.turns,
+        "motion": kinds,
+        "motion_changed": changed,
+        **motion.predictability(run),
+    }

@@ -1,7 +1,5 @@
 """The kind of motion of model A1, judged from the second half of a run."""
 
-from collections.abc import Callable
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -9,7 +7,7 @@ import numpy as np
 from squealpipe.methods.recurrence import LEAST_REPEATS, in_blocks, repeats_after
 from squealpipe.schema import Outcome
 from squealpipe.schema.dynamics.runs import MotionFlag
-from squealpipe.solvers.a1.ensemble import Ensemble
+from squealpipe.solvers.a1.ensemble import Ensemble, integrate
 
 MARKS = (0.5, 0.75)
 """Shares of a run between which, and its end, its quarters are judged."""
@@ -32,19 +30,28 @@ INTERVAL_TOLERANCE = 1e-6
 LEAST_EVENTS = 4 * LEAST_REPEATS
 """Events in the later half of a run from which a repetition is sought."""
 CALM = (MotionFlag.contact_kept, MotionFlag.hammered_then_contact, MotionFlag.at_rest)
-USED = (
-    "outcome", "time", "separations", "contacts", "separated_time", "stick_time", "turns", "events",
-    "log_growth", "final_state", "max_displacement", "samples", "sample_separations",
-    "sample_contacts", "sample_separated_time", "sample_stick_time", "sample_turns",
-    "sample_log_growth",
-)  # fmt: skip
-"""Results of the runs that a label is made from."""
+EVENTS_PER_TIME = 0.5
+"""Events in a :func:`linear_time` that a log has room for at first; the baseline has 0.35."""
+MOST_LOGGED = 1024
+"""Events of a run that are logged at first, at most."""
 
 
 def as_judged(t_end: Any) -> dict[str, Any]:
     """Arguments of ``run_ensemble`` for runs that :func:`classify_motion` is given."""
     times = np.multiply.outer(np.asarray(t_end, float), MARKS)
     return {"t_end": t_end, "times": times, "sums": True, "tangent": True}
+
+
+def with_log(t_end: float, params: Any) -> dict[str, Any]:
+    """Arguments of ``run_ensemble`` for runs that :func:`judge` is given."""
+    room = room_for_events(t_end, params)
+    return {**as_judged(t_end), "log_events": room, "fill_log": False}
+
+
+def room_for_events(t_end: float, params: Any) -> int:
+    """Events that the log of a run has room for, so that few are made again."""
+    expected = EVENTS_PER_TIME * t_end / linear_time(params)
+    return int(min(LEAST_EVENTS + expected, MOST_LOGGED))
 
 
 def linear_time(params: Any) -> Any:
@@ -61,7 +68,7 @@ def regular_growth(time: Any) -> Any:
     return REGULAR_GROWTH_POWER * np.log1p(time)
 
 
-def whirls(run: Ensemble | SimpleNamespace) -> np.ndarray:
+def whirls(run: Ensemble) -> np.ndarray:
     """Whether each run of an ensemble turns around both fixed ends, returns to the belt aside."""
     turns = np.abs(run.turns)
     return np.asarray(
@@ -69,7 +76,7 @@ def whirls(run: Ensemble | SimpleNamespace) -> np.ndarray:
     )
 
 
-def predictability(run: Ensemble | SimpleNamespace) -> dict[str, np.ndarray]:
+def predictability(run: Ensemble) -> dict[str, np.ndarray]:
     """Growth rate, horizon (the run's end where it lies beyond) and outcome, as datasets hold them.
 
     ``beyond_horizon`` is the outcome of a run whose state an error of ``tol`` decides before its
@@ -86,9 +93,7 @@ def predictability(run: Ensemble | SimpleNamespace) -> dict[str, np.ndarray]:
     }
 
 
-def classify_motion(
-    run: Ensemble | SimpleNamespace, params: Any
-) -> tuple[Any, np.ndarray]:
+def classify_motion(run: Ensemble, params: Any) -> tuple[Any, np.ndarray]:
     """(``MotionFlag`` of each run of an ensemble, whether it still changes).
 
     Judged from the second half of each run; a label still changes where the two quarters of that
@@ -194,25 +199,44 @@ def _distance(first: np.ndarray, second: np.ndarray) -> float:
     return float(np.abs(shares[0] - shares[1]).max())
 
 
-def refine_labels(
-    motion: np.ndarray,
-    run: Ensemble | SimpleNamespace,
-    again: Callable[[np.ndarray, int], Ensemble],
-    t_end: float,
-) -> np.ndarray:
-    """Labels of the runs, undetermined hammering distinguished by its events.
+def judge(
+    run: Ensemble, params: Any, t_end: float, *, workers: int | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """(``MotionFlag`` of each run, whether it still changes), hammering judged by its events.
+
+    Runs that had more events than their log has room for are made again, with room for all.
 
     Args:
-        again: runs some of them again, by their rows, with so many events logged.
+        run: made :func:`with_log`; as :func:`classify_motion` needs them.
+        t_end: end of every run, s.
     """
-    motion = motion.copy()
-    undetermined = (motion == MotionFlag.undetermined) & (
-        run.outcome == Outcome.converged
+    motion, changed = classify_motion(run, params)
+    flat = motion.reshape(-1)
+    undetermined = (flat == MotionFlag.undetermined) & (
+        run.outcome.reshape(-1) == Outcome.converged
     )
-    for rows in in_blocks(np.flatnonzero(undetermined), run.events):
-        logged = again(rows, int(run.events[rows].max()))
-        motion[rows] = [
-            regular_kind(times, kinds, t_end)
-            for times, kinds in zip(logged.event_times, logged.event_kinds, strict=True)
-        ]
-    return motion
+    logged, events = run.logged.reshape(-1), run.events.reshape(-1)
+    _judge_by_events(flat, np.flatnonzero(undetermined & logged), run, t_end)
+    for rows in in_blocks(np.flatnonzero(undetermined & ~logged), events):
+        again = integrate(
+            run.jobs.some(rows),
+            (),
+            log_events=int(events[rows].max()),
+            tangent=True,
+            workers=workers,
+        )
+        labels = flat[rows]
+        _judge_by_events(labels, np.arange(rows.size), again, t_end)
+        flat[rows] = labels
+    return flat.reshape(motion.shape), changed
+
+
+def _judge_by_events(
+    motion: np.ndarray, rows: np.ndarray, run: Ensemble, t_end: float
+) -> None:
+    """Label some of the runs by their logs."""
+    times, kinds = (
+        log.reshape(-1, log.shape[-1]) for log in (run.event_times, run.event_kinds)
+    )
+    for row in rows:
+        motion[row] = regular_kind(times[row], kinds[row], t_end)

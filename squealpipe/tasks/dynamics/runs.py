@@ -15,7 +15,7 @@ from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.runs import SIMULATION, VALIDITY_MAP
 from squealpipe.schema.origin import recorded
-from squealpipe.solvers.a1.ensemble import PEAK, integrate, run_map
+from squealpipe.solvers.a1.ensemble import PEAK, Ensemble, integrate, run_map
 from squealpipe.solvers.a1.jobs import Model, jobs_of
 from squealpipe.tasks.linear.maps import stability_map
 from squealpipe.tasks.sampling import default_times, unresolved
@@ -158,11 +158,11 @@ def validity_map(
         that A1 itself shows.
     """
     t_end = HORIZON * params.time_unit if t_end is None else t_end
-    run = run_map(
+    maps = run_map(
         params,
         alpha1,
         alpha2,
-        ("outcome", "first_separation_time", "early_max_x", "late_max_x"),
+        _validity,
         t_end=t_end,
         model=model,
         tol=tol,
@@ -171,20 +171,22 @@ def validity_map(
         tracked=("x",),
         workers=workers,
     )
-    lost = run.outcome == Outcome.separated
-    moves = run.early_max_x > 0
-    growth = np.where(moves, run.late_max_x, 1.0) / np.where(
-        moves, run.early_max_x, 1.0
-    )
+    regimes = stability_map(params, alpha1, alpha2)["regime_linear"]
     return build(
         VALIDITY_MAP,
-        {
-            "first_separation_time": run.first_separation_time,
-            "separates": lost,
-            "response_growth": np.where(lost, np.nan, growth),
-            "regime_linear": stability_map(params, alpha1, alpha2)["regime_linear"],
-            "t_end": t_end,
-            "outcome": run.outcome,
-        },
+        {**maps, "regime_linear": regimes, "t_end": t_end},
         {"alpha1": alpha1, "alpha2": alpha2},
     )
+
+
+def _validity(run: Ensemble) -> dict[str, np.ndarray]:
+    """Variables of some runs that end at their first separation."""
+    lost = run.outcome == Outcome.separated
+    moves = run.early_max_x > 0
+    late, early = (np.where(moves, x, 1.0) for x in (run.late_max_x, run.early_max_x))
+    return {
+        "first_separation_time": run.first_separation_time,
+        "separates": lost,
+        "response_growth": np.where(lost, np.nan, late / early),
+        "outcome": run.outcome,
+    }

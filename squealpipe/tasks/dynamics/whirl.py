@@ -13,8 +13,8 @@ from squealpipe.parameters import SCENES, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.long_runs import TRANSIENT, WHIRL
 from squealpipe.schema.dynamics.runs import MotionFlag
-from squealpipe.solvers.a1.ensemble import REACH, Ensemble, run_ensemble
-from squealpipe.tasks.dynamics.motion import as_judged, classify_motion, refine_labels
+from squealpipe.solvers.a1.ensemble import REACH, run_ensemble
+from squealpipe.tasks.dynamics.motion import judge, with_log
 from squealpipe.tasks.normal_form import NormalForm
 
 LATE_SHARE = 0.8
@@ -55,24 +55,17 @@ def whirl_sizes(
     alpha1, alpha2 = form.angles(scene.alpha1, scene.alpha2)
     speeds = np.asarray(belt_speeds, float)
 
-    def runs(tried: np.ndarray, **options: Any) -> Ensemble:
-        return run_ensemble(
-            {**form.params.as_dict(), "belt_speed": tried},
-            alpha1,
-            alpha2,
-            **as_judged(t_end),
-            tol=tol,
-            t_late=LATE_SHARE * t_end,
-            tracked=("x", REACH),
-            workers=workers,
-            **options,
-        )
-
-    run = runs(speeds)
-    motion, changed = classify_motion(run, form.params)
-    motion = refine_labels(
-        motion, run, lambda rows, room: runs(speeds[rows], log_events=room), t_end
+    run = run_ensemble(
+        {**form.params.as_dict(), "belt_speed": speeds},
+        alpha1,
+        alpha2,
+        **with_log(t_end, params),
+        tol=tol,
+        t_late=LATE_SHARE * t_end,
+        tracked=("x", REACH),
+        workers=workers,
     )
+    motion, changed = judge(run, form.params, t_end, workers=workers)
     p = params
     fitted = (motion == MotionFlag.whirl) & (
         run.late_max_x > FAR * max(p.length1, p.length2)

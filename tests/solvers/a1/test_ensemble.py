@@ -159,13 +159,21 @@ def test_refusals_name_the_argument(changes, message):
         run_ensemble(**arguments)
 
 
-def test_maps_in_blocks_are_the_same(monkeypatch):
+def test_maps_in_blocks_are_the_same():
     alpha1, alpha2 = np.linspace(0, np.pi, 9), np.linspace(0, np.pi, 7)
-    whole = ensemble.run_map(FORMER, alpha1, alpha2, ("max_displacement",), t_end=20.0)
-    monkeypatch.setattr(ensemble, "BLOCK", 10)
-    parts = ensemble.run_map(FORMER, alpha1, alpha2, ("max_displacement",), t_end=20.0)
-    assert whole.max_displacement.shape == (9, 7)
-    assert whole.max_displacement.tobytes() == parts.max_displacement.tobytes()
+
+    def largest(**options):
+        return ensemble.run_map(
+            FORMER,
+            alpha1,
+            alpha2,
+            lambda run: {"largest": run.max_displacement},
+            t_end=20.0,
+            **options,
+        )["largest"]
+
+    assert largest().shape == (9, 7)
+    assert largest().tobytes() == largest(at_once=10).tobytes()
 
 
 def test_threads_do_not_disturb_each_other(reference):

@@ -6,6 +6,7 @@ from scipy.stats import ks_2samp
 
 from squealpipe.schema import Outcome
 from squealpipe.schema.dynamics.runs import MotionFlag
+from squealpipe.tasks.dynamics import motion as motions
 from squealpipe.tasks.dynamics.hammering import hammering_map
 from squealpipe.tasks.dynamics.motion import _distance, linear_time, regular_kind
 from squealpipe.tasks.dynamics.runs import simulate
@@ -205,3 +206,12 @@ def test_a_map_of_runs_that_make_no_step_gives_their_reason():
     found = hammering_map(stiff, [0.2, 1.0], [1.0, 2.0], t_end=1.0, workers=1)
     assert (found.outcome == Outcome.not_finite).all()
     assert (found.max_displacement == 0.0).all()
+
+
+def test_labels_do_not_depend_on_the_room_of_the_first_log(monkeypatch):
+    first, second = np.array([1 / 6, 0.2, 0.5]) * np.pi, np.array([0.25, 0.8]) * np.pi
+    at_once = hammering_map(FORMER, first, second, t_end=500.0)
+    monkeypatch.setattr(motions, "EVENTS_PER_TIME", 0.02)
+    again = hammering_map(FORMER, first, second, t_end=500.0)
+    assert at_once.equals(again)
+    assert TORUS in at_once.motion.values
