@@ -228,6 +228,7 @@ def integrate(
             "owner": t.owner,
             "active": np.zeros(len(t.surfaces), np.int64),
             "fresh": np.zeros(len(t.surfaces), np.int64),
+            "beyond": np.zeros(len(t.surfaces), np.int64),
             "noise": np.zeros((len(t.surfaces), 2, LANES)),
             "scratch": np.zeros((6, width)),
             "initial": initial,

@@ -131,8 +131,22 @@ def random_system(seed):
     )  # fmt: skip
 
 
+def target_of(switch, t, s, p, r):
+    """The regime that a switch leads to, and the name of the event."""
+    targets = [switch.to] if isinstance(switch.to, str) else switch.to
+    for entry in targets:
+        parts = entry if type(entry) is tuple else (entry, None)
+        regime, condition, kind = (*parts, switch.name)[:3]
+        if condition is None or condition(t, s, p, r) >= 0.0:
+            break
+    return regime, kind
+
+
 def independent_run(system, start, parameters, max_step):
-    """The same functions on floats, by DOP853; times and kinds of the events."""
+    """The same functions on floats, by DOP853; times and kinds of the events.
+
+    What a regime is entered beyond fires at once, the first by name.
+    """
     p = SimpleNamespace(**{**system.parameters, **parameters})
     names, regime, t = list(system.states), system.start["regime"], 0.0
     z, found = np.array([start[name] for name in names]), []
@@ -143,7 +157,7 @@ def independent_run(system, start, parameters, max_step):
     while t < T_END and len(found) < MOST_EVENTS:
         here = [
             s
-            for s in system.switches
+            for s in sorted(system.switches, key=lambda each: each.name)
             if regime in ([s.leaves], s.leaves)[type(s.leaves) is tuple]
         ]
 
@@ -160,20 +174,20 @@ def independent_run(system, start, parameters, max_step):
             value.terminal, value.direction = True, -1
             return value
 
-        run = solve_ivp(
-            rates, (t, T_END), z, "DOP853", rtol=1e-12, atol=1e-12, max_step=max_step,
-            events=[guard(s) for s in here],
-        )  # fmt: skip
-        t, z = run.t[-1], run.y[:, -1]
-        if run.status != 1:
-            break
-        switch = here[next(i for i, times in enumerate(run.t_events) if len(times))]
-        s, targets = state(z), [switch.to] if isinstance(switch.to, str) else switch.to
-        for entry in targets:
-            parts = entry if type(entry) is tuple else (entry, None)
-            regime, condition, kind = (*parts, switch.name)[:3]
-            if condition is None or condition(t, s, p, r) >= 0.0:
+        beyond = [s for s in here if guard(s)(t, z) < -1e-10]
+        if beyond:
+            switch = beyond[0]
+        else:
+            run = solve_ivp(
+                rates, (t, T_END), z, "DOP853", rtol=1e-12, atol=1e-12, max_step=max_step,
+                events=[guard(s) for s in here],
+            )  # fmt: skip
+            t, z = run.t[-1], run.y[:, -1]
+            if run.status != 1:
                 break
+            switch = here[next(i for i, times in enumerate(run.t_events) if len(times))]
+        s = state(z)
+        regime, kind = target_of(switch, t, s, p, r)
         found.append((t, kind))
         for name, new in (switch.reset(t, s, p, r) if switch.reset else {}).items():
             z[names.index(name)] = new

@@ -124,7 +124,13 @@ def _start(
     integers[:, lane] = 0
     integers[layout.JOB, lane], integers[layout.OUTCOME, lane] = job, layout.RUNNING
     integers[layout.HIT, lane] = -1
-    for row in (layout.CLOCK, layout.CORRECTION, layout.STEPS, layout.STEP):
+    for row in (
+        layout.CLOCK,
+        layout.CORRECTION,
+        layout.STEPS,
+        layout.STEP,
+        layout.DELAY,
+    ):
         rows[row, lane] = 0.0
     rows[layout.LONGEST, lane] = math.inf
     rows[layout.T_END, lane], rows[layout.T_LATE, lane] = (
@@ -243,7 +249,7 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
                 (t.series, parameters, t.rows + layout.LONGEST * ROW, t.n_terms),
             )
         start_from_zero(t, m, c)
-        special = take_step(t, m.active, m.sizes) & busy
+        special = take_step(t, m) & busy
         due = reaches(t.rows, layout.NEXT_SAMPLE) & busy if t.n_samples else 0
         bits = special
         while bits:
@@ -291,6 +297,7 @@ def _advance(table: Any) -> int:
         owner=view(t.owner, (t.n_surfaces,), np.int64),
         active=view(t.active, (t.n_surfaces,), np.int64),
         fresh=view(t.fresh, (t.n_surfaces,), np.int64),
+        beyond=view(t.beyond, (t.n_surfaces,), np.int64),
         noise=view(t.noise, (t.n_surfaces, 2, LANES), np.float64),
         scratch=view(t.scratch, (6, width), np.float64),
         initial=view(t.initial, (t.n_jobs, size), np.float64),

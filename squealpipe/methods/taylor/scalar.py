@@ -190,12 +190,13 @@ class ScalarSource:
         return _function("change(switch, z, p, out)", lines)
 
     def jump(self) -> str:
-        """``jump(switch, z, after, p, r, d, out)``: a perturbation d across a switch.
+        """``jump(switch, at_once, delay, z, after, p, r, d, out)``: perturbation d across a switch.
 
-        ``r`` are the constants before it.
+        ``r`` are the constants before it, ``delay`` is the address of δτ.
 
         With h the surface, g the reset and f, f₊ the fields before and after: the switch comes
         δτ = −∇h·d / (∇h·f + ∂h/∂t) later, and d becomes Dg (d + f δτ) + ∂g/∂t δτ − f₊ δτ.
+        One that fires at once, beyond its surface, is as late as the switch that led there.
         """
         size = self.size
         before, after = self._writer("b", regime="r"), self._writer("a", "after")
@@ -209,8 +210,9 @@ class ScalarSource:
             slopes = self._slopes(writer, switch.surface)
             rate = " + ".join(f"{s} * {rates[j]}" for j, s in slopes)
             along = " + ".join(f"{s} * d{j}" for j, s in slopes if j < size) or "0.0"
-            writer.lines += [f"w = {rate or '0.0'}", "tau = 0.0", "if w != 0.0:"]
-            writer.lines.append(f" tau = -({along}) / w")
+            writer.lines += [f"w = {rate or '0.0'}", "tau = number(delay)"]
+            writer.lines += ["if at_once == 0:", " tau = 0.0", " if w != 0.0:"]
+            writer.lines += [f"  tau = -({along}) / w", "put(delay, tau)"]
             for i in range(size):
                 moved = self._slopes(writer, switch.reset.get(i, self.variables[i]))
                 terms = [
@@ -222,7 +224,8 @@ class ScalarSource:
                 total = " + ".join(terms) or "0.0"
                 writer.lines.append(f"put(out + {8 * i}, {total} - {later[i]} * tau)")
             lines += [f"if switch == {index}:", *(f" {line}" for line in writer.lines)]
-        return _function("jump(switch, z, after, p, r, d, out)", [*head, *lines])
+        head_of = "jump(switch, at_once, delay, z, after, p, r, d, out)"
+        return _function(head_of, [*head, *lines])
 
     def _slopes(self, writer: _Writer, root: Symbol) -> list[tuple[int, str]]:
         found = [(j, symbol(derivative(root, v))) for j, v in enumerate(self.variables)]

@@ -105,11 +105,11 @@ def reaches(rows: int, instant: int) -> Any:
 
 
 @inline
-def take_step(t: Any, active: Any, sizes: Any) -> Any:
+def take_step(t: Any, m: Any) -> Any:
     """Ends of all lanes' steps; returns the lanes that need a look of their own."""
     terms, base, at = t.n_terms, t.series, t.rows
     step = smaller(
-        step_length(base, terms, t.n_states, sizes), load(at + layout.LONGEST * ROW)
+        step_length(base, terms, t.n_states, m.sizes), load(at + layout.LONGEST * ROW)
     )
     if t.n_variables > t.n_states:
         for each in range(t.n_surfaces + t.n_tracked - t.n_states):
@@ -124,9 +124,10 @@ def take_step(t: Any, active: Any, sizes: Any) -> Any:
         lost = lost + value * 0.0
     plain = bits_below(magnitude(lost), splat(np.inf))
     for surface in range(t.n_surfaces):
-        if active[surface]:
+        if m.active[surface]:
             series = base + (t.n_variables + surface) * terms * ROW
-            plain &= _free(series, terms, step) | ~active[surface]
+            plain &= _free(series, terms, step) | ~m.active[surface]
+            plain &= ~m.beyond[surface]
     return ~plain | reaches(at, layout.T_END) | reaches(at, layout.T_LATE)
 
 
@@ -141,17 +142,19 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
         falls, rises = m.falls[regime, surface], m.rises[regime, surface]
         if falls < 0 and rises < 0:
             continue
-        root = first_crossing(
-            c,
-            t.n_variables + surface,
-            lane,
-            step,
-            falls >= 0,
-            rises >= 0,
-            (m.fresh[surface] & bit) != 0,
-            m.noise[surface, 0, lane],
-            m.noise[surface, 1, lane],
-        )
+        root = 0.0
+        if not m.beyond[surface] & bit:
+            root = first_crossing(
+                c,
+                t.n_variables + surface,
+                lane,
+                step,
+                falls >= 0,
+                rises >= 0,
+                (m.fresh[surface] & bit) != 0,
+                m.noise[surface, 0, lane],
+                m.noise[surface, 1, lane],
+            )
         if root < 0.0 or root > first + tie:
             continue
         _, slope, _ = evaluate_twice(c, t.n_variables + surface, lane, root)

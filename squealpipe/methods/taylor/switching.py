@@ -14,7 +14,7 @@ SLACK = 1e-13
 NOISE = 1e-15
 """Round-off of a surface's polynomial and of its rate, likewise."""
 CHAIN = 64
-"""Switches without progress in time that end a run."""
+"""Switches of a component without progress in time that end a run."""
 
 
 @part
@@ -42,7 +42,11 @@ def settle(t: Any, lane: int) -> None:
 
 @part
 def watch(t: Any, m: Any, c: Any, lane: int, span: float) -> None:
-    """Which surfaces a lane watches in its regimes, and which of them start from zero."""
+    """Which surfaces a lane watches in its regimes, and where they start.
+
+    One that the state is beyond fires at once. Within the tolerance of zero it starts from there,
+    and fires if it goes on. A surface with a switch on both sides has nothing beyond it.
+    """
     bit, keep = 1 << lane, ~(1 << lane)
     z, sizes, out = m.scratch[0], m.scratch[1], m.scratch[2]
     for variable in range(t.n_variables):
@@ -65,11 +69,29 @@ def watch(t: Any, m: Any, c: Any, lane: int, span: float) -> None:
     for surface in range(t.n_surfaces):
         m.active[surface] &= keep
         m.fresh[surface] &= keep
+        m.beyond[surface] &= keep
         regime = m.integers[layout.REGIMES + m.owner[surface], lane]
-        if m.falls[regime, surface] >= 0 or m.rises[regime, surface] >= 0:
-            m.active[surface] |= bit
-            if abs(out[3 * surface]) <= SLACK * out[3 * surface + 1]:
-                m.fresh[surface] |= bit
+        falls, rises = m.falls[regime, surface] >= 0, m.rises[regime, surface] >= 0
+        if not (falls or rises):
+            continue
+        m.active[surface] |= bit
+        height, terms = out[3 * surface], out[3 * surface + 1]
+        passed = falls != rises and (height < 0.0) == falls
+        if passed and abs(height) > max(SLACK, located) * terms:
+            m.beyond[surface] |= bit
+        elif passed or abs(height) <= SLACK * terms:
+            m.fresh[surface] |= bit
+
+
+@part
+def is_beyond(t: Any, m: Any, lane: int, which: int) -> bool:
+    """Whether a lane has entered a regime beyond the surface of this switch of the regime."""
+    beyond = False
+    for surface in range(t.n_surfaces):
+        regime = m.integers[layout.REGIMES + m.owner[surface], lane]
+        if m.falls[regime, surface] == which or m.rises[regime, surface] == which:
+            beyond |= (m.beyond[surface] & (1 << lane)) != 0
+    return beyond
 
 
 @part
@@ -105,7 +127,7 @@ def _note_constants(t: Any, m: Any, lane: int) -> None:
 
 
 @part
-def _carry_over(t: Any, m: Any, lane: int, tangent_row: int) -> None:
+def _carry_over(t: Any, m: Any, lane: int, tangent_row: int, at_once: int) -> None:
     """A perturbation across the switch whose states and constants before it are in the scratch."""
     d, out, stride = m.scratch[4], m.scratch[2], m.scratch.shape[1] * 8
     for variable in range(t.n_states):
@@ -113,7 +135,7 @@ def _carry_over(t: Any, m: Any, lane: int, tangent_row: int) -> None:
     z, y, constants = t.scratch, t.scratch + 3 * stride, t.scratch + 5 * stride
     at, which = t.scratch + 4 * stride, m.integers[layout.HIT, lane]
     arguments = z, y, parameters_of(t, lane), constants, at, t.scratch + 2 * stride
-    call(t.jump, (which, *arguments))
+    call(t.jump, (which, at_once, t.rows + layout.DELAY * ROW + 8 * lane, *arguments))
     for variable in range(t.n_states):
         m.rows[tangent_row + variable, lane] = out[variable]
 
@@ -138,12 +160,14 @@ def _switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
         after[variable] = out[2 + variable]
     component = m.component_of[regime]
     before = integers[layout.REGIMES + component, lane]
+    at_once = 0
     if t.tangent:
         _note_constants(t, m, lane)
+        at_once = 1 if is_beyond(t, m, lane, which) else 0
     put_into(t, m, lane, component, regime)
     settle(t, lane)
     if t.tangent:
-        _carry_over(t, m, lane, tangent_row)
+        _carry_over(t, m, lane, tangent_row, at_once)
     for variable in range(t.n_states):
         c[variable, 0, lane] = after[variable]
     integers[layout.CHAINED, lane] += 1
@@ -164,7 +188,7 @@ def _may_end(t: Any, m: Any, lane: int, kind: int, count: int) -> None:
     integers, job = m.integers, m.integers[layout.JOB, lane]
     if kind == t.until:
         integers[layout.OUTCOME, lane] = layout.BY_EVENT
-    elif integers[layout.CHAINED, lane] >= CHAIN:
+    elif integers[layout.CHAINED, lane] >= CHAIN * t.n_components:
         integers[layout.OUTCOME, lane] = layout.ACCUMULATION
     elif count >= m.limits[job, 3]:
         integers[layout.OUTCOME, lane] = layout.EVENT_LIMIT
