@@ -40,16 +40,17 @@ def run_to_its_end(command: Sequence[str], env: Mapping[str, str]) -> int:
     with _stops_raise(), _holder(), subprocess.Popen(
         command, env=dict(env), start_new_session=True
     ) as made:  # fmt: skip
-        done = _guard(made.pid)
+        done, code = _guard(made.pid), 1
         try:
-            return made.wait()
-        except BaseException:
-            end_group(made.pid)
-            made.wait()
-            raise
+            code = made.wait()
         finally:
+            if code:  # its jobs may live on, its lock stay
+                end_group(made.pid)
+                made.wait()
+                remove_stale_lock()
             os.write(done, b"done")
             os.close(done)
+    return code
 
 
 def remove_stale_lock(folder: Path = Path()) -> str:
@@ -115,13 +116,14 @@ def _guard(group: int) -> int:
         os.close(reader)
         os.set_inheritable(writer, False)
         return writer
-    try:  # in the guard: nothing but system calls and psutil
+    try:  # in the guard: nothing but system calls, files and psutil
         os.close(writer)
         os.setsid()
         for number in (signal.SIGINT, *STOPS):
             signal.signal(number, signal.SIG_IGN)
         if not os.read(reader, 4):
             end_group(group)
+            remove_stale_lock()
     finally:
         os._exit(0)
 
@@ -131,7 +133,10 @@ def _stops_raise() -> Iterator[None]:
     def stop(number: int, _: object) -> None:
         raise StoppedError(number)
 
-    before = {number: signal.signal(number, stop) for number in STOPS}
+    heeded = [
+        each for each in STOPS if signal.getsignal(each) != signal.SIG_IGN
+    ]  # nohup
+    before = {number: signal.signal(number, stop) for number in heeded}
     try:
         yield
     finally:

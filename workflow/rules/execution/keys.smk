@@ -70,9 +70,12 @@ def misjudged(path):
 
     It believes its record of a file, and without one the file's date: it does not see results that
     were copied, replaced or damaged, or whose records were deleted. A file whose record has another
-    key is left to it.
+    key is left to it, and so is one whose job was killed, which it makes again.
     """
-    record = Path(".snakemake/metadata", base64.urlsafe_b64encode(path.encode()).decode())
+    name = base64.urlsafe_b64encode(path.encode()).decode()
+    if Path(".snakemake/incomplete", name).exists():
+        return False
+    record = Path(".snakemake/metadata", name)
     key = KEYS[path].partition(" ")[0]
     unseen = not record.exists() or key in record.read_text(encoding="utf-8")
     return unseen and Path(path).is_file() and bool(misfits({path: KEYS[path]}))
