@@ -1,5 +1,6 @@
 """The code keeps its own rules: lint, format, types, and imports that point one way."""
 
+import ast
 import re
 import subprocess
 import sys
@@ -44,3 +45,45 @@ def test_hooks_watch_files_that_exist():
         for each in alternatives.group(1).split("|") if alternatives else [""]:
             narrowed = pattern.replace(alternatives.group(), each) if each else pattern
             assert any(re.search(narrowed, name) for name in tracked), narrowed
+
+
+INSIDE_FUNCTIONS = {
+    "squealpipe/systems/system.py": "cycles load scipy.interpolate, which runs do not need",
+    "squealpipe/systems/structures/structure.py": "a Structure binds what can be done with it",
+}
+"""Modules that may import parts of the package inside functions; the command line may, too: a
+command loads what it needs, so that ``--help`` is quick."""
+BY_NAME = {
+    "squealpipe/__init__.py": "public names are loaded on first use",
+    "squealpipe/benchmark/adapters/__init__.py": "a solver is loaded if it is asked for",
+    "squealpipe/schema/__init__.py": "schemas register themselves by their module's name",
+    "squealpipe/study/figures/declared.py": "figures do, too",
+    "squealpipe/systems/__init__.py": "import paths of 1.0.0",
+}
+"""Modules that may import by a name that is computed, which no contract sees."""
+
+
+def _imports_inside(function):
+    for node in ast.walk(function):
+        if isinstance(node, ast.ImportFrom):
+            names = [str(node.module)]
+        elif isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        else:
+            continue
+        yield from (n for n in names if n.partition(".")[0] == "squealpipe")
+
+
+def test_no_import_hides_from_the_contracts():
+    inside, by_name = set(), set()
+    for path in sorted((ROOT / "squealpipe").rglob("*.py")):
+        place, tree = str(path.relative_to(ROOT)), ast.parse(path.read_bytes())
+        for node in ast.walk(tree):
+            if isinstance(node, ast.FunctionDef) and any(_imports_inside(node)):
+                inside.add(place)
+            called = ast.unparse(node.func) if isinstance(node, ast.Call) else ""
+            if called.rpartition(".")[2] in {"import_module", "__import__"}:
+                by_name.add(place)
+    inside = {n for n in inside if not n.startswith("squealpipe/cli/")}
+    assert inside == set(INSIDE_FUNCTIONS)
+    assert by_name == set(BY_NAME)

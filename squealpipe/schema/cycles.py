@@ -7,8 +7,8 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import DatasetSchema, Outcome, Variable, or_nan, outcome, text
 from squealpipe.schema.agreement import ComparedAs, Listing, RoundOff
 from squealpipe.schema.dynamics.runs import REGIMES, STATE
+from squealpipe.schema.labels import Label, Meeting
 from squealpipe.schema.linear import ONE_PAIR
-from squealpipe.systems.cycles.labels import Label, Meeting
 
 
 class Stability(IntEnum):

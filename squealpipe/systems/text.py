@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 from squealpipe.methods.taylor.scalar import REGIME
 from squealpipe.methods.taylor.symbols import FUNCTIONS, Symbol
+from squealpipe.systems.components import Composition
+from squealpipe.systems.trace import Traced
 
-if TYPE_CHECKING:
-    from squealpipe.systems.system import System
 
-
-def describe(system: System) -> dict[str, str]:
+def describe(
+    traced: Traced,
+    composition: Composition,
+    states: Sequence[str],
+    outputs: Sequence[str],
+) -> dict[str, str]:
     """Rates, surfaces, resets and regimes, each as an expression in names."""
-    traced = system.traced
+    regimes = list(composition.regimes)
     found = {
         f"d{name}/dt": expression(rate)
-        for name, rate in zip(system.states, traced.rates, strict=False)
+        for name, rate in zip(states, traced.rates, strict=False)
     }
-    for switch, symbols in zip(system.switches, traced.switches, strict=True):
+    for switch, symbols in zip(composition.switches, traced.switches, strict=True):
         leaves = (
             switch.leaves
             if isinstance(switch.leaves, str)
@@ -26,15 +30,15 @@ def describe(system: System) -> dict[str, str]:
         )
         found[f"{switch.name} leaves {leaves} when"] = expression(symbols.surface)
         for regime, condition, kind in symbols.targets:
-            name = system.name_of(regime)
+            name = regimes[regime]
             text = "otherwise" if condition is None else f"{expression(condition)} >= 0"
             found[f"{switch.name} to {name} as {traced.kinds[kind]}"] = text
         for place, value in symbols.reset.items():
-            found[f"{switch.name} resets {system.states[place]}"] = expression(value)
-    for name, output in zip(system.outputs, traced.outputs, strict=True):
+            found[f"{switch.name} resets {states[place]}"] = expression(value)
+    for name, output in zip(outputs, traced.outputs, strict=True):
         found[name] = expression(output)
     for row, component, name in zip(
-        traced.regimes, traced.component_of, system.regimes, strict=True
+        traced.regimes, traced.component_of, regimes, strict=True
     ):
         columns = traced.columns(component)
         values = (

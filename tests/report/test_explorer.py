@@ -18,9 +18,9 @@ from squealpipe.study.report.explorer import (
     write_explorer,
 )
 from squealpipe.study.report.explorer.layers import layers
-from squealpipe.tasks.dynamics.explorer import explorer_data
 from squealpipe.tasks.dynamics.hammering import hammering_map
 from squealpipe.tasks.dynamics.runs import validity_map
+from squealpipe.tasks.explorer import explorer_data
 from squealpipe.tasks.ladder.ladder import model_ladder
 from squealpipe.tasks.linear.maps import natural_frequencies, stability_map
 from tests.browser import chromium_path, open_page

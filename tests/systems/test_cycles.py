@@ -8,8 +8,8 @@ import pytest
 from squealpipe import Switch, System
 from squealpipe.functions import cos
 from squealpipe.schema import Outcome, meanings
+from squealpipe.schema.labels import Label
 from squealpipe.systems.cycles import branch as branch_module
-from squealpipe.systems.cycles.labels import Label
 from squealpipe.systems.shipped.belt_friction import (
     exponential_oscillator,
     leine_oscillator,

@@ -20,6 +20,7 @@ from scipy.interpolate import barycentric_interpolate
 from squealpipe.methods.continuation import ContinuationState
 from squealpipe.methods.progress import alone
 from squealpipe.schema import Outcome, flag_table
+from squealpipe.schema.labels import Label
 from squealpipe.systems import runs
 from squealpipe.systems.cycles.admissible import MARGIN_ROUND_OFF, margins
 from squealpipe.systems.cycles.cycle import (
@@ -31,7 +32,6 @@ from squealpipe.systems.cycles.cycle import (
 from squealpipe.systems.cycles.event_map import FREE, Cycle, EventMap, Section
 from squealpipe.systems.cycles.event_order import Turn, label_of, least_margin
 from squealpipe.systems.cycles.flow import Flow, Vector
-from squealpipe.systems.cycles.labels import Label
 from squealpipe.systems.cycles.line import (
     ALONG,
     AT,
@@ -45,7 +45,7 @@ from squealpipe.systems.cycles.line import (
 from squealpipe.validation import Number, Several, checked
 
 if TYPE_CHECKING:
-    from squealpipe.systems.system import System
+    from squealpipe.systems.definition import System
 
 _EASY, _GROWTH = 3, 3.0
 """With no more than so many iterations the next step may grow, by no more than this factor."""

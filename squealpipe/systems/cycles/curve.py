@@ -20,6 +20,7 @@ import xarray as xr
 
 from squealpipe.methods.continuation import ContinuationState, PseudoArclength
 from squealpipe.schema import flag_table
+from squealpipe.schema.labels import Label, Meeting
 from squealpipe.systems import runs
 from squealpipe.systems.cycles.admissible import (
     MARGIN_ROUND_OFF,
@@ -29,16 +30,15 @@ from squealpipe.systems.cycles.admissible import (
     margins,
 )
 from squealpipe.systems.cycles.branch import started
-from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Section
+from squealpipe.systems.cycles.event_map import FREE, Cycle, EventMap, Section
 from squealpipe.systems.cycles.event_order import label_of, order_of, run_of
-from squealpipe.systems.cycles.flow import Flow, Vector
-from squealpipe.systems.cycles.labels import Label, Meeting
+from squealpipe.systems.cycles.flow import Event, Flow, Vector
 from squealpipe.systems.cycles.line import PRECISE, STEPS, Line, flip
 from squealpipe.text import suggestion
 from squealpipe.validation import Number, Several, checked
 
 if TYPE_CHECKING:
-    from squealpipe.systems.system import System
+    from squealpipe.systems.definition import System
 
 _DIFFERENCE = 1e-7
 _NEAR = 1e-4

@@ -14,20 +14,13 @@ from squealpipe.methods.taylor.layout import STOPPED
 from squealpipe.schema import Outcome, flag_table, in_words
 from squealpipe.systems import runs
 from squealpipe.systems.cycles.admissible import is_motion
-from squealpipe.systems.cycles.event_map import (
-    FREE,
-    Cycle,
-    Event,
-    EventMap,
-    Section,
-    scale_of,
-)
-from squealpipe.systems.cycles.flow import Flow, Vector
+from squealpipe.systems.cycles.event_map import FREE, Cycle, EventMap, Section, scale_of
+from squealpipe.systems.cycles.flow import Event, Flow, Vector
 from squealpipe.systems.runs import Motion, single_run
 from squealpipe.validation import Natural, Positive, Values, checked
 
 if TYPE_CHECKING:
-    from squealpipe.systems.system import System
+    from squealpipe.systems.definition import System
 
 SETTLE = 200.0
 """Forcing periods, or units of time, after which a run counts as settled."""

@@ -11,12 +11,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from squealpipe.systems.cycles.flow import Crossing, Flow, Path, Vector
+from squealpipe.systems.cycles.flow import Crossing, Event, Flow, Path, Vector
 
 _LEAST = 0.05
 """Least unit of a state over the largest, both over the states' sizes."""
@@ -26,25 +25,6 @@ _KEPT = 8
 """Points whose legs are kept."""
 FREE = -1
 """Number of the switch of what changes nothing: the section of a cycle without events, a touch."""
-
-
-class Event(NamedTuple):
-    """How a leg ends.
-
-    Attributes:
-        switch: its number, or :data:`FREE`.
-        surface: number of the surface, or :data:`FREE` for the section of a cycle without events.
-        sign: of the surface before the event.
-        before, after: regimes.
-        kind: number of the event's name.
-    """
-
-    switch: int
-    surface: int
-    sign: float
-    before: int
-    after: int
-    kind: int
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squealpipe.methods.continuation import ContinuationState
+from squealpipe.schema.labels import Label
 from squealpipe.systems.cycles.admissible import (
     MARGIN_ROUND_OFF,
     Kind,
@@ -18,13 +19,12 @@ from squealpipe.systems.cycles.admissible import (
     margins,
 )
 from squealpipe.systems.cycles.cycle import follow, guess_of, merged, without_brief_legs
-from squealpipe.systems.cycles.event_map import Cycle, Event, EventMap
-from squealpipe.systems.cycles.flow import Vector
-from squealpipe.systems.cycles.labels import Label
+from squealpipe.systems.cycles.event_map import Cycle, EventMap
+from squealpipe.systems.cycles.flow import Event, Vector
 from squealpipe.systems.cycles.line import ALONG, STEPS, Line
 
 if TYPE_CHECKING:
-    from squealpipe.systems.system import System
+    from squealpipe.systems.definition import System
 
 _WEAK = 0.1
 """Speed or length of an event, over the least of the others, at which it has only just begun."""

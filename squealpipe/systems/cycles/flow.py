@@ -34,8 +34,7 @@ from squealpipe.systems.runs import compiled
 from squealpipe.systems.trace import TIME_UNIT, Names
 
 if TYPE_CHECKING:
-    from squealpipe.systems.cycles.event_map import Event
-    from squealpipe.systems.system import System
+    from squealpipe.systems.definition import System
 
 Vector = NDArray[np.float64]
 TOLERANCE = 1e-16
@@ -51,6 +50,26 @@ LONGEST = 1.0
 
 _NODES, _WEIGHTS, _UP_TO = gauss(6)
 _PLACES = np.linspace(0.0, 1.0, 9)
+
+
+class Event(NamedTuple):
+    """How a leg ends.
+
+    Attributes:
+        switch: its number, or :data:`squealpipe.systems.cycles.event_map.FREE`.
+        surface: number of the surface, or likewise for the section of a cycle without
+            events.
+        sign: of the surface before the event.
+        before, after: regimes.
+        kind: number of the event's name.
+    """
+
+    switch: int
+    surface: int
+    sign: float
+    before: int
+    after: int
+    kind: int
 
 
 class Turn(NamedTuple):

@@ -12,10 +12,10 @@ from squealpipe.methods.continuation import (
     Problem,
     PseudoArclength,
 )
+from squealpipe.schema.labels import Label
 from squealpipe.systems.cycles.admissible import MARGIN_ROUND_OFF
 from squealpipe.systems.cycles.event_map import Cycle
 from squealpipe.systems.cycles.flow import Vector
-from squealpipe.systems.cycles.labels import Label
 
 # Round-off in the closing error is eps times the longest length over the cycle's: 3e-9 for
 # springs of 10⁶ and a cycle of one.

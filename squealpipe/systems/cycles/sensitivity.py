@@ -14,7 +14,7 @@ from squealpipe.systems.runs import Motion
 from squealpipe.text import suggestion
 
 if TYPE_CHECKING:
-    from squealpipe.systems.system import System
+    from squealpipe.systems.definition import System
 
 _BEYOND = 1e-11
 """Of a surface's terms, from where a switch at the instant of another fired beyond its surface."""

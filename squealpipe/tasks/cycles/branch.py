@@ -14,6 +14,7 @@ from squealpipe.models.refusals import refuse_unread
 from squealpipe.parameters import TABLE, Parameters, is_finite_number
 from squealpipe.schema import Outcome, blank, build
 from squealpipe.schema.cycles import CYCLE_BRANCH, LIMIT_CYCLE
+from squealpipe.schema.labels import Label
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.jobs import STATE
 from squealpipe.systems.cycles.branch import (
@@ -24,7 +25,6 @@ from squealpipe.systems.cycles.branch import (
     in_rows,
 )
 from squealpipe.systems.cycles.event_map import Cycle
-from squealpipe.systems.cycles.labels import Label
 from squealpipe.tasks.cycles.cycle import cycle_from
 from squealpipe.tasks.cycles.onset import find_onset
 from squealpipe.tasks.cycles.scene import IN_SYSTEM, Scene

@@ -11,10 +11,10 @@ from squealpipe.models.refusals import refuse_unread
 from squealpipe.parameters import NUMBERS_OF_A1, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.cycles import CYCLE_CURVE
+from squealpipe.schema.labels import Label
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.jobs import STATE
 from squealpipe.systems.cycles.curve import ENDS, check, follow_curve, point_of
-from squealpipe.systems.cycles.labels import Label
 from squealpipe.tasks.cycles.cycle import cycle_from
 from squealpipe.tasks.cycles.scene import DASHPOTS, IN_SYSTEM, Scene
 from squealpipe.validation import Angle, Number, Several

@@ -2,7 +2,7 @@
 
 import numpy as np
 from squealpipe.execution.job import Job
-from squealpipe.tasks.dynamics.explorer import explorer_data
+from squealpipe.tasks.explorer import explorer_data
 
 job = Job(snakemake)
 options = dict(job.settings["explorer"])

@@ -5,8 +5,8 @@ import pytest
 
 from squealpipe.schema import Outcome
 from squealpipe.tasks.backbones.backbone import backbone
-from squealpipe.tasks.dynamics.explorer import explorer_data
 from squealpipe.tasks.dynamics.runs import simulate
+from squealpipe.tasks.explorer import explorer_data
 from tests.former import FORMER
 
 ANGLES = np.array([0.5, 5 / 6, 1.0]) * np.pi

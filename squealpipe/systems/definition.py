@@ -1,0 +1,510 @@
+"""What a piecewise-smooth system is: its definition, checked and traced; it knows no verbs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import Annotated, Any
+
+import numpy as np
+
+from squealpipe.methods.taylor.scalar import (
+    REGIME,
+    SwitchSymbols,
+    evaluate,
+    numpy_function,
+)
+from squealpipe.methods.taylor.symbols import Symbol, in_order, parameter, symbol
+from squealpipe.parameters import is_finite_number
+from squealpipe.schema import Outcome
+from squealpipe.systems.components import (
+    Begins,
+    Component,
+    Composition,
+    Function,
+    Regimes,
+    Switch,
+)
+from squealpipe.systems.joint import Joint
+from squealpipe.systems.starts import Starts
+from squealpipe.systems.text import describe
+from squealpipe.systems.trace import TIME_UNIT, Names, Traced, Tracer, check_progress
+from squealpipe.text import suggestion
+from squealpipe.validation import Identifier, Number, Positive, Word, checked, needed
+
+Size = Annotated[
+    str | tuple[str, Positive],
+    needed("a unit, or (unit, typical size greater than 0), is"),
+]
+Output = Annotated[tuple[str, Function], needed("(unit, function) is")]
+StartValue = Annotated[
+    Number | str | Mapping[str, str],
+    needed("a finite number, or the name of a regime, is"),
+]
+Field = Annotated[
+    Function | Mapping[str, Function], needed("a function, or one for each regime, is")
+]
+MOST_STATES, MOST_SURFACES, MOST_REGIMES = 64, 64, 256
+RESERVED = frozenset(
+    (
+        *(
+            "t_end",
+            "times",
+            "start",
+            "tol",
+            "sensitivity",
+            "t_late",
+            "horizon",
+            "workers",
+            "guess",
+        ),
+        *("periods", "t_settle", "to", "n_points", "parameter", "parameters", "label"),
+        *(
+            "time",
+            "event",
+            "point",
+            "run",
+            "multiplier",
+            "outcome",
+            "regime",
+            "period",
+            "stable",
+        ),
+        *("residual", "event_time", "event_kind", "event_regime", "end_time"),
+        *(
+            "lyapunov_exponent",
+            "predictability_horizon",
+            "motion",
+            "attractor",
+            "self",
+            "system",
+        ),
+        *(
+            "events",
+            "end",
+            "start_regime",
+            "multiplier_real",
+            "multiplier_imag",
+            "sample",
+            "side",
+            "component",
+        ),
+    )
+)
+"""Arguments of the methods, dimensions and variables of what they return."""
+
+
+class System:
+    """A piecewise-smooth system: regimes, a field, and switches between them.
+
+    Args:
+        name: for titles and files.
+        states: name → unit, or (unit, typical size); error control and round-off are relative to
+            the size, 1 if none is given.
+        parameters: name → default.
+        regimes: name → constants ``r`` that field and surfaces read; the same names in each.
+        components: in place of ``regimes``, ``switches`` and ``starts_in``: name → what has regimes
+            of its own beside the others; see :class:`squealpipe.Component`.
+        field: (t, s, p, r) → rates of all states, or one such function for each regime.
+        start: state → value, and ``regime`` if it is to be given, with components as
+            {component: regime}.
+        starts_in: [(regime, condition) or (regime, condition, equality), …, regime], the first
+            whose condition is ≥ 0 and whose equality is 0; a condition of None, as one left out,
+            stands for that regime's surfaces being all ≥ 0.
+        period: of the forcing, a function of the parameters; left out, the system is autonomous.
+        outputs: name → (unit, function (t, s, p, r)): quantities whose extremes are kept.
+        stops: outcome → function (t, s, p, r): ends a run where it falls through zero.
+        time_scale: typical time, a number or a function of the parameters.
+
+    Raises:
+        ValueError: a name is unknown, missing or taken, a surface is constant in a regime, a ``to``
+            has no last resort, or a reset makes no progress.
+        TypeError: a function is not smooth (a comparison, a branch), or gives what is not a number.
+    """
+
+    @checked
+    def __init__(
+        self,
+        name: str,
+        *,
+        states: Mapping[Identifier, Size],
+        parameters: Mapping[Identifier, Number],
+        regimes: Regimes | None = None,
+        components: Mapping[Identifier, Component] | None = None,
+        field: Field,
+        switches: Sequence[Switch] = (),
+        start: Mapping[str, StartValue],
+        starts_in: Begins = (),
+        period: Function | None = None,
+        outputs: Mapping[Identifier, Output] | None = None,
+        stops: Mapping[Word, Function] | None = None,
+        time_scale: Annotated[
+            Positive | Function, needed("a number greater than 0, or a function, is")
+        ] = 1.0,
+    ) -> None:
+        self.name = name
+        self.units = {
+            key: value if isinstance(value, str) else value[0]
+            for key, value in states.items()
+        }
+        self.sizes = np.array(
+            [1.0 if isinstance(v, str) else float(v[1]) for v in states.values()]
+        )
+        self.parameters = dict(parameters)
+        self.field, self.start = field, dict(start)
+        self.composition = Composition.of(
+            _components(regimes, switches, starts_in, components)
+        )
+        self.regimes, self.switches = (
+            self.composition.regimes,
+            self.composition.switches,
+        )
+        self.period, self.time_scale = period, time_scale
+        self.outputs, self.stops = dict(outputs or {}), dict(stops or {})
+        self._check_names()
+        for what, function in (("period", period), ("time_scale", time_scale)):
+            if callable(function):
+                value = function(Names("the system", self.parameters))
+                if not is_finite_number(value):
+                    raise ValueError(f"{what} gives {value!r}; a number is needed")
+        self.traced = self._trace()
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names of the states."""
+        return tuple(self.units)
+
+    def __repr__(self) -> str:
+        switches = ", ".join(each.name for each in self.switches)
+        return f"System({self.name!r}: {', '.join(self.states)}; switches {switches or 'none'})"
+
+    def _check_names(self) -> None:
+        for number, most, what in (
+            (len(self.units), MOST_STATES, "states"),
+            (len(self.regimes), MOST_REGIMES, "regimes"),
+        ):
+            if not 1 <= number <= most:
+                raise ValueError(f"{number} {what}; 1 to {most} can be carried")
+        taken = RESERVED | self._results()
+        self._check_free("state", self.units, taken)
+        self._check_free("parameter", self.parameters, {*self.units, *taken})
+        self._check_free(
+            "output", self.outputs, {*self.units, *self.parameters, *taken}
+        )
+        self._check_free("stop", self.stops, {outcome.name for outcome in Outcome})
+        if unknown := [
+            name for name in self.start if name not in {*self.units, "regime"}
+        ]:
+            raise ValueError(
+                f"start: {unknown[0]!r} is unknown; {suggestion(unknown[0], self.units)}"
+            )
+        if missing := [name for name in self.units if name not in self.start]:
+            raise ValueError(f"start lacks the state {missing[0]!r}")
+        self.check_regime(self.start)
+        names = [each.name for each in self.switches]
+        if len(set(names)) < len(names):
+            raise ValueError(f"two switches share a name: {', '.join(names)}")
+
+    def _results(self) -> set[str]:
+        """Names of variables and dimensions that results form from the system's names."""
+        ends = ("_min", "_max")
+        found = {
+            f"{name}{end}" for name in (*self.units, *self.outputs) for end in ends
+        }
+        found |= {f"late_{name}" for name in found}
+        found |= {
+            f"{name}{end}" for name in self.units for end in ("0", "_start", "_path")
+        }
+        found |= {f"event_{name}" for name in self.units}
+        found |= {f"time_in_{name}" for name in self.regimes}
+        names = [each.name for each in self.switches]
+        return found | {
+            f"{which}_{name}" for name in names for which in ("count", "first")
+        }
+
+    def check_regime(self, start: Mapping[str, Any]) -> None:
+        """Refuse a start in a regime that there is not."""
+        self.composition.numbers(start.get("regime"))
+
+    def check_parameter(self, name: str) -> None:
+        """Refuse a parameter that there is not."""
+        if name not in self.parameters:
+            near = suggestion(name, self.parameters)
+            raise ValueError(f"{self.name}: parameter {name!r} is unknown; {near}")
+
+    @staticmethod
+    def _check_free(what: str, names: Mapping[str, Any], taken: Any) -> None:
+        for name in names:
+            if name in taken:
+                raise ValueError(
+                    f"{what} {name!r}: the name is taken by an argument, a state, a start or a "
+                    "result; choose another"
+                )
+
+    def _rates(self, tracer: Tracer) -> list[Symbol]:
+        if not isinstance(self.field, Mapping):
+            return self._complete("the field", tracer.several("the field", self.field))
+        if self.composition.names != ("",):
+            raise ValueError(
+                "a field for each regime is for a system without components; give one function, "
+                "which reads the constants of all components"
+            )
+        total = [symbol(0.0)] * len(self.units)
+        for regime in self.regimes:
+            if regime not in self.field:
+                raise ValueError(f"the field has no function for regime {regime!r}")
+            what = f"the field of {regime!r}"
+            found = tracer.several(what, self.field[regime], tracer.numbers(regime))
+            here = parameter(REGIME + _indicator(regime))
+            rates = self._complete(what, found)
+            total = [
+                a if b is symbol(0.0) else a + here * b
+                for a, b in zip(total, rates, strict=True)
+            ]
+        return total
+
+    def _complete(self, what: str, found: Mapping[str, Symbol]) -> list[Symbol]:
+        for name in self.units:
+            if name not in found:
+                raise ValueError(
+                    f"{what} lacks the rate of the state {name!r}; what an algebraic equation "
+                    "gives is no state: solve the equation for it, or differentiate it"
+                )
+        return [found[name] for name in self.units]
+
+    def _trace(self) -> Traced:
+        tracer = Tracer(self.states, self.parameters, self.composition)
+        rates = self._rates(tracer)
+        kinds: list[str] = []
+        leaves = [self._leaves(tracer, switch) for switch in self.switches]
+        switches = [
+            self._trace_switch(tracer, switch, left, kinds)
+            for switch, left in zip(self.switches, leaves, strict=True)
+        ]
+        stops = [tracer.one(f"stop {name!r}", f) for name, f in self.stops.items()]
+        outputs = [
+            tracer.one(f"output {name!r}", f) for name, (_, f) in self.outputs.items()
+        ]
+        starts = [
+            tuple(self._trace_start(tracer, each) for each in entries)
+            for entries in self.composition.starts
+        ]
+        for entries in starts:
+            if entries and entries[-1][1] is not None:
+                raise ValueError(
+                    "starts_in has no last resort: end it with a regime alone"
+                )
+        every = [*rates, *stops, *outputs, *(each.surface for each in switches)]
+        every += [value for each in switches for value in each.reset.values()]
+        every += [c for each in switches for _, c, _ in each.targets if c is not None]
+        timed = any(node is tracer.time for node in in_order(every))
+        unit = parameter(TIME_UNIT)
+        if callable(self.time_scale) or self.time_scale != 1.0:
+            rates = [rate * unit for rate in rates]
+        surfaces, falls, rises, owner = self._watch(tracer, switches, leaves, stops)
+        indicators = [_indicator(name) for name in self.regimes] * isinstance(
+            self.field, Mapping
+        )
+        masks = np.eye(len(self.regimes))[:, : len(indicators)]
+        ends = tracer.first_constant + len(indicators) * np.arange(
+            len(tracer.first_constant)
+        )
+        traced = Traced(
+            variables=(*tracer.variables, *([tracer.time] * timed)),
+            size=len(self.units),
+            rates=(*rates, *([unit] * timed)),
+            parameters=(*self.parameters, TIME_UNIT),
+            constants=tuple(REGIME + c for c in (*tracer.constants, *indicators)),
+            regimes=np.hstack([tracer.table(), masks]),
+            component_of=self.composition.component_of,
+            first_constant=ends,
+            surfaces=tuple(surfaces),
+            falls=falls,
+            rises=rises,
+            owner=owner,
+            switches=tuple(switches),
+            kinds=tuple(kinds),
+            outputs=tuple(outputs),
+            starts=tuple(starts),
+        )
+        check_progress(tracer, traced, [each.name for each in self.switches], leaves)
+        return traced
+
+    def _trace_switch(
+        self, tracer: Tracer, switch: Switch, leaves: Sequence[int], kinds: list[str]
+    ) -> SwitchSymbols:
+        what = f"switch {switch.name!r}"
+        surface = tracer.one(f"{what}: when", switch.when)
+        for regime in leaves:
+            inside = tracer.one(
+                f"{what}: when", switch.when, tracer.numbers(self.name_of(regime))
+            )
+            (height,) = evaluate([inside], tracer.samples(np.random.default_rng(0)))
+            if not inside.varies or not np.any(height):
+                raise ValueError(
+                    f"{what}: its surface is constant in regime {self.name_of(regime)!r}; leave "
+                    "that regime out of `leaves`"
+                )
+        given = [switch.to] if isinstance(switch.to, str) else list(switch.to)
+        if not given or not (isinstance(given[-1], str) or given[-1][1] is None):
+            raise ValueError(
+                f"{what}: `to` has no last resort; end it with a regime alone"
+            )
+        targets = []
+        for entry in given:
+            regime, condition, kind = (
+                (entry, None, switch.name)
+                if isinstance(entry, str)
+                else (*entry, switch.name)[:3]
+            )
+            if kind not in kinds:
+                kinds.append(kind)
+            symbols = (
+                None
+                if condition is None
+                else tracer.one(f"{what}: to {regime!r}", condition)
+            )
+            targets.append((tracer.regime(what, regime), symbols, kinds.index(kind)))
+        reset = tracer.several(f"{what}: reset", switch.reset) if switch.reset else {}
+        places = {self.states.index(name): value for name, value in reset.items()}
+        return SwitchSymbols(surface, tuple(targets), places)
+
+    def name_of(self, regime: int) -> str:
+        """The name of a regime, with its component's."""
+        return list(self.regimes)[regime]
+
+    def _leaves(self, tracer: Tracer, switch: Switch) -> list[int]:
+        names = [switch.leaves] if isinstance(switch.leaves, str) else switch.leaves
+        return [tracer.regime(f"switch {switch.name!r}", name) for name in names]
+
+    def _trace_start(
+        self, tracer: Tracer, entry: Any
+    ) -> tuple[int, Symbol | None, Symbol | None]:
+        if isinstance(entry, str):
+            return tracer.regime("starts_in", entry), None, None
+        regime, condition, equality = (*entry, None)[:3]
+        equal = (
+            None if equality is None else tracer.one(f"starts_in {regime!r}", equality)
+        )
+        if condition is not None:
+            condition = tracer.one(f"starts_in {regime!r}", condition)
+        return tracer.regime("starts_in", regime), condition, equal
+
+    def _watch(
+        self,
+        tracer: Tracer,
+        switches: Sequence[SwitchSymbols],
+        leaves: Sequence[Sequence[int]],
+        stops: Sequence[Symbol],
+    ) -> tuple[list[Symbol], np.ndarray, np.ndarray, np.ndarray]:
+        """Surfaces without those that another one is, but for its sign, and who watches them.
+
+        Each has one component as its owner; the first one watches the stops.
+        """
+        probe = tracer.samples(np.random.default_rng(1))
+        surfaces: list[Symbol] = []
+        prints: list[np.ndarray] = []
+        watched: list[tuple[int, int, int, int]] = []  # regime, surface, rises, switch
+        first = self.composition.regimes_of(0).tolist()
+        places = [*leaves, *[first] * len(stops)]
+        owner: list[int] = []
+        every = [*(each.surface for each in switches), *stops]
+        for number, (surface, regimes) in enumerate(zip(every, places, strict=True)):
+            with np.errstate(all="ignore"):
+                (value,) = evaluate([surface], probe)
+            mine = np.broadcast_to(value, 32)
+            component = int(self.composition.component_of[regimes[0]]) if regimes else 0
+            others = [i for i, each in enumerate(owner) if each == component]
+            same = [i for i in others if np.allclose(mine, prints[i], 1e-12, 0)]
+            opposite = [i for i in others if np.allclose(-mine, prints[i], 1e-12, 0)]
+            if not same + opposite:
+                same = [len(surfaces)]
+                surfaces.append(surface)
+                prints.append(mine)
+                owner.append(component)
+            rises = int(not same)
+            watched += [
+                (regime, (same + opposite)[0], rises, number) for regime in regimes
+            ]
+        if len(surfaces) > MOST_SURFACES:
+            raise ValueError(
+                f"{len(surfaces)} surfaces; at most {MOST_SURFACES} can be watched"
+            )
+        table = np.full((2, len(self.regimes), len(surfaces)), -1, np.int64)
+        for regime, index, rises, number in watched:
+            if table[rises, regime, index] >= 0:
+                names = [each.name for each in self.switches] + list(self.stops)
+                earlier = names[table[rises, regime, index]]
+                raise ValueError(
+                    f"{earlier!r} and {names[number]!r} fire at the same surface in regime "
+                    f"{self.name_of(regime)!r}; make them one switch whose `to` decides"
+                )
+            table[rises, regime, index] = number
+        falls, rises_ = map(np.ascontiguousarray, table)
+        return surfaces, falls, rises_, np.array(owner, np.int64)
+
+    @cached_property
+    def integrated(self) -> Traced:
+        """The system as the integrator takes it."""
+        return self.traced.with_derived()
+
+    @cached_property
+    def derived(self) -> tuple[Any, list[str]]:
+        """What computes the derived parameters of runs, and the names that it is given."""
+        return numpy_function(self.integrated.derived)
+
+    @cached_property
+    def at_switches(self) -> tuple[Any, list[str]]:
+        """Likewise what is computed from the regimes' constants."""
+        return numpy_function(self.integrated.switched)
+
+    @cached_property
+    def text(self) -> dict[str, str]:
+        """What the system is, as text: for the attributes of its datasets."""
+        return describe(self.traced, self.composition, self.states, tuple(self.outputs))
+
+    @cached_property
+    def joint(self) -> Joint:
+        """The regimes of all components at once."""
+        return Joint(self.traced, self.states)
+
+    @cached_property
+    def _starts(self) -> Starts:
+        return Starts(self.traced, self.composition)
+
+    def first_regimes(
+        self, values: Mapping[str, Any], size: int, chosen: Any = None
+    ) -> np.ndarray:
+        """The regime of each component in which each run starts, (size, components).
+
+        Args:
+            values: states, parameters and ``time`` as arrays of that size.
+            chosen: what a start gives as ``regime``; by default that of the system's start. What
+                neither gives is what fits.
+        """
+        chosen = self.start.get("regime") if chosen is None else chosen
+        return self._starts.regimes(values, size, self.composition.numbers(chosen))
+
+
+def _components(
+    regimes: Any, switches: Any, starts_in: Any, components: Any
+) -> Mapping[str, Component]:
+    """The components of a system, from what it is given."""
+    if components is None:
+        if regimes is None:
+            raise TypeError("System: regimes, or components, are needed")
+        return {"": Component(regimes, switches, starts_in)}
+    for name, value in (
+        ("regimes", regimes),
+        ("switches", switches),
+        ("starts_in", starts_in),
+    ):
+        if value:
+            raise ValueError(
+                f"{name}: a system with components has them there; move them into a component"
+            )
+    return dict(components)
+
+
+def _indicator(regime: str) -> str:
+    return f"is {regime}"
