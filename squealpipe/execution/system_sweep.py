@@ -62,7 +62,7 @@ class SystemSweep:
         way = self.fixed.get("run", "ensemble")
         if way not in WAYS:
             raise ValueError(f"run = {way!r}: {suggestion(way, WAYS)}")
-        known = [*(f"{name}0" for name in self.system.states), *self.system.parameters]
+        known = [*self.system.start_names.values(), *self.system.parameters]
         options = [
             name
             for name in inspect.signature(WAYS[way]).parameters
@@ -88,8 +88,8 @@ class SystemSweep:
         """The dataset, its dimensions starts first."""
         given = {**self.fixed, **self.vary}
         way = WAYS[given.pop("run", "ensemble")]
-        states = self.system.states
-        start = {name: given.pop(f"{name}0") for name in states if f"{name}0" in given}
+        names = self.system.start_names.items()
+        start = {state: given.pop(name) for state, name in names if name in given}
         return way(
             self.system, given.pop("t_end"), start=start, workers=workers, **given
         )

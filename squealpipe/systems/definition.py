@@ -174,6 +174,12 @@ class System:
         """Names of the states."""
         return tuple(self.units)
 
+    @cached_property
+    def start_names(self) -> dict[str, str]:
+        """What starts are called: ``x0``, or ``x_0`` of every state where a state is named so."""
+        collides = any(f"{name}0" in self.units for name in self.units)
+        return {name: f"{name}{'_' * collides}0" for name in self.units}
+
     def __repr__(self) -> str:
         switches = ", ".join(each.name for each in self.switches)
         return f"System({self.name!r}: {', '.join(self.states)}; switches {switches or 'none'})"
@@ -213,8 +219,9 @@ class System:
         }
         found |= {f"late_{name}" for name in found}
         found |= {
-            f"{name}{end}" for name in self.units for end in ("0", "_start", "_path")
+            f"{name}{end}" for name in self.units for end in ("_start", "_path")
         }
+        found |= set(self.start_names.values())
         found |= {f"event_{name}" for name in self.units}
         found |= {f"time_in_{name}" for name in self.regimes}
         names = [each.name for each in self.switches]

@@ -421,7 +421,7 @@ def outer_product(
             f"{name} at t = 0" if at_start else f"parameter {name}",
             system.units.get(name, "1"),
         )
-        dim = f"{name}0" if at_start else name
+        dim = system.start_names[name] if at_start else name
         coordinates[dim] = (dim, given[name], label)
     return Grid(shape, values, coordinates, fixed, (start or {}).get("regime"))
 

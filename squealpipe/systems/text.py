@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 from squealpipe.methods.taylor.scalar import REGIME
-from squealpipe.methods.taylor.symbols import FUNCTIONS, Symbol
+from squealpipe.methods.taylor.symbols import FUNCTIONS, Symbol, in_order
 from squealpipe.systems.components import Composition
 from squealpipe.systems.trace import Traced
+
+LONG = 20_000
+"""Characters beyond which parts that occur several times are written once, under a name."""
 
 
 def describe(
@@ -18,25 +22,25 @@ def describe(
 ) -> dict[str, str]:
     """Rates, surfaces, resets and regimes, each as an expression in names."""
     regimes = list(composition.regimes)
-    found = {
-        f"d{name}/dt": expression(rate)
+    roots = {
+        f"d{name}/dt": rate
         for name, rate in zip(states, traced.rates, strict=False)
     }
+    margins: dict[str, Symbol | None] = {}
     for switch, symbols in zip(composition.switches, traced.switches, strict=True):
         leaves = (
             switch.leaves
             if isinstance(switch.leaves, str)
             else ", ".join(switch.leaves)
         )
-        found[f"{switch.name} leaves {leaves} when"] = expression(symbols.surface)
+        roots[f"{switch.name} leaves {leaves} when"] = symbols.surface
         for regime, condition, kind in symbols.targets:
             name = regimes[regime]
-            text = "otherwise" if condition is None else f"{expression(condition)} >= 0"
-            found[f"{switch.name} to {name} as {traced.kinds[kind]}"] = text
+            margins[f"{switch.name} to {name} as {traced.kinds[kind]}"] = condition
         for place, value in symbols.reset.items():
-            found[f"{switch.name} resets {states[place]}"] = expression(value)
-    for name, output in zip(outputs, traced.outputs, strict=True):
-        found[name] = expression(output)
+            roots[f"{switch.name} resets {states[place]}"] = value
+    roots |= dict(zip(outputs, traced.outputs, strict=True))
+    found = _written(roots, margins)
     for row, component, name in zip(
         traced.regimes, traced.component_of, regimes, strict=True
     ):
@@ -49,14 +53,45 @@ def describe(
     return found
 
 
-def expression(node: Symbol) -> str:
-    """A symbol as a Python expression."""
+def _written(
+    roots: dict[str, Symbol], margins: dict[str, Symbol | None]
+) -> dict[str, str]:
+    """Expressions, and conditions that are to be at least zero."""
+    every = [*roots.values(), *(each for each in margins.values() if each is not None)]
+    nodes = in_order(every)
+    lengths: dict[int, int] = {}
+    uses = dict.fromkeys(map(id, nodes), 0)
+    for node in nodes:
+        inner = [each for each in node.arguments if isinstance(each, Symbol)]
+        lengths[id(node)] = 8 + sum(lengths[id(each)] for each in inner)
+        for each in inner:
+            uses[id(each)] += 1
+    names: dict[int, str] = {}
+    found: dict[str, str] = {}
+    if sum(lengths[id(each)] for each in every) > LONG:
+        for node in nodes:
+            if uses[id(node)] > 1 and lengths[id(node)] > 20:
+                text = expression(node, names)
+                names[id(node)] = f"part{len(names) + 1}"
+                found[names[id(node)]] = text
+    found |= {what: expression(root, names) for what, root in roots.items()}
+    for what, margin in margins.items():
+        text = "otherwise" if margin is None else f"{expression(margin, names)} >= 0"
+        found[what] = text
+    return found
+
+
+def expression(node: Symbol, names: Mapping[int, str] = MappingProxyType({})) -> str:
+    """A symbol as a Python expression; parts that have a name, by ``id``, by their name."""
+    if id(node) in names:
+        return names[id(node)]
     if node.kind in {"variable", "parameter"}:
         return str(node.arguments[0]).removeprefix(REGIME)
     if node.kind == "number":
         return f"{node.arguments[0]:.17g}"
     inner = [
-        expression(a) if isinstance(a, Symbol) else f"{a:g}" for a in node.arguments
+        expression(a, names) if isinstance(a, Symbol) else f"{a:g}"
+        for a in node.arguments
     ]
     if node.kind in FUNCTIONS:
         return f"{node.kind}({inner[0]})"

@@ -38,7 +38,7 @@ def sensitivities(
         values: of states at t = 0 and parameters.
         motion: the run, with its states at ``times``.
     """
-    starts = [f"{state}0" for state in system.states]
+    starts = list(system.start_names.values())
     known = [*system.parameters, *starts]
     for name in names:
         if name not in known:

@@ -122,7 +122,10 @@ class _Kept:
         self.whole, self.number = structure, number
         self.omega, self.modes = modes_at_rest(structure, number)
         modes = self.modes
+        at_rest = modes.T @ (structure.stiffness_at_rest @ modes)
+        # round-off of the modes would couple them
         self.stiffness = modes.T @ (structure.stiffness @ modes)
+        self.stiffness += np.diag(self.omega**2) - at_rest
         self.damping = modes.T @ (structure.damping @ modes)
         ratios = np.zeros(number)
         asked = (

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from os import PathLike
 
     import xarray as xr
+
+    from squealpipe.systems.system import System
 
 
 class Structure:
@@ -225,6 +227,12 @@ class Structure:
         from squealpipe.systems.structures.reduction import reduce
 
         return reduce(self, **options)
+
+    def system(self, displacements: Mapping[str, Any] | None = None) -> System:
+        """As a system; see :func:`squealpipe.systems.structures.motion_system.system`."""
+        from squealpipe.systems.structures.motion_system import system
+
+        return system(self, displacements)
 
 
 def _ratios(given: Any, size: int) -> np.ndarray:

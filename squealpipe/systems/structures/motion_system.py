@@ -1,0 +1,346 @@
+"""A structure as a system: one component for each contact, with the regimes of A1."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squealpipe.laws.tables import is_table, pieces_of
+from squealpipe.parameters import brief, is_finite_number, is_whole_number
+from squealpipe.systems.components import MOST_COMPONENTS, Component, Switch
+from squealpipe.systems.structures.dynamics import Motion, Numbers, reads_speed, total
+from squealpipe.systems.structures.modes import modes_at_rest
+from squealpipe.systems.definition import MOST_STATES
+from squealpipe.systems.system import System
+
+if TYPE_CHECKING:
+    from squealpipe.systems.structures.structure import Structure
+
+SLIP = {"slip_slower": 1.0, "slip_faster": -1.0}
+"""Regimes of slip by the sign of the sliding speed."""
+HIDDEN = 1e-14
+"""Over a typical force: a contact that friction lacks no more than this to hold sticks."""
+FIRST = 1e150
+"""Weight of what decides before anything else is asked."""
+Surface = Callable[[Any, Any, Any, Any], Any]
+
+
+def system(
+    structure: Structure, displacements: Mapping[str, Any] | None = None
+) -> System:
+    """The structure with contact loss, friction and stick as a :class:`squealpipe.System`.
+
+    States are ``q1``…, ``v1``…: amplitudes of the modes of a reduced structure, else displacements.
+    Parameters are ``mu``, ``belt_speed``, ``preload`` (a factor of all, and of the load that
+    balances them) and what the friction law reads. Each contact is a component with the regimes
+    ``slip_slower``, ``slip_faster`` (than the belt), ``stick`` and ``separated``, in pieces where
+    friction is a table; its outputs are ``<contact>_normal_force``, N, and ``<contact>_speed``,
+    the speed of sliding, m/s.
+
+    Args:
+        displacements: further outputs, m: name → a degree of freedom of the whole structure, or
+            {degree of freedom: coefficient}, counted from 0.
+
+    Raises:
+        ValueError: too many degrees of freedom or contacts; a degree of freedom that does not
+            exist.
+    """
+    size = structure.size
+    if 2 * size > MOST_STATES:
+        raise ValueError(
+            f"{size} degrees of freedom: a system can have {MOST_STATES // 2}; "
+            "take structure.reduce().system()"
+        )
+    if len(structure.contacts) > MOST_COMPONENTS:
+        raise ValueError(
+            f"{len(structure.contacts)} contacts: a system can have {MOST_COMPONENTS}"
+        )
+    equations = Equations(structure)
+    scale = _Scale.of(structure)
+    unit = "m" if structure.modes is None else "kg^0.5 m"
+    places = range(1, size + 1)
+    states: dict[str, Any] = {f"q{i}": (unit, scale.displacement) for i in places}
+    states |= {f"v{i}": (f"{unit} s-1", scale.velocity) for i in places}
+    contacts = {
+        each.name: _Contact(equations, place, scale.force).component()
+        for place, each in enumerate(structure.contacts)
+    }
+    parts: dict[str, Any] = {"components": contacts}
+    if not contacts:
+        parts = {"regimes": {"free": {}}}
+    return System(
+        f"structure of {size} degrees of freedom",
+        states=states,
+        parameters=_parameters(structure),
+        **parts,
+        field=equations.field,
+        start=dict.fromkeys(states, 0.0),
+        outputs=equations.outputs(displacements or {}),
+        time_scale=scale.time,
+    )
+
+
+def _parameters(structure: Structure) -> dict[str, float]:
+    friction = structure.friction
+    found = {"mu": friction.mu, "belt_speed": structure.belt_speed, "preload": 1.0}
+    if friction.mu_static is not None:
+        found["mu_static"] = friction.mu_static
+    if reads_speed(friction):
+        found["friction_speed"] = friction.friction_speed
+    return found
+
+
+class Equations:
+    """The equations of motion of a structure, traced once for each state and regime."""
+
+    def __init__(self, structure: Structure) -> None:
+        self.structure, self.numbers = structure, Numbers.of(structure)
+        # functions of one system are called with the same few objects again and again
+        self.at = lru_cache(maxsize=4)(self._at)
+
+    def _at(self, s: Any, p: Any, r: Any) -> Motion:
+        return Motion(self.structure, self.numbers, s, p, r)
+
+    def field(self, t: Any, s: Any, p: Any, r: Any) -> dict[str, Any]:  # noqa: ARG002
+        """Rates of all states."""
+        rates = self.at(s, p, r).accelerations
+        places = range(1, self.structure.size + 1)
+        found = {f"q{i}": getattr(s, f"v{i}") for i in places}
+        return found | {f"v{i}": rate for i, rate in zip(places, rates, strict=True)}
+
+    def of_contact(self, what: str, place: int) -> Surface:
+        """A quantity of one contact, by its name in :class:`Motion`."""
+        return lambda t, s, p, r: getattr(self.at(s, p, r), what)[place]
+
+    def outputs(self, displacements: Mapping[str, Any]) -> dict[str, Any]:
+        """Normal force and sliding speed of each contact, and displacements."""
+        found: dict[str, Any] = {}
+        for place, contact in enumerate(self.structure.contacts):
+            force = self.of_contact("normal_forces", place)
+            speed = self.of_contact("sliding_speeds", place)
+            found[f"{contact.name}_normal_force"] = ("N", force)
+            found[f"{contact.name}_speed"] = ("m s-1", speed)
+        for name, given in displacements.items():
+            found[name] = ("m", _displacement(self._shape(name, given)))
+        return found
+
+    def _shape(self, name: str, given: Any) -> np.ndarray:
+        """What a displacement of the whole structure is of each state's."""
+        modes = self.structure.modes
+        if modes is None:
+            modes = np.eye(self.structure.size)
+        chosen = given if isinstance(given, Mapping) else {given: 1.0}
+        shape = np.zeros(modes.shape[1])
+        for place, coefficient in chosen.items():
+            if not is_whole_number(place) or not 0 <= place < len(modes):
+                raise ValueError(
+                    f"displacements: {name} = {brief(given)}: degrees of freedom are 0 to "
+                    f"{len(modes) - 1}"
+                )
+            if not is_finite_number(coefficient):
+                raise ValueError(
+                    f"displacements: {name} = {brief(given)}: finite coefficients are needed"
+                )
+            shape += float(coefficient) * modes[int(place)]
+        return shape
+
+
+def _displacement(shape: np.ndarray) -> Surface:
+    def displacement(t: Any, s: Any, p: Any, r: Any) -> Any:
+        return total(shape, [getattr(s, f"q{i}") for i in range(1, len(shape) + 1)])
+
+    return displacement
+
+
+class _Scale:
+    """Typical sizes of a structure's motion, for error control and default times."""
+
+    def __init__(
+        self, time: float, displacement: float, velocity: float, force: float
+    ) -> None:
+        self.time, self.displacement = time, displacement
+        self.velocity, self.force = velocity, force
+
+    @classmethod
+    def of(cls, structure: Structure) -> _Scale:
+        """By the preloads, or where there are none by load, or by the belt."""
+        omega, modes = modes_at_rest(structure)
+        elastic = omega[omega > 1e-6 * omega.max()]
+        mean = float(np.sqrt((elastic**2).mean())) if elastic.size else 1.0
+        # amplitudes in which directions of contacts have a length
+        reach = np.abs(structure.normals).max(axis=0, initial=0.0)
+        pressed = np.abs(structure.preloads) / structure.stiffnesses
+        displacement = float((pressed / reach).max(initial=0.0))
+        if not displacement:
+            amplitudes = modes.T @ structure.load
+            static = amplitudes[omega > 0] / omega[omega > 0] ** 2
+            displacement = float(np.abs(modes[:, omega > 0] @ static).max(initial=0.0))
+        if not displacement:
+            displacement = abs(structure.belt_speed) / mean or 1.0
+        force = float(np.abs(structure.preloads).max(initial=0.0))
+        stiffest = float(structure.stiffnesses.max(initial=0.0))
+        lowest = float(elastic[0]) if elastic.size else 1.0
+        return cls(
+            1.0 / lowest,
+            displacement,
+            displacement * mean,
+            force or stiffest * displacement,
+        )
+
+
+class _Contact:
+    """Regimes and switches of one contact."""
+
+    def __init__(self, equations: Equations, place: int, force: float) -> None:
+        self.equations, self.place, self.force = equations, place, force
+        friction = equations.structure.friction
+        self.speed_unit = friction.friction_speed
+        self.pieces: list[dict[str, float]] = [{}]
+        if is_table(friction.friction_law):
+            self.pieces = pieces_of(friction.friction_law).constants("mu")
+        self.pressing = equations.of_contact("pressing", place)
+        self.speed = equations.of_contact("sliding_speeds", place)
+        self.limit = equations.of_contact("limits", place)
+
+    def component(self) -> Component:
+        """The contact as a component of a system."""
+        return Component(
+            regimes=self._regimes(),
+            switches=[*self._switches(), *self._knots()],
+            starts_in=self._starts(),
+        )
+
+    def _name(self, slip: str, piece: int) -> str:
+        return f"{slip}_{piece + 1}" if len(self.pieces) > 1 else slip
+
+    def _slips(self) -> list[tuple[str, int]]:
+        """Regimes of slip, the pieces of higher speeds first."""
+        return [(slip, i) for slip in SLIP for i in reversed(range(len(self.pieces)))]
+
+    def _regimes(self) -> dict[str, dict[str, float]]:
+        first = self.pieces[0]
+        found = {
+            self._name(slip, i): {
+                "contact": 1.0, "direction": SLIP[slip], "stick": 0.0, **self.pieces[i]
+            }
+            for slip, i in self._slips()
+        }  # fmt: skip
+        found["stick"] = {"contact": 1.0, "direction": 0.0, "stick": 1.0, **first}
+        found["separated"] = {"contact": 0.0, "direction": 0.0, "stick": 0.0, **first}
+        return found
+
+    def _holding(self, t: Any, s: Any, p: Any, r: Any) -> Any:  # noqa: ARG002
+        """The friction that would keep the contact on the belt."""
+        return self.equations.at(s, p, r).holding(self.place)
+
+    def _holds(self, t: Any, s: Any, p: Any, r: Any) -> Any:
+        """Whether friction can, ≥ 0, whatever its sign."""
+        hidden = HIDDEN * self.force
+        return self.limit(t, s, p, r) ** 2 + hidden**2 - self._holding(t, s, p, r) ** 2
+
+    def _margin(self, sign: float) -> Surface:
+        """What the friction of stick lacks to its limit, on one side."""
+        friction = self.equations.of_contact("stick_friction", self.place)
+        return lambda t, s, p, r: self.limit(t, s, p, r) - sign * friction(t, s, p, r)
+
+    def _beyond(self, slip: str, piece: int) -> Surface:
+        """Whether it slips to this side, at a speed of this piece or a higher one."""
+        start = self.pieces[piece].get("mu_start", 0.0) * self.speed_unit
+        return lambda t, s, p, r: SLIP[slip] * self.speed(t, s, p, r) - start
+
+    def _to_belt(self, t: Any, s: Any, p: Any, r: Any) -> dict[str, Any]:
+        """Velocities with the contact on the belt, by an impulse of friction."""
+        numbers = self.equations.numbers
+        share = numbers.drags[:, self.place] / numbers.mobility[self.place, self.place]
+        speed = self.speed(t, s, p, r)
+        return {
+            f"v{i}": getattr(s, f"v{i}") + float(part) * speed
+            for i, part in enumerate(share, 1)
+            if part
+        }
+
+    def _landing(self) -> list[Any]:
+        """Where contact begins, friction is 0 and holds nothing: the contact slips."""
+        targets = [
+            (self._name(slip, i), self._beyond(slip, i), "contact")
+            for slip, i in self._slips()
+        ]
+        return [*targets[:-1], (targets[-1][0], None, "contact")]
+
+    def _switches(self) -> Iterator[Switch]:
+        closed = [name for name in self._regimes() if name != "separated"]
+        slower, faster = (self._name(slip, 0) for slip in SLIP)
+        yield Switch("separation", closed, self.pressing, "separated")
+        yield Switch("contact", "separated", _negative(self.pressing), self._landing())
+        yield Switch(
+            "reversal",
+            (slower, faster),
+            lambda t, s, p, r: self._of(r).direction * self.speed(t, s, p, r),
+            [
+                ("stick", self._holds, "stick"),
+                (faster, lambda t, s, p, r: self._of(r).direction, "reversal"),
+                (slower, None, "reversal"),
+            ],
+            reset=self._to_belt,
+        )
+        yield Switch("slip", "stick", self._margin(1.0), [(slower, None, "slip")])
+        yield Switch("slip_back", "stick", self._margin(-1.0), [(faster, None, "slip")])
+
+    def _of(self, r: Any) -> Any:
+        return getattr(r, self.equations.structure.contacts[self.place].name)
+
+    def _knots(self) -> Iterator[Switch]:
+        """Where a table of friction goes over from one of its pieces to the next."""
+
+        def past(end: str) -> Surface:
+            def surface(t: Any, s: Any, p: Any, r: Any) -> Any:
+                knot = getattr(self._of(r), f"mu_{end}") * self.speed_unit
+                return self._of(r).direction * self.speed(t, s, p, r) - knot
+
+            return surface
+
+        for slip in SLIP:
+            for i in range(len(self.pieces) - 1):
+                here, there = self._name(slip, i), self._name(slip, i + 1)
+                up, down = [(there, None, "knot")], [(here, None, "knot")]
+                yield Switch(f"{here} to {there}", here, _negative(past("end")), up)
+                yield Switch(f"{there} to {here}", there, past("start"), down)
+
+    def _starts(self) -> list[Any]:
+        """In which regime a run starts: the first that fits.
+
+        Where the contact is just closed, its velocity decides; on the belt the friction that
+        would hold it.
+        """
+        slower, faster = (self._name(slip, 0) for slip in SLIP)
+        normal = self.equations.numbers.normals[:, self.place]
+        along = self.equations.numbers.tangentials[:, self.place]
+
+        def rises(t: Any, s: Any, p: Any, r: Any) -> Any:
+            motion = self.equations.at(s, p, r)
+            lifts = total(normal, motion.velocities)
+            return FIRST * lifts + total(normal, motion.accelerations)
+
+        def on_belt(t: Any, s: Any, p: Any, r: Any) -> Any:
+            return self.speed(t, s, p, r) / float(np.abs(along).max())
+
+        def above(t: Any, s: Any, p: Any, r: Any) -> Any:
+            return -FIRST * self.pressing(t, s, p, r) - self.force
+
+        slips = [(self._name(*each), self._beyond(*each)) for each in self._slips()]
+        return [
+            ("separated", rises, self.pressing),
+            ("separated", above),
+            ("stick", self._holds, on_belt),
+            (slower, self._holding, on_belt),
+            (faster, lambda t, s, p, r: -self._holding(t, s, p, r), on_belt),
+            *slips[:-1],
+            slips[-1][0],
+        ]
+
+
+def _negative(surface: Surface) -> Surface:
+    return lambda t, s, p, r: -surface(t, s, p, r)
