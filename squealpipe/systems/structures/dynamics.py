@@ -8,7 +8,7 @@ full size, whose inverse holds constants alone and so is computed when a regime 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import SimpleNamespace
@@ -257,7 +257,7 @@ def friction_at(friction: Friction, p: Any, regime: Any = None) -> Any:
     return q
 
 
-def total(coefficients: Sequence[Any], values: Sequence[Any]) -> Any:
+def total(coefficients: Iterable[Any], values: Sequence[Any]) -> Any:
     """Σ c x without terms whose coefficient is 0."""
     found: Any = 0.0
     for coefficient, value in zip(coefficients, values, strict=True):
