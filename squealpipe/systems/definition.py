@@ -218,9 +218,7 @@ class System:
             f"{name}{end}" for name in (*self.units, *self.outputs) for end in ends
         }
         found |= {f"late_{name}" for name in found}
-        found |= {
-            f"{name}{end}" for name in self.units for end in ("_start", "_path")
-        }
+        found |= {f"{name}{end}" for name in self.units for end in ("_start", "_path")}
         found |= set(self.start_names.values())
         found |= {f"event_{name}" for name in self.units}
         found |= {f"time_in_{name}" for name in self.regimes}

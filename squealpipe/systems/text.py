@@ -23,8 +23,7 @@ def describe(
     """Rates, surfaces, resets and regimes, each as an expression in names."""
     regimes = list(composition.regimes)
     roots = {
-        f"d{name}/dt": rate
-        for name, rate in zip(states, traced.rates, strict=False)
+        f"d{name}/dt": rate for name, rate in zip(states, traced.rates, strict=False)
     }
     margins: dict[str, Symbol | None] = {}
     for switch, symbols in zip(composition.switches, traced.switches, strict=True):

@@ -11,9 +11,9 @@ import numpy as np
 from squealpipe.laws.tables import is_table, pieces_of
 from squealpipe.parameters import brief, is_finite_number, is_whole_number
 from squealpipe.systems.components import MOST_COMPONENTS, Component, Switch
+from squealpipe.systems.definition import MOST_STATES
 from squealpipe.systems.structures.dynamics import Motion, Numbers, reads_speed, total
 from squealpipe.systems.structures.modes import modes_at_rest
-from squealpipe.systems.definition import MOST_STATES
 from squealpipe.systems.system import System
 
 if TYPE_CHECKING:
