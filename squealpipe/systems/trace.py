@@ -97,7 +97,7 @@ class Traced:
     def with_derived(self) -> Self:
         """The same as the integrator takes it: what is constant for long stands apart."""
         once, derived = self.set_apart(REGIME, DERIVED)
-        made, switched = once.set_apart("", SWITCHED)
+        made, switched = once.set_apart(None, SWITCHED)
         names = [f"{DERIVED}{i}" for i in range(len(derived))]
         return replace(
             made,
@@ -106,10 +106,18 @@ class Traced:
             switched=switched,
         )
 
-    def set_apart(self, skipped: str, prefix: str) -> tuple[Self, tuple[Symbol, ...]]:
-        """The same with its constant parts as parameters of their own, and those parts."""
+    def set_apart(
+        self, skipped: str | None, prefix: str
+    ) -> tuple[Self, tuple[Symbol, ...]]:
+        """The same with its constant parts as parameters of their own, and those parts.
+
+        Args:
+            skipped: beginning of the names of parameters that do not count. Without it only
+                what steps read is looked through: a condition of a switch is computed at that
+                switch, not at all of them.
+        """
         roots = [*self.rates, *self.surfaces, *self.outputs]
-        for switch in self.switches:
+        for switch in self.switches if skipped else ():
             roots += [switch.surface, *switch.reset.values()]
             roots += [c for _, c, _ in switch.targets if c is not None]
         parts = constant_parts(roots, skipped)

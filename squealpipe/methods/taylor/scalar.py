@@ -4,20 +4,16 @@ Arguments are addresses: ``z`` of the state (with the time last, if it is explic
 lane's parameters, which the constants of its regimes follow, ``out`` of the results.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from squealpipe.methods.taylor import simd
-from squealpipe.methods.taylor.symbols import (
-    FUNCTIONS,
-    Symbol,
-    derivative,
-    in_order,
-    symbol,
-)
+from squealpipe.methods.taylor.lines import Writer
+from squealpipe.methods.taylor.sums import Sums
+from squealpipe.methods.taylor.symbols import Symbol, derivative, in_order, symbol
 
 REGIME = "regime "
 """Begins the names of parameters that are a regime's constants."""
@@ -30,74 +26,6 @@ class SwitchSymbols:
     surface: Symbol
     targets: tuple[tuple[int, Symbol | None, int], ...]
     reset: dict[int, Symbol]
-
-
-@dataclass
-class _Writer:
-    """Lines that compute symbols, each once; ``load`` gives the code of a variable or parameter."""
-
-    load: Callable[[Symbol], str]
-    prefix: str
-    lines: list[str] = field(default_factory=list)
-    names: dict[int, str] = field(default_factory=dict)
-    sizes: dict[int, str] = field(default_factory=dict)
-
-    def value(self, root: Symbol) -> str:
-        for node in in_order([root]):
-            if id(node) not in self.names:
-                name = self.names[id(node)] = f"{self.prefix}{len(self.names)}"
-                self.lines.append(f"{name} = {self._code(node)}")
-        return self.names[id(root)]
-
-    def _code(self, node: Symbol) -> str:
-        if node.kind == "number":
-            return repr(node.arguments[0])
-        if node.kind in {"variable", "parameter"}:
-            return self.load(node)
-        given = [
-            self.names[id(a)] if isinstance(a, Symbol) else repr(a)
-            for a in node.arguments
-        ]
-        if node.kind in FUNCTIONS:
-            return f"math.{node.kind}({given[0]})"
-        if node.kind == "joined":
-            c1, a1, b1, c2, a2, b2 = given
-            return f"{c1} * ({a1} * {b1}) + {c2} * ({a2} * {b2})"
-        return f" {node.kind} ".join(given)
-
-    def _without_size(self, root: Symbol) -> list[Symbol]:
-        """Nodes whose size no line computes yet: each is written once for all roots."""
-        return [node for node in in_order([root]) if id(node) not in self.sizes]
-
-    def scale(self, root: Symbol, scale_of: Callable[[Symbol], str]) -> str:
-        """Lines for the size of the terms that cancel in a sum, to which round-off is relative."""
-        self.value(root)
-        sizes = self.sizes
-        for node in self._without_size(root):
-            name = sizes[id(node)] = f"{self.prefix}z{len(self.lines)}"
-            inner = [sizes[id(a)] for a in node.arguments if isinstance(a, Symbol)]
-            value = self.names[id(node)]
-            if node.kind == "variable":
-                code = scale_of(node)
-            elif node.kind == "+":
-                code = " + ".join(inner)
-            elif node.kind == "*":
-                code = " * ".join(inner)
-            elif node.kind == "joined":
-                first, second = inner[:3], inner[3:]
-                code = f"{' * '.join(first)} + {' * '.join(second)}"
-            elif node.kind in {"sin", "cos"}:  # of a long time an angle has lost digits
-                code = f"{inner[0]} + abs({value})"
-            elif node.kind == "tanh":
-                code = f"min(1.0, {inner[0]}) + abs({value})"
-            elif node.kind == "exp":
-                code = f"abs({value}) * (1.0 + {inner[0]})"
-            elif node.kind == "log":
-                code = f"1.0 + abs({value})"
-            else:
-                code = f"abs({value})"
-            self.lines.append(f"{name} = {code}")
-        return sizes[id(root)]
 
 
 class ScalarSource:
@@ -120,8 +48,14 @@ class ScalarSource:
         self.n_parameters = len(parameters)
         self.surfaces, self.switches, self.size = surfaces, switches, size
 
-    def _writer(self, prefix: str, state: str = "z", regime: str = "") -> _Writer:
-        """With ``regime``, constants are those kept at this address."""
+    def _writer(
+        self,
+        prefix: str,
+        state: str = "z",
+        regime: str = "",
+        roots: Sequence[Symbol] = (),
+    ) -> Writer:
+        """For some roots; with ``regime``, constants are those kept at this address."""
 
         def load(node: Symbol) -> str:
             if node.kind == "variable":
@@ -131,7 +65,7 @@ class ScalarSource:
                 return f"number({regime} + {8 * (self.rows[name] - self.n_parameters)})"
             return f"number(p + {simd.ROW * self.rows[name]})"
 
-        return _Writer(load, prefix)
+        return Writer(load, prefix, Sums(roots))
 
     def settle(self, switched: Sequence[Symbol]) -> str:
         """``settle(p)``: what parameters and constants alone decide goes into the last rows."""
@@ -147,24 +81,24 @@ class ScalarSource:
 
         Three numbers a surface: its value, the size of its terms, and that of its rate's terms.
         """
-        writer = self._writer("v")
+        writer = self._writer("v", roots=[*self.surfaces, *self.rates])
 
         def size(node: Symbol) -> str:
             return f"number(sizes + {8 * self.place[id(node)]})"
 
+        rates = [writer.scale(rate, size) for rate in self.rates]
+        of_rates = {id(v): r for v, r in zip(self.variables, rates, strict=True)}
         for index, surface in enumerate(self.surfaces):
-            rate = symbol(0.0)
-            for variable, each in zip(self.variables, self.rates, strict=True):
-                rate = rate + derivative(surface, variable) * each
             for place, code in enumerate(
                 (
                     writer.value(surface),
                     writer.scale(surface, size),
-                    writer.scale(rate, size),
+                    writer.rate_scale(surface, of_rates),
                 )
             ):
                 writer.lines.append(f"put(out + {24 * index + 8 * place}, {code})")
-        return _function("gauge(z, sizes, p, out)", writer.lines)
+        lines = [*writer.room(), *writer.lines]
+        return _function("gauge(z, sizes, p, out)", lines)
 
     def change(self) -> str:
         """``change(switch, z, p, out)``: next regime, kind of event, state after the reset."""
@@ -175,7 +109,9 @@ class ScalarSource:
             *(f"put(out + {16 + 8 * i}, {z})" for i, z in enumerate(state)),
         ]
         for index, switch in enumerate(self.switches):
-            writer = self._writer("v")
+            conditions = [c for _, c, _ in switch.targets if c is not None]
+            roots = [*switch.reset.values(), *conditions]
+            writer = self._writer(f"v{index}_", roots=roots)
             for place, symbols in switch.reset.items():
                 value = writer.value(symbols)
                 writer.lines.append(f"put(out + {16 + 8 * place}, {value})")
@@ -186,6 +122,7 @@ class ScalarSource:
                     body.append(f"if {writer.value(condition)} >= 0.0:")
                     found = [f" {line}" for line in found]
                 body += found
+            body = [*writer.room(), *body]
             lines += [f"if switch == {index}:", *(f" {line}" for line in body)]
         return _function("change(switch, z, p, out)", lines)
 
@@ -206,7 +143,7 @@ class ScalarSource:
         head += [f"d{i} = number(d + {8 * i})" for i in range(size)]
         lines: list[str] = []
         for index, switch in enumerate(self.switches):
-            writer = _Writer(before.load, "v")
+            writer = Writer(before.load, "v")
             slopes = self._slopes(writer, switch.surface)
             rate = " + ".join(f"{s} * {rates[j]}" for j, s in slopes)
             along = " + ".join(f"{s} * d{j}" for j, s in slopes if j < size) or "0.0"
@@ -227,7 +164,7 @@ class ScalarSource:
         head_of = "jump(switch, at_once, delay, z, after, p, r, d, out)"
         return _function(head_of, [*head, *lines])
 
-    def _slopes(self, writer: _Writer, root: Symbol) -> list[tuple[int, str]]:
+    def _slopes(self, writer: Writer, root: Symbol) -> list[tuple[int, str]]:
         found = [(j, symbol(derivative(root, v))) for j, v in enumerate(self.variables)]
         return [
             (j, writer.value(each))
@@ -252,7 +189,7 @@ def python_function(
 ) -> Any:
     """The values of symbols as a function of some, with the functions of ``math`` or ``numpy``."""
     names = {id(each): f"a{index}" for index, each in enumerate(arguments)}
-    writer = _Writer(lambda node: names[id(node)], "v")
+    writer = Writer(lambda node: names[id(node)], "v")
     values = [writer.value(root) for root in roots]
     lines = [*writer.lines, f"return ({', '.join([*values, ''])})"]
     source = f"def function({', '.join(names.values())}):\n" + "".join(

@@ -8,13 +8,14 @@ rate limits: near rest those of the state are as long as one likes.
 """
 
 import functools
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from squealpipe.methods.taylor import simd
+from squealpipe.methods.taylor.sums import Sums
 from squealpipe.methods.taylor.symbols import (
     FUNCTIONS,
     Symbol,
@@ -97,16 +98,23 @@ class _SeriesWriter:
 
     def __init__(self, system: HybridSystem) -> None:
         self.system = system
-        self.nodes = _with_partners(in_order([*system.rates, *system.events]))
+        expressions = in_order([*system.rates, *system.events])
+        n_expressions = len(expressions)
+        self.nodes = _with_partners(expressions)
         self.number = {id(node): index for index, node in enumerate(self.nodes)}
         self.moving = [node for node in self.nodes if node.varies]
         self.place = {id(node): index for index, node in enumerate(system.variables)}
         self.events = len(self.place)
         self.count = self.events + len(system.events)
         self.joined: dict[tuple[int, ...], int] = {}
+        self.sums = Sums([*system.rates, *system.events, *self.nodes[n_expressions:]])
         for node in self.moving:
             self._prepare(node)
+            if id(node) in self.sums.slots:
+                self._keep(node)
         self.level = self._levels()
+        self.order = "o"
+        """Begins the names of one order: o of order 0, v of order k, w of the highest."""
 
     def _prepare(self, node: Symbol) -> None:
         """Places of the series that a node's sums read."""
@@ -147,18 +155,21 @@ class _SeriesWriter:
             for n in self.nodes
             if not n.varies
         ]
-        for node in self.moving:
+        body += self._tables()
+        for node in self.sums.written(self.moving):
             body += self._first(node)
         body += self._outputs("0")
+        self.order = "v"
         body += ["for k in range(1, terms - 1):"]
         inner = [f"r = k * {simd.ROW}", "inverse = number(inverses + 8 * k)"]
         for level in range(max(self.level.values()) + 1):
             here = [node for node in self.moving if self.level[id(node)] == level]
             inner += self._sums([node for node in here if _is_sum(node)])
-            for node in here:
+            for node in self.sums.written(here):
                 inner += self._later(node)
         inner += self._outputs("r")
         body += [f" {line}" for line in inner]
+        self.order = "w"
         body += [f"r = (terms - 1) * {simd.ROW}", *self._last_events()]
         head = [
             "def series(base, parameters, inverses, terms):",
@@ -167,9 +178,11 @@ class _SeriesWriter:
         return "\n".join(head + [f" {line}" for line in body]) + "\n", self.count
 
     def _v(self, node: Symbol) -> str:
-        return f"{'v' if node.varies else 'c'}{self.number[id(node)]}"
+        """A constant, or the order that is being computed."""
+        return f"{self.order if node.varies else 'c'}{self.number[id(node)]}"
 
     def _o(self, node: Symbol) -> str:
+        """Order 0."""
         return f"o{self.number[id(node)]}"
 
     def _s(self, node: Symbol) -> str:
@@ -188,9 +201,10 @@ class _SeriesWriter:
         name = self._v(node)
         if node.kind == "variable":
             yield f"{name} = load({self._s(node)})"
+        elif id(node) in self.sums.of:
+            yield from self._sum(node, "")
         else:
             yield f"{name} = {pointwise(node, self._v)}"
-        yield f"{self._o(node)} = {name}"
         if node.kind in {"**", "log"}:
             yield f"i{self.number[id(node)]} = splat(1.0) / {self._v(node.arguments[0])}"
         yield from self._stored(node, "0")
@@ -201,7 +215,9 @@ class _SeriesWriter:
         if node.kind == "variable":
             yield f"{name} = load({self._s(node)} + r)"
             return
-        if not _is_sum(node):
+        if id(node) in self.sums.of:
+            yield from self._sum(node, " + r")
+        elif not _is_sum(node):
             yield f"{name} = {_linear(node, self._v)}"
         elif node.kind == "*":
             a, b = node.arguments
@@ -217,6 +233,30 @@ class _SeriesWriter:
             for c, a, b in ((c1, a1, b1), (c2, a2, b2)):
                 yield f"{name} = fma({self._v(c)} * {self._v(a)}, {self._o(b)}, {name})"
         yield from self._stored(node, "r")
+
+    def _tables(self) -> Iterator[str]:
+        """Factors of long sums, and which series they multiply.
+
+        Compilers unroll a loop whose length they know, and compiling would take as long as before.
+        """
+        if self.sums.of:
+            yield "zero = inverses % 8"
+        for key, (_, terms) in self.sums.of.items():
+            yield f"f{self.number[key]} = table({_listed(each.factor for each in terms)})"
+            places = _listed(self.place[id(each.moving)] for each in terms)
+            yield f"p{self.number[key]} = table({places})"
+
+    def _sum(self, node: Symbol, row: str) -> Iterator[str]:
+        """A long sum at one order."""
+        name, number = self._v(node), self.number[id(node)]
+        first, terms = self.sums.of[id(node)]
+        begins = first.varies or not row
+        yield f"{name} = {self._v(first) if begins else 'splat(0.0)'}"
+        yield f"for j in range({len(terms)} + zero):"
+        yield f" x = load(base + whole(p{number} + 8 * j) * stride{row})"
+        factor = f"splat(number(f{number} + 8 * j))"
+        added = f"fma({factor}, x, {name})" if row else f"{name} + {factor} * x"
+        yield f" {name} = {added}"
 
     def _sums(self, nodes: list[Symbol]) -> Iterator[str]:
         """The sums over lower orders that nodes of one level need, a few in each loop."""
@@ -309,17 +349,23 @@ class _SeriesWriter:
 
     def _last_events(self) -> Iterator[str]:
         """The highest order of the events that are linear in the state."""
+        linear: list[Symbol] = []
         for index, event in enumerate(self.system.events):
-            nodes = [node for node in in_order([event]) if node.varies]
-            place = f"s{self.events + index} + r"
-            if not nodes or any(_is_sum(node) for node in nodes):
-                yield f"store({place}, splat(0.0))"
-                continue
-            for node in nodes:
-                yield from (
-                    line for line in self._later(node) if not line.startswith("store")
-                )
-            yield f"store({place}, {self._v(event)})"
+            moving = [node for node in in_order([event]) if node.varies]
+            if moving and not any(_is_sum(node) for node in moving):
+                linear.append(event)
+            else:
+                yield f"store(s{self.events + index} + r, splat(0.0))"
+        moving = [node for node in in_order(linear) if node.varies]
+        for node in self.sums.written(moving):
+            yield from self._later(node)
+        for index, event in enumerate(self.system.events):
+            if event in linear:
+                yield f"store(s{self.events + index} + r, {self._v(event)})"
+
+
+def _listed(values: Iterable[float]) -> str:
+    return ", ".join(map(repr, values))
 
 
 def _levers(node: Symbol) -> tuple[int, ...]:

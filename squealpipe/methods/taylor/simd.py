@@ -93,6 +93,23 @@ def _number(builder: Any, address: Any) -> Any:
     return builder.load(_pointer(builder, address, ir.DoubleType()))
 
 
+def _whole(builder: Any, address: Any) -> Any:
+    return builder.load(_pointer(builder, address, ir.IntType(64)))
+
+
+def _table(builder: Any, *values: Any) -> Any:
+    """The address of constants of one type."""
+    kind = ir.ArrayType(values[0].type, len(values))
+    table = _cgutils.global_constant(builder, "table", ir.Constant(kind, values))
+    return builder.ptrtoint(table, ir.IntType(64))
+
+
+def _space(builder: Any, count: Any) -> Any:
+    """The address of room for some numbers, as long as the function runs."""
+    kind = ir.ArrayType(ir.DoubleType(), count.constant)
+    return builder.ptrtoint(_cgutils.alloca_once(builder, kind), ir.IntType(64))
+
+
 def _put(builder: Any, address: Any, value: Any) -> None:
     builder.store(value, _pointer(builder, address, ir.DoubleType()))
 
@@ -212,6 +229,9 @@ def written(width: int) -> dict[str, Any]:
         "splat": partial(_splat, width=width),
         "store": _store,
         "number": _number,
+        "whole": _whole,
+        "table": _table,
+        "space": _space,
         "larger": _larger,
     }
 

@@ -273,7 +273,7 @@ def substituted(root: Symbol, given: dict[int, Symbol]) -> Symbol:
     return made[id(root)]
 
 
-def constant_parts(roots: Sequence[Symbol], skipped: str) -> list[Symbol]:
+def constant_parts(roots: Sequence[Symbol], skipped: str | None) -> list[Symbol]:
     """The largest parts that hold parameters alone, none whose name begins with ``skipped``."""
     fixed: dict[int, bool] = {}
     found: dict[int, Symbol] = {}
@@ -281,7 +281,9 @@ def constant_parts(roots: Sequence[Symbol], skipped: str) -> list[Symbol]:
     for node in nodes:
         inner = [fixed[id(a)] for a in node.arguments if isinstance(a, Symbol)]
         own = node.kind != "variable" and not (
-            node.kind == "parameter" and node.arguments[0].startswith(skipped)
+            skipped is not None
+            and node.kind == "parameter"
+            and node.arguments[0].startswith(skipped)
         )
         fixed[id(node)] = own and all(inner)
     uses = [
