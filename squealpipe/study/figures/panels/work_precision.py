@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -10,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FormatStrFormatter, LogLocator
 
 from squealpipe.plotting import style
-from squealpipe.schema.comparison import Role
+from squealpipe.schema.comparison import Reliability, Role
 
 MARKS = [
     (colour, marker, dash)
@@ -41,7 +42,12 @@ def draw_methods(
 ) -> None:
     """Error against cost, one line for each method, with the Pareto front and our own setting.
 
+    Only right answers are filled and can be on the front: an answer that is wrong is no bargain,
+    however cheap. Wrong ones are crossed out, flagged ones are hollow.
+
     Args:
+        rows: ``method``, ``role``, ``error``, the cost, and ``worth`` (``Reliability``; without it
+            all are right).
         scale: factor from its unit to the axis'.
     """
     error = np.maximum(rows.error.values, _SMALLEST)
@@ -50,48 +56,45 @@ def draw_methods(
     if not fine.any():
         style.say_instead(axes, "no such motion\nat these parameters")
         return
-    front = _pareto(error[fine], values[fine])
-    axes.step(
-        error[fine][front],
-        values[fine][front],
-        where="post",
-        color=style.BLACK,
-        lw=3.0,
-        alpha=0.15,
-        zorder=1,
-    )
+    worth = rows.get("worth", xr.full_like(rows.error, Reliability.right)).values
+    _draw_front(axes, error, values, fine & (worth == Reliability.right))
     for method in dict.fromkeys(rows.method.values.tolist()):
         mine = fine & (rows.method.values == method)
         colour, marker, dash = MARKS[methods.index(method) % len(MARKS)]
+        right = mine & (worth == Reliability.right)
+        look: dict[str, Any] = {"color": colour, "ms": 3.5, "lw": 0.8, "zorder": 2}
+        axes.plot(error[mine], values[mine], dash, **look)
+        rest = mine & ~right
+        look |= {"marker": marker, "ls": "none"}
+        axes.plot(error[rest], values[rest], **look, mfc=style.WHITE)
+        axes.plot(error[right], values[right], **look)
+        axes.plot([], [], **look | {"ls": dash}, label=style.symbols(method))
+    wrong = fine & (worth == Reliability.silently_wrong)
+    for marks, look in (
+        (wrong, {"marker": "x", "ms": 5.5, "mew": 1.1, "label": "silently wrong"}),
+        (
+            fine & (rows.role.values == Role.our_setting),
+            {"marker": "o", "ms": 9, "mfc": "none", "mew": 1.0, "label": "our setting"},
+        ),
+    ):
         axes.plot(
-            error[mine],
-            values[mine],
-            dash,
-            color=colour,
-            marker=marker,
-            ms=3.5,
-            lw=0.8,
-            label=style.symbols(method),
-            zorder=2,
+            error[marks], values[marks], ls="none", color=style.RED, zorder=3, **look
         )
-    ours = fine & (rows.role.values == Role.our_setting)
-    axes.plot(
-        error[ours],
-        values[ours],
-        "o",
-        ms=9,
-        mfc="none",
-        mec=style.RED,
-        mew=1.0,
-        label="our setting",
-        zorder=3,
-    )
     axes.set(xscale="log", yscale="log")
     axes.minorticks_off()
     if values[fine].max() < _FEW_DECADES * values[fine].min():
         axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axes.yaxis.set_major_formatter(FormatStrFormatter("%g"))
     axes.grid(visible=True, lw=0.3, color="#DDDDDD")
+
+
+def _draw_front(
+    axes: Axes, error: np.ndarray, cost: np.ndarray, right: np.ndarray
+) -> None:
+    """A grey band along the right answers that no other right one beats in both."""
+    front = _pareto(error[right], cost[right])
+    look: dict[str, Any] = {"color": style.BLACK, "lw": 3.0, "alpha": 0.15, "zorder": 1}
+    axes.step(error[right][front], cost[right][front], where="post", **look)
 
 
 def _pareto(error: np.ndarray, cost: np.ndarray) -> np.ndarray:
