@@ -130,7 +130,7 @@ def in_words(table: Mapping[int, str]) -> str:
     )
 
 
-def meanings(variable: xr.DataArray) -> dict[int, str]:
+def meanings(variable: xr.DataArray | xr.Variable) -> dict[int, str]:
     """Value → meaning of a flag variable, from its attributes; empty for other variables."""
     names = str(variable.attrs.get("flag_meanings", "")).split()
     values = np.atleast_1d(
@@ -328,7 +328,7 @@ def _refuse_faults(
         )
     for name, entry in (*schema.variables.items(), *schema.coordinates.items()):
         if name in arrays:
-            faults += _faults_of_values(name, arrays[name], entry)
+            faults += faults_of_values(name, arrays[name], entry)
         elif not entry.optional:
             faults.append(f"{name} is missing")
     unknown = sorted(
@@ -339,9 +339,10 @@ def _refuse_faults(
         raise SchemaError(f"{schema.name}: " + "; ".join(faults))
 
 
-def _faults_of_values(
+def faults_of_values(
     name: str, given: np.ndarray | xr.Variable, entry: Variable
 ) -> list[str]:
+    """What is wrong with a variable's type, NaN or flags."""
     kind, stored = given.dtype.kind, entry.stored
     if stored.kind in "US":
         return (
@@ -375,35 +376,12 @@ def find(name: str) -> DatasetSchema:
 
 
 def schema_of(dataset: xr.Dataset) -> DatasetSchema:
-    """The schema that a dataset states; of a system of the user's own it is the dataset itself."""
+    """The schema that a dataset states; of a system, with the names that the dataset has."""
     name = str(dataset.attrs.get("schema"))
     if not name.startswith(SYSTEM):
         return find(name)
-    return DatasetSchema(
-        name=name,
-        title=str(dataset.attrs.get("title")),
-        coordinates={
-            str(key): _described(value) for key, value in dataset.coords.items()
-        },
-        variables={
-            str(key): _described(value) for key, value in dataset.data_vars.items()
-        },
-        lists={"event": Listing(kinds=("event_kind",))}
-        if "event_kind" in dataset
-        else {},
-    )
-
-
-def _described(variable: xr.DataArray) -> Variable:
-    """The table entry that a variable's own attributes make."""
-    return Variable(
-        str(variable.attrs.get("long_name", variable.name)),
-        str(variable.attrs.get("units", "1")),
-        tuple(map(str, variable.dims)),
-        dtype="U" if variable.dtype.kind in "UO" else variable.dtype.str[1:],
-        flags=meanings(variable) if "flag_values" in variable.attrs else None,
-        nan_allowed=True,
-    )
+    systems = importlib.import_module(f"{__name__}.systems")
+    return systems.of_dataset(dataset)  # type: ignore[no-any-return]
 
 
 @cache

@@ -12,6 +12,7 @@ import xarray as xr
 
 from squealpipe.methods.recurrence import LEAST_REPEATS, in_blocks, repeats_after
 from squealpipe.schema import Outcome, flag_table
+from squealpipe.schema.systems import build
 from squealpipe.systems import runs
 from squealpipe.validation import NotNegative, Tolerance, Values, Workers, checked
 
@@ -160,9 +161,8 @@ def basin(
             column = np.where(np.isfinite(values[:, i]), values[:, i], np.nan)
             label = runs.labels(f"{word} {name} in the last quarter", unit)
             found[f"{name}_{which}"] = (over, column.reshape(shape), label)
-    return xr.Dataset(
-        found, grid.coordinates, runs.attributes(system, "basin", grid.fixed, tol)
-    )
+    attributes = runs.attributes(system, "basin", grid.fixed, tol)
+    return build("basin", found, grid.coordinates, attributes)
 
 
 def _numbered(motion: np.ndarray, extremes: np.ndarray) -> np.ndarray:

@@ -7,7 +7,6 @@ import math
 import weakref
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from importlib.metadata import version
 from typing import Any
 
 import numpy as np
@@ -19,6 +18,7 @@ from squealpipe.methods.taylor.scalar import ScalarSource
 from squealpipe.methods.taylor.series import HybridSystem
 from squealpipe.methods.taylor.simd import FEW, LANES
 from squealpipe.schema import SYSTEM, Outcome, flag_table, in_words
+from squealpipe.schema.origin import versions
 from squealpipe.systems.definition import System
 from squealpipe.systems.trace import TIME, TIME_UNIT, Names
 from squealpipe.text import suggestion
@@ -506,5 +506,5 @@ def attributes(
         "parameters": json.dumps(dict(given)),
         "tolerance": tol,
         "method": "Taylor series with located events",
-        "package_version": version("squealpipe"),
+        "package_version": versions()["package_version"],
     }

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.parameters import brief
+from squealpipe.schema.systems import build
 from squealpipe.systems import runs
 from squealpipe.systems.cycles.sensitivity import sensitivities
 from squealpipe.validation import (
@@ -85,9 +86,8 @@ def simulate(
         "time": ("time", times, runs.labels("time", "s")),
         **runs.components_of(system),
     }
-    return xr.Dataset(
-        found, coordinates, runs.attributes(system, "simulate", values, tol)
-    )
+    attributes = runs.attributes(system, "simulate", values, tol)
+    return build("simulate", found, coordinates, attributes)
 
 
 @checked
@@ -180,6 +180,5 @@ def ensemble(
             "time at which an error of tol is lost", "s", raw["summary"][:, 1]
         )
     found["outcome"] = runs.outcome(system, over, raw["ends"][:, 0].reshape(shape))
-    return xr.Dataset(
-        found, grid.coordinates, runs.attributes(system, "ensemble", grid.fixed, tol)
-    )
+    attributes = runs.attributes(system, "ensemble", grid.fixed, tol)
+    return build("ensemble", found, grid.coordinates, attributes)

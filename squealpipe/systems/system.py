@@ -5,6 +5,7 @@ from typing import Any
 
 import xarray as xr
 
+from squealpipe.schema.systems import check
 from squealpipe.systems import definition
 from squealpipe.systems.basin import basin
 from squealpipe.systems.components import Switch
@@ -22,13 +23,13 @@ class System(definition.System):  # noqa: D101 (that of the definition)
         """A periodic motion; see :func:`squealpipe.systems.cycles.cycle.limit_cycle`."""
         from squealpipe.systems.cycles.cycle import limit_cycle
 
-        return limit_cycle(self, **options)
+        return check(limit_cycle(self, **options))
 
     def cycle_branch(self, parameter: str, to: float, **options: Any) -> xr.Dataset:
         """A branch of cycles; see :func:`squealpipe.systems.cycles.branch.cycle_branch`."""
         from squealpipe.systems.cycles.branch import cycle_branch
 
-        return cycle_branch(self, parameter, to, **options)
+        return check(cycle_branch(self, parameter, to, **options))
 
     def cycle_curve(
         self, label: str, parameters: Sequence[str], **options: Any
@@ -36,4 +37,4 @@ class System(definition.System):  # noqa: D101 (that of the definition)
         """A curve in two parameters; see :func:`squealpipe.systems.cycles.curve.cycle_curve`."""
         from squealpipe.systems.cycles.curve import cycle_curve
 
-        return cycle_curve(self, label, parameters, **options)
+        return check(cycle_curve(self, label, parameters, **options))
