@@ -11,8 +11,8 @@ READS = ("work_precision_frequencies",)
 CAPTION = (
     "Harmonic balance on model A4: median error of ω at equal peak of y against exact orbits, over "
     "the wall time of a point; points of a line run over N_h or σ. The exact orbit itself is shown "
-    "with the velocity left after half a period. Crossed out in red: off by more than 1 %, which no "
-    "setting mends. Grey band: Pareto front of the others; red rings: our settings. Machine and "
+    "with the velocity left after half a period. Crossed out in red: off by more than 1 %, which "
+    "no setting mends. Grey band: Pareto front of the others; red rings: our settings. Machine and "
     "versions are named below."
 )
 ALT = "Chart of frequency error against time for forms of harmonic balance."
@@ -26,7 +26,7 @@ def draw(frequencies: xr.Dataset) -> Figure:
     methods = list(dict.fromkeys(frequencies.method.values.tolist()))
     panel = axes[0, 0]
     wrong = frequencies.error > WRONG
-    worth = xr.where(wrong, Reliability.silently_wrong, Reliability.right)
+    worth = wrong * (Reliability.silently_wrong - Reliability.right) + Reliability.right
     draw_methods(panel, frequencies.assign(worth=worth), "wall_time", 1e3, methods)
     panel.set(xlabel="error of ω, relative", ylabel="wall time per point (ms)")
     if panel.get_legend_handles_labels()[0]:

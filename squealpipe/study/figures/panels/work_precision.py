@@ -70,13 +70,14 @@ def draw_methods(
         axes.plot(error[right], values[right], **look)
         axes.plot([], [], **look | {"ls": dash}, label=style.symbols(method))
     wrong = fine & (worth == Reliability.silently_wrong)
-    for marks, look in (
+    rings: list[tuple[np.ndarray, dict[str, Any]]] = [
         (wrong, {"marker": "x", "ms": 5.5, "mew": 1.1, "label": "silently wrong"}),
         (
             fine & (rows.role.values == Role.our_setting),
             {"marker": "o", "ms": 9, "mfc": "none", "mew": 1.0, "label": "our setting"},
         ),
-    ):
+    ]
+    for marks, look in rings:
         axes.plot(
             error[marks], values[marks], ls="none", color=style.RED, zorder=3, **look
         )
