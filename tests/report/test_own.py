@@ -26,16 +26,12 @@ from squealpipe.study.report.tables import write_tables
 from squealpipe.tasks.assess.map import verdict_map
 from squealpipe.tasks.assess.shares import verdict_shares
 from squealpipe.tasks.dynamics.runs import simulate
-from squealpipe.tasks.own.scenes import own_scenes, variants
 from squealpipe.tasks.propensity.distributions import centred
 from tests.conftest import ROOT
 
 PAD = Parameters(
     mass=0.5, k1=1e7, k2=1e7, k3=7e6, mu=0.4, belt_speed=2.0, preload=2e-5, length1=0.02,
     length2=0.02,
-)  # fmt: skip
-SAME = Parameters(
-    k3=0.7, mu=0.4, length1=1000.0, length2=1000.0, belt_speed=PAD.speed_ratio
 )  # fmt: skip
 REST = {"x": 0.0, "y": 0.0, "vx": 0.0, "vy": 0.0}
 
@@ -46,33 +42,6 @@ def scenes(speed):
         "mine": {**angles, "start": {**REST, "vx": speed}},
         "rest": {**angles, "start": REST},
     }
-
-
-@pytest.fixture(scope="module")
-def found():
-    return own_scenes(PAD, scenes(1e-3))
-
-
-def test_si_numbers_give_what_the_dimensionless_groups_give(found):
-    speed = PAD.preload / PAD.time_unit
-    same = own_scenes(SAME, scenes(1e-3 / speed))
-    for name, unit in (
-        ("return_peak_contact_force", 1.0),
-        ("separated_fraction", 1.0),
-        ("impact_speed", speed),
-        ("largest_x", PAD.preload),
-        ("first_separation_time", PAD.time_unit),
-    ):
-        # forces and displacements come from samples
-        np.testing.assert_allclose(
-            found[name], same[name] * unit, rtol=2e-2, err_msg=name
-        )
-    assert (found.motion == same.motion).all()
-
-
-def test_a_start_from_rest_alone_asks_for_a_cheaper_level(found):
-    assert (found.model.sel(scene="mine") == "A1").all()
-    assert set(found.model.sel(scene="rest").values.tolist()) - {""}
 
 
 def test_distributions_are_centred_on_the_study():
@@ -90,11 +59,10 @@ def answers():
     return dict.fromkeys(scenes(0.0), told)
 
 
-def made_of(found, answers, folder, **further):
+def made_of(answers, folder, **further):
     """The datasets of a study, in files, and its pictures."""
     angles = np.linspace(0.0, math.pi, 5)
     datasets = {
-        "own_scenes": found,
         "verdict_map": verdict_map(PAD, angles, angles, workers=1),
         **{f"assess/{name}": answer for name, answer in answers.items()},
         **{
@@ -127,8 +95,8 @@ def words_of(page):
     )
 
 
-def test_report_begins_with_the_answer_and_has_no_paper(found, answers, tmp_path):
-    made, figures = made_of(found, answers, tmp_path)
+def test_report_begins_with_the_answer_and_has_no_paper(answers, tmp_path):
+    made, figures = made_of(answers, tmp_path)
     content = gather_own(
         made, figures, PAD, [("dynamics.hammering_points", 91, 5)], ["this part"]
     )
@@ -152,12 +120,12 @@ def test_report_begins_with_the_answer_and_has_no_paper(found, answers, tmp_path
     assert page.read_text(encoding="utf-8").count("<img") == len(figures)
 
 
-def test_scatter_is_told_where_it_is_configured(found, answers, tmp_path):
+def test_scatter_is_told_where_it_is_configured(answers, tmp_path):
     spread = {"mu": {"distribution": "uniform", "low": 0.1, "high": 0.7}}
     angles = [scenes(0.0)["mine"][name] for name in ("alpha1", "alpha2")]
     shares = verdict_shares(PAD, *angles, distributions=spread, samples=16)
     assert float(shares.share.sum()) == pytest.approx(1.0)
-    made, figures = made_of(found, answers, tmp_path, verdict_shares=shares)
+    made, figures = made_of(answers, tmp_path, verdict_shares=shares)
     scatter = gather_own(made, figures, PAD)["scatter"]
     assert scatter["samples"] == 16
     assert scatter["distributions"] == [
@@ -188,7 +156,7 @@ def test_tables_hold_the_numbers_of_the_answer(answers, tmp_path):
     assert book["Parameters"]["C2"].value == PAD.mass
 
 
-def test_a_table_of_friction_stands_for_the_coefficient(found, tmp_path):
+def test_a_table_of_friction_stands_for_the_coefficient(tmp_path):
     pad = replace(PAD, mu=Parameters().mu, friction_law="linear 0.0:0.48 1.0:0.36")
     rows = {row["meaning"]: row for row in parameter_table(pad, of_a1=True)}
     assert "sliding friction coefficient" not in rows
@@ -199,16 +167,6 @@ def test_a_table_of_friction_stands_for_the_coefficient(found, tmp_path):
     )
     (panel,) = figure.axes
     assert any("$μ$: table" in text.get_text() for text in panel.texts)
-
-
-def test_a_law_that_depends_on_speed_is_set_beside_its_value_at_belt_speed():
-    pad = replace(
-        PAD, mu=Parameters().mu, friction_law="linear 0.0:0.48 1.0:0.36 3.0:0.3"
-    )
-    changed, _ = variants(pad, (0.0,) * 4)["friction as at belt speed, constant"]
-    assert (changed.mu, changed.friction_law) == (pytest.approx(0.33), "coulomb")
-    falling, _ = variants(PAD, (0.0,) * 4)["friction falls with speed"]
-    assert falling.static_mu == pytest.approx(1.5 * PAD.mu)
 
 
 def test_a_study_without_the_paper_needs_a_scene():

@@ -27,30 +27,41 @@ from squealpipe.functions import exp
 def coefficient(speed, p):
     return 0.37 + 0.18 * exp(-speed / 1.7)
 """
-STUDIES = {
-    "coulomb": {},
-    "undamped": {"damping1": 0.0, "damping2": 0.0},
-    "static limit": {"mu_static": 0.6},
-    "exponential": {"friction_law": "exponential", **FALLING},
-    "hyperbolic": {"friction_law": "hyperbolic", **FALLING},
-    "friction table": {"friction_law": {"table": "friction.csv"}, "mu": None},
-    "cubic friction table": {
-        "friction_law": {"table": "friction.csv", "between": "cubic"}, "mu": None,
-    },
-    "friction in Python": {"friction_law": {"python": "friction.py"}, "mu": None},
-    "contact table": {"contact_law": {"table": "contact.csv"}, "k3": None},
-    "contact dashpot": {"contact_law": "dashpot", "damping3": 20.0},
-    "both tables": {
-        "friction_law": {"table": "friction.csv"}, "contact_law": {"table": "contact.csv"},
-        "mu": None, "k3": None,
-    },
-    "belt the other way": {"belt_speed": -2.0},
-    "belt at rest": {"belt_speed": 0.0},
-    "scaled units": {
-        "mass": 1.0, "k1": 1.0, "k2": 1.0, "k3": 0.7, "preload": 1.0, "length1": 175.0,
-        "length2": 175.0, "belt_speed": 0.75, "damping1": 0.02, "damping2": 0.02,
-    },
+TABLE_LAW = {"friction_law": {"table": "friction.csv"}, "mu": None}
+CUBIC_LAW = {"friction_law": {"table": "friction.csv", "between": "cubic"}, "mu": None}
+PYTHON_LAW = {"friction_law": {"python": "friction.py"}, "mu": None}
+CONTACT_TABLE = {"contact_law": {"table": "contact.csv"}, "k3": None}
+CONTACT_DASHPOT = {"contact_law": "dashpot", "damping3": 20.0}
+UNDAMPED = {"damping1": 0.0, "damping2": 0.0}
+SCALED = {
+    "mass": 1.0, "k1": 1.0, "k2": 1.0, "k3": 0.7, "preload": 1.0, "length1": 175.0,
+    "length2": 175.0, "belt_speed": 0.75, "damping1": 0.02, "damping2": 0.02,
 }  # fmt: skip
+STUDIES = {
+    "Coulomb, contact table, the other way": {**CONTACT_TABLE, "belt_speed": -2.0},
+    "static limit, belt at rest": {"mu_static": 0.6, "belt_speed": 0.0},
+    "exponential, contact dashpot": {
+        "friction_law": "exponential",
+        **FALLING,
+        **CONTACT_DASHPOT,
+    },
+    "hyperbolic, undamped, scaled units": {
+        "friction_law": "hyperbolic",
+        **FALLING,
+        **SCALED,
+        **UNDAMPED,
+    },
+    "both tables": {**TABLE_LAW, **CONTACT_TABLE},
+    "cubic table, contact dashpot, undamped, the other way": {
+        **CUBIC_LAW,
+        **CONTACT_DASHPOT,
+        **UNDAMPED,
+        "belt_speed": -2.0,
+    },
+    "Python, scaled units": {**PYTHON_LAW, **SCALED},
+}
+"""Each law of friction and of contact, dashpots or none, both ways of the belt and none, SI and
+scaled units: in pairs, for a whole study takes half a minute."""
 COARSE = {
     "paper": False, "results": "results/mine",
     "scenes": {"mine": {"alpha1": "22deg", "alpha2": "46deg", "start": {"vx": 1e-3}}},

@@ -7,7 +7,6 @@ rule assess_scenes:
     output:
         answers=[data(f"assess/{name}") for name in OWN],
         runs=[data(f"own/{name}") for name in OWN],
-        scenes=data("own_scenes"),
     params:
         settings=settings("parameters", "scenes", "dynamics.tol"),
     script:

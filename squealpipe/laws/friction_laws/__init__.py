@@ -64,9 +64,13 @@ class Table:
         return self.pieces.value(speed * p.friction_speed**-1.0)
 
     def slope(self, speed: Any, p: Any) -> Any:
-        """dμ/dw, s/m; at a knot that of higher speeds."""
+        """dμ/dw, s/m; at a knot the mean of both sides, by which small motions about it grow."""
         unit = p.friction_speed**-1.0
-        return unit * self.pieces.value(speed * unit, derivative=True)
+        sides = [
+            self.pieces.value(speed * unit, derivative=True, side=side)
+            for side in ("left", "right")
+        ]
+        return unit * 0.5 * (sides[0] + sides[1])
 
 
 class Piece:

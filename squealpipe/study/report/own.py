@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from squealpipe.codes import Regime
 from squealpipe.parameters import Parameters
 from squealpipe.schema.assess import Verdict
+from squealpipe.schema.dynamics.intervals import intervals
 from squealpipe.study.claims.evidence import Run
 from squealpipe.study.report import answer
 from squealpipe.study.report.content import (
@@ -37,7 +39,9 @@ def gather_own(
         left_out: parts of the study that its laws cannot have, in words.
     """
     run = Run(parameters, {name: made.path for name, made in datasets.items()})
-    table = run["own_scenes"]
+    names = [
+        name.removeprefix("assess/") for name in datasets if name.startswith("assess/")
+    ]
     return {
         "title": "Does it squeal? Report of a brake",
         "changed": changed_rows(changed),
@@ -45,19 +49,23 @@ def gather_own(
         "parameters": parameter_table(parameters, of_a1=True),
         "figures": pictures(OWN, figures, run),
         "scenes": [
-            scene(table.sel(scene=name), run[f"assess/{name}"])
-            for name in table.scene.values
+            scene(name, run[f"assess/{name}"], run[f"own/{name}"]) for name in names
         ],
         "scatter": _scatter(run),
     }
 
 
-def scene(table: xr.Dataset, told: xr.Dataset) -> dict[str, Any]:
-    """The answer of one scene in words, and its tables."""
+def scene(name: str, told: xr.Dataset, started: xr.Dataset) -> dict[str, Any]:
+    """The answer of one scene in words, and its tables.
+
+    Args:
+        told: its dataset ``assess``.
+        started: its run from its own start.
+    """
     quiet = answer.verdict_of(told) is Verdict.quiet
     cures = answer.cures(told)
     return {
-        "name": str(table.scene.item()),
+        "name": name,
         "angles": [number(float(np.degrees(told[f"alpha{i}"]))) for i in (1, 2)],
         "verdict": answer.verdict_of(told).name,
         "quiet": quiet,
@@ -74,7 +82,7 @@ def scene(table: xr.Dataset, told: xr.Dataset) -> dict[str, Any]:
         ],
         "nearest": _nearest(told),
         "numbers": _numbers(told),
-        "start": _from_start(table),
+        "start": _from_start(started),
     }
 
 
@@ -129,13 +137,12 @@ def _written(value: float, unit: str) -> str:
     return engineering(value, unit)
 
 
-def _from_start(table: xr.Dataset) -> dict[str, str]:
+def _from_start(run: xr.Dataset) -> dict[str, str]:
     """What the run from the scene's own start does."""
-    run = table.isel(variant=0)
-    first = float(run.first_separation_time)
+    apart = intervals(run, Regime.separated)
     return {
-        "first_loss": engineering(first, "s") if math.isfinite(first) else "none",
-        "end": engineering(float(table.t_end), "s"),
+        "first_loss": engineering(float(apart[0, 0]), "s") if len(apart) else "none",
+        "end": engineering(float(run.time_reached), "s"),
     }
 
 

@@ -73,6 +73,12 @@ class Side:
             return located
         return located * max(abs(self.cure.value), abs(float(self.inner)), 1e-12)
 
+    def beyond(self, value: float, located: float) -> float:
+        """The next value outward that counts as another, within the range."""
+        farthest = float(self.values[-1])
+        step = math.copysign(self.scale(located), farthest - self.cure.value)
+        return min((value + step, farthest), key=lambda end: abs(end - value))
+
 
 def boundaries(
     design: Design, verdict: Verdict, motions: Sequence[np.ndarray], *, tol: float
@@ -251,9 +257,7 @@ def _plan(side: Side, quiet: bool, located: float) -> None:
     first = int(steady[0])
     low = float(reached[first - 1]) if first else side.inner
     _, side.exact = _halve(stable, low, float(reached[first]))
-    check = side.exact + math.copysign(
-        side.scale(located), side.exact - side.cure.value
-    )
+    check = side.beyond(side.exact, located)
     side.inner = side.exact
     rest = [v for v in outer if abs(v - side.cure.value) > abs(check - side.cure.value)]
     side.rungs = [check, *_thinned(np.array(rest))]
@@ -340,9 +344,7 @@ def _any_start(
         outer = side.values[beyond]
         side.rungs = _thinned(outer)
         if not quiet:
-            step = side.scale(LOCATED_ANY)
-            check = side.inner + math.copysign(step, side.inner - side.cure.value)
-            side.rungs = [check, *side.rungs[1:]]
+            side.rungs = [side.beyond(side.inner, LOCATED_ANY), *side.rungs[1:]]
     return _nearest(cures, _climb(sides, quiet=quiet, always=always, test=test))
 
 

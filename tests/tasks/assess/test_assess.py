@@ -131,6 +131,41 @@ def test_growth_of_small_motions_is_that_of_a_run():
     assert math.log(late / early) / 0.05 == pytest.approx(sliding.growth_rate, rel=5e-3)
 
 
+def test_growth_about_a_knot_at_belt_speed_is_that_of_a_run():
+    """Small motions about a corner of the law grow by the mean of both slopes."""
+    speeds, values = (0.0, 1.0, 2.0, 3.0, 5.0), (0.5, 0.47, 0.42, 0.41, 0.4)
+
+    class Measured(Pad):
+        def coefficient(self, speed):
+            return np.interp(speed, speeds, values)
+
+    table = "linear" + "".join(
+        f" {w}:{mu}" for w, mu in zip(speeds, values, strict=True)
+    )
+    numbers = NUMBERS | {"mu": values[-1], "mu_static": values[0]}
+    own = {"mu", "mu_static", "friction_speed", "friction_law"}
+    given = {name: value for name, value in NUMBERS.items() if name not in own}
+    pad = Parameters(**given, friction_law=table)
+    sliding = Sliding.of(Design(pad, *SQUEAL))
+    assert sliding.is_unstable
+    start = sliding.state + 1e-4 * PAD.preload * sliding.push
+    early, late = (
+        np.sqrt(
+            (
+                Measured(numbers, *SQUEAL)
+                .run(start, end, end - 0.01, tol=1e-11)
+                .velocity
+                ** 2
+            ).mean()
+        )
+        for end in (0.02, 0.07)
+    )
+    rate = math.log(late / early) / 0.05
+    assert rate == pytest.approx(sliding.growth_rate, rel=0.02)
+    linear = stability_map(pad, SQUEAL[:1], SQUEAL[1:])
+    assert float(linear.growth_rate[0, 0]) == pytest.approx(rate, rel=0.1)
+
+
 def test_a_belt_at_rest_has_no_steady_sliding():
     still = assess(PAD.with_(belt_speed=0.0), *SQUEAL)
     assert int(still.mechanism) == Mechanism.no_sliding_state

@@ -50,7 +50,7 @@ if STUDY.paper:
 
     TARGETS += rules.write_report.output
 else:
-    read = {"own_scenes", "verdict_map", "verdict_shares"}
+    read = {"verdict_map", "verdict_shares"}
     own = {name: made for name, made in MADE.items() if name in read or name.startswith(("own/", "assess/"))}
     own |= {name: MADE[name] for drawn in DRAWN.values() for name in drawn["datasets"]}
 

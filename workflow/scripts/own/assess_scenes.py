@@ -6,7 +6,6 @@ from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
 from squealpipe.tasks.assess.assess import assess
 from squealpipe.tasks.dynamics.runs import simulate
-from squealpipe.tasks.own.scenes import own_scenes, start_of
 
 settings, key = snakemake.params.settings, snakemake.params.key
 params, scenes = parameters_of(settings), settings["scenes"]
@@ -30,16 +29,10 @@ for path in snakemake.output.runs:
             scene["alpha1"],
             scene["alpha2"],
             t_end=scene["t_end"] * params.time_unit,
-            initial_state=start_of(scene),
+            initial_state=[scene["start"][state] for state in ("x", "y", "vx", "vy")],
             tol=settings["dynamics.tol"],
         ),
         config={**settings, "scene": name},
         key=key,
         output=path,
     )
-produce(
-    lambda: own_scenes(params, scenes, tol=settings["dynamics.tol"]),
-    config=settings,
-    key=key,
-    output=snakemake.output.scenes,
-)

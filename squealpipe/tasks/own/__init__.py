@@ -1,1 +1,0 @@
-"""Scenes of a study of one's own."""
