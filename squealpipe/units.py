@@ -5,6 +5,7 @@ a study in plain numbers does not pay. Numbers are read and converted as decimal
 ``0.57 mm`` is the double that ``5.7e-4`` is, and names the same run.
 """
 
+import math
 import re
 from collections.abc import Mapping
 from decimal import Decimal
@@ -106,6 +107,23 @@ def in_si(text: str, units: str, keys: Mapping[str, str] | None = None) -> float
         raise UnitError(_wrong_kind(unit, f"{what} is needed, like {example}", keys))
     quantity = _registry().Quantity(Decimal(match[1]), unit)
     return float(quantity.to(_pint_text(units)).magnitude)
+
+
+def conversion(unit: str, other: str) -> float | None:
+    """How many of another unit one unit is; None where they measure different things.
+
+    An angular frequency is 2π times a frequency.
+    """
+    pair = _unit(unit), _unit(other)
+    if None in pair or pair[0].dimensionality != pair[1].dimensionality:
+        return None
+    turns = [any(turn in str(each) for turn in TURNS) for each in pair]
+    factor = float(_registry().Quantity(Decimal(1), pair[0]).to(pair[1]).magnitude)
+    if turns[0] == turns[1]:
+        return factor
+    if pair[0].dimensionality != _registry().parse_units("Hz").dimensionality:
+        return None
+    return factor / math.tau if turns[0] else factor * math.tau
 
 
 def number_of(value: Any, units: str, keys: Mapping[str, str] | None = None) -> Any:

@@ -108,6 +108,15 @@ Dpi = Annotated[
         help="its dots per inch; 200 by default.",
     ),
 ]
+Units = Annotated[
+    list[str] | None,
+    Parameter(
+        name="--unit",
+        negative="",
+        metavar="UNIT",
+        help="unit of the axes that measure such things, like mm, kN or Hz; repeatable.",
+    ),
+]
 Tolerance = Annotated[float, Parameter(help="tolerance of the integration.")]
 Workers = Annotated[
     int | None,
@@ -185,6 +194,7 @@ class Drawn(Written):
     ] = None
     figure_size: FigureSize = None
     dpi: Dpi = None
+    unit: Units = None
 
 
 BRAKE, WRITTEN, DRAWN = Brake(), Written(), Drawn()

@@ -5,7 +5,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from squealpipe.cli.arguments import Dpi, FigureSize, Force, OutputElsewhere
+from squealpipe.cli.arguments import Dpi, FigureSize, Force, OutputElsewhere, Units
 from squealpipe.cli.console import DONE, say
 from squealpipe.cli.output import PICTURES, TABLES, check_output
 
@@ -18,6 +18,7 @@ def plot(
     variable: str | None = None,
     figure_size: FigureSize = None,
     dpi: Dpi = None,
+    unit: Units = None,
     force: Force = False,
 ) -> int:
     """Draw a dataset: a run, a map, a branch, a cycle, an ensemble of a system.
@@ -36,7 +37,8 @@ def plot(
     from squealpipe.plotting.style import save_figure
     from squealpipe.store.foreign import load_any
 
-    save_figure(picture(load_any(file), variable), [target], size=figure_size, dpi=dpi)
+    drawn = picture(load_any(file), variable, units=unit or ())
+    save_figure(drawn, [target], size=figure_size, dpi=dpi)
     say(f"wrote {target}")
     return DONE
 

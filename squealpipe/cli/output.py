@@ -107,7 +107,10 @@ def compute(
             f"{output} is written; squealpipe plot {output} -o {written[1]} draws it"
         )
         save_figure(
-            picture(dataset), written[1:], size=brake.figure_size, dpi=brake.dpi
+            picture(dataset, units=brake.unit or ()),
+            written[1:],
+            size=brake.figure_size,
+            dpi=brake.dpi,
         )
     say(f"wrote {' and '.join(map(str, written))}")
     return dataset

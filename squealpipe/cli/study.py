@@ -33,6 +33,8 @@ def explain(
     if json_:
         print(json.dumps(plan.as_dict(), indent=1))
         return DONE
+    for line in plan.became:
+        print(line)
     if not plan.jobs:
         print("nothing to do: every result is up to date")
         return DONE

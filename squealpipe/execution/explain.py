@@ -62,10 +62,12 @@ class Explanation:
 
     Attributes:
         keys: file of the study → the key that it must state.
+        became: what inputs that stand for parameters became, in words.
     """
 
     jobs: list[Job] = field(default_factory=list)
     keys: dict[str, str] = field(default_factory=dict)
+    became: list[str] = field(default_factory=list)
     cores: int = field(default_factory=lambda: os.cpu_count() or 1)
 
     @property
@@ -91,7 +93,12 @@ class Explanation:
     def as_dict(self) -> dict[str, Any]:
         """Plain values for JSON."""
         jobs = [asdict(job) for job in self.jobs]
-        return {"jobs": jobs, "figures": self.figures, "seconds": self.seconds}
+        return {
+            "jobs": jobs,
+            "figures": self.figures,
+            "seconds": self.seconds,
+            "became": self.became,
+        }
 
 
 def explain(
@@ -102,7 +109,7 @@ def explain(
 ) -> Explanation:
     """Ask Snakemake what it would do and put it in terms of keys and sources."""
     there = Path(directory)
-    command, _ = snakemake_command(configs, quick=quick, directory=there)
+    command, study = snakemake_command(configs, quick=quick, directory=there)
     with tempfile.NamedTemporaryFile("r", suffix=".json", encoding="utf-8") as plan:
         done = subprocess.run(
             [*command, "--summary"],
@@ -150,7 +157,11 @@ def explain(
                 seconds=seconds,
             )
         )
-    return Explanation(jobs=jobs, keys={path: made[path]["key"] for path in made})
+    return Explanation(
+        jobs=jobs,
+        keys={path: made[path]["key"] for path in made},
+        became=study.parameters.became(),
+    )
 
 
 def snakemake_command(

@@ -1,6 +1,6 @@
 """Pictures of datasets: one panel of any of them, and what a command draws."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import xarray as xr
 from matplotlib.axes import Axes
@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from squealpipe.plotting.assess import draw_settled_orbit
 from squealpipe.plotting.assess import figure as assess_figure
+from squealpipe.plotting.axis_units import in_units
 from squealpipe.plotting.curves import draw_curves
 from squealpipe.plotting.cycles import draw_backbone, draw_branch, draw_cycle
 from squealpipe.plotting.modes import draw_modes
@@ -92,13 +93,21 @@ def plot(
     return ax
 
 
-def picture(dataset: xr.Dataset, variable: str | None = None) -> Figure:
-    """The picture that a command writes: that of :func:`plot`, or one of several panels."""
+def picture(
+    dataset: xr.Dataset, variable: str | None = None, *, units: Sequence[str] = ()
+) -> Figure:
+    """The picture that a command writes: that of :func:`plot`, or one of several panels.
+
+    Args:
+        units: of the axes that measure such things, as :func:`in_units` takes them.
+    """
     several = FIGURES.get(str(dataset.attrs.get("schema")))
     if several is not None and variable is None:
-        return several(dataset)
-    figure, axes = new_figure(COLUMN, 3.0)
-    _draw(axes[0, 0], dataset, variable)
+        figure = several(dataset)
+    else:
+        figure, axes = new_figure(COLUMN, 3.0)
+        _draw(axes[0, 0], dataset, variable)
+    in_units(figure, units, dataset)
     return figure
 
 

@@ -1,5 +1,6 @@
 """One look for every figure: sizes, colours, angle axes, and how files are written."""
 
+import math
 import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -13,6 +14,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
+from matplotlib.text import Text
 from matplotlib.ticker import ScalarFormatter
 
 from squealpipe.parameters import TABLE
@@ -30,6 +32,8 @@ BLUE, ORANGE, GREEN, RED, PURPLE, GREY = PALETTE
 X_COLOUR, Y_COLOUR = ORANGE, BLUE
 """Displacements along the belt and away from it, everywhere."""
 
+LEAST_SHARE = 0.72
+"""Least size of the texts of a picture that shrinks, over that of the house: 6 points."""
 SMALL = 1e-3
 """Largest number on an axis whose labels are written with a power of ten."""
 
@@ -234,6 +238,34 @@ def shorten_small_ticks(figure: Figure) -> None:
                 ticks.set_powerlimits((-3, 5))
 
 
+def _resize(figure: Figure, size: tuple[float, float]) -> None:
+    """Give a figure another size, with smaller texts where it shrinks.
+
+    Raises:
+        ValueError: several panels would have texts that nobody can read.
+    """
+    width, height = figure.get_size_inches()
+    share = min(1.0, size[0] / width, size[1] / height)
+    if share < LEAST_SHARE and len(figure.axes) > 1:
+        asked, needed = (
+            "mmx".join(str(math.ceil(25.4 * side - 1e-6)) for side in sides) + "mm"
+            for sides in (size, (LEAST_SHARE * width, LEAST_SHARE * height))
+        )
+        raise ValueError(
+            f"figure size {asked}: too small for {len(figure.axes)} panels; give {needed} or "
+            "more, or draw one quantity with `squealpipe plot FILE --variable NAME`"
+        )
+    share = max(share, LEAST_SHARE)
+    for words in figure.findobj(Text):
+        words.set_fontsize(share * words.get_fontsize())  # type: ignore[attr-defined]
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            ticks = axis.get_ticklabels()
+            if ticks:
+                axis.set_tick_params(labelsize=ticks[0].get_fontsize())
+    figure.set_size_inches(size)
+
+
 def save_figure(
     figure: Figure,
     paths: Sequence[str | os.PathLike[str]],
@@ -254,7 +286,7 @@ def save_figure(
     if not 20 <= dots <= 2400:
         raise ValueError(f"dpi = {dots}: from 20 to 2400 dots per inch are possible")
     if size is not None:
-        figure.set_size_inches(size)
+        _resize(figure, size)
     figure.set_dpi(dots)
     if (engine := figure.get_layout_engine()) is not None:
         engine.execute(figure)

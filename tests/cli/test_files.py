@@ -1,6 +1,7 @@
 """Files that commands write, and parameters that they take from a study."""
 
 import json
+import math
 import os
 import re
 import signal
@@ -16,9 +17,18 @@ import pandas as pd
 import pytest
 import yaml
 
-from squealpipe import Parameters, convert, load, natural_frequencies, simulate
+from squealpipe import (
+    Parameters,
+    convert,
+    load,
+    natural_frequencies,
+    save,
+    simulate,
+    summarize,
+)
 from squealpipe.cli import run
 from squealpipe.config.settings import parse_study, read_study
+from squealpipe.plotting import picture
 
 read = partial(pd.read_csv, comment="#", float_precision="round_trip")
 STABILITY = ["map", "stability", "--alpha1", "0:pi:5", "--alpha2", "0:2:3"]
@@ -307,3 +317,56 @@ def test_a_picture_has_the_size_and_the_dots_of_a_journal(capsys):
     assert Image.open("a.png").size == Image.open("b.png").size == (1500, 1200)
     assert run(["plot", "a.nc", "-o", "c.png", "--figure-size", "90"]) == 2
     assert "write for instance 90mmx60mm" in capsys.readouterr().err
+
+
+def test_axes_take_the_units_that_are_asked_for_and_real_brakes_readable_ones():
+    pad = Parameters(
+        mass=0.45, k1=1e7, k2=1e7, k3=7e6, preload=5.7e-4, mu=0.4, belt_speed=2.0,
+        length1=0.1, length2=0.1,
+    )  # fmt: skip
+    motion = simulate(pad, math.radians(22), math.radians(46), t_end=0.04)
+    drawn = picture(motion)
+    assert {axes.get_xlabel() for axes in drawn.axes} == {
+        "t (ms)", "x (mm)", "frequency (kHz)",
+    }  # fmt: skip
+    asked = picture(motion, units=("µm", "Hz", "s"))
+    path, spectrum = asked.axes[2:]
+    assert (path.get_xlabel(), spectrum.get_xlabel()) == ("x (µm)", "frequency (Hz)")
+    asked.canvas.draw()
+    # what stands at a tick is the place of the tick in the other unit
+    for axes, factor in ((path, 1e6), (spectrum, 0.5 / math.pi)):
+        ticks = [tick for tick in axes.get_xticks() if tick > 0]
+        words = axes.xaxis.get_major_formatter().format_ticks(ticks)
+        assert [float(word) for word in words] == pytest.approx(
+            [factor * tick for tick in ticks]
+        )
+    # the strongest line, read off the axis, is that of the dataset
+    line = summarize(motion).dominant_frequency[0] / (2 * math.pi)
+    marks = next(each for each in spectrum.lines if each.get_marker() == "v")
+    assert marks.get_xdata()[0] * 0.5 / math.pi == pytest.approx(float(line))
+    scaled = simulate(Parameters(), 2.0, 1.0, t_end=100.0)
+    assert picture(scaled).axes[2].get_xlabel() == "x (m)"
+
+
+@pytest.mark.parametrize(
+    ("units", "message"),
+    [
+        (["--unit", "kPa"], "no axis of this picture measures that; its axes are in m"),
+        (["--unit", "mm", "--unit", "m"], "measure the same; give one of them"),
+        (["--unit", "furlongs_of_beer"], "no axis of this picture measures that"),
+    ],
+)
+def test_units_that_no_axis_takes_are_refused(capsys, units, message):
+    save(simulate(Parameters(), 2.0, 1.0, t_end=100.0), "run.nc")
+    assert run(["plot", "run.nc", "-o", "a.png", *units]) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_panels_that_nobody_could_read_are_refused_with_a_size_that_works(capsys):
+    save(simulate(Parameters(), 2.0, 1.0, t_end=10.0), "run.nc")
+    words = ["plot", "run.nc", "-o", "a.png", "--figure-size"]
+    assert run([*words, "90mmx60mm"]) == 2
+    told = capsys.readouterr().err
+    needed = re.search(r"give (\S+) or more", told)[1]
+    assert run([*words, needed]) == 0
+    assert run([*words, "90mmx60mm", "--variable", "y", "--force"]) == 0

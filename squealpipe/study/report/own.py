@@ -31,12 +31,14 @@ def gather_own(
     parameters: Parameters,
     changed: Sequence[tuple[str, Any, Any]] = (),
     left_out: Sequence[str] = (),
+    became: Sequence[str] = (),
 ) -> dict[str, Any]:
     """Content of ``templates/study.typ``.
 
     Args:
         changed: keys of grids and horizons that are not as shipped, with both values.
         left_out: parts of the study that its laws cannot have, in words.
+        became: what inputs that stand for parameters became, in words.
     """
     run = Run(parameters, {name: made.path for name, made in datasets.items()})
     names = [
@@ -46,6 +48,7 @@ def gather_own(
         "title": "Does it squeal? Report of a brake",
         "changed": changed_rows(changed),
         "left_out": list(left_out),
+        "became": list(became),
         "parameters": parameter_table(parameters, of_a1=True),
         "figures": pictures(OWN, figures, run),
         "scenes": [

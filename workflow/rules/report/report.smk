@@ -68,6 +68,7 @@ else:
             modules=[from_root(declared.find_module(name)) for name in READ_BY],
             settings=settings("parameters"),
             left_out=LEFT_OUT,
+            became=STUDY.parameters.became(),
             made=own,
             drawn=DRAWN,
             changed=[row for row in STUDY.changes_of(SHIPPED) if row[0].startswith(("dynamics.", "robustness."))],

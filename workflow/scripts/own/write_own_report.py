@@ -17,7 +17,12 @@ params, out = snakemake.params, snakemake.output
 refuse_misfits(params.expected)
 datasets, figures = made_files(params.made), made_files(params.drawn)
 content = gather_own(
-    datasets, figures, parameters_of(params.settings), params.changed, params.left_out
+    datasets,
+    figures,
+    parameters_of(params.settings),
+    params.changed,
+    params.left_out,
+    params.became,
 )
 pictures = picture_files(content, figures)
 write_document("study", content, pictures, page=Path(out.page), pdf=Path(out.pdf))

@@ -1,0 +1,131 @@
+"""Axes in other units: those that are asked for, or those in which people write such sizes.
+
+A picture is drawn in the units of its dataset. Then ticks and labels of each axis are converted,
+which works for every picture alike and moves no line.
+"""
+
+import json
+import re
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.figure import Figure
+from matplotlib.ticker import AutoLocator, FuncFormatter, LogLocator, NullLocator
+
+from squealpipe.text import number
+from squealpipe.units import conversion, shown_in
+
+SMALL_PRELOAD, SHORT_TIME = 0.01, 0.01
+"""Preload, m, and √(m/k1), s, of a brake that one can hold; scaled numbers have 1 for both."""
+READABLE = {"m": "m", "s": "s", "N": "N", "m/s": "m s-1", "N/m": "N m-1"}
+"""Unit of an axis → CF unit, of those for which a readable one is chosen."""
+_LABEL = re.compile(r"^(.*?)\s*\(([^()]+)\)$", re.DOTALL)
+
+
+def in_units(figure: Figure, wanted: Sequence[str], dataset: xr.Dataset) -> None:
+    """Convert the axes of a figure.
+
+    Args:
+        wanted: units; each axis of its kind takes it. All others of a dataset whose brake has the
+            size of a real one take what people write: µm, ms, kN, Hz, kHz.
+
+    Raises:
+        ValueError: no axis measures what a unit does, or two units measure the same.
+    """
+    for place, one in enumerate(wanted):
+        for other in wanted[:place]:
+            if conversion(one, other) is not None:
+                raise ValueError(
+                    f"unit {one} and unit {other} measure the same; give one of them"
+                )
+    left, seen = set(wanted), set()
+    for axis in (each for axes in figure.axes for each in _axes_of(axes)):
+        match = _LABEL.match(axis.get_label_text())
+        if match is None:
+            continue
+        words, unit = match.groups()
+        seen.add(unit)
+        target = next(
+            (one for one in wanted if conversion(unit, one) is not None), None
+        )
+        if target is not None:
+            left.discard(target)
+            _convert(axis, words, conversion(unit, target) or 1.0, target)
+        elif is_real(dataset):
+            _make_readable(axis, words, unit)
+    if left:
+        axes = ", ".join(sorted(seen)) or "of numbers without a unit"
+        raise ValueError(
+            f"unit {min(left)}: no axis of this picture measures that; its axes are in {axes}"
+        )
+
+
+def is_real(dataset: xr.Dataset) -> bool:
+    """Whether a dataset is of a brake with the size of a real one, not of scaled numbers."""
+    text = dataset.attrs.get("parameters")
+    if not isinstance(text, str):
+        return False
+    given = json.loads(text)
+    if not {"preload", "mass", "k1"} <= set(given):
+        return False
+    time = float(np.sqrt(given["mass"] / given["k1"]))
+    return float(given["preload"]) < SMALL_PRELOAD and time < SHORT_TIME
+
+
+def _axes_of(axes: Axes) -> tuple[Axis, Axis]:
+    return axes.xaxis, axes.yaxis
+
+
+def _make_readable(axis: Axis, words: str, unit: str) -> None:
+    largest = float(np.abs(axis.get_view_interval()).max())
+    if unit == "rad/s":
+        factor, name = shown_in(largest / (2.0 * np.pi), "Hz")
+        _convert(axis, words, factor / (2.0 * np.pi), name)
+    elif unit in READABLE:
+        factor, name = shown_in(largest, READABLE[unit])
+        if factor != 1.0:
+            _convert(axis, words, factor, name)
+
+
+def _convert(axis: Axis, words: str, factor: float, unit: str) -> None:
+    words = "frequency" if words == "ω" and "rad" not in unit else words
+    axis.set_label_text(f"{words} ({unit})")
+    if axis.get_scale() == "log":
+        axis.set_major_locator(_LogScaled(factor))
+        axis.set_minor_locator(NullLocator())
+        axis.set_major_formatter(FuncFormatter(lambda x, _: _power(x * factor)))
+    else:
+        axis.set_major_locator(_Scaled(factor))
+        axis.set_major_formatter(FuncFormatter(lambda x, _: number(x * factor, 6)))
+
+
+def _power(value: float) -> str:
+    return f"$10^{{{round(np.log10(value))}}}$" if value > 0 else ""
+
+
+class _Scaled(AutoLocator):
+    """Ticks that are round numbers once they are multiplied by a factor."""
+
+    def __init__(self, factor: float) -> None:
+        super().__init__()
+        self.factor = factor
+
+    def tick_values(self, vmin: float, vmax: float) -> Any:
+        ticks = super().tick_values(vmin * self.factor, vmax * self.factor)
+        return np.asarray(ticks) / self.factor
+
+
+class _LogScaled(LogLocator):
+    """The same on a logarithmic axis."""
+
+    def __init__(self, factor: float) -> None:
+        super().__init__()
+        self.factor = factor
+
+    def tick_values(self, vmin: float, vmax: float) -> Any:
+        ticks = super().tick_values(vmin * self.factor, vmax * self.factor)
+        return np.asarray(ticks) / self.factor
