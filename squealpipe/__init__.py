@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from squealpipe.tasks.dynamics.hammering import hammering_map
     from squealpipe.tasks.dynamics.refinement import refine_validity_map
     from squealpipe.tasks.dynamics.runs import simulate, validity_map
+    from squealpipe.tasks.dynamics.spectrum import spectrum
     from squealpipe.tasks.dynamics.summary import summarize
     from squealpipe.tasks.inference.inference import infer_parameters
     from squealpipe.tasks.ladder.choice import choose_model
@@ -92,6 +93,7 @@ __all__ = [
     "save",
     "simulate",
     "smallest_disturbance",
+    "spectrum",
     "stability_map",
     "summarize",
     "validity_map",

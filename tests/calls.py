@@ -13,6 +13,7 @@ WINDOW = [0.8, 0.9, 1.0], [2.7, 2.8, 2.9]
 CALLS: dict[str, Callable[[sp.Parameters], xr.Dataset]] = {
     "simulate": lambda p: sp.simulate(p, A, B, t_end=30 * p.time_unit),
     "summarize": lambda p: sp.summarize(sp.simulate(p, A, B, t_end=30 * p.time_unit)),
+    "spectrum": lambda p: sp.spectrum(sp.simulate(p, A, B, t_end=30 * p.time_unit)),
     "validity_map": lambda p: sp.validity_map(p, AXIS, AXIS),
     "refine_validity_map": lambda p: sp.refine_validity_map(p, resolution=9, coarse=5),
     "hammering_map": lambda p: sp.hammering_map(p, AXIS, AXIS, t_end=30 * p.time_unit),

@@ -23,7 +23,7 @@ from squealpipe.cli.console import (
     TRACEBACK,
     session,
 )
-from squealpipe.cli.files import convert, plot
+from squealpipe.cli.files import convert, plot, spectrum
 from squealpipe.cli.inputs import read_brake
 from squealpipe.cli.maps import basin, disturbance, map_angles, propensity, refine
 from squealpipe.cli.models import choose, infer
@@ -57,6 +57,7 @@ COMMANDS: dict[str, Callable[..., int]] = {
     "infer": infer,
     "refine": refine,
     "plot": plot,
+    "spectrum": spectrum,
     "convert": convert,
     "init": init,
     "run": run_study,

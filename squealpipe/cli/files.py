@@ -5,9 +5,18 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from squealpipe.cli.arguments import Dpi, FigureSize, Force, OutputElsewhere, Units
-from squealpipe.cli.console import DONE, say
-from squealpipe.cli.output import PICTURES, TABLES, check_output
+from squealpipe.cli.arguments import (
+    Dpi,
+    FigureSize,
+    Force,
+    Output,
+    OutputElsewhere,
+    Time,
+    Units,
+)
+from squealpipe.cli.console import DONE, answer, say
+from squealpipe.cli.output import PICTURES, TABLES, check_output, write
+from squealpipe.units import engineering
 
 
 def plot(
@@ -40,6 +49,54 @@ def plot(
     drawn = picture(load_any(file), variable, units=unit or ())
     save_figure(drawn, [target], size=figure_size, dpi=dpi)
     say(f"wrote {target}")
+    return DONE
+
+
+def spectrum(
+    file: Path,
+    /,
+    *,
+    last: Time | None = None,
+    output: Output = Path("spectrum.nc"),
+    picture: Annotated[
+        Path | None,
+        Parameter(name=["--picture", "-p"], help="also draw it (png, svg or pdf)."),
+    ] = None,
+    figure_size: FigureSize = None,
+    dpi: Dpi = None,
+    unit: Units = None,
+    force: Force = False,
+) -> int:
+    """Write the spectrum of a run in Hz: velocities, contact force and its strongest lines.
+
+    Example: `squealpipe spectrum run.nc -o spectrum.csv`
+
+    Args:
+        file: run that `squealpipe simulate -o` wrote.
+        last: length of its end that is taken, like 0.2s; by default all of it.
+    """
+    check_output(output, force=force)
+    if picture is not None:
+        check_output(picture, force=force, kinds=PICTURES, option="--picture")
+
+    import squealpipe
+    from squealpipe.plotting import picture as drawn
+    from squealpipe.plotting.style import save_figure
+    from squealpipe.store.identity import dataset_id
+
+    run = squealpipe.load(file)
+    made = write(
+        lambda: squealpipe.spectrum(run, last=last),
+        output,
+        config={"run": dataset_id(run), "last": last},
+    )
+    if picture is not None:
+        figure = drawn(made, units=unit or ())
+        save_figure(figure, [picture], size=figure_size, dpi=dpi)
+    say(f"wrote {output}{f' and {picture}' if picture else ''}")
+    lines = made.peak_frequency.values
+    told = ", ".join(engineering(float(line), "Hz", 4) for line in lines[:3])
+    answer(f"strongest lines of the contact force: {told or 'none'}")
     return DONE
 
 

@@ -38,6 +38,7 @@ SHOWN: dict[str, tuple[str, Mapping[str, object]]] = {
     "own_scenes": ("separated_fraction", {}),
     "parameter_inference": ("share", {}),
     "settled_extremes": ("late_max_x", {}),
+    "spectrum": ("contact_force", {}),
     "transient": ("lifetime", {}),
     "verdict_robustness": ("share", {}),
     "whirl": ("amplitude", {}),

@@ -98,7 +98,11 @@ def words_of(page):
 def test_report_begins_with_the_answer_and_has_no_paper(answers, tmp_path):
     made, figures = made_of(answers, tmp_path)
     content = gather_own(
-        made, figures, PAD, [("dynamics.hammering_points", 91, 5)], ["this part"],
+        made,
+        figures,
+        PAD,
+        [("dynamics.hammering_points", 91, 5)],
+        ["this part"],
         ["preload_force = 4 kN: preload = 0.5714 mm"],
     )
     page = tmp_path / "index.html"

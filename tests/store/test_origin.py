@@ -17,7 +17,7 @@ MADE_BY = {
     (
         "A1",
         1e-12,
-    ): "simulate summarize validity_map refine_validity_map hammering_map basin_map",
+    ): "simulate summarize spectrum validity_map refine_validity_map hammering_map basin_map",
     (
         "A1",
         1e-9,

@@ -27,7 +27,9 @@ def test_only_the_rules_of_its_report_run_and_only_their_results_are_archived(tm
     assert plan.became == []
     spread = "robustness: {distributions: {mu: {distribution: uniform, low: 0.1, high: 0.4}}}"
     scattered = tmp_path / "scattered.yaml"
-    scattered.write_text(OWN + spread + "\nparameters: {preload_force: 4 kN, k3: 7 kN/mm}")
+    scattered.write_text(
+        OWN + spread + "\nparameters: {preload_force: 4 kN, k3: 7 kN/mm}"
+    )
     with_scatter = explain([scattered], directory=tmp_path)
     assert {job.rule for job in with_scatter.jobs} == RULES | SCATTERED
     assert with_scatter.became == ["preload_force = 4 kN: preload = 0.5714 mm"]

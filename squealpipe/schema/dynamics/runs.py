@@ -141,6 +141,33 @@ RUN_SUMMARY = DatasetSchema(
     },
 )
 
+SPECTRUM = DatasetSchema(
+    name="spectrum",
+    title="Amplitude spectra of one run",
+    lists={"peak": Listing()},
+    coordinates={
+        "frequency": Variable("frequency", "Hz", ("frequency",)),
+        "peak": Variable(
+            "line of the contact force, by height", dims=("peak",), dtype="i4"
+        ),
+    },
+    variables={
+        "velocity_along": Variable(
+            "amplitude of the velocity along the belt", "m s-1", ("frequency",)
+        ),
+        "velocity_across": Variable(
+            "amplitude of the velocity away from the belt", "m s-1", ("frequency",)
+        ),
+        "contact_force": Variable(
+            "amplitude of the contact force", "N", ("frequency",)
+        ),
+        "peak_frequency": Variable("frequency of a line", "Hz", ("peak",)),
+        "peak_force": Variable("its height", "N", ("peak",)),
+        "resolution": Variable("least distance of lines that are told apart", "Hz"),
+        "outcome": outcome(among=RUN_ENDS),
+    },
+)
+
 GROWTH_THRESHOLD = 2.0
 """``response_growth`` from which a response that keeps contact grows.
 
