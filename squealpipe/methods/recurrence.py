@@ -10,7 +10,12 @@ EVENTS_AT_ONCE = 2**20
 """Logged events that are held in memory at once, 48 bytes each."""
 
 
-def repeats_after(times: np.ndarray, kinds: np.ndarray, tolerance: float) -> int:
+def repeats_after(
+    times: np.ndarray,
+    kinds: np.ndarray,
+    tolerance: float,
+    states: np.ndarray | None = None,
+) -> int:
     """The smallest number of events after which kinds and intervals repeat; 0 if none is found.
 
     Event j + p must be of the kind of event j, and the interval that follows it must equal the
@@ -19,9 +24,12 @@ def repeats_after(times: np.ndarray, kinds: np.ndarray, tolerance: float) -> int
     hold three periods, so a period of more than a third of the events is not seen.
 
     Args:
-        tolerance: largest difference of intervals, over the mean interval.
+        tolerance: largest difference of intervals, over the mean interval, and of states.
+        states: (events, n) after each, over their ranges: what has no part in the events may
+            move to another beat. Left out where the events decide all.
     """
     intervals, kinds = np.diff(times), kinds[:-1]
+    marks = np.empty((len(times), 0)) if states is None else states
     lags = np.arange(1, intervals.size // LEAST_REPEATS + 1)
     if not lags.size:
         return 0
@@ -31,8 +39,10 @@ def repeats_after(times: np.ndarray, kinds: np.ndarray, tolerance: float) -> int
         np.abs(intervals[lags] - intervals[0]) <= allowed
     )
     for lag in lags[likely]:
-        if (kinds[lag:] == kinds[:-lag]).all() and (
-            np.abs(intervals[lag:] - intervals[:-lag]).max() <= allowed
+        if (
+            (kinds[lag:] == kinds[:-lag]).all()
+            and np.abs(intervals[lag:] - intervals[:-lag]).max() <= allowed
+            and np.abs(marks[lag:] - marks[:-lag]).max(initial=0.0) <= tolerance
         ):
             return int(lag)
     return 0

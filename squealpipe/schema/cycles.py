@@ -6,8 +6,8 @@ from squealpipe.codes import Event
 from squealpipe.parameters import Parameters
 from squealpipe.schema import DatasetSchema, Outcome, Variable, or_nan, outcome, text
 from squealpipe.schema.agreement import ComparedAs, Listing, RoundOff
+from squealpipe.schema.branch_labels import Label, Meeting
 from squealpipe.schema.dynamics.runs import REGIMES, STATE
-from squealpipe.schema.labels import Label, Meeting
 from squealpipe.schema.linear import ONE_PAIR
 
 

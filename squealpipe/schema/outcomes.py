@@ -84,6 +84,10 @@ class Outcome(IntEnum):
         38,
         "events accumulate at the time reached: end there, or add a regime of rest",
     )
+    unsettled = (
+        39,
+        "no cycle is settled on: chaos, a torus, or slow; raise t_settle or give a guess",
+    )
 
     def __new__(cls, number: int, remedy: str = "") -> Self:
         """An outcome from its record."""

@@ -8,7 +8,7 @@ import pytest
 from squealpipe import Switch, System
 from squealpipe.functions import cos
 from squealpipe.schema import Outcome, meanings
-from squealpipe.schema.labels import Label
+from squealpipe.schema.branch_labels import Label
 from squealpipe.systems.cycles import branch as branch_module
 from squealpipe.systems.shipped.belt_friction import (
     exponential_oscillator,
@@ -147,15 +147,22 @@ def test_a_system_without_switches_has_branches_with_tori():
 
 
 def test_a_settled_motion_of_more_periods_says_how_many():
-    cycle = impact_oscillator.limit_cycle(omega=2.1, amplitude=3.48, start={"x": 0.5})
-    assert np.isnan(cycle.period)
-    number = int(cycle.periods)
-    assert number > 1
-    assert meanings(cycle.outcome)[int(cycle.outcome)] == f"settled_on_{number}_periods"
-    given = {"omega": 2.1, "amplitude": 3.48, "start": {"x": 0.5}}
-    longer = impact_oscillator.limit_cycle(periods=number, **given)
-    assert longer.outcome == Outcome.converged
-    assert float(longer.period) == pytest.approx(number * 2.0 * np.pi / 2.1, rel=1e-12)
+    """Below the flip of its cycle at 3.50619, before the chaos at 3.48."""
+    given = {"omega": 2.1, "start": {"x": 0.5}}
+    for amplitude, number in ((3.5, 2), (3.49, 16)):
+        cycle = impact_oscillator.limit_cycle(amplitude=amplitude, **given)
+        assert np.isnan(cycle.period)
+        assert int(cycle.periods) == number
+        said = meanings(cycle.outcome)[int(cycle.outcome)]
+        assert said == f"settled_on_{number}_periods"
+        longer = impact_oscillator.limit_cycle(
+            amplitude=amplitude, periods=number, **given
+        )
+        assert longer.outcome == Outcome.converged
+        expected = number * 2.0 * np.pi / 2.1
+        assert float(longer.period) == pytest.approx(expected, rel=1e-12)
+    chaos = impact_oscillator.limit_cycle(amplitude=3.48, **given)
+    assert meanings(chaos.outcome)[int(chaos.outcome)] == "unsettled"
 
 
 @pytest.mark.parametrize("amplitude", [3.5065, 3.508])

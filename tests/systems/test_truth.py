@@ -11,7 +11,7 @@ from scipy.linalg import expm
 
 from squealpipe.functions import sqrt
 from squealpipe.schema import Outcome
-from squealpipe.systems.basin import Motion
+from squealpipe.systems.motion import Motion
 from squealpipe.systems.shipped.belt_friction import exponential_oscillator
 from squealpipe.systems.shipped.bouncing_ball import bouncing_ball
 from squealpipe.systems.shipped.impact_oscillator import impact_oscillator

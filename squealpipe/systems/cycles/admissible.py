@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squealpipe.systems.cycles.event_map import FREE, Cycle
+from squealpipe.systems.cycles.event_map import FREE
+from squealpipe.systems.cycles.solution import Cycle
 
 MARGIN_ROUND_OFF = 1e-9
 """Margin below zero that is round-off."""

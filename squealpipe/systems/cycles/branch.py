@@ -20,17 +20,13 @@ from scipy.interpolate import barycentric_interpolate
 from squealpipe.methods.continuation import ContinuationState
 from squealpipe.methods.progress import alone
 from squealpipe.schema import Outcome, flag_table
-from squealpipe.schema.labels import Label
+from squealpipe.schema.branch_labels import Label
 from squealpipe.systems import runs
 from squealpipe.systems.cycles.admissible import MARGIN_ROUND_OFF, margins
-from squealpipe.systems.cycles.cycle import (
-    columns,
-    describe_columns,
-    find_cycle,
-    outcome_of,
-)
-from squealpipe.systems.cycles.event_map import FREE, Cycle, EventMap, Section
+from squealpipe.systems.cycles.described import columns, describe_columns, outcome_of
+from squealpipe.systems.cycles.event_map import FREE, EventMap, Section
 from squealpipe.systems.cycles.event_order import Turn, label_of, least_margin
+from squealpipe.systems.cycles.find import find_cycle
 from squealpipe.systems.cycles.flow import Flow, Vector
 from squealpipe.systems.cycles.line import (
     ALONG,
@@ -38,10 +34,15 @@ from squealpipe.systems.cycles.line import (
     STEPS,
     TESTS,
     Line,
+    Test,
+    branching_label,
+    explains,
     hides_folds,
     is_torus,
     multiplier_change,
+    unstable,
 )
+from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.validation import Number, Several, checked
 
 if TYPE_CHECKING:
@@ -69,6 +70,10 @@ _BEFORE = 1e-9
 """Share before it up to which multipliers are followed."""
 
 
+_CORNERS = {Label.grazing, Label.stick_onset, Label.border_collision}
+"""Where the return map has no derivative."""
+
+
 @dataclass(frozen=True)
 class Point:
     """A cycle on a branch; ``rest`` is where one that has all but shrunk to rest has no size."""
@@ -82,6 +87,22 @@ class Point:
     def parameter(self) -> float:
         """Value of the followed parameter."""
         return float(self.cycle.followed[-1]) if self.rest is None else self.rest
+
+
+def _changes_sign(
+    test: Test,
+    first: tuple[ContinuationState, Cycle],
+    last: tuple[ContinuationState, Cycle],
+) -> bool:
+    product = test(*first) * test(*last)
+    return bool(np.isfinite(product) and product < 0.0)
+
+
+def _jumps(line: Line, share: float, beyond: Cycle) -> bool:
+    """Whether the stability is another one beyond a change of the events."""
+    if share <= _BEFORE:
+        return False
+    return line.at(share - _BEFORE)[1].is_stable != beyond.is_stable
 
 
 def sizes_of(shapes: list[Vector]) -> Vector:
@@ -335,24 +356,51 @@ class Follower:
         first, reached, found = line.known[0.0], line.known[1.0], []
         if self._has_shrunk(reached[1]):
             return []
+        # a grazing takes multipliers through infinity: they are followed up to it alone
+        before = 1.0 if last >= 1.0 else last - _BEFORE
         for label, test in TESTS:
-            # a grazing takes multipliers through infinity: they are followed up to it alone
-            end = 1.0 if label == Label.fold or last >= 1.0 else last - _BEFORE
+            end = 1.0 if label == Label.fold else before
             if end <= 0.0:
                 continue
             try:
-                product = test(*first) * test(*line.at(end))
+                crosses = _changes_sign(test, first, line.at(end))
             except ArithmeticError:
                 return None
-            if np.isfinite(product) and product < 0.0:
-                share = line.root(test, end)
-                if share is None:
-                    return None
-                if label == Label.torus and not is_torus(line.at(share)[1]):
-                    continue
-                if share < last - _CLOSE * (label == Label.fold and last < 1.0):
-                    found.append((share, label))
-        return sorted(found)
+            if not crosses or not self._is_new(label, line, end):
+                continue
+            share = line.root(test, end)
+            if share is None:
+                return None
+            if label == Label.torus and not is_torus(line.at(share)[1]):
+                continue
+            if label == Label.pitchfork:
+                label = branching_label(line.at(share)[1])
+            if share < last - _CLOSE * (label == Label.fold and last < 1.0):
+                found.append((share, label))
+        return sorted(found) if self._explains(line, before, found) else None
+
+    def _is_new(self, label: Label, line: Line, end: float) -> bool:
+        """Whether a sign change is not that of a fold, or the noise of a family of cycles."""
+        if label != Label.pitchfork:
+            return True
+        ends = line.known[0.0], line.at(end)
+        folds = ends[0][0].tangent[-1] * ends[1][0].tangent[-1] < 0.0
+        return not (folds or any(cycle.is_family_member for _, cycle in ends))
+
+    def _explains(
+        self, line: Line, end: float, found: list[tuple[float, Label]]
+    ) -> bool:
+        """Whether the labels are why the number of unstable multipliers changes."""
+        (state, cycle), (_, reached) = line.known[0.0], line.known[1.0]
+        if end <= 0.0 or state.step < _COARSE:
+            return True
+        if end < 1.0:
+            reached = line.at(end)[1]
+        multipliers = np.append(cycle.multipliers, reached.multipliers)
+        if not np.isfinite(multipliers).all():
+            return True
+        change = unstable(reached) - unstable(cycle)
+        return explains(change, [label for _, label in found])
 
     def _changed(
         self, line: Line, found: list[tuple[float, Label]], last: float
@@ -364,6 +412,8 @@ class Follower:
         zero = {k: v for k, v in margins(there[1]).items() if abs(v) < 1e-7}
         label = label_of(there[1], zero)
         turned = Turn(line, last, there, zero).way_on()
+        if turned is not None and not label and _jumps(line, last, turned[1]):
+            label = Label.border_collision
         special = [Point(*line.at(share), each) for share, each in found]
         special += [Point(*there, label)] if label or turned is None else []
         if turned is not None:
@@ -440,8 +490,10 @@ def cycle_branch(
 ) -> xr.Dataset:
     """The branch of cycles through a start, in one parameter, stable and unstable parts.
 
-    It goes round folds and through changes of the order of events. Folds, period doublings, torus
-    bifurcations, grazings and onsets of stick are located and are points of their own.
+    It goes round folds and through changes of the order of events. Folds, pitchforks (where two
+    branches cross without a symmetry: transcritical points), period doublings, torus bifurcations,
+    grazings and onsets of stick are located and are points of their own, and so is a
+    ``border_collision``: any other change of the events at which the stability jumps.
 
     Args:
         to: value at which the branch ends.
@@ -576,7 +628,7 @@ def in_rows(
     for i, (row, point) in enumerate(zip(rows, points, strict=True)):
         if point.label not in {Label.regular, Label.end}:
             row["stable"] = rows[max(i - 1, 0)]["stable"]
-        if point.label in {Label.grazing, Label.stick_onset}:
+        if point.label in _CORNERS:
             row |= {
                 name: row[name] * np.nan
                 for name in ("multiplier_real", "multiplier_imag")

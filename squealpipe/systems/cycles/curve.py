@@ -20,7 +20,7 @@ import xarray as xr
 
 from squealpipe.methods.continuation import ContinuationState, PseudoArclength
 from squealpipe.schema import flag_table
-from squealpipe.schema.labels import Label, Meeting
+from squealpipe.schema.branch_labels import Label, Meeting
 from squealpipe.systems import runs
 from squealpipe.systems.cycles.admissible import (
     MARGIN_ROUND_OFF,
@@ -30,10 +30,11 @@ from squealpipe.systems.cycles.admissible import (
     margins,
 )
 from squealpipe.systems.cycles.branch import started
-from squealpipe.systems.cycles.event_map import FREE, Cycle, EventMap, Section
+from squealpipe.systems.cycles.event_map import FREE, EventMap, Section
 from squealpipe.systems.cycles.event_order import label_of, order_of, run_of
 from squealpipe.systems.cycles.flow import Event, Flow, Vector
 from squealpipe.systems.cycles.line import PRECISE, STEPS, Line, flip
+from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.text import suggestion
 from squealpipe.validation import Number, Several, checked
 

@@ -9,18 +9,13 @@ the system is a question of its own (:mod:`squealpipe.systems.cycles.admissible`
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from squealpipe.systems.cycles.flow import Crossing, Event, Flow, Path, Vector
 
-_LEAST = 0.05
-"""Least unit of a state over the largest, both over the states' sizes."""
-_SAMPLES, _INSIDE = 400, 4
-"""Samples of a cycle, evenly, and in each step of the integrator."""
 _KEPT = 8
 """Points whose legs are kept."""
 FREE = -1
@@ -220,7 +215,11 @@ class EventMap:
             row[:n] = self.section.normal / self.scale
             offset = (parts.states[0] - self.section.state) / self.scale
             return float(self.section.normal @ offset), row
-        size = max(float(np.abs(crossing.height_by_state) @ self.scale), 1e-300)
+        size = float(np.abs(crossing.height_by_state) @ self.scale)
+        # a surface of the time alone changes by nothing else
+        size = max(
+            size, abs(crossing.height_by_time) * self.time * (size == 0.0), 1e-300
+        )
         row = crossing.height_by_state @ by_end + crossing.height_by_time * by_time
         row[self.size :] += crossing.height_by
         return crossing.height / size, row / size
@@ -247,230 +246,3 @@ class EventMap:
                 1.0, 0.5 / max(float(np.abs(step).max()), 1e-300)
             )
         return best if previous < 1e-9 else None
-
-
-@dataclass(frozen=True, eq=False)
-class Cycle:
-    """A solution of an event map.
-
-    Attributes:
-        map: its equations.
-        point: the unknowns.
-        parts: the legs.
-        residual: largest of F.
-    """
-
-    map: EventMap
-    point: Vector
-    parts: Parts
-    residual: float
-
-    @classmethod
-    def at(cls, equations: EventMap, point: Vector) -> Cycle:
-        """The cycle at some unknowns."""
-        residual = float(np.abs(equations.evaluate(point)[0]).max())
-        return cls(equations, point, equations.parts(point), residual)
-
-    @property
-    def period(self) -> float:
-        """Its time, s."""
-        return float(self.parts.durations.sum())
-
-    @property
-    def followed(self) -> Vector:
-        """Values of the followed parameters."""
-        return np.array([self.parts.values[name] for name in self.map.flow.followed])
-
-    @property
-    def events(self) -> tuple[Event, ...]:
-        """Its events, without the section."""
-        return tuple(event for event in self.map.events if event.switch != FREE)
-
-    @cached_property
-    def monodromy(self) -> Vector:
-        """The derivative of the first state after a period by itself, over the scales."""
-        n, total = self.map.flow.size, np.eye(self.map.flow.size)
-        for event, slopes, crossing in zip(
-            self.map.events, self.parts.slopes, self.parts.crossings, strict=True
-        ):
-            total = slopes[:, :n] @ total
-            if event.switch != FREE:
-                with np.errstate(all="ignore"):
-                    total = crossing.saltation @ total
-        total = total * self.map.scale / self.map.scale[:, None]
-        for _, normal in self.map.held(
-            self.parts
-        ):  # what leaves the surface is forgotten
-            total -= np.outer(total @ normal, normal)
-        return np.asarray(total)
-
-    @cached_property
-    def multipliers(self) -> NDArray[np.complex128]:
-        """Floquet multipliers by falling magnitude, after the trivial one without forcing.
-
-        The motion's own direction is mapped onto itself; split off, it leaves the others well
-        conditioned where they meet 1, as at a fold.
-        """
-        matrix, trivial = self.monodromy, np.empty(0)
-        if not np.isfinite(matrix).all():
-            return np.full(len(matrix), np.nan + 0.0j)
-        if not self.map.periods:
-            ahead = self.heading
-            basis = np.linalg.qr(np.column_stack([ahead, np.eye(len(ahead))]))[0]
-            turned = basis.T @ matrix @ basis
-            trivial, matrix = turned[:1, 0], turned[1:, 1:]
-        rest = np.linalg.eigvals(matrix).astype(np.complex128)
-        # conjugates: positive imaginary part first
-        order = np.lexsort((-rest.imag, -np.abs(rest).round(9)))
-        return np.concatenate([trivial.astype(np.complex128), rest[order]])
-
-    @property
-    def heading(self) -> Vector:
-        """Rate of the first state, over the scales and the period."""
-        first = self.map.events[0].before
-        rate = self.map.flow.field(
-            self.parts.values, first, self.parts.states[0], self.parts.start
-        )
-        return np.asarray(rate / self.map.scale * self.period)
-
-    @property
-    def nontrivial(self) -> NDArray[np.complex128]:
-        """All multipliers but the trivial one."""
-        return self.multipliers[int(not self.map.periods) :]
-
-    @property
-    def is_stable(self) -> bool:
-        """Whether small disturbances decay."""
-        return bool(np.abs(self.nontrivial).max(initial=0.0) < 1.0)
-
-    @cached_property
-    def extremes(self) -> Vector:
-        """(lowest, highest) of each state and output, (2, states + outputs)."""
-        n, path = self.map.flow.size, self.parts.path
-        first = path.series.shape[1] - len(self.map.flow.system.traced.outputs)
-        which = [*range(n), *range(first, path.series.shape[1])]
-        found = []
-        for number in which:
-            values = np.concatenate(path.ends_of(number)).tolist()
-            values += [turn.value for turn in path.turns[number]]
-            found.append((min(values), max(values)))
-        return np.array(found).T
-
-    @property
-    def closing_error(self) -> float:
-        """Largest jump between a leg's end and the next one's start, over the cycle's extent."""
-        n = self.map.flow.size
-        scale = scale_of(self.extremes[:, :n], self.map.flow.system.sizes)
-        ends = np.array([crossing.after for crossing in self.parts.crossings])
-        return float(
-            np.abs((ends - np.roll(self.parts.states, -1, axis=0)) / scale).max()
-        )
-
-    def after_part(self, parts: int) -> Vector:
-        """How far a part of the period is from the one before, by means over twelfths."""
-        means = self._means
-        return np.asarray(np.roll(means, len(means) // parts, axis=0) - means).ravel()
-
-    @cached_property
-    def _means(self) -> Vector:
-        """Of the states over each twelfth of the period, over the extent.
-
-        Unlike states at instants they are continuous where an event passes from one to the next.
-        """
-        path, n = self.parts.path, self.map.flow.size
-        orders = np.arange(1, path.series.shape[2] + 1)
-        integrals = path.series[:, :n] / orders
-        whole = (integrals * path.steps[:, None, None] ** orders).sum(axis=2)
-        times = np.arange(13) / 12 * self.period
-        step = self._step_at(times)
-        powers = ((times - self.step_begins[step]) / path.unit)[:, None] ** orders
-        before = np.cumsum(whole, axis=0) - whole
-        up_to = before[step] + np.einsum("tik,tk->ti", integrals[step], powers)
-        scale = scale_of(self.extremes[:, :n], self.map.flow.system.sizes)
-        return np.asarray(
-            np.diff(up_to, axis=0) * (12 * path.unit / self.period) / scale
-        )
-
-    @cached_property
-    def step_begins(self) -> Vector:
-        """When each step of the integrator begins after the first state."""
-        path = self.parts.path
-        return np.asarray(self.clocks[path.leg] + path.offsets * path.unit)
-
-    def _step_at(self, times: Vector) -> NDArray[np.int64]:
-        return np.maximum(np.searchsorted(self.step_begins, times, side="right") - 1, 0)
-
-    @property
-    def clocks(self) -> Vector:
-        """When each leg begins after the first state."""
-        durations = self.parts.durations
-        return np.asarray(np.cumsum(durations) - durations)
-
-    def states_at(self, times: Vector) -> tuple[Vector, NDArray[np.int64]]:
-        """States and regimes at times after the first state, less than a period."""
-        path = self.parts.path
-        step, orders = self._step_at(times), np.arange(path.series.shape[2])
-        powers = ((times - self.step_begins[step]) / path.unit)[:, None] ** orders
-        states = np.einsum(
-            "tik,tk->ti", path.series[step, : self.map.flow.size], powers
-        )
-        return states, path.regimes[path.leg[step]]
-
-    def start(self) -> tuple[Vector, int]:
-        """State and regime at t = 0: of the forcing, or far from any event."""
-        states, regimes = self.states_at(np.array([self.phase]))
-        return states[0], int(regimes[0])
-
-    @cached_property
-    def phase(self) -> float:
-        """When that is, after the first state."""
-        if self.map.periods:
-            return -self.parts.start % self.period
-        joint = self.map.flow.system.joint
-        lengths = [
-            0.0 if joint.holds(event.before).any() else duration
-            for event, duration in zip(
-                self.map.events, self.parts.durations, strict=True
-            )
-        ]
-        longest = int(np.argmax(lengths))
-        if self.map.events[longest].switch == FREE:
-            return 0.0
-        return float(self.clocks[longest] + 0.5 * self.parts.durations[longest])
-
-    @property
-    def instants(self) -> Vector:
-        """Times from 0 to the period that resolve the motion.
-
-        Even ones, and some in each of the integrator's steps, which are short where it is fast.
-        """
-        path = self.parts.path
-        inside = np.outer(np.arange(_INSIDE) / _INSIDE, path.steps * path.unit)
-        steps = (self.step_begins + inside - self.phase) % self.period
-        return np.union1d(np.linspace(0.0, self.period, _SAMPLES + 1), steps)
-
-    def followed_in(self, flow: Flow, units: Vector) -> tuple[EventMap, Vector]:
-        """Its equations with other followed parameters, scaled by it, and its unknowns there."""
-        made, parts = (
-            replace(
-                self.map,
-                flow=flow,
-                values=self.parts.values,
-                units=units,
-                time=self.period,
-                scale=scale_of(self.extremes[:, : flow.size], flow.system.sizes),
-            ),
-            self.parts,
-        )
-        followed = np.array([parts.values[name] for name in flow.followed])
-        return made, made.pack(parts.states, parts.durations, parts.start, followed)
-
-
-def scale_of(path: Vector, sizes: Vector) -> Vector:
-    """Units of the states: their extents in a motion, none far below that of the others.
-
-    A state that hardly moves is known no better than the others.
-    """
-    extent = np.ptp(path, axis=0) / sizes
-    largest = float(extent.max()) or float(np.abs(path / sizes).max()) or 1.0
-    return np.asarray(sizes * np.maximum(extent, _LEAST * largest))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squealpipe.methods.continuation import ContinuationState
-from squealpipe.schema.labels import Label
+from squealpipe.schema.branch_labels import Label
 from squealpipe.systems.cycles.admissible import (
     MARGIN_ROUND_OFF,
     Kind,
@@ -18,10 +18,11 @@ from squealpipe.systems.cycles.admissible import (
     is_motion,
     margins,
 )
-from squealpipe.systems.cycles.cycle import follow, guess_of, merged, without_brief_legs
-from squealpipe.systems.cycles.event_map import Cycle, EventMap
+from squealpipe.systems.cycles.event_map import EventMap
 from squealpipe.systems.cycles.flow import Event, Vector
+from squealpipe.systems.cycles.guess import follow, guess_of, merged, without_brief_legs
 from squealpipe.systems.cycles.line import ALONG, STEPS, Line
+from squealpipe.systems.cycles.solution import Cycle
 
 if TYPE_CHECKING:
     from squealpipe.systems.definition import System

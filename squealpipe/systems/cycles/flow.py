@@ -41,7 +41,10 @@ TOLERANCE = 1e-16
 ROOM = 48
 """Steps of a leg kept at first; one that has more is run again with room for all."""
 MOST_STEPS = 3000
-"""Of a leg; one that needs more has no end, so that Newton's method gives up."""
+"""Of a leg; one that needs more has no end, so that Newton's method gives up.
+
+A stiff motion may need more: the run that its cycle is guessed from says how many.
+"""
 MOST_PIECES, FINEST = 200_000, 64
 """Pieces of all steps, and of one step, that the variational equations are solved on."""
 LONGEST = 1.0
@@ -206,6 +209,7 @@ class Flow:
         self.arguments = [*t.variables, *fixed]
         self._functions: dict[Any, Any] = {}
         self._room, self._legs = ROOM, 0
+        self.most_steps = MOST_STEPS
         directions = [*t.variables[: t.size], *self.by, *([self.time] * self.timed)]
         entries = [
             (i, j, symbol(derivative(rate, by)))
@@ -435,7 +439,7 @@ class Flow:
         drive(run_legs(), self._work)
         counts = arrays["counts"]
         more = counts.max() > self._room
-        endless = more and self._room >= MOST_STEPS
+        endless = more and self._room >= self.most_steps
         if endless:
             counts = np.ones_like(counts)
         elif more:

@@ -1,6 +1,6 @@
 """A branch between two of its points, and the functions that vanish where it has a special one."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,10 +12,10 @@ from squealpipe.methods.continuation import (
     Problem,
     PseudoArclength,
 )
-from squealpipe.schema.labels import Label
+from squealpipe.schema.branch_labels import Label
 from squealpipe.systems.cycles.admissible import MARGIN_ROUND_OFF
-from squealpipe.systems.cycles.event_map import Cycle
 from squealpipe.systems.cycles.flow import Vector
+from squealpipe.systems.cycles.solution import Cycle
 
 # Round-off in the closing error is eps times the longest length over the cycle's: 3e-9 for
 # springs of 10⁶ and a cycle of one.
@@ -33,6 +33,12 @@ ALONG, AT = (
 )
 """Along a branch, and at a special point, which is located to round-off."""
 _ZERO = 1e-12
+_NEUTRAL = 1e-6
+"""Distance of a multiplier from the unit circle on which it counts as on it."""
+_ASIDE = 1e-4
+"""Step over which the equations' curvature is taken, without units."""
+_EVEN = 1e-3
+"""Share of the curvature that is none, at a pitchfork."""
 
 Test = Callable[[ContinuationState, Cycle], float]
 
@@ -58,11 +64,51 @@ def is_torus(cycle: Cycle) -> bool:
     )
 
 
+def crossing_one(cycle: Cycle) -> float:
+    """∏ (λ − 1) over the multipliers: zero at a fold, and where two branches cross."""
+    return float(np.real(np.prod(cycle.nontrivial - 1.0)))
+
+
 TESTS: tuple[tuple[Label, Test], ...] = (
     (Label.fold, lambda state, _: float(state.tangent[-1])),
+    (Label.pitchfork, lambda _, cycle: crossing_one(cycle)),
     (Label.period_doubling, lambda _, cycle: flip(cycle)),
     (Label.torus, lambda _, cycle: pairs(cycle)),
 )
+
+
+def unstable(cycle: Cycle) -> int:
+    """How many multipliers are outside the unit circle."""
+    return int((np.abs(cycle.nontrivial) > 1.0 + _NEUTRAL).sum())
+
+
+def explains(change: int, labels: Sequence[Label]) -> bool:
+    """Whether special points may be why so many multipliers have left the unit circle.
+
+    Where none has, they need no reason: next to a cycle of a part of the period a branch turns
+    back on itself, and its multipliers with it.
+    """
+    most = sum(2 if label == Label.torus else 1 for label in labels)
+    return change == 0 or (abs(change) <= most and (change - most) % 2 == 0)
+
+
+def branching_label(cycle: Cycle) -> Label:
+    """What is at a point where two branches cross: a pitchfork is one by symmetry.
+
+    There the reduced equation has no quadratic term (Kuznetsov, Elements of Applied Bifurcation
+    Theory, ch. 7).
+    """
+    equations, size = cycle.map, cycle.map.size
+    left, _, right = np.linalg.svd(equations.evaluate(cycle.point)[1][:, :size])
+    step = np.zeros_like(cycle.point)
+    step[:size] = _ASIDE * right[-1]
+    ahead, behind = (
+        equations.evaluate(cycle.point + sign * step)[1][:, :size]
+        for sign in (1.0, -1.0)
+    )
+    bend = (ahead - behind) @ right[-1] / (2.0 * _ASIDE)
+    symmetric = abs(left[:, -1] @ bend) <= _EVEN * np.linalg.norm(bend) + _EVEN
+    return Label.pitchfork if symmetric else Label.transcritical
 
 
 def hides_folds(before: ContinuationState, after: ContinuationState) -> bool:

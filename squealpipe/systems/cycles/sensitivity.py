@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealpipe.systems import runs
-from squealpipe.systems.cycles.cycle import events_of
 from squealpipe.systems.cycles.flow import Flow, Vector
+from squealpipe.systems.cycles.guess import events_of
 from squealpipe.systems.runs import Motion
 from squealpipe.text import suggestion
 
@@ -52,7 +52,7 @@ def sensitivities(
     states = np.array([values[state] for state in system.states])
     by_time = np.full((len(times), n, len(names)), np.nan)
     delays = np.full((count, len(names)), np.nan)
-    events = events_of(system, motion, count)
+    events = events_of(system, motion, 0, count)
     stops = [(time, 0, i) for i, time in enumerate(motion.times)]
     stops += [(time, 1, i) for i, time in enumerate(times) if time <= motion.reached]
     stops.sort()

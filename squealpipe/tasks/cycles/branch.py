@@ -13,8 +13,8 @@ from pydantic import BeforeValidator
 from squealpipe.models.refusals import refuse_unread
 from squealpipe.parameters import TABLE, Parameters, is_finite_number
 from squealpipe.schema import Outcome, blank, build
+from squealpipe.schema.branch_labels import Label
 from squealpipe.schema.cycles import CYCLE_BRANCH, LIMIT_CYCLE
-from squealpipe.schema.labels import Label
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.jobs import STATE
 from squealpipe.systems.cycles.branch import (
@@ -24,7 +24,7 @@ from squealpipe.systems.cycles.branch import (
     first_point,
     in_rows,
 )
-from squealpipe.systems.cycles.event_map import Cycle
+from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.tasks.cycles.cycle import cycle_from
 from squealpipe.tasks.cycles.onset import find_onset
 from squealpipe.tasks.cycles.scene import IN_SYSTEM, Scene
@@ -170,9 +170,7 @@ def _dataset(scene: Scene, points: list[Point], end: Outcome) -> xr.Dataset:
     followed = np.array([point.parameter for point in points]) * scene.units[parameter]
     fixed = {"alpha1": scene.alpha1, "alpha2": scene.alpha2}
     outcomes = [
-        Outcome.family_member
-        if scene.is_family_member(point.cycle)
-        else Outcome.converged
+        Outcome.family_member if point.cycle.is_family_member else Outcome.converged
         for point in points
     ]
     return build(

@@ -10,8 +10,8 @@ import xarray as xr
 from squealpipe.models.refusals import refuse_unread
 from squealpipe.parameters import NUMBERS_OF_A1, Parameters
 from squealpipe.schema import Outcome, build
+from squealpipe.schema.branch_labels import Label
 from squealpipe.schema.cycles import CYCLE_CURVE
-from squealpipe.schema.labels import Label
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.jobs import STATE
 from squealpipe.systems.cycles.curve import ENDS, check, follow_curve, point_of

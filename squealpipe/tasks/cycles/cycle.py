@@ -13,8 +13,9 @@ from squealpipe.schema import Outcome, blank, build
 from squealpipe.schema.cycles import LIMIT_CYCLE
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.jobs import STATE
-from squealpipe.systems.cycles.cycle import find_cycle
-from squealpipe.systems.cycles.event_map import FREE, Cycle
+from squealpipe.systems.cycles.event_map import FREE
+from squealpipe.systems.cycles.find import find_cycle
+from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.tasks.cycles.scene import Scene
 from squealpipe.validation import Angle, Positive, State, one_of
 
@@ -76,8 +77,6 @@ def cycle_from(
         t_settle=settle if t_settle is None else t_settle / scene.params.time_unit,
         unit=scene.slow_time,
     )
-    if cycle is not None and scene.is_family_member(cycle):
-        return cycle, Outcome.family_member
     if outcome == Outcome.not_finite and scene.is_singular(state[:2]):
         outcome = Outcome.singular_geometry
     return cycle, Outcome.singular_geometry if outcome >= STOPPED else Outcome(outcome)

@@ -4,10 +4,11 @@ import numpy as np
 from scipy.optimize import brentq
 
 from squealpipe.methods.continuation import ContinuationState
-from squealpipe.systems.cycles.cycle import eventless
-from squealpipe.systems.cycles.event_map import Cycle, EventMap
+from squealpipe.systems.cycles.event_map import EventMap
 from squealpipe.systems.cycles.flow import Flow
+from squealpipe.systems.cycles.guess import eventless
 from squealpipe.systems.cycles.line import ALONG, STEPS
+from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.tasks.cycles.scene import IN_SYSTEM, Scene
 from squealpipe.tasks.cycles.sliding import steady_sliding
 

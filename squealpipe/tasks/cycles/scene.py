@@ -15,7 +15,7 @@ from squealpipe.models.damped import is_undamped
 from squealpipe.parameters import NUMBERS_OF_A1, TABLE, Parameters
 from squealpipe.solvers.a1.ensemble import NEAR_PIVOT
 from squealpipe.solvers.a1.scaling import PHYSICAL, plain, unit_value
-from squealpipe.systems.cycles.event_map import Cycle
+from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.shipped.brake import brake, parameters_of_run, regimes_of
 from squealpipe.systems.system import System
 
@@ -24,8 +24,6 @@ IN_SYSTEM = {of: name for name, of in NUMBERS_OF_A1.items()} | {
     angle: angle for angle in ("alpha1", "alpha2")
 }
 """Parameter or angle → its name in the system."""
-FAMILY = 1e-6
-"""A second multiplier this close to 1 belongs to a family of cycles."""
 
 
 @dataclass(frozen=True)
@@ -129,11 +127,6 @@ class Scene:
         """A1's events of a cycle."""
         return sum(self.kinds[event.kind] is not None for event in cycle.events)
 
-    def is_family_member(self, cycle: Cycle) -> bool:
-        """Whether a second multiplier is 1 in a system whose cycles come in families."""
-        near = np.abs(cycle.nontrivial - 1.0).min() < FAMILY
-        return bool(near and is_undamped(self.params) and self.follow not in DASHPOTS)
-
     def is_singular(self, places: np.ndarray) -> bool:
         """Whether one of some places, (…, 2), is next to a pivot, where d = 0."""
         p = self.scaled
@@ -163,7 +156,7 @@ class Scene:
             "stick_fraction": share[Regime.stick],
             "least_contact_force": max(low[4], 0.0) * force,
             "residual": cycle.closing_error,
-            "stable": int(cycle.is_stable and not self.is_family_member(cycle)),
+            "stable": int(cycle.is_stable),
             "multiplier_real": cycle.multipliers.real,
             "multiplier_imag": cycle.multipliers.imag,
         }

@@ -9,7 +9,7 @@ from scipy.optimize import root
 from squealpipe import cycle_branch, limit_cycle, simulate
 from squealpipe.codes import Regime
 from squealpipe.schema import Outcome
-from squealpipe.schema.labels import Label
+from squealpipe.schema.branch_labels import Label
 from tests.former import FORMER
 from tests.oracles.a1_automaton import A1Automaton, EventKind
 from tests.oracles.a1_long_double import simulate_reference

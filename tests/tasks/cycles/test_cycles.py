@@ -10,9 +10,9 @@ from scipy.optimize import brentq
 from squealpipe import Parameters, cycle_branch, limit_cycle
 from squealpipe.laws.springs import geometry, linear_stiffness
 from squealpipe.schema import Outcome
-from squealpipe.schema.labels import Label
-from squealpipe.systems.cycles.cycle import once_round
-from squealpipe.systems.cycles.event_map import Cycle
+from squealpipe.schema.branch_labels import Label
+from squealpipe.systems.cycles.guess import once_round
+from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.tasks.cycles.cycle import cycle_from
 from squealpipe.tasks.cycles.scene import Scene
 from squealpipe.tasks.normal_form import exchanged

@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 
 from squealpipe import cycle_branch, cycle_curve, limit_cycle, simulate
 from squealpipe.schema import Outcome
-from squealpipe.schema.labels import Label, Meeting
+from squealpipe.schema.branch_labels import Label, Meeting
 from tests.former import FORMER
 from tests.oracles.a1_long_double import simulate_reference
 from tests.tasks.cycles.test_branch_ends import start_of

@@ -11,7 +11,7 @@ import numpy as np
 from squealpipe.execution.job import Job
 from squealpipe.parameters import SCENES
 from squealpipe.schema import Outcome
-from squealpipe.schema.labels import Label
+from squealpipe.schema.branch_labels import Label
 from squealpipe.tasks.curves.chart import regime_chart
 from squealpipe.tasks.cycles.branch import cycle_branch
 from squealpipe.tasks.cycles.curve import cycle_curve

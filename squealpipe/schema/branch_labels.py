@@ -13,6 +13,10 @@ class Label(IntEnum):
     grazing = 4
     stick_onset = 5
     end = 6
+    pitchfork = 7
+    transcritical = 8
+    border_collision = 9
+    """a change of the events that is neither, at which the stability jumps"""
 
 
 class Meeting(IntEnum):

@@ -1,0 +1,96 @@
+"""A cycle from a start or near a guess, forced or not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squealpipe.schema import Outcome
+from squealpipe.systems.cycles.admissible import margins
+from squealpipe.systems.cycles.flow import Flow, Vector
+from squealpipe.systems.cycles.forced import near_forced, settled_forced
+from squealpipe.systems.cycles.free import near_free, settled_free
+from squealpipe.systems.cycles.solution import Cycle
+
+if TYPE_CHECKING:
+    from squealpipe.systems.definition import System
+
+_BESIDE = 1e-9
+"""Relative change of the parameters next to a change of the events."""
+_AT_CHANGE = 1e-6
+"""Margin below zero of a cycle that is at the change."""
+
+
+def find_cycle(
+    system: System,
+    values: Mapping[str, float],
+    state: Vector,
+    *,
+    guess: bool,
+    periods: int = 1,
+    t_settle: float | None = None,
+    regime: int | None = None,
+    unit: float | None = None,
+) -> tuple[Cycle | None, int]:
+    """A cycle from a start or near a guess, and an outcome: above 200, of that many periods more.
+
+    Args:
+        periods: of the forcing, or returns to the section; 0 for any number.
+        unit: of time, in which a run settles and returns are looked for; by default the system's.
+    """
+    flow = Flow(system)
+    forced = system.period is not None and flow.timed
+    unit = flow.unit(values) if unit is None else unit
+    if not guess:
+        found = (
+            settled_forced(flow, values, state, periods, t_settle)
+            if forced
+            else settled_free(flow, values, state, periods, t_settle, unit)
+        )
+        return _labelled(*found)
+
+    def near(at: Mapping[str, float]) -> tuple[Cycle | None, int]:
+        if forced:
+            return near_forced(flow, at, state, regime, periods)
+        return near_free(flow, at, state, regime, unit)
+
+    cycle, outcome = near(values)
+    if outcome == Outcome.no_convergence:
+        # at the very onset of stick, or a touch, round-off decides how a run goes on
+        besides = (near(each)[0] for each in _beside(values))
+        back = (_brought(each, values) for each in besides if each is not None)
+        cycle = next((each for each in back if each is not None), None)
+        outcome = outcome if cycle is None else Outcome.converged
+    return _labelled(cycle, outcome)
+
+
+def _labelled(cycle: Cycle | None, outcome: int) -> tuple[Cycle | None, int]:
+    """The outcome of a member of a family says so."""
+    member = cycle is not None and cycle.is_family_member
+    return cycle, Outcome.family_member if member else outcome
+
+
+def _beside(values: Mapping[str, float]) -> Iterator[dict[str, float]]:
+    """Parameters next to these at both sides, each changed by another share.
+
+    Changed alike, all forces of a system may keep their proportions.
+    """
+    shares = np.linspace(1.0, 2.0, max(len(values), 2))
+    for sign in (-_BESIDE, _BESIDE):
+        yield {
+            name: value * (1.0 + sign * share)
+            for (name, value), share in zip(values.items(), shares, strict=False)
+        }
+
+
+def _brought(cycle: Cycle, values: Mapping[str, float]) -> Cycle | None:
+    """A cycle next to these parameters at them."""
+    equations = replace(cycle.map, values=dict(values))
+    point = equations.solve(cycle.point)
+    if point is None:
+        return None
+    there = Cycle.at(equations, point)
+    return there if min(margins(there).values(), default=1.0) > -_AT_CHANGE else None

@@ -1,0 +1,272 @@
+"""Cycles of systems without forcing: the run comes back to where it was, at a time of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squealpipe.schema import Outcome
+from squealpipe.systems.cycles.described import SETTLED_ON
+from squealpipe.systems.cycles.event_map import Section
+from squealpipe.systems.cycles.flow import Event, Flow, Vector
+from squealpipe.systems.cycles.forced import SETTLE
+from squealpipe.systems.cycles.guess import (
+    follow,
+    guess_of,
+    once_round,
+    sizes_at,
+    solved,
+)
+from squealpipe.systems.cycles.settled import (
+    QUARTERS,
+    Approach,
+    approach,
+    distances_from_orbit,
+)
+from squealpipe.systems.cycles.solution import Cycle, scale_of
+from squealpipe.systems.runs import Motion
+
+SETTLE_STEPS = 100_000
+"""Steps after which a run that is to settle is given up."""
+_WINDOWS = (40.0, 160.0, 640.0)
+"""Times, in units, within which a return is looked for."""
+_LONGER = 2560.0
+"""The next one, of a run that comes nearer to a cycle but is far from it still."""
+_NEAR, _FAR = 0.05, 0.3
+"""A return this close, over the motion's extent, ends the search; one this far is none."""
+_ASTRAY = 0.5
+"""A cycle this far from the state that was to be near it, over the motion's extent, is another."""
+_TRIES, _SAMPLES, _COMPARED = 4, 2000, 16
+_AT_REST = 1e-9
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A run from a state, evenly sampled."""
+
+    flow: Flow
+    values: Mapping[str, float]
+    motion: Motion
+    times: Vector
+    scale: Vector
+
+    def rests(self) -> bool:
+        """Whether nothing moves in its second half."""
+        late = self.motion.path[len(self.motion.path) // 2 :]
+        first = self.motion.path[0], int(self.motion.regimes[0])
+        return _rests(late, sizes_at(self.flow, self.values, *first))
+
+    def comes_to_rest(self) -> bool:
+        """Whether a motion in one regime shrinks towards a stable state of rest.
+
+        To be asked last: a smooth cycle about such a state may seem to shrink between samples.
+        """
+        flow, values, path = self.flow, self.values, self.motion.path
+        if len(self.motion.times):
+            return False
+        regime = int(self.motion.regimes[0])
+        halves = np.split(path[: len(path) // 2 * 2], 2)
+        first, second = (np.ptp(half, axis=0) for half in halves)
+        place = middle = path[len(path) // 2 :].mean(axis=0)
+        scale = np.maximum(np.abs(path).max(axis=0), 1e-300)
+        with np.errstate(all="ignore"):
+            for _ in range(20):
+                slopes = flow.jacobian(values, regime, place)[:, : flow.size] * scale
+                rate = flow.field(values, regime, place, 0.0)
+                place = place - np.linalg.lstsq(slopes, rate, rcond=None)[0] * scale
+        far = np.abs(place - middle) > second + 1e-9 * scale
+        if not np.isfinite(place).all() or far.any():
+            return False
+        rates = np.linalg.eigvals(flow.jacobian(values, regime, place)[:, : flow.size])
+        decays = rates.real.max() < -1e-9 * np.abs(rates).max()
+        return bool(decays and (second <= first + 1e-12 * scale).all())
+
+    def approach(self, cycle: Cycle) -> Approach:
+        """How the run goes on beside a cycle."""
+        path = self.motion.path
+        quarter = len(path) // QUARTERS
+        inside = np.linspace(0, quarter, _COMPARED, endpoint=False, dtype=int)
+        places = (np.arange(QUARTERS)[:, None] * quarter + inside).ravel()
+        off = distances_from_orbit(cycle, path[places])
+        # a sample next to an event may be measured poorly
+        distances = np.quantile(off.reshape(QUARTERS, -1), 0.75, axis=1)
+        return approach(cycle, distances, self.times[-1] / QUARTERS / cycle.period)
+
+
+def settled_free(
+    flow: Flow,
+    values: Mapping[str, float],
+    state: Vector,
+    returns: int,
+    t_settle: float | None,
+    unit: float,
+) -> tuple[Cycle | None, int]:
+    """The cycle that a run from a state settles on, and an outcome.
+
+    Args:
+        returns: to its section at most; 0 for any number.
+    """
+    settle = SETTLE * unit if t_settle is None else t_settle
+    run = follow(flow, values, state, settle, most_steps=SETTLE_STEPS)
+    if run.outcome:
+        return None, run.outcome
+    at_rest = False
+    for window in (*_WINDOWS, _LONGER):
+        stretch = _stretch(flow, values, run.final, int(run.regimes[-1]), window * unit)
+        if isinstance(stretch, int):
+            return None, stretch
+        at_rest = stretch.comes_to_rest()
+        nears = False
+        for cycle in _cycles(stretch, _NEAR if window < _WINDOWS[-1] else _FAR, []):
+            if _rests(cycle.extremes[:, : flow.size], 0.0):
+                return None, Outcome.equilibrium
+            course = stretch.approach(cycle)
+            nears |= course == Approach.nears
+            if course == Approach.settles:
+                number = _least(cycle.events)
+                many = 0 < returns < number
+                return (
+                    (None, SETTLED_ON + number) if many else (cycle, Outcome.converged)
+                )
+        if window >= _WINDOWS[-1] and not nears:
+            break
+        run = stretch.motion
+    return None, Outcome.equilibrium if at_rest else Outcome.unsettled
+
+
+def near_free(
+    flow: Flow,
+    values: Mapping[str, float],
+    state: Vector,
+    regime: int | None,
+    unit: float,
+) -> tuple[Cycle | None, int]:
+    """A cycle near a state, and an outcome."""
+    tried: list[float] = []
+    at_rest = False
+    for window in _WINDOWS:
+        stretch = _stretch(flow, values, state, regime, window * unit)
+        if isinstance(stretch, int):
+            return None, stretch
+        at_rest = stretch.comes_to_rest()
+        for cycle in _cycles(stretch, _NEAR if window < _WINDOWS[-1] else _FAR, tried):
+            if _rests(cycle.extremes[:, : flow.size], 0.0):
+                return None, Outcome.equilibrium
+            if not _is_astray(cycle, state, stretch.scale):
+                return cycle, Outcome.converged
+    return None, Outcome.equilibrium if at_rest else Outcome.no_convergence
+
+
+def _stretch(
+    flow: Flow,
+    values: Mapping[str, float],
+    state: Vector,
+    regime: int | None,
+    duration: float,
+) -> Stretch | int:
+    """A run from a state; an outcome where it ends early or at rest."""
+    times = np.linspace(0.0, duration, _SAMPLES)
+    run = follow(flow, values, state, duration, regime=regime, times=times)
+    if run.outcome or not np.isfinite(run.path).all():
+        return run.outcome or Outcome.not_finite
+    scale = scale_of(np.concatenate([run.path, run.states]), flow.system.sizes)
+    stretch = Stretch(flow, values, run, times, scale)
+    return Outcome.equilibrium if stretch.rests() else stretch
+
+
+def _cycles(stretch: Stretch, far: float, tried: list[float]) -> Iterator[Cycle]:
+    """Solutions next to near returns of a run, run through once."""
+    flow, values, state = stretch.flow, stretch.values, stretch.motion.path[0]
+    for count, period, distance in _returns(stretch, state):
+        if distance > far:
+            return
+        if any(abs(period - other) < 1e-3 * period for other in tried):
+            continue
+        tried.append(period)
+        if not count:
+            period = _exact_return(stretch, state, period)
+        found = guess_of(
+            flow,
+            values,
+            stretch.motion,
+            state,
+            period,
+            periods=0,
+            scale=stretch.scale,
+            count=count,
+        )
+        cycle = None if found is None else solved(*found)
+        if cycle is not None and abs(cycle.period - period) <= _FAR * period:
+            yield once_round(cycle)
+
+
+def _is_astray(cycle: Cycle, state: Vector, scale: Vector) -> bool:
+    """Whether Newton's method has led to another motion than the one that was meant."""
+    off = distances_from_orbit(cycle, state[None]) * cycle.extent.max()
+    return bool(off[0] > _ASTRAY * scale.max())
+
+
+def _rests(path: Vector, sizes: Any) -> bool:
+    """Whether a motion is within round-off."""
+    largest = np.maximum(np.abs(path).max(axis=0), sizes)
+    return bool((np.ptp(path, axis=0) <= _AT_REST * largest).all())
+
+
+def _least(events: tuple[Event, ...]) -> int:
+    """How often the rarest event of a cycle occurs: its returns to a section."""
+    kinds = [(event.switch, event.after) for event in events]
+    return min((kinds.count(kind) for kind in kinds), default=1)
+
+
+def _crossings(
+    section: Section, times: Vector, path: Vector
+) -> Iterator[tuple[float, Vector]]:
+    """When and where a sampled motion crosses a section forwards."""
+    height = (path - section.state) @ section.normal
+    for at in np.flatnonzero((height[:-1] < 0.0) & (height[1:] >= 0.0)):
+        share = -height[at] / (height[at + 1] - height[at])
+        there = path[at] + share * (path[at + 1] - path[at])
+        yield float(times[at] + share * (times[at + 1] - times[at])), there
+
+
+def _exact_return(stretch: Stretch, state: Vector, time: float) -> float:
+    """The instant next to one at which a motion without events is back on its section.
+
+    Of a family of cycles another member would be met after another time.
+    """
+    flow, values, regime = stretch.flow, stretch.values, int(stretch.motion.regimes[0])
+    rate = flow.field(values, regime, state, 0.0)
+    section = Section(state, rate / stretch.scale**2)
+    width = float(stretch.times[1])
+    for _ in range(3):
+        times = np.linspace(max(time - width, 0.0), time + width, 9)
+        run = follow(flow, values, state, times[-1], regime=regime, times=times)
+        crossings = [found for found, _ in _crossings(section, times, run.path)]
+        time = min(crossings, key=lambda at: abs(at - time), default=time)
+        width /= 200.0
+    return time
+
+
+def _returns(stretch: Stretch, state: Vector) -> Iterator[tuple[int, float, float]]:
+    """(events, period, distance) of near returns, the best and earliest first."""
+    run, times, scale = stretch.motion, stretch.times, stretch.scale
+    found: list[tuple[int, float, float]] = []
+    if len(run.times):
+        keys = np.column_stack([run.kinds, run.regimes[:-1], run.regimes[1:]])
+        for count in (np.flatnonzero((keys[1:] == keys[0]).all(axis=1)) + 1).tolist():
+            distance = float(np.abs((run.states[count] - run.states[0]) / scale).max())
+            found.append((count, float(run.times[count] - run.times[0]), distance))
+    else:
+        rate = stretch.flow.field(stretch.values, int(run.regimes[0]), state, 0.0)
+        section = Section(state, rate / scale**2)
+        for time, there in _crossings(section, times, run.path):
+            distance = float(np.abs((there - state) / scale).max())
+            found.append((0, time, distance))
+    nearest = 3.0 * min((each[2] for each in found), default=0.0) + 1e-4
+    found.sort(
+        key=lambda each: (each[2] >= nearest, each[1] if each[2] < nearest else each[2])
+    )
+    yield from found[:_TRIES]

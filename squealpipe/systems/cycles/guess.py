@@ -1,0 +1,224 @@
+"""Equations and a guess of a cycle, from a run that nearly repeats or from another cycle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from itertools import islice
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squealpipe.systems.cycles.admissible import is_motion
+from squealpipe.systems.cycles.event_map import FREE, EventMap, Section
+from squealpipe.systems.cycles.flow import Event, Flow, Vector
+from squealpipe.systems.cycles.solution import Cycle
+from squealpipe.systems.runs import Motion, single_run
+
+if TYPE_CHECKING:
+    from squealpipe.systems.definition import System
+
+_BRIEF = 1e-3
+"""Share of the period below which a leg may have vanished."""
+MOST_ROUNDS = 32
+_ROOM = 4
+"""Steps that a leg may need, over those of a whole period in the run that it is guessed from."""
+
+
+def follow(
+    flow: Flow,
+    values: Mapping[str, float],
+    state: Vector,
+    duration: float,
+    **options: Any,
+) -> Motion:
+    """Run a system from a state at t = 0 with all events."""
+    system, regime = flow.system, options.pop("regime", None)
+    first = None if regime is None else np.array([system.joint.regimes(regime)])
+    states = dict(zip(system.states, map(float, state), strict=True))
+    with np.errstate(all="ignore"):
+        return single_run(
+            system,
+            {**values, **states},
+            duration,
+            regime=first,
+            tol=1e-13,
+            unit_sizes=sizes_at(flow, values, state, regime or 0),
+            **options,
+        )
+
+
+def sizes_at(
+    flow: Flow, values: Mapping[str, float], state: Vector, regime: int
+) -> Vector:
+    """Sizes of the states in a motion that may be far smaller than the system's own sizes."""
+    sizes, unit = flow.system.sizes, flow.unit(values)
+    with np.errstate(all="ignore"):
+        rates = flow.field(values, regime, state, 0.0) * unit
+        largest = max(float(np.abs(each / sizes).max()) for each in (state, rates))
+    return sizes * min(1.0, largest) if 0.0 < largest < np.inf else sizes
+
+
+def events_of(
+    system: System, motion: Motion, first: int, count: int
+) -> tuple[Event, ...]:
+    """Some events of a run, each with its switch."""
+    t, joint = system.traced, system.joint
+    found: list[Event] = []
+    for i in range(first, first + count):
+        before, after, kind, entered = (
+            int(v)
+            for v in (*motion.regimes[i : i + 2], motion.kinds[i], motion.entered[i])
+        )
+        fitting = (
+            Event(int(switch), surface, sign, before, after, kind)
+            for watched, sign in (
+                (joint.falls(before), 1.0),
+                (joint.rises(before), -1.0),
+            )
+            for surface, switch in enumerate(watched)
+            if 0 <= switch < len(t.switches)
+            and any(
+                (to, name) == (entered, kind)
+                for to, _, name in t.switches[switch].targets
+            )
+        )
+        found += islice(fitting, 1)
+    return tuple(found)
+
+
+def guess_of(
+    flow: Flow,
+    values: Mapping[str, float],
+    motion: Motion,
+    state: Vector,
+    period: float,
+    *,
+    periods: int,
+    scale: Vector,
+    first: int = 0,
+    count: int | None = None,
+    origin: float = 0.0,
+) -> tuple[EventMap, Vector] | None:
+    """Equations and guess from a run that is nearly periodic; None where its regimes are not.
+
+    Args:
+        state: at ``origin``, of a cycle without events.
+        period: after which it nearly repeats, s.
+        periods: of the forcing in it; 0 without.
+        first, count: the events of one period; by default all of the run.
+        origin: instant of the run that is t = 0 of the forcing.
+    """
+    count = len(motion.times) if count is None else count
+    needed = _ROOM * motion.steps * period / max(motion.reached, period)
+    flow.most_steps = max(flow.most_steps, int(needed))
+    units = np.array([max(abs(values[name]), 1e-300) for name in flow.followed])
+    followed = np.array([values[name] for name in flow.followed])
+    if motion.regimes[first] != motion.regimes[first + count]:
+        return None
+    equations = EventMap(flow, (), values, scale, period, units, periods)
+    if count == 0:
+        regime = int(motion.regimes[first])
+        return eventless(equations, state, regime, period, followed)
+    events = events_of(flow.system, motion, first, count)
+    if len(events) < count:
+        return None
+    chosen = slice(first, first + count)
+    times = motion.times[chosen] - origin
+    durations = np.append(np.diff(times), times[0] + period - times[-1])
+    # legs begin after each event: the last ends at the first event
+    equations = replace(equations, events=(*events[1:], events[0]))
+    return equations, equations.pack(
+        motion.states[chosen], durations, float(times[0]), followed
+    )
+
+
+def eventless(
+    equations: EventMap, state: Vector, regime: int, period: float, followed: Vector
+) -> tuple[EventMap, Vector]:
+    """Equations and guess of a cycle through a state that stays in one regime."""
+    section = None
+    if not equations.periods:
+        heading = (
+            equations.flow.field(equations.values, regime, state, 0.0) / equations.scale
+        )
+        section = Section(state, heading / np.linalg.norm(heading))
+    free = Event(FREE, FREE, 1.0, regime, regime, FREE)
+    made = replace(equations, events=(free,), section=section)
+    return made, made.pack(state[None], np.array([period]), 0.0, followed)
+
+
+def solved(equations: EventMap, guess: Vector) -> Cycle | None:
+    """The cycle near a guess, if it is a motion of the system."""
+    point = equations.solve(guess)
+    return None if point is None else as_motion(Cycle.at(equations, point))
+
+
+def as_motion(cycle: Cycle, tries: int = 8) -> Cycle | None:
+    """A solution if it is a motion of the system, perhaps without a pair of events.
+
+    Next to a touch round-off decides whether a run has a pair there.
+
+    Args:
+        tries: legs that are left out, one after the other, before the solution is given up.
+    """
+    waiting = [cycle]
+    while waiting:
+        here = waiting.pop()
+        if here.period > 0.0 and is_motion(here):
+            return here
+        shorter = []
+        for equations, guess in islice(without_brief_legs(here), max(tries, 0)):
+            tries -= 1
+            point = equations.solve(guess)
+            if point is not None:
+                shorter.append(Cycle.at(equations, point))
+        waiting += reversed(shorter)
+    return None
+
+
+def without_brief_legs(cycle: Cycle) -> Iterator[tuple[EventMap, Vector]]:
+    """Equations and guess without one of the legs that may have vanished."""
+    events = cycle.map.events
+    for leg in np.flatnonzero(cycle.parts.durations < _BRIEF * cycle.period).tolist():
+        if events[leg - 1].before == events[leg].after and len(events) > 1:
+            yield merged(cycle, (leg - 1) % len(events), 2)
+
+
+def merged(cycle: Cycle, leg: int, count: int) -> tuple[EventMap, Vector]:
+    """Equations and guess in which a leg goes on through the next ones, without events between."""
+    equations, parts = cycle.map, cycle.parts
+    if count >= equations.legs:
+        state, _ = cycle.start()
+        made, regime = (
+            replace(equations, values=parts.values),
+            equations.events[leg].before,
+        )
+        return eventless(made, state, regime, cycle.period, cycle.followed)
+    absorbed = [(leg + k) % equations.legs for k in range(1, count + 1)]
+    keep = [i for i in range(equations.legs) if i not in absorbed]
+    events, durations = list(equations.events), parts.durations.copy()
+    events[leg] = events[absorbed[-1]]
+    durations[leg] += durations[absorbed].sum()
+    fewer = replace(equations, events=tuple(events[i] for i in keep))
+    start = parts.start + float(cycle.clocks[keep[0]])
+    return fewer, fewer.pack(parts.states[keep], durations[keep], start, cycle.followed)
+
+
+def once_round(cycle: Cycle) -> Cycle:
+    """The same cycle run through once, where it was found after several rounds."""
+    equations, parts = cycle.map, cycle.parts
+    times = np.arange(8) / 8.0 * cycle.period
+    here, _ = cycle.states_at(times)
+    for rounds in range(MOST_ROUNDS, 1, -1):
+        after, _ = cycle.states_at((times + cycle.period / rounds) % cycle.period)
+        if equations.legs % rounds and cycle.events:
+            continue
+        if (np.abs(here - after) > 1e-6 * equations.scale).any():
+            continue
+        legs = max(equations.legs // rounds, 1)
+        durations = parts.durations[:legs] / (1 if cycle.events else rounds)
+        fewer = replace(equations, events=equations.events[:legs])
+        guess = fewer.pack(parts.states[:legs], durations, parts.start, np.empty(0))
+        return solved(fewer, guess) or cycle
+    return cycle

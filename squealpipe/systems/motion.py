@@ -1,0 +1,229 @@
+"""What the motions of many runs have become: rest, a cycle, or neither.
+
+A cycle is shown by returns of the whole state: the extremes of a torus repeat too, and the events
+of one part of a system do not know of the beat of another.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import IntEnum
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from squealpipe.methods.recurrence import LEAST_REPEATS, in_blocks, repeats_after
+from squealpipe.schema import Outcome
+from squealpipe.systems import runs
+
+AT_REST = 1e-3
+"""A motion rests whose states stay this close together, over their ranges in the whole run."""
+REPEATED = 1e-6
+"""Largest difference in a cycle: of intervals over the mean one, of states over their ranges."""
+MOST_PERIODS = 32
+"""Periods of the forcing up to which a cycle is sought."""
+_SAMPLES, _PER_STEP = 4096, 8
+"""Instants at which a return without events is looked for, and how many in a step."""
+_NEAR = 0.05
+"""Distance of a sampled return, over the ranges, from which the exact one is looked for."""
+_TRIES, _AT_ONCE = 4, 256
+"""Returns that are looked at, and runs whose samples are held at once."""
+
+
+class Motion(IntEnum):
+    """Kind of motion in the second half of a run."""
+
+    unsettled = 0
+    rest = 1
+    cycle = 2
+
+
+@dataclass(frozen=True)
+class Ensemble:
+    """Runs of a system from many starts, each to the same end, that can be made again.
+
+    Attributes:
+        values: states and parameters, (runs,).
+        regime: in which all start; by default what fits each.
+    """
+
+    system: Any
+    values: Mapping[str, np.ndarray]
+    t_end: float
+    tol: float
+    regime: str | None
+    workers: int | None
+
+    def run(
+        self, rows: Any, share: float = 1.0, late: float = 1.0, **options: Any
+    ) -> Any:
+        """Some of the runs, up to a share of their end."""
+        values = {name: value[rows] for name, value in self.values.items()}
+        values |= options.pop("states", {})
+        count = values[self.system.states[0]].size
+        chosen = {"regime": self.regime, "t_late": late * self.t_end} | options
+        return runs.integrate(
+            self.system,
+            values,
+            np.full(count, share * self.t_end),
+            tol=self.tol,
+            workers=self.workers,
+            tracked=self.system.states,
+            **chosen,
+        )
+
+    def judged(self, whole: Any) -> tuple[np.ndarray, np.ndarray]:
+        """(:class:`Motion`, period; NaN: none is known) of each run.
+
+        Args:
+            whole: all runs, their late part the last quarter.
+        """
+        third = self.run(slice(None), 0.75, 0.5)
+        spans = np.maximum(np.ptp(whole["extremes"], axis=-1), np.finfo(float).tiny)
+        (low, high), (last_low, last_high) = (
+            np.moveaxis(each["late_extremes"], -1, 0) for each in (third, whole)
+        )
+        stays = np.maximum(high, last_high) - np.minimum(low, last_low)
+        rests = (stays <= AT_REST * spans).all(axis=1)
+        ran = whole["ends"][:, 0] == Outcome.converged
+        ended = np.isfinite(whole["late_extremes"]).all(axis=(1, 2)) & ran
+        moving = np.flatnonzero(~rests & ran)
+        period = np.full(len(rests), np.nan)
+        if self.system.period is not None:
+            period[moving] = self._after_forcing_periods(moving, spans)
+        else:
+            counts = whole["counts"].sum(axis=1)
+            silent = np.zeros(len(rests), bool)
+            for rows in in_blocks(moving, counts):
+                period[rows], silent[rows] = self._between_events(
+                    rows, int(counts[rows].max()), spans
+                )
+            _, steps, _ = whole["ends"].T
+            quiet = np.flatnonzero(silent)
+            for first in range(0, quiet.size, _AT_ONCE):
+                rows = quiet[first : first + _AT_ONCE]
+                period[rows] = self._without_events(
+                    rows, spans[rows], np.maximum(steps[rows], 1)
+                )
+        repeats = np.isfinite(period)
+        motion = np.select(
+            [rests, repeats], [Motion.rest, Motion.cycle], Motion.unsettled
+        )
+        motion[~ended] = Motion.unsettled
+        return motion, period
+
+    def _after_forcing_periods(self, rows: np.ndarray, spans: np.ndarray) -> np.ndarray:
+        """Periods after which all states at the same instants of the forcing repeat."""
+        size = len(spans)
+        with np.errstate(divide="ignore"):
+            found = self.system.period(SimpleNamespace(**self.values))
+        forcing = np.broadcast_to(np.asarray(found, float), size)
+        if not (np.isfinite(forcing) & (forcing > 0.0)).all():
+            raise ValueError(
+                f"{self.system.name}: the period of its forcing must be greater than 0"
+            )
+        most = LEAST_REPEATS * MOST_PERIODS
+        kept = int(np.clip(0.5 * self.t_end / forcing.max(), 0, most))
+        times = self.t_end - forcing[rows, None] * np.arange(kept, -1, -1)
+        states = self.run(rows, times=times)["samples"] / spans[rows, None]
+        rounds = np.zeros(rows.size, int)
+        for lag in range(kept // LEAST_REPEATS, 0, -1):
+            moved = np.abs(states[:, lag:] - states[:, :-lag])
+            near = moved.max(axis=2, initial=0.0) <= REPEATED
+            # at first the distance to a cycle may be less after several of its periods
+            again = near.all(axis=1) | (
+                (rounds > 0) & (rounds % lag == 0) & near[:, -1]
+            )
+            rounds[again] = lag
+        return np.where(rounds, rounds * forcing[rows], np.nan)
+
+    def _between_events(
+        self, rows: np.ndarray, most: int, spans: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """(Period after which events and states repeat, whether there are no events at all)."""
+        logged = self.run(rows, log_events=max(1, most))
+        period, silent = np.full(rows.size, np.nan), np.zeros(rows.size, bool)
+        for i, (row, times, kinds, states) in enumerate(
+            zip(
+                rows,
+                *(logged[f"event_{name}"] for name in ("times", "kinds", "states")),
+                strict=True,
+            )
+        ):
+            late = times > 0.5 * self.t_end
+            silent[i] = not late.any()
+            marks = states[late] / spans[row]
+            lag = repeats_after(times[late], kinds[late], REPEATED, marks)
+            if lag:
+                period[i] = times[late][lag] - times[late][0]
+        return period, silent
+
+    def _without_events(
+        self, rows: np.ndarray, spans: np.ndarray, steps: np.ndarray
+    ) -> np.ndarray:
+        """Times after which an autonomous motion without events is back at its state."""
+        half = self.run(rows, times=np.array([0.5 * self.t_end]))
+        states, regimes = half["samples"][:, 0], half["sample_regimes"][:, 0]
+
+        def at(which: np.ndarray, times: np.ndarray) -> np.ndarray:
+            """States over their ranges at times after the middle of the run."""
+            named = dict(zip(self.system.states, states[which].T, strict=True))
+            options = {"states": named, "regime": regimes[which], "times": times}
+            run = self.run(rows[which], 0.5, **options)
+            return np.asarray(run["samples"] / spans[which, None])
+
+        every = np.arange(rows.size)
+        window = 0.5 * self.t_end * np.minimum(1.0, 2.0 * _SAMPLES / _PER_STEP / steps)
+        times = window[:, None] * np.linspace(0.0, 1.0, _SAMPLES)
+        path = at(every, times)
+        begin = path[:, :1]
+        normal = path[:, 1] - path[:, 0]
+        found = [_near_returns(*each) for each in zip(times, path, normal, strict=True)]
+        period = np.full(rows.size, np.nan)
+        for number in range(_TRIES):
+            which = np.array(
+                [i for i in every if np.isnan(period[i]) and len(found[i]) > number],
+                int,
+            )
+            if not which.size:
+                break
+            time = np.array([found[i][number] for i in which])
+            width = window[which] / (_SAMPLES - 1)
+            for _ in range(3):
+                places = time[:, None] + width[:, None] * np.linspace(-1.0, 1.0, 9)
+                places = np.clip(places, 0.0, 0.5 * self.t_end)
+                near = at(which, places) - begin[which]
+                heights = (near * normal[which, None]).sum(axis=2)
+                time = _zeros(places, heights, time)
+                width = width / 200.0
+            again = time[:, None] * np.arange(1, LEAST_REPEATS + 1)
+            fits = again[:, -1] <= 0.5 * self.t_end
+            again = np.minimum(again, 0.5 * self.t_end)
+            off = np.abs(at(which, again) - begin[which]).max(axis=(1, 2))
+            period[which] = np.where(fits & (off <= REPEATED), time, np.nan)
+        return period
+
+
+def _near_returns(
+    times: np.ndarray, path: np.ndarray, normal: np.ndarray
+) -> list[float]:
+    """Instants at which a sampled motion crosses a plane through its first state near to it."""
+    offset = path - path[0]
+    height = offset @ normal
+    at = np.flatnonzero((height[:-1] < 0.0) & (height[1:] >= 0.0))
+    share = -height[at] / (height[at + 1] - height[at])
+    there = offset[at] + share[:, None] * (offset[at + 1] - offset[at])
+    near = np.abs(there).max(axis=1, initial=0.0) < _NEAR
+    return list((times[at] + share * (times[at + 1] - times[at]))[near][:_TRIES])
+
+
+def _zeros(places: np.ndarray, heights: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Where each row of samples first rises through zero, by a straight line; else another."""
+    rises = (heights[:, :-1] < 0.0) & (heights[:, 1:] >= 0.0)
+    row, at = np.arange(len(places)), np.argmax(rises, axis=1)
+    low, high = heights[row, at], heights[row, at + 1]
+    share = -low / np.where(high > low, high - low, 1.0)
+    zero = places[row, at] + share * (places[row, at + 1] - places[row, at])
+    return np.where(rises.any(axis=1), zero, other)

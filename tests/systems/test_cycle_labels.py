@@ -1,0 +1,247 @@
+"""Labels of settled motions that can be checked from outside: chaos, tori, families, symmetry."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq, fsolve
+
+from squealpipe.schema import Outcome, meanings
+from squealpipe.schema.branch_labels import Label
+from squealpipe.systems.motion import Motion
+from tests.systems.smooth_systems import (
+    ball_on_a_table,
+    block_on_a_table,
+    duffing_holmes,
+    elastic_ball,
+    linear,
+    pendulum,
+    square_wave,
+    two_oscillators,
+    ueda,
+    van_der_pol,
+)
+
+
+def outcome(cycle):
+    return meanings(cycle.outcome)[int(cycle.outcome)]
+
+
+def lyapunov_exponent(force):
+    """Of Duffing and Holmes' oscillator, by the variational equations and DOP853."""
+    damping, omega = 0.2, 1.2
+    period = 2.0 * np.pi / omega
+
+    def rates(t, z):
+        x, v, a, b = z
+        return (
+            v,
+            x - x**3 - damping * v + force * np.cos(omega * t),
+            b,
+            (1.0 - 3.0 * x**2) * a - damping * b,
+        )
+
+    z, growth = np.array([1.0, 0.0, 1.0, 0.0]), 0.0
+    for n in range(600):
+        z = solve_ivp(rates, (0.0, period), z, "DOP853", rtol=1e-9, atol=1e-9).y[:, -1]
+        size = np.hypot(*z[2:])
+        z[2:] /= size
+        growth += np.log(size) * (n >= 200)
+    return growth / (400 * period)
+
+
+@pytest.mark.parametrize("force", [0.28, 0.3215, 0.55])
+def test_chaos_settles_on_no_cycle(force):
+    cycle = duffing_holmes.limit_cycle(force=force)
+    assert outcome(cycle) == "unsettled"
+    assert np.isnan(cycle.period)
+
+
+@pytest.mark.release
+@pytest.mark.parametrize("force", np.linspace(0.2, 0.6, 21))
+def test_a_cycle_is_claimed_where_the_lyapunov_exponent_is_negative(force):
+    settled = outcome(duffing_holmes.limit_cycle(force=force)) != "unsettled"
+    assert settled == (lyapunov_exponent(force) < 0.0)
+
+
+def test_chaos_has_a_positive_exponent_and_a_doubled_cycle_is_counted():
+    assert lyapunov_exponent(0.3215) > 0.05
+    cycle = duffing_holmes.limit_cycle(force=0.22)
+    assert outcome(cycle) == "settled_on_2_periods"
+    doubled = duffing_holmes.limit_cycle(force=0.22, periods=2)
+    assert doubled.outcome == Outcome.converged
+    assert doubled.stable == 1
+    assert float(doubled.period) == pytest.approx(4.0 * np.pi / 1.2, rel=1e-12)
+
+
+def test_cycles_of_conservative_systems_are_members_of_families():
+    ball = elastic_ball.limit_cycle()
+    assert outcome(ball) == "family_member"
+    assert int(ball.stable) == 0
+    assert float(ball.period) == pytest.approx(np.sqrt(8.0), rel=1e-10)
+    swing = pendulum.limit_cycle()
+    assert outcome(swing) == "family_member"
+    assert int(swing.stable) == 0
+    # the arithmetic–geometric mean: T = 2π / agm(1, cos(amplitude / 2))
+    a, b = 1.0, np.cos(0.5 * float(swing.x_max))
+    for _ in range(6):
+        a, b = 0.5 * (a + b), np.sqrt(a * b)
+    assert float(swing.period) == pytest.approx(2.0 * np.pi / a, rel=1e-10)
+    assert float(swing.x_max) == pytest.approx(1.0, abs=1e-8)
+
+
+def test_a_damped_ball_and_a_damped_family_are_no_members():
+    assert outcome(van_der_pol.limit_cycle()) == "converged"
+    assert outcome(linear.limit_cycle()) == "converged"
+
+
+def test_a_torus_is_no_cycle():
+    assert outcome(two_oscillators(2.0).limit_cycle()) == "unsettled"
+    assert outcome(two_oscillators(4.0).limit_cycle()) == "family_member"
+
+
+def test_a_torus_is_no_cycle_in_a_basin():
+    starts = {"y": np.array([0.0, 1.0])}
+    found = two_oscillators(2.0).basin(400.0, start=starts, workers=1)
+    np.testing.assert_array_equal(found.motion, [Motion.cycle, Motion.unsettled])
+    np.testing.assert_allclose(found.period, [2.0 * np.pi, np.nan], rtol=1e-8)
+    found = two_oscillators(4.0).basin(400.0, start=starts, workers=1)
+    np.testing.assert_array_equal(found.motion, [Motion.cycle, Motion.cycle])
+    np.testing.assert_allclose(found.period, 2.0 * np.pi, rtol=1e-8)
+    cycle = van_der_pol.basin(200.0, start={"x": np.array([0.5, 3.0])}, workers=1)
+    np.testing.assert_array_equal(cycle.motion, Motion.cycle)
+    np.testing.assert_allclose(cycle.period, 6.663286859, rtol=1e-8)
+
+
+GRID = [
+    (w, c)
+    for w in np.linspace(0.1, 3.0, 18)
+    for c in (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5)
+]
+TWENTIETH = np.random.default_rng(42).choice(len(GRID), 9, replace=False)
+
+
+@pytest.mark.parametrize(
+    "cases",
+    [[GRID[i] for i in TWENTIETH], pytest.param(GRID, marks=pytest.mark.release)],
+    ids=["a twentieth", "all"],
+)
+def test_forced_linear_oscillators_have_their_closed_form(cases):
+    for omega, damping in cases:
+        cycle = linear.limit_cycle(omega=float(omega), damping=float(damping))
+        assert outcome(cycle) == "converged", (omega, damping)
+        size = 1.0 / np.hypot(1.0 - omega**2, damping * omega)
+        assert float(cycle.x_max) == pytest.approx(size, rel=1e-9)
+        assert int(cycle.stable) == 1
+        roots = np.roots([1.0, damping, 1.0])
+        expected = np.sort_complex(np.exp(roots * 2.0 * np.pi / omega))
+        ours = np.sort_complex(
+            cycle.multiplier_real.values + 1j * cycle.multiplier_imag.values
+        )
+        np.testing.assert_allclose(ours, expected, atol=1e-9)
+
+
+@pytest.mark.parametrize("omega", [0.3, 0.45, 0.7, 0.9, 1.2, 1.7, 2.4, 3.0])
+def test_a_square_wave_drives_a_cycle_in_closed_form(omega):
+    """Half a period turns the state into its opposite: z = −(e^{Ah} z + (e^{Ah} − 1) A⁻¹ b)."""
+    damping, half = 0.2, np.pi / omega
+    matrix = np.array([[0.0, 1.0], [-1.0, -damping]])
+    values, vectors = np.linalg.eig(matrix)
+    flow = (vectors * np.exp(values * half) @ np.linalg.inv(vectors)).real
+    forced = np.linalg.solve(matrix, (flow - np.eye(2)) @ [0.0, 1.0])
+    state = -np.linalg.solve(np.eye(2) + flow, forced)
+    cycle = square_wave().limit_cycle(omega=omega)
+    assert outcome(cycle) == "converged"
+    assert cycle.sizes["event"] == 2
+    rises = int(np.argmax(cycle.event_regime.values == 0))
+    ours = [float(cycle[f"event_{name}"][rises]) for name in ("x", "v")]
+    np.testing.assert_allclose(ours, state, atol=1e-10)
+    assert int(cycle.stable) == 1
+
+
+def flight_time(strength, adhesion):
+    """How long an inelastic ball flies after strength · sin t = 1 + adhesion."""
+    leave = np.arcsin((1.0 + adhesion) / strength)
+
+    def height(time):
+        moved = strength * (np.sin(leave) - np.sin(leave + time) + time * np.cos(leave))
+        return moved - 0.5 * time**2
+
+    return brentq(height, 0.3, 6.0)
+
+
+def times_of(cycle):
+    names = np.array(cycle.event_kind.attrs["flag_meanings"].split())
+    return dict(zip(names[cycle.event_kind], cycle.event_time.values, strict=True))
+
+
+@pytest.mark.parametrize("strength", [1.05, 1.2, 1.5, 1.8, 2.0, 2.5, 3.0])
+def test_a_ball_on_a_table_flies_for_its_closed_form_time(strength):
+    cycle = ball_on_a_table.limit_cycle(strength=strength, adhesion=1e-3)
+    assert outcome(cycle) == "converged"
+    times = times_of(cycle)
+    flight = (times["land"] - times["leave"]) % (2.0 * np.pi)
+    assert flight == pytest.approx(flight_time(strength, 1e-3), abs=1e-9)
+
+
+@pytest.mark.parametrize("strength", [1.02, 1.1, 1.3, 1.5, 1.7])
+def test_a_block_on_a_table_slides_for_its_closed_form_time(strength):
+    cycle = block_on_a_table.limit_cycle(strength=strength)
+    assert outcome(cycle) == "converged"
+    assert int(cycle.stable) == 1
+    times, begin = times_of(cycle), np.arcsin(1.0 / strength)
+
+    def speed(time):
+        return strength * (np.cos(begin) - np.cos(begin + time)) - time
+
+    slides = brentq(speed, 0.1, 6.0)
+    assert times["moves_on"] == pytest.approx(begin, abs=1e-9)
+    assert times["moves_back"] == pytest.approx(begin + np.pi, abs=1e-9)
+    for first, last in (("moves_on", "stops"), ("moves_back", "stops_back")):
+        assert (times[last] - times[first]) % (2.0 * np.pi) == pytest.approx(
+            slides, abs=1e-9
+        )
+
+
+def symmetric_cycle(force):
+    """(state, multipliers) of the symmetric cycle of x″ + 0.1 x′ + x³ = F cos t, by DOP853."""
+
+    def rates(t, z):
+        x, v = z[:2]
+        slopes = np.array([[0.0, 1.0], [-3.0 * x**2, -0.1]]) @ z[2:].reshape(2, 2)
+        return v, force * np.cos(t) - 0.1 * v - x**3, *slopes.ravel()
+
+    def after(z, time):
+        start = [*z, 1.0, 0.0, 0.0, 1.0]
+        return solve_ivp(rates, (0.0, time), start, "DOP853", rtol=1e-12, atol=1e-12).y[
+            :, -1
+        ]
+
+    state = fsolve(lambda z: after(z, np.pi)[:2] + z, [0.6, 1.3], xtol=1e-12)
+    return state, np.linalg.eigvals(after(state, 2.0 * np.pi)[2:].reshape(2, 2))
+
+
+def test_a_symmetric_cycle_loses_stability_at_a_pitchfork():
+    start = ueda.limit_cycle(force=1.0)
+    branch = ueda.cycle_branch("force", 4.0, start=start)
+    (at,) = np.flatnonzero(branch.label == Label.pitchfork)
+    changes = np.flatnonzero(np.diff(branch.stable.values)) + 1
+    assert set(changes) <= {at, at + 1}, "no change of stability without a label"
+    force = float(branch.force[at])
+    assert force == pytest.approx(2.3, abs=0.05)
+    state, multipliers = symmetric_cycle(force)
+    assert np.abs(multipliers - 1.0).min() < 1e-7
+    ours = [float(branch[f"{name}_start"][at]) for name in ("x", "v")]
+    # of a triple root: the equations tell it to the cube root of their round-off
+    np.testing.assert_allclose(ours, state, atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("mu", "period"),
+    [(1.0, 6.663286859323), (10.0, 19.078369566), (100.0, 162.837071092)],
+)
+def test_relaxation_oscillations_settle(mu, period):
+    """Periods between two zeros of v, by DOP853 and, the last one, Radau."""
+    cycle = van_der_pol.limit_cycle(mu=mu)
+    assert outcome(cycle) == "converged"
+    assert float(cycle.period) == pytest.approx(period, rel=1e-9)
+    assert float(cycle.x_max) == pytest.approx(2.0, abs=0.02)
