@@ -177,8 +177,10 @@ class System:
     @cached_property
     def start_names(self) -> dict[str, str]:
         """What starts are called: ``x0``, or ``x_0`` of every state where a state is named so."""
-        collides = any(f"{name}0" in self.units for name in self.units)
-        return {name: f"{name}{'_' * collides}0" for name in self.units}
+        mark = ""
+        while any(f"{name}{mark}0" in self.units for name in self.units):
+            mark += "_"
+        return {name: f"{name}{mark}0" for name in self.units}
 
     def __repr__(self) -> str:
         switches = ", ".join(each.name for each in self.switches)
