@@ -7,6 +7,7 @@ import pytest
 
 from squealpipe import Contact, Parameters, Structure, labels, simulate
 from squealpipe.structures import elastic_pad
+from tests.oracles.structure_events import FASTER, OPEN, SLOWER, STICK, Reference
 
 ANGLES = {
     ("exponential", None, 0.453, 2.98): {"separation", "contact"},
@@ -52,7 +53,267 @@ def test_one_contact_on_two_springs_is_a1_with_linear_springs(case, kinds):
         assert run[name].values == pytest.approx(truth[same].values, abs=1e-12)
 
 
+REGIMES = {
+    "separated": OPEN, "stick": STICK, "slip slower": SLOWER, "slip faster": FASTER
+}  # fmt: skip
+
+
+def names(size):
+    return [f"{letter}{i}" for letter in "qv" for i in range(1, size + 1)]
+
+
+def twelve_modes():
+    """The elastic pad by its twelve lowest modes, with 1 % of damping."""
+    return elastic_pad(modal_damping=0.01).reduce(n_modes=12, frequency_max=60e3)
+
+
+def kicked(seed, size, displacement, velocity):
+    """A start of random displacements and velocities of these sizes."""
+    generator = np.random.default_rng(seed)
+    return np.concatenate(
+        [scale * generator.standard_normal(size) for scale in (displacement, velocity)]
+    )
+
+
+def against_reference(structure, state, t_end, mu_static=None, **parameters):
+    """A run beside that of the reference: both lists of events and both final states."""
+    size = structure.size
+    start = dict(zip(names(size), state, strict=True))
+    run = structure.system().simulate(
+        t_end, start=start, times=[0.0, t_end], **parameters
+    )
+    assert labels(run.outcome).item() == "converged"
+    reference = Reference(
+        structure.with_(belt_speed=parameters.get("belt_speed", structure.belt_speed)),
+        parameters.get("mu", structure.mu), mu_static, parameters.get("preload", 1.0),
+    )  # fmt: skip
+    events, final = reference.run(t_end, state)
+    places = [contact.name for contact in structure.contacts]
+    happened = []
+    for time, entered in zip(
+        run.event_time.values, labels(run.event_regime).values, strict=True
+    ):
+        contact, regime = str(entered).split(" ", 1)
+        happened.append((float(time), places.index(contact), REGIMES[regime]))
+    found = np.array([run[name].values[-1] for name in names(size)])
+    return happened, events, found, final
+
+
+def net(events):
+    """Events with what contacts enter for good at each instant, in the order of contacts."""
+    found = []
+    for time, contact, regime in events:
+        if not found or time - found[-1][0] > 1e-11 * time:
+            found.append((time, {}))
+        found[-1][1][contact] = regime
+    return [time for time, _ in found], [
+        sorted(entered.items()) for _, entered in found
+    ]
+
+
+def assert_agree(compared, rtol):
+    happened, events, found, final = compared
+    (times, entered), (truth, expected) = net(happened), net(events)
+    assert entered == expected
+    assert times == pytest.approx(truth, rel=rtol)
+    half = len(final) // 2
+    for part in (slice(half), slice(half, None)):
+        size = np.abs(final[part]).max()
+        assert found[part] == pytest.approx(final[part], abs=1e3 * rtol * size)
+
+
+@pytest.mark.parametrize(
+    "parameters",
+    [{}, {"belt_speed": 0.1, "mu": 0.8}, {"belt_speed": -0.2, "preload": 0.6}],
+)
+def test_the_pad_moves_as_an_integrator_apart_has_it(parameters):
+    pad = twelve_modes()
+    start = kicked(3, 12, 1.5e-7, 0.08)
+    compared = against_reference(pad, start, 0.25e-3, **parameters)
+    regimes = {regime for _, _, regime in compared[0]}
+    assert {OPEN, SLOWER if parameters.get("belt_speed", 1) > 0 else FASTER} <= regimes
+    assert (STICK in regimes) == bool(parameters)
+    assert_agree(compared, rtol=1e-12)
+
+
+def coupled_contacts(**friction):
+    """Four masses that move each other, three contacts, all near the speed of the belt."""
+    generator = np.random.default_rng(8)
+    mass, stiffness = generator.standard_normal((2, 4, 4))
+    contacts = [
+        Contact(
+            name, generator.standard_normal(4), generator.standard_normal(4),
+            stiffness=2.0, preload=1.0, speed=speed,
+        )
+        for name, speed in (("a", 1.0), ("b", 0.6), ("c", -0.8))
+    ]  # fmt: skip
+    return Structure(
+        mass @ mass.T + np.eye(4), stiffness @ stiffness.T + np.eye(4), 0.05 * np.eye(4),
+        contacts=contacts, belt_speed=0.2, **friction,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_contacts_that_stick_together_share_their_forces_rightly(seed):
+    structure = coupled_contacts(mu=0.8)
+    compared = against_reference(structure, kicked(seed, 4, 0.4, 0.3), 25.0)
+    assert sum(regime == STICK for _, _, regime in compared[0]) > 3
+    assert_agree(compared, rtol=1e-11)
+
+
+def test_three_contacts_land_at_one_instant():
+    # three light feet, each with a spring of its own along the belt, under one mass
+    stiffness = np.diag([1.0, 2.0, 3.0, 4.0])
+    contacts = [
+        Contact(f"foot{i}", {0: 1.0}, {i: 1.0}, stiffness=5.0, preload=1.0)
+        for i in (1, 2, 3)
+    ]
+    structure = Structure(
+        np.diag([1.0, 0.3, 0.2, 0.1]),
+        stiffness,
+        contacts=contacts,
+        mu=0.3,
+        belt_speed=0.5,
+        load=0,
+    )
+    start = np.array([0.5, 0.0, 0.1, 0.0, -0.2, 0.0, 0.1, 0.0])
+    compared = against_reference(structure, start, 6.0)
+    landings = [time for time, _, regime in compared[0] if regime == SLOWER][:3]
+    assert len(landings) == 3
+    assert np.ptp(landings) < 1e-14
+    assert_agree(compared, rtol=1e-11)
+
+
+def test_a_contact_that_slips_lets_the_other_go():
+    # both are held by the static limit; when the first goes, what friction loses pulls the second
+    mass = np.array([[1.0, 0.0, -0.7], [0.0, 1.0, 0.0], [-0.7, 0.0, 1.0]])
+    contacts = [
+        Contact("first", {1: 1.0}, {0: 1.0}, stiffness=1.0, preload=1.0),
+        Contact("second", {1: 1.0}, {2: 1.0}, stiffness=1.0, preload=1.0),
+    ]
+    structure = Structure(
+        mass,
+        np.diag([1.0, 1.0, 1.0]),
+        contacts=contacts,
+        mu=0.2,
+        mu_static=0.6,
+        belt_speed=0.1,
+    )
+    start = {"v1": 0.1, "v3": 0.1, "q3": -0.05}
+    sticks = {"regime": {"first": "stick", "second": "stick"}}
+    run = structure.system().simulate(20.0, start=start | sticks)
+    kinds = [str(kind) for kind in labels(run.event_kind).values]
+    assert kinds[:2] == ["first slip", "second slip"]
+    assert run.event_time.values[0] == run.event_time.values[1]
+
+
 def test_a_system_records_its_equations_in_bounds():
     system = elastic_pad().reduce(n_modes=12, frequency_max=60e3).system()
     assert len(json.dumps(system.text)) < 60_000
     assert {"dq1/dt", "dv12/dt", "p4_speed", "part1"} <= set(system.text)
+
+
+def test_the_work_of_friction_and_dashpots_is_the_change_of_energy():
+    pad, size, t_end = twelve_modes(), 12, 2e-3
+    system = pad.system()
+    start = dict(zip(names(size), kicked(5, size, 1.5e-7, 0.08), strict=True))
+    first = system.simulate(t_end, start=start, belt_speed=0.3)
+    ends = np.unique(np.concatenate([[0.0], first.event_time.values, [t_end]]))
+    # between events the motion is smooth: pieces of a microsecond, sixteen points each
+    ends = np.unique(np.concatenate([ends, np.arange(0.0, t_end, 1e-6)]))
+    points, weights = np.polynomial.legendre.leggauss(16)
+    times = (ends[:-1, None] + np.diff(ends)[:, None] * 0.5 * (points + 1.0)).ravel()
+    weights = (0.5 * np.diff(ends)[:, None] * weights).ravel()
+    run = system.simulate(
+        t_end, start=start, belt_speed=0.3, times=[0.0, *times, t_end]
+    )
+    q, v = (np.array([run[f"{letter}{i}"] for i in range(1, 13)]) for letter in "qv")
+    regimes = labels(run.regime).values
+    closed = np.array(
+        [["separated" not in str(name) for name in row] for row in regimes]
+    ).T
+    assert np.any([["stick" in str(name) for name in row] for row in regimes])
+    stiffness = np.array([each.stiffness for each in pad.contacts])[:, None]
+    lift = pad.normals.T @ q
+    normal = np.where(closed, pad.preloads[:, None] - stiffness * lift, 0.0)
+    energy = (
+        0.5 * (v**2).sum(axis=0)
+        + 0.5 * np.einsum("it,ij,jt->t", q, pad.stiffness.toarray(), q)
+        + 0.5 * (normal**2 / stiffness).sum(axis=0)
+        - pad.load @ q
+    )
+    # friction from the motion: what of M q̈ other forces leave, by the directions of friction
+    friction = friction_from(pad, q, v, regimes, normal)
+    power = (friction * (pad.tangentials.T @ v)).sum(axis=0)
+    power -= np.einsum("it,ij,jt->t", v, pad.damping.toarray(), v)
+    work = weights @ power[1:-1]
+    assert energy[-1] - energy[0] == pytest.approx(work, abs=1e-11 * energy.max())
+
+
+def friction_from(pad, q, v, regimes, normal):
+    """T of each contact: μ N in slip; in stick what keeps it on the belt, instant by instant."""
+    signs = np.array(
+        [
+            [1 if "slower" in str(n) else -1 if "faster" in str(n) else 0 for n in row]
+            for row in regimes
+        ]
+    ).T
+    friction = signs * pad.mu * normal
+    rest = (
+        pad.load[:, None] - pad.stiffness @ q - pad.damping @ v + pad.normals @ normal
+    )
+    rest = rest + pad.tangentials @ friction
+    for instant, row in enumerate(regimes):
+        held = [i for i, name in enumerate(row) if "stick" in str(name)]
+        if held:
+            t = pad.tangentials[:, held]
+            friction[held, instant] = np.linalg.solve(t.T @ t, -t.T @ rest[:, instant])
+    return friction
+
+
+def test_a_small_start_grows_at_the_rate_of_the_complex_mode():
+    pad = twelve_modes()
+    modes = pad.complex_modes()
+    growth = float(modes.growth_rate.max())
+    # the linear motion about steady sliding, written out: s x = A x
+    acting = pad.normals + pad.mu * pad.tangentials
+    stiffness = (
+        pad.stiffness.toarray() + acting @ np.diag(pad.stiffnesses) @ pad.normals.T
+    )
+    zero, one = np.zeros((12, 12)), np.eye(12)
+    values, right = np.linalg.eig(
+        np.block([[zero, one], [-stiffness, -pad.damping.toarray()]])
+    )
+    chosen = int(values.real.argmax())
+    left = np.linalg.inv(right)[chosen]
+    rest = np.linalg.solve(stiffness, pad.load + acting @ pad.preloads)
+    mode = np.real(right[:, chosen])
+    small = 1e-4 * np.abs(rest).max() / np.abs(mode[:12]).max()
+    state = np.concatenate([rest, 0 * rest]) + small * mode
+    start = dict(zip(names(12), state, strict=True))
+    run = pad.system().simulate(1e-3, start=start, times=[0.0, 1e-3])
+    assert run.sizes["event"] == 0
+    ends = np.array([run[name].values for name in names(12)])
+    ends[:12] -= rest[:, None]
+    before, after = np.abs(left @ ends)
+    assert np.log(after / before) / 1e-3 == pytest.approx(growth, rel=1e-6)
+
+
+@pytest.mark.release
+def test_the_settled_pad_hammers_as_an_integrator_apart_found():
+    run = (
+        twelve_modes().system().simulate(40e-3, times=np.linspace(24e-3, 40e-3, 2**16))
+    )
+    late = run.event_time.values > 24e-3
+    assert late.sum() / 16 == pytest.approx(349, abs=4)
+    regimes = labels(run.regime).values.astype(str)
+    is_open, sticks = (
+        [float(np.mean(np.char.find(row, name) >= 0)) for row in regimes.T]
+        for name in ("separated", "stick")
+    )
+    assert is_open == pytest.approx([0.0, 0.312, 0.395, 0.306], abs=2e-3)
+    assert sticks == pytest.approx([0.0, 0.008, 0.0, 0.0], abs=1e-3)
+    rate = np.abs(np.fft.rfft(run.v1.values - run.v1.values.mean()))
+    assert np.fft.rfftfreq(2**16, 16e-3 / (2**16 - 1))[rate.argmax()] == pytest.approx(
+        41.6e3, rel=5e-3
+    )
