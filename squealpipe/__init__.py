@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from squealpipe.store.tables import convert
     from squealpipe.systems.components import Component, Switch
     from squealpipe.systems.structures.contact import Contact
+    from squealpipe.systems.structures.squeal.squealing_modes import squealing_modes
     from squealpipe.systems.structures.structure import Structure
     from squealpipe.systems.system import System
     from squealpipe.tasks.assess.assess import assess
@@ -94,6 +95,7 @@ __all__ = [
     "simulate",
     "smallest_disturbance",
     "spectrum",
+    "squealing_modes",
     "stability_map",
     "summarize",
     "validity_map",

@@ -30,7 +30,7 @@ from squealpipe.cli.models import choose, infer
 from squealpipe.cli.motions import backbone, branch, cycle, simulate
 from squealpipe.cli.project import init
 from squealpipe.cli.project import run as run_study
-from squealpipe.cli.structures import modes
+from squealpipe.cli.structures import modes, squeal
 from squealpipe.cli.study import archive, compare, explain, verify
 from squealpipe.cli.sweep import sweep
 
@@ -53,6 +53,7 @@ COMMANDS: dict[str, Callable[..., int]] = {
     "basin": basin,
     "disturbance": disturbance,
     "modes": modes,
+    "squeal": squeal,
     "choose": choose,
     "infer": infer,
     "refine": refine,

@@ -1,4 +1,4 @@
-"""``squealpipe modes``: complex modes of a structure in a file."""
+"""``squealpipe modes`` and ``squeal``: complex modes of a structure, and which of them squeal."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter
 
-from squealpipe.cli.arguments import Force, Numbers, Output, Whole
-from squealpipe.cli.console import DONE, answer, say, working
+from squealpipe.cli.arguments import Force, Numbers, Output, Tolerance, Whole
+from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer, say, working
 from squealpipe.cli.output import PICTURES, check_output, write
 
 LISTED = 20
@@ -85,3 +85,62 @@ def _line(mode: Any) -> str:
         f"mode {int(mode.mode)}: {at.frequency.item():.6g} Hz, growth rate "
         f"{at.growth_rate.item():.6g} 1/s at mu = {at.mu.item():g}{onset}"
     )
+
+
+def squeal(
+    file: Path,
+    /,
+    *,
+    samples: Whole = 64,
+    seed: int = 0,
+    t_end: float | None = None,
+    tol: Tolerance = 1e-12,
+    n_modes: Whole | None = None,
+    frequency_max: float | None = None,
+    output: Output = Path("squeal.nc"),
+    picture: Annotated[Path | None, Parameter(name=["--picture", "-p"])] = None,
+    force: Force = False,
+) -> int:
+    """Say which unstable modes of a structure squeal, how loud, and with how much contact loss.
+
+    It is run from small pushes along its unstable modes and from random starts, with every loss of
+    contact located, until the motions have settled. Exit code 0: quiet; 1: not.
+
+    Example: `squealpipe squeal pad.yaml -o squeal.nc`
+
+    Args:
+        file: structure, which names its matrices and contacts (see the gallery's page).
+        samples: random starts, in the ball of the energy that the preload stores.
+        seed: of the random starts.
+        t_end: longest time of a run, s; by default long enough for the slowest mode to grow.
+        n_modes: modes to reduce the structure to; by default as many as 1 % needs.
+        frequency_max: unstable modes up to there are kept, Hz; needed beyond 1000 degrees of
+            freedom.
+        picture: picture to write (png, svg or pdf); by default beside the output.
+    """
+    check_output(output, force=force)
+    drawn = picture or output.with_suffix(".png")
+    check_output(drawn, force=force, kinds=PICTURES, option="--picture")
+
+    from squealpipe import Structure, squealing_modes
+    from squealpipe.plotting import picture as draw
+    from squealpipe.plotting.style import save_figure
+    from squealpipe.study.report.squealing import lines
+
+    structure = Structure.read(file)
+    chosen = {"n_modes": n_modes, "frequency_max": frequency_max}
+    limits = {name: value for name, value in chosen.items() if value is not None}
+    options: dict[str, Any] = {"samples": samples, "seed": seed, "tol": tol}
+    if t_end is not None:
+        options["t_end"] = t_end
+    with working("squeal"):
+        reduced = structure.reduce(**limits) if limits else structure
+        dataset = write(
+            lambda: squealing_modes(reduced, **options),
+            output,
+            config={"parameters": structure.as_dict(), **limits, **options},
+        )
+    save_figure(draw(dataset), [drawn])
+    answer(*lines(dataset))
+    say(f"wrote {output} and {drawn}")
+    return DONE if int(dataset.verdict) == 0 else ANSWER_IS_NO

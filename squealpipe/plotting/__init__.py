@@ -18,6 +18,8 @@ from squealpipe.plotting.propensity import figure as propensity_figure
 from squealpipe.plotting.quantities import SHOWN, draw_quantity, mark_changed, shown
 from squealpipe.plotting.run import draw_force, draw_spectrum
 from squealpipe.plotting.run import figure as run_figure
+from squealpipe.plotting.squealing import draw_poles
+from squealpipe.plotting.squealing import figure as squealing_figure
 from squealpipe.plotting.style import COLUMN, SETTINGS, new_figure
 from squealpipe.plotting.systems import draw_ensemble, draw_path, draw_states
 from squealpipe.schema import SYSTEM
@@ -38,6 +40,7 @@ DRAWN: dict[str, Callable[[Axes, xr.Dataset], None]] = {
     "regime_chart": draw_curves,
     "stability_boundaries": draw_curves,
     "propensity": draw_shares,
+    "squealing_modes": draw_poles,
     **dict.fromkeys((schema.name for schema in COMPLEX_MODES), draw_modes),
     SYSTEM + "simulate": draw_states,
     SYSTEM + "ensemble": draw_ensemble,
@@ -51,6 +54,7 @@ FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
     "assess": assess_figure,
     "simulation": run_figure,
     "propensity": propensity_figure,
+    "squealing_modes": squealing_figure,
     **dict.fromkeys((schema.name for schema in COMPLEX_MODES), modes_figure),
 }
 """Schema → its picture of several panels."""

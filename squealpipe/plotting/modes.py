@@ -55,7 +55,7 @@ def _draw_spectrum(axes: Axes, modes: xr.Dataset) -> None:
     axes.plot(
         frequency[unstable], growth[unstable], "o", color=style.RED, label="unstable"
     )
-    _show_what_grows(axes, growth)
+    show_what_grows(axes, growth)
     axes.set(xlabel="frequency (kHz)", ylabel=GROWTH)
     axes.legend()
 
@@ -78,12 +78,12 @@ def _draw_along(axes: Axes, modes: xr.Dataset, name: str, dim: str) -> None:
             axes.plot(onsets[place], at, "D", color=style.BLACK, ms=3)
     if name == "growth_rate":
         axes.axhline(0.0, color=style.GREY, linewidth=0.6)
-        _show_what_grows(axes, values)
+        show_what_grows(axes, values)
     words = "frequency (kHz)" if name == "frequency" else GROWTH
     axes.set(xlabel=label(modes[dim]), ylabel=words)
 
 
-def _show_what_grows(axes: Axes, growth: np.ndarray) -> None:
+def show_what_grows(axes: Axes, growth: np.ndarray) -> None:
     """Cut off decay that is much faster than the growth, which would not be seen beside it."""
     largest, fastest = float(np.nanmax(growth)), -float(np.nanmin(growth))
     if 0 < DEEPEST * largest < fastest:

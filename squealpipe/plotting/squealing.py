@@ -1,0 +1,130 @@
+"""What eigenvalues name and what becomes of it: growth over frequency, bars of attractors."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from squealpipe.plotting import style
+from squealpipe.plotting.modes import GROWTH, show_what_grows
+from squealpipe.schema import meanings
+
+MOST = 6
+"""Attractors drawn, those of most random starts."""
+FEWEST = 2
+"""Attractors for which there is room at least."""
+HEIGHT = 0.8
+"""Of the bars of one attractor together."""
+
+
+def figure(answer: xr.Dataset) -> Figure:
+    """Growth over frequency; then share, level and contact loss of each attractor."""
+    shown = answer.isel(attractor=slice(MOST))
+    count = max(shown.sizes["attractor"], 1)
+    height = 2.6 + 0.12 * count * shown.sizes["contact"] * (count > 1)
+    made, axes = style.new_figure(
+        style.PAGE, min(height, 6.0), ncols=4, width_ratios=[1.7, 1.0, 1.0, 1.2]
+    )
+    poles, shares, levels, losses = axes[0]
+    draw_poles(poles, answer)
+    draw_shares(shares, shown)
+    _bars(levels, shown.velocity_rms.values)
+    levels.set(xlabel="rms speed (m/s)")
+    _losses(losses, shown)
+    for axes_ in (levels, losses):
+        axes_.set_yticks(np.arange(shown.sizes["attractor"]), [])
+    titles = ("what grows", "what it becomes", "how loud", "contact loss")
+    for letter, panel, title in zip("abcd", axes[0], titles, strict=True):
+        style.panel_letter(panel, letter, title)
+    return made
+
+
+def draw_poles(axes: Axes, answer: xr.Dataset) -> None:
+    """Growth over frequency as eigenvalue codes draw it; dashed, where the motions ring."""
+    frequency, growth = answer.pole_frequency.values / 1e3, answer.pole_growth_rate
+    unstable = np.isin(answer.pole.values, answer.mode.values)
+    axes.axhline(0.0, color=style.GREY, linewidth=0.6)
+    for place, ring in enumerate(answer.dominant_frequency.values / 1e3):
+        if np.isfinite(ring):
+            label = None if place else "strongest line"
+            axes.axvline(
+                ring, color=style.BLACK, linewidth=0.8, linestyle="--", label=label
+            )
+    for which, mark, colour, label in (
+        (~unstable, ".", style.BLUE, "stable"),
+        (unstable, "o", style.RED, "unstable"),
+    ):
+        if which.any():
+            axes.plot(
+                frequency[which], growth[which], mark, ms=4, color=colour, label=label
+            )
+    show_what_grows(axes, growth.values)
+    axes.set(xlabel="frequency (kHz)", ylabel=GROWTH)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=3)
+
+
+def draw_shares(axes: Axes, answer: xr.Dataset) -> None:
+    """Share of the random starts that end in each attractor, with its interval."""
+    if not answer.sizes["attractor"]:
+        style.say_instead(axes, "no start settled")
+        return
+    share = answer.share.values
+    ends = np.stack([answer.share_low.values, answer.share_high.values])
+    _bars(axes, share, xerr=np.abs(ends - share))
+    axes.set_yticks(np.arange(len(share)), _names(answer))
+    axes.set(xlabel="share of starts", xlim=(0, 1.02))
+
+
+def _names(answer: xr.Dataset) -> list[str]:
+    """Each attractor by its frequency and kind."""
+    kinds = meanings(answer.kind)
+    words = [style.flag_words(kinds[int(kind)]) for kind in answer.kind.values]
+    return [
+        word.replace(" ", "\n")
+        if np.isnan(frequency)
+        else f"{frequency / 1e3:.4g} kHz\n{word}"
+        for word, frequency in zip(words, answer.dominant_frequency.values, strict=True)
+    ]
+
+
+def _losses(axes: Axes, answer: xr.Dataset) -> None:
+    """Share of time without contact, a bar for each contact from the first one down."""
+    names = answer.contact.values.tolist()
+    separated = answer.separated_fraction.values
+    step = HEIGHT / len(names)
+    for place, name in enumerate(names):
+        at = np.arange(len(separated)) + (place + 0.5) * step - 0.5 * HEIGHT
+        axes.barh(at, separated[:, place], 0.8 * step, color=style.ORANGE, **_EDGE)
+        for row, value in zip(at, separated[:, place], strict=True):
+            axes.annotate(
+                name,
+                (value, row),
+                (2, 0),
+                textcoords="offset points",
+                va="center",
+                fontsize=min(7.0, 60.0 * step),
+            )
+    room = max(0.0, 0.5 * (FEWEST - len(separated)))
+    axes.set_ylim(len(separated) - 0.5 + room, -0.5 - room)
+    axes.set(
+        xlabel="share of time", xlim=(0, 1.15 * max(separated.max(initial=0), 0.1))
+    )
+
+
+_EDGE: dict[str, Any] = {"edgecolor": style.BLACK, "linewidth": 0.4}
+
+
+def _bars(axes: Axes, values: np.ndarray, **error: Any) -> None:
+    axes.barh(
+        np.arange(len(values)),
+        values,
+        0.6 * HEIGHT,
+        color=style.BLUE,
+        ecolor=style.BLACK,
+        **_EDGE,
+        **error,
+    )
+    room = max(0.0, 0.5 * (FEWEST - len(values)))
+    axes.set_ylim(len(values) - 0.5 + room, -0.5 - room)

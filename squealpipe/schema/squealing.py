@@ -1,0 +1,190 @@
+"""Which unstable modes of a structure squeal: modes, attractors, and random starts."""
+
+from enum import IntEnum
+
+from squealpipe.schema import DatasetSchema, Outcome, Variable, or_nan, outcome, text
+from squealpipe.schema.agreement import Listing
+from squealpipe.schema.assess import Verdict
+
+NO_ATTRACTOR = -1
+
+
+class Kind(IntEnum):
+    """Kind of a settled motion."""
+
+    undetermined = 0
+    steady_sliding = 1
+    cycle = 2
+    torus = 3
+    irregular = 4
+
+
+_MODE, _ATTRACTOR, _SAMPLE, _POLE = ("mode",), ("attractor",), ("sample",), ("pole",)
+_AT = ("attractor", "contact")
+
+
+def _level(long_name: str, units: str = "1", *, rtol: float = 0.05) -> Variable:
+    return or_nan(long_name, units, _ATTRACTOR, rtol=rtol, atol=1e-3)
+
+
+def _of_contact(long_name: str, units: str = "1") -> Variable:
+    return or_nan(long_name, units, _AT, rtol=0.05, atol=0.01)
+
+
+SQUEALING = DatasetSchema(
+    name="squealing_modes",
+    title="Which unstable modes of a structure squeal, how loud, and with how much contact loss",
+    coordinates={
+        "mode": Variable(
+            "unstable mode of steady sliding, numbered as by complex_modes",
+            dims=_MODE,
+            dtype="i4",
+        ),
+        "attractor": Variable(
+            "what starts settle to, by share of random starts",
+            dims=_ATTRACTOR,
+            dtype="i4",
+        ),
+        "contact": text("name of the contact", "contact"),
+        "sample": Variable("number of the random start", dims=_SAMPLE, dtype="i4"),
+        "pole": Variable(
+            "mode of steady sliding, by frequency", dims=_POLE, dtype="i4"
+        ),
+    },
+    variables={
+        "verdict": Variable(
+            "what becomes of steady sliding, pushed by 1 % along its fastest mode",
+            flags=Verdict,
+        ),
+        "quiet_unless_struck": Variable(
+            "quiet from steady sliding, but some random starts end elsewhere",
+            dtype="bool",
+        ),
+        "growth_rate": Variable("growth rate", "s-1", _MODE, rtol=1e-6),
+        "frequency": Variable("frequency", "Hz", _MODE, rtol=1e-8),
+        "critical_mu": or_nan(
+            "smallest friction at which growth leaves zero", "1", _MODE, rtol=1e-8
+        ),
+        "ends_in": Variable(
+            "attractor of a start of 1 % along this mode, -1: undetermined",
+            dims=_MODE,
+            dtype="i4",
+        ),
+        "squeals": Variable(
+            "whether the motion from there has this mode's frequency, rather than another's",
+            dims=_MODE,
+            dtype="bool",
+        ),
+        "time_to_squeal": or_nan(
+            "time from there until the kinetic energy first is half of the settled one",
+            "s",
+            _MODE,
+            rtol=0.2,
+        ),
+        "kind": Variable("kind of motion", dims=_ATTRACTOR, flags=Kind),
+        "motion": Variable(
+            "what it is for an ear: contact lost again and again, or kept",
+            dims=_ATTRACTOR,
+            flags=Verdict,
+        ),
+        "dominant_frequency": _level(
+            "strongest line of the kinetic energy", "Hz", rtol=1e-2
+        ),
+        "frequency_resolution": or_nan(
+            "resolution of the spectrum", "Hz", _ATTRACTOR, volatile=True
+        ),
+        "nearest_mode": Variable(
+            "mode nearest to that line, an unstable one where one is within 2 %",
+            dims=_ATTRACTOR,
+            dtype="i4",
+        ),
+        "frequency_shift": _level(
+            "dominant frequency less that of the nearest mode", "Hz", rtol=0.1
+        ),
+        "period": or_nan(
+            "period of the cycle, closed by the exact map", "s", _ATTRACTOR, rtol=1e-6
+        ),
+        "events_per_period": Variable(
+            "events in it, 0 where it is no cycle", dims=_ATTRACTOR, dtype="i4"
+        ),
+        "largest_multiplier": or_nan(
+            "largest modulus of its multipliers, the trivial one left out",
+            "1",
+            _ATTRACTOR,
+            rtol=1e-4,
+        ),
+        "multiplier_real": or_nan(
+            "real part of its multipliers",
+            dims=("attractor", "multiplier"),
+            volatile=True,
+        ),
+        "multiplier_imag": or_nan(
+            "imaginary part", dims=("attractor", "multiplier"), volatile=True
+        ),
+        "divergence_rate": or_nan(
+            "growth rate of the distance of neighbouring motions",
+            "s-1",
+            _ATTRACTOR,
+            volatile=True,
+        ),
+        "velocity_rms": _level("rms speed of vibration, all contacts", "m s-1"),
+        "velocity_peak": _level("largest speed of vibration of a contact", "m s-1"),
+        "kinetic_energy": _level("mean kinetic energy of vibration", "J", rtol=0.1),
+        "contact_velocity_rms": _of_contact("rms speed of vibration", "m s-1"),
+        "separated_fraction": _of_contact("share of the time without contact"),
+        "stick_fraction": _of_contact("share of the time in stick"),
+        "peak_force": _of_contact(
+            "largest normal force over the preload (steady sliding's where there is none)"
+        ),
+        "impacts_per_period": _of_contact(
+            "returns to contact in a period of the dominant frequency"
+        ),
+        "count": Variable(
+            "random starts that end here", dims=_ATTRACTOR, dtype="i4", rtol=0.3
+        ),
+        "share": Variable("share of them", dims=_ATTRACTOR, rtol=0.3, atol=0.1),
+        **{
+            f"share_{end}": Variable(
+                f"{end} end of its 95 % Wilson interval",
+                dims=_ATTRACTOR,
+                rtol=0.3,
+                atol=0.1,
+            )
+            for end in ("low", "high")
+        },
+        "share_undetermined": Variable(
+            "share of random starts that did not settle within the horizon", atol=0.1
+        ),
+        "ends_at": Variable(
+            "attractor of the random start, -1: undetermined", dims=_SAMPLE, dtype="i4"
+        ),
+        "start_energy": Variable(
+            "energy of the random start over that of the preload", dims=_SAMPLE
+        ),
+        "settled_by": Variable(
+            "time by which it had settled", "s", _SAMPLE, volatile=True
+        ),
+        "pole_frequency": Variable("frequency of the mode", "Hz", _POLE, rtol=1e-8),
+        "pole_growth_rate": Variable(
+            "growth rate of the mode", "s-1", _POLE, rtol=1e-6, atol=1e-6
+        ),
+        "line_frequency": or_nan(
+            "frequency of the spectrum", "Hz", ("line",), volatile=True
+        ),
+        "spectrum": or_nan(
+            "amplitude of the velocities of all modes, over the total",
+            "1",
+            ("attractor", "line"),
+            volatile=True,
+        ),
+        "n_modes": Variable("modes in which the structure was run", dtype="i4"),
+        "frequency_error": or_nan(
+            "largest relative error of an unstable frequency by the reduction"
+        ),
+        "growth_rate_error": or_nan(
+            "largest error of an unstable growth rate by it, over the rate or 1 % of ω"
+        ),
+        "outcome": outcome(*_ATTRACTOR, among=(Outcome.converged, Outcome.unresolved)),
+    },
+    lists={"attractor": Listing(kinds=("kind",))},
+)

@@ -1,0 +1,123 @@
+"""The answer of a dataset ``squealing_modes`` in the words of a brake's report."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.schema.assess import Verdict
+from squealpipe.schema.squealing import NO_ATTRACTOR, Kind
+from squealpipe.text import number
+from squealpipe.units import engineering
+
+LISTED = 8
+"""Attractors and modes that are told."""
+
+
+def lines(answer: xr.Dataset) -> list[str]:
+    """The verdict, the modes, and what they end in."""
+    return [headline(answer), *modes(answer), *attractors(answer)]
+
+
+def headline(answer: xr.Dataset) -> str:
+    """The verdict in one sentence."""
+    verdict = Verdict(int(answer.verdict))
+    if verdict is Verdict.quiet:
+        if bool(answer.quiet_unless_struck):
+            lasting = answer.share.values[answer.motion.values != Verdict.quiet].sum()
+            return (
+                "Quiet unless struck: small motions die out, but a vibration that lasts exists "
+                f"beside steady sliding; {_percent(lasting)} of random starts end in it."
+            )
+        return "Quiet: steady sliding is stable, and every start that settled came back to it."
+    if verdict is Verdict.undetermined:
+        return (
+            "Undetermined: the motion from the fastest unstable mode has not settled."
+        )
+    first = answer.isel(attractor=int(answer.ends_in.values[0]))
+    at = engineering(float(first.dominant_frequency), "Hz")
+    if verdict is Verdict.squeals:
+        return f"Squeals at {at}; contact is kept."
+    worst = int(first.separated_fraction.values.argmax())
+    loses = first.isel(contact=worst)
+    force = number(float(first.peak_force.max()), 2)
+    return (
+        f"Hammers at {at}: contact {loses.contact.item()} is open "
+        f"{_percent(float(loses.separated_fraction))} of the time, the peak force is {force} times "
+        "the preload of its contact."
+    )
+
+
+def modes(answer: xr.Dataset) -> Iterator[str]:
+    """What becomes of each unstable mode."""
+    if not answer.sizes["mode"]:
+        yield "No mode of steady sliding is unstable."
+    for place in range(min(answer.sizes["mode"], LISTED)):
+        mode = answer.isel(mode=place)
+        named = (
+            f"Mode {int(mode.mode)}: {engineering(float(mode.frequency), 'Hz')}, grows by "
+            f"{number(float(mode.growth_rate))} per second"
+        )
+        end = int(mode.ends_in)
+        if end == NO_ATTRACTOR:
+            yield f"{named}; what it ends in is undetermined."
+            continue
+        time = float(mode.time_to_squeal)
+        after = f" after {engineering(time, 's')}" if np.isfinite(time) else ""
+        if bool(mode.squeals):
+            yield f"{named} and squeals{after}."
+        elif bool(np.isfinite(answer.dominant_frequency[end])):
+            at = engineering(float(answer.dominant_frequency[end]), "Hz")
+            yield f"{named} but does not squeal: the motion ends at {at}{after}."
+        else:
+            yield f"{named} but dies out in the end."
+
+
+def attractors(answer: xr.Dataset) -> Iterator[str]:
+    """What random starts end in."""
+    size = answer.sizes["sample"]
+    for place in range(min(answer.sizes["attractor"], LISTED)):
+        one = answer.isel(attractor=place)
+        share = (
+            f"{int(one['count'])} of {size} random starts ({_percent(float(one.share_low))} to "
+            f"{_percent(float(one.share_high))} of all) end in"
+        )
+        kind = Kind(int(one.kind))
+        if kind is Kind.steady_sliding:
+            yield f"{share} steady sliding."
+            continue
+        words = {
+            Kind.cycle: "a cycle",
+            Kind.torus: "a quasi-periodic motion",
+            Kind.irregular: "an irregular motion",
+        }.get(kind, "a motion of undetermined kind")
+        shift = engineering(abs(float(one.frequency_shift)), "Hz")
+        side = "above" if float(one.frequency_shift) > 0 else "below"
+        yield (
+            f"{share} {words} at {engineering(float(one.dominant_frequency), 'Hz')}, {shift} "
+            f"{side} mode {int(one.nearest_mode)}: rms speed "
+            f"{engineering(float(one.velocity_rms), 'm/s')}, peak "
+            f"{engineering(float(one.velocity_peak), 'm/s')}; open {_of_contacts(one)}."
+        )
+    if float(answer.share_undetermined) > 0:
+        yield (
+            f"{_percent(float(answer.share_undetermined))} of random starts did not settle; a "
+            "longer t_end tells."
+        )
+
+
+def _of_contacts(one: xr.Dataset) -> str:
+    """Share of time open, by contact."""
+    parts = [
+        f"{name} {_percent(float(value))}"
+        for name, value in zip(
+            one.contact.values, one.separated_fraction.values, strict=True
+        )
+    ]
+    return ", ".join(parts)
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.0f} %"

@@ -1,0 +1,1 @@
+"""Which unstable modes of a structure squeal: starts, settled motions, attractors."""

@@ -1,0 +1,45 @@
+"""Settled motions told apart by their statistics."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse.csgraph import connected_components
+
+from squealpipe.schema.squealing import NO_ATTRACTOR
+from squealpipe.systems.structures.squeal.settling import Settled, difference
+
+SCATTER = 3.0
+"""Multiples of a run's own change between windows within which it may be another's motion."""
+NEAREST, FARTHEST = 0.02, 0.06
+"""Difference of statistics up to which motions are one attractor, and from which they never are."""
+
+
+def grouped(settled: list[Settled], pushes: int) -> np.ndarray:
+    """The number of the attractor of each run, those of most random starts first; −1: not settled.
+
+    The first ``pushes`` runs are no random starts. Runs that have died out are
+    one. Others are one if a chain of near statistics joins them.
+    """
+    count = len(settled)
+    near = np.zeros((count, count), bool)
+    for i, one in enumerate(settled):
+        for j, other in enumerate(settled[:i]):
+            if one.agrees and other.agrees and one.quiet == other.quiet:
+                allowed = np.clip(
+                    SCATTER * max(one.change, other.change), NEAREST, FARTHEST
+                )
+                same = one.quiet or difference(one.last, other.last) <= allowed
+                near[i, j] = near[j, i] = same
+    _, numbers = connected_components(near, directed=False)
+    numbers = np.array(
+        [
+            n if each.agrees else NO_ATTRACTOR
+            for n, each in zip(numbers, settled, strict=True)
+        ]
+    )
+    known = np.unique(numbers[numbers >= 0])
+    sizes = np.array([(numbers[pushes:] == number).sum() for number in known], int)
+    order = {
+        old: new for new, old in enumerate(known[np.argsort(-sizes, kind="stable")])
+    }
+    return np.array([order.get(number, NO_ATTRACTOR) for number in numbers], int)

@@ -1,0 +1,165 @@
+"""The kind of a settled motion, and its spectrum: from one run, and others that start beside it.
+
+Beside the motion start some that are off by 1e-8 of it, each in a direction of its own. Where they
+run away from it exponentially it is irregular. Where they do not, and it repeats, the exact map
+closes it to a cycle, whose multipliers decide. What neither repeats nor runs away is a torus.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from squealpipe.methods.recurrence import repeats_after
+from squealpipe.methods.spectrum import amplitude_spectrum, strongest_lines
+from squealpipe.schema import Outcome
+from squealpipe.schema.squealing import Kind
+from squealpipe.systems.cycles.find import find_cycle
+from squealpipe.systems.cycles.solution import Cycle
+from squealpipe.systems.structures.squeal.plant import Plant
+from squealpipe.systems.structures.squeal.settling import Settled
+from squealpipe.systems.structures.squeal.windows import run
+
+BESIDE, OFF = 7, 1e-8
+"""Runs beside the motion, and how far off they start, over its extent."""
+PERIODS = 300.0
+"""Length of the run, in periods of the slowest mode that grows."""
+FINEST, MOST_SAMPLES = 6.0, 2**16
+"""Samples in a period of the fastest mode, and of all."""
+APART, FAR = 1e3, 1e-2
+"""Growth of the distance from which it is exponential; extent beyond which it grows no more."""
+LINEAR = 30.0
+"""Growth of the distance up to which it may be one of phases, as on a torus."""
+REPEATED = 1e-5
+"""Largest difference of intervals, over their mean, of what is taken for a cycle at first."""
+LINES = 3
+
+
+@dataclass(frozen=True)
+class Described:
+    """A settled motion.
+
+    Attributes:
+        kind: of motion.
+        frequency: strongest line of the kinetic energy, Hz; NaN where nothing moves.
+        resolution: of the spectrum, Hz.
+        exponent: growth rate of the distance of neighbours, 1/s; NaN where it was not measured.
+        cycle: closed by the exact map, where it is one.
+        lines, amplitudes: the spectrum, Hz and √J.
+    """
+
+    kind: Kind
+    frequency: float
+    resolution: float
+    exponent: float
+    cycle: Cycle | None
+    lines: np.ndarray
+    amplitudes: np.ndarray
+
+
+def described(
+    plant: Plant, settled: Settled, *, tol: float, seed: int, workers: int | None
+) -> Described:
+    """Run on from where a start has settled."""
+    nothing = np.empty(0)
+    if settled.quiet:
+        return Described(
+            Kind.steady_sliding, np.nan, np.nan, np.nan, None, nothing, nothing
+        )
+    length = max(PERIODS / plant.slowest, 0.5 * float(settled.last.length))
+    step = 1.0 / (FINEST * plant.fastest)
+    count = int(min(np.ceil(length / step), MOST_SAMPLES))
+    length = count * step
+    times = step * np.arange(1, count + 1)
+    rng = np.random.default_rng(seed)
+    base = settled.last.final
+    extent = float(plant.sizes(base - plant.sliding))
+    directions = rng.standard_normal((BESIDE, base.size)) * np.abs(base - plant.sliding)
+    directions *= OFF * extent / plant.sizes(directions)[:, None]
+    states = np.concatenate([base[None], base + directions])
+    # all start in the regimes of the motion, but for a contact that is just at a switch
+    regimes = np.tile(settled.last.regimes, (len(states), 1))
+    room = int(2.0 * length * settled.last.events / settled.last.length) + 64
+    raw = run(
+        plant, states, times, tol, regime=regimes, workers=workers, log_events=room
+    )
+    samples = raw["samples"]
+    modal = plant.modal_velocities(samples)
+    omega, amplitude = amplitude_spectrum(np.moveaxis(modal, -1, 1), step)
+    power = np.sqrt((amplitude**2).sum(axis=1).mean(axis=0))
+    padded_omega, padded = amplitude_spectrum(
+        np.moveaxis(modal[:1], -1, 1), step, padding=4
+    )
+    strongest, _ = strongest_lines(
+        padded_omega, np.sqrt((padded[0] ** 2).sum(axis=0)), LINES, 2.0 * np.pi / length
+    )
+    frequency = float(strongest[0] / (2 * np.pi)) if strongest.size else np.nan
+    grown, exponent = _apart(plant, samples, times, extent)
+    kind, cycle = Kind.undetermined, None
+    if grown >= APART:
+        kind = Kind.irregular
+    else:
+        cycle = _closed(plant, settled, raw, frequency, length)
+        if cycle is not None:
+            kind = Kind.cycle
+        elif grown <= LINEAR and not _repeats(raw, length):
+            kind = Kind.torus
+    return Described(
+        kind, frequency, 1.0 / length, exponent, cycle, omega / (2.0 * np.pi), power
+    )
+
+
+def _apart(
+    plant: Plant, samples: np.ndarray, times: np.ndarray, extent: float
+) -> tuple[float, float]:
+    """By how much neighbours have run away, and how fast: medians over all of them."""
+    away = plant.sizes(samples[1:] - samples[:1]) / extent
+    # a tenth of the run at once: distances swing within each period
+    blocks = np.array_split(np.arange(len(times)), 40)
+    spread = np.array([away[:, block].max(axis=1) for block in blocks])
+    middles = np.array([times[block].mean() for block in blocks])
+    spread = np.median(spread, axis=1)
+    grown = float(spread.max() / spread[0])
+    grows = np.arange(len(spread)) <= max(int((spread > FAR).argmax()), 3)
+    if not (spread > FAR).any():
+        grows[:] = True
+    rate = np.polyfit(middles[grows], np.log(spread[grows] + 1e-300), 1)[0]
+    return grown, float(rate)
+
+
+def _repeats(raw: dict[str, np.ndarray], length: float) -> float:
+    """Period of the second half, by its events; 0 where none is seen."""
+    count = int(raw["ends"][0, 2])
+    at, kinds = raw["event_times"][0, :count], raw["event_kinds"][0, :count]
+    late = at > 0.5 * length
+    lag = repeats_after(at[late], kinds[late], REPEATED)
+    return float(at[late][lag] - at[late][0]) if lag else 0.0
+
+
+def _closed(
+    plant: Plant,
+    settled: Settled,
+    raw: dict[str, np.ndarray],
+    frequency: float,
+    length: float,
+) -> Cycle | None:
+    """The stable cycle through the end of the run, if the exact map finds it there."""
+    if raw["ends"][0, 0] != Outcome.converged or not np.isfinite(frequency):
+        return None
+    system = plant.system
+    regime = system.joint.number(raw["sample_regimes"][0, -1].tolist())
+    cycle, outcome = find_cycle(
+        system,
+        system.parameters,
+        raw["final"][0],
+        guess=True,
+        regime=regime,
+        unit=1.0 / frequency,
+    )
+    if cycle is None or outcome != Outcome.converged or not cycle.is_stable:
+        return None
+    # the same motion: as many events in a period as in the run
+    rate = len(cycle.events) / cycle.period
+    seen = float(settled.last.events / settled.last.length)
+    return cycle if abs(rate - seen) <= 0.05 * seen else None

@@ -1,0 +1,186 @@
+"""A structure as it is run: its system, its steady sliding, its modes, and a measure of states."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import scipy.linalg as la
+from scipy.optimize import linear_sum_assignment
+
+from squealpipe.systems.structures.modes import modes_at_rest
+from squealpipe.systems.structures.spectrum import Limits, Solver, Spectrum
+
+if TYPE_CHECKING:
+    from squealpipe.systems.structures.structure import Structure
+    from squealpipe.systems.system import System
+
+MOST_MODES = 32
+"""Degrees of freedom that a system can carry."""
+
+
+class Plant:
+    """A structure of few degrees of freedom, about its steady sliding.
+
+    States are (q, v) side by side, (2 n,). Their size is √E of the deviation from steady sliding,
+    E = ½ vᵀ M v + ½ qᵀ (K + Σ kᵢ nᵢnᵢᵀ) q.
+
+    Args:
+        structure: of any size; one that is larger than a system can carry is reduced.
+
+    Raises:
+        NoSlidingError: there is no steady sliding.
+        ValueError: beyond 1000 degrees of freedom, which are to be reduced by hand.
+    """
+
+    def __init__(self, structure: Structure) -> None:
+        self.whole = structure
+        self.structure = (
+            structure if structure.size <= MOST_MODES else structure.reduce()
+        )
+        if self.structure.size > MOST_MODES:
+            raise ValueError(
+                f"{self.structure.size} modes are needed within 1 %, and {MOST_MODES} can be "
+                f"carried: give structure.reduce(n_modes={MOST_MODES}), and see its record for "
+                "the errors"
+            )
+        self.size = self.structure.size
+        solver = Solver(self.structure, Limits(None, None), self.structure.belt_speed)
+        self.spectrum: Spectrum = solver.at(self.structure.mu)
+        self.sliding = np.concatenate(
+            [self.spectrum.state.displacement, np.zeros(self.size)]
+        )
+        if not self.structure.contacts:
+            raise ValueError("the structure has no contacts: nothing rubs")
+
+    @cached_property
+    def system(self) -> System:
+        """As a system, whose states are displacements, then velocities."""
+        return self.structure.system()
+
+    @property
+    def contacts(self) -> list[str]:
+        """Names."""
+        return [contact.name for contact in self.structure.contacts]
+
+    @cached_property
+    def unstable(self) -> np.ndarray:
+        """Places of the unstable modes in the spectrum, the fastest first."""
+        growth = self.spectrum.values.real
+        places = np.flatnonzero(growth > self.spectrum.growth_errors)
+        return places[np.argsort(-growth[places], kind="stable")]
+
+    @cached_property
+    def decays(self) -> bool:
+        """Whether small motions about steady sliding die out."""
+        return bool((self.spectrum.values.real < -self.spectrum.growth_errors).all())
+
+    @cached_property
+    def rest(self) -> tuple[np.ndarray, np.ndarray]:
+        """ω (n,) and Φ (n, n) of the modes at rest, ΦᵀMΦ = 1."""
+        return modes_at_rest(self.structure)
+
+    @cached_property
+    def energy(self) -> float:
+        """What the preloads store in the contact springs, J."""
+        force = self.structure.preloads
+        if not force.any():
+            force = self.spectrum.state.force
+        return float((force**2 / (2.0 * self.structure.stiffnesses)).sum())
+
+    @cached_property
+    def _roots(self) -> tuple[np.ndarray, np.ndarray]:
+        """Square roots of ½ M and ½ (K + Σ k nnᵀ)."""
+        omega, modes = self.rest
+        mass = self.structure.mass.toarray()
+        to_modes = modes.T @ mass
+        return to_modes / np.sqrt(2.0), omega[:, None] * to_modes / np.sqrt(2.0)
+
+    def sizes(self, deviation: np.ndarray) -> np.ndarray:
+        """√E of deviations (…, 2 n), √J."""
+        kinetic, elastic = self._roots
+        q, v = deviation[..., : self.size], deviation[..., self.size :]
+        square = ((v @ kinetic.T) ** 2).sum(-1) + ((q @ elastic.T) ** 2).sum(-1)
+        return np.asarray(np.sqrt(square))
+
+    def modal_velocities(self, states: np.ndarray) -> np.ndarray:
+        """Velocities of the modes at rest, (…, n); half their squares sum to kinetic energy."""
+        kinetic, _ = self._roots
+        return np.asarray(states[..., self.size :] @ kinetic.T * np.sqrt(2.0))
+
+    def contact_speeds(self, states: np.ndarray) -> np.ndarray:
+        """Speed of vibration of each contact point, (…, contacts), m/s."""
+        v = states[..., self.size :]
+        along, across = v @ self.structure.tangentials, v @ self.structure.normals
+        return np.asarray(np.hypot(along, across))
+
+    @cached_property
+    def modes(self) -> Any:
+        """Complex modes as a dataset, for numbers and critical friction."""
+        return self.structure.complex_modes()
+
+    @cached_property
+    def _places(self) -> np.ndarray:
+        """Place in that dataset of each mode of the spectrum, by its eigenvalue."""
+        omega = 2.0 * np.pi * self.modes.frequency.values
+        values = self.modes.growth_rate.values + 1j * omega
+        away = np.abs(self.spectrum.values[:, None] - values)
+        return np.asarray(linear_sum_assignment(away)[1])
+
+    @property
+    def numbers(self) -> np.ndarray:
+        """Number of each mode of the spectrum."""
+        return np.asarray(self.modes.mode.values[self._places])
+
+    @property
+    def critical_mu(self) -> np.ndarray:
+        """Friction from which each grows, NaN if none."""
+        return np.asarray(self.modes.critical_mu.values[self._places])
+
+    @cached_property
+    def frequencies(self) -> np.ndarray:
+        """Of the modes about steady sliding, Hz."""
+        return np.asarray(self.spectrum.values.imag / (2.0 * np.pi))
+
+    @cached_property
+    def slowest(self) -> float:
+        """The lowest frequency that a run must resolve: of an unstable mode, or of any, Hz."""
+        places = self.unstable if self.unstable.size else slice(None)
+        chosen = self.frequencies[places]
+        chosen = chosen[chosen > 0]
+        if not chosen.size:
+            chosen = self.rest[0][self.rest[0] > 0] / (2.0 * np.pi)
+        return float(chosen.min())
+
+    @cached_property
+    def fastest(self) -> float:
+        """The highest frequency of a mode, Hz."""
+        return float(max(self.frequencies.max(), self.rest[0].max() / (2.0 * np.pi)))
+
+    def random_states(self, number: int, seed: int) -> Any:
+        """States uniform in the ball of the preload's energy about steady sliding."""
+        rng = np.random.default_rng(seed)
+        dims = 2 * self.size
+        direction = rng.standard_normal((number, dims))
+        direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+        radius = np.sqrt(self.energy) * rng.random((number, 1)) ** (1.0 / dims)
+        return self.sliding + (direction * radius) @ self._from_ball.T
+
+    @cached_property
+    def _from_ball(self) -> np.ndarray:
+        """From coordinates whose squares sum to the energy to states."""
+        omega, modes = self.rest
+        # a rigid body moves without energy: its place is not drawn, its velocity is
+        along = np.where(omega > 0, 1.0 / np.where(omega > 0, omega, 1.0), 0.0)
+        return np.asarray(np.sqrt(2.0) * la.block_diag(modes * along, modes))
+
+    def pushed(self, place: int, share: float) -> np.ndarray:
+        """Steady sliding pushed along a mode of the spectrum, by a share of √energy."""
+        pair = self.spectrum.pairs[place]
+        shape = pair.right
+        # the phase at which the displacement is largest
+        turned = shape * np.exp(-0.5j * np.angle((shape**2).sum()))
+        state = np.concatenate([turned.real, (pair.value * turned).real])
+        size = share * np.sqrt(self.energy) / float(self.sizes(state))
+        return np.asarray(self.sliding + state * size)

@@ -1,0 +1,169 @@
+"""What starts settle to: windows of growing length, until two in succession agree.
+
+The first is as long as the slowest unstable mode needs to grow from a small push to the nonlinear,
+so that none of it enters a number. The others grow to twice their length each time. A run has
+settled when its statistics in two windows agree and none of its modes still grows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from squealpipe.methods.progress import alone
+from squealpipe.systems.structures.squeal.plant import Plant
+from squealpipe.systems.structures.squeal.windows import BLOCKS, Rows, run_window
+from squealpipe.systems.trace import TIME
+
+GROWTH = np.log(1e4)
+"""What small motions grow by before statistics begin: from a hundredth to beyond all bounds."""
+FIRST = 100.0
+"""Length of the first window of statistics, in periods of the slowest unstable mode."""
+LONGEST_GROWTH, MOST = 4_000.0, 8_000.0
+"""Most periods in which a push may grow, and of a run, if no other end is given."""
+AGREE = 0.03
+"""Largest difference of the statistics of two windows that agree: of modal velocities over the
+total, and of shares of time."""
+STILL_GROWS = np.log(1.5)
+"""Growth of a mode's rms velocity from one window to the next that is no scatter."""
+SMALLEST = 1e-9
+"""Velocity of a mode, over the total, below which it is not looked at."""
+WIDE = 5
+"""Fewest runs at once: fewer are done by other code, which would have to be compiled, too."""
+
+
+@dataclass
+class Settled:
+    """What one start has settled to.
+
+    Attributes:
+        quiet: whether it has died out to steady sliding.
+        agrees: whether it has settled at all.
+        last: statistics of the last window.
+        change: the largest difference to the window before.
+        elapsed: time run, s.
+        energies, instants: kinetic energy over time, by blocks, J and s.
+    """
+
+    quiet: bool
+    agrees: bool
+    last: Rows
+    change: float
+    elapsed: float
+    energies: np.ndarray = field(default_factory=lambda: np.empty(0))
+    instants: np.ndarray = field(default_factory=lambda: np.empty(0))
+
+    def arrival(self) -> float:
+        """When the kinetic energy first came to half of what it settles to, s."""
+        reached = self.energies >= 0.5 * self.energies[-BLOCKS:].mean()
+        return float(self.instants[reached.argmax()])
+
+
+def horizon(plant: Plant, t_end: float | None) -> tuple[float, float, float]:
+    """Time for growth, length of the first window, and the end of all runs, s."""
+    period = 1.0 / plant.slowest
+    first = FIRST * period
+    growing = 0.0
+    if plant.unstable.size:
+        rate = plant.spectrum.values.real[plant.unstable].min()
+        growing = min(GROWTH / rate, LONGEST_GROWTH * period)
+    most = MOST * period + growing if t_end is None else t_end
+    growing = min(max(growing, first), 0.25 * most)
+    return growing, min(first, 0.25 * most), most
+
+
+def settle(
+    plant: Plant,
+    states: np.ndarray,
+    *,
+    t_end: float | None,
+    tol: float,
+    seed: int,
+    workers: int | None,
+) -> list[Settled]:
+    """Run all starts until each has settled, or the time has passed."""
+    growing, length, most = horizon(plant, t_end)
+    count = len(states)
+    settled: dict[int, Settled] = {}
+    before: list[Rows | None] = [None] * count
+    energies: list[list[np.ndarray]] = [[] for _ in range(count)]
+    instants: list[list[np.ndarray]] = [[] for _ in range(count)]
+    states = states.copy()
+    regimes: np.ndarray | None = None
+    at_rest = plant.system.first_regimes(_named(plant), 1)[0]
+    elapsed, span, turn = 0.0, growing, 0
+    with alone() as show:
+        while rows := [row for row in range(count) if row not in settled]:
+            show(1.0 - len(rows) / count * (1.0 - elapsed / most))
+            wide = np.array([*rows, *rows * WIDE])[: max(len(rows), WIDE)]
+            window = run_window(
+                plant,
+                states[wide],
+                span,
+                regimes=None if regimes is None else regimes[wide],
+                tol=tol,
+                seed=seed + turn,
+                workers=workers,
+            )
+            if regimes is None:
+                regimes = np.zeros((count, window.regimes.shape[1]), np.int64)
+            for place, row in enumerate(rows):
+                now = window.at(place)
+                energies[row].append(now.kinetic)
+                instants[row].append(elapsed + now.block_ends)
+                found = _judged(plant, before[row], now, at_rest)
+                late = elapsed + span >= (1.0 - 1e-9) * most
+                if found is None and (late or not now.finished):
+                    found = Settled(False, False, now, np.inf, 0.0)
+                if found is not None:
+                    found.elapsed = elapsed + span
+                    found.energies = np.concatenate(energies[row])
+                    found.instants = np.concatenate(instants[row])
+                    settled[row] = found
+                before[row] = now if turn else None  # what grows is no statistics
+                states[row], regimes[row] = now.final, now.regimes
+            elapsed += span
+            span = min(length * 2.0**turn, most - elapsed)
+            turn += 1
+    return [settled[row] for row in range(count)]
+
+
+def _named(plant: Plant) -> dict[str, np.ndarray]:
+    """Steady sliding as the system's states, parameters and time."""
+    system = plant.system
+    values = dict(zip(system.states, plant.sliding[:, None], strict=True))
+    parameters = {name: np.full(1, value) for name, value in system.parameters.items()}
+    return {**values, **parameters, TIME: np.zeros(1)}
+
+
+def _judged(
+    plant: Plant, before: Rows | None, now: Rows, at_rest: np.ndarray
+) -> Settled | None:
+    """What two windows in succession show; None: nothing yet."""
+    if not now.finished:
+        return None
+    if not now.events and (now.regimes == at_rest).all() and plant.decays:
+        # nothing switched in a whole window: the motion is linear about steady sliding, and decays
+        return Settled(True, True, now, 0.0, 0.0)
+    if before is None:
+        return None
+    change = difference(before, now)
+    with np.errstate(divide="ignore"):
+        grown = np.log(now.modal) - np.log(before.modal)
+    seen = before.modal > SMALLEST * now.total
+    if change > AGREE or (grown[seen] > STILL_GROWS).any():
+        return None
+    return Settled(False, True, now, change, 0.0)
+
+
+def difference(one: Rows, other: Rows) -> float:
+    """The largest difference of statistics: of velocities over the total, and of shares."""
+    total = max(float(one.total), float(other.total), np.finfo(float).tiny)
+    return float(
+        max(
+            np.abs(one.modal - other.modal).max() / total,
+            np.abs(one.separated - other.separated).max(),
+            np.abs(one.stuck - other.stuck).max(),
+        )
+    )

@@ -1,0 +1,294 @@
+"""Which unstable modes of a structure squeal, as a dataset."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.schema import Outcome, build
+from squealpipe.schema.assess import Verdict
+from squealpipe.schema.inference import wilson_interval
+from squealpipe.schema.origin import versions
+from squealpipe.schema.squealing import NO_ATTRACTOR, SQUEALING, Kind
+from squealpipe.systems.structures.squeal.attractors import grouped
+from squealpipe.systems.structures.squeal.kinds import Described, described
+from squealpipe.systems.structures.squeal.plant import Plant
+from squealpipe.systems.structures.squeal.settling import Settled, settle
+from squealpipe.validation import Natural, Positive, Seed, Tolerance, Workers, checked
+
+PUSH = 0.01
+"""Push along a mode, over the deformation whose energy is that of the preload."""
+LINES = 1024
+"""Lines of the spectra that are kept."""
+CLOSE = 0.02
+"""Distance of a frequency to that of an unstable mode within which it is that mode's."""
+AGAIN = 2
+"""Returns to contact from which contact is lost again and again."""
+
+
+@checked
+def squealing_modes(
+    structure: Any,
+    *,
+    samples: Natural = 64,
+    t_end: Positive | None = None,
+    seed: Seed = 0,
+    tol: Tolerance = 1e-12,
+    workers: Workers = None,
+) -> xr.Dataset:
+    """Which unstable modes squeal: run from small pushes and from random starts until they settle.
+
+    A start of 1 % is pushed along each unstable mode of steady sliding (its energy is 1e-4 of what
+    the preload stores in the contacts). ``samples`` more are uniform in the ball of that energy.
+    All are run together, with every event located: at first as long as the slowest of these modes
+    needs to grow to the nonlinear, then in windows of twice the length each time, until the
+    statistics of two agree. Motions with the same statistics are one attractor. Each is then run
+    on: neighbours that run away tell irregular motion, and the exact map closes cycles.
+
+    Args:
+        structure: a :class:`squealpipe.Structure`; one of more than 32 degrees of freedom is
+            reduced within 1 % first, and beyond 1000 must be (see ``Structure.reduce``).
+        samples: random starts.
+        t_end: longest time of a run, s; by default 8000 periods of the slowest unstable mode,
+            beyond the time in which it grows.
+        seed: of the random starts.
+        tol: tolerance of the Taylor integrator.
+        workers: processes; None takes all cores.
+
+    Returns:
+        Dataset ``squealing_modes``: over ``mode`` the unstable modes, and which attractor they end
+        in; over ``attractor`` kind, frequency, level, and by contact the shares of time separated
+        and in stick; ``share`` of the random starts with its interval; ``verdict``.
+
+    Raises:
+        ValueError: there is no steady sliding; no contact; or a structure that is too large.
+    """
+    plant = Plant(structure)
+    pushes = [plant.pushed(place, PUSH) for place in plant.unstable]
+    if (
+        not pushes
+    ):  # quiet from steady sliding: told by a push along the mode that decays slowest
+        pushes = [plant.pushed(int(plant.spectrum.values.real.argmax()), PUSH)]
+    drawn = plant.random_states(samples, seed)
+    settled = settle(
+        plant,
+        np.concatenate([pushes, drawn]),
+        t_end=t_end,
+        tol=tol,
+        seed=seed,
+        workers=workers,
+    )
+    numbers = grouped(settled, len(pushes))
+    members = [
+        [run for run, at in zip(settled, numbers, strict=True) if at == number]
+        for number in range(numbers.max(initial=NO_ATTRACTOR) + 1)
+    ]
+    found = [
+        described(plant, runs[0], tol=tol, seed=seed, workers=workers)
+        for runs in members
+    ]
+    of_mode = _of_modes(plant, settled, numbers, found)
+    of_attractor = _of_attractors(plant, members, found)
+    shares = _shares(numbers[len(pushes) :], len(members))
+    first = int(numbers[0])
+    verdict = Verdict.undetermined
+    if first != NO_ATTRACTOR and found[first].kind is not Kind.undetermined:
+        verdict = Verdict(int(of_attractor["motion"][first]))
+    loud = [place for place, each in enumerate(found) if not members[place][0].quiet]
+    drawn_in = set(numbers[len(pushes) :].tolist())
+    record = plant.structure.record
+    return build(
+        SQUEALING,
+        {
+            **of_mode,
+            **of_attractor,
+            **shares,
+            "verdict": verdict,
+            "quiet_unless_struck": verdict is Verdict.quiet
+            and bool(drawn_in & set(loud)),
+            "ends_at": numbers[len(pushes) :],
+            "start_energy": plant.sizes(drawn - plant.sliding) ** 2 / plant.energy,
+            "settled_by": np.array([run.elapsed for run in settled[len(pushes) :]]),
+            "pole_frequency": plant.frequencies,
+            "pole_growth_rate": plant.spectrum.values.real,
+            "n_modes": plant.size,
+            "frequency_error": record.get("frequency_error", 0.0),
+            "growth_rate_error": record.get("growth_rate_error", 0.0),
+        },
+        {
+            "mode": plant.numbers[plant.unstable],
+            "attractor": np.arange(len(members)),
+            "contact": plant.contacts,
+            "sample": np.arange(samples),
+            "pole": plant.numbers,
+        },
+        {
+            "made_by": "squealpipe.squealing_modes",
+            "model": "structure with exact contact and friction",
+            "method": "Taylor series with located events; cycles by the exact map",
+            "tolerance": tol,
+            "parameters": json.dumps(structure.as_dict()),
+            "arguments": json.dumps({"samples": samples, "t_end": t_end, "seed": seed}),
+            **versions(),
+        },
+    )
+
+
+def _of_modes(
+    plant: Plant, settled: list[Settled], numbers: np.ndarray, found: list[Described]
+) -> dict[str, Any]:
+    """What becomes of each unstable mode."""
+    count = len(plant.unstable)
+    ends = numbers[:count]
+    frequency = plant.frequencies[plant.unstable]
+    squeals = np.zeros(count, bool)
+    for place, number in enumerate(ends):
+        if number != NO_ATTRACTOR and np.isfinite(found[number].frequency):
+            away = np.abs(found[number].frequency - frequency)
+            squeals[place] = away.argmin() == place
+    times = [
+        run.arrival() if run.agrees and not run.quiet else np.nan
+        for run in settled[:count]
+    ]
+    return {
+        "growth_rate": plant.spectrum.values.real[plant.unstable],
+        "frequency": frequency,
+        "critical_mu": plant.critical_mu[plant.unstable],
+        "ends_in": ends,
+        "squeals": squeals,
+        "time_to_squeal": np.array(times, float),
+    }
+
+
+def _of_attractors(
+    plant: Plant, members: list[list[Settled]], found: list[Described]
+) -> dict[str, Any]:
+    """Levels, shares of time, frequencies and multipliers; statistics are means over all runs."""
+    count = len(members)
+    rows = [
+        {name: np.mean([getattr(run.last, name) for run in runs], axis=0)
+         for name in ("modal", "speed", "separated", "stuck")}
+        for runs in members
+    ]  # fmt: skip
+    frequency = np.array([each.frequency for each in found])
+    near = [_nearest(plant, each) for each in frequency]
+    multipliers = np.full((count, 2 * plant.size), np.nan, complex)
+    largest = np.full(count, np.nan)
+    for place, each in enumerate(found):
+        if each.cycle is not None:
+            values = each.cycle.multipliers
+            multipliers[place] = values
+            trivial = np.abs(values - 1.0).argmin()
+            largest[place] = np.abs(np.delete(values, trivial)).max()
+    pressed = plant.structure.preloads
+    force = np.where(pressed > 0, pressed, plant.spectrum.state.force)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        peak = np.array(
+            [np.max([run.last.force for run in runs], axis=0) for runs in members]
+        ).reshape(count, -1) / np.where(force > 0, force, np.nan)
+    landings = np.array(
+        [
+            np.mean([run.last.landings / run.last.length for run in runs], axis=0)
+            for runs in members
+        ]
+    ).reshape(count, -1)
+    lines, spectra = _spectra(found)
+    lost = [
+        max(int(run.last.landings.max()) for run in runs) >= AGAIN for runs in members
+    ]
+    motion = [
+        Verdict.quiet if runs[0].quiet else (Verdict.squeals, Verdict.hammers)[loses]
+        for runs, loses in zip(members, lost, strict=True)
+    ]
+    moves = np.array([not runs[0].quiet for runs in members], bool)
+    modes = plant.frequencies[near] if count else np.empty(0)
+    speed = _table(rows, "speed", count)
+    return {
+        "kind": np.array([each.kind for each in found], int),
+        "motion": np.array(motion, int),
+        "dominant_frequency": frequency,
+        "frequency_resolution": np.array([each.resolution for each in found]),
+        "nearest_mode": np.where(moves, plant.numbers[near], 0) if count else [],
+        "frequency_shift": frequency - modes,
+        "period": np.array(
+            [np.nan if each.cycle is None else each.cycle.period for each in found]
+        ),
+        "events_per_period": np.array(
+            [0 if each.cycle is None else len(each.cycle.events) for each in found], int
+        ),
+        "largest_multiplier": largest,
+        "multiplier_real": multipliers.real,
+        "multiplier_imag": multipliers.imag,
+        "divergence_rate": np.array([each.exponent for each in found]),
+        "velocity_rms": np.sqrt((speed**2).mean(axis=1)),
+        "velocity_peak": np.array(
+            [max(float(run.last.peak_speed) for run in runs) for runs in members]
+        ),
+        "kinetic_energy": np.array([0.5 * (row["modal"] ** 2).sum() for row in rows]),
+        "contact_velocity_rms": speed,
+        "separated_fraction": _table(rows, "separated", count),
+        "stick_fraction": _table(rows, "stuck", count),
+        "peak_force": peak,
+        "impacts_per_period": landings
+        / np.where(np.isfinite(frequency), frequency, np.inf)[:, None],
+        "line_frequency": lines,
+        "spectrum": spectra,
+        "outcome": np.array(
+            [
+                Outcome.unresolved
+                if each.kind is Kind.undetermined
+                else Outcome.converged
+                for each in found
+            ],
+            int,
+        ),
+    }
+
+
+def _table(rows: list[dict[str, Any]], name: str, count: int) -> np.ndarray:
+    return np.array([row[name] for row in rows], float).reshape(count, -1)
+
+
+def _nearest(plant: Plant, frequency: float) -> int:
+    """Place of the mode nearest to a frequency; an unstable one where one is close."""
+    away = np.abs(plant.frequencies - np.nan_to_num(frequency))
+    unstable = plant.unstable
+    if unstable.size and away[unstable].min() <= CLOSE * frequency:
+        return int(unstable[away[unstable].argmin()])
+    return int(away.argmin())
+
+
+def _spectra(found: list[Described]) -> tuple[np.ndarray, np.ndarray]:
+    """Spectra on common lines, each the largest of those that it stands for."""
+    moving = [each for each in found if each.lines.size]
+    if not moving:
+        return np.empty(0), np.empty((len(found), 0))
+    top = min(each.lines[-1] for each in moving)
+    edges = np.linspace(0.0, top, LINES + 1)
+    spectra = np.full((len(found), LINES), np.nan)
+    for place, each in enumerate(found):
+        if each.lines.size:
+            within = np.clip(np.searchsorted(edges, each.lines) - 1, 0, LINES - 1)
+            held = np.zeros(LINES)
+            np.maximum.at(held, within, each.amplitudes)
+            spectra[place] = held / np.sqrt((each.amplitudes**2).sum())
+    return 0.5 * (edges[1:] + edges[:-1]), spectra
+
+
+def _shares(ends: np.ndarray, count: int) -> dict[str, Any]:
+    """Share of random starts that end in each attractor, with its interval."""
+    counts = np.array([(ends == number).sum() for number in range(count)], int)
+    intervals = np.array([wilson_interval(int(n), ends.size) for n in counts])
+    intervals = intervals.reshape(count, 2)
+    return {
+        "count": counts,
+        "share": counts / max(ends.size, 1),
+        "share_low": intervals[:, 0],
+        "share_high": intervals[:, 1],
+        "share_undetermined": float((ends == NO_ATTRACTOR).mean())
+        if ends.size
+        else 0.0,
+    }

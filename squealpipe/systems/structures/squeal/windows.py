@@ -1,0 +1,151 @@
+"""Windows of runs from many states at once, and the statistics of each.
+
+Instants at which a motion is looked at are drawn at random, one in each of many equal parts of the
+window, so that none of its statistics depends on a step that is in time with its period.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squealpipe.schema import Outcome
+from squealpipe.systems.runs import LARGEST, integrate
+from squealpipe.systems.structures.squeal.plant import Plant
+
+SAMPLES = 2048
+"""Instants of a window."""
+BLOCKS = 64
+"""Parts of a window whose kinetic energy is kept."""
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Statistics of one window of some runs, rows first.
+
+    Attributes:
+        final, regimes: state and regime of each component at the end.
+        modal: rms velocity of each mode at rest, √J.
+        speed: rms speed of vibration of each contact, m/s.
+        peak_speed: the largest of the samples.
+        separated, stuck: shares of the time, of each contact.
+        landings: returns to contact, of each.
+        force: largest force of each, N.
+        events: all of them.
+        kinetic: mean kinetic energy of each block, J.
+        block_ends: of each block from the window's begin, s.
+        finished: whether the run reached the end of its window.
+        length: of the window, s.
+    """
+
+    final: np.ndarray
+    regimes: np.ndarray
+    modal: np.ndarray
+    speed: np.ndarray
+    peak_speed: np.ndarray
+    separated: np.ndarray
+    stuck: np.ndarray
+    landings: np.ndarray
+    force: np.ndarray
+    events: np.ndarray
+    kinetic: np.ndarray
+    block_ends: np.ndarray
+    finished: np.ndarray
+    length: np.ndarray
+
+    def at(self, rows: Any) -> Rows:
+        """Some of the runs, or one."""
+        return Rows(**{name: value[rows] for name, value in vars(self).items()})
+
+    @property
+    def total(self) -> np.ndarray:
+        """rms of the velocities of all modes, √J."""
+        return np.asarray(np.sqrt((self.modal**2).sum(-1)))
+
+
+def run(
+    plant: Plant, states: np.ndarray, times: np.ndarray, tol: float, **options: Any
+) -> dict[str, np.ndarray]:
+    """Raw results from some states, sampled at instants whose last one ends the run.
+
+    Args:
+        times: (instants,) or (runs, instants), s.
+        options: of :func:`squealpipe.systems.runs.integrate`.
+    """
+    system, size = plant.system, len(states)
+    values = {name: states[:, i] for i, name in enumerate(system.states)}
+    values |= {name: np.full(size, value) for name, value in system.parameters.items()}
+    ends = np.broadcast_to(np.atleast_2d(times)[:, -1], (size,)).copy()
+    return integrate(
+        system,
+        values,
+        ends,
+        times=times,
+        tracked=[f"{LARGEST}{name}_normal_force" for name in plant.contacts],
+        tol=tol,
+        **options,
+    )
+
+
+def run_window(
+    plant: Plant,
+    states: np.ndarray,
+    length: float,
+    *,
+    regimes: np.ndarray | None,
+    tol: float,
+    seed: int,
+    workers: int | None,
+) -> Rows:
+    """Run for a length of time, s.
+
+    Args:
+        regimes: of each component in which each run starts; None: what fits.
+    """
+    part = np.random.default_rng(seed).random(SAMPLES)
+    times = length * (np.arange(SAMPLES) + part) / SAMPLES
+    times = np.append(times, length)
+    options = {} if regimes is None else {"regime": regimes}
+    raw = run(plant, states, times, tol, workers=workers, **options)
+    samples = raw["samples"][:, :-1]
+    modal = plant.modal_velocities(samples)
+    speed = plant.contact_speeds(samples)
+    kinetic = 0.5 * (modal**2).sum(-1)
+    shares = raw["durations"] / length
+    separated, stuck = (
+        np.stack([shares[:, places].sum(1) for places in _regimes(plant, word)], 1)
+        for word in ("separated", "stick")
+    )
+    kinds = plant.system.traced.kinds
+    landings = np.stack(
+        [raw["counts"][:, kinds.index(f"{name}_contact")] for name in plant.contacts], 1
+    )
+    with np.errstate(invalid="ignore"):
+        size = len(states)
+        return Rows(
+            final=raw["final"],
+            regimes=raw["sample_regimes"][:, -1],
+            modal=np.sqrt((modal**2).mean(1)),
+            speed=np.sqrt((speed**2).mean(1)),
+            peak_speed=speed.max(axis=(1, 2)),
+            separated=separated,
+            stuck=stuck,
+            landings=landings,
+            force=raw["extremes"][..., 1],
+            events=raw["counts"].sum(1),
+            kinetic=kinetic.reshape(size, BLOCKS, -1).mean(-1),
+            block_ends=np.tile(length * np.arange(1, BLOCKS + 1) / BLOCKS, (size, 1)),
+            finished=raw["ends"][:, 0] == Outcome.converged,
+            length=np.full(size, length),
+        )
+
+
+def _regimes(plant: Plant, word: str) -> list[list[int]]:
+    """Of each contact, the numbers of its regimes of a kind."""
+    names = list(plant.system.regimes)
+    return [
+        [i for i, name in enumerate(names) if name.startswith(f"{contact}_{word}")]
+        for contact in plant.contacts
+    ]

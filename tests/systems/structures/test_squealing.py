@@ -1,0 +1,140 @@
+"""Which unstable modes squeal, against an integrator apart and what is known without one."""
+
+import json
+
+import numpy as np
+import pytest
+from scipy.io import mmwrite
+
+from squealpipe import Contact, Structure, load, plot, save, squealing_modes
+from squealpipe.cli import run
+from squealpipe.schema.assess import Verdict
+from squealpipe.schema.squealing import Kind
+from squealpipe.structures import elastic_pad
+from squealpipe.study.report.squealing import lines
+from squealpipe.systems.structures.squeal.plant import Plant
+from tests.oracles.exponentials import Exponentials
+
+UNITS = 1e4
+"""rad/s of a mode of the small structure."""
+
+
+def two_modes(mu, damping=0.02):
+    """Hoffmann's two modes with a contact that can open, at about 2 kHz."""
+    contact = Contact("c", {1: -1.0}, {0: 1.0}, stiffness=4 / 3 * UNITS**2, preload=2e3)
+    stiffness = np.array([[2.0, -1.0], [-1.0, 2 / 3]]) * UNITS**2
+    return Structure(
+        np.eye(2), stiffness, modal_damping=damping, contacts=[contact], mu=mu, belt_speed=-2.0
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def answer():
+    return squealing_modes(two_modes(1.0), samples=12, workers=1)
+
+
+def test_the_settled_motion_is_that_of_an_integrator_apart(answer):
+    structure = two_modes(1.0)
+    apart = Exponentials(structure)
+    plant = Plant(structure)
+    start = plant.pushed(plant.unstable[0], 0.01)
+    end = 4.0 * float(answer.settled_by.max())
+    shares, peaks, events, velocities = apart.run(start, end, 0.5 * end, 1e-6)
+    one = answer.isel(attractor=int(answer.ends_in[0]))
+    assert one.separated_fraction.values == pytest.approx(shares[0], abs=2e-3)
+    assert one.stick_fraction.values == pytest.approx(shares[1], abs=2e-3)
+    assert one.peak_force.values == pytest.approx(peaks / 2e3, rel=2e-3)
+    kinetic = 0.5 * (velocities**2).sum(axis=1).mean()
+    assert float(one.kinetic_energy) == pytest.approx(kinetic, rel=0.05)
+    assert int(one.kind) == Kind.cycle
+    assert int(one.events_per_period) / float(one.period) == pytest.approx(
+        events, rel=5e-3
+    )
+    assert float(one.largest_multiplier) < 1
+    assert float(one.dominant_frequency) * float(one.period) == pytest.approx(
+        np.round(float(one.dominant_frequency) * float(one.period)), abs=0.02
+    )
+
+
+def test_modes_attractors_and_words_agree(answer, tmp_path):
+    assert Verdict(int(answer.verdict)) is Verdict.hammers
+    assert answer.mode.size == 1
+    assert answer.share.sum() + answer.share_undetermined == pytest.approx(1.0)
+    assert int(answer["count"].sum()) == (answer.ends_at >= 0).sum()
+    assert (answer.share_low <= answer.share).all()
+    assert (answer.share <= answer.share_high).all()
+    assert (answer.start_energy <= 1).all()
+    text = "\n".join(lines(answer))
+    assert "Hammers at" in text
+    assert f"{int(answer.sizes['sample'])} random starts" in text
+    save(answer, tmp_path / "squeal.nc")
+    assert load(tmp_path / "squeal.nc").drop_attrs().identical(answer.drop_attrs())
+    assert plot(answer).has_data()
+    assert answer.attrs["made_by"] == "squealpipe.squealing_modes"
+    assert json.loads(answer.attrs["arguments"])["samples"] == 12
+    assert json.loads(answer.attrs["parameters"])["mu"] == 1.0
+
+
+def test_below_the_critical_friction_small_motions_die_out():
+    quiet = squealing_modes(two_modes(0.3), samples=5, workers=1)
+    assert Verdict(int(quiet.verdict)) is Verdict.quiet
+    assert quiet.sizes["mode"] == 0
+    assert list(quiet.kind.values) == [Kind.steady_sliding]
+    assert quiet.share.values == pytest.approx([1.0])
+    assert "No mode of steady sliding is unstable." in lines(quiet)
+
+
+def test_a_start_is_of_the_energy_that_is_stated():
+    plant = Plant(two_modes(1.0))
+    assert plant.energy == pytest.approx(2e3**2 / (2 * 4 / 3 * UNITS**2))
+    push = plant.pushed(plant.unstable[0], 0.01)
+    assert plant.sizes(push - plant.sliding) ** 2 == pytest.approx(1e-4 * plant.energy)
+    drawn = plant.random_states(4000, 1) - plant.sliding
+    # uniform in a ball of four dimensions: P(E < e) = e²
+    share = plant.sizes(drawn) ** 2 / plant.energy
+    assert share.max() <= 1
+    assert (share < 0.5).mean() == pytest.approx(0.25, abs=0.03)
+    # half of it kinetic
+    v = drawn[:, 2:]
+    assert (v**2).sum(axis=1).mean() / 2 == pytest.approx(
+        plant.energy * share.mean() / 2, rel=0.05
+    )
+
+
+@pytest.mark.release
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_of_two_unstable_modes_of_the_pad_the_upper_one_squeals(seed):
+    pad = elastic_pad(modal_damping=0.01).reduce(n_modes=12)
+    found = squealing_modes(pad, samples=64, seed=seed)
+    assert found.squeals.values.tolist() == [False, True]
+    first = found.isel(attractor=0)
+    # STRUCTURES.md: shares of the settled 12-mode pad by an integrator apart
+    assert first.separated_fraction.values == pytest.approx(
+        [0.0, 0.312, 0.395, 0.306], abs=2e-3
+    )
+    assert float(first.dominant_frequency) == pytest.approx(41.6e3, rel=2e-3)
+    assert first.share_low <= 1.0 <= first.share_high
+
+
+def test_the_command_says_it_in_words_and_writes_a_picture(
+    tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    structure = two_modes(1.0)
+    for name in ("mass", "stiffness"):
+        mmwrite(tmp_path / f"{name}.mtx", getattr(structure, name), precision=17)
+    contact = structure.contacts[0]
+    (tmp_path / "contacts.csv").write_text(
+        "name,normal,tangential,stiffness,preload\n"
+        f"c,2:-1,1:1,{contact.stiffness!r},2e3\n"
+    )
+    (tmp_path / "pad.yaml").write_text(
+        "mass: mass.mtx\nstiffness: stiffness.mtx\ncontacts: contacts.csv\n"
+        "modal_damping: 0.02\nmu: 1.0\nbelt_speed: -2.0\n"
+    )
+    assert run(["squeal", "pad.yaml", "--samples", "12", "-o", "squeal.nc"]) == 1
+    said = capsys.readouterr().out
+    assert "Hammers at 2.08 kHz: contact c is open 38 % of the time" in said
+    assert "12 of 12 random starts (76 % to 100 % of all) end in a cycle" in said
+    assert load("squeal.nc").attrs["schema"] == "squealing_modes"
+    assert (tmp_path / "squeal.png").stat().st_size > 10000
