@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     )
     from squealpipe.tasks.propensity.propensity import propensity
 
-_HOME = {
+HOME = {
     alias.name: str(node.module)
     for node in ast.walk(ast.parse(Path(__file__).read_bytes()))
     if isinstance(node, ast.ImportFrom) and str(node.module).startswith("squealpipe.")
@@ -107,12 +107,12 @@ def __getattr__(name: str) -> Any:
         from importlib.metadata import version
 
         return version("squealpipe")
-    if name not in _HOME:
+    if name not in HOME:
         raise AttributeError(
-            f"squealpipe has no {name!r}; it offers {', '.join(sorted(_HOME))}"
+            f"squealpipe has no {name!r}; it offers {', '.join(sorted(HOME))}"
         )
-    return getattr(importlib.import_module(_HOME[name]), name)
+    return getattr(importlib.import_module(HOME[name]), name)
 
 
 def __dir__() -> list[str]:
-    return sorted([*_HOME, "__version__"])
+    return sorted([*HOME, "__version__"])

@@ -12,14 +12,16 @@ from squealpipe.cli.arguments import (
 )
 from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer, working
 from squealpipe.cli.output import compute
+from squealpipe.cli.signatures import options_of
 
 
+@options_of("assess")
 def assess(
     alpha1: Angle1,
     alpha2: Angle2,
     /,
     *,
-    tol: Tolerance = 1e-12,
+    tol: Tolerance,
     output: OutputElsewhere = None,
     brake: Drawn = DRAWN,
 ) -> int:

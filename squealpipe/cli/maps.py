@@ -25,6 +25,7 @@ from squealpipe.cli.arguments import (
 from squealpipe.cli.console import ANSWER_IS_NO, DONE, SESSION, answer
 from squealpipe.cli.motions import Model
 from squealpipe.cli.output import compute, ending
+from squealpipe.cli.signatures import options_of
 from squealpipe.config.ranges import parse_number, reader
 from squealpipe.parameters import HORIZON
 
@@ -46,14 +47,15 @@ DISTRIBUTIONS = (
 )
 
 
+@options_of("validity_map")
 def map_angles(
     kind: Kind,
     /,
     *,
     alpha1: AngleRange = FULL_RANGE,
     alpha2: AngleRange = FULL_RANGE,
-    t_end: Time | None = None,
-    tol: Tolerance = 1e-12,
+    t_end: Time | None,
+    tol: Tolerance,
     output: Output = Path("map.nc"),
     brake: Drawn = DRAWN,
 ) -> int:
@@ -77,14 +79,15 @@ def map_angles(
     return _counted(compute(name, brake, alpha1, alpha2, output=output, **options))
 
 
+@options_of("refine_validity_map")
 def refine(
     *,
     resolution: Whole = 361,
     coarse: Whole = 46,
-    t_end: Time | None = None,
-    model: Model = "A1",
-    tol: Tolerance = 1e-12,
-    workers: Workers = None,
+    t_end: Time | None,
+    model: Model,
+    tol: Tolerance,
+    workers: Workers,
     output: Output = Path("refined.nc"),
     brake: Drawn = DRAWN,
 ) -> int:
@@ -117,6 +120,7 @@ def refine(
     return DONE
 
 
+@options_of("basin_map")
 def basin(
     alpha1: Angle1,
     alpha2: Angle2,
@@ -127,9 +131,9 @@ def basin(
     vx: Speeds = None,
     vy: Speeds = None,
     t_end: Time,
-    t_late: Time | None = None,
-    tol: Tolerance = 1e-12,
-    workers: Workers = None,
+    t_late: Time | None,
+    tol: Tolerance,
+    workers: Workers,
     output: Output = Path("basin.nc"),
     brake: Drawn = DRAWN,
 ) -> int:
@@ -174,19 +178,20 @@ def _counted(found: xr.Dataset) -> int:
     return DONE
 
 
+@options_of("smallest_disturbance")
 def disturbance(
     alpha1: Angle1,
     alpha2: Angle2,
     /,
     *,
-    leads_to: Literal["contact_lost", "whirl"] = "contact_lost",
-    model: Model = "A1",
-    t_end: Time | None = None,
-    bound: float | None = None,
-    directions: Whole = 128,
-    seed: Whole = 1,
-    tol: Tolerance = 1e-9,
-    workers: Workers = None,
+    leads_to: Literal["contact_lost", "whirl"],
+    model: Model,
+    t_end: Time | None,
+    bound: float | None,
+    directions: Whole,
+    seed: Whole,
+    tol: Tolerance,
+    workers: Workers,
     output: Output = Path("disturbance.nc"),
     brake: Drawn = DRAWN,
 ) -> int:
@@ -228,6 +233,7 @@ def disturbance(
     return DONE
 
 
+@options_of("propensity")
 def propensity(
     alpha1: Angle1,
     alpha2: Angle2,
@@ -238,8 +244,8 @@ def propensity(
     ],
     samples: Whole = 1024,
     t_end: Time | None = None,
-    spring_correlation: float = 0.0,
-    seed: Whole = 1,
+    spring_correlation: float,
+    seed: Whole,
     output: Output = Path("propensity.nc"),
     brake: Drawn = DRAWN,
 ) -> int:

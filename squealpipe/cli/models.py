@@ -19,19 +19,21 @@ from squealpipe.cli.arguments import (
 )
 from squealpipe.cli.console import DONE, answer, working
 from squealpipe.cli.output import compute
+from squealpipe.cli.signatures import options_of
 
 Question = Literal[
     "contact_lost", "frequency", "peak_contact_force", "max_displacement"
 ]
 
 
+@options_of("choose_model")
 def choose(
     alpha1: Angle1,
     alpha2: Angle2,
     question: Question,
     /,
     *,
-    t_end: Time | None = None,
+    t_end: Time | None,
     brake: Brake = BRAKE,
 ) -> int:
     """Print the cheapest model that answers a question as A1 does, its answer and the reason.
@@ -59,17 +61,18 @@ def choose(
     return DONE
 
 
+@options_of("infer_parameters")
 def infer(
     *,
     samples: Whole = 1024,
-    reading: Literal["as_printed", "along_plus_x", "along_minus_x"] = "as_printed",
+    reading: Literal["as_printed", "along_plus_x", "along_minus_x"],
     kappa: Numbers = None,
     mu_range: Numbers = None,
     length_ratio: Numbers = None,
     speed_ratio: Numbers = None,
-    seed: Whole = 2021,
-    tol: Tolerance = 1e-9,
-    workers: Workers = None,
+    seed: Whole,
+    tol: Tolerance,
+    workers: Workers,
     output: Output = Path("inference.nc"),
     brake: Written = WRITTEN,
 ) -> int:

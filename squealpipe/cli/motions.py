@@ -24,6 +24,7 @@ from squealpipe.cli.arguments import (
 )
 from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer
 from squealpipe.cli.output import compute, ending
+from squealpipe.cli.signatures import options_of
 from squealpipe.config.ranges import parse_range, reader
 
 if TYPE_CHECKING:
@@ -42,14 +43,15 @@ Model = Annotated[
 ]
 
 
+@options_of("simulate")
 def simulate(
     alpha1: Angle1,
     alpha2: Angle2,
     /,
     *,
     t_end: Time | None = None,
-    model: Model = "A1",
-    tol: Tolerance = 1e-12,
+    model: Model,
+    tol: Tolerance,
     points: Whole | None = None,
     x0: Length = 0.0,
     y0: Length = 0.0,
@@ -112,16 +114,17 @@ def simulate(
     return ANSWER_IS_NO
 
 
+@options_of("backbone")
 def backbone(
     alpha1: Angle1,
     alpha2: Angle2,
     /,
     *,
     mode: Literal[1, 2] = 1,
-    method: Literal["exact", "hbm"] = "exact",
-    y_peak_max: Length | None = None,
-    x_amplitude_max: Length | None = None,
-    n_harmonics: Whole = 16,
+    method: Literal["exact", "hbm"],
+    y_peak_max: Length | None,
+    x_amplitude_max: Length | None,
+    n_harmonics: Whole,
     output: Output = Path("backbone.nc"),
     brake: Drawn = DRAWN,
 ) -> int:
@@ -162,13 +165,14 @@ def backbone(
     return DONE
 
 
+@options_of("limit_cycle")
 def cycle(
     alpha1: Angle1,
     alpha2: Angle2,
     /,
     *,
-    guess: Numbers = None,
-    t_settle: Time | None = None,
+    guess: Numbers,
+    t_settle: Time | None,
     output: Output = Path("cycle.nc"),
     brake: Drawn = DRAWN,
 ) -> int:
@@ -208,6 +212,7 @@ def cycle(
     return DONE
 
 
+@options_of("cycle_branch")
 def branch(
     alpha1: Angle1,
     alpha2: Angle2,
@@ -215,9 +220,9 @@ def branch(
     *,
     parameter: str,
     to: str,
-    start: str | None = None,
-    n_points: Whole = 200,
-    doubled: Switch = False,
+    start: str | None,
+    n_points: Whole,
+    doubled: Switch,
     output: Output = Path("branch.nc"),
     brake: Drawn = DRAWN,
 ) -> int:

@@ -1,5 +1,7 @@
 """The command line as a user meets it: help, errors in a sentence, exit codes, files."""
 
+import ast
+import inspect
 import json
 import re
 import subprocess
@@ -8,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+import squealpipe
 from squealpipe import __version__, load, plot
 from squealpipe.cli import COMMANDS, run
 
@@ -259,3 +262,26 @@ def test_every_ability_has_a_command(command, words, capsys):
     assert words in capsys.readouterr().out
     made = {path.suffix for path in Path().iterdir()}
     assert made == {"choose": set(), "infer": {".nc"}}.get(command[0], {".nc", ".png"})
+
+
+def _own_defaults(command):
+    """Arguments that a command's own source gives a default, and its text."""
+    (node,) = ast.parse(inspect.getsource(command)).body
+    pairs = zip(node.args.kwonlyargs, node.args.kw_defaults, strict=True)
+    return {a.arg: ast.unparse(d) for a, d in pairs if d is not None}
+
+
+@pytest.mark.parametrize(
+    "name", [name for name, command in COMMANDS.items() if hasattr(command, "task")]
+)
+def test_defaults_of_options_are_those_of_the_task(name):
+    command = COMMANDS[name]
+    task = inspect.signature(getattr(squealpipe, command.task)).parameters
+    stated = inspect.signature(command).parameters
+    known = {n for n in task if task[n].default is not inspect.Parameter.empty}
+    own = _own_defaults(command)
+    taken = (known & set(stated)) - set(own)
+    assert taken
+    assert {n: stated[n].default for n in taken} == {n: task[n].default for n in taken}
+    # None leaves a range to the task
+    assert {n for n in known & set(own) if own[n] != "None"} == set()
