@@ -87,3 +87,15 @@ def test_no_import_hides_from_the_contracts():
     inside = {n for n in inside if not n.startswith("squealpipe/cli/")}
     assert inside == set(INSIDE_FUNCTIONS)
     assert by_name == set(BY_NAME)
+
+
+def test_no_module_takes_the_name_of_what_its_package_defines():
+    """``schema.labels`` was a function until a module of that name was imported."""
+    for path in (ROOT / "squealpipe").rglob("__init__.py"):
+        defined = {
+            node.name
+            for node in ast.parse(path.read_bytes()).body
+            if isinstance(node, ast.FunctionDef | ast.ClassDef)
+        }
+        modules = {each.stem for each in path.parent.iterdir()}
+        assert not defined & modules, path
