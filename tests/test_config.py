@@ -23,6 +23,7 @@ from squealpipe.config.settings import (
 )
 from squealpipe.config.yaml_files import flat
 from squealpipe.parameters import TABLE, Parameters, parameters_of
+from squealpipe.units import QUANTITIES
 
 ROOT = Path(__file__).resolve().parents[1]
 PAPER = ROOT / "workflow/config/paper.yaml"
@@ -332,6 +333,36 @@ def test_every_key_takes_a_unit(written):
             or value == list(map(str, value if isinstance(value, list) else []))
             else pytest.approx(value, rel=1e-14)
         ), key
+
+
+def wrong(value):
+    """A mass, or two where a list is needed, or by each name."""
+    if isinstance(value, dict):
+        return {name: wrong(one) for name, one in value.items()}
+    return [wrong(one) for one in value] if isinstance(value, list) else "3 kg"
+
+
+def test_every_key_refuses_another_kind_and_says_which_key_takes_it():
+    shipped, checked = Study().model_dump(mode="json"), 0
+    for key, mark in keys_with_a_unit(Study):
+        *above, name = key.split(".")
+        value = reduce(getitem, above, shipped).get(name)
+        if mark.units == "kg" or isinstance(value, dict):
+            continue
+        told = wrong(value)
+        for name in reversed(key.split(".")):
+            told = {name: told}
+        with pytest.raises(ConfigError) as refused:
+            parse_study(told)
+        message = str(refused.value)
+        assert key in message
+        if mark.units == "rad":
+            assert "write 0.4pi, 2pi/5, 72deg or radians" in message
+        else:
+            assert f"that is a mass; {QUANTITIES[mark.units][0]} is needed" in message
+            assert "a mass goes to mass" in message
+        checked += 1
+    assert checked > 35
 
 
 @pytest.mark.parametrize(

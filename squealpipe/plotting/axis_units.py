@@ -4,7 +4,6 @@ A picture is drawn in the units of its dataset. Then ticks and labels of each ax
 which works for every picture alike and moves no line.
 """
 
-import json
 import re
 from collections.abc import Sequence
 from typing import Any
@@ -16,11 +15,10 @@ from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.ticker import AutoLocator, FuncFormatter, LogLocator, NullLocator
 
+from squealpipe.schema.sizes import is_real
 from squealpipe.text import number
 from squealpipe.units import conversion, shown_in
 
-SMALL_PRELOAD, SHORT_TIME = 0.01, 0.01
-"""Preload, m, and √(m/k1), s, of a brake that one can hold; scaled numbers have 1 for both."""
 READABLE = {"m": "m", "s": "s", "N": "N", "m/s": "m s-1", "N/m": "N m-1"}
 """Unit of an axis → CF unit, of those for which a readable one is chosen."""
 _LABEL = re.compile(r"^(.*?)\s*\(([^()]+)\)$", re.DOTALL)
@@ -62,18 +60,6 @@ def in_units(figure: Figure, wanted: Sequence[str], dataset: xr.Dataset) -> None
         raise ValueError(
             f"unit {min(left)}: no axis of this picture measures that; its axes are in {axes}"
         )
-
-
-def is_real(dataset: xr.Dataset) -> bool:
-    """Whether a dataset is of a brake with the size of a real one, not of scaled numbers."""
-    text = dataset.attrs.get("parameters")
-    if not isinstance(text, str):
-        return False
-    given = json.loads(text)
-    if not {"preload", "mass", "k1"} <= set(given):
-        return False
-    time = float(np.sqrt(given["mass"] / given["k1"]))
-    return float(given["preload"]) < SMALL_PRELOAD and time < SHORT_TIME
 
 
 def _axes_of(axes: Axes) -> tuple[Axis, Axis]:

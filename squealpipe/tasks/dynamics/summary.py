@@ -1,5 +1,6 @@
 """One run in a few numbers: separation, impacts, forces, dominant frequencies."""
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -16,6 +17,8 @@ from squealpipe.schema import build
 from squealpipe.schema.dynamics.intervals import intervals
 from squealpipe.schema.dynamics.runs import RUN_SUMMARY
 from squealpipe.schema.origin import recorded
+from squealpipe.schema.sizes import is_real
+from squealpipe.units import engineering
 
 PEAKS = 3
 """Dominant frequencies that are named."""
@@ -77,11 +80,16 @@ def summarize(run: xr.Dataset) -> xr.Dataset:
 
 
 def summary_lines(run: xr.Dataset, summary: xr.Dataset) -> Iterator[str]:
-    """The summary for people, one line per finding."""
+    """The summary for people, one line per finding; a real brake's in mm, ms and Hz, too."""
+    real = is_real(run)
+
+    def shown(value: float, units: str) -> str:
+        return engineering(value, units, 5) if real else f"{value:.5g} {units}"
+
     first = float(summary.first_separation_time)
     yield f"regime             {_regime(summary)}"
     yield "first separation   " + (
-        f"t = {first:.6g} s"
+        (f"t = {shown(first, 's')}" if real else f"t = {first:.6g} s")
         if np.isfinite(first)
         else f"none until t = {float(run.time_reached):g} s"
     )
@@ -93,12 +101,15 @@ def summary_lines(run: xr.Dataset, summary: xr.Dataset) -> Iterator[str]:
             f"at impacts of up to {float(summary.impact_speed):.4g} m/s"
         )
     yield (
-        f"largest motion     |x| = {float(summary.largest_x):.5g} m, "
-        f"|y| = {float(summary.largest_y):.5g} m"
+        f"largest motion     |x| = {shown(float(summary.largest_x), 'm')}, "
+        f"|y| = {shown(float(summary.largest_y), 'm')}"
     )
-    peaks = ", ".join(f"{value:.4g}" for value in summary.dominant_frequency.values)
+    lines = summary.dominant_frequency.values
+    peaks = ", ".join(f"{value:.4g}" for value in lines)
+    hertz = ", ".join(engineering(value / math.tau, "Hz", 4) for value in lines)
+    beside = f" ({hertz})" if real else ""
     none = "no oscillation of the contact force"
-    yield f"dominant           {f'ω = {peaks} rad/s' if peaks else none}"
+    yield f"dominant           {f'ω = {peaks} rad/s{beside}' if peaks else none}"
 
 
 def _regime(summary: xr.Dataset) -> str:

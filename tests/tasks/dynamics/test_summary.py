@@ -88,6 +88,20 @@ def test_a_start_off_the_belt_has_lost_contact_at_once_for_every_function():
     assert "first separation   t = 0 s" in words
 
 
+def test_a_real_brake_is_summed_up_in_millimetres_and_hertz():
+    pad = Parameters(
+        mass=0.45, k1=1e7, k2=1e7, k3=7e6, mu=0.4, belt_speed=2, preload=5.7e-4, length1=0.1,
+        length2=0.1,
+    )  # fmt: skip
+    motion = simulate(pad, np.radians(22), np.radians(46), t_end=0.04)
+    summary = summarize(motion)
+    words = "\n".join(summary_lines(motion, summary))
+    assert f"|y| = {1e3 * float(summary.largest_y):.5g} mm" in words
+    strongest = float(summary.dominant_frequency[0])
+    assert f"ω = {strongest:.4g}" in words
+    assert f"({strongest / (2 * np.pi):.4g} Hz" in words
+
+
 def test_a_force_that_ends_for_good_has_no_frequency():
     pad = Parameters(
         mass=0.5, k1=1e7, k2=1e7, k3=7e6, mu=0.4, belt_speed=2, preload=2e-5, length1=0.02,
