@@ -59,10 +59,13 @@ Angle2 = Annotated[float, angle_of_spring("angle of spring 2 to −x")]
 AngleRange = Annotated[
     list[float],
     _signed(
-        partial(parse_range, one=parse_angle), "RANGE", negative="", show_default="0:pi:61",
+        partial(parse_range, one=parse_angle),
+        "RANGE",
+        negative="",
+        show_default="0:pi:61",
         help="angles of this spring (alpha1 to +x, alpha2 to −x), first:last:count or a list.",
     ),
-]  # fmt: skip
+]
 Time = Annotated[float, _signed(partial(parse_number, units="s"), "TIME")]
 Length = Annotated[float, _signed(partial(parse_number, units="m"), "LENGTH")]
 Speed = Annotated[float, _signed(partial(parse_number, units="m s-1"), "SPEED")]

@@ -37,9 +37,11 @@ def run_to_its_end(command: Sequence[str], env: Mapping[str, str]) -> int:
     Raises:
         KeyboardInterrupt, StoppedError: a signal ended it; by then no process of it is left.
     """
-    with _stops_raise(), _holder(), subprocess.Popen(
-        command, env=dict(env), start_new_session=True
-    ) as made:  # fmt: skip
+    with (
+        _stops_raise(),
+        _holder(),
+        subprocess.Popen(command, env=dict(env), start_new_session=True) as made,
+    ):
         done, code = _guard(made.pid), 1
         try:
             code = made.wait()

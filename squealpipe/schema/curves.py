@@ -60,24 +60,36 @@ CONTACT_BOUNDARY = DatasetSchema(
     variables={
         **VARIED,
         "kept": Variable(
-            "whether contact is kept, by the side of the curves", dims=("row", "column"),
+            "whether contact is kept, by the side of the curves",
+            dims=("row", "column"),
             dtype="bool",
         ),
         "curve": Variable(
             "connected curve, contact kept on its left (of one that is closed, the first point "
             "comes again)",
-            dims=("point",), dtype="i4",
+            dims=("point",),
+            dtype="i4",
         ),
         "arc": Variable("arc: one maximum of y touches", dims=("point",), dtype="i4"),
-        "touch_time": Variable("time at which contact is just lost", "s", ("point",), rtol=1e-6),
+        "touch_time": Variable(
+            "time at which contact is just lost", "s", ("point",), rtol=1e-6
+        ),
         "residual": Variable(
-            "distance of that maximum of y from l_pre, over l_pre", dims=("point",), rtol=1.0,
+            "distance of that maximum of y from l_pre, over l_pre",
+            dims=("point",),
+            rtol=1.0,
             atol=1e-8,
         ),
-        "corner": Variable("whether two maxima touch at once", dims=("point",), dtype="bool"),
+        "corner": Variable(
+            "whether two maxima touch at once", dims=("point",), dtype="bool"
+        ),
         "kind": Variable("what the point is", dims=("point",), flags=PointKind),
-        "region_kept": Variable("whether contact is kept there", dims=("region",), dtype="bool"),
-        "region_area": Variable("area, in the units of both parameters", "1", _REGION, rtol=1e-5),
+        "region_kept": Variable(
+            "whether contact is kept there", dims=("region",), dtype="bool"
+        ),
+        "region_area": Variable(
+            "area, in the units of both parameters", "1", _REGION, rtol=1e-5
+        ),
         "region_area_error": Variable(
             "error of the area, from the shape of the arcs", "1", _REGION, rtol=1.0
         ),
@@ -85,9 +97,12 @@ CONTACT_BOUNDARY = DatasetSchema(
         "kept_share_error": Variable("error of that share", rtol=1.0),
         "outline": Variable(
             "closed lines around the regions in which contact is kept, and around their holes: "
-            "values of both parameters", dims=("vertex", "parameter"),
+            "values of both parameters",
+            dims=("vertex", "parameter"),
         ),
-        "outline_loop": Variable("line that a vertex belongs to", dims=("vertex",), dtype="i4"),
+        "outline_loop": Variable(
+            "line that a vertex belongs to", dims=("vertex",), dtype="i4"
+        ),
         "range": Variable("lowest and highest value", dims=("parameter", "end")),
         "t_end": Variable("end of each run", "s"),
         "runs": Variable("runs", dtype="i8", volatile=True),
@@ -97,7 +112,7 @@ CONTACT_BOUNDARY = DatasetSchema(
         ),
         "outcome": outcome(among=(Outcome.converged, Outcome.unresolved)),
     },
-)  # fmt: skip
+)
 
 BOUNDARY_DISTANCE = DatasetSchema(
     name="boundary_distance",
@@ -117,8 +132,13 @@ BOUNDARY_DISTANCE = DatasetSchema(
 REGIME_CHART = DatasetSchema(
     name="regime_chart",
     title="Lines over two parameters across which A3 is unstable or A1, from rest, loses contact",
-    lists={"point": Listing(kinds=("line", "curve"), position="parameter",
-                            fillers=(int(ChartLine.whirl), int(ChartLine.stick)))},
+    lists={
+        "point": Listing(
+            kinds=("line", "curve"),
+            position="parameter",
+            fillers=(int(ChartLine.whirl), int(ChartLine.stick)),
+        )
+    },
     coordinates={
         "point": Variable("point", dims=("point",), dtype="i4"),
         **PARAMETER,
@@ -126,31 +146,45 @@ REGIME_CHART = DatasetSchema(
     },
     variables={
         **VARIED,
-        "line": Variable("what changes across the line", dims=("point",),
-                         flags=ChartLine),
+        "line": Variable(
+            "what changes across the line", dims=("point",), flags=ChartLine
+        ),
         "curve": Variable("connected line", dims=("point",), dtype="i4"),
         "residual": Variable(
-            "of the function that is zero on the line", dims=("point",), rtol=1.0, atol=1e-8
+            "of the function that is zero on the line",
+            dims=("point",),
+            rtol=1.0,
+            atol=1e-8,
         ),
         "cell_regime": Variable(
-            "what A3 does in cells of equal size", dims=("row", "column"), dtype="i1",
+            "what A3 does in cells of equal size",
+            dims=("row", "column"),
+            dtype="i1",
             flags=LinearRegime,
         ),
-        "cell_kept": Variable("whether contact is kept", dims=("row", "column"), dtype="bool"),
+        "cell_kept": Variable(
+            "whether contact is kept", dims=("row", "column"), dtype="bool"
+        ),
         "region_regime": Variable(
             "what A3 does there", dims=_REGION, flags=LinearRegime
         ),
-        "region_kept": Variable("whether contact is kept there", dims=_REGION, dtype="bool"),
+        "region_kept": Variable(
+            "whether contact is kept there", dims=_REGION, dtype="bool"
+        ),
         "region_place": Variable("a place well inside", dims=("region", "parameter")),
         "region_share": Variable("share of the chart", dims=_REGION),
-        "design": Variable("values of designs", dims=("place", "parameter"), optional=True),
+        "design": Variable(
+            "values of designs", dims=("place", "parameter"), optional=True
+        ),
         "distance": Variable(
             "distance of the nearest point, in the units of both parameters; infinite: none",
-            dims=("place", "boundary"), optional=True, rtol=1e-5,
+            dims=("place", "boundary"),
+            optional=True,
+            rtol=1e-5,
         ),
         "range": Variable("lowest and highest value", dims=("parameter", "end")),
         "t_end": Variable("end of each run", "s"),
         "runs": Variable("runs", dtype="i8", volatile=True),
         "outcome": outcome("boundary", among=(Outcome.converged, Outcome.unresolved)),
     },
-)  # fmt: skip
+)

@@ -150,27 +150,39 @@ CYCLE_CURVE = DatasetSchema(
     name="cycle_curve",
     title="A curve of special periodic motions of model A1 in two parameters",
     coordinates={
-        "point": Variable(dims=("point",), dtype="i4", long_name="point along the curve"),
+        "point": Variable(
+            dims=("point",), dtype="i4", long_name="point along the curve"
+        ),
         "parameter": text("parameter that varies", "parameter"),
     },
     variables={
         **_followed(),
         "period": Variable("period", "s", ("point",), rtol=1e-7),
         "residual": Variable(
-            "largest equation left over, without units", dims=("point",), rtol=1.0, atol=1e-8
+            "largest equation left over, without units",
+            dims=("point",),
+            rtol=1.0,
+            atol=1e-8,
         ),
-        "label": Variable("what else happens at the point", dims=("point",), flags=Meeting),
+        "label": Variable(
+            "what else happens at the point", dims=("point",), flags=Meeting
+        ),
         "events": Variable("events per period", dims=("point",), dtype="i4"),
         "outcome": outcome(
             "side",
             among=(
-                Outcome.converged, Outcome.point_limit, Outcome.branch_lost,
-                Outcome.order_changes, Outcome.real_multipliers,
+                Outcome.converged,
+                Outcome.point_limit,
+                Outcome.branch_lost,
+                Outcome.order_changes,
+                Outcome.real_multipliers,
             ),
         ),
-        "change": text("what changes the order of the events where the curve ends", "side"),
+        "change": text(
+            "what changes the order of the events where the curve ends", "side"
+        ),
     },
-)  # fmt: skip
+)
 
 SETTLED_EXTREMES = DatasetSchema(
     name="settled_extremes",

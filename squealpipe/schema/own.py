@@ -47,12 +47,15 @@ OWN_SCENES = DatasetSchema(
         "largest_y": _number("largest |y|", "m"),
         "predictability_horizon": _number("time to which a run can be computed", "s"),
         "dominant_frequency": Variable(
-            "angular frequencies of the contact force", "rad s-1", (*_RUN, "peak"),
-            nan_allowed=True, rtol=1e-3,
+            "angular frequencies of the contact force",
+            "rad s-1",
+            (*_RUN, "peak"),
+            nan_allowed=True,
+            rtol=1e-3,
         ),
         "model": text("cheapest level that answers", "scene", "question"),
         **{name: replace(entry, dims=("scene",)) for name, entry in ONE_PAIR.items()},
         "t_end": Variable("end of the runs", "s", ("scene",)),
         "outcome": outcome(*_RUN, among=RUN_ENDS),
     },
-)  # fmt: skip
+)

@@ -73,8 +73,11 @@ def infer_parameters(
     )
     reading_of(reading)
     ranges = {
-        "kappa": kappa, "mu": mu, "length_ratio": length_ratio, "speed_ratio": speed_ratio
-    }  # fmt: skip
+        "kappa": kappa,
+        "mu": mu,
+        "length_ratio": length_ratio,
+        "speed_ratio": speed_ratio,
+    }
     groups = _sample(samples, seed, ranges)
     sets, own = (
         sets_of(groups, tol=tol, workers=workers),

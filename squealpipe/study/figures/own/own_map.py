@@ -51,9 +51,14 @@ def draw(verdicts: xr.Dataset, answers: Mapping[str, xr.Dataset]) -> Figure:
     )
     ends = [(axis[0], axis[-1]) for axis in degrees]
     panel.set(
-        xlim=ends[0], ylim=ends[1], aspect="equal", xlabel="alpha1 (degrees)",
-        ylabel="alpha2 (degrees)", xticks=range(0, 181, 30), yticks=range(0, 181, 30),
-    )  # fmt: skip
+        xlim=ends[0],
+        ylim=ends[1],
+        aspect="equal",
+        xlabel="alpha1 (degrees)",
+        ylabel="alpha2 (degrees)",
+        xticks=range(0, 181, 30),
+        yticks=range(0, 181, 30),
+    )
     panel.spines[["top", "right"]].set_visible(True)
     for name, answer in answers.items():
         at = [float(np.degrees(answer[key])) for key in ("alpha1", "alpha2")]
@@ -74,9 +79,13 @@ def draw(verdicts: xr.Dataset, answers: Mapping[str, xr.Dataset]) -> Figure:
         panel.plot(*at, "x", color="white", markersize=8, markeredgewidth=3)
         panel.plot(*at, "x", color=BLUE, markersize=6, markeredgewidth=1.5)
         panel.annotate(
-            name.removeprefix("assess/"), at, (6, -10), textcoords="offset points",
-            color=BLUE, path_effects=HALO,
-        )  # fmt: skip
+            name.removeprefix("assess/"),
+            at,
+            (6, -10),
+            textcoords="offset points",
+            color=BLUE,
+            path_effects=HALO,
+        )
     figure.legend(
         handles=patches(TONES.values()), loc="outside lower center", ncols=len(TONES)
     )
