@@ -1,0 +1,107 @@
+"""Random structures of coupled friction contacts against an event-driven integrator apart."""
+
+import numpy as np
+import pytest
+
+from squealpipe import Contact, Structure
+from tests.oracles.many_contacts import OPEN, SAME, ManyContacts
+
+INSTANTS = 30
+SIDES = {"slip_slower": 1, "slip_faster": -1, "stick": 0, "separated": OPEN}
+
+
+def random_structure(seed):
+    """A structure, and displacements and velocities to start from; every third is symmetric."""
+    rng = np.random.default_rng(seed)
+    contacts = int(rng.integers(2, 9))
+    twice = seed % 3 == 0
+    contacts -= contacts % 2 if twice else 0
+    half = max(contacts // 2, 1) if twice else contacts
+    size = half + int(rng.integers(1, 3))
+
+    def definite(scale):
+        root = rng.normal(size=(size, size)) / np.sqrt(size)
+        return scale * (np.eye(size) + root @ root.T)
+
+    def both(matrix, coupling=0.0):
+        other = coupling * np.eye(size)
+        return (
+            np.block([[matrix + other, -other], [-other, matrix + other]])
+            if twice
+            else matrix
+        )
+
+    mass, stiffness, damping = definite(1.0), definite(1.0), definite(0.02)
+    n, t = rng.normal(size=(2, half, size)) / np.sqrt(size)
+    k, preload = rng.uniform(0.5, 2.0, half), rng.uniform(0.3, 1.0, half)
+    speed = rng.uniform(0.5, 1.5, half) * rng.choice([-1.0, 1.0], half)
+    made = []
+    for copy in range(1 + twice):
+        place = slice(copy * size, (copy + 1) * size)
+        for i in range(half):
+            normal, along = np.zeros((2, size * (1 + twice)))
+            normal[place], along[place] = n[i], t[i]
+            made.append(
+                Contact(f"c{len(made) + 1}", normal, along, k[i], preload[i], speed[i])
+            )
+    structure = Structure(
+        both(mass), both(stiffness, 0.3), both(damping), contacts=made,
+        mu=float(rng.uniform(0.2, 0.8)), belt_speed=float(rng.uniform(0.1, 0.6)),
+    )  # fmt: skip
+    q, v = 0.5 * rng.normal(size=(2, size))
+    return structure, np.tile(q, 1 + twice), np.tile(v, 1 + twice)
+
+
+def instants(run, system):
+    """(time, sides after it) where the regimes change, from the events of a run."""
+    names = run.event_regime.attrs["flag_meanings"].split()
+    first = [system.name_of(r) for r in range(len(system.regimes))]
+    assert len(first) == len(names)
+    components = list(run.component.values)
+    sides = {
+        c: SIDES[names[int(k)].removeprefix(f"{c}_")]
+        for c, k in zip(components, run.regime.values[0], strict=True)
+    }
+    found = [(0.0, tuple(sides.values()))]
+    for time, number in zip(
+        run.event_time.values, run.event_regime.values, strict=True
+    ):
+        component, _, regime = names[int(number)].partition("_")
+        sides[component] = SIDES[regime]
+        if time - found[-1][0] < SAME and len(found) > 1:
+            found[-1] = (found[-1][0], tuple(sides.values()))
+        else:
+            found.append((float(time), tuple(sides.values())))
+    return found
+
+
+def compare(seed):
+    """ok, refused (the run says why), or what is wrong."""
+    structure, q, v = random_structure(seed)
+    truth = ManyContacts(structure, q, v)
+    expected = [(0.0, tuple(truth.side))]
+    while len(expected) <= INSTANTS and expected[-1][0] < 200.0:
+        time = expected[-1][0] + truth.next_event(0.05)
+        expected.append((time, tuple(truth.side)))
+    end = expected[-1][0]
+    system = structure.system()
+    start = {f"q{i + 1}": x for i, x in enumerate(q)} | {
+        f"v{i + 1}": x for i, x in enumerate(v)
+    }
+    run = system.simulate(end + SAME, start=start, times=np.array([0.0, end]))
+    if int(run.outcome):
+        return f"refused: outcome {int(run.outcome)}"
+    found = instants(run, system)[: len(expected)]
+    for place, (a, b) in enumerate(zip(expected, found, strict=False)):
+        if abs(a[0] - b[0]) > 1e-8 or a[1] != b[1]:
+            return f"wrong at {place}: {a} for {b}"
+    if len(found) < len(expected):
+        return f"wrong: {len(found)} instants for {len(expected)}"
+    final = np.array([float(run[name][-1]) for name in system.states])
+    error = abs(final - truth.state).max()
+    return "ok" if error < 1e-8 else f"wrong: state by {error:.1e}"
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_contacts_that_are_coupled_agree_with_an_integrator_apart(seed):
+    assert compare(seed) == "ok"
