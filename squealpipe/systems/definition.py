@@ -112,7 +112,8 @@ class System:
             whose condition is ≥ 0 and whose equality is 0; a condition of None, as one left out,
             stands for that regime's surfaces being all ≥ 0.
         period: of the forcing, a function of the parameters; left out, the system is autonomous.
-        outputs: name → (unit, function (t, s, p, r)): quantities whose extremes are kept.
+        outputs: name → (unit, function (t, s, p, r)): quantities told along runs, and
+            whose extremes are kept.
         stops: outcome → function (t, s, p, r): ends a run where it falls through zero.
         time_scale: typical time, a number or a function of the parameters.
 

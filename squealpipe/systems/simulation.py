@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from squealpipe.methods.taylor.scalar import numpy_function
 from squealpipe.parameters import brief
 from squealpipe.schema.systems import build
 from squealpipe.systems import runs
 from squealpipe.systems.cycles.sensitivity import sensitivities
+from squealpipe.systems.trace import TIME
 from squealpipe.validation import (
     NotNegative,
     Tolerance,
@@ -47,9 +49,9 @@ def simulate(
         parameters: those that differ from the system's.
 
     Returns:
-        Dataset over ``time`` and ``event``: each state, ``regime``, ``event_time``, ``event_kind``,
-        ``event_regime`` (entered), ``outcome``; ``<state>_by_<name>`` (at fixed instants) and
-        ``event_time_by_<name>``. Instants that the run did not reach hold NaN.
+        Dataset over ``time`` and ``event``: each state and output, ``regime``, ``event_time``,
+        ``event_kind``, ``event_regime`` (entered), ``outcome``; ``<state>_by_<name>`` (at fixed
+        instants) and ``event_time_by_<name>``. Instants that the run did not reach hold NaN.
     """
     values = {
         n: runs.scalar(n, v)
@@ -74,6 +76,7 @@ def simulate(
         name: ("time", run.path[:, i], runs.labels(f"state {name}", system.units[name]))
         for i, name in enumerate(system.states)
     }
+    found |= _outputs_along(system, values, times, run)
     found["regime"] = runs.regime_flag(system, "regime", ("time",), run.path_regimes)
     found["event_time"] = ("event", run.times, runs.labels("time of the event", "s"))
     found["event_kind"] = runs.flag("kind of the event", "event", run.kinds, kinds)
@@ -88,6 +91,27 @@ def simulate(
     }
     attributes = runs.attributes(system, "simulate", values, tol)
     return build("simulate", found, coordinates, attributes)
+
+
+def _outputs_along(
+    system: Any, values: Mapping[str, float], times: np.ndarray, run: runs.Motion
+) -> dict[str, Any]:
+    """Each output at the instants of a run, with the constants of its regimes there."""
+    traced = system.traced
+    function, names = numpy_function(list(traced.outputs))
+    known: dict[str, Any] = {**values, TIME: times}
+    known |= dict(zip(system.states, run.path.T, strict=True))
+    for component, regimes in enumerate(run.path_regimes.T):
+        columns = traced.columns(component)
+        # where the run did not come the states are NaN, whatever the regime
+        held = traced.regimes[np.maximum(regimes, 0), columns].T
+        known |= dict(zip(traced.constants[columns], held, strict=True))
+    along = function(*(known[name] for name in names))
+    reached = np.where(run.path_regimes[:, 0] >= 0, 0.0, np.nan)
+    return {
+        name: ("time", value + reached, runs.labels(f"output {name}", unit))
+        for (name, (unit, _)), value in zip(system.outputs.items(), along, strict=True)
+    }
 
 
 @checked
