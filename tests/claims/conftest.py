@@ -5,6 +5,7 @@ import pytest
 
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.reading import READINGS, corrected, for_linear
+from squealpipe.schema.dynamics.growth import HORIZON
 from squealpipe.tasks.backbones.backbone import backbone
 from squealpipe.tasks.backbones.harmonic_forms import compare_harmonic_forms
 from squealpipe.tasks.curves.contact import contact_boundary
@@ -73,7 +74,7 @@ def of_the_paper(params, model):
         for name, scene in SCENES.items()
         if scene.figure <= 5
     }
-    runs |= {f"{name}_long": (name, 3000.0, model) for name in ("F3", "F4")}
+    runs |= {"F3_long": ("F3", HORIZON, model), "F4_long": ("F4", 3000.0, model)}
     runs["F2a_printed"] = ("F2a", 50.0, "A1-as-printed")
     for name, (scene, t_end, of_model) in runs.items():
         angles_of = SCENES[scene].alpha1, SCENES[scene].alpha2

@@ -41,6 +41,7 @@ TOUCHING = put(
 )
 STAYS = put("normalized_contact_force", lambda d: 0.21 + 0.79 * (d.time < 1.0))
 NO_GROWTH = put("x", lambda d: np.cos(d.time) + 0 * d.x)
+SWINGS = put("x", lambda d: np.cos(d.time) * (1 + 0.3 * np.sin(d.time / 500)) + 0 * d.x)
 GROWING = put("x", lambda d: d.x * (d.time / d.time[-1]) ** 2)
 TWO_FREQUENCIES = put("frequency", lambda d: d.frequency * (1.0 + 0.01 * (d.mode - 1)))
 SHIFTED, FASTER = put("omega", lambda d: d.omega + 0.1), scaled("omega", 1.1)
@@ -61,7 +62,8 @@ FLIPS = [
     ("F2c", "simulate/F2c", TOUCHING, FAILS), ("F2d", "simulate/F2d", without_events, FAILS),
     ("F2e", "simulate/F2b", scaled("normalized_contact_force", 0.5), FAILS),
     ("F2e", "simulate/F2d", STAYS, Verdict.cannot_be_decided),
-    ("F3", "simulate/F3", NO_GROWTH, FAILS), ("F3", "simulate/F3_long", NO_GROWTH, PRINTED),
+    ("F3", "simulate/F3_long", NO_GROWTH, FAILS),
+    ("F3", "simulate/F3_long", SWINGS, Verdict.cannot_be_decided),
     ("F4", "simulate/F4", GROWING, FAILS), ("F4", "simulate/F4_long", scaled("x", 1.2), PRINTED),
     ("F4", "simulate/F4", scaled("x", 1.1), FAILS),
     ("F5a", "simulate/F5b", scaled("normalized_contact_force", 1 + 1e-8), FAILS),
@@ -71,7 +73,7 @@ FLIPS = [
     ("F6b", "quasi_static_map", NEVER, HOLDS), ("F6c", "stability_map", REGIME, HOLDS),
     ("F6c", "quasi_static_map", EVERYWHERE_PRINTED, FAILS),
     ("F6d", "stability_map", put("growth_rate", lambda d: 0 * d.growth_rate + 1e-3), FAILS),
-    ("F6d", "simulate/F3", NO_GROWTH, FAILS),
+    ("F6d", "simulate/F3_long", NO_GROWTH, FAILS),
     ("F6e", "linear_pull", put("lowest_contact_force", lambda _: 0.1), FAILS),
     ("F7a", "validity_boundary", put("kept_share", lambda _: 1.0), FAILS),
     ("F7b", "validity_map", put("separates", lambda d: d.separates & False), FAILS),

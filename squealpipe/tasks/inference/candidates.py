@@ -12,6 +12,7 @@ from squealpipe.models.contact_system import ContactSystem, contact_system
 from squealpipe.parameters import SCENES, TABLE, Parameters, Scene, direction_of
 from squealpipe.reading import reading_of
 from squealpipe.schema import Outcome
+from squealpipe.schema.dynamics.growth import WINDOW, WINDOWS
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
 from squealpipe.tasks.inference.unstable_cells import Unstable, unstable_cells
 
@@ -85,6 +86,36 @@ class Candidates:
             workers=self.workers,
             initial_state=self.initial_state,
         )
+
+    def windows(self, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+        """Largest |x| in each window of a long run at a scene, and how the run ended.
+
+        Window after window starts where the one before ended; a run that ended early is not taken
+        up again, and its windows from there on are NaN.
+        """
+        sizes = np.full((self.size, WINDOWS), np.nan)
+        outcome = np.full(self.size, int(Outcome.converged), np.int8)
+        state = np.broadcast_to(np.array(self.initial_state, float), (self.size, 4))
+        state = state.copy()
+        for window in range(WINDOWS):
+            left = np.flatnonzero(outcome == Outcome.converged)
+            if not left.size:
+                break
+            some = self.subset(left)
+            run = run_ensemble(
+                some.fields,
+                scene.alpha1,
+                scene.alpha2,
+                t_end=WINDOW * some.time_unit,
+                tracked=("x",),
+                model=self.model,
+                tol=self.tol,
+                workers=self.workers,
+                initial_state=state[left],
+            )
+            sizes[left, window] = np.maximum(run.early_max_x, run.late_max_x)
+            outcome[left], state[left] = run.outcome, run.final_state
+        return sizes, outcome
 
     @cached_property
     def contact(self) -> dict[str, Margin]:

@@ -19,6 +19,7 @@ from squealpipe.models.contact_system import contact_system
 from squealpipe.models.damped import damped_system, is_undamped, stability
 from squealpipe.parameters import SCENES, Scene
 from squealpipe.schema import Outcome
+from squealpipe.schema.dynamics.growth import GROWS, RULE, growth_margin
 from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD
 from squealpipe.schema.inference import (
     BOUND,
@@ -38,8 +39,8 @@ class Stage(IntEnum):
     linear = 0
     contact = 1
     level = 2
-    growth = 3
-    bound = 4
+    bound = 3
+    growth = 4
     maps = 5
 
 
@@ -168,12 +169,11 @@ def _growth_and_size(
 @constrains(
     "F3",
     Stage.growth,
-    f"|x| exceeds 2L and its second half is {GROWTH_THRESHOLD:g} times the first; "
-    f"margin min(ln(|x|/2L), ln(growth/{GROWTH_THRESHOLD:g}))",
+    f"largest |x|: {RULE}; margin ln(least ratio/{GROWS:g}), none where it is undecided",
 )
 def _grows(candidates: Candidates) -> Margin:
-    growth, size, outcome = _growth_and_size(candidates, SCENES["F3"])
-    return Margin(np.minimum(growth - np.log(GROWTH_THRESHOLD), size), outcome)
+    sizes, outcome = candidates.windows(SCENES["F3"])
+    return Margin(growth_margin(sizes), outcome)
 
 
 @constrains(

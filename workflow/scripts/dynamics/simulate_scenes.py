@@ -5,14 +5,15 @@ from dataclasses import replace
 from squealpipe.execution.job import Job
 from squealpipe.parameters import SCENES
 from squealpipe.reading import READINGS
+from squealpipe.schema.dynamics.growth import HORIZON
 from squealpipe.tasks.dynamics.runs import simulate
 
-LONG = 3000.0  # √(m/k1)
+LONG = 3000.0  # √(m/k1), of Fig. 4
 
 job = Job(snakemake)
 params, model = job.params, job.model
 runs = {name: (scene, model) for name, scene in SCENES.items()} | {
-    "F3_long": (replace(SCENES["F3"], t_end=LONG), model),
+    "F3_long": (replace(SCENES["F3"], t_end=HORIZON), model),
     "F4_long": (replace(SCENES["F4"], t_end=LONG), model),
     "F2a_printed": (SCENES["F2a"], READINGS["as_printed"].a1_model),
 }

@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.codes import Event
+from squealpipe.schema.dynamics.growth import HORIZON, WINDOW, WINDOWS
 from squealpipe.study.claims.evidence import MissingDataError, Run
 
 
@@ -29,6 +30,18 @@ def halves(motion: xr.Dataset) -> tuple[float, float]:
     half = motion.sizes["time"] // 2
     size = np.abs(motion.x.values) / float(motion.preload)
     return float(size[:half].max()), float(size[half:].max())
+
+
+def windows(run: Run, motion: xr.Dataset) -> np.ndarray:
+    """Largest |x| in each window of a long run, in units of l_pre."""
+    end = float(motion.time[-1]) / run.parameters.time_unit
+    if end < HORIZON * (1.0 - 1e-9):
+        raise MissingDataError(
+            f"the long run ends at {end:g} √(m/k1), before {HORIZON:g}"
+        )
+    size = np.abs(motion.x.values) / float(motion.preload)
+    window = (motion.time.values / (WINDOW * run.parameters.time_unit)).astype(int)
+    return np.array([size[window == number].max() for number in range(WINDOWS)])
 
 
 def frequency(motion: xr.Dataset) -> float:

@@ -1,0 +1,57 @@
+"""Whether a motion grows without bound, judged by a long run: the one rule for all who ask.
+
+How far |x| gets from one half of a short run to the next is chance where the motion is chaotic, and
+a motion that ends in a whirl grows at first too. What tells them apart is the long run.
+"""
+
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+
+WINDOW = 1000.0
+"""Length of a window, √(m/k1)."""
+WINDOWS = 6
+"""Windows of a run."""
+JUDGED = 3
+"""The last windows, whose sizes decide."""
+GROWS = 1.05
+"""Least ratio of each of these sizes to the one before in growth without bound."""
+SATURATES = 1.02
+"""Largest ratio among these sizes in a motion that has stopped growing."""
+HORIZON = WINDOWS * WINDOW
+"""Length of a run, √(m/k1)."""
+RULE = (
+    f"of a run to t = {HORIZON:g} √(m/k1), each of the last {JUDGED} windows of {WINDOW:g} "
+    f"exceeds the one before by {100 * (GROWS - 1):.0f} %"
+)
+
+
+class Growth(IntEnum):
+    """What a long run says."""
+
+    saturates = 0
+    grows = 1
+    undecided = 2
+
+
+def least_growth(sizes: Any) -> np.ndarray:
+    """Smallest ratio of one of the last sizes to that before it; ``sizes``: (…, ``WINDOWS``)."""
+    sizes = np.asarray(sizes, float)
+    ratios = sizes[..., -JUDGED:] / sizes[..., -JUDGED - 1 : -1]
+    return np.asarray(ratios.min(axis=-1))
+
+
+def judge_growth(sizes: Any) -> np.ndarray:
+    """:class:`Growth` of runs from the largest |x| in each window, (…, ``WINDOWS``)."""
+    last = np.asarray(sizes, float)[..., -JUDGED:]
+    agree = last.max(axis=-1) <= SATURATES * last.min(axis=-1)
+    otherwise = np.where(agree, Growth.saturates, Growth.undecided)
+    return np.where(least_growth(sizes) >= GROWS, Growth.grows, otherwise)
+
+
+def growth_margin(sizes: Any) -> np.ndarray:
+    """ln of the least growth over ``GROWS``: positive if it grows; NaN where it is undecided."""
+    undecided = judge_growth(sizes) == Growth.undecided
+    margin = np.log(least_growth(sizes) / GROWS)
+    return np.where(undecided, np.nan, margin)
