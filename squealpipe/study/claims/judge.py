@@ -93,7 +93,9 @@ def standing(statement: Statement, run: Run) -> tuple[Basis, float, int]:
     if "parameter_inference" not in run:
         return Basis.unknown, nan, 0
     inference = of_study(run["parameter_inference"])
-    if {statement.id, statement.consequence} & set(inference.statement.values.tolist()):
+    # what was fitted as the paper prints it is no test of the paper's words either
+    names = {statement.id, statement.consequence, f"{statement.consequence}_printed"}
+    if names & set(inference.statement.values.tolist()):
         return Basis.fitted, nan, 0
     count = int(inference.feasible_count)
     if not count or statement.consequence not in inference.consequence.values:

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.schema import meanings
-from squealpipe.schema.claims import Origin, Verdict
+from squealpipe.schema.claims import Basis, Origin, Verdict
 from squealpipe.schema.curves import ChartLine
 from squealpipe.schema.inference import of_study
 from squealpipe.study.claims.evidence import Run
@@ -37,7 +37,15 @@ def _verdicts(run: Run) -> dict[str, Any]:
     own = claims.isel(claim=(claims.origin != Origin.misprints).values)
     found = {verdict.name: (own.verdict == verdict).sum() for verdict in Verdict}
     changed = (own.corrected_verdict != own.verdict).sum()
-    return {"statements": own.sizes["claim"], "one_sign_changes": changed, **found}
+    fitted = own.basis == Basis.fitted
+    return {
+        "statements": own.sizes["claim"],
+        "one_sign_changes": changed,
+        "fitted": fitted.sum(),
+        "tests": (~fitted).sum(),
+        "tests_held": (~fitted & (own.verdict == Verdict.holds)).sum(),
+        **found,
+    }
 
 
 def _inferred(run: Run) -> dict[str, Any]:
