@@ -472,6 +472,8 @@ def regime_flag(
 ) -> Any:
     """The flag variable of regimes (…, components); over ``component`` where there are several."""
     names = dict(enumerate(system.regimes))
+    if (np.asarray(regimes) < 0).any():
+        names[-1] = "not_reached"  # instants after the end of a run
     if len(system.composition.names) == 1:
         return flag(long_name, dims, np.asarray(regimes)[..., 0], names)
     return flag(f"{long_name} of each component", (*dims, "component"), regimes, names)
