@@ -162,6 +162,24 @@ def test_tables_hold_the_numbers_of_the_answer(answers, tmp_path):
     assert book["Parameters"]["C2"].value == PAD.mass
 
 
+def test_a_cure_of_nothing_is_told_in_points_and_no_friction_by_its_name(answers):
+    told = answers["mine"].copy(deep=True)
+    for name, value, quiet_from, change in (
+        ("damping", 0.0, 0.083, 8.3),
+        ("mu", 0.4, 1e-5, -100.0),
+    ):
+        for key, number in (
+            ("value", value),
+            ("quiet_from", quiet_from),
+            ("change", change),
+        ):
+            told[key].loc[{"cure": name}] = number
+    words = {cure.name: cure for cure in answer.cures(told)}
+    assert words["damping"].now == "0 %"
+    assert words["damping"].change == "+8.3 points"
+    assert words["mu"].quiet_from == "practically no friction"
+
+
 def test_a_table_of_friction_stands_for_the_coefficient(tmp_path):
     pad = replace(PAD, mu=Parameters().mu, friction_law="linear 0.0:0.48 1.0:0.36")
     rows = {row["meaning"]: row for row in parameter_table(pad, of_a1=True)}

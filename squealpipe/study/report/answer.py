@@ -23,6 +23,8 @@ NAMES = {
     "belt_speed": "belt speed",
 }
 """Words for what is changed."""
+NO_FRICTION = 1e-3
+"""Friction over the present one below which none is left; an undamped flutter needs that."""
 CHEAPEST = 3
 """Cures that an answer names."""
 
@@ -224,8 +226,10 @@ def _words(cure: xr.Dataset) -> CureWords:
         name,
         NAMES[name],
         _value(name, float(cure.value), unit),
-        _value(name, float(cure.quiet_from), unit),
-        _change(name, float(cure.change)),
+        _value(name, float(cure.quiet_from), unit)
+        if float(cure.quiet_from) > NO_FRICTION * float(cure.value) or name != "mu"
+        else "practically no friction",
+        _change(name, float(cure.change), float(cure.value)),
         _value(name, float(cure.quiet_from_any_start), unit),
         _range(cure),
     )
@@ -247,9 +251,11 @@ def _value(name: str, value: float, unit: str) -> str:
     return engineering(value if abs(value) > 1e-8 or unit != "1" else 0.0, unit)
 
 
-def _change(name: str, change: float) -> str:
+def _change(name: str, change: float, value: float) -> str:
     sign = "+" if change > 0 else "−"
     unit = "°" if name.startswith("alpha") else " %"
+    if value == 0.0 and name == "damping":  # of nothing there are no per cent
+        unit = " points"
     return f"{sign}{number(abs(change), 2)}{unit}"
 
 
