@@ -4,14 +4,19 @@ import json
 
 import numpy as np
 import xarray as xr
+from matplotlib import colormaps
 from matplotlib.axes import Axes
+from matplotlib.patches import Patch
 
 from squealpipe.plotting.cycles import say_why_empty
 from squealpipe.plotting.quantities import draw_quantity, label
 from squealpipe.plotting.style import BLUE, GREY, PALETTE, say_instead
+from squealpipe.schema import meanings
 
 FEW_EVENTS = 60
 """Events up to which each is marked."""
+MOST_NAMED = 10
+"""States that a legend names beside regimes."""
 
 
 def draw_states(axes: Axes, run: xr.Dataset) -> None:
@@ -28,8 +33,54 @@ def draw_states(axes: Axes, run: xr.Dataset) -> None:
         axes.plot(run.time, state, color=colour, label=str(state.name))
     names = ", ".join(str(state.name) for state in alike)
     axes.set(xlabel=label(run.time), ylabel=f"{names} ({states[0].units})")
-    if len(alike) > 1:
+    patches = _draw_regimes(axes, run) if "component" in run.dims else []
+    lines = axes.get_lines()[-len(alike) :]
+    if patches:
+        axes.legend(
+            handles=[*lines[:MOST_NAMED], *patches],
+            loc="lower center",
+            bbox_to_anchor=(0.5, 1.0),
+            ncols=5,
+        )
+    elif len(alike) > 1:
         axes.legend()
+
+
+def _draw_regimes(axes: Axes, run: xr.Dataset) -> list[Patch]:
+    """The regime of each component over time as a band below the states, darker to lighter.
+
+    Returns:
+        What a legend shows of the regimes.
+    """
+    names = meanings(run.event_regime)
+    components = [str(each) for each in run.component.values]
+    short = {
+        number: name.removeprefix(f"{component}_")
+        for component in components
+        for number, name in names.items()
+        if name.startswith(f"{component}_")
+    }
+    regimes = list(dict.fromkeys(short.values()))
+    shades = colormaps["cividis"](np.linspace(0.0, 1.0, len(regimes)))
+    colours = dict(zip(regimes, shades, strict=True))
+    bottom, top = axes.get_ylim()
+    height = 0.06 * (top - bottom)
+    end = float(run.end_time)
+    for place, component in enumerate(components):
+        mine = [names[int(n)].startswith(f"{component}_") for n in run.event_regime]
+        times = [0.0, *run.event_time.values[mine], end]
+        entered = [run.regime.values[0, place], *run.event_regime.values[mine]]
+        base = bottom - (place + 1) * height
+        axes.broken_barh(
+            list(zip(times[:-1], np.diff(times), strict=True)),
+            (base, 0.8 * height),
+            facecolors=[colours[short[int(number)]] for number in entered],
+        )
+        axes.text(
+            end, base + 0.4 * height, f" {component}", va="center", fontsize="small"
+        )
+    axes.set_ylim(bottom - (len(components) + 0.5) * height, top)
+    return [Patch(color=colours[name], label=name) for name in regimes]
 
 
 def draw_ensemble(axes: Axes, runs: xr.Dataset) -> None:

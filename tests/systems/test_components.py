@@ -8,7 +8,7 @@ import pytest
 from squealpipe.systems.impact_oscillator import impact_oscillator
 from squealpipe.systems.rigid_pad import LEADING, TRAILING, approach, rigid_pad
 
-from squealpipe import Component, Switch, System, labels
+from squealpipe import Component, Switch, System, labels, plot
 from squealpipe.functions import cos
 
 START = {"vx": 0.3, "y": 0.3, "spin": 0.5}
@@ -158,3 +158,27 @@ def test_a_start_names_regimes_by_component(regime, says):
 def test_a_start_may_name_the_regimes_of_some_components():
     run = rigid_pad.simulate(0.0, start={"regime": {"leading": "open"}})
     assert list(labels(run.regime[0]).values) == ["leading open", "trailing closed"]
+
+
+def test_a_picture_shows_the_regimes_of_each_component_as_a_band():
+    run = rigid_pad.simulate(10.0, start=START)
+    axes = plot(run)
+    spent = rigid_pad.ensemble(10.0, start=START)
+    names = [text.get_text() for text in axes.get_legend().get_texts()]
+    colours = {
+        patch.get_label(): patch.get_facecolor()
+        for patch in axes.get_legend().legend_handles
+        if hasattr(patch, "get_facecolor")
+    }
+    assert {"closed", "open"} <= set(names)
+    for component, band in zip(("leading", "trailing"), axes.collections, strict=True):
+        for regime in ("closed", "open"):
+            width = sum(
+                np.ptp(path.vertices[:, 0])
+                for path, colour in zip(
+                    band.get_paths(), band.get_facecolors(), strict=True
+                )
+                if np.allclose(colour, colours[regime])
+            )
+            expected = float(spent[f"time_in_{component}_{regime}"])
+            assert width == pytest.approx(expected, abs=1e-9)
