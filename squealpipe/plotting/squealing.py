@@ -35,7 +35,7 @@ def figure(answer: xr.Dataset) -> Figure:
     _losses(losses, shown)
     for axes_ in (levels, losses):
         axes_.set_yticks(np.arange(shown.sizes["attractor"]), [])
-    titles = ("what grows", "what it becomes", "how loud", "contact loss")
+    titles = ("what grows", "ends in", "how loud", "contact loss")
     for letter, panel, title in zip("abcd", axes[0], titles, strict=True):
         style.panel_letter(panel, letter, title)
     return made

@@ -138,3 +138,16 @@ def test_the_command_says_it_in_words_and_writes_a_picture(
     assert "12 of 12 random starts (76 % to 100 % of all) end in a cycle" in said
     assert load("squeal.nc").attrs["schema"] == "squealing_modes"
     assert (tmp_path / "squeal.png").stat().st_size > 10000
+
+
+@pytest.mark.release
+def test_between_both_onsets_the_lower_mode_of_the_pad_squeals():
+    pad = elastic_pad(modal_damping=0.01, mu=0.382).reduce(n_modes=12)
+    found = squealing_modes(pad, samples=11)
+    # the upper pair turns unstable at 0.3876
+    assert found.critical_mu.values == pytest.approx([0.377576], abs=1e-6)
+    assert found.squeals.values.tolist() == [True]
+    first = found.isel(attractor=int(found.ends_in[0]))
+    assert float(first.dominant_frequency) == pytest.approx(9.63e3, rel=2e-3)
+    # one point hammers, the others are kept
+    assert (first.separated_fraction.values > 0).tolist() == [False, True, False, False]
