@@ -64,7 +64,7 @@ SIMULATE = DatasetSchema(
         "<state>_by_<name>": or_nan(
             "derivative of the state", UNIT, ("time",), optional=True, rtol=1e-6
         ),
-        "<state>": or_nan("state", UNIT, ("time",), rtol=1e-7),
+        "<name>": or_nan("state or output", UNIT, ("time",), rtol=1e-7),
     },
 )
 
