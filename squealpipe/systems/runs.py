@@ -31,6 +31,18 @@ LARGEST = "largest "
 MOST_STEPS, MOST_EVENTS = 1e7, 1e7
 
 
+def symbolic(system: System) -> HybridSystem:
+    """What the series of a system are written from."""
+    t = system.integrated
+    return HybridSystem(
+        variables=t.variables,
+        rates=t.rates,
+        events=(*t.surfaces, *t.outputs),
+        parameters=(*t.parameters, *t.all_constants),
+        explicit_time=len(t.variables) > t.size,
+    )
+
+
 _COMPILED: weakref.WeakKeyDictionary[
     Any, dict[tuple[bool, bool], lanes.CompiledSystem]
 ] = weakref.WeakKeyDictionary()
@@ -41,13 +53,6 @@ def compiled(system: System, *, tangent: bool, few: bool) -> lanes.CompiledSyste
     known = _COMPILED.setdefault(system, {})
     if (tangent, few) not in known:
         t = system.integrated
-        symbolic = HybridSystem(
-            variables=t.variables,
-            rates=t.rates,
-            events=(*t.surfaces, *t.outputs),
-            parameters=(*t.parameters, *t.all_constants),
-            explicit_time=len(t.variables) > t.size,
-        )
         scalar = ScalarSource(
             t.variables,
             t.rates,
@@ -56,6 +61,7 @@ def compiled(system: System, *, tangent: bool, few: bool) -> lanes.CompiledSyste
             t.surfaces,
             t.switches,
             t.size,
+            t.outputs,
         )
         sources = {"gauge": scalar.gauge(), "change": scalar.change()}
         if t.switched:
@@ -63,7 +69,7 @@ def compiled(system: System, *, tangent: bool, few: bool) -> lanes.CompiledSyste
         if tangent:
             sources["jump"] = scalar.jump()
         known[tangent, few] = lanes.compile_system(
-            symbolic, sources, tangent=tangent, few=few
+            symbolic(system), sources, tangent=tangent, few=few
         )
     return known[tangent, few]
 
@@ -189,7 +195,13 @@ def integrate(
     )
     n_constants = len(t.all_constants)
     n_rows += 3 * n_points + t.n_components + len(t.parameters) + n_constants
-    width = max(3 * len(t.surfaces), len(t.variables), n_constants) + 2
+    n_events = len(t.surfaces) + len(t.outputs)
+    width = max(3 * n_events, len(t.variables), n_constants) + 2
+    written = symbolic(system)
+    # outputs are watched in all lanes, surfaces as regimes ask
+    watched_events = np.zeros(n_events, np.int64)
+    watched_events[[w - len(t.variables) for w, _ in watched if w >= t.size]] = -1
+    share = [max(layout.SHARE * tol, layout.ROUND_OFF), tol, written.bent.any()]
 
     def work(arrays: dict[str, np.ndarray], first: int, stride: int) -> None:
         for name in ("samples", "sample_sums", "event_times", "event_states", "firsts"):
@@ -214,9 +226,13 @@ def integrate(
             "component_of": t.component_of,
             "first_constant": t.first_constant,
             "owner": t.owner,
-            "active": np.zeros(len(t.surfaces), np.int64),
+            "active": watched_events.copy(),
             "fresh": np.zeros(len(t.surfaces), np.int64),
             "beyond": np.zeros(len(t.surfaces), np.int64),
+            "exact": lanes.aligned(t.size + n_events, LANES),
+            "steep": written.steep,
+            "bent": written.bent,
+            "share": np.array(share, float),
             "noise": np.zeros((len(t.surfaces), 2, LANES)),
             "scratch": np.zeros((6, width)),
             "initial": initial,
@@ -232,6 +248,7 @@ def integrate(
             "n_states": t.size,
             "n_variables": len(t.variables),
             "n_surfaces": len(t.surfaces),
+            "n_outputs": len(t.outputs),
             "n_tracked": len(watched),
             "n_parameters": len(t.parameters),
             "n_constants": n_constants,

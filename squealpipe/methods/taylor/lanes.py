@@ -32,6 +32,8 @@ from squealpipe.methods.taylor.series import (
     longest_source,
     perturbation_source,
     series_source,
+    shorten_source,
+    verify_source,
 )
 from squealpipe.methods.taylor.writing import compile_source
 
@@ -71,6 +73,10 @@ def compile_system(
     """
     series, n_series = series_source(system)
     sources = {"series": series}
+    if system.checked():
+        sources["verify"] = verify_source(system)
+    if shorten := shorten_source(system):
+        sources["shorten"] = shorten
     if tangent:
         sources |= {
             "perturb": perturbation_source(system),

@@ -6,6 +6,8 @@ import numpy as np
 
 LOST_ERROR = 1e-3
 """Error, in units of the states' sizes, from which a state says nothing about its run."""
+SHARE, ROUND_OFF = 0.1, 2e-14
+"""Share of the tolerance by which a step's end may differ, and the least such difference."""
 LATE_BEGINS = -2
 """What ends a step where the late part of a run begins."""
 RUNNING, CONVERGED, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE, ACCUMULATION = (
@@ -23,27 +25,35 @@ BY_EVENT, BY_TURNS = 98, 99
 """Ends of runs that were to end at the first event of a kind, or after so many turns."""
 (
     CLOCK, CORRECTION, STEP, LONGEST, T_END, T_LATE, NEXT_SAMPLE, STEPS, MOST_STEPS, LOST,
-    DELAY, FIXED_ROWS,
-) = range(12)  # fmt: skip
+    DELAY, GAP, FIXED_ROWS,
+) = range(13)  # fmt: skip
 """Rows of numbers of the lanes that every system has; those of a system follow."""
 JOB, OUTCOME, SAMPLE, EVENTS, CHAINED, HIT, LATE, REGIMES = range(8)
 """Rows of integers of the lanes; the last is the first of the regimes, one a component."""
 
 ARRAYS = (
     "rows", "integers", "series", "inverses", "sizes", "tracked", "regimes", "falls", "rises",
-    "component_of", "first_constant", "owner", "active", "fresh", "beyond", "noise", "scratch",
-    "initial", "parameters", "first_regime", "limits", "final", "extremes", "counts", "firsts",
-    "durations", "ends", "summary", "sample_times", "samples", "sample_regimes", "sample_sums",
-    "event_times", "event_kinds", "event_regimes", "event_states", "peaks", "points", "half_turns",
-    "queue",
+    "component_of", "first_constant", "owner", "active", "fresh", "beyond", "exact", "steep",
+    "bent", "share", "noise", "scratch", "initial", "parameters", "first_regime", "limits",
+    "final", "extremes", "counts", "firsts", "durations", "ends", "summary", "sample_times",
+    "samples", "sample_regimes", "sample_sums", "event_times", "event_kinds", "event_regimes",
+    "event_states", "peaks", "points", "half_turns", "queue",
 )  # fmt: skip
-FUNCTIONS = ("perturb", "longest", "gauge", "change", "jump", "settle")
+FUNCTIONS = (
+    "perturb",
+    "longest",
+    "gauge",
+    "change",
+    "jump",
+    "settle",
+    "verify",
+    "shorten",
+)
 SIZES = (
-    "n_terms", "n_jobs", "n_states", "n_variables", "n_surfaces", "n_tracked", "n_parameters",
-    "n_constants", "n_regimes", "n_components", "n_table", "n_kinds",
-    "n_samples", "n_sums", "n_logged", "n_points", "n_rounds", "until", "late_from", "tangent",
-    "take_step", *FUNCTIONS, "n_series", "n_rows",
-    "n_switches",
+    "n_terms", "n_jobs", "n_states", "n_variables", "n_surfaces", "n_outputs", "n_tracked",
+    "n_parameters", "n_constants", "n_regimes", "n_components", "n_table", "n_kinds", "n_samples",
+    "n_sums", "n_logged", "n_points", "n_rounds", "until", "late_from", "tangent", "take_step",
+    *FUNCTIONS, "n_series", "n_rows", "n_switches",
 )  # fmt: skip
 TABLE = np.dtype([(name, "i8") for name in (*ARRAYS, *SIZES)])
 

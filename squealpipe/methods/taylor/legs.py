@@ -14,19 +14,19 @@ import numpy as np
 from squealpipe.methods.compiled import compiled, part
 from squealpipe.methods.taylor.lanes import call, compile_advance, view
 from squealpipe.methods.taylor.roots import evaluate
-from squealpipe.methods.taylor.simd import FEW, LANES, ROW, smaller, store
+from squealpipe.methods.taylor.simd import FEW, LANES, ROW, smaller, splat, store
 from squealpipe.methods.taylor.step import reach, step_length
 
 _numba: Any = numba
 _SWEEPS = 19
 """Picard's iterations for a step whose length times the rate is 1: 1/19! is round-off."""
 ARRAYS = (
-    "rows", "series", "inverses", "sizes", "constants", "initial", "starts", "durations",
+    "rows", "series", "inverses", "sizes", "bent", "constants", "initial", "starts", "durations",
     "kept", "steps", "counts", "lanes",
 )  # fmt: skip
 SIZES = (
     "n_terms", "n_legs", "n_states", "n_variables", "n_kept", "n_parameters", "n_constants",
-    "n_series", "n_steps", "take_step",
+    "n_series", "n_steps", "take_step", "shorten",
 )  # fmt: skip
 TABLE = np.dtype([(name, "i8") for name in (*ARRAYS, *SIZES)])
 
@@ -86,6 +86,16 @@ def _keep(t: Any, m: Any, lane: int, unit: float) -> bool:
     return ends
 
 
+@part
+def _longest(m: Any) -> float:
+    """The most that is left of a leg."""
+    most = 0.0
+    for lane in range(FEW):
+        if m.lanes[lane] >= 0:
+            most = max(most, abs(m.durations[m.lanes[lane]] - m.clocks[lane]))
+    return most
+
+
 def _advance(table: Any) -> int:
     """Run all legs, four side by side; returns 0. ``counts`` may be beyond the room for steps."""
     t = _numba.carray(table, (1,), TABLE)[0]
@@ -104,6 +114,7 @@ def _advance(table: Any) -> int:
         clocks=view(t.lanes + 8 * FEW, (FEW,), np.float64),
     )
     sizes = view(t.sizes, (n,), np.float64)
+    bent = view(t.bent, (t.n_kept - t.n_variables,), np.int64)
     unit = m.rows[t.n_parameters, 0]
     m.lanes[:] = -1
     following, busy = 0, 0
@@ -117,10 +128,13 @@ def _advance(table: Any) -> int:
             return 0
         call(t.take_step, (t.series, t.rows + ROW, t.inverses, terms))
         length = step_length(t.series, terms, n, sizes)
-        if t.n_variables > n:
-            for each in range(t.n_variables, t.n_kept):
-                length = smaller(length, reach(t.series + each * terms * ROW, terms))
-        store(t.rows, length)
+        for event in range(t.n_kept - t.n_variables):
+            if bent[event] or t.n_variables > n:
+                series = t.series + (t.n_variables + event) * terms * ROW
+                length = smaller(length, reach(series, terms))
+        store(t.rows, smaller(length, splat(_longest(m))))
+        if t.shorten:
+            call(t.shorten, (t.series, t.rows + ROW, t.rows, terms))
         for lane in range(FEW):
             if m.lanes[lane] >= 0 and _keep(t, m, lane, unit):
                 m.lanes[lane] = -1

@@ -14,6 +14,7 @@ import numpy as np
 
 from squealpipe.methods.compiled import inline, part
 from squealpipe.methods.taylor import layout
+from squealpipe.methods.taylor.checking import believe_or_halve, differing
 from squealpipe.methods.taylor.lanes import call, compile_advance, view
 from squealpipe.methods.taylor.observation import (
     clear_extremes,
@@ -187,6 +188,34 @@ def _go_on(t: Any) -> None:
 
 
 @inline
+def _cut_all(t: Any, m: Any, c: Any, special: int) -> None:
+    """End the steps of some lanes where something happens in them."""
+    while special:
+        lane = first_bit(special)
+        special ^= 1 << lane
+        cut(t, m, c, lane)
+
+
+@inline
+def _check(t: Any, m: Any, c: Any, parameters: int, busy: int) -> int:
+    """Halve steps until their ends can be believed; returns the lanes whose steps were."""
+    store(t.rows + layout.GAP * ROW, splat(math.inf))
+    wrong, halved = busy, 0
+    while True:
+        wrong &= differing(t, m, parameters)
+        if not wrong:
+            return halved
+        bits = wrong
+        while bits:
+            lane = first_bit(bits)
+            bits ^= 1 << lane
+            if believe_or_halve(t, m, c, lane):
+                wrong ^= 1 << lane
+            else:
+                halved |= 1 << lane
+
+
+@inline
 def _refill(
     t: Any, m: Any, c: Any, busy: int, ended: int, tangent_row: int, first_extreme: int
 ) -> int:
@@ -249,13 +278,11 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
                 (t.series, parameters, t.rows + layout.LONGEST * ROW, t.n_terms),
             )
         start_from_zero(t, m, c)
-        special = take_step(t, m) & busy
+        special = take_step(t, m, parameters) & busy
         due = reaches(t.rows, layout.NEXT_SAMPLE) & busy if t.n_samples else 0
-        bits = special
-        while bits:
-            lane = first_bit(bits)
-            bits ^= 1 << lane
-            cut(t, m, c, lane)
+        _cut_all(t, m, c, special)
+        if t.verify:
+            special |= _check(t, m, c, parameters, busy)
         while due:
             lane = first_bit(due)
             due ^= 1 << lane
@@ -282,7 +309,8 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
 def _advance(table: Any) -> int:
     """Some rounds over all lanes; returns how many are busy. The table: :data:`TABLE`."""
     t = _numba.carray(table, (1,), layout.TABLE)[0]
-    width = max(3 * t.n_surfaces, t.n_variables, t.n_constants) + 2
+    n_events = t.n_surfaces + t.n_outputs
+    width = max(3 * n_events, t.n_variables, t.n_constants) + 2
     size = t.n_states
     m = layout.Memory(
         rows=view(t.rows, (t.n_rows, LANES), np.float64),
@@ -295,9 +323,13 @@ def _advance(table: Any) -> int:
         component_of=view(t.component_of, (t.n_regimes,), np.int64),
         first_constant=view(t.first_constant, (t.n_components + 1,), np.int64),
         owner=view(t.owner, (t.n_surfaces,), np.int64),
-        active=view(t.active, (t.n_surfaces,), np.int64),
+        active=view(t.active, (n_events,), np.int64),
         fresh=view(t.fresh, (t.n_surfaces,), np.int64),
         beyond=view(t.beyond, (t.n_surfaces,), np.int64),
+        exact=view(t.exact, (size + n_events, LANES), np.float64),
+        steep=view(t.steep, (size,), np.int64),
+        bent=view(t.bent, (n_events,), np.int64),
+        share=view(t.share, (3,), np.float64),
         noise=view(t.noise, (t.n_surfaces, 2, LANES), np.float64),
         scratch=view(t.scratch, (6, width), np.float64),
         initial=view(t.initial, (t.n_jobs, size), np.float64),

@@ -40,6 +40,7 @@ class ScalarSource:
         surfaces: Sequence[Symbol],
         switches: Sequence[SwitchSymbols],
         size: int,
+        outputs: Sequence[Symbol] = (),
     ) -> None:
         self.place = {id(each): index for index, each in enumerate(variables)}
         self.variables, self.rates = variables, rates
@@ -47,6 +48,7 @@ class ScalarSource:
         self.rows = {name: index for index, name in enumerate(names)}
         self.n_parameters = len(parameters)
         self.surfaces, self.switches, self.size = surfaces, switches, size
+        self.outputs = outputs
 
     def _writer(
         self,
@@ -80,8 +82,9 @@ class ScalarSource:
         """``gauge(z, sizes, p, out)``: value and size of the terms of each surface and its rate.
 
         Three numbers a surface: its value, the size of its terms, and that of its rate's terms.
+        Likewise of each output after them, but for its rate.
         """
-        writer = self._writer("v", roots=[*self.surfaces, *self.rates])
+        writer = self._writer("v", roots=[*self.surfaces, *self.rates, *self.outputs])
 
         def size(node: Symbol) -> str:
             return f"number(sizes + {8 * self.place[id(node)]})"
@@ -95,6 +98,11 @@ class ScalarSource:
                     writer.scale(surface, size),
                     writer.rate_scale(surface, of_rates),
                 )
+            ):
+                writer.lines.append(f"put(out + {24 * index + 8 * place}, {code})")
+        for index, output in enumerate(self.outputs, len(self.surfaces)):
+            for place, code in enumerate(
+                (writer.value(output), writer.scale(output, size))
             ):
                 writer.lines.append(f"put(out + {24 * index + 8 * place}, {code})")
         lines = [*writer.room(), *writer.lines]

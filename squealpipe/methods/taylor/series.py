@@ -8,7 +8,8 @@ rate limits: near rest those of the state are as long as one likes.
 """
 
 import functools
-from collections.abc import Callable, Iterable, Iterator
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,6 +20,7 @@ from squealpipe.methods.taylor.sums import Sums
 from squealpipe.methods.taylor.symbols import (
     FUNCTIONS,
     Symbol,
+    degree,
     derivative,
     function,
     in_order,
@@ -51,6 +53,12 @@ PARTNERS: dict[str, Callable[[Symbol], Symbol]] = {
     "tanh": lambda node: Symbol("*", node, node),
 }
 """Whose lower orders the recurrence of a function reads in place of its own."""
+HIDDEN = {"exp": 20.0, "tanh": 10.0}
+"""Functions whose coefficients vanish to nothing, and the argument beyond which they begin to."""
+SEARCHES, LEAST = 6, 1e-12
+"""Tries to make such a step long, and the least share of the step that is left."""
+SHARE, CLOSE = 0.3, 2.0
+"""How far such an argument may go in a step: a share of what lies beyond, and at least so far."""
 TANH = "(splat(1.0) - splat(2.0) / (exp({0} + {0}) + splat(1.0)))"
 TOGETHER = 2
 """Convolutions in one loop: their sums fill the registers of AVX2."""
@@ -76,6 +84,29 @@ class HybridSystem:
     def size(self) -> int:
         """Number of the variables that are perturbed."""
         return len(self.variables) - self.explicit_time
+
+    @property
+    def steep(self) -> np.ndarray:
+        """(states,) 1 where a rate is no polynomial."""
+        return _no_polynomials(self.rates[: self.size])
+
+    @property
+    def bent(self) -> np.ndarray:
+        """(events,) 1 where a surface or an output is no polynomial."""
+        return _no_polynomials(self.events)
+
+    def checked(self) -> dict[int, Symbol]:
+        """Rates and events that a step's end is checked by, by their rows.
+
+        Polynomials need no check: they hold as far as the states do.
+        """
+        marks = [*self.steep, *self.bent]
+        roots = [*self.rates[: self.size], *self.events]
+        return {i: root for i, root in enumerate(roots) if marks[i]}
+
+
+def _no_polynomials(roots: Sequence[Symbol]) -> np.ndarray:
+    return np.array([degree(root) == math.inf for root in roots], np.int64)
 
 
 def series_source(system: HybridSystem) -> tuple[str, int]:
@@ -363,9 +394,87 @@ class _SeriesWriter:
             if event in linear:
                 yield f"store(s{self.events + index} + r, {self._v(event)})"
 
+    def shorten(self) -> str:
+        """Source of ``shorten(base, parameters, row, terms)``: see :func:`shorten_source`."""
+        inner = {
+            id(n.arguments[0]): (n.arguments[0], HIDDEN[n.kind])
+            for n in self.moving
+            if n.kind in HIDDEN
+        }
+        if not inner:
+            return ""
+        nodes = in_order([node for node, _ in inner.values()])
+        lines = [f"stride = terms * {simd.ROW}", "h = load(row)"]
+        for node in nodes:
+            if node.kind == "variable":
+                code = f"load(base + {self.place[id(node)]} * stride)"
+            elif node.varies:
+                code = pointwise(node, self._v)
+            else:
+                code = constant(self.system, node, self._v)
+            lines.append(f"{self._v(node)} = {code}")
+        for node, idle in inner.values():
+            series = self.place[id(moving_part(node))]
+            lines += [
+                f"s = base + {series} * stride",
+                f"m = (abs({self._v(node)}) - splat({idle!r})) * splat({SHARE!r})",
+                f"m = larger(m, splat({CLOSE!r}))",
+                "x = h",
+                f"low = h * splat({LEAST!r})",
+                f"for i in range({SEARCHES}):",
+                f" u = abs(load(s + (terms - 1) * {simd.ROW}))",
+                " for k in range(terms - 2, 0, -1):",
+                f"  w = abs(load(s + k * {simd.ROW}))",
+                "  u = fma(u, x, w)",
+                " low = larger(low, smaller(m / u, x))",  # NaN in other regimes
+                " x = root(low * h)",
+                "h = smaller(low, h)",
+            ]
+        lines.append("store(row, h)")
+        head = "def shorten(base, parameters, row, terms):"
+        return "\n".join([head, *(f" {line}" for line in lines)]) + "\n"
+
 
 def _listed(values: Iterable[float]) -> str:
     return ", ".join(map(repr, values))
+
+
+def shorten_source(system: HybridSystem) -> str:
+    """Source of ``shorten(base, parameters, row, terms)``; empty where nothing can hide.
+
+    Far from where it acts, exp or tanh has coefficients that round to nothing, so that neither
+    the states' last orders nor a step's end show a layer that the step leads into, or through.
+    With U = Σ |u_k| hᵏ how far its argument u may go, the neglected orders of exp(u) are at most
+    exp(u_0 + U) Uᴷ / K!. A step may lead through a share m of the way to where that counts. U(h)/h
+    grows with h, so that from any h a step of h m / U(h) is short enough; tried from a few h, it is
+    not much shorter than need be.
+    """
+    return _SeriesWriter(system).shorten()
+
+
+def verify_source(system: HybridSystem) -> str:
+    """Source of ``verify(ends, parameters, out)``: what is checked, at the ends of steps.
+
+    ``ends`` and ``out`` are addresses of a row per variable, and of one per state and event.
+    """
+    roots = system.checked()
+    nodes = in_order(list(roots.values()))
+    number = {id(node): index for index, node in enumerate(nodes)}
+
+    def at(node: Symbol) -> str:
+        return f"v{number[id(node)]}"
+
+    lines = []
+    for node in nodes:
+        if node.kind == "variable":
+            place = system.variables.index(node) * simd.ROW
+            value = f"load(ends + {place})"
+        else:
+            value = pointwise(node, at) if node.varies else constant(system, node, at)
+        lines.append(f"{at(node)} = {value}")
+    lines += [f"store(out + {i * simd.ROW}, {at(root)})" for i, root in roots.items()]
+    head = "def verify(ends, parameters, out):"
+    return "\n".join([head, *(f" {line}" for line in lines), " return\n"])
 
 
 def _levers(node: Symbol) -> tuple[int, ...]:

@@ -155,6 +155,12 @@ def _choose_below(
     return builder.select(builder.fcmp_ordered("<", first, second), then, otherwise)
 
 
+def _choose(builder: Any, bits: Any, then: Any, otherwise: Any) -> Any:
+    word = builder.trunc(bits, ir.IntType(LANES))
+    mask = builder.bitcast(word, ir.VectorType(ir.IntType(1), LANES))
+    return builder.select(mask, then, otherwise)
+
+
 def _larger(builder: Any, first: Any, second: Any) -> Any:
     return _choose_below(builder, second, first, first, second)
 
@@ -206,6 +212,8 @@ bits_below: Any = _intrinsic(types.int64, (lanes, lanes), _bits_below)
 """Bit i is set where a < b in lane i; never for NaN."""
 choose_below: Any = _intrinsic(lanes, (lanes, lanes, lanes, lanes), _choose_below)
 """c where a < b, else d (also for NaN)."""
+choose: Any = _intrinsic(lanes, (types.int64, lanes, lanes), _choose)
+"""b in the lanes whose bit is set, else c."""
 rough_power: Any = _intrinsic(lanes, (lanes, lanes), _power)
 """a ** b to about 1 %, for positive normal a: enough for a step size."""
 larger: Any = _intrinsic(lanes, (lanes, lanes), _larger)
@@ -233,6 +241,7 @@ def written(width: int) -> dict[str, Any]:
         "table": _table,
         "space": _space,
         "larger": _larger,
+        "smaller": lambda builder, a, b: _choose_below(builder, a, b, a, b),
     }
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from squealpipe.methods.compiled import inline, part
 from squealpipe.methods.taylor import layout
+from squealpipe.methods.taylor.lanes import call
 from squealpipe.methods.taylor.roots import (
     evaluate,
     evaluate_twice,
@@ -16,6 +17,7 @@ from squealpipe.methods.taylor.roots import (
 from squealpipe.methods.taylor.simd import (
     ROW,
     bits_below,
+    choose,
     choose_below,
     fma,
     larger,
@@ -27,6 +29,10 @@ from squealpipe.methods.taylor.simd import (
     store,
 )
 
+SPARE = 100.0
+"""What the last orders of such a series may be more than those of the states."""
+FITS = 4
+"""Times that a step is fitted to the size of a series, which depends on the step."""
 NOTHING = 1e-30
 """Below the round-off of any quantity."""
 
@@ -71,7 +77,80 @@ def reach(series: int, terms: int) -> Any:
 
 
 @inline
-def _at_end(series: int, terms: int, step: Any) -> Any:
+def converged_steps(series: int, terms: int, step: Any) -> Any:
+    """The longest steps, up to those given, in which a series that is no state's has converged.
+
+    Its last orders are to be as small beside its first ones, over the step, as those of the
+    states; the highest may be left out. Where the state rests, what depends on the time alone
+    still needs short steps.
+    """
+    height, slope, bend = (
+        magnitude(load(series)),
+        magnitude(load(series + ROW)),
+        magnitude(load(series + 2 * ROW)),
+    )
+    last = magnitude(load(series + (terms - 3) * ROW))
+    later = magnitude(load(series + (terms - 2) * ROW))
+    tiny, shorter = splat(1e-300), step
+    for _ in range(FITS):
+        size = height + shorter * (slope + shorter * bend)
+        target = smaller(
+            _until(size, last, terms - 3.0), _until(size, later, terms - 2.0)
+        )
+        shorter = smaller(shorter, choose_below(tiny, size, target, shorter))
+    return shorter
+
+
+@inline
+def _until(size: Any, last: Any, order: float) -> Any:
+    """Steps at the end of which a last order is as small beside a size as it is to be."""
+    tiny = splat(1e-300)
+    power = rough_power(larger(size, tiny) / larger(last, tiny), splat(1.0 / order))
+    return choose_below(tiny, last, power * math.exp(-2.0), splat(np.inf))
+
+
+@inline
+def _has_converged(series: int, terms: int, step: Any, power: Any) -> Any:
+    """Lanes with steps up to :func:`converged_steps`; ``power`` is that of order terms − 3."""
+    size = magnitude(load(series + 2 * ROW))
+    for k in (1, 0):
+        size = fma(size, step, magnitude(load(series + k * ROW)))
+    share = SPARE * math.exp(-2.0 * (terms - 3.0))
+    last = magnitude(load(series + (terms - 3) * ROW)) * power
+    later = magnitude(load(series + (terms - 2) * ROW)) * power * step
+    size = size * splat(share)
+    return bits_below(last, size) & bits_below(later, size * math.exp(-2.0))
+
+
+@inline
+def shorten_steps(t: Any, m: Any, step: Any) -> Any:
+    """Steps in which the series of surfaces and outputs have converged."""
+    terms, first = t.n_terms, t.series + t.n_variables * t.n_terms * ROW
+    power = shortest = step
+    for _ in range(terms - 4):
+        power = power * step
+    for event in range(t.n_surfaces + t.n_outputs):
+        if m.bent[event] and m.active[event]:
+            series = first + event * terms * ROW
+            bits = ~_has_converged(series, terms, step, power) & m.active[event]
+            if bits:
+                converged = converged_steps(series, terms, step)
+                shortest = choose(bits, smaller(converged, shortest), shortest)
+    return shortest
+
+
+@inline
+def slope_at_end(series: int, terms: int, step: Any) -> Any:
+    """A series' rate at the end of its step."""
+    value, slope = load(series + (terms - 1) * ROW), splat(0.0)
+    for k in range(terms - 2, -1, -1):
+        slope = fma(slope, step, value)
+        value = fma(value, step, load(series + k * ROW))
+    return slope
+
+
+@inline
+def at_end(series: int, terms: int, step: Any) -> Any:
     """A series' value at the end of its step."""
     value = load(series + (terms - 1) * ROW)
     for k in range(terms - 2, -1, -1):
@@ -105,7 +184,7 @@ def reaches(rows: int, instant: int) -> Any:
 
 
 @inline
-def take_step(t: Any, m: Any) -> Any:
+def take_step(t: Any, m: Any, parameters: int) -> Any:
     """Ends of all lanes' steps; returns the lanes that need a look of their own."""
     terms, base, at = t.n_terms, t.series, t.rows
     step = smaller(
@@ -116,10 +195,18 @@ def take_step(t: Any, m: Any) -> Any:
             step = smaller(
                 step, reach(base + (t.n_variables + each) * terms * ROW, terms)
             )
+    if t.shorten or m.share[2] != 0.0:
+        left = load(at + layout.T_END * ROW) - load(at + layout.CLOCK * ROW)
+        step = smaller(step, left - load(at + layout.CORRECTION * ROW))
+        step = shorten_steps(t, m, step)
+    if t.shorten:
+        store(at + layout.STEP * ROW, step)
+        call(t.shorten, (base, parameters, at + layout.STEP * ROW, terms))
+        step = load(at + layout.STEP * ROW)
     store(at + layout.STEP * ROW, step)
     lost = step
     for variable in range(t.n_variables):
-        value = _at_end(base + variable * terms * ROW, terms, step)
+        value = at_end(base + variable * terms * ROW, terms, step)
         store(at + (layout.FIXED_ROWS + variable) * ROW, value)
         lost = lost + value * 0.0
     plain = bits_below(magnitude(lost), splat(np.inf))
@@ -207,11 +294,9 @@ def cut(t: Any, m: Any, c: Any, lane: int) -> None:
     first = _first_switch(t, m, c, lane, step)
     if integers[layout.HIT, lane] >= 0:
         step, ends, turns_late = first, False, False
-    if turns_late:
-        rows[layout.T_LATE, lane] = math.inf
     if step != rows[layout.STEP, lane]:
         rows[layout.STEP, lane] = step
-        _set_end(t, m, c, lane)
+        set_end(t, m, c, lane)
     if turns_late:
         integers[layout.HIT, lane] = layout.LATE_BEGINS
     if ends:
@@ -219,7 +304,8 @@ def cut(t: Any, m: Any, c: Any, lane: int) -> None:
 
 
 @part
-def _set_end(t: Any, m: Any, c: Any, lane: int) -> None:
+def set_end(t: Any, m: Any, c: Any, lane: int) -> None:
+    """The variables at the end of a lane's step."""
     for variable in range(t.n_variables):
         m.rows[layout.FIXED_ROWS + variable, lane] = evaluate(
             c, variable, lane, m.rows[layout.STEP, lane]

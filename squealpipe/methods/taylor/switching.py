@@ -41,6 +41,14 @@ def settle(t: Any, lane: int) -> None:
 
 
 @part
+def gauge(t: Any, lane: int, width: int) -> None:
+    """Surfaces and outputs, and the size of their terms, of the state in the scratch."""
+    stride = 8 * width
+    arguments = t.scratch, t.scratch + stride, parameters_of(t, lane)
+    call(t.gauge, (*arguments, t.scratch + 2 * stride))
+
+
+@part
 def watch(t: Any, m: Any, c: Any, lane: int, span: float) -> None:
     """Which surfaces a lane watches in its regimes, and where they start.
 
@@ -52,9 +60,7 @@ def watch(t: Any, m: Any, c: Any, lane: int, span: float) -> None:
     for variable in range(t.n_variables):
         z[variable] = c[variable, 0, lane]
         sizes[variable] = abs(z[variable]) + abs(c[variable, 1, lane]) * span
-    stride, parameters = m.scratch.shape[1] * 8, parameters_of(t, lane)
-    arguments = t.scratch, t.scratch + stride, parameters, t.scratch + 2 * stride
-    call(t.gauge, arguments)
+    gauge(t, lane, m.scratch.shape[1])
     # where an event was located to the tolerance only, the rate that follows from it is no better
     located = max(
         NOISE, layout.LOST_ERROR * math.exp(-m.limits[m.integers[layout.JOB, lane], 4])
@@ -65,7 +71,7 @@ def watch(t: Any, m: Any, c: Any, lane: int, span: float) -> None:
     # a state is known to round-off of its typical size, however small it has become
     for variable in range(t.n_states):
         sizes[variable] = max(sizes[variable], m.sizes[variable])
-    call(t.gauge, arguments)
+    gauge(t, lane, m.scratch.shape[1])
     for surface in range(t.n_surfaces):
         m.active[surface] &= keep
         m.fresh[surface] &= keep

@@ -245,6 +245,21 @@ def _slope(value: Symbol, inner: Symbol) -> Symbol:
     return 1.0 - value * value
 
 
+@cache
+def degree(value: Symbol) -> float:
+    """Of a polynomial in the variables; infinite of what is none."""
+    inner = [degree(a) if isinstance(a, Symbol) else 0.0 for a in value.arguments]
+    if value.kind == "variable" or not value.varies:
+        return float(value.kind == "variable")
+    if value.kind == "+":
+        return max(inner)
+    if value.kind == "*":
+        return sum(inner)
+    if value.kind == "joined":
+        return max(sum(inner[:3]), sum(inner[3:]))
+    return math.inf
+
+
 def in_order(roots: Sequence[Symbol]) -> list[Symbol]:
     """All nodes below the roots, arguments before what uses them."""
     found: dict[int, Symbol] = {}

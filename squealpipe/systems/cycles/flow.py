@@ -30,7 +30,7 @@ from squealpipe.methods.taylor.series import gauss
 from squealpipe.methods.taylor.simd import FEW, LANES
 from squealpipe.methods.taylor.symbols import derivative, parameter, symbol
 from squealpipe.methods.zeros import bracketed
-from squealpipe.systems.runs import compiled
+from squealpipe.systems.runs import compiled, symbolic
 from squealpipe.systems.trace import TIME_UNIT, Names
 
 if TYPE_CHECKING:
@@ -389,12 +389,14 @@ class Flow:
             "n_series": code.n_series,
             "n_steps": self._room,
             "take_step": code.address("series"),
+            "shorten": code.address("shorten"),
         }
         arrays = {
             "rows": aligned(1 + len(t.parameters) + constants, LANES),
             "series": aligned(code.n_series, terms, LANES),
             "inverses": INVERSES,
             "sizes": np.zeros(t.size),
+            "bent": np.append(symbolic(self.system).bent, 0),
             "constants": np.zeros((legs, max(1, constants))),
             "initial": np.zeros((legs, t.size)),
             "starts": np.zeros(legs),

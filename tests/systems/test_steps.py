@@ -1,0 +1,127 @@
+"""Steps that must not be believed: what their series do not show, the check at their ends does."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from squealpipe import Switch, System
+from squealpipe.functions import cos, exp, sin, tanh
+from squealpipe.parameters import Parameters
+from squealpipe.systems.shipped.brake import brake_of, parameters_of_run
+
+
+def flight(speed, start, **options):
+    """A point at constant speed."""
+    return System(
+        "flight",
+        states={"x": "1"},
+        parameters={},
+        regimes={"flies": {}, "landed": {}},
+        field=lambda t, s, p, r: {"x": speed},
+        start={"x": start, "regime": "flies"},
+        **options,
+    )
+
+
+def landing(when):
+    return [Switch("landing", "flies", when, "landed")]
+
+
+@pytest.mark.parametrize("number", [0.7, 3.7, 12.0, 300.0])
+def test_a_flight_at_constant_speed_lands_on_a_wavy_floor(number):
+    """The motion is linear in time, so that it limits no step: the floor has to."""
+    floor = System(
+        "wavy floor",
+        states={"x": "1", "y": "1"},
+        parameters={"number": 1.0},
+        regimes={"flies": {}, "landed": {}},
+        field=lambda t, s, p, r: {"x": 1.0, "y": -0.1},
+        switches=landing(lambda t, s, p, r: s.y - 0.05 * sin(p.number * s.x)),
+        start={"x": 0.0, "y": 1.0, "regime": "flies"},
+    )
+
+    def height(t):
+        return 1.0 - 0.1 * t - 0.05 * np.sin(number * t)
+
+    times = np.linspace(0.0, 20.0, 400_001)
+    first = int(np.argmax(height(times) < 0.0))
+    exact = brentq(height, times[first - 1], times[first], xtol=1e-15)
+    run = floor.simulate(20.0, number=number)
+    np.testing.assert_allclose(run.event_time, [exact], rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("output", "low", "high"),
+    [
+        (lambda t, s, p, r: 1.0 / (1.0 + s.x**2), 1.0 / 290.0, 1.0),
+        (lambda t, s, p, r: tanh(3.0 * s.x), -np.tanh(9.0), 1.0),
+        (lambda t, s, p, r: exp(-50.0 * s.x**2), 0.0, 1.0),
+    ],
+)
+def test_outputs_that_are_no_polynomials_keep_their_range(output, low, high):
+    run = flight(1.0, -3.0, outputs={"f": ("1", output)}).ensemble(20.0)
+    np.testing.assert_allclose([run.f_min, run.f_max], [low, high], atol=1e-12)
+
+
+def test_an_exponential_law_acts_where_the_speed_is_nearly_the_belts():
+    """First event by DOP853 from the equations of motion, from far outside its layer."""
+    speed = 1e-4 * np.sqrt(2e7)
+    params = Parameters(
+        mass=1.0, k1=1.0, k2=1.0, k3=0.65, preload=1.0, length1=15.0, length2=15.0,
+        mu=0.3, mu_static=0.4, friction_law="exponential",
+        friction_speed=0.004 / speed, belt_speed=0.47 / speed,
+    )  # fmt: skip
+    start = {"x": 2.0, "y": -0.55, "vx": -2.1, "vy": -2.25}
+    run = brake_of(params).simulate(
+        3.0, start=start, **parameters_of_run(params, 2.84, 1.10)
+    )
+    assert float(run.event_time[0]) == pytest.approx(2.62010873, abs=2e-8)
+
+
+def test_a_layer_that_a_step_leads_through_is_not_lost():
+    """A kick of width 0.002 in the middle of a free flight."""
+    kicked = System(
+        "kick",
+        states={"x": "1", "v": "1"},
+        parameters={},
+        regimes={"only": {}},
+        field=lambda t, s, p, r: {
+            "x": 1.0,
+            "v": exp(-((s.x - 3.0) * 500.0) * ((s.x - 3.0) * 500.0)),
+        },
+        start={"x": 0.0, "v": 0.0},
+    )
+    end = float(kicked.ensemble(20.0).v)
+    assert end == pytest.approx(np.sqrt(np.pi) / 500.0, rel=1e-10)
+
+
+def test_surfaces_composed_with_monotone_functions_fire_when_dop853_says():
+    """A pendulum whose angle passes a level; the surface hides it in saturation."""
+
+    def wrap(f):
+        return lambda t, s, p, r: f(0.4 - s.x)
+
+    own = solve_ivp(
+        lambda t, z: [z[1], -np.sin(z[0]) + 0.2 * np.cos(1.7 * z[1])],
+        (0.0, 10.0), [-1.0, 0.3], "DOP853", rtol=1e-12, atol=1e-12, max_step=0.05,
+        events=lambda t, z: 0.4 - z[0],
+    )  # fmt: skip
+    exact = own.t_events[0][0]
+    for f in (
+        lambda u: u,
+        lambda u: tanh(40.0 * u),
+        lambda u: exp(30.0 * u) - 1.0,
+        lambda u: u / (1.0 + 100.0 * u * u),
+    ):
+        pendulum = System(
+            "pendulum",
+            states={"x": "1", "v": "1"},
+            parameters={},
+            regimes={"before": {}, "after": {}},
+            field=lambda t, s, p, r: {"x": s.v, "v": -sin(s.x) + 0.2 * cos(1.7 * s.v)},
+            switches=[Switch("level", "before", wrap(f), "after")],
+            start={"x": -1.0, "v": 0.3, "regime": "before"},
+        )
+        run = pendulum.simulate(10.0)
+        np.testing.assert_allclose(run.event_time, [exact], atol=1e-10)
