@@ -1,9 +1,9 @@
 # %% [markdown]
 # # Complex eigenvalues of a brake and what really squeals
 # Complex eigenvalues name two unstable modes of this elastic pad, and the lower one grows twice as
-# fast. Which of them squeals, only runs in time tell: from small pushes along both modes and from
-# random starts, with every loss of contact located, until the motions have settled. In a terminal
-# this is `squealpipe squeal pad.yaml -o squeal.nc`.
+# fast. Only runs in time tell which of them squeals: from small pushes along both modes and from
+# random starts, with every loss of contact located, until the motions have settled. With a pad in
+# files, as on the page on complex eigenvalues: `squealpipe squeal pad.yaml --n-modes 12 -o squeal.nc`.
 
 # %%
 from squealpipe import plot, squealing_modes
