@@ -97,6 +97,7 @@ FigureSize = Annotated[
     tuple[float, float] | None,
     Parameter(
         converter=_reader(parse_size),
+        negative="",
         metavar="WIDTHxHEIGHT",
         n_tokens=1,
         help="size of the picture, like 90mmx60mm.",
@@ -117,7 +118,7 @@ Units = Annotated[
         name="--unit",
         negative="",
         metavar="UNIT",
-        help="unit of the axes that measure such things, like mm, kN or Hz; repeatable.",
+        help="unit of the axes of its kind, like mm, kN or Hz; repeatable.",
     ),
 ]
 Tolerance = Annotated[float, Parameter(help="tolerance of the integration.")]

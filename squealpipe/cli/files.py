@@ -73,7 +73,7 @@ def spectrum(
 
     Args:
         file: run that `squealpipe simulate -o` wrote.
-        last: length of its end that is taken, like 0.2s; by default all of it.
+        last: take only so much of its end, like 0.2s; by default all of the run.
     """
     check_output(output, force=force)
     if picture is not None:

@@ -123,7 +123,7 @@ def _commented(name: str, row: Row) -> str:
 def run(
     *, config: Configs = None, quick: Switch = False, cores: Whole | None = None
 ) -> int:
-    """Compute a study; one line a rule with the time left, and what failed with its log.
+    """Compute a study; say one line for each rule, the time left, and the log of what fails.
 
     Stop it and run the same command again: it goes on where it was, rule by rule.
 

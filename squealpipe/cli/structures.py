@@ -32,7 +32,7 @@ def modes(
     Example: `squealpipe modes pad.yaml --mu 0:0.8:81 -o modes.nc`
 
     Args:
-        file: structure, which names its matrices and contacts (see the gallery's page).
+        file: structure, a YAML file that names its matrices and contacts (see the gallery).
         mu: friction, a number or first:last:count; that of the file by default.
         belt_speed: likewise, m/s.
         frequency_max: modes up to there, Hz.
@@ -104,18 +104,21 @@ def squeal(
     """Say which unstable modes of a structure squeal, how loud, and with how much contact loss.
 
     It is run from small pushes along its unstable modes and from random starts, with every loss of
-    contact located, until the motions have settled. Exit code 0: quiet; 1: not.
+    contact located, until the motions have settled. Exit code 0: quiet; 1: not quiet, or
+    undetermined.
 
     Example: `squealpipe squeal pad.yaml -o squeal.nc`
 
     Args:
-        file: structure, which names its matrices and contacts (see the gallery's page).
-        samples: random starts, in the ball of the energy that the preload stores.
-        seed: of the random starts.
-        t_end: longest time of a run, s; by default long enough for the slowest mode to grow.
-        n_modes: modes to reduce the structure to; by default as many as 1 % needs.
-        frequency_max: unstable modes up to there are kept, Hz; needed beyond 1000 degrees of
-            freedom.
+        file: structure, a YAML file that names its matrices and contacts (see the gallery).
+        samples: random starts, of at most the energy that the preload stores.
+        seed: number that the random starts follow from.
+        t_end: longest time of a run, s; by default 8000 periods of the slowest unstable mode,
+            after the time in which it grows.
+        n_modes: modes to reduce the structure to; by default as many as errors below 1 % need,
+            and no reduction up to 32 degrees of freedom.
+        frequency_max: reduce to the modes that the unstable ones up to this frequency need, Hz;
+            needed beyond 1000 degrees of freedom.
         picture: picture to write (png, svg or pdf); by default beside the output.
     """
     check_output(output, force=force)

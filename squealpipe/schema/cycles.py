@@ -159,7 +159,7 @@ CYCLE_CURVE = DatasetSchema(
         **_followed(),
         "period": Variable("period", "s", ("point",), rtol=1e-7),
         "residual": Variable(
-            "largest equation left over, without units",
+            "largest residual of the equations, without units",
             dims=("point",),
             rtol=1.0,
             atol=1e-8,

@@ -53,7 +53,7 @@ SQUEALING = DatasetSchema(
     },
     variables={
         "verdict": Variable(
-            "what becomes of steady sliding, pushed by 1 % along its fastest mode",
+            "what steady sliding ends in after a push of 1 % along its least stable mode",
             flags=Verdict,
         ),
         "quiet_unless_struck": Variable(
@@ -71,19 +71,19 @@ SQUEALING = DatasetSchema(
             dtype="i4",
         ),
         "squeals": Variable(
-            "whether the motion from there has this mode's frequency, rather than another's",
+            "whether, of the unstable modes, this one is nearest in frequency to that motion",
             dims=_MODE,
             dtype="bool",
         ),
         "time_to_squeal": or_nan(
-            "time from there until the kinetic energy first is half of the settled one",
+            "time from there until the kinetic energy first reaches half its settled value",
             "s",
             _MODE,
             rtol=0.2,
         ),
         "kind": Variable("kind of motion", dims=_ATTRACTOR, flags=Kind),
         "motion": Variable(
-            "what it is for an ear: contact lost again and again, or kept",
+            "what is heard: it squeals if contact is kept, hammers if it is lost repeatedly",
             dims=_ATTRACTOR,
             flags=Verdict,
         ),
@@ -122,7 +122,7 @@ SQUEALING = DatasetSchema(
             "imaginary part", dims=("attractor", "multiplier"), volatile=True
         ),
         "divergence_rate": or_nan(
-            "growth rate of the distance of neighbouring motions",
+            "growth rate of the distance between neighbouring motions",
             "s-1",
             _ATTRACTOR,
             volatile=True,
@@ -134,7 +134,7 @@ SQUEALING = DatasetSchema(
         "separated_fraction": _of_contact("share of the time without contact"),
         "stick_fraction": _of_contact("share of the time in stick"),
         "peak_force": _of_contact(
-            "largest normal force over the preload (steady sliding's where there is none)"
+            "largest normal force over the preload (over that of steady sliding if it is 0)"
         ),
         "impacts_per_period": _of_contact(
             "returns to contact in a period of the dominant frequency"
@@ -142,7 +142,12 @@ SQUEALING = DatasetSchema(
         "count": Variable(
             "random starts that end here", dims=_ATTRACTOR, dtype="i4", rtol=0.3
         ),
-        "share": Variable("share of them", dims=_ATTRACTOR, rtol=0.3, atol=0.1),
+        "share": Variable(
+            "share of the random starts that end here",
+            dims=_ATTRACTOR,
+            rtol=0.3,
+            atol=0.1,
+        ),
         **{
             f"share_{end}": Variable(
                 f"{end} end of its 95 % Wilson interval",
@@ -162,7 +167,7 @@ SQUEALING = DatasetSchema(
             "energy of the random start over that of the preload", dims=_SAMPLE
         ),
         "settled_by": Variable(
-            "time by which it had settled", "s", _SAMPLE, volatile=True
+            "time run until it had settled, or to the end", "s", _SAMPLE, volatile=True
         ),
         "pole_frequency": Variable("frequency of the mode", "Hz", _POLE, rtol=1e-8),
         "pole_growth_rate": Variable(
@@ -179,10 +184,10 @@ SQUEALING = DatasetSchema(
         ),
         "n_modes": Variable("modes in which the structure was run", dtype="i4"),
         "frequency_error": or_nan(
-            "largest relative error of an unstable frequency by the reduction"
+            "largest relative error of an unstable frequency, from the reduction"
         ),
         "growth_rate_error": or_nan(
-            "largest error of an unstable growth rate by it, over the rate or 1 % of ω"
+            "largest error of an unstable growth rate, over the larger of it and 1 % of ω"
         ),
         "outcome": outcome(*_ATTRACTOR, among=(Outcome.converged, Outcome.unresolved)),
     },

@@ -34,7 +34,9 @@ _PHASE = RoundOff(
     ComparedAs.unjudged,
     "where on a cycle its description starts follows from the way on which it was found",
 )
-_RESIDUAL = or_nan("largest equation left over, without units", rtol=1.0, atol=1e-8)
+_RESIDUAL = or_nan(
+    "largest residual of the equations, without units", rtol=1.0, atol=1e-8
+)
 _COMPONENT = {"component": replace(text("component", "component"), optional=True)}
 
 
@@ -128,18 +130,20 @@ BASIN = DatasetSchema(
 
 def _of_cycles(*dims: str) -> dict[str, Variable]:
     """Numbers of a cycle, the exact names."""
-    multiplier = or_nan(
-        "part of the Floquet multipliers, the trivial one first without forcing",
-        dims=(*dims, "multiplier"),
-        rtol=1e-6,
-        atol=1e-6,
-    )
+    multipliers = {
+        f"multiplier_{name}": or_nan(
+            f"{part} part of the Floquet multipliers, the trivial one first without forcing",
+            dims=(*dims, "multiplier"),
+            rtol=1e-6,
+            atol=1e-6,
+        )
+        for name, part in (("real", "real"), ("imag", "imaginary"))
+    }
     return {
         "period": or_nan("period", "s", dims, **CYCLE),
         "residual": replace(_RESIDUAL, dims=dims),
         "stable": _flag("whether small disturbances decay", *dims),
-        "multiplier_real": multiplier,
-        "multiplier_imag": multiplier,
+        **multipliers,
         "periods": _count("forcing periods, or returns to the section"),
         "start_regime": _flag("regime at t = 0 of the cycle", *dims),
         "outcome": _flag("how the cycle was found", *dims),

@@ -163,7 +163,9 @@ SPECTRUM = DatasetSchema(
         ),
         "peak_frequency": Variable("frequency of a line", "Hz", ("peak",)),
         "peak_force": Variable("its height", "N", ("peak",)),
-        "resolution": Variable("least distance of lines that are told apart", "Hz"),
+        "resolution": Variable(
+            "smallest distance between lines that can be told apart", "Hz"
+        ),
         "outcome": outcome(among=RUN_ENDS),
     },
 )

@@ -617,7 +617,7 @@ def _dataset(
     found["events"] = ("point", events, runs.labels("events of the cycle", "1"))
     residuals, text = (
         [p.residual for p in points],
-        "largest equation left over, without units",
+        "largest residual of the equations, without units",
     )
     found["residual"] = ("point", residuals, runs.labels(text, "1"))
     labels, text = [point.label for point in points], "what else happens at the point"

@@ -55,7 +55,7 @@ def described(name: str, system: System) -> dict[str, str]:
     return {
         "period": {"long_name": "period", "units": "s"},
         "residual": {
-            "long_name": "largest equation left over, without units",
+            "long_name": "largest residual of the equations, without units",
             "units": "1",
         },
         "multiplier_real": {
