@@ -34,7 +34,8 @@ def headline(answer: xr.Dataset) -> str:
         return "Quiet: steady sliding is stable, and every start that settled came back to it."
     if verdict is Verdict.undetermined:
         return (
-            "Undetermined: the motion from the fastest unstable mode has not settled."
+            "Undetermined: the motion after a small push did not settle, or its kind is "
+            "not clear."
         )
     first = answer.isel(attractor=int(answer.ends_in.values[0]))
     at = engineering(float(first.dominant_frequency), "Hz")
@@ -57,22 +58,22 @@ def modes(answer: xr.Dataset) -> Iterator[str]:
     for place in range(min(answer.sizes["mode"], LISTED)):
         mode = answer.isel(mode=place)
         named = (
-            f"Mode {int(mode.mode)}: {engineering(float(mode.frequency), 'Hz')}, grows by "
-            f"{number(float(mode.growth_rate))} per second"
+            f"Mode {int(mode.mode)} ({engineering(float(mode.frequency), 'Hz')}, growth rate "
+            f"{number(float(mode.growth_rate))} 1/s)"
         )
         end = int(mode.ends_in)
         if end == NO_ATTRACTOR:
-            yield f"{named}; what it ends in is undetermined."
+            yield f"{named} ends in a motion that is undetermined."
             continue
         time = float(mode.time_to_squeal)
         after = f" after {engineering(time, 's')}" if np.isfinite(time) else ""
         if bool(mode.squeals):
-            yield f"{named} and squeals{after}."
+            yield f"{named} squeals{after}."
         elif bool(np.isfinite(answer.dominant_frequency[end])):
             at = engineering(float(answer.dominant_frequency[end]), "Hz")
-            yield f"{named} but does not squeal: the motion ends at {at}{after}."
+            yield f"{named} does not squeal: the motion ends at {at}{after}."
         else:
-            yield f"{named} but dies out in the end."
+            yield f"{named} dies out in the end."
 
 
 def attractors(answer: xr.Dataset) -> Iterator[str]:
@@ -103,8 +104,8 @@ def attractors(answer: xr.Dataset) -> Iterator[str]:
         )
     if float(answer.share_undetermined) > 0:
         yield (
-            f"{_percent(float(answer.share_undetermined))} of random starts did not settle; a "
-            "longer t_end tells."
+            f"{_percent(float(answer.share_undetermined))} of random starts did not settle; "
+            "give a longer t_end."
         )
 
 
