@@ -37,7 +37,10 @@ def headline(answer: xr.Dataset) -> str:
             "Undetermined: the motion after a small push did not settle, or its kind is "
             "not clear."
         )
-    first = answer.isel(attractor=int(answer.ends_in.values[0]))
+    # a push may leave steady sliding although none of its modes is unstable
+    ends = answer.ends_in.values[:1]
+    alike = answer.motion.values == verdict
+    first = answer.isel(attractor=int(ends[0] if ends.size else alike.argmax()))
     at = engineering(float(first.dominant_frequency), "Hz")
     if verdict is Verdict.squeals:
         return f"Squeals at {at}; contact is kept."

@@ -43,10 +43,10 @@ def squealing_modes(
 
     A start of 1 % is pushed along each unstable mode of steady sliding (its energy is 1e-4 of what
     the preload stores in the contacts). ``samples`` more are uniform in the ball of that energy.
-    All are run together, with every event located: at first as long as the slowest of these modes
-    needs to grow to the nonlinear, then in windows of twice the length each time, until the
+    All are run together, with every event located: at first for as long as the slowest of these
+    modes needs to grow beyond small motions, then in windows that double in length, until the
     statistics of two agree. Motions with the same statistics are one attractor. Each is then run
-    on: neighbours that run away tell irregular motion, and the exact map closes cycles.
+    on: neighbours that run away show irregular motion, and the exact map closes cycles.
 
     Args:
         structure: a :class:`squealpipe.Structure`; one of more than 32 degrees of freedom is
