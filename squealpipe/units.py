@@ -6,6 +6,7 @@ a study in plain numbers does not pay. Numbers are read and converted as decimal
 """
 
 import math
+import operator
 import re
 from collections.abc import Mapping
 from decimal import Decimal
@@ -45,6 +46,8 @@ PLAIN = ("percent", "permille", "ppm", "dimensionless")
 """Units of numbers without one; pint takes angles for such numbers too."""
 TURNS = ("degree", "radian", "gradian", "turn", "arcminute", "arcsecond", "milliradian")
 """Units of angles, which pint takes for plain numbers."""
+TURNING, CYCLES = (*TURNS, "revolution"), ("hertz",)
+"""What names of units of angular frequencies hold, rpm among them, and of frequencies."""
 SPELLINGS = (
     "newton_second = newton * second = Ns",
     "kilopond = kilogram_force = kp",
@@ -112,18 +115,24 @@ def in_si(text: str, units: str, keys: Mapping[str, str] | None = None) -> float
 def conversion(unit: str, other: str) -> float | None:
     """How many of another unit one unit is; None where they measure different things.
 
-    An angular frequency is 2π times a frequency.
+    An angular frequency is 2π times a frequency. A rate in 1/s, such as a growth rate, is neither.
     """
     pair = _unit(unit), _unit(other)
     if None in pair or pair[0].dimensionality != pair[1].dimensionality:
         return None
-    turns = [any(turn in str(each) for turn in TURNS) for each in pair]
     factor = float(_registry().Quantity(Decimal(1), pair[0]).to(pair[1]).magnitude)
-    if turns[0] == turns[1]:
+    turns, cycles = (
+        [_names_any(each, words) for each in pair] for words in (TURNING, CYCLES)
+    )
+    if turns[0] == turns[1] and cycles[0] == cycles[1]:
         return factor
-    if pair[0].dimensionality != _registry().parse_units("Hz").dimensionality:
+    if not all(map(operator.or_, turns, cycles)):
         return None
     return factor / math.tau if turns[0] else factor * math.tau
+
+
+def _names_any(unit: Any, words: tuple[str, ...]) -> bool:
+    return any(word in str(unit) for word in words)
 
 
 def number_of(value: Any, units: str, keys: Mapping[str, str] | None = None) -> Any:

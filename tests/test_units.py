@@ -1,5 +1,6 @@
 """Numbers with a unit: exact, of the right kind, or refused with what to write."""
 
+import math
 import subprocess
 import sys
 
@@ -9,7 +10,14 @@ from hypothesis import strategies as st
 
 from squealpipe.config.ranges import parse_range, read_fixed, read_values
 from squealpipe.parameters import UNITS_OF_INPUTS, Parameters
-from squealpipe.units import UnitError, has_unit, in_si, plain_unit, with_unit
+from squealpipe.units import (
+    UnitError,
+    conversion,
+    has_unit,
+    in_si,
+    plain_unit,
+    with_unit,
+)
 
 ROUNDED_ONCE = {
     ("0.57 mm", "m"): 5.7e-4,
@@ -133,3 +141,25 @@ def test_values_are_shown_as_people_write_them():
         "1/s",
         "N/m",
     ]
+
+
+@pytest.mark.parametrize(
+    ("unit", "other", "factor"),
+    [
+        ("Hz", "rad/s", math.tau),
+        ("Hz", "rpm", 60.0),
+        ("rad/s", "rpm", 30.0 / math.pi),
+        ("rpm", "kHz", 1.0 / 60e3),
+        ("1/s", "1/ms", 1e-3),
+        ("m", "mm", 1e3),
+    ],
+)
+def test_turns_are_counted_once(unit, other, factor):
+    assert conversion(unit, other) == pytest.approx(factor)
+    assert conversion(other, unit) == pytest.approx(1.0 / factor)
+
+
+@pytest.mark.parametrize("frequency", ["Hz", "kHz", "rad/s", "rpm"])
+def test_a_growth_rate_is_no_frequency(frequency):
+    assert conversion("1/s", frequency) is None
+    assert conversion(frequency, "1/s") is None
