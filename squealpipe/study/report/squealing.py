@@ -102,8 +102,8 @@ def attractors(answer: xr.Dataset) -> Iterator[str]:
         yield (
             f"{share} {words} at {engineering(float(one.dominant_frequency), 'Hz')}, {shift} "
             f"{side} mode {int(one.nearest_mode)}: rms speed "
-            f"{engineering(float(one.velocity_rms), 'm/s')}, peak "
-            f"{engineering(float(one.velocity_peak), 'm/s')}; open {_of_contacts(one)}."
+            f"{engineering(float(one.velocity_rms), 'm s-1')}, peak "
+            f"{engineering(float(one.velocity_peak), 'm s-1')}; open {_of_contacts(one)}."
         )
     if float(answer.share_undetermined) > 0:
         yield (

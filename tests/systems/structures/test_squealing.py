@@ -69,6 +69,7 @@ def test_modes_attractors_and_words_agree(answer, tmp_path):
     assert f"{int(answer.sizes['sample'])} random starts" in text
     # a push may leave steady sliding although none of its modes is unstable
     assert headline(answer.isel(mode=slice(0))) == headline(answer)
+    assert f"peak {float(answer.velocity_peak[0]):.3g} m/s" in text
     save(answer, tmp_path / "squeal.nc")
     assert load(tmp_path / "squeal.nc").drop_attrs().identical(answer.drop_attrs())
     assert plot(answer).has_data()
