@@ -33,6 +33,12 @@ def headline(answer: xr.Dataset) -> str:
             )
         return "Quiet: steady sliding is stable, and every start that settled came back to it."
     if verdict is Verdict.undetermined:
+        largest = float(answer.pole_growth_rate.max())
+        if not answer.sizes["mode"] and largest >= 0:
+            return (
+                "Undetermined: small motions about steady sliding neither grow nor die out; give "
+                "the structure damping."
+            )
         return (
             "Undetermined: the motion after a small push did not settle, or its kind is "
             "not clear."

@@ -78,6 +78,12 @@ def test_modes_attractors_and_words_agree(answer, tmp_path):
     assert json.loads(answer.attrs["parameters"])["mu"] == 1.0
 
 
+def test_without_damping_small_motions_neither_grow_nor_die_out():
+    still = squealing_modes(two_modes(0.1, 0.0), samples=1, workers=1, t_end=0.2)
+    assert Verdict(int(still.verdict)) is Verdict.undetermined
+    assert "neither grow nor die out" in lines(still)[0]
+
+
 def test_below_the_critical_friction_small_motions_die_out():
     quiet = squealing_modes(two_modes(0.3), samples=5, workers=1)
     assert Verdict(int(quiet.verdict)) is Verdict.quiet

@@ -68,9 +68,7 @@ def squealing_modes(
     """
     plant = Plant(structure)
     pushes = [plant.pushed(place, PUSH) for place in plant.unstable]
-    if (
-        not pushes
-    ):  # quiet from steady sliding: told by a push along the mode that decays slowest
+    if not pushes:  # nothing grows: a push along the mode that decays slowest
         pushes = [plant.pushed(int(plant.spectrum.values.real.argmax()), PUSH)]
     drawn = plant.random_states(samples, seed)
     settled = settle(
@@ -95,7 +93,8 @@ def squealing_modes(
     shares = _shares(numbers[len(pushes) :], len(members))
     first = int(numbers[0])
     verdict = Verdict.undetermined
-    if first != NO_ATTRACTOR and found[first].kind is not Kind.undetermined:
+    decided = plant.unstable.size or plant.decays  # a push lasts where nothing damps it
+    if decided and first != NO_ATTRACTOR and found[first].kind is not Kind.undetermined:
         verdict = Verdict(int(of_attractor["motion"][first]))
     loud = [place for place, each in enumerate(found) if not members[place][0].quiet]
     drawn_in = set(numbers[len(pushes) :].tolist())
