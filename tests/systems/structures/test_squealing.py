@@ -84,6 +84,15 @@ def test_without_damping_small_motions_neither_grow_nor_die_out():
     assert "neither grow nor die out" in lines(still)[0]
 
 
+def test_where_no_start_settles_in_time_nothing_is_told():
+    early = squealing_modes(two_modes(1.0), samples=2, workers=1, t_end=2e-3)
+    assert early.sizes["attractor"] == 0
+    assert Verdict(int(early.verdict)) is Verdict.undetermined
+    assert float(early.share_undetermined) == 1.0
+    assert "Undetermined" in lines(early)[0]
+    assert plot(early).has_data()
+
+
 def test_below_the_critical_friction_small_motions_die_out():
     quiet = squealing_modes(two_modes(0.3), samples=5, workers=1)
     assert Verdict(int(quiet.verdict)) is Verdict.quiet

@@ -167,6 +167,7 @@ def _of_attractors(
 ) -> dict[str, Any]:
     """Levels, shares of time, frequencies and multipliers; statistics are means over all runs."""
     count = len(members)
+    shape = count, len(plant.contacts)  # also where no start has settled
     rows = [
         {name: np.mean([getattr(run.last, name) for run in runs], axis=0)
          for name in ("modal", "speed", "separated", "stuck")}
@@ -187,13 +188,13 @@ def _of_attractors(
     with np.errstate(invalid="ignore", divide="ignore"):
         peak = np.array(
             [np.max([run.last.force for run in runs], axis=0) for runs in members]
-        ).reshape(count, -1) / np.where(force > 0, force, np.nan)
+        ).reshape(shape) / np.where(force > 0, force, np.nan)
     landings = np.array(
         [
             np.mean([run.last.landings / run.last.length for run in runs], axis=0)
             for runs in members
         ]
-    ).reshape(count, -1)
+    ).reshape(shape)
     lines, spectra = _spectra(found)
     lost = [
         max(int(run.last.landings.max()) for run in runs) >= AGAIN for runs in members
@@ -204,7 +205,7 @@ def _of_attractors(
     ]
     moves = np.array([not runs[0].quiet for runs in members], bool)
     modes = plant.frequencies[near] if count else np.empty(0)
-    speed = _table(rows, "speed", count)
+    speed = _table(rows, "speed", shape)
     return {
         "kind": np.array([each.kind for each in found], int),
         "motion": np.array(motion, int),
@@ -228,8 +229,8 @@ def _of_attractors(
         ),
         "kinetic_energy": np.array([0.5 * (row["modal"] ** 2).sum() for row in rows]),
         "contact_velocity_rms": speed,
-        "separated_fraction": _table(rows, "separated", count),
-        "stick_fraction": _table(rows, "stuck", count),
+        "separated_fraction": _table(rows, "separated", shape),
+        "stick_fraction": _table(rows, "stuck", shape),
         "peak_force": peak,
         "impacts_per_period": landings
         / np.where(np.isfinite(frequency), frequency, np.inf)[:, None],
@@ -247,8 +248,8 @@ def _of_attractors(
     }
 
 
-def _table(rows: list[dict[str, Any]], name: str, count: int) -> np.ndarray:
-    return np.array([row[name] for row in rows], float).reshape(count, -1)
+def _table(rows: list[dict[str, Any]], name: str, shape: tuple[int, int]) -> np.ndarray:
+    return np.array([row[name] for row in rows], float).reshape(shape)
 
 
 def _nearest(plant: Plant, frequency: float) -> int:
