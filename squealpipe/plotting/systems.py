@@ -54,12 +54,12 @@ def _draw_regimes(axes: Axes, run: xr.Dataset) -> list[Patch]:
     """
     names = meanings(run.event_regime)
     components = [str(each) for each in run.component.values]
-    short = {
-        number: name.removeprefix(f"{component}_")
-        for component in components
+    # of components c and c_2, regime c_2_stick is one of the latter
+    owners = {
+        number: max((c for c in components if name.startswith(f"{c}_")), key=len)
         for number, name in names.items()
-        if name.startswith(f"{component}_")
     }
+    short = {n: names[n].removeprefix(f"{owner}_") for n, owner in owners.items()}
     regimes = list(dict.fromkeys(short.values()))
     shades = colormaps["cividis"](np.linspace(0.0, 1.0, len(regimes)))
     colours = dict(zip(regimes, shades, strict=True))
@@ -67,7 +67,7 @@ def _draw_regimes(axes: Axes, run: xr.Dataset) -> list[Patch]:
     height = 0.06 * (top - bottom)
     end = float(run.end_time)
     for place, component in enumerate(components):
-        mine = [names[int(n)].startswith(f"{component}_") for n in run.event_regime]
+        mine = [owners[int(n)] == component for n in run.event_regime]
         times = [0.0, *run.event_time.values[mine], end]
         entered = [run.regime.values[0, place], *run.event_regime.values[mine]]
         base = bottom - (place + 1) * height

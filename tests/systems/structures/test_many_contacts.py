@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from squealpipe import Contact, Structure
+from squealpipe import Contact, Structure, labels, plot
 from tests.oracles.many_contacts import OPEN, SAME, ManyContacts
 
 INSTANTS = 30
@@ -105,3 +105,23 @@ def compare(seed):
 @pytest.mark.parametrize("seed", [1, 2])
 def test_contacts_that_are_coupled_agree_with_an_integrator_apart(seed):
     assert compare(seed) == "ok"
+
+
+def test_bands_of_regimes_are_those_of_their_contact():
+    # the name of one contact begins like that of the other
+    contacts = [
+        Contact("c_2", {1: -1.0}, {0: 1.0}, stiffness=4e8 / 3, preload=2e3),
+        Contact("c", {0: -1.0}, {1: 1.0}, stiffness=1e8 / 3, preload=1e3),
+    ]
+    structure = Structure(
+        np.eye(2), 1e8 * np.array([[2.0, -1.0], [-1.0, 2 / 3]]), modal_damping=0.02,
+        contacts=contacts, mu=1.0, belt_speed=-2.0,
+    )  # fmt: skip
+    run = structure.system().simulate(1e-3)
+    names = labels(run.event_regime).values
+    switches = sum(name.startswith("c 2 ") for name in names)
+    assert switches
+    bands = plot(run).collections
+    assert [len(band.get_paths()) for band in bands] == [
+        1 + switches, 1 + len(names) - switches
+    ]  # fmt: skip
