@@ -91,6 +91,8 @@ def test_where_no_start_settles_in_time_nothing_is_told():
     assert float(early.share_undetermined) == 1.0
     assert "Undetermined" in lines(early)[0]
     assert plot(early).has_data()
+    with pytest.raises(ValueError, match="periods of the slowest mode are needed"):
+        squealing_modes(two_modes(1.0), samples=2, workers=1, t_end=1e-5)
 
 
 def test_below_the_critical_friction_small_motions_die_out():

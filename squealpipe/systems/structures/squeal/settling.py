@@ -22,6 +22,8 @@ FIRST = 100.0
 """Length of the first window of statistics, in periods of the slowest unstable mode."""
 LONGEST_GROWTH, MOST = 4_000.0, 8_000.0
 """Most periods in which a push may grow, and of a run, if no other end is given."""
+FEWEST = 4.0
+"""Fewest periods of a run: the first windows are a quarter of it."""
 AGREE = 0.03
 """Largest difference of the statistics of two windows that agree: of modal velocities over the
 total, and of shares of time."""
@@ -63,6 +65,11 @@ class Settled:
 def horizon(plant: Plant, t_end: float | None) -> tuple[float, float, float]:
     """Time for growth, length of the first window, and the end of all runs, s."""
     period = 1.0 / plant.slowest
+    if t_end is not None and t_end < FEWEST * period:
+        raise ValueError(
+            f"t_end = {t_end!r}: {FEWEST:g} periods of the slowest mode are needed at least, "
+            f"{FEWEST * period:.3g} s"
+        )
     first = FIRST * period
     growing = 0.0
     if plant.unstable.size:
