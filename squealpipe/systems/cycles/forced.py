@@ -34,6 +34,8 @@ MOST_STEPS = 100_000
 _FAR = 0.3
 """A return as far as this, over the motion's extent, is none."""
 _TRIED = 4
+_MOST_EVENTS = 48
+"""Events of a cycle of several periods beyond which none is sought: each try takes seconds."""
 _LEFT_OUT = 2
 """Legs that are left out before a solution is given up: the run has the cycle's own events."""
 _SURE = 1e-6
@@ -100,6 +102,8 @@ class Watched:
         duration, origin = periods * self.forcing, self.origin(periods)
         path = self.states[-1 - 2 * periods * _SAMPLES :]
         first, count = _one_period(self.motion.times, origin, duration)
+        if periods > 1 and count > _MOST_EVENTS:
+            return None
         found = guess_of(
             self.flow,
             self.values,
