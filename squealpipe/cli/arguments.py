@@ -184,18 +184,21 @@ class Written(Brake):
     force: Force = False
 
 
+Picture = Annotated[
+    Path | None,
+    Parameter(
+        name=["--picture", "-p"],
+        help="picture to write (png, svg or pdf); by default beside the output.",
+    ),
+]
+
+
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Drawn(Written):
     """The brake of a command that writes a dataset and its picture."""
 
-    picture: Annotated[
-        Path | None,
-        Parameter(
-            name=["--picture", "-p"],
-            help="picture to write (png, svg or pdf); by default beside the output.",
-        ),
-    ] = None
+    picture: Picture = None
     figure_size: FigureSize = None
     dpi: Dpi = None
     unit: Units = None

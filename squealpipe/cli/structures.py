@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
-from cyclopts import Parameter
-
-from squealpipe.cli.arguments import Force, Numbers, Output, Tolerance, Whole
+from squealpipe.cli.arguments import Force, Numbers, Output, Picture, Tolerance, Whole
 from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer, say, working
 from squealpipe.cli.output import PICTURES, check_output, write
+from squealpipe.cli.signatures import options_of
 
 LISTED = 20
 """Unstable modes that are printed."""
@@ -24,7 +23,7 @@ def modes(
     frequency_max: float | None = None,
     n_modes: Whole | None = None,
     output: Output = Path("modes.nc"),
-    picture: Annotated[Path | None, Parameter(name=["--picture", "-p"])] = None,
+    picture: Picture = None,
     force: Force = False,
 ) -> int:
     """Compute complex modes of a structure; write a dataset and a picture.
@@ -37,7 +36,6 @@ def modes(
         belt_speed: likewise, m/s.
         frequency_max: modes up to there, Hz.
         n_modes: so many modes; this or the other limit is needed beyond 1000 degrees of freedom.
-        picture: picture to write (png, svg or pdf); by default beside the output.
     """
     check_output(output, force=force)
     drawn = picture or output.with_suffix(".png")
@@ -87,18 +85,19 @@ def _line(mode: Any) -> str:
     )
 
 
+@options_of("squealing_modes")
 def squeal(
     file: Path,
     /,
     *,
-    samples: Whole = 64,
-    seed: int = 0,
-    t_end: float | None = None,
-    tol: Tolerance = 1e-12,
+    samples: Whole,
+    seed: int,
+    t_end: float | None,
+    tol: Tolerance,
     n_modes: Whole | None = None,
     frequency_max: float | None = None,
     output: Output = Path("squeal.nc"),
-    picture: Annotated[Path | None, Parameter(name=["--picture", "-p"])] = None,
+    picture: Picture = None,
     force: Force = False,
 ) -> int:
     """Say which unstable modes of a structure squeal, how loud, and with how much contact loss.
@@ -119,7 +118,6 @@ def squeal(
             and no reduction up to 32 degrees of freedom.
         frequency_max: reduce to the modes that the unstable ones up to this frequency need, Hz;
             needed beyond 1000 degrees of freedom.
-        picture: picture to write (png, svg or pdf); by default beside the output.
     """
     check_output(output, force=force)
     drawn = picture or output.with_suffix(".png")

@@ -14,6 +14,18 @@ where its side lobes have become small.
 """
 
 
+def step_of(time: NDArray[np.float64]) -> float:
+    """The step of uniform samples.
+
+    Raises:
+        ValueError: they are not uniform.
+    """
+    steps = np.diff(time)
+    if np.ptp(steps) > 1e-6 * steps[0]:
+        raise ValueError("the samples are not uniform in time; give uniform `times`")
+    return float(steps[0])
+
+
 def lasts(force: NDArray[np.float64]) -> bool:
     """Whether a contact force acts in the second half of its run, so that it has a spectrum.
 

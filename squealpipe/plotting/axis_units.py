@@ -13,7 +13,13 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
-from matplotlib.ticker import AutoLocator, FuncFormatter, LogLocator, NullLocator
+from matplotlib.ticker import (
+    AutoLocator,
+    FuncFormatter,
+    Locator,
+    LogLocator,
+    NullLocator,
+)
 
 from squealpipe.schema.sizes import is_real
 from squealpipe.text import number
@@ -81,11 +87,11 @@ def _convert(axis: Axis, words: str, factor: float, unit: str) -> None:
     words = "frequency" if words == "ω" and "rad" not in unit else words
     axis.set_label_text(f"{words} ({unit})")
     if axis.get_scale() == "log":
-        axis.set_major_locator(_LogScaled(factor))
+        axis.set_major_locator(_ScaledLog(factor))
         axis.set_minor_locator(NullLocator())
         axis.set_major_formatter(FuncFormatter(lambda x, _: _power(x * factor)))
     else:
-        axis.set_major_locator(_Scaled(factor))
+        axis.set_major_locator(_ScaledLinear(factor))
         axis.set_major_formatter(FuncFormatter(lambda x, _: number(x * factor, 6)))
 
 
@@ -93,8 +99,8 @@ def _power(value: float) -> str:
     return f"$10^{{{round(np.log10(value))}}}$" if value > 0 else ""
 
 
-class _Scaled(AutoLocator):
-    """Ticks that are round numbers once they are multiplied by a factor."""
+class _Scaled(Locator):
+    """Before another locator: its ticks are round once they are multiplied by a factor."""
 
     def __init__(self, factor: float) -> None:
         super().__init__()
@@ -105,13 +111,9 @@ class _Scaled(AutoLocator):
         return np.asarray(ticks) / self.factor
 
 
-class _LogScaled(LogLocator):
-    """The same on a logarithmic axis."""
+class _ScaledLinear(_Scaled, AutoLocator):
+    """On a linear axis."""
 
-    def __init__(self, factor: float) -> None:
-        super().__init__()
-        self.factor = factor
 
-    def tick_values(self, vmin: float, vmax: float) -> Any:
-        ticks = super().tick_values(vmin * self.factor, vmax * self.factor)
-        return np.asarray(ticks) / self.factor
+class _ScaledLog(_Scaled, LogLocator):
+    """On a logarithmic axis."""

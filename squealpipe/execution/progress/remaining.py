@@ -30,7 +30,9 @@ class Remaining:
         self._running[job] = (rule, now)
 
     def finish(self, job: int, now: float) -> None:
-        """A job has ended."""
+        """A job has ended; one that was not started here, such as the last target, is none."""
+        if job not in self._running:
+            return
         rule, started = self._running.pop(job)
         self.jobs[rule] -= 1
         self._took.append(now - started)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -155,14 +155,13 @@ def _displacement(shape: np.ndarray) -> Surface:
     return displacement
 
 
-class _Scale:
+class _Scale(NamedTuple):
     """Typical sizes of a structure's motion, for error control and default times."""
 
-    def __init__(
-        self, time: float, displacement: float, velocity: float, force: float
-    ) -> None:
-        self.time, self.displacement = time, displacement
-        self.velocity, self.force = velocity, force
+    time: float
+    displacement: float
+    velocity: float
+    force: float
 
     @classmethod
     def of(cls, structure: Structure) -> _Scale:

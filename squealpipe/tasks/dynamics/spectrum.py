@@ -7,7 +7,12 @@ import numpy as np
 import xarray as xr
 from annotated_types import Gt
 
-from squealpipe.methods.spectrum import FEWEST, amplitude_spectrum, strongest_lines
+from squealpipe.methods.spectrum import (
+    FEWEST,
+    amplitude_spectrum,
+    step_of,
+    strongest_lines,
+)
 from squealpipe.schema import build
 from squealpipe.schema.dynamics.runs import SPECTRUM
 from squealpipe.schema.origin import recorded
@@ -49,17 +54,15 @@ def spectrum(
         raise ValueError(
             f"{time.size} samples are too few for a spectrum; ask for more or a longer run"
         )
-    steps = np.diff(time)
-    if np.ptp(steps) > 1e-6 * steps[0]:
-        raise ValueError("the samples are not uniform in time; give uniform `times`")
+    step = step_of(time)
     signals = np.stack(
         [
             run[name].values[: chosen.size][chosen]
             for name in ("vx", "vy", "normal_force")
         ]
     )
-    omega, amplitude = amplitude_spectrum(signals, float(steps[0]), padding=PADDING)
-    resolution = 1.0 / (time.size * float(steps[0]))
+    omega, amplitude = amplitude_spectrum(signals, step, padding=PADDING)
+    resolution = 1.0 / (time.size * step)
     lines, heights = strongest_lines(
         omega, amplitude[2], PEAKS, 2.0 * math.pi * resolution
     )

@@ -11,6 +11,7 @@ from squealpipe.methods.spectrum import (
     FEWEST,
     amplitude_spectrum,
     lasts,
+    step_of,
     strongest_lines,
 )
 from squealpipe.schema import build
@@ -46,14 +47,12 @@ def summarize(run: xr.Dataset) -> xr.Dataset:
         raise ValueError(
             f"the run ended after {time.size} samples; ask for more samples or a longer run"
         )
-    steps = np.diff(time)
-    if np.ptp(steps) > 1e-6 * steps[0]:
-        raise ValueError("the samples are not uniform in time; give uniform `times`")
+    step = step_of(time)
     end = float(run.time_reached)
     apart, stuck = (intervals(run, each) for each in (Regime.separated, Regime.stick))
     returns = np.count_nonzero(run.event_kind.values == Event.contact)
     force = run.normalized_contact_force.values[: time.size]
-    frequency, amplitude = amplitude_spectrum(force, float(steps[0]), padding=PADDING)
+    frequency, amplitude = amplitude_spectrum(force, step, padding=PADDING)
     kept = PEAKS if lasts(force) else 0
     peak_frequency, peak_amplitude = strongest_lines(
         frequency, amplitude, kept, PADDING * float(frequency[1])

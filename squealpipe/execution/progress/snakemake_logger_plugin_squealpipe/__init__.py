@@ -41,7 +41,6 @@ class LogHandler(LogHandlerBase):
         """Before Snakemake says which jobs there are."""
         self.remaining: Remaining | None = None
         self.begun: set[str] = set()
-        self.rules: dict[int, str] = {}
 
     def emit(self, record: LogRecord) -> None:
         """Write the line of a record, if it has one."""
@@ -51,8 +50,9 @@ class LogHandler(LogHandlerBase):
             line = self._all_jobs(about["stats"])
         elif event == LogEvent.JOB_INFO:
             line = self._started(about["jobid"], about["rule_name"])
-        elif event == LogEvent.JOB_FINISHED:
-            line = self._finished(about["job_id"])
+        elif event == LogEvent.JOB_FINISHED and self.remaining is not None:
+            self.remaining.finish(about["job_id"], time.monotonic())
+            line = ""
         else:
             failed = event in {LogEvent.JOB_ERROR, LogEvent.GROUP_ERROR}
             line = self.format(record) if failed or record.levelno >= WARNING else ""
@@ -70,7 +70,6 @@ class LogHandler(LogHandlerBase):
         now = time.monotonic()
         first = rule not in self.begun
         self.begun.add(rule)
-        self.rules[job] = rule
         line = ""
         if first:
             total = len(self.remaining.jobs)
@@ -78,11 +77,6 @@ class LogHandler(LogHandlerBase):
             line = f"{place}  {rule}{self.remaining.words(now)}"
         self.remaining.start(job, rule, now)
         return line
-
-    def _finished(self, job: int) -> str:
-        if self.remaining is not None and job in self.rules:
-            self.remaining.finish(job, time.monotonic())
-        return ""
 
     @property
     def writes_to_stream(self) -> bool:

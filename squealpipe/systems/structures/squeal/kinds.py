@@ -115,15 +115,14 @@ def _apart(
 ) -> tuple[float, float]:
     """By how much neighbours have run away, and how fast: medians over all of them."""
     away = plant.sizes(samples[1:] - samples[:1]) / extent
-    # a tenth of the run at once: distances swing within each period
+    # many periods at once: distances swing within each
     blocks = np.array_split(np.arange(len(times)), 40)
     spread = np.array([away[:, block].max(axis=1) for block in blocks])
     middles = np.array([times[block].mean() for block in blocks])
     spread = np.median(spread, axis=1)
     grown = float(spread.max() / spread[0])
-    grows = np.arange(len(spread)) <= max(int((spread > FAR).argmax()), 3)
-    if not (spread > FAR).any():
-        grows[:] = True
+    far = np.flatnonzero(spread > FAR)
+    grows = slice(max(int(far[0]), 3) + 1 if far.size else None)
     rate = np.polyfit(middles[grows], np.log(spread[grows] + 1e-300), 1)[0]
     return grown, float(rate)
 

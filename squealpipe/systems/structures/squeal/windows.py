@@ -144,8 +144,14 @@ def run_window(
 
 def _regimes(plant: Plant, word: str) -> list[list[int]]:
     """Of each contact, the numbers of its regimes of a kind."""
-    names = list(plant.system.regimes)
+    # by owner: of contacts p and p_stick, the second one's regimes begin like the first one's
+    owners = plant.system.traced.component_of.tolist()
+    numbered = list(enumerate(zip(plant.system.regimes, owners, strict=True)))
     return [
-        [i for i, name in enumerate(names) if name.startswith(f"{contact}_{word}")]
-        for contact in plant.contacts
+        [
+            i
+            for i, (name, owner) in numbered
+            if owner == place and name.startswith(f"{contact}_{word}")
+        ]
+        for place, contact in enumerate(plant.contacts)
     ]
