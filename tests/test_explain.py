@@ -4,12 +4,12 @@ import json
 
 import pytest
 
+from squealpipe.execution.durations import job_times
 from squealpipe.execution.explain import (
     Explanation,
     Job,
     WorkflowError,
     explain,
-    job_times,
     snakemake_command,
 )
 

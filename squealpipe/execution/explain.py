@@ -17,6 +17,7 @@ from typing import Any
 
 from squealpipe.config.settings import PAPER, Study, read_study
 from squealpipe.config.yaml_files import flat, read_yaml
+from squealpipe.execution.durations import job_times, together
 from squealpipe.rerun.key import PLAN
 from squealpipe.rerun.sources import WORKFLOW
 from squealpipe.store.keys import misfits
@@ -78,9 +79,8 @@ class Explanation:
 
     @property
     def seconds(self) -> float:
-        """Estimated duration: work shared by all cores, but no less than the longest job."""
-        known = [job.seconds or 0.0 for job in self.jobs]
-        return max([sum(known) / self.cores, *known])
+        """Estimated duration, by :func:`together`, without jobs of unknown length."""
+        return together([job.seconds or 0.0 for job in self.jobs], self.cores)
 
     def estimate(self) -> str:
         """For instance ``about 41 s on 2 cores, from recorded times``."""
@@ -191,19 +191,6 @@ def snakemake_command(
     if changes:
         command += ["--config", *(f"{key}={value}" for key, value in changes.items())]
     return command, study
-
-
-def job_times(directory: Path) -> dict[str, float]:
-    """Rule → what it took when it last ran, s, from Snakemake's records."""
-    spans: dict[str, list[float]] = {}
-    for path in (directory / ".snakemake/metadata").glob("*"):
-        try:
-            record = json.loads(path.read_text(encoding="utf-8"))
-            start, end = float(record["starttime"]), float(record["endtime"])
-        except (OSError, ValueError, KeyError, TypeError):
-            continue  # a record that cannot be read means: duration unknown
-        spans.setdefault(str(record["rule"]), []).append(end - start)
-    return {rule: max(seconds) for rule, seconds in sorted(spans.items())}
 
 
 def _changes(path: Path, made: Mapping[str, Any]) -> list[str]:

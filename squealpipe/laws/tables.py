@@ -11,7 +11,7 @@ from functools import lru_cache
 from itertools import pairwise
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 from squealpipe.laws.table_files import ENDINGS, read_pairs
 
@@ -29,21 +29,15 @@ class Pieces(NamedTuple):
     starts: Any
     coefficients: Any
 
-    def value(
-        self,
-        at: Any,
-        *,
-        derivative: bool = False,
-        side: Literal["left", "right"] = "right",
-    ) -> Any:
+    def value(self, at: Any, *, derivative: bool = False) -> Any:
         """The value at floats or arrays, or the rate; complex ones count by their real part.
 
-        Args:
-            side: the piece that a knot belongs to.
+        A knot belongs to the piece that begins there.
         """
         import numpy as np
 
-        piece = np.maximum(np.searchsorted(self.starts, np.real(at), side=side) - 1, 0)
+        after = np.searchsorted(self.starts, np.real(at), side="right")
+        piece = np.maximum(after - 1, 0)
         return polynomial(
             np.moveaxis(self.coefficients[piece], -1, 0),
             at - self.starts[piece],

@@ -50,6 +50,10 @@ def test_values_between_and_beyond_the_knots():
     np.testing.assert_allclose(
         slope(speeds[[1, 3, 5]], params), [-1.0, -1 / 9, 0.0], rtol=1e-14
     )
+    # a knot has the mean of its slopes, also of a speed that misses it by round-off
+    for at in (0.1, 0.1 * (1 + 3e-16), 0.1 * (1 - 3e-16)):
+        assert slope(at, params) == pytest.approx(-5 / 9, rel=1e-14)
+        assert coefficient(at + 1e-30j, params).imag == slope(at, params) * 1e-30
     late = Parameters(friction_law="linear 0.2:0.4 1:0.3")
     assert coefficient(0.1, late) == late.static_mu == 0.4
 

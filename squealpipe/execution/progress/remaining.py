@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from squealpipe.execution.durations import together
 from squealpipe.text import duration
 
 
@@ -38,7 +39,7 @@ class Remaining:
         self._took.append(now - started)
 
     def left(self, now: float) -> float | None:
-        """Time left, s: work shared by all cores, but no less than the longest job.
+        """Time left, s, by :func:`together`.
 
         A rule that never ran here is taken to last as long as those that have in this run, on
         average. None: nothing is known yet.
@@ -49,14 +50,13 @@ class Remaining:
             return None
         average = sum(usual) / len(usual)
         each = {rule: self.seconds.get(rule, average) for rule in self.jobs}
-        done = sum(
-            min(now - start, each[rule]) for rule, start in self._running.values()
-        )
-        work = sum(each[rule] * number for rule, number in self.jobs.items()) - done
-        ends = [start + each[rule] - now for rule, start in self._running.values()]
+        running = [
+            max(0.0, start + each[rule] - now) for rule, start in self._running.values()
+        ]
         waiting = self.jobs - Counter(rule for rule, _ in self._running.values())
-        longest = max([0.0, *ends, *(each[rule] for rule in waiting)])
-        return max(work / self.cores, longest)
+        return together(
+            [*running, *(each[rule] for rule in waiting.elements())], self.cores
+        )
 
     def words(self, now: float) -> str:
         """For instance ``, about 41 s left``; empty where nothing is known."""

@@ -11,6 +11,8 @@ from functools import lru_cache
 from types import ModuleType, SimpleNamespace
 from typing import Any, Protocol, cast
 
+from numpy import iscomplexobj
+
 from squealpipe.laws.friction_laws import coulomb, exponential, hyperbolic  # noqa: F401
 from squealpipe.laws.tables import Pieces, functions_of, is_table, pieces_of, polynomial
 
@@ -51,6 +53,11 @@ FALLING = [name for name, law in LAWS.items() if getattr(law, "FALLING", False)]
 """Laws in which μ falls from its static value to that of sliding: Coulomb's where both agree."""
 
 
+BESIDE = 1e-12
+"""Distance from a knot, over the speed there, within which both of its slopes count: a speed in
+other units may miss its knot by round-off."""
+
+
 class Table:
     """A measured law; speeds in units of ``p.friction_speed``, which is 1 m/s in SI parameters."""
 
@@ -60,17 +67,24 @@ class Table:
         self.pieces = pieces
 
     def coefficient(self, speed: Any, p: Any) -> Any:
-        """μ(w)."""
+        """μ(w); of a complex speed to first order, so that a complex step gives :meth:`slope`."""
+        if iscomplexobj(speed):
+            rate = self.slope(speed.real, p)
+            return self.coefficient(speed.real, p) + 1j * rate * speed.imag
         return self.pieces.value(speed * p.friction_speed**-1.0)
 
     def slope(self, speed: Any, p: Any) -> Any:
-        """dμ/dw, s/m; at a knot the mean of both sides, by which small motions about it grow."""
+        """dμ/dw, s/m; at a knot the mean of both sides.
+
+        A small vibration about a knot spends half of its time on either side, so it grows by the
+        mean.
+        """
         unit = p.friction_speed**-1.0
-        sides = [
-            self.pieces.value(speed * unit, derivative=True, side=side)
-            for side in ("left", "right")
-        ]
-        return unit * 0.5 * (sides[0] + sides[1])
+        below, above = (
+            self.pieces.value(speed * unit * factor, derivative=True)
+            for factor in (1.0 - BESIDE, 1.0 + BESIDE)
+        )
+        return unit * 0.5 * (below + above)
 
 
 class Piece:

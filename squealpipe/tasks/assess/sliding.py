@@ -14,7 +14,6 @@ import numpy as np
 from squealpipe.laws.contact import normal_force
 from squealpipe.laws.friction_laws import COULOMB
 from squealpipe.laws.springs import LONG, geometry
-from squealpipe.laws.tables import is_table, knots_of
 from squealpipe.models import a1
 from squealpipe.parameters import Parameters
 from squealpipe.schema.assess import Mechanism
@@ -28,8 +27,6 @@ GROWS = 1e-7
 round-off of an undamped pair."""
 STEP = 1e-30
 """Imaginary step, over a length or a speed of the system."""
-BESIDE = 1e-9
-"""Distance from belt speed, over it, at which both slopes of friction at a knot are taken."""
 
 
 class Design(NamedTuple):
@@ -193,22 +190,7 @@ def _derivatives(
 def _jacobian(design: Design, place: np.ndarray) -> np.ndarray:
     params = design.params
     speed = params.preload * design.rate
-    acceleration = _acceleration(design)
-    # a vibration about a knot of the table spends half of its time on either side
-    sides = (-BESIDE, BESIDE) if _is_at_knot(params) else (0.0,)
-    slopes = [
-        _derivatives(
-            acceleration, [*place, side * params.belt_speed, 0.0], params.preload, speed
-        )
-        for side in sides
-    ]
-    return np.vstack([np.eye(4)[2:], np.mean(slopes, axis=0)])
-
-
-def _is_at_knot(params: Parameters) -> bool:
-    """Whether friction is a table that has a knot at belt speed."""
-    law = params.friction_law
-    if not is_table(law):
-        return False
-    knots = np.array(knots_of(law)[0])
-    return bool((np.abs(knots / abs(params.belt_speed) - 1.0) < BESIDE).any())
+    slopes = _derivatives(
+        _acceleration(design), [*place, 0.0, 0.0], params.preload, speed
+    )
+    return np.vstack([np.eye(4)[2:], slopes])

@@ -16,7 +16,7 @@ from snakemake_interface_logger_plugins.base import LogHandlerBase
 from snakemake_interface_logger_plugins.common import LogEvent
 from snakemake_interface_logger_plugins.settings import LogHandlerSettingsBase
 
-from squealpipe.execution.explain import job_times
+from squealpipe.execution.durations import job_times
 from squealpipe.execution.progress.remaining import Remaining
 
 NO_STEPS = {"total", "all"}
