@@ -27,6 +27,7 @@ COLUMNS = 12
 STEP_ERROR = mpmath.mpf(10) ** -24
 SAMPLES = 24
 CLOSE = 1e-22
+LARGEST_DISAGREEMENT = 1e-15
 ON_SURFACE, FALLING, NUDGE = 1e-17, 1e-9, 2.0**-30
 NO_LIMIT = 10**12
 AT_ONCE = 1e-12
@@ -356,11 +357,19 @@ def disagreement(reference, motion):
 
 
 def main():
-    """Write ``references.json``."""
-    lines = [
-        f"{json.dumps(data['name'])}: {json.dumps(reference_of(data))}"
-        for data in all_data()
-    ]
+    """Write ``references.json``, where both ways agree on each knowable problem.
+
+    Raises:
+        ValueError: they do not; nothing is written.
+    """
+    lines = []
+    for data in all_data():
+        reference = reference_of(data)
+        if "unknowable" not in data:
+            difference = disagreement(reference, extrapolation(data))
+            if difference > LARGEST_DISAGREEMENT:
+                raise ValueError(f"{data['name']}: the ways differ by {difference:.1e}")
+        lines.append(f"{json.dumps(data['name'])}: {json.dumps(reference)}")
     FILE.write_text("{\n" + ",\n".join(lines) + "\n}\n", "utf-8")
 
 

@@ -7,6 +7,7 @@ import pytest
 
 from squealpipe.benchmark.problems import all_data, references
 from tests.benchmark.make_references import (
+    LARGEST_DISAGREEMENT,
     LongDouble,
     derivative,
     disagreement,
@@ -23,14 +24,20 @@ SLOW = {
 }  # fmt: skip
 
 
+MINUTES = {"A1: very stiff contact", "A1: chaotic hammering"}
+"""Extrapolated only when references are made: none is written on which both ways disagree."""
 CASES = [
-    pytest.param(name, marks=[pytest.mark.release] * (name in SLOW)) for name in DATA
+    pytest.param(name, marks=[pytest.mark.release] * (name in SLOW))
+    for name in DATA
+    if name not in MINUTES
 ]
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_extrapolation_agrees(name):
-    assert disagreement(references()[name], extrapolation(DATA[name])) < 1e-15
+    assert disagreement(references()[name], extrapolation(DATA[name])) < (
+        LARGEST_DISAGREEMENT
+    )
 
 
 QUICK = {"two gates", "shaken table", "A1: grazing contact"}

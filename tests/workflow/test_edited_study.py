@@ -11,13 +11,12 @@ pytestmark = pytest.mark.release
 
 
 TINY = "workflow/config/tiny.yaml"
-EDIT = "inference: {samples: 600}\n"
+EDIT = "dynamics: {hammering_points: 12}\n"
 STALE = {
-    "infer_parameters", "draw_inference", "judge_robustness", "draw_propensity", "judge_claims",
-    "write_report",
+    "map_hammering", "write_explorer", "draw_dynamics", "judge_claims", "write_report",
 }  # fmt: skip
-DATASETS = {"parameter_inference", "verdict_robustness", "claims"}
-"""What those rules make; the verdicts read the inference, though none may turn over."""
+DATASETS = {"hammering_map", "claims"}
+"""What those rules make; the verdicts read the map, though none may turn over."""
 
 
 def ids(results):
@@ -51,9 +50,9 @@ def test_an_edit_is_run_and_taken_back(study_copy, snakemake):
     (study_copy / "edit.yaml").write_text(EDIT)
     assert run("edit.yaml") == (STALE, DATASETS)
     edited, _ = ids(results)
-    assert edited["parameter_inference"] != original["parameter_inference"]
+    assert edited["hammering_map"] != original["hammering_map"]
     assert {name for name in original if edited[name] != original[name]} <= DATASETS
-    assert load(results / "data/parameter_inference.nc").sizes["sample"] == 600
+    assert load(results / "data/hammering_map.nc").sizes["alpha1"] == 12
 
     assert run() == (STALE, DATASETS)
     assert ids(results) == (original, pictures)
