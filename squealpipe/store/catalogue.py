@@ -1,6 +1,7 @@
 """What runs there are: archives and folders of results, found again by their parameters."""
 
 import json
+import math
 import os
 import re
 from dataclasses import dataclass, field
@@ -11,7 +12,8 @@ import pandas as pd
 
 from squealpipe.config.settings import PAPER, Study, read_study
 from squealpipe.config.yaml_files import flat
-from squealpipe.parameters import DEFAULTS, SYMBOLS, TABLE
+from squealpipe.laws.friction_laws import COULOMB
+from squealpipe.parameters import DEFAULTS, SYMBOLS, TABLE, Parameters
 from squealpipe.store.netcdf import attributes
 from squealpipe.store.results import refuse_copy
 from squealpipe.store.runs import dataset_files, read_manifest, verify
@@ -65,7 +67,8 @@ def matching(expression: str, found: list[Run]) -> list[str]:
     """Names of the runs whose parameters fulfil a condition, as pandas reads it.
 
     Names are parameters (``mu``, ``length1``), the paper's symbols (``L1``), or keys of the
-    configuration with their section (``linear.points``).
+    configuration with their section (``linear.points``). Where a table stands for a parameter,
+    its value is meant; no condition holds of the static coefficient of a law in Python.
     """
     known = [run for run in found if run.config]
     rows = [_row(run.config) for run in known] or [_row({})]
@@ -87,12 +90,29 @@ def matching(expression: str, found: list[Run]) -> list[str]:
 def _row(config: dict[str, Any]) -> dict[str, Any]:
     """A run's values by the names that a condition may use, defaults where it states none."""
     given = {**flat(Study().model_dump(mode="json")), **config}
-    row = {name: given.get(f"parameters.{name}", DEFAULTS[name]) for name in TABLE}
-    if row["mu_static"] is None:
-        row["mu_static"] = row["mu"]
+    row = _as_computed(
+        {name: given.get(f"parameters.{name}", DEFAULTS[name]) for name in TABLE}
+    )
     row |= {symbol: row[name] for symbol, name in SYMBOLS.items() if symbol not in row}
     return row | {
         key: value for key, value in given.items() if "parameters." not in key
+    }
+
+
+def _as_computed(stated: dict[str, Any]) -> dict[str, Any]:
+    """Parameters with what the tables of laws make of them, and the static coefficient.
+
+    A law in Python is not run, for the run may be somebody else's: its static coefficient is
+    NaN, unless it is stated.
+    """
+    in_python = "\n" in stated["friction_law"]
+    readable = {"friction_law": COULOMB, "mu_static": None} if in_python else {}
+    params = Parameters(**{**stated, **readable})
+    static = math.nan if stated["mu_static"] is None else stated["mu_static"]
+    return {
+        **vars(params),
+        "friction_law": stated["friction_law"],
+        "mu_static": static if in_python else params.static_mu,
     }
 
 

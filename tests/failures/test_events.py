@@ -12,6 +12,7 @@ from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.dynamics.runs import simulate
 from tests.former import FORMER
+from tests.oracles.a1_scipy import simulate_scipy
 
 IDENTITY = {"alpha1": 0.5 * np.pi, "alpha2": np.pi, "model": "A1-linear-springs"}
 VERTICAL = {"alpha1": 0.5 * np.pi, "alpha2": 0.5 * np.pi, "model": "A1-linear-springs"}
@@ -186,3 +187,29 @@ def test_an_exact_equilibrium_stays():
     run = simulate(params, t_end=30.0, initial_state=(0.0, 0.5, 0.0, 0.0), **IDENTITY)
     assert run.outcome == Outcome.converged
     np.testing.assert_allclose(run.y, 0.5, atol=1e-15)
+
+
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+def test_without_stick_a_run_has_the_events_of_a1_until_it_would_stick(direction):
+    """The arrival that friction holds is one event, however often friction then reverses."""
+    judged, several, draw = 0, 0, np.random.default_rng(3)
+    while judged < 4:
+        params = FORMER.with_(mu=0.3, belt_speed=direction * draw.uniform(0.02, 0.3))
+        angles = draw.uniform(0.0, np.pi, 2)
+        start = draw.uniform([-0.2, -0.1, -1, -0.3], [0.2, 0.3, 1, 0.3])
+        scene = {"t_end": 20.0, "initial_state": start}
+        reference = simulate_scipy(params, *angles, tol=1e-12, **scene)
+        if Regime.stick not in reference.regimes:
+            continue
+        until = reference.regimes.index(Regime.stick)
+        run = simulate(params, *angles, model="A1-no-stick", **scene)
+        assert run.outcome == Outcome.accumulation
+        # the reference calls every arrival at belt speed by one name
+        expected = [REVERSAL if k == STICK else k for k in reference.event_kinds]
+        assert run.event_kind.values.tolist() == expected[:until]
+        np.testing.assert_allclose(
+            run.event_time, reference.event_times[:until], atol=1e-8
+        )
+        judged += 1
+        several += until > 1
+    assert several >= 1

@@ -8,6 +8,7 @@ import pytest
 from squealpipe.cli import run as command
 from squealpipe.store import load, save
 from squealpipe.store.archive import archive
+from squealpipe.store.catalogue import Run, matching
 from squealpipe.store.runs import locate
 
 
@@ -43,6 +44,32 @@ def told(capsys, *arguments):
 )
 def test_find_prints_the_runs_that_match(memory, capsys, expression, names):
     assert told(capsys, "find", expression) == (0, names)
+
+
+@pytest.mark.parametrize(
+    ("law", "holds", "fails"),
+    [
+        ("linear 0:0.6 1:0.4 5:0.2", "mu == 0.2 and mu_static == 0.6", "mu == 0.3"),
+        ("exponential", "mu == 0.3 and mu_static == mu", "mu_static > mu"),
+        (
+            "def coefficient(speed, p):\n    raise SystemExit\n",
+            "mu == 0.3 and not mu_static > 0",
+            "mu_static == mu",
+        ),
+    ],
+)
+def test_a_law_says_what_mu_and_mu_static_are(law, holds, fails):
+    """A law in Python is somebody's code, which a search does not run."""
+    config = {"parameters.mu": 0.3, "parameters.friction_law": law}
+    kept = [Run(name="kept", date="", commit="", size=0, config=config)]
+    assert matching(holds, kept) == ["kept"]
+    assert matching(fails, kept) == []
+
+
+def test_a_table_of_contact_says_what_k3_is():
+    config = {"parameters.contact_law": "linear 0:0 1:0.5 2:2"}
+    kept = [Run(name="kept", date="", commit="", size=0, config=config)]
+    assert matching("k3 == 0.5", kept) == ["kept"]
 
 
 def test_find_tells_by_its_exit_code_that_there_is_none(memory, capsys):
