@@ -273,7 +273,7 @@ def test_the_public_brake_has_its_unstable_modes():
 
 @needs_matrices
 @pytest.mark.release
-@pytest.mark.parametrize("speed", [2.0, 4 * np.pi, 20.0, 50.0, 100.0])
+@pytest.mark.parametrize("speed", [2.0, 50.0])
 def test_the_public_brakes_modes_agree_with_another_linearization(speed):
     """Arnoldi on the second companion form, another shift an eigenvalue, without refinement."""
     mass, damping, stiffness = brake(speed)
