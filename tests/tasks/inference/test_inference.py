@@ -226,15 +226,22 @@ SIMPLE = {
 
 
 @pytest.mark.release
-def test_no_set_of_simple_numbers_has_a_larger_smallest_margin():
-    """Of sets that differ after six digits the fastest belt wins: A3 takes ẋ < V for granted."""
+def test_the_study_meets_every_statement_and_no_simple_numbers_meet_them_by_far_more():
+    """What docs/linear-models.md and the report say of the choice of parameters."""
     groups = dict(zip(SIMPLE, np.array(list(product(*SIMPLE.values()))).T, strict=True))
     margin, holds = judge(sets_of(groups, tol=1e-9, workers=None).read("as_printed"))
-    meets = np.flatnonzero((holds == Holds.yes).all(axis=1))
+    meets = (holds == Holds.yes).all(axis=1)
+    assert meets.size == 13_104
+    # the growth of a few chaotic runs is decided by round-off
+    assert meets.sum() == pytest.approx(576, abs=6)
+    study = Parameters()
+    chosen = study.kappa, study.mu, study.length1 / study.preload, study.speed_ratio
+    is_study = np.isclose(np.stack(list(groups.values()), axis=1), chosen).all(axis=1)
+    assert meets[is_study].tolist() == [True]
     # growth's margin is much the same wherever it grows: |x| goes with the root of time
     others = [constraint.name != "F3" for constraint in CONSTRAINTS]
-    smallest = margin[meets][:, others].min(axis=1).round(6)
-    best = meets[np.lexsort((-groups["speed_ratio"][meets], -smallest))[0]]
-    study = Parameters()
-    own = study.kappa, study.mu, study.length1 / study.preload, study.speed_ratio
-    assert [values[best] for values in groups.values()] == pytest.approx(own)
+    smallest = np.where(meets, margin[:, others].min(axis=1), -np.inf)
+    assert smallest[is_study] == pytest.approx(0.0767, abs=5e-5)
+    assert smallest.max() == pytest.approx(0.0842, abs=5e-5)
+    best = [values[smallest.argmax()] for values in groups.values()]
+    assert best[:3] == [0.65, 0.15, 20.0]
