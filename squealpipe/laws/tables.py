@@ -38,11 +38,8 @@ class Pieces(NamedTuple):
 
         after = np.searchsorted(self.starts, np.real(at), side="right")
         piece = np.maximum(after - 1, 0)
-        return polynomial(
-            np.moveaxis(self.coefficients[piece], -1, 0),
-            at - self.starts[piece],
-            derivative,
-        )
+        rows = self.coefficients.T[:, piece]
+        return polynomial(rows, at - self.starts[piece], derivative)
 
     def constants(self, prefix: str) -> list[dict[str, float]]:
         """Start, end and coefficients of each piece by name; the last ends nowhere."""

@@ -11,7 +11,8 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.assess import ASSESS, CURES, Mechanism, Verdict
 from squealpipe.schema.origin import recorded
-from squealpipe.tasks.assess.cures import boundaries, nearest_angles, strikes
+from squealpipe.tasks.assess.any_start import strikes
+from squealpipe.tasks.assess.cures import boundaries, nearest_angles
 from squealpipe.tasks.assess.levels import levels
 from squealpipe.tasks.assess.settling import pushed, settle, start_at
 from squealpipe.tasks.assess.sliding import Design, Sliding

@@ -73,15 +73,13 @@ class Sliding:
         length, balance = params.preload, params.k3 * params.preload / params.mass
         place = np.zeros(2)
         for _ in range(MOST_STEPS):
-            state = [*place, 0.0, 0.0]
-            force = np.array(acceleration(state), dtype=complex).real
+            force, slopes = _linearized(acceleration, place, design)
             if not np.isfinite(force).all():
                 return None
             if np.abs(force).max() < BALANCE * balance:
                 break
-            slopes = _derivatives(acceleration, state, length, 1.0)[:, :2]
             try:
-                place = place - np.linalg.solve(slopes, force)
+                place = place - np.linalg.solve(slopes[:, :2], force)
             except np.linalg.LinAlgError:
                 return None
             if not np.abs(place).max() < 1e3 * (params.length1 + params.length2):
@@ -91,8 +89,7 @@ class Sliding:
         normal = float(normal_force(float(place[1]), 0.0, params))
         if not (place[1] < length and normal > 0.0):
             return None
-        rest = np.array([*place, 0.0, 0.0])
-        return cls(design, rest, normal, _jacobian(design, place))
+        return cls(design, np.array([*place, 0.0, 0.0]), normal, _jacobian(slopes))
 
     @cached_property
     def growth_rate(self) -> float:
@@ -115,7 +112,8 @@ class Sliding:
         if not self.is_unstable:
             return Mechanism.none
         level = self.design._replace(params=_level(self.design.params))
-        roots = np.linalg.eigvals(_jacobian(level, self.state[:2]))
+        _, slopes = _linearized(_acceleration(level), self.state[:2], level)
+        roots = np.linalg.eigvals(_jacobian(slopes))
         if roots.real.max() <= GROWS * np.abs(roots).max():
             return Mechanism.falling_friction
         leading = self._roots[np.argmax(self._roots.real)]
@@ -174,23 +172,20 @@ def _acceleration(design: Design) -> Any:
     return acceleration
 
 
-def _derivatives(
-    acceleration: Any, state: Any, length: float, speed: float
-) -> np.ndarray:
-    """∂(ẍ, ÿ)/∂(x, y, ẋ, ẏ), (2, 4)."""
-    columns = []
-    for index, unit in enumerate((length, length, speed, speed)):
-        moved = [complex(value) for value in state]
-        moved[index] += 1j * STEP * unit
-        forces = [complex(force).imag for force in acceleration(moved)]
-        columns.append(np.array(forces) / (STEP * unit))
-    return np.stack(columns, axis=1)
+def _linearized(
+    acceleration: Any, place: np.ndarray, design: Design
+) -> tuple[np.ndarray, np.ndarray]:
+    """Acceleration of the mass at rest in some place, (2,), and its slopes by the state, (2, 4).
+
+    Each column of the states takes its step in one of x, y, ẋ, ẏ.
+    """
+    length = design.params.preload
+    steps = STEP * length * np.array([1.0, 1.0, design.rate, design.rate])
+    states = np.array([*place, 0.0, 0.0])[:, None] + 1j * np.diag(steps)
+    values = np.array([np.broadcast_to(each, 4) for each in acceleration(states)])
+    return values.real[:, 0], values.imag / steps
 
 
-def _jacobian(design: Design, place: np.ndarray) -> np.ndarray:
-    params = design.params
-    speed = params.preload * design.rate
-    slopes = _derivatives(
-        _acceleration(design), [*place, 0.0, 0.0], params.preload, speed
-    )
+def _jacobian(slopes: np.ndarray) -> np.ndarray:
+    """(4, 4) derivative of the velocities and accelerations by the state."""
     return np.vstack([np.eye(4)[2:], slopes])

@@ -90,6 +90,24 @@ def test_the_boundary_of_a_cure_has_noise_on_one_side_and_none_on_the_other(
         assert bool(late < 1.0) is quiet
 
 
+@pytest.mark.release
+def test_a_motion_led_to_the_boundary_lasts_up_to_it_and_not_beyond(squealing):
+    """Stick–slip beside quiet sliding ends in a fold, which small steps of the speed find."""
+    row = squealing.sel(cure="belt_speed")
+    first, fold = float(row.quiet_from), float(row.quiet_from_any_start)
+    assert fold > 1.2 * first
+    state, loud = np.zeros(4), []
+    for share in (0.5, 0.65, 0.8, 0.88, 0.92, 0.95, 0.97, 0.985, 1.015):
+        last = 0.05 if 0.5 < share < 1.0 else 0.2
+        run = Pad(NUMBERS | {"belt_speed": share * fold}, *SQUEAL).run(
+            state, last, last - 0.005, tol=1e-8, samples=512
+        )
+        state = run.final
+        loud.append(np.abs(run.velocity[0]).max())
+    assert loud[-2] > loud[0]
+    assert loud[-1] < 0.1 * loud[-2]
+
+
 def test_cures_are_sorted_by_their_change_and_within_the_ranges_tried(hammering):
     change = np.abs(hammering.change.values)
     found = change[np.isfinite(change)]

@@ -1,0 +1,209 @@
+"""The search for the value at which an answer changes, on either side of the present one.
+
+Steady sliding that is linearly unstable is never quiet, so each side is searched along the linear
+boundary first, which costs no run. Runs next to it, and farther out, then tell whether the motion
+dies out there. Where it does right beside the linear boundary, that boundary is the answer; else
+runs bisect. All sides are tested side by side in one ensemble.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from squealpipe.tasks.assess.designs import Cure
+from squealpipe.tasks.assess.sliding import Sliding
+
+LOCATED = 1e-3
+"""To which a boundary is located: of the value, or rad."""
+
+RUNGS = 8
+"""Values beyond the linear boundary that are run at most."""
+
+HALVINGS = 50
+"""Bisections of the linear boundary."""
+
+
+@dataclass
+class Side:
+    """One side of the present value of one cure.
+
+    Attributes:
+        values: outward.
+        inner: the last value known to be like the present one, in what is tested.
+        exact: the linear boundary, if the answer may be that.
+        rungs: values to run, outward.
+        answer: what was found; NaN: nothing.
+        motions: states of motions that last at the value tried last at which any does.
+    """
+
+    name: str
+    cure: Cure
+    values: np.ndarray
+    inner: float
+    exact: float = math.nan
+    rungs: list[float] = field(default_factory=list)
+    answer: float = math.nan
+    outer: float = math.nan
+    motions: list[np.ndarray] = field(default_factory=list)
+
+    def scale(self, located: float) -> float:
+        """Distance that counts as located."""
+        if self.name.startswith("alpha"):
+            return located
+        return located * max(abs(self.cure.value), abs(float(self.inner)), 1e-12)
+
+    def beyond(self, value: float, located: float) -> float:
+        """The next value outward that counts as another, within the range."""
+        farthest = float(self.values[-1])
+        step = math.copysign(self.scale(located), farthest - self.cure.value)
+        return min((value + step, farthest), key=lambda end: abs(end - value))
+
+
+Test = Callable[[Sequence[Side], Sequence[float]], list[bool]]
+"""Whether the designs of some sides at some values are quiet."""
+
+
+def sides_of(cures: dict[str, Cure]) -> list[Side]:
+    """Both sides of each cure, as far as there are any values."""
+    return [
+        Side(name, cure, values, cure.value)
+        for name, cure in cures.items()
+        for values in (cure.below, cure.above)
+        if values.size
+    ]
+
+
+def nearer(cures: dict[str, Cure], sides: Sequence[Side]) -> dict[str, float]:
+    """The nearer answer of both sides of each cure that has one."""
+    found: dict[str, float] = {}
+    for side in sides:
+        value = cures[side.name].value
+        best = found.get(side.name, math.nan)
+        if not math.isnan(side.answer) and not abs(best - value) <= abs(
+            side.answer - value
+        ):
+            found[side.name] = side.answer
+    return found
+
+
+def search(sides: list[Side], quiet: bool, test: Test, located: float) -> list[Side]:
+    """Find the answer of each side."""
+    for side in sides:
+        _plan(side, quiet, located)
+    planned = [side for side in sides if side.rungs]
+    first = test(planned, [side.rungs[0] for side in planned])
+    left = []
+    for side, dies in zip(planned, first, strict=True):
+        if dies == quiet and quiet and not math.isnan(side.exact):
+            side.answer = side.exact  # quiet up to the linear boundary
+        elif dies != quiet and not quiet and not math.isnan(side.exact):
+            side.answer = side.exact  # quiet from the linear boundary on
+        elif dies != quiet:
+            side.outer = side.rungs[0]
+        else:
+            side.inner = side.rungs[0]
+            left.append(side)
+    later = [(side, rung) for side in left for rung in side.rungs[1:]]
+    answers = test([side for side, _ in later], [rung for _, rung in later])
+    for (side, rung), dies in zip(later, answers, strict=True):
+        if not math.isnan(side.outer):
+            continue
+        if dies == quiet:
+            side.inner = rung
+        else:
+            side.outer = rung
+    bisect(sides, quiet, test, located)
+    return sides
+
+
+def _plan(side: Side, quiet: bool, located: float) -> None:
+    """The linear boundary of a side, and the values that are to be run."""
+
+    def stable(value: float) -> bool:
+        sliding = Sliding.of(side.cure.apply(value))
+        return sliding is not None and not sliding.is_unstable
+
+    now = stable(side.inner)
+    flags = []
+    for value in side.values:
+        flags.append(stable(float(value)))
+        if quiet and not flags[-1]:
+            break
+        if not quiet and len(flags) > 1 and flags[-2] and not flags[-1]:
+            break  # the first stretch of stable values has ended
+    reached = side.values[: len(flags)]
+    if quiet:
+        if flags[-1]:
+            side.rungs = thinned(reached)
+            return
+        low = float(reached[-2]) if len(reached) > 1 else side.inner
+        kept, side.exact = _halve(stable, low, float(reached[-1]))
+        back = kept - math.copysign(side.scale(located), kept - side.inner)
+        beyond = (back - side.inner) * (kept - side.inner) > 0
+        side.rungs = [back if beyond else 0.5 * (side.inner + kept)]
+        side.exact = kept
+        return
+    steady = np.flatnonzero(flags)
+    if not steady.size:
+        return
+    outer = reached[steady]
+    if now:
+        side.rungs = thinned(outer)
+        return
+    first = int(steady[0])
+    low = float(reached[first - 1]) if first else side.inner
+    _, side.exact = _halve(stable, low, float(reached[first]))
+    check = side.beyond(side.exact, located)
+    side.inner = side.exact
+    rest = [v for v in outer if abs(v - side.cure.value) > abs(check - side.cure.value)]
+    side.rungs = [check, *thinned(np.array(rest))]
+
+
+def _halve(
+    stable: Callable[[float], bool], inner: float, outer: float
+) -> tuple[float, float]:
+    """The last value like the inner one and the first like the outer one."""
+    like = stable(inner)
+    for _ in range(HALVINGS):
+        middle = 0.5 * (inner + outer)
+        if middle in (inner, outer):
+            break
+        if stable(middle) == like:
+            inner = middle
+        else:
+            outer = middle
+    return inner, outer
+
+
+def thinned(values: np.ndarray) -> list[float]:
+    """Some of the values, the last among them."""
+    if not values.size:
+        return []
+    count = min(RUNGS, values.size)
+    places = np.unique(np.geomspace(1, values.size, count).astype(int)) - 1
+    return [float(value) for value in values[places]]
+
+
+def bisect(sides: Sequence[Side], quiet: bool, test: Test, located: float) -> None:
+    """Answers of the sides that have a bracket, side by side."""
+    while True:
+        wide = [
+            side
+            for side in sides
+            if not math.isnan(side.outer)
+            and abs(side.outer - side.inner) > side.scale(located)
+        ]
+        if not wide:
+            break
+        middles = [0.5 * (side.inner + side.outer) for side in wide]
+        answers = test(wide, middles)
+        for side, at, dies in zip(wide, middles, answers, strict=True):
+            if dies == quiet:
+                side.inner = at
+            else:
+                side.outer = at
+    for side in sides:
+        if not math.isnan(side.outer):
+            side.answer = side.inner if quiet else side.outer
