@@ -25,6 +25,8 @@ NAMES = {
 """Words for what is changed."""
 NO_FRICTION = 1e-3
 """Friction over the present one below which none is left; an undamped flutter needs that."""
+ROUND_OFF = 1e-7
+"""Growth rate over the highest frequency, rad/s, that is the round-off of an undamped motion."""
 CHEAPEST = 3
 """Cures that an answer names."""
 
@@ -59,6 +61,10 @@ def headline(answer: xr.Dataset, prefix: str = "") -> str:
                 "Quiet unless struck: small motions die out, but a hard enough blow or a sudden "
                 "start leaves a vibration that lasts."
             )
+        if _is_neutral(answer):
+            return (
+                "Quiet: nothing damps the vibration after a push, but it stays small."
+            )
         return "Quiet: the vibration dies out."
     at = engineering(value("frequency"), "Hz")
     force = number(value("peak_contact_force_over_preload"), 2)
@@ -84,14 +90,15 @@ def headline(answer: xr.Dataset, prefix: str = "") -> str:
 
 def cause(answer: xr.Dataset) -> str:
     """Why, in one sentence."""
-    rate = f"{number(float(answer.sliding_growth_rate))} per second"
+    twofold = math.log(2.0) / max(abs(float(answer.sliding_growth_rate)), 1e-300)
+    time = engineering(twofold, "s")
     modes = [float(f) for f in answer.mode_frequency.values if f > 0]
     frequencies = " and ".join(engineering(f, "Hz") for f in modes)
     mechanism = Mechanism(int(answer.mechanism))
     if mechanism is Mechanism.falling_friction:
         return (
-            f"Cause: friction that falls with speed feeds the vibration, which grows by {rate} "
-            f"at first; the modes are at {frequencies}."
+            "Cause: friction that falls with speed feeds the vibration, which doubles every "
+            f"{time} at first; the modes are at {frequencies}."
         )
     if mechanism is Mechanism.flutter:
         if len(modes) == 2 and abs(modes[1] - modes[0]) > 0.01 * modes[0]:
@@ -99,26 +106,25 @@ def cause(answer: xr.Dataset) -> str:
         else:
             merged = f"two modes into one near {engineering(modes[0], 'Hz')}"
         return (
-            f"Cause: friction couples {merged} (flutter), and the vibration grows by {rate} at "
-            "first."
+            f"Cause: friction couples {merged} (flutter), and the vibration doubles every {time} "
+            "at first."
         )
     if mechanism is Mechanism.divergence:
         return (
             "Cause: friction and contact push the mass away from steady sliding without "
-            f"oscillation (divergence), by {rate} at first."
+            f"oscillation (divergence); its distance doubles every {time} at first."
         )
     if mechanism is Mechanism.no_sliding_state:
         return "Cause: there is no steady sliding in contact; the answer is that of a sudden start."
     if verdict_of(answer) is Verdict.quiet and not bool(answer.quiet_unless_struck):
-        least = -float(answer.sliding_growth_rate)
         fades = (
-            f"small motions decay by {number(least)} per second"
-            if least > 0
-            else "small motions neither grow nor decay, for nothing damps them"
+            "small motions neither grow nor decay, because nothing damps them"
+            if _is_neutral(answer)
+            else f"small motions halve every {time}"
         )
         return f"Steady sliding is stable: {fades}; the modes are at {frequencies}."
     return (
-        "Steady sliding is stable, but another motion exists beside it, which a push reaches; "
+        "Steady sliding is stable, but another motion exists beside it, which a hard push reaches; "
         f"the modes are at {frequencies}."
     )
 
@@ -149,7 +155,7 @@ def impacts(answer: xr.Dataset) -> str:
             f"{engineering(float(answer.impact_speed), 'm s-1')}"
         )
     parts.append(f"sticking {_share(float(answer.stick_fraction))} of the time")
-    parts.append("repeats itself" if bool(answer.periodic) else "does not repeat")
+    parts.append("it repeats" if bool(answer.periodic) else "it does not repeat")
     resolution = engineering(float(answer.frequency_resolution), "Hz", 2)
     parts.append(f"frequencies are resolved to {resolution}")
     return "Motion: " + "; ".join(parts) + "."
@@ -205,10 +211,16 @@ def lines(answer: xr.Dataset) -> Iterator[str]:
         yield f"  {cure_line(cure, quiet)}"
     others = [cure.words for cure in table[CHEAPEST:]]
     vain = [words for words, _ in not_cures(answer)]
-    told = [f"then {', '.join(others)}"] if others else []
-    told += [f"not {', '.join(vain)}"] if vain else []
+    told = [f"also {', '.join(others)}"] if others else []
+    told += [f"no answer within the range searched: {', '.join(vain)}"] if vain else []
     if told:
         yield f"  {'; '.join(told)}"
+
+
+def _is_neutral(answer: xr.Dataset) -> bool:
+    """Whether small motions about steady sliding keep their size, apart from round-off."""
+    fastest = 2.0 * math.pi * float(answer.mode_frequency.max())
+    return abs(float(answer.sliding_growth_rate)) <= ROUND_OFF * fastest
 
 
 def _found(answer: xr.Dataset) -> list[str]:
