@@ -17,14 +17,12 @@ from squealpipe.laws.springs import LONG, geometry
 from squealpipe.models import a1
 from squealpipe.parameters import Parameters
 from squealpipe.schema.assess import Mechanism
+from squealpipe.tasks.cycles.sliding import GROWS
 
 MOST_STEPS = 40
 """Newton steps."""
 BALANCE = 1e-11
 """Force left over at an equilibrium, over that of the preload."""
-GROWS = 1e-7
-"""Growth rate, over the largest |s|, above which steady sliding is unstable; below it is the
-round-off of an undamped pair."""
 STEP = 1e-30
 """Imaginary step, over a length or a speed of the system."""
 

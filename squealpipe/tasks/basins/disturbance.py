@@ -22,7 +22,7 @@ from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.solvers.a1.jobs import Model
 from squealpipe.tasks.cycles.scene import Scene
-from squealpipe.tasks.cycles.sliding import steady_sliding
+from squealpipe.tasks.cycles.sliding import GROWS, steady_sliding
 from squealpipe.tasks.dynamics.motion import linear_time, whirls
 from squealpipe.tasks.linear.maps import stability_map
 from squealpipe.validation import (
@@ -39,9 +39,6 @@ T_END = 200.0
 """Default horizon, in units of √(2m/(k1 + k2))."""
 BOUNDS = {LeadsTo.contact_lost: 3.0, LeadsTo.whirl: 15.0}
 """Default largest disturbance, in the norm of :func:`smallest_disturbance`."""
-GROWS = 1e-7
-"""Growth rate, over the largest |s|, above which steady sliding is unstable; below it is the
-round-off of an undamped pair."""
 CONFIDENCE = 0.95
 
 

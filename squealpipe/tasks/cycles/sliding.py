@@ -10,6 +10,9 @@ from squealpipe.systems.cycles.flow import Flow, Vector
 from squealpipe.systems.trace import TIME
 from squealpipe.tasks.cycles.scene import Scene
 
+GROWS = 1e-7
+"""Growth rate, over the largest |s|, above which steady sliding is unstable; below it is the
+round-off of an undamped pair."""
 _BALANCE = 1e-8
 """Largest force left over at an equilibrium, over the preload's."""
 _MOST_PIECES = 20
