@@ -42,7 +42,7 @@ def assess(
         Dataset ``assess``: scalars of both starts, spectrum and path of the settled motion of the
         verdict, and over ``cure``, by ascending change: the nearest value from which the brake is
         quiet (of a quiet one, up to which it is), from steady sliding and from any start that was
-        tried: both above, three strikes, and the motions of this brake. NaN: none between
+        tried: both above, three strikes, and the motions of this brake, followed. NaN: none between
         ``lowest_tried`` and ``highest_tried``. Outcomes: converged, unresolved (undetermined),
         no_sliding_state.
     """
