@@ -31,6 +31,8 @@ BELOW = 10.0
 """Velocity, over that of the push, up to which the motion of an undamped brake is quiet."""
 SHOWN = 0.5
 """Growth or decay within a window, in logarithm, from which it would be seen."""
+SEEN = 1.0
+"""Decay, in logarithm, that two states cannot pretend by their phases."""
 OFTEN = 2
 """Losses of contact within a window from which contact is lost again and again."""
 
@@ -58,6 +60,12 @@ class Start:
             return 0.0
         rate = self.sliding.growth_rate
         return rate if abs(rate) > self.sliding.marginal else 0.0
+
+    def size(self, state: np.ndarray) -> float:
+        """How far a state is from steady sliding, m/s."""
+        rest = np.zeros(4) if self.sliding is None else self.sliding.state
+        away = state - rest
+        return float(np.hypot(*away[:2]) * self.design.rate + np.hypot(*away[2:]))
 
 
 @dataclass(frozen=True)
@@ -138,19 +146,9 @@ def _judge(
     """The verdict on two successive windows; None: they have not settled."""
     if not now.finished:
         return None
-    if (
-        not now.nonlinear
-        and start.rate <= 0.0
-        and now.peak_speed <= BELOW * start.speed
-    ):
-        if now.peak_speed < FADED * start.speed or start.rate == 0.0:
-            return Verdict.quiet
-        # half of what small motions decay from the middle of one window to that of the next
-        decay = 0.5 * start.rate * 0.5 * (span + seconds)
-        if not before.nonlinear and np.hypot(*now.rms) < np.hypot(*before.rms) * np.exp(
-            decay
-        ):
-            return Verdict.quiet
+    fades = not now.nonlinear and start.rate <= 0.0
+    if fades and _dies_out(start, before, span, now, seconds):
+        return Verdict.quiet
     lost = [bool(each.separations >= OFTEN) for each in (before, now)]
     if lost[0] != lost[1] or not _agree(before, now):
         return None
@@ -164,6 +162,23 @@ def _judge(
     if not shown and start.rate != 0.0:
         return None
     return Verdict.squeals
+
+
+def _dies_out(
+    start: Start, before: Windows, span: float, now: Windows, seconds: float
+) -> bool:
+    """Whether the motion of a window without events is small and decays as small motions do."""
+    if now.peak_speed > BELOW * start.speed:
+        # a long window may begin loud: half of the decay within it has to be seen
+        decay = 0.5 * start.rate * seconds
+        left = min(BELOW * start.speed, now.peak_speed * np.exp(decay))
+        return bool(decay < -SEEN and start.size(now.final) < left)
+    if now.peak_speed < FADED * start.speed or start.rate == 0.0:
+        return True
+    # half of what small motions decay from the middle of one window to that of the next
+    decay = 0.5 * start.rate * 0.5 * (span + seconds)
+    quieter = np.hypot(*now.rms) < np.hypot(*before.rms) * np.exp(decay)
+    return bool(not before.nonlinear and quieter)
 
 
 def _agree(before: Windows, now: Windows) -> bool:

@@ -8,8 +8,9 @@ import pytest
 from squealpipe import Parameters, Sweep, assess, load, run_sweep, save, stability_map
 from squealpipe.schema.assess import CURES, Mechanism, Verdict
 from squealpipe.tasks.assess.designs import cures_of
-from squealpipe.tasks.assess.settling import pushed, settle
+from squealpipe.tasks.assess.settling import _judge, pushed, settle, start_at
 from squealpipe.tasks.assess.sliding import Design, Sliding
+from squealpipe.tasks.assess.windows import run_windows
 from tests.oracles.pad import Pad, strongest_line
 
 NUMBERS = {
@@ -189,6 +190,21 @@ def test_a_belt_at_rest_has_no_steady_sliding():
     assert int(still.mechanism) == Mechanism.no_sliding_state
     assert np.isnan(still.sliding_growth_rate)
     assert int(still.verdict) == int(still.sudden_verdict) == Verdict.quiet
+
+
+def test_a_long_window_that_begins_loud_and_ends_small_is_quiet():
+    """Before the last window of a lightly damped pad is over, its motion may have died out."""
+    pad = PAD.with_(mu=0.1, mu_static=None, friction_law="coulomb")
+    design = Design(pad, math.radians(60), math.radians(60))
+    sliding = Sliding.of(design)
+    loud = 0.3 * (pad.preload - sliding.state[1]) * sliding.push
+    start = start_at(design, sliding, sliding.state + loud)
+    seconds = 8.0 / abs(sliding.growth_rate)
+    window = run_windows([design], start.state[None], np.array([seconds]), tol=1e-9)
+    now = window.row(0)
+    assert not now.nonlinear
+    assert now.peak_speed > 20.0 * start.speed
+    assert _judge(start, now, seconds, now, seconds) is Verdict.quiet
 
 
 def test_an_undamped_brake_is_quiet_where_a_push_stays_small():
