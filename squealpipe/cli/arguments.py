@@ -195,16 +195,23 @@ Picture = Annotated[
 
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
-class Drawn(Written):
-    """The brake of a command that writes a dataset and its picture."""
+class Look:
+    """How a command draws its picture."""
 
-    picture: Picture = None
     figure_size: FigureSize = None
     dpi: Dpi = None
     unit: Units = None
 
 
-BRAKE, WRITTEN, DRAWN = Brake(), Written(), Drawn()
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Drawn(Look, Written):
+    """The brake of a command that writes a dataset and its picture."""
+
+    picture: Picture = None
+
+
+BRAKE, WRITTEN, DRAWN, LOOK = Brake(), Written(), Drawn(), Look()
 FULL_RANGE = parse_range("0:pi:61", parse_angle)
 """Both spring angles from 0 to π."""
 

@@ -5,17 +5,16 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from squealpipe.cli.arguments import (
-    Dpi,
-    FigureSize,
-    Force,
-    Output,
-    OutputElsewhere,
-    Time,
-    Units,
-)
+from squealpipe.cli.arguments import LOOK, Force, Look, Output, OutputElsewhere, Time
 from squealpipe.cli.console import DONE, answer, say
-from squealpipe.cli.output import PICTURES, TABLES, check_output, write
+from squealpipe.cli.output import (
+    PICTURES,
+    TABLES,
+    check_output,
+    draw,
+    draw_beside,
+    write,
+)
 from squealpipe.units import engineering
 
 
@@ -25,9 +24,7 @@ def plot(
     *,
     output: OutputElsewhere = None,
     variable: str | None = None,
-    figure_size: FigureSize = None,
-    dpi: Dpi = None,
-    unit: Units = None,
+    look: Look = LOOK,
     force: Force = False,
 ) -> int:
     """Draw a dataset: a run, a map, a branch, a cycle, an ensemble of a system.
@@ -42,12 +39,9 @@ def plot(
     target = Path(file.with_suffix(".png").name) if output is None else output
     check_output(target, force=force, kinds=PICTURES)
 
-    from squealpipe.plotting import picture
-    from squealpipe.plotting.style import save_figure
     from squealpipe.store.foreign import load_any
 
-    drawn = picture(load_any(file), variable, units=unit or ())
-    save_figure(drawn, [target], size=figure_size, dpi=dpi)
+    draw(load_any(file), target, look, variable=variable)
     say(f"wrote {target}")
     return DONE
 
@@ -62,9 +56,7 @@ def spectrum(
         Path | None,
         Parameter(name=["--picture", "-p"], help="also draw it (png, svg or pdf)."),
     ] = None,
-    figure_size: FigureSize = None,
-    dpi: Dpi = None,
-    unit: Units = None,
+    look: Look = LOOK,
     force: Force = False,
 ) -> int:
     """Write the spectrum of a run in Hz: velocities, contact force and its strongest lines.
@@ -80,8 +72,6 @@ def spectrum(
         check_output(picture, force=force, kinds=PICTURES, option="--picture")
 
     import squealpipe
-    from squealpipe.plotting import picture as drawn
-    from squealpipe.plotting.style import save_figure
     from squealpipe.store.identity import dataset_id
 
     run = squealpipe.load(file)
@@ -91,8 +81,7 @@ def spectrum(
         config={"run": dataset_id(run), "last": last},
     )
     if picture is not None:
-        figure = drawn(made, units=unit or ())
-        save_figure(figure, [picture], size=figure_size, dpi=dpi)
+        draw_beside(made, output, picture, look)
     say(f"wrote {output}{f' and {picture}' if picture else ''}")
     lines = made.peak_frequency.values
     told = ", ".join(engineering(float(line), "Hz", 4) for line in lines[:3])

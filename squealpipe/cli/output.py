@@ -7,7 +7,7 @@ from glob import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from squealpipe.cli.arguments import Drawn, Written
+from squealpipe.cli.arguments import Drawn, Look, Written
 from squealpipe.cli.console import SESSION, say, working
 from squealpipe.cli.long_work import say_what_it_takes
 from squealpipe.cli.reservation import reserve
@@ -78,10 +78,11 @@ def compute(
         options: its keywords; those that are None are left to their defaults.
     """
     check_output(output, force=brake.force)
-    written = [output]
-    if isinstance(brake, Drawn):
-        written.append(brake.picture or output.with_suffix(".png"))
-        check_output(written[1], force=brake.force, kinds=PICTURES, option="--picture")
+    drawn = (
+        check_picture(brake.picture, output, force=brake.force)
+        if isinstance(brake, Drawn)
+        else None
+    )
 
     import squealpipe
     from squealpipe.schema.origin import plain
@@ -99,21 +100,36 @@ def compute(
             output,
             config={"parameters": brake.params.as_dict(), **stated},
         )
-    if isinstance(brake, Drawn):
-        from squealpipe.plotting import picture
-        from squealpipe.plotting.style import save_figure
-
-        SESSION.remedy = (
-            f"{output} is written; squealpipe plot {output} -o {written[1]} draws it"
-        )
-        save_figure(
-            picture(dataset, units=brake.unit or ()),
-            written[1:],
-            size=brake.figure_size,
-            dpi=brake.dpi,
-        )
-    say(f"wrote {' and '.join(map(str, written))}")
+    if isinstance(brake, Drawn) and drawn is not None:
+        draw_beside(dataset, output, drawn, brake)
+    say(f"wrote {output}{f' and {drawn}' if drawn else ''}")
     return dataset
+
+
+def check_picture(picture: Path | None, output: Path, *, force: bool) -> Path:
+    """The picture's name, by default beside the dataset, checked as :func:`check_output` does."""
+    drawn = picture or output.with_suffix(".png")
+    check_output(drawn, force=force, kinds=PICTURES, option="--picture")
+    return drawn
+
+
+def draw(
+    dataset: xr.Dataset, path: Path, look: Look, *, variable: str | None = None
+) -> None:
+    """Write the picture of a dataset."""
+    from squealpipe.plotting import picture
+    from squealpipe.plotting.style import save_figure
+
+    figure = picture(dataset, variable, units=look.unit or ())
+    save_figure(figure, [path], size=look.figure_size, dpi=look.dpi)
+
+
+def draw_beside(dataset: xr.Dataset, output: Path, drawn: Path, look: Look) -> None:
+    """Write the picture of a dataset that is written; where it fails, say how to draw it later."""
+    SESSION.remedy = (
+        f"{output} is written; squealpipe plot {output} -o {drawn} draws it"
+    )
+    draw(dataset, drawn, look)
 
 
 def ending(outcome: xr.DataArray) -> tuple[str, str]:

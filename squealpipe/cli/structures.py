@@ -5,9 +5,18 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from squealpipe.cli.arguments import Force, Numbers, Output, Picture, Tolerance, Whole
+from squealpipe.cli.arguments import (
+    LOOK,
+    Force,
+    Look,
+    Numbers,
+    Output,
+    Picture,
+    Tolerance,
+    Whole,
+)
 from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer, say, working
-from squealpipe.cli.output import PICTURES, check_output, write
+from squealpipe.cli.output import check_output, check_picture, draw_beside, write
 from squealpipe.cli.signatures import options_of
 
 LISTED = 20
@@ -24,6 +33,7 @@ def modes(
     n_modes: Whole | None = None,
     output: Output = Path("modes.nc"),
     picture: Picture = None,
+    look: Look = LOOK,
     force: Force = False,
 ) -> int:
     """Compute complex modes of a structure; write a dataset and a picture.
@@ -38,12 +48,9 @@ def modes(
         n_modes: so many modes; this or the other limit is needed beyond 1000 degrees of freedom.
     """
     check_output(output, force=force)
-    drawn = picture or output.with_suffix(".png")
-    check_output(drawn, force=force, kinds=PICTURES, option="--picture")
+    drawn = check_picture(picture, output, force=force)
 
     from squealpipe import Structure
-    from squealpipe.plotting import picture as draw
-    from squealpipe.plotting.style import save_figure
 
     structure = Structure.read(file)
     asked: dict[str, Any] = {
@@ -59,7 +66,7 @@ def modes(
             output,
             config={"parameters": structure.as_dict(), **options},
         )
-    save_figure(draw(dataset), [drawn])
+    draw_beside(dataset, output, drawn, look)
     unstable = dataset.unstable
     ever = unstable.any([dim for dim in unstable.dims if dim != "mode"])
     answer(f"{int(ever.sum())} of {ever.size} modes are unstable somewhere")
@@ -98,6 +105,7 @@ def squeal(
     frequency_max: float | None = None,
     output: Output = Path("squeal.nc"),
     picture: Picture = None,
+    look: Look = LOOK,
     force: Force = False,
 ) -> int:
     """Say which unstable modes of a structure squeal, how loud, and with how much contact loss.
@@ -120,12 +128,9 @@ def squeal(
             needed beyond 1000 degrees of freedom.
     """
     check_output(output, force=force)
-    drawn = picture or output.with_suffix(".png")
-    check_output(drawn, force=force, kinds=PICTURES, option="--picture")
+    drawn = check_picture(picture, output, force=force)
 
     from squealpipe import Structure, squealing_modes
-    from squealpipe.plotting import picture as draw
-    from squealpipe.plotting.style import save_figure
     from squealpipe.study.report.squealing import lines
 
     structure = Structure.read(file)
@@ -141,7 +146,7 @@ def squeal(
             output,
             config={"parameters": structure.as_dict(), **limits, **options},
         )
-    save_figure(draw(dataset), [drawn])
+    draw_beside(dataset, output, drawn, look)
     answer(*lines(dataset))
     say(f"wrote {output} and {drawn}")
     return DONE if int(dataset.verdict) == 0 else ANSWER_IS_NO

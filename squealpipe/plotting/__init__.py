@@ -16,7 +16,7 @@ from squealpipe.plotting.modes import figure as modes_figure
 from squealpipe.plotting.propensity import draw_shares
 from squealpipe.plotting.propensity import figure as propensity_figure
 from squealpipe.plotting.quantities import SHOWN, draw_quantity, mark_changed, shown
-from squealpipe.plotting.run import draw_force, draw_spectrum
+from squealpipe.plotting.run import draw_force, draw_spectrum, draw_spectrum_in_hertz
 from squealpipe.plotting.run import figure as run_figure
 from squealpipe.plotting.squealing import draw_poles
 from squealpipe.plotting.squealing import figure as squealing_figure
@@ -30,6 +30,7 @@ DRAWN: dict[str, Callable[[Axes, xr.Dataset], None]] = {
     "assess": draw_settled_orbit,
     "simulation": draw_force,
     "run_summary": draw_spectrum,
+    "spectrum": draw_spectrum_in_hertz,
     "backbone": draw_backbone,
     "limit_cycle": draw_cycle,
     "periodic_orbit": draw_cycle,

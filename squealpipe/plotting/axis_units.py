@@ -13,19 +13,22 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from matplotlib.ticker import (
     AutoLocator,
+    FixedLocator,
     FuncFormatter,
     Locator,
     LogLocator,
     NullLocator,
 )
 
+from squealpipe.plotting.style import ANGLES, angle_in_words, symbol
 from squealpipe.schema.sizes import is_real
 from squealpipe.text import number
 from squealpipe.units import conversion, shown_in
 
-READABLE = {"m": "m", "s": "s", "N": "N", "m/s": "m s-1", "N/m": "N m-1"}
+READABLE = {"m": "m", "s": "s", "N": "N", "Hz": "Hz", "m/s": "m s-1", "N/m": "N m-1"}
 """Unit of an axis → CF unit, of those for which a readable one is chosen."""
 _LABEL = re.compile(r"^(.*?)\s*\(([^()]+)\)$", re.DOTALL)
 
@@ -61,11 +64,36 @@ def in_units(figure: Figure, wanted: Sequence[str], dataset: xr.Dataset) -> None
             _convert(axis, words, conversion(unit, target) or 1.0, target)
         elif is_real(dataset):
             _make_readable(axis, words, unit)
+    left -= _title_angles(figure, wanted, dataset)
     if left:
         axes = ", ".join(sorted(seen)) or "of numbers without a unit"
         raise ValueError(
             f"unit {min(left)}: no axis of this picture measures that; its axes are in {axes}"
         )
+
+
+def _title_angles(
+    figure: Figure, wanted: Sequence[str], dataset: xr.Dataset
+) -> set[str]:
+    """Write the angles in titles in the wanted unit of angles; that unit, if there are any."""
+    angles = {
+        name: float(dataset[name])
+        for name in ANGLES
+        if name in dataset and not dataset[name].ndim
+    }
+    used = set()
+    for unit in wanted:
+        turn = conversion("rad", unit)
+        sign = "°" if conversion(unit, "deg") == 1.0 else f" {unit}"
+        for text in figure.findobj(Text) if turn is not None else ():
+            words = text.get_text()  # type: ignore[attr-defined]
+            for name, angle in angles.items():
+                now = f"{symbol(name)} = {number(angle * (turn or 1.0), 6)}{sign}"
+                changed = words.replace(angle_in_words(name, angle), now)
+                used |= {unit} if changed != words else set()
+                words = changed
+            text.set_text(words)  # type: ignore[attr-defined]
+    return used
 
 
 def _axes_of(axes: Axes) -> tuple[Axis, Axis]:
@@ -91,7 +119,8 @@ def _convert(axis: Axis, words: str, factor: float, unit: str) -> None:
         axis.set_minor_locator(NullLocator())
         axis.set_major_formatter(FuncFormatter(lambda x, _: _power(x * factor)))
     else:
-        axis.set_major_locator(_ScaledLinear(factor))
+        if not isinstance(axis.get_major_locator(), FixedLocator):  # multiples of π/4
+            axis.set_major_locator(_ScaledLinear(factor))
         axis.set_major_formatter(FuncFormatter(lambda x, _: number(x * factor, 6)))
 
 

@@ -10,7 +10,6 @@ from matplotlib.axes import Axes
 from squealpipe.plotting import style
 from squealpipe.schema import SYSTEM, meanings
 
-ANGLES = ("alpha1", "alpha2")
 UNITS = {"s-1": "1/s", "rad s-1": "rad/s", "m s-1": "m/s"}
 """Units of CF as axes show them."""
 SHOWN: dict[str, tuple[str, Mapping[str, object]]] = {
@@ -38,7 +37,6 @@ SHOWN: dict[str, tuple[str, Mapping[str, object]]] = {
     "own_scenes": ("separated_fraction", {}),
     "parameter_inference": ("share", {}),
     "settled_extremes": ("late_max_x", {}),
-    "spectrum": ("contact_force", {}),
     "transient": ("lifetime", {}),
     "verdict_robustness": ("share", {}),
     "whirl": ("amplitude", {}),
@@ -115,7 +113,11 @@ def draw_quantity(axes: Axes, variable: xr.DataArray) -> None:
         style.say_instead(axes, f"{_words(variable)}:\nno value anywhere")
         return
     chosen = [
-        f"{name} {at.item()}" for name, at in variable.coords.items() if not at.ndim
+        style.angle_in_words(str(name), at.item())
+        if name in style.ANGLES
+        else f"{name} {at.item()}"
+        for name, at in variable.coords.items()
+        if not at.ndim
     ]
     axes.set_title(", ".join(chosen), loc="left")
     axes.set_xlabel(label(x))
@@ -144,7 +146,7 @@ def _draw_map(
     else:
         low, high = np.percentile(values[np.isfinite(values)], [1, 99])
         scale = {"cmap": "viridis", "vmin": low, "vmax": high}
-    if variable.dims == ANGLES:
+    if variable.dims == style.ANGLES:
         mesh = style.draw_map(axes, variable, values, **scale)
     else:
         places = [
@@ -185,5 +187,5 @@ def label(variable: xr.DataArray) -> str:
     """What a variable is, with its unit, for an axis."""
     unit = UNITS.get(unit := str(variable.attrs.get("units", "1")), unit)
     name = str(variable.name)
-    words = style.symbol(name) if name in ANGLES else _words(variable)
+    words = style.symbol(name) if name in style.ANGLES else _words(variable)
     return words if unit == "1" else f"{words} ({unit})"

@@ -17,6 +17,7 @@ from squealpipe.methods.spectrum import (
 )
 from squealpipe.plotting import style
 from squealpipe.plotting.mechanism import SPRING_COLOURS, displaced_springs
+from squealpipe.plotting.quantities import label
 from squealpipe.schema import meanings
 from squealpipe.schema.dynamics.intervals import intervals
 
@@ -57,8 +58,8 @@ def figure(run: xr.Dataset) -> Figure:
         draw(panel, run)
         style.panel_letter(panel, letter, title)
     drawn.suptitle(
-        f"α₁ = {style.pi_label(float(run.alpha1))}, α₂ = {style.pi_label(float(run.alpha2))}, "
-        f"model {run.attrs.get('model', 'A1')}",
+        ", ".join(style.angle_in_words(name, float(run[name])) for name in style.ANGLES)
+        + f", model {run.attrs.get('model', 'A1')}",
         fontsize=9,
     )
     return drawn
@@ -182,15 +183,34 @@ def draw_spectrum(axes: Axes, dataset: xr.Dataset) -> None:
         frequency, amplitude = amplitude_spectrum(
             force, float(steps[0]), padding=PADDING
         )
+    lines = strongest_lines(frequency, amplitude, 3, PADDING * float(frequency[1]))
+    if _draw_lines(axes, frequency, amplitude, lines):
+        axes.set(xlabel="ω (rad/s)", ylabel=f"amplitude of {FORCE}")
+
+
+def draw_spectrum_in_hertz(axes: Axes, spectrum: xr.Dataset) -> None:
+    """The contact force of a dataset ``spectrum``, up to where it is loud."""
+    frequency, force = spectrum.frequency, spectrum.contact_force
+    lines = spectrum.peak_frequency.values[:3], spectrum.peak_force.values[:3]
+    if _draw_lines(axes, frequency.values, force.values, lines):
+        axes.set(xlabel=label(frequency), ylabel=label(force))
+
+
+def _draw_lines(
+    axes: Axes,
+    frequency: np.ndarray,
+    amplitude: np.ndarray,
+    lines: tuple[np.ndarray, np.ndarray],
+) -> bool:
+    """A spectrum with its strongest lines, where it has any."""
     loud = np.flatnonzero(amplitude > LOUD * amplitude.max(initial=0.0))
     if not loud.size:
         style.say_instead(axes, "the contact force does not oscillate")
-        return
+        return False
     axes.plot(frequency, amplitude, color=style.BLUE)
-    lines = strongest_lines(frequency, amplitude, 3, PADDING * float(frequency[1]))
     axes.plot(*lines, "v", color=style.RED, markersize=4)
     axes.set(xlim=(0, 1.2 * frequency[loud[-1]]), ylim=(0, None))
-    axes.set(xlabel="ω (rad/s)", ylabel=f"amplitude of {FORCE}")
+    return True
 
 
 def _too_short(axes: Axes, run: xr.Dataset) -> bool:

@@ -47,6 +47,7 @@ GREEK, SUBSCRIPTS = (
     str.maketrans("0123s", "₀₁₂₃ₛ"),
 )
 
+ANGLES = ("alpha1", "alpha2")
 REGIME_COLOURS = {
     "slip_slower": BLUE,
     "slip_faster": GREEN,
@@ -122,6 +123,11 @@ def pi_label(angle: float) -> str:
             head = "" if numerator == 1 else str(numerator)
             return f"{head}π" + ("" if denominator == 1 else f"/{denominator}")
     return f"{over_pi:.4g}π"
+
+
+def angle_in_words(name: str, angle: float) -> str:
+    """A title's words for one of the spring angles."""
+    return f"{symbol(name)} = {pi_label(angle)}"
 
 
 def symbol(name: str) -> str:

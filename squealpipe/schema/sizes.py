@@ -5,12 +5,19 @@ import math
 
 import xarray as xr
 
+from squealpipe.schema.squealing import SQUEALING
+from squealpipe.schema.structures import NAME
+
 SMALL_PRELOAD, SHORT_TIME = 0.01, 0.01
 """Preload, m, and √(m/k1), s, of a brake that one can hold; scaled numbers have 1 for both."""
+STRUCTURES = (NAME, SQUEALING.name)
+"""Schemas of structures, whose matrices are in SI."""
 
 
 def is_real(dataset: xr.Dataset) -> bool:
     """Whether a dataset is of a brake with the size of a real one, not of scaled numbers."""
+    if str(dataset.attrs.get("schema")).startswith(STRUCTURES):
+        return True
     text = dataset.attrs.get("parameters")
     if not isinstance(text, str):
         return False
