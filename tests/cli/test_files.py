@@ -22,8 +22,11 @@ from squealpipe import (
     convert,
     load,
     natural_frequencies,
+    plot,
     save,
     simulate,
+    spectrum,
+    stability_map,
     summarize,
 )
 from squealpipe.cli import run
@@ -346,6 +349,33 @@ def test_axes_take_the_units_that_are_asked_for_and_real_brakes_readable_ones():
     assert marks.get_xdata()[0] * 0.5 / math.pi == pytest.approx(float(line))
     scaled = simulate(Parameters(), 2.0, 1.0, t_end=100.0)
     assert picture(scaled).axes[2].get_xlabel() == "x (m)"
+
+
+def test_titles_have_the_angles_in_the_unit_that_is_asked_for():
+    motion = simulate(Parameters(), math.radians(22), math.radians(45), t_end=20.0)
+    words = picture(motion).get_suptitle()
+    assert words == "α₁ = 0.1222π, α₂ = π/4, model A1"
+    words = picture(motion, units=("deg",)).get_suptitle()
+    assert words == "α₁ = 22°, α₂ = 45°, model A1"
+    ends = np.linspace(0.0, math.pi, 5)
+    drawn = picture(stability_map(Parameters(), ends, ends), units=("deg",))
+    drawn.canvas.draw()
+    ticks = [each.get_text() for each in drawn.axes[0].get_xticklabels()]
+    assert drawn.axes[0].get_xlabel() == "α₁ (deg)"
+    assert ticks == ["0", "45", "90", "135", "180"]
+
+
+def test_the_picture_of_a_spectrum_ends_where_nothing_is_heard():
+    time = np.linspace(0.0, 100.0, 4001)
+    motion = simulate(Parameters(), 2.0, 1.0, t_end=100.0, times=time)
+    lines = spectrum(motion)
+    axes = plot(lines)
+    highest = lines.frequency.values[
+        np.flatnonzero(lines.contact_force > 0.01 * lines.contact_force.max())[-1]
+    ]
+    assert axes.get_xlim() == pytest.approx((0.0, 1.2 * highest))
+    marks = next(line for line in axes.lines if line.get_marker() == "v")
+    assert marks.get_xdata() == pytest.approx(lines.peak_frequency.values[:3])
 
 
 @pytest.mark.parametrize(

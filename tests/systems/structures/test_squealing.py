@@ -4,10 +4,12 @@ import json
 
 import numpy as np
 import pytest
+from PIL import Image
 from scipy.io import mmwrite
 
 from squealpipe import Contact, Structure, load, plot, save, squealing_modes
 from squealpipe.cli import run
+from squealpipe.plotting import picture
 from squealpipe.schema.assess import Verdict
 from squealpipe.schema.squealing import Kind
 from squealpipe.structures import elastic_pad
@@ -152,12 +154,19 @@ def test_the_command_says_it_in_words_and_writes_a_picture(
         "mass: mass.mtx\nstiffness: stiffness.mtx\ncontacts: contacts.csv\n"
         "modal_damping: 0.02\nmu: 1.0\nbelt_speed: -2.0\n"
     )
-    assert run(["squeal", "pad.yaml", "--samples", "12", "-o", "squeal.nc"]) == 1
+    look = ["--figure-size", "7in x 3in", "--dpi", "100", "--unit", "mm/s"]
+    assert run(["squeal", "pad.yaml", "--samples", "12", "-o", "squeal.nc", *look]) == 1
     said = capsys.readouterr().out
     assert "Hammers at 2.08 kHz: contact c is open 38 % of the time" in said
     assert "12 of 12 random starts (76 % to 100 % of all) end in a cycle" in said
     assert load("squeal.nc").attrs["schema"] == "squealing_modes"
-    assert (tmp_path / "squeal.png").stat().st_size > 10000
+    assert Image.open(tmp_path / "squeal.png").size == (700, 300)
+    # by itself a structure's picture has the units that people write
+    assert picture(load("squeal.nc")).axes[2].get_xlabel() == "rms speed (m/s)"
+    assert run(["modes", "pad.yaml", "-o", "modes.nc", *look[:4], "--unit", "Hz"]) == 0
+    assert Image.open(tmp_path / "modes.png").size == (700, 300)
+    assert run(["plot", "modes.nc", "-o", "s.png", "--unit", "mm"]) == 2
+    assert "its axes are in 1/s, kHz" in capsys.readouterr().err
 
 
 @pytest.mark.release
