@@ -11,8 +11,6 @@ from functools import lru_cache
 from types import ModuleType, SimpleNamespace
 from typing import Any, Protocol, cast
 
-from numpy import iscomplexobj
-
 from squealpipe.laws.friction_laws import coulomb, exponential, hyperbolic  # noqa: F401
 from squealpipe.laws.tables import Pieces, functions_of, is_table, pieces_of, polynomial
 
@@ -58,6 +56,12 @@ BESIDE = 1e-12
 other units may miss its knot by round-off."""
 
 
+def _is_complex(speed: Any) -> bool:
+    """Without NumPy, whose import the command line's help need not wait for."""
+    dtype = getattr(speed, "dtype", None)
+    return isinstance(speed, complex) or getattr(dtype, "kind", None) == "c"
+
+
 class Table:
     """A measured law; speeds in units of ``p.friction_speed``, which is 1 m/s in SI parameters."""
 
@@ -68,7 +72,7 @@ class Table:
 
     def coefficient(self, speed: Any, p: Any) -> Any:
         """μ(w); of a complex speed to first order, so that a complex step gives :meth:`slope`."""
-        if iscomplexobj(speed):
+        if _is_complex(speed):
             rate = self.slope(speed.real, p)
             return self.coefficient(speed.real, p) + 1j * rate * speed.imag
         return self.pieces.value(speed * p.friction_speed**-1.0)
