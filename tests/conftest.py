@@ -29,6 +29,8 @@ NOT_COPIED = shutil.ignore_patterns(
 
 # A shell that starts the tests in the background makes them and their children ignore Ctrl-C.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+# And nohup makes them ignore a hangup, which the tests of interrupted commands send.
+signal.signal(signal.SIGHUP, signal.SIG_DFL)
 # With more threads for linear algebra small solvers of two test processes wait for one another: a
 # search for cycles takes 2.4 times the CPU time. Processes that are started from here inherit it.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")

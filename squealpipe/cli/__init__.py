@@ -140,4 +140,17 @@ def _message(error: Exception) -> str:
 def main() -> None:
     """Entry point of the command ``squealpipe``."""
     sys.stdout.reconfigure(errors="replace")  # type: ignore[union-attr]  # no Greek: question marks
-    sys.exit(run(sys.argv[1:]))
+    try:
+        code = run(sys.argv[1:])
+    finally:
+        _flush()
+    sys.exit(code)
+
+
+def _flush() -> None:
+    """Let Python's own last flush succeed: where a reader is gone its exit code would be 120."""
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except BrokenPipeError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

@@ -279,7 +279,8 @@ def test_a_killed_command_goes_on_where_it_was(tmp_path):
     ]
     with subprocess.Popen([*words, "a.nc"], cwd=tmp_path) as sweep:
         until = time.monotonic() + 100
-        while not list(tmp_path.glob(".a.nc.runs/*/*.npz")) and sweep.poll() is None:
+        whole = ".a.nc.runs/*/[0-9]*.npz"  # one that is being written starts with a dot
+        while not list(tmp_path.glob(whole)) and sweep.poll() is None:
             assert time.monotonic() < until
             time.sleep(0.05)
         sweep.kill()
