@@ -49,7 +49,7 @@ def test_hooks_watch_files_that_exist():
 
 INSIDE_FUNCTIONS = {
     "squealpipe/systems/system.py": "cycles load scipy.interpolate, which runs do not need",
-    "squealpipe/systems/structures/structure.py": "a Structure binds what can be done with it",
+    "squealpipe/systems/structures/structure.py": "runs load the compiler, which modes do not need",
 }
 """Modules that may import parts of the package inside functions; the command line may, too: a
 command loads what it needs, so that ``--help`` is quick."""

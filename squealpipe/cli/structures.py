@@ -135,7 +135,9 @@ def squeal(
 
     structure = Structure.read(file)
     chosen = {"n_modes": n_modes, "frequency_max": frequency_max}
-    limits = {name: value for name, value in chosen.items() if value is not None}
+    limits: dict[str, Any] = {
+        name: value for name, value in chosen.items() if value is not None
+    }
     options: dict[str, Any] = {"samples": samples, "seed": seed, "tol": tol}
     if t_end is not None:
         options["t_end"] = t_end

@@ -8,6 +8,8 @@ Where a surface changes its sign in a step, the instant is located by exponentia
 import numpy as np
 import scipy.linalg as la
 
+from squealpipe.systems.structures.modes import modal_damping_of
+
 OPEN, SLOWER, FASTER, STICK = range(4)
 
 
@@ -18,7 +20,7 @@ class Exponentials:
         s = structure
         self.n, self.m = s.size, len(s.contacts)
         self.mass, self.stiffness = s.mass.toarray(), s.stiffness.toarray()
-        modal = s.modal_damping_of(None)
+        modal = modal_damping_of(s)
         self.damping = s.damping.toarray()
         if modal is not None:
             self.damping = self.damping + modal.product(np.eye(self.n))

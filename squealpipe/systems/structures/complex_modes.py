@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -14,14 +14,12 @@ from squealpipe.schema import Outcome, build, find
 from squealpipe.schema.origin import versions
 from squealpipe.schema.structures import name_over
 from squealpipe.systems.structures.band import COMPLETE
+from squealpipe.systems.structures.definition import Structure
 from squealpipe.systems.structures.numbering import Way
 from squealpipe.systems.structures.pencil import DENSE
 from squealpipe.systems.structures.sliding import NoSlidingError
 from squealpipe.systems.structures.spectrum import ALL, Limits, Solver, Spectrum
 from squealpipe.validation import real_array
-
-if TYPE_CHECKING:
-    from squealpipe.systems.structures.structure import Structure
 
 STEPS, STEPS_IF_LARGE = 9, 3
 """Frictions on the way from none to one friction."""

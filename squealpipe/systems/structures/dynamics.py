@@ -20,10 +20,11 @@ import scipy.linalg as la
 from squealpipe.laws import friction_laws
 from squealpipe.laws.friction import slip_force, stick_limit
 from squealpipe.laws.tables import is_table
+from squealpipe.systems.structures.definition import Structure
+from squealpipe.systems.structures.modes import modal_damping_of
 
 if TYPE_CHECKING:
     from squealpipe.systems.structures.friction import Friction
-    from squealpipe.systems.structures.structure import Structure
 
 ROUND_OFF = 1e-15
 """Couplings below this share of what they couple are left out."""
@@ -59,7 +60,7 @@ class Numbers:
         scaled = structure.normals * structure.stiffnesses
         stiffness = structure.stiffness.toarray() + scaled @ structure.normals.T
         damping = structure.damping.toarray()
-        if (modal := structure.modal_damping_of(None)) is not None:
+        if (modal := modal_damping_of(structure)) is not None:
             damping = damping + modal.product(np.eye(structure.size))
         drags = la.cho_solve(factor, structure.tangentials)
         return cls(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import scipy.io
@@ -16,12 +16,13 @@ from squealpipe.laws.friction_laws import COLUMNS
 from squealpipe.laws.tables import named
 from squealpipe.parameters import brief, is_finite_number
 from squealpipe.systems.structures.contact_table import read_contacts
+from squealpipe.systems.structures.definition import Structure
 from squealpipe.systems.structures.matrices import real_square
 from squealpipe.systems.structures.readers import Labelled, read_matrix
-from squealpipe.systems.structures.structure import Structure
 from squealpipe.systems.structures.units import SI, Scales, scales_of
 from squealpipe.text import suggestion
 
+Form = TypeVar("Form", bound=Structure)
 MATRICES = ("mass", "stiffness", "damping")
 NUMBERS = ("mu", "belt_speed", "mu_static", "friction_speed")
 KEYS = (
@@ -39,7 +40,7 @@ NOTHING = 1e-13
 """Entries below this share of the largest are round-off."""
 
 
-def read(path: str | PathLike[str]) -> Structure:
+def read(path: str | PathLike[str], form: type[Form]) -> Form:
     """A structure from its file.
 
     The file has the keys ``mass`` and ``stiffness``, and where needed ``damping``: names of matrix
@@ -54,6 +55,7 @@ def read(path: str | PathLike[str]) -> Structure:
 
     Args:
         path: the YAML file; names in it are relative to its folder.
+        form: :class:`Structure`, or a class derived from it.
 
     Raises:
         FileNotFoundError: a file that does not exist.
@@ -84,7 +86,7 @@ def read(path: str | PathLike[str]) -> Structure:
     if "load" in content:
         arguments["load"] = _load(content["load"], source.parent, scales)
     try:
-        return Structure(**arguments)
+        return form(**arguments)
     except ValueError as error:
         raise ValueError(f"{source}: {error}") from error
 

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 from scipy.sparse.linalg import eigsh
 
-from squealpipe.systems.structures.pencil import DENSE
-
-if TYPE_CHECKING:
-    from squealpipe.systems.structures.structure import Structure
+from squealpipe.systems.structures.definition import Structure
+from squealpipe.systems.structures.pencil import DENSE, LowRank
 
 FIRST = 40
 """Modes computed at first where it is not known how many there are up to a frequency."""
@@ -39,6 +35,20 @@ def modes_at_rest(
     # the largest part of each shape is positive: the same signs on every machine
     peaks = modes[np.abs(modes).argmax(axis=0), np.arange(modes.shape[1])]
     return omega[:number], (modes * np.sign(peaks))[:, :number]
+
+
+def modal_damping_of(
+    structure: Structure, number: int | None = None, omega_max: float | None = None
+) -> LowRank | None:
+    """M Φ diag(2 ζ ω) Φᵀ M of so many modes, or of those up to a frequency, rad/s, or all."""
+    ratios = structure.modal_damping
+    if not np.any(ratios):
+        return None
+    if ratios.ndim:
+        number = len(ratios)
+    omega, modes = modes_at_rest(structure, number, omega_max)
+    ratios = np.broadcast_to(ratios, omega.shape)
+    return LowRank(structure.mass @ modes, 2.0 * ratios * omega)
 
 
 def _lowest(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,12 +12,10 @@ from squealpipe.laws.tables import is_table, pieces_of
 from squealpipe.parameters import brief, is_finite_number, is_whole_number
 from squealpipe.systems.components import MOST_COMPONENTS, Component, Switch
 from squealpipe.systems.definition import MOST_STATES
+from squealpipe.systems.structures.definition import Structure
 from squealpipe.systems.structures.dynamics import Motion, Numbers, reads_speed, total
 from squealpipe.systems.structures.modes import modes_at_rest
 from squealpipe.systems.system import System
-
-if TYPE_CHECKING:
-    from squealpipe.systems.structures.structure import Structure
 
 SLIP = {"slip_slower": 1.0, "slip_faster": -1.0}
 """Regimes of slip by the sign of the sliding speed."""

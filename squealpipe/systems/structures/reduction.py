@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from squealpipe.methods.progress import report
 from squealpipe.parameters import brief, is_finite_number, is_whole_number
 from squealpipe.systems.structures.contact import Contact
+from squealpipe.systems.structures.definition import Structure
 from squealpipe.systems.structures.dense import all_modes
 from squealpipe.systems.structures.modes import modes_at_rest
 from squealpipe.systems.structures.pencil import DENSE
 from squealpipe.systems.structures.sliding import pencil_about, steady_sliding
 from squealpipe.systems.structures.spectrum import Limits, Solver
-
-if TYPE_CHECKING:
-    from squealpipe.systems.structures.structure import Structure
 
 AND_LARGER = 3
 """Larger numbers of modes that must do as well: convergence is not monotonic."""

@@ -8,17 +8,15 @@ pencil M s² + (C + Σ Nᵢ μᵢ′ tᵢtᵢᵀ) s + K + Σ kᵢ (nᵢ + σᵢ 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
+from squealpipe.systems.structures.definition import Structure
 from squealpipe.systems.structures.friction import with_mu
 from squealpipe.systems.structures.pencil import LowRank, Pencil
-
-if TYPE_CHECKING:
-    from squealpipe.systems.structures.structure import Structure
 
 SINGULAR = 1e-13
 """Residual of the steady state, over the forces in it, beyond which the stiffness is singular."""

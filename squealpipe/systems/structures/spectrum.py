@@ -5,18 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from squealpipe.systems.structures import band, dense
-from squealpipe.systems.structures.modes import modes_at_rest
+from squealpipe.systems.structures.definition import Structure
+from squealpipe.systems.structures.modes import modal_damping_of, modes_at_rest
 from squealpipe.systems.structures.pencil import DENSE, LowRank, Pencil
 from squealpipe.systems.structures.refinement import Eigenpair
 from squealpipe.systems.structures.sliding import Sliding, pencil_about, steady_sliding
-
-if TYPE_CHECKING:
-    from squealpipe.systems.structures.structure import Structure
 
 BEYOND = 1.05
 """The band of so many modes ends so far beyond the frequency that they reach without friction."""
@@ -100,8 +98,10 @@ class Solver:
     _known: dict[float, Spectrum] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.modal = self.structure.modal_damping_of(
-            None if self.is_dense else self.limits.n_modes, self._omega_max
+        self.modal = modal_damping_of(
+            self.structure,
+            None if self.is_dense else self.limits.n_modes,
+            self._omega_max,
         )
 
     @property

@@ -9,11 +9,14 @@ import numpy as np
 import scipy.linalg as la
 from scipy.optimize import linear_sum_assignment
 
+from squealpipe.systems.structures.complex_modes import complex_modes
+from squealpipe.systems.structures.definition import Structure
 from squealpipe.systems.structures.modes import modes_at_rest
+from squealpipe.systems.structures.motion_system import system
+from squealpipe.systems.structures.reduction import reduce
 from squealpipe.systems.structures.spectrum import Limits, Solver, Spectrum
 
 if TYPE_CHECKING:
-    from squealpipe.systems.structures.structure import Structure
     from squealpipe.systems.system import System
 
 MOST_MODES = 32
@@ -37,7 +40,7 @@ class Plant:
     def __init__(self, structure: Structure) -> None:
         self.whole = structure
         self.structure = (
-            structure if structure.size <= MOST_MODES else structure.reduce()
+            structure if structure.size <= MOST_MODES else reduce(structure)
         )
         if self.structure.size > MOST_MODES:
             raise ValueError(
@@ -57,7 +60,7 @@ class Plant:
     @cached_property
     def system(self) -> System:
         """As a system, whose states are displacements, then velocities."""
-        return self.structure.system()
+        return system(self.structure)
 
     @property
     def contacts(self) -> list[str]:
@@ -118,7 +121,7 @@ class Plant:
     @cached_property
     def modes(self) -> Any:
         """Complex modes as a dataset, for numbers and critical friction."""
-        return self.structure.complex_modes()
+        return complex_modes(self.structure)
 
     @cached_property
     def _places(self) -> np.ndarray:

@@ -1,0 +1,208 @@
+"""What a structure is: matrices of mass, damping and stiffness with contacts on a moving belt."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from typing import Any, Self
+
+import numpy as np
+import scipy.sparse as sp
+
+from squealpipe.parameters import brief, is_finite_number
+from squealpipe.systems.structures.contact import Contact, directions
+from squealpipe.systems.structures.friction import Friction, default_mu
+from squealpipe.systems.structures.matrices import checked_mass, real_square
+
+
+class Structure:
+    """M q̈ + C q̇ + K q = f + Σ (nᵢ Nᵢ + tᵢ Tᵢ): an elastic structure with contacts on a belt.
+
+    Friction Tᵢ is μ(|wᵢ|) Nᵢ sgn wᵢ in slip, at most μ_s Nᵢ in stick, with the sliding speed
+    wᵢ = speedᵢ · belt_speed − tᵢᵀq̇. Consistent units of any system work; names here are SI's.
+
+    Args:
+        mass: M, (n, n), dense or sparse, symmetric and positive definite, kg.
+        stiffness: K, N/m; parts that are not symmetric are allowed.
+        damping: C, N s/m; likewise. None: none.
+        modal_damping: a damping ratio for all modes, or one for each of the lowest: the modes are
+            those of (M, K + Σ kᵢ nᵢnᵢᵀ), without friction. Up to 1000 degrees of freedom all are
+            meant, beyond those up to the largest frequency asked for, or as many as ratios.
+        contacts: :class:`Contact` each.
+        mu: coefficient of friction, 0.5 by default; with a table a factor of it, 1 by default.
+        belt_speed: V, m/s; its sign is the direction.
+        friction_law, mu_static, friction_speed: as in ``Parameters``.
+        load: f, (n,), N; None: −Σ nᵢ preloadᵢ, which balances the preloads at rest; 0: none.
+
+    Raises:
+        ValueError: matrices that do not fit each other, a mass that is not positive definite,
+            numbers that are not finite or not real, or contacts whose directions are dependent.
+    """
+
+    def __init__(
+        self,
+        mass: Any,
+        stiffness: Any,
+        damping: Any = None,
+        *,
+        modal_damping: float | Sequence[float] = 0.0,
+        contacts: Sequence[Contact] = (),
+        mu: float | None = None,
+        belt_speed: float = 2.0,
+        friction_law: Any = "coulomb",
+        mu_static: float | None = None,
+        friction_speed: float = 1.0,
+        load: Any = None,
+    ) -> None:
+        self.mass = checked_mass(real_square("mass", mass))
+        self.size = int(self.mass.shape[0])
+        """Degrees of freedom n."""
+        self.stiffness = real_square("stiffness", stiffness, self.size)
+        nothing = sp.csr_array((self.size, self.size))
+        self.damping = (
+            nothing if damping is None else real_square("damping", damping, self.size)
+        )
+        self.modal_damping = _ratios(modal_damping, self.size)
+        self.contacts = tuple(contacts)
+        for contact in self.contacts:
+            if not isinstance(contact, Contact):
+                raise ValueError(f"contacts: {brief(contact)} is no Contact")  # noqa: TRY004
+        self.normals, self.tangentials = directions(self.contacts, self.size)
+        self.friction = Friction(
+            friction_law=friction_law,
+            mu=default_mu(friction_law) if mu is None else mu,
+            mu_static=mu_static,
+            friction_speed=friction_speed,
+        )
+        if not is_finite_number(belt_speed):
+            raise ValueError(
+                f"belt_speed = {brief(belt_speed)}: a finite number is needed"
+            )
+        self.belt_speed = float(belt_speed)
+        self.given_load = load
+        self.load = self._load(load)
+        self.modes: np.ndarray | None = None
+        """Of a reduced structure, (n of the whole, n): amplitudes → displacements."""
+        self.record: dict[str, Any] = {}
+        """Of a reduced structure: how many modes were kept, and their errors."""
+
+    @property
+    def mu(self) -> float:
+        """Coefficient of friction."""
+        return self.friction.mu
+
+    @property
+    def preloads(self) -> np.ndarray:
+        """Of each contact, N."""
+        return np.array([each.preload for each in self.contacts])
+
+    @property
+    def stiffnesses(self) -> np.ndarray:
+        """Of each contact, N/m."""
+        return np.array([each.stiffness for each in self.contacts])
+
+    @property
+    def speeds(self) -> np.ndarray:
+        """Belt speed at each contact over ``belt_speed``."""
+        return np.array([each.speed for each in self.contacts])
+
+    @property
+    def stiffness_at_rest(self) -> sp.csr_array:
+        """K + Σ kᵢ nᵢnᵢᵀ, the symmetric part."""
+        scaled = sp.csr_array(self.normals * self.stiffnesses)
+        whole = self.stiffness + scaled @ sp.csr_array(self.normals).T
+        return sp.csr_array(0.5 * (whole + whole.T))
+
+    def _load(self, load: Any) -> np.ndarray:
+        if load is None:
+            return (
+                -self.normals @ self.preloads if self.contacts else np.zeros(self.size)
+            )
+        try:
+            vector = np.asarray(load, dtype=float)
+        except (TypeError, ValueError):
+            raise ValueError(f"load = {brief(load)}: numbers are needed") from None
+        if vector.ndim == 0 and vector == 0:
+            return np.zeros(self.size)
+        if vector.shape != (self.size,) or not np.isfinite(vector).all():
+            raise ValueError(
+                f"load has shape {vector.shape}: {self.size} finite numbers are needed, or 0"
+            )
+        return vector
+
+    def __repr__(self) -> str:
+        names = ", ".join(each.name for each in self.contacts) or "none"
+        return (
+            f"Structure({self.size} degrees of freedom; contacts {names}; mu = {self.mu:g}, "
+            f"belt_speed = {self.belt_speed:g})"
+        )
+
+    def with_(self, **changes: Any) -> Self:
+        """The same structure with other arguments."""
+        return type(self)(**{**self.arguments, **changes})
+
+    @property
+    def arguments(self) -> dict[str, Any]:
+        """What it is made of, by the names of its arguments."""
+        friction = self.friction
+        return {
+            "mass": self.mass,
+            "stiffness": self.stiffness,
+            "damping": self.damping,
+            "modal_damping": self.modal_damping,
+            "contacts": self.contacts,
+            "mu": friction.mu,
+            "belt_speed": self.belt_speed,
+            "friction_law": friction.friction_law,
+            "mu_static": friction.mu_static,
+            "friction_speed": friction.friction_speed,
+            "load": self.given_load,
+        }
+
+    def as_dict(self) -> dict[str, Any]:
+        """Numbers and names as JSON takes them; of the matrices and directions a hash."""
+        content = hashlib.sha256()
+        for matrix in (self.mass, self.damping, self.stiffness):
+            for part in (matrix.indptr, matrix.indices, matrix.data):
+                content.update(np.ascontiguousarray(part).tobytes())
+        for array in (self.normals, self.tangentials, self.load):
+            content.update(np.ascontiguousarray(array).tobytes())
+        contacts = {
+            each.name: {
+                "stiffness": each.stiffness,
+                "preload": each.preload,
+                "speed": each.speed,
+            }
+            for each in self.contacts
+        }
+        return {
+            "degrees_of_freedom": self.size,
+            "matrices": content.hexdigest()[:16],
+            "modal_damping": self.modal_damping.tolist(),
+            "contacts": contacts,
+            "mu": self.mu,
+            "belt_speed": self.belt_speed,
+            "friction_law": self.friction.friction_law,
+            "mu_static": self.friction.mu_static,
+            "friction_speed": self.friction.friction_speed,
+        }
+
+
+def _ratios(given: Any, size: int) -> np.ndarray:
+    """Damping ratios, one number or one for each of the lowest modes."""
+    try:
+        ratios = np.asarray(given, dtype=float)
+    except (TypeError, ValueError):
+        raise ValueError(
+            f"modal_damping = {brief(given)}: numbers are needed"
+        ) from None
+    if (
+        ratios.ndim > 1
+        or ratios.size > size
+        or not (np.isfinite(ratios).all() and (ratios >= 0).all())
+    ):
+        raise ValueError(
+            f"modal_damping = {brief(given)}: a ratio of 0 or greater is needed, or at most {size} "
+            "of them"
+        )
+    return ratios
