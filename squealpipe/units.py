@@ -131,6 +131,11 @@ def conversion(unit: str, other: str) -> float | None:
     return factor / math.tau if turns[0] else factor * math.tau
 
 
+def _is_rotation(unit: Any) -> bool:
+    per_second = _registry().parse_units("1/s").dimensionality
+    return _names_any(unit, TURNING) and unit.dimensionality == per_second
+
+
 def _names_any(unit: Any, words: tuple[str, ...]) -> bool:
     return any(word in str(unit) for word in words)
 
@@ -230,6 +235,7 @@ def _unit(text: str) -> Any:
     # the tokenizer and evaluator below pint fail in their own ways on what is no expression
     failures = (PintError, ValueError, TypeError, AttributeError, AssertionError)
     try:
+        text = text.replace("U/min", "rpm")  # German; U is an enzyme's unit to pint
         return _registry().parse_units(_POWER.sub(r"**\1", text))  # m s-1, cm2
     except (*failures, ArithmeticError, SyntaxError, tokenize.TokenError, LookupError):
         return None
@@ -259,6 +265,10 @@ def _wrong_kind(unit: Any, needed: str, keys: Mapping[str, str] | None) -> str:
     """What a unit measures, what is needed, and which inputs take what was written."""
     kind = _cf_unit(unit, QUANTITIES)
     is_kind = f"that is {QUANTITIES[kind][0]}" if kind else f"{unit} does not fit"
+    if kind is None and _is_rotation(unit):
+        is_kind = (
+            "that is a rate of rotation, a speed only when multiplied by the radius"
+        )
     takers = [name for name, units in (keys or {}).items() if kind and units == kind]
     elsewhere = (
         f"; {QUANTITIES[kind][0]} goes to {' or '.join(takers)}"

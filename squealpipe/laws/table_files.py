@@ -5,32 +5,50 @@ thousands, a row with more cells than names, a column without a known name.
 """
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import NamedTuple
 
-from squealpipe.laws.rows import NUMBER, sheet, text_rows
-from squealpipe.units import UnitError, in_si, is_unit
+from squealpipe.laws.numerals import Numeral, decimal_sign, numeral, plain
+from squealpipe.laws.rows import Rows, sheet, text_rows
+from squealpipe.units import UnitError, in_si, is_unit, plain_unit
 
 ENDINGS = (".csv", ".txt", ".tsv", ".dat", ".xlsx")
 """Of files that are read as tables without being called so."""
 UNITS = {"speed": "m s-1", "coefficient": "1", "compression": "m", "force": "N"}
 """Column → CF unit in which its values are stored, and meant where none is written."""
-OF_KNOTS = ("m s-1", "m")
 LARGEST_COEFFICIENT = 2.0
 """A larger coefficient of friction is rather one in per cent, or another column."""
 
-_GROUPED = re.compile(
-    r"[+-]?\d{1,3}([ '’\u00a0\u202f]\d{3})+([.,]\d+)?|[+-]?\d+[.,]\d+[.,].*", re.ASCII
+_BRACKETS = re.compile(r"(.*?)\s*/?\s*[\[({<]\s*(.*?)\s*[\])}>]\s*(.*)", re.DOTALL)
+_BEHIND = re.compile(r"(.+?)(\s+in\s+|\s*/\s*)(.+)")
+_LAST_WORDS = (
+    re.compile(r"(.+?)[\s_,:;=/-]+([^\W\d_]+_[^\W\d_]+)"),  # speed_mm_s
+    re.compile(r"(.+?)[\s_,:;=/-]+([^\s_,:;=]+)"),
 )
-_MAYBE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}", re.ASCII)
-_WITH_UNIT = (
-    re.compile(r"(.*?)\s*[\[(]\s*(.*?)\s*[\])]"),
-    re.compile(r"(.+?)\s+(?:in|/)\s+(.+)"),
-)
-_NO_UNIT = {"", "-", "–", "1", "/"}
+_NAMES = ("c", "in")
+"""Last words of names that are hardly the speed of light, or inches."""
+_NO_UNIT = {"", "-", "–", "—", "1", "/"}
+_SHOWN = {"\t": "<tab>", " ": "  "}
+"""Separators as a message shows them."""
+
+
+class Place(NamedTuple):
+    """A column of the table: its name, where it stands, as the file heads it, and its unit."""
+
+    name: str
+    at: int
+    head: str
+    unit: str
+
+
+class Cell(NamedTuple):
+    """A cell that is needed: the row's number, and what is written."""
+
+    row: int
+    text: str
 
 
 def read_pairs(
@@ -49,70 +67,151 @@ def read_pairs(
         ValueError: names the file, the row and what to write instead.
     """
     path = Path(path)
-    rows = sheet(path) if path.suffix.lower() == ".xlsx" else text_rows(path)
-    start = next((at for at, (_, row) in enumerate(rows) if _is_data(row)), len(rows))
-    heads, data = [row for _, row in rows[:start]], rows[start:]
-    if not heads or not any(any(row) for row in heads):
-        raise ValueError(
-            f"{path} has no header; write a first row like {columns[0]};{columns[1]}"
-        )
-    units_row = heads.pop() if len(heads) > 1 and _are_units(heads[-1]) else []
-    header = heads[-1]
+
+    def is_header(row: Sequence[str]) -> list[int]:
+        return _named(row, chosen[0] or columns[0], UNITS[columns[0]])
+
+    excel = path.suffix.lower() == ".xlsx"
+    table = sheet(path, is_header) if excel else text_rows(path)
+    start = _header(path, table, columns, is_header)
+    header = table.rows[start][1]
+    places = _places(path, header, columns, chosen)
+    data = [row for row in table.rows[start + 1 :] if row[1] != header]
+    if data and (units := _units_row(path, data[0], places)) is not None:
+        places = [
+            place._replace(unit=unit or place.unit)
+            for place, unit in zip(places, units, strict=True)
+        ]
+        first = data[0][1]
+        data = [row for row in data if row[1] != first]
     if not data:
         raise ValueError(f"{path} has no rows below its header")
-    places = _places(path, header, columns, chosen)
-    units = [
-        (units_row[place].strip("[]() ") if place < len(units_row) else "")
-        or _split(header[place])[1]
-        for place in places
-    ]
-    _check_rows(path, len(header), data)
-    cells = [
-        (line, [row[p] if p < len(row) else "" for p in places]) for line, row in data
-    ]
-    _check_numbers(path, cells)
-    pairs = [
-        tuple(
-            _in_si(
-                f"{path}, row {line}, column {header[place]!r}", cell, unit, UNITS[name]
+    for row, cells in data:
+        if places[0].at in is_header(cells):
+            raise ValueError(
+                f"{path}, row {row} is the header of a second table; save each as a file of its own"
             )
-            for cell, unit, place, name in zip(row, units, places, columns, strict=True)
-        )
-        for line, row in cells
+    _check_rows(path, len(header), data)
+    columns_of_cells = [
+        [Cell(row, _at(cells, place.at)) for row, cells in data] for place in places
     ]
-    _check_values(path, columns, [line for line, _ in cells], pairs)
-    return pairs  # type: ignore[return-value]
+    knots, values = _in_si(path, table.separator, places, columns_of_cells)
+    pairs = list(zip(knots, values, strict=True))
+    _check_values(path, columns, [row for row, _ in data], pairs)
+    return pairs
+
+
+def _at(cells: Sequence[str], at: int) -> str:
+    return cells[at] if at < len(cells) else ""
+
+
+def _header(
+    path: Path,
+    table: Rows,
+    columns: tuple[str, str],
+    is_header: Callable[[Sequence[str]], list[int]],
+) -> int:
+    """Which row is the header: that with the name of the knots over a number."""
+    cells = [row for _, row in table.rows]
+    named = {number: at for number, row in enumerate(cells) if (at := is_header(row))}
+    of_words = {n: at for n, at in named.items() if not any(map(numeral, cells[n]))}
+    named = of_words or named  # not a line like speed;2 m/s above the table
+    for number, at in named.items():
+        below = [numeral(_at(row, at[0])) for row in cells[number + 1 : number + 3]]
+        if any(below[:1]) or (any(below[1:]) and number + 1 not in named):
+            return number
+    if named:
+        return max(named)
+    first = next((number for number, row in enumerate(cells) if _is_data(row)), None)
+    if not cells or first == 0:
+        example = _SHOWN.get(table.separator, table.separator).join(columns)
+        raise ValueError(f"{path} has no header; write a first row like {example}")
+    if first is None:
+        first = len(cells)
+    return first - 2 if first > 1 and _are_units(cells[first - 1]) else first - 1
 
 
 def _is_data(row: Sequence[str]) -> bool:
-    """Whether a row is one of numbers: its first cell with content looks like one."""
-    first = _plain(next(filter(None, row), ""))
-    return bool(NUMBER.fullmatch(first) or _GROUPED.fullmatch(first))
+    """Whether a row is one of numbers: its first cell with content is one."""
+    return numeral(next(filter(None, row), "")) is not None
 
 
 def _are_units(row: Sequence[str]) -> bool:
-    """Whether a row of the head holds units, one of them of knots."""
-    texts = [cell.strip("[]() ") for cell in row]
-    written = [text for text in texts if text not in _NO_UNIT]
-
-    def fits(text: str, units: str) -> bool:
-        try:
-            in_si(f"1 {text}", units)
-        except UnitError:
-            return False
-        return True
-
-    return all(map(is_unit, written)) and any(
-        fits(text, units) for text in written for units in OF_KNOTS
-    )
+    written = [unit for cell in row if (unit := _bare(cell)) not in _NO_UNIT]
+    return bool(written) and all(map(is_unit, written))
 
 
-def _split(name: str) -> tuple[str, str]:
-    """Name and unit of a header like ``speed (km/h)``, ``v / (m/s)`` or ``v in m/s``."""
-    for form in _WITH_UNIT[::-1]:
-        if match := form.fullmatch(name):
-            return match[1].strip(" /"), match[2].strip("[]() ")
+def _units_row(
+    path: Path, row: tuple[int, Sequence[str]], places: Sequence[Place]
+) -> list[str] | None:
+    """Units of both columns, if the row below the header is one of units."""
+    written = [_bare(_at(row[1], place.at)) for place in places]
+    if any(numeral(unit) and unit not in _NO_UNIT for unit in written):
+        return None
+    if not any(unit not in _NO_UNIT for unit in written) and "1" in written:
+        return None
+    for unit, place in zip(written, places, strict=True):
+        if unit not in _NO_UNIT and not is_unit(unit):
+            raise ValueError(
+                f"{path}, row {row[0]}: {unit!r} is no number, nor a unit that is known; write a "
+                f"number there, or a unit of {place.name}, or take the row out if the column is "
+                f"in {_unit_in_words(place)}"
+            )
+    return [unit if unit not in _NO_UNIT else "" for unit in written]
+
+
+def _unit_in_words(place: Place) -> str:
+    unit = place.unit or plain_unit(UNITS[place.name])
+    return unit or "plain numbers"
+
+
+def _bare(cell: str) -> str:
+    return cell.strip("[]() ")
+
+
+def _split(name: str, units: str) -> tuple[str, str]:
+    """Name and unit of a header like ``speed (km/h)``, ``v / (m/s)``, ``v in m/s``, ``v_kmh``.
+
+    Args:
+        units: CF unit of the column: one that fits may be set apart by a blank alone.
+    """
+    if match := _BRACKETS.fullmatch(name):
+        unit = match[2].removeprefix("in ").strip("[]() ")
+        return match[1] or match[3], _known(unit, units)
+    for form in _LAST_WORDS:
+        if (match := form.fullmatch(name)) and match[2] not in _NAMES:
+            unit = _known(match[2].replace("_", "/"), units)
+            if _fits(unit, units):
+                return match[1].removesuffix(" in").rstrip(" /"), unit
+    if match := _BEHIND.fullmatch(name):
+        unit = _bare(match[3])
+        if is_unit(unit) or "in" in match[2] or unit in _NO_UNIT:
+            return match[1], unit
     return name, ""
+
+
+def _known(unit: str, units: str) -> str:
+    """A unit, in small letters where it is one of the column only so, like KM/H."""
+    small = unit.lower()
+    return small if not is_unit(unit) and _fits(small, units) else unit
+
+
+def _fits(unit: str, units: str) -> bool:
+    try:
+        in_si(f"1 {unit}", units)
+    except UnitError:
+        return False
+    return True
+
+
+def _named(header: Sequence[str], name: str, units: str) -> list[int]:
+    """Where a name stands in a header, with or without its unit."""
+    wanted = name.casefold().strip()
+    return [
+        at
+        for at, cell in enumerate(header)
+        if wanted in {cell.casefold(), _split(cell, units)[0].casefold()}
+    ]
 
 
 def _places(
@@ -120,44 +219,40 @@ def _places(
     header: Sequence[str],
     columns: tuple[str, str],
     chosen: tuple[str | None, str | None],
-) -> tuple[int, int]:
+) -> list[Place]:
     """Where the columns of knots and values are."""
-    names = [name for name in header if name]
+    filled = [at for at, name in enumerate(header) if name]
     options = (f"{columns[0]}_column", "value_column")
-
-    def place(name: str) -> int | None:
-        wanted = name.casefold().strip()
-        at = [
-            number
-            for number, cell in enumerate(header)
-            if wanted in {cell.casefold(), _split(cell)[0].casefold()}
-        ]
+    where = [
+        _named(header, name or column, UNITS[column])
+        for name, column in zip(chosen, columns, strict=True)
+    ]
+    if len(where[0]) == 1 and not where[1] and chosen[1] is None and len(filled) == 2:
+        where[1] = [at for at in filled if at != where[0][0]]
+    for at, name, column, option in zip(where, chosen, columns, options, strict=True):
         if len(at) > 1:
             raise ValueError(
-                f"{path} has {len(at)} columns {name!r}; rename all but one"
+                f"{path} has {len(at)} columns {name or column!r}; rename all but one"
             )
-        return at[0] if at else None
-
-    found = [
-        place(name or column) for name, column in zip(chosen, columns, strict=True)
-    ]
-    if (
-        found[0] is not None
-        and found[1] is None
-        and chosen[1] is None
-        and len(names) == 2
-    ):
-        filled = [number for number, cell in enumerate(header) if cell]
-        found[1] = next(number for number in filled if number != found[0])
-    for at, name, column, option in zip(found, chosen, columns, options, strict=True):
-        if at is None:
+        if not at:
+            names = ", ".join(header[number] for number in filled)
             raise ValueError(
-                f"{path} has no column {name or column!r}; its columns: {', '.join(names)}; name "
+                f"{path} has no column {name or column!r}; its columns: {names}; name "
                 f"one of them {column!r}, or write {option}: with its name"
+                f"{_unit_too(column)}"
             )
-    if found[0] == found[1]:
+    if where[0] == where[1]:
         raise ValueError(f"{path}: knots and values are to be two columns, not one")
-    return found[0], found[1]  # type: ignore[return-value]
+    return [
+        Place(column, at[0], header[at[0]], _split(header[at[0]], UNITS[column])[1])
+        for column, at in zip(columns, where, strict=True)
+    ]
+
+
+def _unit_too(column: str) -> str:
+    """What a column needs that is renamed and is not in SI."""
+    unit = plain_unit(UNITS[column])
+    return f" (what is not in {unit} needs its unit behind the name)" if unit else ""
 
 
 def _check_rows(path: Path, width: int, data: Iterable[tuple[int, list[str]]]) -> None:
@@ -166,67 +261,77 @@ def _check_rows(path: Path, width: int, data: Iterable[tuple[int, list[str]]]) -
         if any(row[width:]):
             raise ValueError(
                 f"{path}, row {line} has {len(row)} cells under {width} names: {', '.join(row)}; "
-                "with decimal commas separate the columns with ; or write decimal points"
+                "with decimal commas separate the columns with ; or write decimal points; "
+                "else give every column a name"
             )
 
 
-def _check_numbers(path: Path, cells: Sequence[tuple[int, list[str]]]) -> None:
-    """Refuse what is no number, and commas that may separate thousands."""
-    commas = points = None
-    proven = False
-    for line, row in cells:
-        for cell in map(_plain, row):
-            if _GROUPED.fullmatch(cell):
-                raise ValueError(
-                    f"{path}, row {line}: {cell!r} has separators of thousands; write "
-                    "it without them"
-                )
-            if not NUMBER.fullmatch(cell):
-                what = f"{cell!r} is no number" if cell else "an empty cell"
-                raise ValueError(
-                    f"{path}, row {line}: {what}; write a number there, or take the row out"
-                )
-            if "," in cell:
-                commas = commas or (line, cell)
-                proven |= not _MAYBE_THOUSANDS.fullmatch(cell)
-            elif "." in cell:
-                points = points or (line, cell)
-    if commas and points:
-        raise ValueError(
-            f"{path}: {commas[1]!r} in row {commas[0]} has a comma and {points[1]!r} in row "
-            f"{points[0]} a point; write one decimal sign throughout, and no thousands"
-        )
-    if commas and not proven:
-        line, cell = commas
-        raise ValueError(
-            f"{path}, row {line}: the comma of {cell!r} may separate thousands; write "
-            f"{cell.replace(',', '.')} or {cell.replace(',', '')}"
-        )
-
-
-def _plain(cell: str) -> str:
-    return cell.strip().replace("−", "-")
-
-
-def _in_si(where: str, cell: str, unit: str, units: str) -> float:
-    number = _plain(cell).replace(",", ".")
-    if unit in _NO_UNIT:
-        return float(number)
+def _in_si(
+    path: Path,
+    separator: str,
+    places: Sequence[Place],
+    columns: Sequence[Sequence[Cell]],
+) -> list[list[float]]:
+    """Both columns in SI; all their cells together tell the decimal sign."""
+    numerals = [[_numeral(path, cell) for cell in column] for column in columns]
+    rows = zip(
+        *(zip(*both, strict=True) for both in zip(columns, numerals, strict=True)),
+        strict=True,
+    )
     try:
-        return in_si(f"{number} {unit}", units)
+        sign = decimal_sign(
+            ((f"row {cell.row}", number.text) for row in rows for cell, number in row),
+            separator,
+        )
+    except ValueError as error:
+        raise ValueError(f"{path}, {error}") from None
+    return [
+        [
+            _value(path, place, cell, number, sign)
+            for cell, number in zip(column, numbers, strict=True)
+        ]
+        for place, column, numbers in zip(places, columns, numerals, strict=True)
+    ]
+
+
+def _numeral(path: Path, cell: Cell) -> Numeral:
+    number = numeral(cell.text)
+    if number is None or (number.unit and not is_unit(number.unit)):
+        what = f"{cell.text!r} is no number" if cell.text else "an empty cell"
+        raise ValueError(
+            f"{path}, row {cell.row}: {what}; write a number there, or take the row out"
+        )
+    return number
+
+
+def _value(path: Path, place: Place, cell: Cell, number: Numeral, sign: str) -> float:
+    text = plain(number.text, sign)
+    unit = number.unit or place.unit
+    if unit in _NO_UNIT:
+        return float(text)
+    try:
+        return in_si(f"{text} {unit}", UNITS[place.name])
     except UnitError as error:
-        raise ValueError(f"{where} in {unit!r}: {error}") from None
+        column = f"column {place.head!r} in {unit!r}"
+        hint = (
+            "" if is_unit(unit) else "; or take the brackets out, if they hold no unit"
+        )
+        raise ValueError(f"{path}, row {cell.row}, {column}: {error}{hint}") from None
 
 
 def _check_values(
-    path: Path, columns: tuple[str, str], lines: Sequence[int], pairs: Sequence[Any]
+    path: Path,
+    columns: tuple[str, str],
+    lines: Sequence[int],
+    pairs: Sequence[tuple[float, float]],
 ) -> None:
     """Refuse knots that do not ascend, negative values, and what is likely another quantity."""
     for line, pair in zip(lines, pairs, strict=True):
         for name, value in zip(columns, pair, strict=True):
             if not 0 <= value < float("inf"):
                 raise ValueError(
-                    f"{path}, row {line}: {name} = {value!r}; finite numbers from 0 on are needed"
+                    f"{path}, row {line}: {name} = {value!r}; finite numbers from 0 on are "
+                    "needed; take the row out, or write it without its sign"
                 )
         if columns[1] == "coefficient" and pair[1] > LARGEST_COEFFICIENT:
             raise ValueError(

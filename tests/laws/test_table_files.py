@@ -41,6 +41,31 @@ READ = {
     "trailing separators": "speed;mu;;\n0;0,5;;\n0,1;0,45;;\n1,5;0,3;;\n",
     "further columns": "time,speed,force,coefficient\n1,0,9,0.5\n2,0.1,9,0.45\n3,1.5,8,0.3\n",
     "no leading zero": "speed,mu\n0,.5\n.1,.45\n1.5,.3\n",
+    "German thousands": "speed [mm/s];mu\n0,0;0,5\n100,0;0,45\n1.500,0;0,3\n",
+    "French thousands": "speed [mm/s];mu\n0;0,5\n100;0,45\n1\u202f500,0;0,3\n",
+    "Swiss thousands": "speed [mm/s];mu\n0;0.5\n100;0.45\n1'500;0.3\n",
+    "English thousands": 'speed [mm/s],mu\n0,0.5\n100,0.45\n"1,500.0",0.3\n',
+    "Indian thousands": 'speed [µm/s],mu\n0,0.5\n"1,00,000",0.45\n"15,00,000",0.3\n',
+    "Fortran exponents": "speed mu\n0.0D+00 0.50D+00\n0.1D+00 0.45D+00\n1.5D+00 0.30D+00\n",
+    "exponents of papers": "speed;mu\n0;5×10^-1\n1·10⁻¹;0.45\n1.5;0.3\n",
+    "units in cells": "speed;mu\n0 m/s;50 %\n100 mm/s;45 %\n5.4 km/h;30 %\n",
+    "single quotes": "'speed';'mu'\n'0';'0.5'\n'0.1';'0.45'\n'1.5';'0.3'\n",
+    "Excel's quoted numbers": '"speed","mu"\n="0",="0.5"\n="0.1",="0.45"\n="1.5",="0.3"\n',
+    "units between blanks": "speed (m/s)   mu (-)\n0.0   0.5\n0.1   0.45\n1.5   0.3\n",
+    "a unit and a word": "speed [km/h] filtered,mu\n0,0.5\n0.36,0.45\n5.4,0.3\n",
+    "a tight slash": "speed/mm/s,mu/%\n0,50\n100,45\n1500,30\n",
+    "a unit as last word": "speed_kmh,mu\n0,0.5\n0.36,0.45\n5.4,0.3\n",
+    "a unit of two words": "speed_mm_s,mu\n0,0.5\n100,0.45\n1500,0.3\n",
+    "a unit in capitals": "speed [KM/H],mu\n0,0.5\n0.36,0.45\n5.4,0.3\n",
+    "a line break in a name": '"speed\n[mm/s]","mu"\n0,0.5\n100,0.45\n1500,0.3\n',
+    "units row beside dates": "t;speed;coefficient\nd;mm/s;-\n1;0;0,5\n2;100;0,45\n3;1500;0,3\n",
+    "names first": "sample,speed,coefficient\nA,0,0.5\nA,0.1,0.45\nB,1.5,0.3\n",
+    "dates first": "t,speed,coefficient\n2024-03-01,0,0.5\n2024-03-02,.1,.45\n2024-03-03,1.5,.3\n",
+    "numbers before the header": "rig,7\nspeed,2 m/s\n2024,3\nspeed,mu\n0,0.5\n0.1,0.45\n1.5,0.3\n",
+    "the header again": "speed;mu\nmm/s;-\n0;0,5\nspeed;mu\nmm/s;-\n100;0,45\n1500;0,3\n",
+    "remarks behind numbers": "speed,mu\n0,0.5 # at rest, new\n0.1,0.45 ; warm\n1.5,0.3\n",
+    "Markdown": "| speed | mu |\n|---|---|\n| 0 | 0.5 |\n| 0.1 | 0.45 |\n| 1.5 | 0.3 |\n",
+    "LaTeX": "speed & mu \\\\\n\\midrule\n0 & 0.5 \\\\\n0.1 & 0.45 \\\\\n1.5 & 0.3 \\\\\n",
 }  # fmt: skip
 CHOSEN = {
     "columns by name": ("t;v (km/h);T;µ [%]\n0;0;20;50\n1;0,36;21;45\n2;5,4;22;30\n", ("v", "µ")),
@@ -64,15 +89,45 @@ REFUSED = {
         "has a comma and '1.500' in row 3 a point; write one decimal sign throughout",
         "speed in mm/s;mu\n0;0,5\n1500;0,3\n",
     ),
-    "thousands by apostrophe": (
-        "speed in mm/s;mu\n0;0.5\n1'500;0.3\n",
-        "row 3: \"1'500\" has separators of thousands; write it without them",
-        "speed in mm/s;mu\n0;0.5\n1500;0.3\n",
+    "whole numbers with points": (
+        "speed in mm/s;mu\n0;1\n1.500;0\n",
+        "row 3: the point of '1.500' may separate thousands; write 1.5000 or 1500",
+        "speed in mm/s;mu\n0;1\n1500;0\n",
     ),
-    "thousands by space": (
-        "speed in mm/s;mu\n0;0,5\n1 500,0;0,3\n",
-        "separators of thousands",
-        "speed in mm/s;mu\n0;0,5\n1500,0;0,3\n",
+    "rows longer by a remark": (
+        "speed,coefficient\n0,0.5,new\n1,0.3,worn\n",
+        "else give every column a name",
+        "speed,coefficient,remark\n0,0.5,new\n1,0.3,worn\n",
+    ),
+    "a second table": (
+        "speed,mu\n0,0.5\n1,0.3\nspeed,wear\n0,1\n1,2\n",
+        "row 4 is the header of a second table; save each as a file of its own",
+        "speed,mu\n0,0.5\n1,0.3\n",
+    ),
+    "an unknown unit in a row": (
+        "speed,mu\nrev-ish,-\n0,0.5\n1,0.3\n",
+        "row 2: 'rev-ish' is no number, nor a unit that is known; write a number there, or a unit",
+        "speed,mu\nkm/h,-\n0,0.5\n1,0.3\n",
+    ),
+    "brackets without a unit": (
+        "speed,mu (dynamic)\n0,0.5\n1,0.3\n",
+        "in % is needed, like 30 %; or take the brackets out, if they hold no unit",
+        "speed,mu dynamic\n0,0.5\n1,0.3\n",
+    ),
+    "a rate of rotation": (
+        "speed [U/min],mu\n0,0.5\n100,0.3\n",
+        "that is a rate of rotation, a speed only when multiplied by the radius",
+        "speed,mu\n0,0.5\n1.57,0.3\n",
+    ),
+    "an error of Excel": (
+        "speed;mu\n0;0,5\n#NV;0,4\n1;0,3\n",
+        "row 3: '#NV' is no number; write a number there, or take the row out",
+        "speed;mu\n0;0,5\n1;0,3\n",
+    ),
+    "no text": (
+        "\0\1\2",
+        "is no text file; save the table as CSV in UTF-8, or as .xlsx",
+        "speed;mu\n0;0,5\n",
     ),
     "a first speed above 0": (
         "speed,mu\n0.1,0.5\n1,0.3\n",
@@ -117,7 +172,7 @@ REFUSED = {
     ),
     "a negative coefficient": (
         "speed;mu\n0;0,5\n1;-0,3\n",
-        "row 3: coefficient = -0.3; finite numbers from 0 on are needed",
+        "row 3: coefficient = -0.3; finite numbers from 0 on are needed; take the row out, or",
         "speed;mu\n0;0,5\n1;0,3\n",
     ),
     "no header": (
@@ -173,14 +228,31 @@ def test_sheets_of_excel(tmp_path):
     path = tmp_path / "friction.xlsx"
     book.save(path)
     assert read_pairs(path, FRICTION, (None, "mu")) == SI
-    book.create_sheet("more")["A1"] = "something"
+    book.create_sheet("notes")["A1"] = "of the rig"
     book.save(path)
-    with pytest.raises(
-        ValueError, match=r"sheets with content: Sheet, more; save the one"
-    ):
+    assert read_pairs(path, FRICTION, (None, "mu")) == SI
+    book.create_sheet("more")["A1"] = "speed"
+    book.save(path)
+    with pytest.raises(ValueError, match=r": Sheet, notes, more; save the one"):
         read_pairs(path, FRICTION, (None, "mu"))
     path.write_text("speed,mu")
     with pytest.raises(ValueError, match=r"friction\.xlsx is no Excel file"):
+        read_pairs(path, FRICTION)
+
+
+def test_excel_shows_per_cent_and_stores_no_value_of_a_new_formula(tmp_path):
+    openpyxl = pytest.importorskip("openpyxl", reason="of the extra export")
+    book = openpyxl.Workbook()
+    for row in (["speed", "friction [%]"], [0, 0.5], [0.1, 0.45], [1.5, 0.3]):
+        book.active.append(row)
+    for cell in book.active["B"]:
+        cell.number_format = "0%"
+    path = tmp_path / "friction.xlsx"
+    book.save(path)
+    assert read_pairs(path, FRICTION) == SI
+    book.active["A3"] = "=1/10"
+    book.save(path)
+    with pytest.raises(ValueError, match=r"row 3: the formula in A3 has no stored"):
         read_pairs(path, FRICTION)
 
 

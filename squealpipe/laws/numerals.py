@@ -1,0 +1,116 @@
+"""Numbers as five continents write them: 1.234,5; 1 234,5; 1'234.5; 1,234.5; 1,23,456; 1.5D-03.
+
+One cell may not tell what its comma or point is: ``1,234`` is either. The cells of a table tell
+it together, and where they do not, the table is refused.
+"""
+
+import re
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+_SIGNS = str.maketrans("−⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "--0123456789")
+_BLANKS = "\u0020\u00a0\u2009\u202f"
+"""Between thousands: blanks of four widths."""
+_BY_BLANKS = re.compile(rf"[+-]?\d{{1,3}}([{_BLANKS}'’]\d{{3}})+(?!\d)")
+_TIMES_TEN = re.compile(
+    r"(?<=[\d.,])\s*[×·*x]\s*10\s*(?:\^|\*\*)?\s*\(?([+-]?\d{1,3})\)?"
+)
+_EXPONENT = re.compile(r"(?<=[\d.,])[dD](?=[+-]?\d{1,3}(?!\d))")  # Fortran's
+_CELL = re.compile(
+    r"([+-]?(?:\d[\d.,]*|[.,]\d+)(?:[eE][+-]?\d{1,3})?)\s*([^\d\s.,].*)?", re.ASCII
+)
+_PLAIN = re.compile(r"[+-]?(\d+(\.\d*|,\d+)?|[.,]\d+)", re.ASCII)
+_MAY_BE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}([.,])\d{3}", re.ASCII)
+_GROUPED = {
+    # thousands, and in India hundreds of thousands; with a decimal sign behind, or several groups
+    "point": re.compile(
+        r"[+-]?(?=.*\.|.*,.*,)(\d{1,3}(,\d{3})+|\d{1,2}(,\d{2})+,\d{3})(\.\d*)?",
+        re.ASCII,
+    ),
+    "comma": re.compile(r"[+-]?(?=.*,|.*\..*\.)\d{1,3}(\.\d{3})+(,\d*)?", re.ASCII),
+}
+_OTHER = {"point": ",", "comma": "."}
+
+
+class Numeral(NamedTuple):
+    """A number as it is written, and the unit behind it, if there is one."""
+
+    text: str
+    unit: str
+
+
+def numeral(cell: str) -> Numeral | None:
+    """A cell of a number, maybe with a unit; None if it is none."""
+    text = cell.strip().translate(_SIGNS)
+    text = _EXPONENT.sub("e", _TIMES_TEN.sub(r"e\1", text))
+    if match := _BY_BLANKS.match(text):
+        whole = re.sub(rf"[{_BLANKS}'’]", "", match[0])
+        text = whole + text[match.end() :]
+    match = _CELL.fullmatch(text)
+    if match is None or not _is_number(_mantissa(match[1])):
+        return None
+    return Numeral(match[1], match[2] or "")
+
+
+def decimal_sign(cells: Iterable[tuple[str, str]], separator: str) -> str:
+    """Which sign is the decimal one, "point" or "comma".
+
+    Args:
+        cells: where each number stands, and its :attr:`Numeral.text`.
+        separator: what separates the cells; between commas a point separates no thousands.
+
+    Raises:
+        ValueError: it cannot be known; says where, and what to write.
+    """
+    proven: dict[str, tuple[str, str]] = {}
+    undecided: dict[str, tuple[str, str]] = {}
+    grouped = False
+    for where, text in cells:
+        mantissa = _mantissa(text)
+        if sign := next((s for s in _GROUPED if _GROUPED[s].fullmatch(mantissa)), None):
+            grouped = True
+            proven.setdefault(sign, (where, text))
+        elif match := _MAY_BE_THOUSANDS.fullmatch(mantissa):
+            undecided.setdefault("comma" if match[1] == "," else "point", (where, text))
+        elif "," in mantissa:
+            proven.setdefault("comma", (where, text))
+        elif "." in mantissa:
+            proven.setdefault("point", (where, text))
+    if len(proven) == 1 and grouped:  # the other sign separates thousands everywhere
+        return next(iter(proven))
+    seen = {**undecided, **proven}
+    if len(seen) == 2:
+        (comma_at, comma), (point_at, point) = seen["comma"], seen["point"]
+        raise ValueError(
+            f"{comma_at}: {comma!r} has a comma and {point!r} in {point_at} a point; "
+            "write one decimal sign throughout, and no thousands"
+        )
+    sign = next(iter(seen), "point")
+    if undecided and not proven and (sign == "comma" or separator != ","):
+        where, text = undecided[sign]
+        fraction = text.replace(",", ".") if sign == "comma" else f"{text}0"
+        whole = re.sub(r"[.,]", "", text, count=1)
+        raise ValueError(
+            f"{where}: the {sign} of {text!r} may separate thousands; "
+            f"write {fraction} or {whole}"
+        )
+    return sign
+
+
+def plain(text: str, sign: str) -> str:
+    """A number with a decimal point and no thousands."""
+    return text.replace(_OTHER[sign], "").replace(",", ".")
+
+
+def _mantissa(text: str) -> str:
+    return re.split("[eE]", text)[0]
+
+
+def _is_number(mantissa: str) -> bool:
+    return any(form.fullmatch(mantissa) for form in (_PLAIN, *_GROUPED.values()))
+
+
+def are_numbers(cells: Sequence[str]) -> bool:
+    """Whether all cells are numbers without a unit."""
+    read = [numeral(cell) for cell in cells]
+    return all(number is not None and not number.unit for number in read)
