@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from copy import copy
+from dataclasses import replace
 from functools import cached_property
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 import numpy as np
 
@@ -28,7 +30,14 @@ from squealpipe.systems.components import (
 from squealpipe.systems.joint import Joint
 from squealpipe.systems.starts import Starts
 from squealpipe.systems.text import describe
-from squealpipe.systems.trace import TIME_UNIT, Names, Traced, Tracer, check_progress
+from squealpipe.systems.trace import (
+    TIME_UNIT,
+    Names,
+    Traced,
+    Tracer,
+    check_progress,
+    long_name,
+)
 from squealpipe.text import suggestion
 from squealpipe.validation import Identifier, Number, Positive, Word, checked, needed
 
@@ -169,6 +178,7 @@ class System:
                 if not is_finite_number(value):
                     raise ValueError(f"{what} gives {value!r}; a number is needed")
         self.traced = self._trace()
+        self.form = self
 
     @property
     def states(self) -> tuple[str, ...]:
@@ -451,6 +461,36 @@ class System:
         falls, rises_ = map(np.ascontiguousarray, table)
         return surfaces, falls, rises_, np.array(owner, np.int64)
 
+    def with_numbers(
+        self,
+        regimes: Mapping[str, Mapping[str, float]],
+        parameters: Mapping[str, float],
+    ) -> Self:
+        """The same system with other constants and defaults, neither traced nor compiled again.
+
+        Args:
+            regimes: constants of all regimes, under the same names; functions must have read them
+                from ``r`` alone.
+            parameters: defaults of all parameters.
+        """
+        composition = replace(self.composition, regimes=dict(regimes))
+        column = {name: at for at, name in enumerate(self.traced.constants)}
+        table = self.traced.regimes.copy()
+        owners = [composition.names[k] for k in composition.component_of]
+        for row, owner, constants in zip(table, owners, regimes.values(), strict=True):
+            for name, value in constants.items():
+                row[column[REGIME + long_name(owner, name)]] = value
+        other = copy(self)
+        other.composition, other.regimes = composition, composition.regimes
+        other.parameters = dict(parameters)
+        other.traced = replace(self.traced, regimes=table)
+        other.integrated = replace(self.integrated, regimes=table)
+        other.derived, other.at_switches = self.derived, self.at_switches
+        other.starts = self.starts.with_constants(other.traced, composition)
+        for name in ("text", "joint"):
+            other.__dict__.pop(name, None)
+        return other
+
     @cached_property
     def integrated(self) -> Traced:
         """The system as the integrator takes it."""
@@ -477,7 +517,8 @@ class System:
         return Joint(self.traced, self.states)
 
     @cached_property
-    def _starts(self) -> Starts:
+    def starts(self) -> Starts:
+        """In which regime a run starts."""
         return Starts(self.traced, self.composition)
 
     def first_regimes(
@@ -491,7 +532,7 @@ class System:
                 neither gives is what fits.
         """
         chosen = self.start.get("regime") if chosen is None else chosen
-        return self._starts.regimes(values, size, self.composition.numbers(chosen))
+        return self.starts.regimes(values, size, self.composition.numbers(chosen))
 
 
 def _components(

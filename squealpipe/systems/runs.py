@@ -50,7 +50,7 @@ _COMPILED: weakref.WeakKeyDictionary[
 
 def compiled(system: System, *, tangent: bool, few: bool) -> lanes.CompiledSystem:
     """The machine code of a system, built once a process and kept on disk."""
-    known = _COMPILED.setdefault(system, {})
+    known = _COMPILED.setdefault(system.form, {})
     if (tangent, few) not in known:
         t = system.integrated
         scalar = ScalarSource(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from copy import copy
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
@@ -34,6 +35,12 @@ class Starts:
     def __init__(self, traced: Traced, composition: Composition) -> None:
         self.traced, self.composition = traced, composition
         self.entries = [self._entries(k) for k in range(traced.n_components)]
+
+    def with_constants(self, traced: Traced, composition: Composition) -> Self:
+        """The same for a system that differs by its regimes' constants alone."""
+        other = copy(self)
+        other.traced, other.composition = traced, composition
+        return other
 
     def _entries(self, component: int) -> list[tuple[int, list[_Asked]]]:
         """The regimes of a component in the order in which they are tried."""

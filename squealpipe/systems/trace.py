@@ -150,7 +150,8 @@ class Traced:
         return (*self.constants, *computed)
 
 
-def _long(component: str, name: str) -> str:
+def long_name(component: str, name: str) -> str:
+    """The name of a regime's constant among those of all components."""
     return f"{component}.{name}" if component else name
 
 
@@ -170,12 +171,12 @@ class Tracer:
         self._names = [self._constants_of(k) for k in range(len(composition.names))]
         self.first_constant = np.cumsum([0, *map(len, self._names)])
         self.constants = tuple(
-            _long(component, name)
+            long_name(component, name)
             for component, names in zip(composition.names, self._names, strict=True)
             for name in names
         )
         self._symbols = [
-            {name: parameter(REGIME + _long(component, name)) for name in names}
+            {name: parameter(REGIME + long_name(component, name)) for name in names}
             for component, names in zip(composition.names, self._names, strict=True)
         ]
         self.r = self._constants(self._symbols)

@@ -101,6 +101,10 @@ def brake(  # noqa: C901 (one short function for each force and surface)
     laws = _Laws(friction_law, contact_law, rules, one_mu=one_mu)
     default = Parameters(friction_law=friction_law, contact_law=contact_law)
     defaults = {name: getattr(default, name) for name in NUMBERS_OF_A1}
+    parameters = {**defaults, "alpha1": 1.0, "alpha2": 1.0}
+    form = (laws.form, damped, model, one_mu, long_springs)
+    if form in _FORMS:
+        return _FORMS[form].with_numbers(laws.regimes(), parameters)
 
     def suspension(s: Any, p: Any, r: Any) -> tuple[Any, Any]:
         q, g = laws.of(p, r)
@@ -167,10 +171,10 @@ def brake(  # noqa: C901 (one short function for each force and surface)
 
     states = {"x": "m", "y": "m", "vx": "m/s", "vy": "m/s"}
     reach = ("m2", lambda t, s, p, r: s.x * s.x + s.y * s.y)
-    return System(
+    made = System(
         "brake",
         states=states,
-        parameters={**defaults, "alpha1": 1.0, "alpha2": 1.0},
+        parameters=parameters,
         regimes=laws.regimes(),
         field=field,
         switches=[
@@ -184,6 +188,13 @@ def brake(  # noqa: C901 (one short function for each force and surface)
         stops={} if rules.linear_springs else {"pivot1": pivot(0), "pivot2": pivot(1)},
         time_scale=lambda p: (p.mass / p.k1) ** 0.5,
     )
+    _FORMS[form] = made
+    return made
+
+
+_FORMS: dict[tuple[Any, ...], System] = {}
+"""Systems by what of them is traced: tables whose values alone differ share one trace, which takes
+a second or more."""
 
 
 class _Laws:
@@ -204,6 +215,17 @@ class _Laws:
             self.frictions = pieces_of(friction_law).constants("mu")
         if is_table(contact_law):
             self.contacts = pieces_of(contact_law, goes_on=True).constants("press")
+
+    @property
+    def form(self) -> tuple[Any, ...]:
+        """What is the same for laws that differ by constants of their regimes alone."""
+        friction: Any = self.friction_law
+        contact: Any = self.contact_law
+        if is_table(friction):
+            friction = tuple(piece["mu_start"] for piece in self.frictions)
+        if is_table(contact):
+            contact = len(self.contacts)
+        return friction, contact
 
     def of(self, p: Any, r: Any) -> tuple[Any, Geometry]:
         """Parameters as the laws read them, and direction cosines."""
