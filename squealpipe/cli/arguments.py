@@ -42,6 +42,7 @@ def _signed(read: Callable[[str], Any], metavar: str, **further: Any) -> Paramet
 
 Numbers = Annotated[list[float] | None, _signed(parse_range, "RANGE", negative="")]
 """A number, a list of them or first:last:count."""
+Ranges = Annotated[list[str], Parameter(metavar="NAME=RANGE", negative="")]
 Whole = Annotated[int, Parameter(converter=_whole, metavar="INT", n_tokens=1)]
 
 
@@ -221,3 +222,22 @@ def by_name(argument: str) -> str:
     flag, equals, value = argument.partition("=")
     name = SYMBOLS.get(flag[2:]) if flag.startswith("--") else None
     return f"--{name.replace('_', '-')}{equals}{value}" if name else argument
+
+
+def pairs_of(flag: str, texts: Sequence[str]) -> dict[str, str]:
+    """Name → value of each NAME=VALUE."""
+    found: dict[str, str] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not (name and equals and value):
+            raise ValueError(
+                f"{text!r} is not NAME=VALUE; write for instance mu=0:0.6:13"
+            )
+        key = name.strip().replace("-", "_")
+        key = SYMBOLS.get(key, key)
+        if key in found:
+            raise ValueError(
+                f"{flag} {key} is a duplicate; keep one, with all its values"
+            )
+        found[key] = value
+    return found

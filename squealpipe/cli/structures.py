@@ -12,12 +12,15 @@ from squealpipe.cli.arguments import (
     Numbers,
     Output,
     Picture,
+    Ranges,
     Tolerance,
     Whole,
+    pairs_of,
 )
 from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer, say, working
 from squealpipe.cli.output import check_output, check_picture, draw_beside, write
 from squealpipe.cli.signatures import options_of
+from squealpipe.config.ranges import parse_range
 
 LISTED = 20
 """Unstable modes that are printed."""
@@ -31,6 +34,7 @@ def modes(
     belt_speed: Numbers = None,
     frequency_max: float | None = None,
     n_modes: Whole | None = None,
+    vary: Ranges | None = None,
     output: Output = Path("modes.nc"),
     picture: Picture = None,
     look: Look = LOOK,
@@ -46,6 +50,10 @@ def modes(
         belt_speed: likewise, m/s.
         frequency_max: modes up to there, Hz.
         n_modes: so many modes; this or the other limit is needed beyond 1000 degrees of freedom.
+        vary: a further factor with its value or values; repeat for more. preload=0.5:2:7 and
+            contact_stiffness=0.5,1,2 multiply those of all contacts, p1_preload and p1_stiffness
+            those of a contact p1, mass, damping and stiffness the matrices; modal_damping,
+            mu_static and friction_speed replace those of the file.
     """
     check_output(output, force=force)
     drawn = check_picture(picture, output, force=force)
@@ -59,6 +67,11 @@ def modes(
         "frequency_max": frequency_max,
         "n_modes": n_modes,
     }
+    for name, text in pairs_of("--vary", vary or []).items():
+        if name in asked:
+            option = name.replace("_", "-")
+            raise ValueError(f"--vary {name}: write --{option} {text} instead")
+        asked[name] = _one_or_more(parse_range(text))
     options = {name: value for name, value in asked.items() if value is not None}
     with working("complex modes"):
         dataset = write(

@@ -1,25 +1,32 @@
 """``squealpipe sweep``: any task over ranges, to one dataset."""
 
 import inspect
-from collections.abc import Sequence
 from math import prod
 from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
 
-from squealpipe.cli.arguments import WRITTEN, Angle1, Angle2, Output, Workers, Written
+from squealpipe.cli.arguments import (
+    WRITTEN,
+    Angle1,
+    Angle2,
+    Output,
+    Ranges,
+    Workers,
+    Written,
+    pairs_of,
+)
 from squealpipe.cli.console import DONE, SESSION, answer, say, working
 from squealpipe.cli.output import check_output, write
 from squealpipe.config.ranges import read_fixed, read_values, sweep_config
-from squealpipe.parameters import SYMBOLS
 
 
 def sweep(
     task: str,
     /,
     *,
-    vary: Annotated[list[str], Parameter(metavar="NAME=RANGE", negative="")],
+    vary: Ranges,
     alpha1: Angle1 | None = None,
     alpha2: Angle2 | None = None,
     option: Annotated[
@@ -37,7 +44,8 @@ def sweep(
     Args:
         task: simulate, validity_map, hammering_map, quasi_static_map, stability_map,
             critical_friction_map, natural_frequencies, periodic_orbit, backbone,
-            smallest_disturbance or assess; or a system of your own as FILE.py:NAME.
+            smallest_disturbance or assess; a system of your own as FILE.py:NAME; or the modes of
+            a structure as FILE.yaml:complex_modes.
         vary: a parameter, angle or option, or a start of a system (x0), with its values:
             mu=0:0.6:13, alpha1=0:pi:31, belt_speed=0.1:100:7:log or k3=0.5,0.75; repeat for
             further dimensions.
@@ -47,8 +55,8 @@ def sweep(
     from squealpipe.execution.sweep import outcome_lines, planned, run_sweep
     from squealpipe.rerun.key import rule_key, sources
 
-    varied = _pairs("--vary", vary)
-    options = _pairs("--option", option or [])
+    varied = pairs_of("--vary", vary)
+    options = pairs_of("--option", option or [])
     angles = {
         name: v for name, v in (("alpha1", alpha1), ("alpha2", alpha2)) if v is not None
     }
@@ -81,22 +89,3 @@ def sweep(
     answer(*outcome_lines(dataset, plan.names))
     say(f"wrote {output}")
     return DONE
-
-
-def _pairs(flag: str, texts: Sequence[str]) -> dict[str, str]:
-    """Name → value of each NAME=VALUE."""
-    found: dict[str, str] = {}
-    for text in texts:
-        name, equals, value = text.partition("=")
-        if not (name and equals and value):
-            raise ValueError(
-                f"{text!r} is not NAME=VALUE; write for instance mu=0:0.6:13"
-            )
-        key = name.strip().replace("-", "_")
-        key = SYMBOLS.get(key, key)
-        if key in found:
-            raise ValueError(
-                f"{flag} {key} is a duplicate; keep one, with all its values"
-            )
-        found[key] = value
-    return found

@@ -168,6 +168,11 @@ def read_distribution(name: str, numbers: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
+def is_structure(task: str) -> bool:
+    """Whether a task is of a structure in a file, ``FILE.yaml:TASK``."""
+    return task.rpartition(":")[0].endswith((".yaml", ".yml"))
+
+
 def sweep_config(
     *,
     task: str,
@@ -179,7 +184,7 @@ def sweep_config(
     for name in sorted(set(vary) & set(fixed)):
         raise ValueError(f"{name} is both fixed and varied; keep one")
     named = {*vary, *fixed}
-    if ":" in task:  # a system in a file has parameters of its own
+    if ":" in task:  # a system or structure in a file has parameters of its own
         parameters = {}
     return {
         "task": task,

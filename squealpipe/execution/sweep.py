@@ -17,10 +17,11 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from squealpipe.config.ranges import ANGLES, NUMBERS, PHYSICAL
+from squealpipe.config.ranges import ANGLES, NUMBERS, PHYSICAL, is_structure
 from squealpipe.execution.catalogue import MAPS, NEEDED, TASKS, options_of
 from squealpipe.execution.chunks import Chunks, Run
 from squealpipe.execution.scatter import scattered_values
+from squealpipe.execution.structure_sweep import StructureSweep
 from squealpipe.execution.system_sweep import SystemSweep, is_system
 from squealpipe.methods.processes import available_cores, leave_interrupts_to_the_parent
 from squealpipe.methods.progress import alone
@@ -175,9 +176,11 @@ class Sweep:
         return replace(self, vary=scattered_values(self.vary, item))
 
 
-def planned(config: Mapping[str, Any]) -> Sweep | SystemSweep:
+def planned(config: Mapping[str, Any]) -> Sweep | SystemSweep | StructureSweep:
     """The sweep of a configuration as :func:`squealpipe.config.ranges.sweep_config` makes it."""
     given = {key: config[key] for key in ("task", "vary", "fixed")}
+    if is_structure(config["task"]):
+        return StructureSweep(**given)
     if is_system(config["task"]):
         return SystemSweep(**given)
     return Sweep(**given, params=parameters_of(config))
@@ -185,7 +188,10 @@ def planned(config: Mapping[str, Any]) -> Sweep | SystemSweep:
 
 @checked
 def run_sweep(
-    sweep: Sweep | SystemSweep, *, workers: Workers = None, kept: Chunks | None = None
+    sweep: Sweep | SystemSweep | StructureSweep,
+    *,
+    workers: Workers = None,
+    kept: Chunks | None = None,
 ) -> xr.Dataset:
     """Run a sweep.
 
@@ -200,6 +206,8 @@ def run_sweep(
         than the longest along a dimension such as ``point`` are filled up with NaN, or the
         flag "absent", and ``<dimension>_count`` states their lengths.
     """
+    if isinstance(sweep, StructureSweep):
+        return sweep.run()
     if isinstance(sweep, SystemSweep):
         return sweep.run(workers)  # an ensemble shares its runs by itself
     made: list[Run] = []

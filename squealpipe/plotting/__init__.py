@@ -23,7 +23,7 @@ from squealpipe.plotting.squealing import figure as squealing_figure
 from squealpipe.plotting.style import COLUMN, SETTINGS, new_figure
 from squealpipe.plotting.systems import draw_ensemble, draw_path, draw_states
 from squealpipe.schema import SYSTEM
-from squealpipe.schema.structures import COMPLEX_MODES
+from squealpipe.schema.structures import NAME as COMPLEX_MODES
 from squealpipe.validation import checked
 
 DRAWN: dict[str, Callable[[Axes, xr.Dataset], None]] = {
@@ -42,7 +42,7 @@ DRAWN: dict[str, Callable[[Axes, xr.Dataset], None]] = {
     "stability_boundaries": draw_curves,
     "propensity": draw_shares,
     "squealing_modes": draw_poles,
-    **dict.fromkeys((schema.name for schema in COMPLEX_MODES), draw_modes),
+    COMPLEX_MODES: draw_modes,
     SYSTEM + "simulate": draw_states,
     SYSTEM + "ensemble": draw_ensemble,
     SYSTEM + "limit cycle": draw_path,
@@ -56,7 +56,7 @@ FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
     "simulation": run_figure,
     "propensity": propensity_figure,
     "squealing_modes": squealing_figure,
-    **dict.fromkeys((schema.name for schema in COMPLEX_MODES), modes_figure),
+    COMPLEX_MODES: modes_figure,
 }
 """Schema → its picture of several panels."""
 
@@ -106,7 +106,7 @@ def picture(
     Args:
         units: of the axes that measure such things, as :func:`in_units` takes them.
     """
-    several = FIGURES.get(str(dataset.attrs.get("schema")))
+    several = FIGURES.get(_schema(dataset))
     if several is not None and variable is None:
         figure = several(dataset)
     else:
@@ -116,8 +116,14 @@ def picture(
     return figure
 
 
-def _draw(axes: Axes, dataset: xr.Dataset, variable: str | None) -> None:
+def _schema(dataset: xr.Dataset) -> str:
+    """The schema by which the picture is chosen: that of modes whatever they are over."""
     schema = str(dataset.attrs.get("schema", "the file"))
+    return COMPLEX_MODES if schema.startswith(f"{COMPLEX_MODES} over ") else schema
+
+
+def _draw(axes: Axes, dataset: xr.Dataset, variable: str | None) -> None:
+    schema = _schema(dataset)
     if variable is None and schema in DRAWN:
         DRAWN[schema](axes, dataset)
         return

@@ -1,4 +1,6 @@
-"""Complex modes: growth over frequency, or frequency and growth over friction or belt speed."""
+"""Complex modes: growth over frequency, or frequency and growth over friction or a factor."""
+
+from textwrap import fill
 
 import numpy as np
 import xarray as xr
@@ -8,7 +10,6 @@ from matplotlib.figure import Figure
 from squealpipe.plotting import style
 from squealpipe.plotting.quantities import label
 
-FACTORS = ("mu", "belt_speed")
 GROWTH = "growth rate (1/s)"
 DEEPEST = 1.5
 """Fastest decay shown, over the fastest growth."""
@@ -16,16 +17,20 @@ DEEPEST = 1.5
 
 def draw_modes(axes: Axes, modes: xr.Dataset) -> None:
     """Growth over frequency of one spectrum; of several, frequency over the first factor."""
-    dims = [dim for dim in FACTORS if dim in modes.growth_rate.dims]
+    dims = _factors(modes)
     if not dims:
         _draw_spectrum(axes, modes)
     else:
         _draw_along(axes, _one_way(modes, dims), "frequency", dims[0])
 
 
+def _factors(modes: xr.Dataset) -> list[str]:
+    return [str(dim) for dim in modes.growth_rate.dims if dim != "mode"]
+
+
 def figure(modes: xr.Dataset) -> Figure:
     """One panel of growth over frequency, or two: frequency and growth over a factor."""
-    dims = [dim for dim in FACTORS if dim in modes.growth_rate.dims]
+    dims = _factors(modes)
     if not dims:
         made, axes = style.new_figure(style.COLUMN, 3.0)
         _draw_spectrum(axes[0, 0], modes)
@@ -34,11 +39,16 @@ def figure(modes: xr.Dataset) -> Figure:
     one = _one_way(modes, dims)
     for panel, name in zip(axes[:, 0], ("frequency", "growth_rate"), strict=True):
         _draw_along(panel, one, name, dims[0])
+    if dims[1:]:
+        chosen = ", ".join(
+            f"{label(one[dim])} = {one[dim].item():g}" for dim in dims[1:]
+        )
+        axes[0, 0].set_title(fill(f"at {chosen}", 50), fontsize="small")
     return made
 
 
 def _one_way(modes: xr.Dataset, dims: list[str]) -> xr.Dataset:
-    """Along the first factor, at the first value of the second."""
+    """Along the first factor, at the first values of the others."""
     return modes.isel(dict.fromkeys(dims[1:], 0))
 
 

@@ -16,6 +16,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+import yaml
+
 from squealpipe.rerun.sources import INPUT_FILES, PACKAGE, closure, read_source
 
 PARTS = ("data", "figures", "report")
@@ -153,12 +155,19 @@ def key_behind(path: str | Path) -> str | None:
     )
 
 
-def _files_named_in(value: Any) -> Iterator[str]:
-    """Files that a slice names: a table of friction, or a system as FILE.py:NAME."""
+def _files_named_in(value: Any, folder: Path | None = None) -> Iterator[str]:
+    """Files that a slice names: a table of friction, a system or a structure as FILE:NAME.
+
+    A structure's file names others in its folder.
+    """
     if isinstance(value, str):
-        file = value.partition(":")[0]
-        if "." in file and Path(file).is_file():
-            yield file
+        name = value.partition(":")[0]
+        file = Path(name) if folder is None else folder / name
+        if "." in name and file.is_file():
+            yield name if folder is None else file.as_posix()
+            if folder is None and file.suffix in {".yaml", ".yml"}:
+                content = yaml.safe_load(file.read_text(encoding="utf-8"))
+                yield from _files_named_in(content, file.parent)
     elif isinstance(value, Mapping | list | tuple):
         for item in value.values() if isinstance(value, Mapping) else value:
-            yield from _files_named_in(item)
+            yield from _files_named_in(item, folder)

@@ -368,10 +368,10 @@ def find(name: str) -> DatasetSchema:
     schemas = all_schemas()
     if name in schemas:
         return schemas[name]
-    if (
-        swept := importlib.import_module(f"{__name__}.sweep").derived(name)
-    ) is not None:
-        return swept  # type: ignore[no-any-return]
+    for module in ("sweep", "structures"):  # schemas that follow from their names
+        derive = importlib.import_module(f"{__name__}.{module}").derived
+        if (schema := derive(name)) is not None:
+            return schema  # type: ignore[no-any-return]
     raise SchemaError(f"no schema {name!r}; known: {', '.join(sorted(schemas))}")
 
 

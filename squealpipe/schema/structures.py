@@ -1,5 +1,6 @@
 """Complex modes of structures, at one friction and belt speed or over some."""
 
+import re
 from enum import IntEnum
 
 from squealpipe.schema import DatasetSchema, Outcome, Variable, or_nan, outcome
@@ -9,7 +10,26 @@ FACTORS = {
     "mu": ("coefficient of friction", "1"),
     "belt_speed": ("belt speed", "m s-1"),
 }
-"""What modes can be computed over."""
+"""What modes are always computed over."""
+ARGUMENTS = {
+    "mu_static": ("limit of friction in stick", "1"),
+    "friction_speed": ("speed at which friction falls", "m s-1"),
+    "modal_damping": ("damping ratio of modes", "1"),
+}
+"""Arguments of a structure that can be factors too: their values."""
+SCALED = {
+    "preload": "factor of all preloads",
+    "contact_stiffness": "factor of all contact stiffnesses",
+    "mass": "factor of the mass matrix",
+    "damping": "factor of the damping matrix",
+    "stiffness": "factor of the stiffness matrix",
+}
+OF_CONTACT = {
+    "preload": "factor of the preload",
+    "stiffness": "factor of the stiffness",
+}
+"""What of one contact can be a factor, named ``<contact>_preload``."""
+_NAME = re.compile(rf"^{NAME} over (?P<dims>\w+(?:, \w+)*)$")
 
 
 class Onset(IntEnum):
@@ -42,6 +62,7 @@ def _modes(dims: tuple[str, ...]) -> DatasetSchema:
                 key: Variable(words, unit, (key,) if key in dims else ())
                 for key, (words, unit) in FACTORS.items()
             },
+            **{key: _factor(key) for key in dims if key not in FACTORS},
             "contact": Variable(
                 "name of the contact", dims=("contact",), dtype="U", optional=True
             ),
@@ -102,3 +123,27 @@ def _modes(dims: tuple[str, ...]) -> DatasetSchema:
 COMPLEX_MODES = tuple(
     _modes(dims) for dims in ((), ("mu",), ("belt_speed",), ("mu", "belt_speed"))
 )
+
+
+def _factor(name: str) -> Variable:
+    """Table entry of a further factor."""
+    if name in ARGUMENTS:
+        return Variable(*ARGUMENTS[name], (name,))
+    contact, _, what = name.rpartition("_")
+    words = SCALED.get(name) or f"{OF_CONTACT[what]} of contact {contact}"
+    return Variable(words, "1", (name,))
+
+
+def derived(name: str) -> DatasetSchema | None:
+    """The schema of that name if it is one of modes over further factors."""
+    match = _NAME.match(name)
+    if match is None:
+        return None
+    dims = tuple(match["dims"].split(", "))
+    for dim in dims:
+        contact, _, what = dim.rpartition("_")
+        if dim not in FACTORS | ARGUMENTS | SCALED and not (
+            contact and what in OF_CONTACT
+        ):
+            return None
+    return _modes(dims)

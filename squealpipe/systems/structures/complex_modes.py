@@ -9,17 +9,16 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.methods.progress import with_progress
-from squealpipe.parameters import brief, is_finite_number, is_whole_number
 from squealpipe.schema import Outcome, build, find
 from squealpipe.schema.origin import versions
 from squealpipe.schema.structures import name_over
 from squealpipe.systems.structures.band import COMPLETE
 from squealpipe.systems.structures.definition import Structure
+from squealpipe.systems.structures.factors import Asked, asked_of, with_factors
 from squealpipe.systems.structures.numbering import Way
 from squealpipe.systems.structures.pencil import DENSE
 from squealpipe.systems.structures.sliding import NoSlidingError
-from squealpipe.systems.structures.spectrum import ALL, Limits, Solver, Spectrum
-from squealpipe.validation import real_array
+from squealpipe.systems.structures.spectrum import ALL, Solver, Spectrum
 
 STEPS, STEPS_IF_LARGE = 9, 3
 """Frictions on the way from none to one friction."""
@@ -33,6 +32,7 @@ def complex_modes(
     belt_speed: Any = None,
     frequency_max: float | None = None,
     n_modes: int | None = None,
+    **factors: Any,
 ) -> xr.Dataset:
     """Complex modes about steady sliding.
 
@@ -42,49 +42,54 @@ def complex_modes(
         frequency_max: modes up to there, Hz.
         n_modes: so many modes, by frequency. One of both is needed beyond 1000 degrees of freedom;
             with neither, all modes are computed.
+        factors: further ones, a number or a 1-D array each: ``mu_static``, ``friction_speed`` (m/s)
+            or ``modal_damping`` in place of the structure's; factors of what it has, namely of all
+            contacts' ``preload`` and ``contact_stiffness``, of one contact's by its name
+            (``p1_preload``, ``p1_stiffness``), and of the matrices ``mass``, ``damping`` and
+            ``stiffness``. As in :meth:`system`, ``preload`` scales the load that balances it.
 
     Returns:
-        Dataset over (mu, belt_speed, mode), of both what is an array: ``growth_rate`` (1/s),
-        ``frequency`` (Hz), ``damping_ratio``, ``unstable`` (growth above its error), ``residual``,
-        ``outcome``. By mode ``critical_mu``: the smallest friction in the range given (from 0 to
-        ``mu`` for one) at which growth leaves zero, NaN with the reason in ``onset``, and
-        ``merges_with``. A mode is a pair of eigenvalues, or one real eigenvalue; it keeps its
-        number along ``mu`` by its shape. ``normal_force`` by contact is 0 where one is open; open
-        contacts are left out.
+        Dataset over (mu, belt_speed, …, mode), with a dimension for each factor that is an array:
+        ``growth_rate`` (1/s), ``frequency`` (Hz), ``damping_ratio``, ``unstable`` (growth above its
+        error), ``residual``, ``outcome``. By mode ``critical_mu``: the smallest friction in the
+        range given (from 0 to ``mu`` for one) at which growth leaves zero, NaN with the reason in
+        ``onset``, and ``merges_with``. A mode is a pair of eigenvalues, or one real eigenvalue; it
+        keeps its number along ``mu``, and from one value of a factor to the next, by its shape.
+        ``normal_force`` by contact is 0 where one is open; open contacts are left out.
 
     Raises:
         ValueError: an argument; there is no steady sliding anywhere.
         RuntimeError: of a large structure, the modes in the band could not be shown to be complete.
     """
-    limits = _limits(structure, frequency_max, n_modes)
-    frictions = _factor("mu", structure.mu if mu is None else mu)
-    speeds = _factor(
-        "belt_speed", structure.belt_speed if belt_speed is None else belt_speed
+    asked = asked_of(
+        structure,
+        {"mu": mu, "belt_speed": belt_speed, **factors},
+        frequency_max=frequency_max,
+        n_modes=n_modes,
     )
-    if (frictions < 0).any():
-        raise ValueError(f"mu = {brief(mu)}: numbers of 0 or greater are needed")
-    if frictions.ndim and (np.diff(frictions) <= 0).any():
-        raise ValueError(f"mu = {brief(mu)}: it must ascend")
-    ways = _ways(structure, limits, frictions, speeds)
-    if not any(way.steps for way in ways):
-        raise NoSlidingError(ways[0].reasons[0])
-    asked = np.atleast_1d(frictions).tolist()
-    if not frictions.ndim and not any(asked[0] in way.steps for way in ways):
-        raise NoSlidingError(ways[0].reasons[-1])
-    tables = _tables(ways, asked)
+    frictions, speeds, varied = asked.mu, asked.belt_speed, asked.varied
+    ways = _ways(with_factors(structure, asked.fixed), asked)
+    every = list(ways.ravel())
+    if not any(way.steps for way in every):
+        raise NoSlidingError(every[0].reasons[0])
+    rows = np.atleast_1d(frictions).tolist()
+    if not frictions.ndim and not any(rows[0] in way.steps for way in every):
+        raise NoSlidingError(every[0].reasons[-1])
+    tables = _tables(every, rows)
     coords: dict[str, Any] = {
         "mode": np.arange(1, tables["growth_rate"][0].shape[-1] + 1),
         "mu": frictions,
         "belt_speed": speeds,
+        **varied,
     }
     if names := [contact.name for contact in structure.contacts]:
         coords["contact"] = names
-        tables["normal_force"] = _forces(ways, asked, len(names))
+        tables["normal_force"] = _forces(every, rows, len(names))
     scalar = not frictions.ndim, not speeds.ndim
-    modes = {name: _over(arrays, *scalar) for name, arrays in tables.items()}
-    dims = tuple(
-        name for name, one in zip(("mu", "belt_speed"), scalar, strict=True) if not one
-    )
+    modes = {
+        name: _over(arrays, ways.shape, *scalar) for name, arrays in tables.items()
+    }
+    dims = tuple(name for name in ("mu", "belt_speed", *varied) if coords[name].ndim)
     opened = {
         contact.name
         for contact, force in zip(
@@ -100,61 +105,47 @@ def complex_modes(
         "method": ALL if structure.size <= DENSE else COMPLETE,
         "tolerance": "round-off",
         "parameters": json.dumps(structure.as_dict()),
-        "arguments": json.dumps({"frequency_max": frequency_max, "n_modes": n_modes}),
+        "arguments": json.dumps(
+            {"frequency_max": frequency_max, "n_modes": n_modes, **asked.fixed}
+        ),
         "open_contacts": ", ".join(sorted(opened)) or "none",
         **versions(),
     }
     return build(find(name_over(dims)), modes, coords, attrs)
 
 
-def _limits(
-    structure: Structure, frequency_max: float | None, n_modes: int | None
-) -> Limits:
-    if frequency_max is not None and not (
-        is_finite_number(frequency_max) and frequency_max > 0
-    ):
-        raise ValueError(
-            f"frequency_max = {brief(frequency_max)}: a number greater than 0, Hz, is needed"
-        )
-    if n_modes is not None and not (is_whole_number(n_modes) and n_modes >= 1):
-        raise ValueError(
-            f"n_modes = {brief(n_modes)}: a whole number from 1 on is needed"
-        )
-    if structure.size > DENSE and frequency_max is None and n_modes is None:
-        raise ValueError(
-            f"{structure.size} degrees of freedom: give frequency_max (Hz) or n_modes; all modes "
-            f"are computed up to {DENSE}"
-        )
-    return Limits(
-        None if frequency_max is None else float(frequency_max),
-        None if n_modes is None else int(n_modes),
-    )
-
-
-def _factor(name: str, value: Any) -> np.ndarray:
-    array = real_array(name, value)
-    if array.ndim > 1 or not array.size:
-        raise ValueError(
-            f"{name} has shape {array.shape}: a number or a 1-D array is needed"
-        )
-    return array
-
-
-def _ways(
-    structure: Structure, limits: Limits, frictions: np.ndarray, speeds: np.ndarray
-) -> list[Way]:
-    """Modes along friction, one belt speed after another."""
-    asked = np.atleast_1d(frictions)
-    if not frictions.ndim and structure.contacts and frictions > 0:
+def _ways(structure: Structure, asked: Asked) -> np.ndarray:
+    """Modes along friction at each combination of factors, (belt speed, further ones)."""
+    frictions = np.atleast_1d(asked.mu)
+    if not asked.mu.ndim and structure.contacts and asked.mu > 0:
         # one friction alone: on the way to it from none, modes are followed all the same
         few = STEPS if structure.size <= DENSE else STEPS_IF_LARGE
-        asked = np.linspace(0.0, float(frictions), few)
-    ways: list[Way] = []
-    for speed in with_progress(np.atleast_1d(speeds).tolist()):
-        way = Way(Solver(structure, limits, speed))
-        way.follow(asked.tolist(), ways[-1] if ways else None)
-        ways.append(way)
+        frictions = np.linspace(0.0, float(asked.mu), few)
+    grid = {"belt_speed": np.atleast_1d(asked.belt_speed), **asked.varied}
+    shape = tuple(map(len, grid.values()))
+    ways = np.empty(shape, object)
+    top = 0
+    for place in with_progress(list(np.ndindex(shape))):
+        at = {
+            name: float(values[index])
+            for (name, values), index in zip(grid.items(), place, strict=True)
+        }
+        speed = at.pop("belt_speed")
+        solver = Solver(with_factors(structure, at), asked.limits, speed)
+        way = Way(solver, top)
+        way.follow(frictions.tolist(), _neighbour(ways, place))
+        ways[place], top = way, way.top
     return ways
+
+
+def _neighbour(ways: np.ndarray, place: tuple[int, ...]) -> Way | None:
+    """The way at the value before, of the last factor that is not at its first value."""
+    for axis in reversed(range(len(place))):
+        if place[axis]:
+            before = list(place)
+            before[axis] -= 1
+            return ways[tuple(before)]  # type: ignore[no-any-return]
+    return None
 
 
 def _tables(ways: list[Way], frictions: list[float]) -> dict[str, list[np.ndarray]]:
@@ -227,10 +218,15 @@ def _forces(ways: list[Way], frictions: list[float], number: int) -> list[np.nda
     ]
 
 
-def _over(tables: list[np.ndarray], one_friction: bool, one_speed: bool) -> np.ndarray:
-    """Tables of all belt speeds as one array over (mu, belt_speed, …), scalars left out."""
+def _over(
+    tables: list[np.ndarray], grid: tuple[int, ...], one_friction: bool, one_speed: bool
+) -> np.ndarray:
+    """Tables of all ways as one array over (mu, belt_speed, …), scalars left out."""
     by_friction = tables[0].ndim == 2
-    array = np.stack(tables, axis=1 if by_friction else 0)
+    array = np.stack(tables).reshape(*grid, *tables[0].shape)
     if one_speed:
-        array = array[:, 0] if by_friction else array[0]
-    return array[0] if by_friction and one_friction else array
+        array = array[0]
+    if not by_friction:
+        return array
+    array = np.moveaxis(array, -2, 0)
+    return array[0] if one_friction else array

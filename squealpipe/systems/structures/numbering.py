@@ -45,11 +45,13 @@ class Way:
     """Modes along friction at one belt speed.
 
     Attributes:
+        top: first number that no mode has, of this way or of those before.
         steps: by friction, those between the frictions asked for included.
         reasons: why there is no steady sliding at some.
     """
 
     solver: Solver
+    top: int = 0
     steps: dict[float, Step] = field(default_factory=dict)
     reasons: list[str] = field(default_factory=list)
 
@@ -70,19 +72,30 @@ class Way:
 
     def _first_numbers(self, spectrum: Spectrum, after: Way | None) -> np.ndarray:
         if after is None or not after.steps:
-            return np.arange(len(spectrum.pairs))
+            nowhere = np.full(0, -1)
+            return self._carried(nowhere, nowhere, len(spectrum.pairs))
         before = next(iter(after.steps.values()))
         places, _ = successors(before.spectrum, spectrum)
-        top = 1 + max(step.numbers.max(initial=-1) for step in after.steps.values())
-        return _carried(before.numbers, places, len(spectrum.pairs), top)
+        return self._carried(before.numbers, places, len(spectrum.pairs))
 
     def _go(self, low: float, high: float) -> None:
         start = self.steps[low]
         for mu, places in followed(self.solver.at, low, high, self.solver.selected):
             spectrum = self.solver.at(mu)
-            top = 1 + max(step.numbers.max(initial=-1) for step in self.steps.values())
-            numbers = _carried(start.numbers, places, len(spectrum.pairs), top)
+            numbers = self._carried(start.numbers, places, len(spectrum.pairs))
             self.steps[mu] = Step(spectrum, numbers)
+
+    def _carried(
+        self, numbers: np.ndarray, places: np.ndarray, size: int
+    ) -> np.ndarray:
+        """Numbers at the places that modes went to; new ones elsewhere."""
+        carried = np.full(size, -1)
+        kept = places >= 0
+        carried[places[kept]] = numbers[kept]
+        new = carried < 0
+        carried[new] = self.top + np.arange(new.sum())
+        self.top += int(new.sum())
+        return carried
 
     def critical(self, number: int) -> tuple[float, Onset, int | None]:
         """The friction at which growth of a mode leaves zero, why, and the mode it merges with."""
@@ -138,15 +151,3 @@ class Way:
             return None
         distance = abs(then[other] - then[number])
         return other if abs(now[other] - own) < MERGED * distance else None
-
-
-def _carried(
-    numbers: np.ndarray, places: np.ndarray, size: int, top: int
-) -> np.ndarray:
-    """Numbers at the places that modes went to; new ones from ``top`` on elsewhere."""
-    carried = np.full(size, -1)
-    kept = places >= 0
-    carried[places[kept]] = numbers[kept]
-    new = carried < 0
-    carried[new] = top + np.arange(new.sum())
-    return carried

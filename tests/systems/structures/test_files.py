@@ -7,6 +7,9 @@ import scipy.sparse as sp
 
 from squealpipe import Structure, load
 from squealpipe.cli import run
+from squealpipe.config.ranges import sweep_config
+from squealpipe.execution.sweep import planned
+from squealpipe.rerun.key import rule_key
 from squealpipe.structures import elastic_pad
 
 MASS = np.array([[2.0, 0.5, 0.0], [0.5, 3.0, 0.25], [0.0, 0.25, 1.0]])
@@ -246,6 +249,49 @@ def test_the_command_writes_what_python_computes(tmp_path, monkeypatch, capsys):
     assert np.array_equal(written.growth_rate, computed.growth_rate)
     assert written.mu.dims == ("mu",)
     assert (tmp_path / "modes.png").stat().st_size > 10000
+
+
+def test_modes_over_factors_are_a_command_and_a_task_of_sweeps(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    structure = structure_of(tmp_path, as_matrix_market(tmp_path))
+    computed = structure.complex_modes(
+        mu=np.linspace(0, 0.8, 3), edge_stiffness=[0.5, 2.0]
+    )
+    over = ["--vary", "edge_stiffness=0.5,2"]
+    assert run(["modes", "pad.yaml", "--mu", "0:0.8:3", *over, "-o", "modes.nc"]) == 0
+    assert (tmp_path / "modes.png").stat().st_size > 10000
+    task = "pad.yaml:complex_modes"
+    assert run(["sweep", task, "--vary", "mu=0:0.8:3", *over, "-o", "sweep.nc"]) == 0
+    for file in ("modes.nc", "sweep.nc"):
+        written = load(file)
+        assert written.growth_rate.dims == ("mu", "edge_stiffness", "mode")
+        assert np.array_equal(written.growth_rate, computed.growth_rate)
+
+
+def test_a_sweep_of_a_structure_is_checked_when_planned_and_follows_all_its_files(
+    tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    structure_of(tmp_path, as_matrix_market(tmp_path))
+
+    def config(task="pad.yaml:complex_modes", vary=None, **fixed):
+        vary = {"mu": [0.1, 0.2]} if vary is None else vary
+        return sweep_config(task=task, vary=vary, fixed=fixed, parameters={"mu": 0.3})
+
+    before = rule_key(config(), [])
+    scipy.io.mmwrite(tmp_path / "K.mtx", 2.0 * STIFFNESS)
+    assert rule_key(config(), []) != before
+    for faulty, words in (
+        (config("pad.yaml:modes"), "write pad.yaml:complex_modes"),
+        (config(frequency=1.0), "did you mean 'frequency_max'"),
+        (config(vary={"n_modes": [1, 2]}), "cannot be varied"),
+        (config(vary={"mu": [0.2, 0.1]}), "ascend"),
+        (config(frequency_max=-1.0), "greater than 0"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            planned(faulty)
+    with pytest.raises(FileNotFoundError):
+        planned(config("none.yaml:complex_modes"))
 
 
 def test_contacts_that_are_open_or_dependent_are_named():

@@ -388,3 +388,78 @@ def test_friction_by_number_is_named_stable_located_or_unstable_throughout():
     modes = hoffmann(0.5, belt_speed=-1.0).complex_modes(mu=np.linspace(0, 0.7, 3))
     assert set(modes.onset.values) == {Onset.stable}
     assert np.isnan(modes.critical_mu).all()
+
+
+def changed(pad, **contact):
+    """The pad with one contact or all of another stiffness or preload, by factors."""
+    factors = {name: np.broadcast_to(value, 3) for name, value in contact.items()}
+    return pad.with_(
+        contacts=[
+            Contact(
+                each.name,
+                each.normal,
+                each.tangential,
+                each.stiffness * factors.get("stiffness", np.ones(3))[place],
+                each.preload * factors.get("preload", np.ones(3))[place],
+            )
+            for place, each in enumerate(pad.contacts)
+        ]
+    )
+
+
+def same_modes(chosen, alone):
+    """Whether modes are the same, by growth and frequency whatever their numbers."""
+
+    def ordered(modes):
+        values = modes.growth_rate.values + 2j * np.pi * modes.frequency.values
+        return np.sort_complex(values[np.isfinite(values)])
+
+    assert ordered(chosen) == pytest.approx(ordered(alone), rel=1e-9)
+
+
+def test_modes_over_any_factor_are_those_of_structures_that_have_it():
+    pad = elastic_pad(
+        elements=(3, 1), contacts=3, modal_damping=0.01, preload=300.0
+    ).with_(friction_law="exponential", mu_static=0.8, friction_speed=2.0)
+    limits = {"frequency_max": 60e3, "mu": [0.5]}
+    modes = pad.complex_modes(
+        preload=[0.5, 3.0], p2_stiffness=[0.5, 1.0, 2.0], **limits
+    )
+    assert modes.growth_rate.dims == ("mu", "preload", "p2_stiffness", "mode")
+    assert modes.critical_mu.dims == ("preload", "p2_stiffness", "mode")
+    at = {"preload": 3.0, "p2_stiffness": 2.0}
+    alone = changed(pad, preload=3.0, stiffness=[1.0, 2.0, 1.0])
+    same_modes(modes.sel(at), alone.complex_modes(**limits))
+    # the falling law damps less under more load
+    assert not np.allclose(
+        modes.growth_rate.sel(preload=0.5), modes.growth_rate.sel(preload=3.0)
+    )
+    for name, value, other in (
+        ("contact_stiffness", 2.0, changed(pad, stiffness=2.0)),
+        ("modal_damping", 0.02, pad.with_(modal_damping=0.02)),
+        ("mass", 1.5, pad.with_(mass=1.5 * pad.mass)),
+        ("friction_speed", 0.7, pad.with_(friction_speed=0.7)),
+    ):
+        over = pad.complex_modes(**{name: [0.3, value]}, **limits)
+        assert over[name].values.tolist() == [0.3, value]
+        same_modes(over.sel({name: value}), other.complex_modes(**limits))
+        single = pad.complex_modes(**{name: value}, **limits)
+        assert name not in single.dims
+        same_modes(single, other.complex_modes(**limits))
+
+
+@pytest.mark.parametrize(
+    ("factors", "words"),
+    [
+        ({"contact_stifness": [1.0]}, "did you mean 'contact_stiffness'"),
+        ({"p9_stiffness": 2.0}, "p9_stiffness"),
+        ({"preload": [-1.0, 1.0]}, "0 or greater"),
+        ({"stiffness": [0.0, 1.0]}, "greater than 0"),
+        ({"modal_damping": [0.1, 0.1]}, "each value once"),
+        ({"mu_static": [0.1, 0.9]}, "0.5, the coefficient at"),
+    ],
+)
+def test_a_factor_that_cannot_be_is_refused(factors, words):
+    pad = elastic_pad(elements=(4, 2)).with_(friction_law="exponential")
+    with pytest.raises(ValueError, match=words):
+        pad.complex_modes(**factors)

@@ -6,7 +6,7 @@ Included after the report, which shows the paper's study and must not wait for t
 from math import prod
 
 from squealpipe.config.mistakes import ConfigError
-from squealpipe.config.ranges import longest
+from squealpipe.config.ranges import is_structure, longest
 
 SWEEPS = {name: STUDY.sweep(name) for name in STUDY.sweeps}
 
@@ -17,7 +17,7 @@ if SWEEPS and workflow.is_main_process:  # jobs need not check again: the import
     for name, sweep in SWEEPS.items():
         try:
             planned(sweep)
-        except ValueError as fault:
+        except (ValueError, FileNotFoundError) as fault:
             faults.append(f"sweeps.{name}: {fault}")
     if faults:
         raise ConfigError(faults)
@@ -26,9 +26,9 @@ if SWEEPS and workflow.is_main_process:  # jobs need not check again: the import
 def sweep_parts(sweep):
     """Parts of a sweep: as many as a map has, but no more than it has values to cut.
 
-    A basin is made whole: its attractors are numbered over all starts.
+    A basin is made whole: its attractors are numbered over all starts; so are a structure's modes.
     """
-    if sweep["fixed"].get("run") == "basin":
+    if sweep["fixed"].get("run") == "basin" or is_structure(sweep["task"]):
         return 1
     return min(PARTS, len(sweep["vary"][longest(sweep["vary"])]))
 
