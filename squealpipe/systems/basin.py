@@ -9,7 +9,8 @@ import xarray as xr
 
 from squealpipe.schema import flag_table
 from squealpipe.schema.systems import build
-from squealpipe.systems import runs
+from squealpipe.systems.grid import outer_product
+from squealpipe.systems.labels import attributes_of, flag, labels, outcome
 from squealpipe.systems.motion import Ensemble, Motion
 from squealpipe.validation import NotNegative, Tolerance, Values, Workers, checked
 
@@ -43,7 +44,7 @@ def basin(
         rests and cycles by their extremes (-1: unsettled); ``period`` (NaN: none is known);
         ``<state>_min`` and ``<state>_max`` of the last quarter; ``outcome``.
     """
-    grid = runs.outer_product(system, start, parameters)
+    grid = outer_product(system, start, parameters)
     ensemble = Ensemble(system, grid.values, t_end, tol, grid.regime, workers)
     whole = ensemble.run(slice(None), late=0.75)
     motion, period = ensemble.judged(whole)
@@ -51,7 +52,7 @@ def basin(
     over, shape = tuple(grid.coordinates), grid.shape
     numbers = _numbered(motion, whole["late_extremes"])
     found: dict[str, Any] = {
-        "motion": runs.flag(
+        "motion": flag(
             "what the motion has become",
             over,
             motion.reshape(shape),
@@ -60,14 +61,10 @@ def basin(
         "attractor": (
             over,
             numbers.reshape(shape),
-            runs.labels("number of the attractor", "1"),
+            labels("number of the attractor", "1"),
         ),
-        "period": (
-            over,
-            period.reshape(shape),
-            runs.labels("period of the cycle", "s"),
-        ),
-        "outcome": runs.outcome(system, over, whole["ends"][:, 0].reshape(shape)),
+        "period": (over, period.reshape(shape), labels("period of the cycle", "s")),
+        "outcome": outcome(system, over, whole["outcome"].reshape(shape)),
     }
     for i, (name, unit) in enumerate(system.units.items()):
         for which, word, values in (
@@ -75,9 +72,9 @@ def basin(
             ("max", "largest", last_high),
         ):
             column = np.where(np.isfinite(values[:, i]), values[:, i], np.nan)
-            label = runs.labels(f"{word} {name} in the last quarter", unit)
+            label = labels(f"{word} {name} in the last quarter", unit)
             found[f"{name}_{which}"] = (over, column.reshape(shape), label)
-    attributes = runs.attributes(system, "basin", grid.fixed, tol)
+    attributes = attributes_of(system, "basin", grid.fixed, tol)
     return build("basin", found, grid.coordinates, attributes)
 
 

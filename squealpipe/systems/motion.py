@@ -16,7 +16,7 @@ import numpy as np
 
 from squealpipe.methods.recurrence import LEAST_REPEATS, in_blocks, repeats_after
 from squealpipe.schema import Outcome
-from squealpipe.systems import runs
+from squealpipe.systems.integrate import RunOptions, integrate
 
 AT_REST = 1e-3
 """A motion rests whose states stay this close together, over their ranges in the whole run."""
@@ -64,14 +64,13 @@ class Ensemble:
         values |= options.pop("states", {})
         count = values[self.system.states[0]].size
         chosen = {"regime": self.regime, "t_late": late * self.t_end} | options
-        return runs.integrate(
+        return integrate(
             self.system,
             values,
             np.full(count, share * self.t_end),
+            RunOptions(tracked=self.system.states, **chosen),
             tol=self.tol,
             workers=self.workers,
-            tracked=self.system.states,
-            **chosen,
         )
 
     def judged(self, whole: Any) -> tuple[np.ndarray, np.ndarray]:
@@ -87,7 +86,7 @@ class Ensemble:
         )
         stays = np.maximum(high, last_high) - np.minimum(low, last_low)
         rests = (stays <= AT_REST * spans).all(axis=1)
-        ran = whole["ends"][:, 0] == Outcome.converged
+        ran = whole["outcome"] == Outcome.converged
         ended = np.isfinite(whole["late_extremes"]).all(axis=(1, 2)) & ran
         moving = np.flatnonzero(~rests & ran)
         period = np.full(len(rests), np.nan)
@@ -100,7 +99,7 @@ class Ensemble:
                 period[rows], silent[rows] = self._between_events(
                     rows, int(counts[rows].max()), spans
                 )
-            _, steps, _ = whole["ends"].T
+            steps = whole["steps"]
             quiet = np.flatnonzero(silent)
             for first in range(0, quiet.size, _AT_ONCE):
                 rows = quiet[first : first + _AT_ONCE]

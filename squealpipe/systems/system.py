@@ -9,7 +9,7 @@ from squealpipe.schema.systems import check
 from squealpipe.systems import definition
 from squealpipe.systems.basin import basin
 from squealpipe.systems.components import Switch
-from squealpipe.systems.simulation import ensemble, simulate
+from squealpipe.systems.runs import ensemble, simulate
 
 __all__ = ["Switch", "System"]
 

@@ -8,7 +8,7 @@ import numpy as np
 from squealpipe.benchmark.as_system import system_of
 from squealpipe.benchmark.problems import Problem
 from squealpipe.schema import Outcome
-from squealpipe.systems.runs import integrate
+from squealpipe.systems.integrate import RunOptions, integrate
 
 _KNOWN: dict[str, Any] = {}
 MOST_EVENTS = 1000
@@ -22,15 +22,15 @@ def solve(problem: Problem, tol: float) -> Any:
         system,
         {name: np.array([value]) for name, value in given.items()},
         np.array([problem.t_end]),
-        times=np.array(problem.times),
+        RunOptions(times=np.array(problem.times), tangent=True, log_events=MOST_EVENTS),
         tol=tol,
-        tangent=True,
-        log_events=MOST_EVENTS,
         workers=1,
     )
-    outcome, steps, count = raw["ends"][0].tolist()
+    outcome, steps, count = (
+        int(raw[name][0]) for name in ("outcome", "steps", "n_events")
+    )
     flag = "" if outcome == Outcome.converged else Outcome(outcome).name
-    if np.isfinite(raw["summary"][0, 1]):
+    if np.isfinite(raw["horizon"][0]):
         flag = "beyond the horizon of predictability"
     slope = None
     if problem.derivative:

@@ -15,7 +15,8 @@ from squealpipe.methods.taylor.layout import BY_EVENT, BY_TURNS, STOPPED
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.jobs import Jobs, jobs_of
-from squealpipe.systems import runs
+from squealpipe.systems.integrate import LARGEST, RunOptions
+from squealpipe.systems.integrate import integrate as integrate_system
 from squealpipe.systems.shipped.brake import regimes_of
 from squealpipe.systems.system import System
 from squealpipe.systems.trace import TIME
@@ -25,7 +26,7 @@ BLOCK = 2**17
 """Runs of a map that are held in memory at once, about 1 kB each."""
 NEAR_PIVOT = 1e-3
 """Distance from a pivot, in free lengths, from which an overflow is its doing."""
-REACH, PEAK = f"{runs.LARGEST}reach", f"{runs.LARGEST}contact_force"
+REACH, PEAK = f"{LARGEST}reach", f"{LARGEST}contact_force"
 TRACKED = ("x", "vx", "contact_force", REACH)
 """Quantities of the system whose extremes an :class:`Ensemble` may hold, or ``PEAK`` of them."""
 
@@ -119,13 +120,13 @@ class Ensemble:
         _column("sample_growth", 0),
     )
     """The growth is that at the end of the step before."""
-    turns, log_growth = _turns("half_turns"), _column("summary", 0)
+    turns, log_growth = _turns("half_turns"), _column("log_growth")
     """Counterclockwise positive; ln of the growth of a perturbation, 0 without ``tangent``."""
-    time = _column("summary", 2, time=True)
-    predictability_horizon = _column("summary", 1, time=True)
+    time = _column("reached", time=True)
+    predictability_horizon = _column("horizon", time=True)
     """Time reached, and that at which an error of ``tol`` has grown to l_pre/1000 (NaN: not before
     the end), s."""
-    steps, final_state = _column("ends", 1), _states("final")
+    steps, final_state = _column("steps"), _states("final")
     samples = _states("samples")
     """At ``times``; NaN past ``time``."""
     event_times, event_states = (
@@ -138,7 +139,7 @@ class Ensemble:
         self, jobs: Jobs, raw: dict[str, np.ndarray], tracked: Sequence[str]
     ) -> None:
         self.jobs, self._raw = jobs, raw
-        self._tracked = [each.removeprefix(runs.LARGEST) for each in tracked]
+        self._tracked = [each.removeprefix(LARGEST) for each in tracked]
         system = jobs.systems[0]
         self._regimes = np.array([*regimes_of(system), -1])
         kinds = [Event.__members__.get(name, -1) for name in system.traced.kinds]
@@ -159,7 +160,7 @@ class Ensemble:
     @cached_property
     def outcome(self) -> np.ndarray:
         """``schema.Outcome`` of each run."""
-        codes = self._raw["ends"][:, 0]
+        codes = self._raw["outcome"]
         # a state that is lost next to a pivot is so by its doing
         away = self._raw["final"][:, None, :2] - self._raw["points"]
         lengths = np.stack(
@@ -317,6 +318,7 @@ def _run(
     tracked: Sequence[str],
     log_events: int,
     fill_log: bool,
+    workers: int | None = None,
     **options: Any,
 ) -> dict[str, np.ndarray]:
     """Raw results of the runs of one system, one row each."""
@@ -334,25 +336,28 @@ def _run(
     most_steps, most_events = jobs.most
     room = log_events
     while True:
-        raw = runs.integrate(
+        raw = integrate_system(
             system,
             values,
             np.where(apart, 0.0, t_end) if until else t_end,
-            regime=starts,
-            t_late=t_late,
-            late_from="contact" if jobs.late_from_return else None,
-            until=until,
-            around=points,
-            most_turns=jobs.stop_at_turns,
-            tracked=tracked,
-            times=jobs.times[rows],
+            RunOptions(
+                regime=starts,
+                t_late=t_late,
+                late_from="contact" if jobs.late_from_return else None,
+                until=until,
+                around=points,
+                most_turns=jobs.stop_at_turns,
+                tracked=tracked,
+                times=jobs.times[rows],
+                log_events=room,
+                most_steps=most_steps[rows],
+                most_events=most_events[rows],
+                **options,
+            ),
             tol=jobs.tol,
-            log_events=room,
-            most_steps=most_steps[rows],
-            most_events=most_events[rows],
-            **options,
+            workers=workers,
         )
-        count = raw["ends"][:, 2]
+        count = raw["n_events"]
         raw |= {"starts_apart": apart, "points": points, "logged": count <= room}
         others = np.array(
             [name not in Event.__members__ for name in system.traced.kinds]

@@ -21,7 +21,6 @@ from squealpipe.methods.continuation import ContinuationState
 from squealpipe.methods.progress import alone
 from squealpipe.schema import Outcome, flag_table
 from squealpipe.schema.branch_labels import Label
-from squealpipe.systems import runs
 from squealpipe.systems.cycles.admissible import MARGIN_ROUND_OFF, margins
 from squealpipe.systems.cycles.described import columns, describe_columns, outcome_of
 from squealpipe.systems.cycles.event_map import FREE, EventMap, Section
@@ -43,6 +42,13 @@ from squealpipe.systems.cycles.line import (
     unstable,
 )
 from squealpipe.systems.cycles.solution import Cycle
+from squealpipe.systems.labels import (
+    attributes_of,
+    components_of,
+    flag,
+    labels,
+    regime_flag,
+)
 from squealpipe.validation import Number, Several, checked
 
 if TYPE_CHECKING:
@@ -644,37 +650,33 @@ def dataset(
     found: dict[str, Any] = describe_columns(system, rows, "point")
     values = points[0].cycle.parts.values if points else {}
     followed = np.array([point.parameter for point in points])
-    found[parameter] = (
-        "point",
-        followed,
-        runs.labels(f"{parameter} along the branch", "1"),
-    )
-    labels = [point.label for point in points]
-    found["label"] = runs.flag(
-        "what is special about the point", "point", labels, flag_table(Label)
+    found[parameter] = ("point", followed, labels(f"{parameter} along the branch", "1"))
+    special = [point.label for point in points]
+    found["label"] = flag(
+        "what is special about the point", "point", special, flag_table(Label)
     )
     found["events"] = (
         "point",
         [len(p.cycle.events) for p in points],
-        runs.labels("events of the cycle", "1"),
+        labels("events of the cycle", "1"),
     )
     starts = [point.cycle.start() for point in points]
     for i, name in enumerate(system.states):
         first = np.array([state[i] for state, _ in starts])
-        label = runs.labels(f"{name} at t = 0 of the cycle", system.units[name])
+        label = labels(f"{name} at t = 0 of the cycle", system.units[name])
         found[f"{name}_start"] = ("point", first, label)
     regimes = np.array([system.joint.regimes(regime) for _, regime in starts], int)
-    found["start_regime"] = runs.regime_flag(
+    found["start_regime"] = regime_flag(
         system,
         "regime at t = 0 of the cycle",
         ("point",),
         regimes.reshape(len(starts), system.traced.n_components),
     )
     periods = points[0].cycle.map.periods or 1 if points else 1
-    found["periods"] = ((), periods, runs.labels("forcing periods", "1"))
+    found["periods"] = ((), periods, labels("forcing periods", "1"))
     found["outcome"] = outcome_of(system, "point", np.zeros(len(points), int))
     found["end"] = outcome_of(system, (), int(end))
-    attributes = runs.attributes(system, "cycle branch", values, 1e-14)
+    attributes = attributes_of(system, "cycle branch", values, 1e-14)
     return xr.Dataset(
-        found, runs.components_of(system), attributes | {"parameter": parameter}
+        found, components_of(system), attributes | {"parameter": parameter}
     )

@@ -21,7 +21,6 @@ import xarray as xr
 from squealpipe.methods.continuation import ContinuationState, PseudoArclength
 from squealpipe.schema import flag_table
 from squealpipe.schema.branch_labels import Label, Meeting
-from squealpipe.systems import runs
 from squealpipe.systems.cycles.admissible import (
     MARGIN_ROUND_OFF,
     Kind,
@@ -35,6 +34,7 @@ from squealpipe.systems.cycles.event_order import label_of, order_of, run_of
 from squealpipe.systems.cycles.flow import Event, Flow, Vector
 from squealpipe.systems.cycles.line import PRECISE, STEPS, Line, flip
 from squealpipe.systems.cycles.solution import Cycle
+from squealpipe.systems.labels import attributes_of, flag, labels
 from squealpipe.text import suggestion
 from squealpipe.validation import Number, Several, checked
 
@@ -608,28 +608,27 @@ def _dataset(
     cycles = [point.cycle for point in points]
     for name in parameters:
         values = [cycle.parts.values[name] for cycle in cycles]
-        found[name] = ("point", values, runs.labels(f"{name} along the curve", "1"))
+        found[name] = ("point", values, labels(f"{name} along the curve", "1"))
     periods, events = (
         [cycle.period for cycle in cycles],
         [len(cycle.events) for cycle in cycles],
     )
-    found["period"] = ("point", periods, runs.labels("period", "s"))
-    found["events"] = ("point", events, runs.labels("events of the cycle", "1"))
-    residuals, text = (
-        [p.residual for p in points],
-        "largest residual of the equations, without units",
-    )
-    found["residual"] = ("point", residuals, runs.labels(text, "1"))
-    labels, text = [point.label for point in points], "what else happens at the point"
-    found["label"] = runs.flag(text, "point", labels, flag_table(Meeting))
+    found["period"] = ("point", periods, labels("period", "s"))
+    found["events"] = ("point", events, labels("events of the cycle", "1"))
+    text = "largest residual of the equations, without units"
+    residuals = [point.residual for point in points]
+    found["residual"] = ("point", residuals, labels(text, "1"))
+    text = "what else happens at the point"
+    meetings = [point.label for point in points]
+    found["label"] = flag(text, "point", meetings, flag_table(Meeting))
     names = [*ENDS, *sorted(set(ends) - set(ENDS))]
-    found["outcome"] = runs.flag(
+    found["outcome"] = flag(
         "why the curve ended",
         "side",
         [names.index(end) for end in ends],
         dict(enumerate(names)),
     )
-    attributes = runs.attributes(system, "cycle curve", cycles[0].parts.values, 1e-14)
+    attributes = attributes_of(system, "cycle curve", cycles[0].parts.values, 1e-14)
     return xr.Dataset(
         found,
         attrs=attributes

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.systems import runs
 from squealpipe.systems.cycles.described import dataset
 from squealpipe.systems.cycles.find import find_cycle
 from squealpipe.systems.cycles.flow import Vector
+from squealpipe.systems.grid import call_values, scalar
 from squealpipe.validation import Natural, Positive, Values, checked
 
 if TYPE_CHECKING:
@@ -70,10 +70,7 @@ def given(
     system: System, start: Mapping[str, Any] | None, parameters: Mapping[str, Any]
 ) -> tuple[dict[str, float], Vector]:
     """Parameters and the start of a call, checked."""
-    found = {
-        n: runs.scalar(n, v)
-        for n, v in runs.call_values(system, start, parameters).items()
-    }
+    found = {n: scalar(n, v) for n, v in call_values(system, start, parameters).items()}
     if len(system.traced.variables) > system.traced.size and system.period is None:
         raise ValueError(
             f"{system.name} depends on the time but has no period; give `period`"

@@ -10,9 +10,15 @@ import xarray as xr
 
 from squealpipe.methods.taylor.layout import STOPPED
 from squealpipe.schema import Outcome, flag_table, in_words
-from squealpipe.systems import runs
 from squealpipe.systems.cycles.event_map import FREE
 from squealpipe.systems.cycles.solution import Cycle
+from squealpipe.systems.labels import (
+    attributes_of,
+    components_of,
+    flag,
+    labels,
+    regime_flag,
+)
 
 if TYPE_CHECKING:
     from squealpipe.systems.definition import System
@@ -76,7 +82,7 @@ def outcome_of(system: System, dims: Any, values: Any) -> Any:
     }
     more = np.unique(np.asarray(values)[np.asarray(values) > SETTLED_ON])
     table |= {int(k): f"settled_on_{int(k) - SETTLED_ON}_periods" for k in more}
-    dims, values, attributes = runs.flag("how the cycle was found", dims, values, table)
+    dims, values, attributes = flag("how the cycle was found", dims, values, table)
     return dims, values, attributes | {"comment": in_words(table)}
 
 
@@ -91,9 +97,7 @@ def describe_columns(
         values = stacked if dim else stacked[0]
         if name == "stable":
             table = {0: "no", 1: "yes"}
-            found[name] = runs.flag(
-                "whether small disturbances decay", over, values, table
-            )
+            found[name] = flag("whether small disturbances decay", over, values, table)
         else:
             dims = (*over, "multiplier") if np.ndim(bare) else over
             found[name] = dims, values, described(name, system)
@@ -110,7 +114,7 @@ def dataset(
     """A cycle, or the reason why there is none, as a dataset."""
     found = describe_columns(system, [columns(cycle, system)])
     number = outcome - SETTLED_ON if outcome > SETTLED_ON else periods
-    label = runs.labels("forcing periods, or returns to the section", "1")
+    label = labels("forcing periods, or returns to the section", "1")
     found["periods"] = ((), number, label)
     times, order = np.empty(0), []
     instants, path, regime = np.empty(0), np.empty((0, len(system.states))), 0
@@ -126,11 +130,11 @@ def dataset(
     states = states.reshape(-1, len(system.states))
     kinds, names = dict(enumerate(system.traced.kinds)), dict(enumerate(system.regimes))
     joint = system.joint
-    found["event_time"] = ("event", times, runs.labels("time of the event", "s"))
-    found["event_kind"] = runs.flag(
+    found["event_time"] = ("event", times, labels("time of the event", "s"))
+    found["event_kind"] = flag(
         "kind of the event", "event", [e.kind for e in chosen], kinds
     )
-    found["event_regime"] = runs.flag(
+    found["event_regime"] = flag(
         "regime entered",
         "event",
         [joint.entered_by(e.after, e.switch) for e in chosen],
@@ -141,26 +145,26 @@ def dataset(
         found[f"event_{name}"] = (
             "event",
             states[:, i],
-            runs.labels(f"{name} after it", unit),
+            labels(f"{name} after it", unit),
         )
         found[f"{name}_path"] = (
             "sample",
             path[:, i],
-            runs.labels(f"{name} along the cycle", unit),
+            labels(f"{name} along the cycle", unit),
         )
         first = path[0, i] if len(path) else np.nan
         found[f"{name}_start"] = (
             (),
             first,
-            runs.labels(f"{name} at t = 0 of the cycle", unit),
+            labels(f"{name} at t = 0 of the cycle", unit),
         )
-    found["start_regime"] = runs.regime_flag(
+    found["start_regime"] = regime_flag(
         system, "regime at t = 0 of the cycle", (), np.array(joint.regimes(regime))
     )
-    found["time"] = ("sample", instants, runs.labels("time", "s"))
+    found["time"] = ("sample", instants, labels("time", "s"))
     found["outcome"] = outcome_of(system, (), outcome)
     return xr.Dataset(
         found,
-        runs.components_of(system),
-        runs.attributes(system, "limit cycle", values, 1e-14),
+        components_of(system),
+        attributes_of(system, "limit cycle", values, 1e-14),
     )

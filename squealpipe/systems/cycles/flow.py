@@ -30,7 +30,7 @@ from squealpipe.methods.taylor.series import gauss
 from squealpipe.methods.taylor.simd import FEW, LANES
 from squealpipe.methods.taylor.symbols import derivative, parameter, symbol
 from squealpipe.methods.zeros import bracketed
-from squealpipe.systems.runs import compiled, symbolic
+from squealpipe.systems.integrate import compiled, symbolic
 from squealpipe.systems.trace import TIME_UNIT, Names
 
 if TYPE_CHECKING:

@@ -27,7 +27,7 @@ from squealpipe.systems.cycles.settled import (
     distances_from_orbit,
 )
 from squealpipe.systems.cycles.solution import Cycle, scale_of
-from squealpipe.systems.runs import Motion
+from squealpipe.systems.record import Motion
 
 SETTLE_STEPS = 100_000
 """Steps after which a run that is to settle is given up."""

@@ -13,7 +13,8 @@ from squealpipe.systems.cycles.admissible import is_motion
 from squealpipe.systems.cycles.event_map import FREE, EventMap, Section
 from squealpipe.systems.cycles.flow import Event, Flow, Vector
 from squealpipe.systems.cycles.solution import Cycle
-from squealpipe.systems.runs import Motion, single_run
+from squealpipe.systems.integrate import RunOptions
+from squealpipe.systems.record import Motion, single_run
 
 if TYPE_CHECKING:
     from squealpipe.systems.definition import System
@@ -41,10 +42,12 @@ def follow(
             system,
             {**values, **states},
             duration,
-            regime=first,
+            RunOptions(
+                regime=first,
+                unit_sizes=sizes_at(flow, values, state, regime or 0),
+                **options,
+            ),
             tol=1e-13,
-            unit_sizes=sizes_at(flow, values, state, regime or 0),
-            **options,
         )
 
 

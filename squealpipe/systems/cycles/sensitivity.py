@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealpipe.systems import runs
 from squealpipe.systems.cycles.flow import Flow, Vector
 from squealpipe.systems.cycles.guess import events_of
-from squealpipe.systems.runs import Motion
+from squealpipe.systems.labels import labels
+from squealpipe.systems.record import Motion
 from squealpipe.text import suggestion
 
 if TYPE_CHECKING:
@@ -104,12 +104,10 @@ def sensitivities(
     found: dict[str, Any] = {}
     for j, name in enumerate(names):
         for k, state in enumerate(system.states):
-            label = runs.labels(
+            label = labels(
                 f"derivative of {state} by {name}", f"{system.units[state]} / {name}"
             )
             found[f"{state}_by_{name}"] = ("time", by_time[:, k, j], label)
-        label = runs.labels(
-            f"derivative of the time of the event by {name}", f"s / {name}"
-        )
+        label = labels(f"derivative of the time of the event by {name}", f"s / {name}")
         found[f"event_time_by_{name}"] = ("event", delays[:, j], label)
     return found

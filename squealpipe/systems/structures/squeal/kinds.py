@@ -129,7 +129,7 @@ def _apart(
 
 def _repeats(raw: dict[str, np.ndarray], length: float) -> float:
     """Period of the second half, by its events; 0 where none is seen."""
-    count = int(raw["ends"][0, 2])
+    count = int(raw["n_events"][0])
     at, kinds = raw["event_times"][0, :count], raw["event_kinds"][0, :count]
     late = at > 0.5 * length
     lag = repeats_after(at[late], kinds[late], REPEATED)
@@ -144,7 +144,7 @@ def _closed(
     length: float,
 ) -> Cycle | None:
     """The stable cycle through the end of the run, if the exact map finds it there."""
-    if raw["ends"][0, 0] != Outcome.converged or not np.isfinite(frequency):
+    if raw["outcome"][0] != Outcome.converged or not np.isfinite(frequency):
         return None
     system = plant.system
     regime = system.joint.number(raw["sample_regimes"][0, -1].tolist())

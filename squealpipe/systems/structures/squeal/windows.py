@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from squealpipe.schema import Outcome
-from squealpipe.systems.runs import LARGEST, integrate
+from squealpipe.systems.integrate import LARGEST, RunOptions, integrate
 from squealpipe.systems.structures.squeal.plant import Plant
 
 SAMPLES = 2048
@@ -66,13 +66,18 @@ class Rows:
 
 
 def run(
-    plant: Plant, states: np.ndarray, times: np.ndarray, tol: float, **options: Any
+    plant: Plant,
+    states: np.ndarray,
+    times: np.ndarray,
+    tol: float,
+    workers: int | None = None,
+    **options: Any,
 ) -> dict[str, np.ndarray]:
     """Raw results from some states, sampled at instants whose last one ends the run.
 
     Args:
         times: (instants,) or (runs, instants), s.
-        options: of :func:`squealpipe.systems.runs.integrate`.
+        options: of :class:`squealpipe.systems.integrate.RunOptions`.
     """
     system, size = plant.system, len(states)
     values = {name: states[:, i] for i, name in enumerate(system.states)}
@@ -82,10 +87,13 @@ def run(
         system,
         values,
         ends,
-        times=times,
-        tracked=[f"{LARGEST}{name}_normal_force" for name in plant.contacts],
+        RunOptions(
+            times=times,
+            tracked=[f"{LARGEST}{name}_normal_force" for name in plant.contacts],
+            **options,
+        ),
         tol=tol,
-        **options,
+        workers=workers,
     )
 
 
@@ -137,7 +145,7 @@ def run_window(
             events=raw["counts"].sum(1),
             kinetic=kinetic.reshape(size, BLOCKS, -1).mean(-1),
             block_ends=np.tile(length * np.arange(1, BLOCKS + 1) / BLOCKS, (size, 1)),
-            finished=raw["ends"][:, 0] == Outcome.converged,
+            finished=raw["outcome"] == Outcome.converged,
             length=np.full(size, length),
         )
 

@@ -1,0 +1,401 @@
+"""Raw results of many runs of a system: what the compiled loop is given, and what it gives back."""
+
+from __future__ import annotations
+
+import math
+import weakref
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squealpipe.methods.processes import run_shared
+from squealpipe.methods.taylor import lanes, layout
+from squealpipe.methods.taylor.loop import loop
+from squealpipe.methods.taylor.scalar import ScalarSource
+from squealpipe.methods.taylor.series import HybridSystem
+from squealpipe.methods.taylor.simd import FEW, LANES
+from squealpipe.systems.definition import System
+from squealpipe.systems.trace import TIME, TIME_UNIT, Names
+
+LARGEST = "largest "
+
+MOST_STEPS, MOST_EVENTS = 1e7, 1e7
+
+
+def symbolic(system: System) -> HybridSystem:
+    """What the series of a system are written from."""
+    t = system.integrated
+    return HybridSystem(
+        variables=t.variables,
+        rates=t.rates,
+        events=(*t.surfaces, *t.outputs),
+        parameters=(*t.parameters, *t.all_constants),
+        explicit_time=len(t.variables) > t.size,
+    )
+
+
+_COMPILED: weakref.WeakKeyDictionary[
+    Any, dict[tuple[bool, bool], lanes.CompiledSystem]
+] = weakref.WeakKeyDictionary()
+
+
+def compiled(system: System, *, tangent: bool, few: bool) -> lanes.CompiledSystem:
+    """The machine code of a system, built once a process and kept on disk."""
+    known = _COMPILED.setdefault(system.form, {})
+    if (tangent, few) not in known:
+        t = system.integrated
+        scalar = ScalarSource(
+            t.variables,
+            t.rates,
+            t.parameters,
+            t.all_constants,
+            t.surfaces,
+            t.switches,
+            t.size,
+            t.outputs,
+        )
+        sources = {"gauge": scalar.gauge(), "change": scalar.change()}
+        if t.switched:
+            sources["settle"] = scalar.settle(t.switched)
+        if tangent:
+            sources["jump"] = scalar.jump()
+        known[tangent, few] = lanes.compile_system(
+            symbolic(system), sources, tangent=tangent, few=few
+        )
+    return known[tangent, few]
+
+
+@dataclass(frozen=True)
+class RunOptions:
+    """What a batch of runs looks at, and what may end a run early.
+
+    Attributes:
+        regime: in which all start, by name, or the number of each in each component, (runs,
+            components); by default what fits each.
+        t_late: from when the late extremes are kept, in the system's unit of time.
+        late_from: kind of event whose first begins the late part, if ``t_late`` does not.
+        until: kind of event whose first ends a run, as ``BY_EVENT``.
+        around: points (runs, points, 2) in the plane of the first two states around which half
+            turns are counted, counterclockwise.
+        most_turns: net turns around all of them that end a run, as ``BY_TURNS``.
+        tracked: states and outputs whose extremes are kept, by default all; after ``LARGEST`` the
+            largest value alone.
+        times: instants at which the state is kept, (instants,) or (runs, instants).
+        sums: keep there what has added up, too.
+        tangent: follow a perturbation, for its growth and the horizon of predictability.
+        log_events: room for the events of each run.
+        most_steps, most_events: of each run.
+        unit_sizes: of the states; by default the system's.
+    """
+
+    regime: Any = None
+    t_late: Any = math.inf
+    late_from: str | None = None
+    until: str | None = None
+    around: np.ndarray | None = None
+    most_turns: Any = math.inf
+    tracked: Sequence[str] | None = None
+    times: np.ndarray | None = None
+    sums: bool = False
+    tangent: bool = False
+    log_events: int = 0
+    most_steps: Any = MOST_STEPS
+    most_events: Any = MOST_EVENTS
+    unit_sizes: np.ndarray | None = None
+
+
+_DEFAULT = RunOptions()
+
+
+def integrate(
+    system: System,
+    values: Mapping[str, np.ndarray],
+    t_end: np.ndarray,
+    options: RunOptions = _DEFAULT,
+    *,
+    tol: float,
+    workers: int | None = None,
+) -> dict[str, np.ndarray]:
+    """Raw results of some runs, one row each.
+
+    Args:
+        values: each state and parameter as an array, (runs,).
+        t_end: (runs,), in the system's unit of time.
+        tol: tolerance of the Taylor integrator, relative to the states' sizes.
+        workers: processes; None takes all cores.
+
+    Returns:
+        One row a run: ``final``; ``extremes``, ``early_extremes`` and ``late_extremes`` (runs,
+        tracked, smallest and largest; infinite of a part that was not reached); ``counts``,
+        ``firsts`` (NaN: never) and ``peaks`` (largest magnitude of each state before the event)
+        of each kind of event; ``durations`` of regimes; ``outcome``, ``steps`` and ``n_events``;
+        ``log_growth`` of the perturbation, ``horizon`` (NaN: not passed) and ``reached``, the time
+        at the end; ``half_turns``; ``samples`` and ``sample_regimes`` (of each component);
+        ``sample_growth``, ``sample_durations``, ``sample_half_turns`` and ``sample_counts``;
+        ``event_times``, ``event_kinds``, ``event_regimes``, ``event_states``.
+
+    Raises:
+        ValueError: where the system's unit of time is none.
+    """
+    batch = _Batch(system, values, t_end, options, tol)
+    loop()  # compiled before processes share the work
+    arrays = run_shared(batch.run, batch.shapes(), jobs=len(t_end), workers=workers)
+    return batch.named(arrays)
+
+
+class _Batch:
+    """Runs of one system with what they are given, as the compiled loop reads it."""
+
+    def __init__(
+        self,
+        system: System,
+        values: Mapping[str, np.ndarray],
+        t_end: np.ndarray,
+        options: RunOptions,
+        tol: float,
+    ) -> None:
+        self.system, self.options, self.tol, self.size = (
+            system,
+            options,
+            tol,
+            len(t_end),
+        )
+        self.unit = unit = _time_units(system, values, t_end)
+        self.initial = _table(self.size, *(values[name] for name in system.states))
+        derive, names = system.derived
+        known = {**values, TIME_UNIT: unit}
+        derived = derive(*(known[name] for name in names))
+        self.parameters = _table(
+            self.size, *(values[name] for name in system.parameters), *derived, unit
+        )
+        self.regimes = options.regime
+        if not isinstance(self.regimes, np.ndarray):
+            at_start = {TIME: np.zeros(self.size), **values}
+            self.regimes = system.first_regimes(at_start, self.size, self.regimes)
+        self.watched = self._watched()
+        self.limits = _table(
+            self.size,
+            t_end / unit,
+            options.t_late / unit,
+            options.most_steps,
+            options.most_events,
+            math.log(layout.LOST_ERROR / tol),
+            options.most_turns,
+        )
+        samples = (
+            np.empty((1, 0)) if options.times is None else np.atleast_2d(options.times)
+        )
+        self.sample_times = np.ascontiguousarray(samples / unit[:, None])
+        self.points = (
+            np.empty((self.size, 0, 2))
+            if options.around is None
+            else np.ascontiguousarray(options.around, float)
+        )
+        self.n_kinds = max(1, len(system.integrated.kinds))
+        few = self.size <= FEW
+        self.code = compiled(system, tangent=options.tangent, few=few)
+        self.written = symbolic(system)
+
+    def _watched(self) -> list[tuple[int, bool]]:
+        """Place among variables, surfaces and outputs of what is tracked; the largest alone?"""
+        t = self.system.integrated
+        first_output = len(t.variables) + len(t.surfaces)
+        places = [*range(t.size), *(first_output + i for i in range(len(t.outputs)))]
+        quantities = [*self.system.states, *self.system.outputs]
+        tracked = self.options.tracked
+        return [
+            (
+                places[quantities.index(name.removeprefix(LARGEST))],
+                name.startswith(LARGEST),
+            )
+            for name in (quantities if tracked is None else tracked)
+        ]
+
+    def _sums(self) -> list[tuple[str, int]]:
+        """What adds up along a run, and how many numbers each is."""
+        if not self.options.sums:
+            return []
+        return [
+            ("growth", 1),
+            ("durations", len(self.system.regimes)),
+            ("half_turns", self.points.shape[1]),
+            ("counts", self.n_kinds),
+        ]
+
+    def shapes(self) -> dict[str, Any]:
+        """Shape and type of each array of results."""
+        t, size = self.system.integrated, self.size
+        n_samples, n_logged = self.sample_times.shape[1], self.options.log_events
+        n_sums = sum(count for _, count in self._sums())
+        return {
+            "final": ((size, t.size), "f8"),
+            "extremes": ((size, len(self.watched), 2, 2), "f8"),
+            "counts": ((size, self.n_kinds), "i8"),
+            "firsts": ((size, self.n_kinds), "f8"),
+            "durations": ((size, len(self.system.regimes)), "f8"),
+            "ends": ((size, 3), "i8"),
+            "summary": ((size, 3), "f8"),
+            "samples": ((size, n_samples, t.size), "f8"),
+            "sample_regimes": ((size, n_samples, t.n_components), "i8"),
+            "sample_sums": ((size, n_samples, n_sums), "f8"),
+            "peaks": ((size, self.n_kinds, t.size), "f8"),
+            "half_turns": ((size, self.points.shape[1]), "f8"),
+            "event_times": ((size, n_logged), "f8"),
+            "event_kinds": ((size, n_logged), "i8"),
+            "event_regimes": ((size, n_logged), "i8"),
+            "event_states": ((size, n_logged, t.size), "f8"),
+        }
+
+    def _counts(self) -> dict[str, int]:
+        """How many there are of what the loop goes through, and addresses of code."""
+        system, code, t = self.system, self.code, self.system.integrated
+        n_constants, n_points = len(t.all_constants), self.points.shape[1]
+        n_rows = layout.FIXED_ROWS + len(t.variables) + t.size + 2 * len(self.watched)
+        n_rows += len(system.regimes) + 3 * n_points + t.n_components
+        n_rows += len(t.parameters) + n_constants
+        number = {kind: place for place, kind in enumerate(t.kinds)}
+        options = self.options
+        return {
+            "n_terms": lanes.taylor_terms(self.tol),
+            "n_jobs": self.size,
+            "n_states": t.size,
+            "n_variables": len(t.variables),
+            "n_surfaces": len(t.surfaces),
+            "n_outputs": len(t.outputs),
+            "n_tracked": len(self.watched),
+            "n_parameters": len(t.parameters),
+            "n_constants": n_constants,
+            "n_regimes": len(system.regimes),
+            "n_components": t.n_components,
+            "n_table": len(t.constants),
+            "n_kinds": self.n_kinds,
+            "n_samples": self.sample_times.shape[1],
+            "n_sums": sum(count for _, count in self._sums()),
+            "n_logged": options.log_events,
+            "n_points": n_points,
+            "until": -1 if options.until is None else number.get(options.until, -1),
+            "late_from": (
+                -1 if options.late_from is None else number.get(options.late_from, -1)
+            ),
+            "n_rounds": lanes.ROUNDS,
+            "tangent": int(options.tangent),
+            "take_step": code.address("series"),
+            **{name: code.address(name) for name in layout.FUNCTIONS},
+            "n_series": code.n_series,
+            "n_rows": n_rows,
+            "n_switches": len(t.switches),
+        }
+
+    def _memory(self, counts: dict[str, int], queue: list[int]) -> dict[str, Any]:
+        """What the loop reads, and where it works, for one process."""
+        t, options, written = self.system.integrated, self.options, self.written
+        n_events = len(t.surfaces) + len(t.outputs)
+        # outputs are watched in all lanes, surfaces as regimes ask
+        active = np.zeros(n_events, np.int64)
+        active[[w - len(t.variables) for w, _ in self.watched if w >= t.size]] = -1
+        width = max(3 * n_events, len(t.variables), len(t.all_constants)) + 2
+        integers = np.full((layout.REGIMES + t.n_components, LANES), -1, np.int64)
+        integers[layout.OUTCOME] = 0  # every lane asks for a job
+        unit_sizes = options.unit_sizes
+        share = max(layout.SHARE * self.tol, layout.ROUND_OFF)
+        return {
+            "rows": lanes.aligned(counts["n_rows"], LANES),
+            "integers": integers,
+            "series": lanes.aligned(self.code.n_series, counts["n_terms"], LANES),
+            "inverses": lanes.INVERSES,
+            "sizes": self.system.sizes if unit_sizes is None else unit_sizes,
+            "tracked": np.array(self.watched, np.int64),
+            "points": self.points,
+            "regimes": t.regimes,
+            "falls": t.falls,
+            "rises": t.rises,
+            "component_of": t.component_of,
+            "first_constant": t.first_constant,
+            "owner": t.owner,
+            "active": active,
+            "fresh": np.zeros(len(t.surfaces), np.int64),
+            "beyond": np.zeros(len(t.surfaces), np.int64),
+            "exact": lanes.aligned(t.size + n_events, LANES),
+            "steep": written.steep,
+            "bent": written.bent,
+            "share": np.array([share, self.tol, written.bent.any()], float),
+            "noise": np.zeros((len(t.surfaces), 2, LANES)),
+            "scratch": np.zeros((6, width)),
+            "initial": self.initial,
+            "parameters": self.parameters,
+            "first_regime": self.regimes,
+            "limits": self.limits,
+            "sample_times": self.sample_times,
+            "queue": np.array(queue, np.int64),
+        }
+
+    def run(self, arrays: dict[str, np.ndarray], first: int, stride: int) -> None:
+        """Every ``stride``-th run from the ``first`` on, in one process."""
+        for name in ("samples", "sample_sums", "event_times", "event_states", "firsts"):
+            arrays[name][first::stride] = np.nan
+        arrays["extremes"][first::stride] = [np.inf, -np.inf]
+        for name in ("sample_regimes", "event_kinds", "event_regimes"):
+            arrays[name][first::stride] = -1
+        counts = self._counts()
+        memory = arrays | self._memory(counts, [first, self.size, stride])
+        # a view of nothing has no address
+        memory = {
+            name: memory[name] if memory[name].size else np.zeros(1, memory[name].dtype)
+            for name in layout.ARRAYS
+        }
+        table = lanes.Workspace(
+            layout.TABLE, memory, {name: counts[name] for name in layout.SIZES}
+        )
+        rows, job = memory["rows"], memory["integers"][layout.JOB]
+        at = job, rows[layout.CLOCK], rows[layout.T_END], memory["queue"]
+        lanes.drive(loop(), table, lambda: lanes.share_of(*at))
+        if job.max() >= 0 or memory["queue"][0] < self.size:
+            raise RuntimeError(
+                "an exception in compiled code, reported above, ended the integration before its "
+                "runs were finished; please report the parameters"
+            )
+
+    def named(self, arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """The results by name, in the system's unit of time."""
+        extremes = arrays["extremes"]
+        arrays["early_extremes"], arrays["late_extremes"] = np.moveaxis(extremes, 2, 0)
+        low, high = extremes[..., 0].min(axis=2), extremes[..., 1].max(axis=2)
+        arrays["extremes"] = np.stack([low, high], axis=-1)
+        columns = arrays.pop("ends").T
+        arrays["outcome"], arrays["steps"], arrays["n_events"] = columns
+        columns = arrays.pop("summary").T
+        arrays["log_growth"], arrays["horizon"], arrays["reached"] = columns
+        sums, begin = arrays.pop("sample_sums"), 0
+        for name, count in self._sums():
+            arrays[f"sample_{name}"] = sums[..., begin : begin + count]
+            begin += count
+        times = {"durations", "event_times", "firsts", "horizon", "reached"}
+        for name in times | ({"sample_durations"} & set(arrays)):
+            values = arrays[name]
+            unit = self.unit.reshape(-1, *(1,) * (values.ndim - 1))
+            arrays[name] = values * unit
+        return arrays
+
+
+def _time_units(
+    system: System, values: Mapping[str, np.ndarray], t_end: np.ndarray
+) -> np.ndarray:
+    """Unit of time of each run."""
+    scale = system.time_scale
+    given = scale(Names("the system", values)) if callable(scale) else float(scale)
+    unit = np.broadcast_to(given, t_end.shape).astype(float)
+    with np.errstate(over="ignore"):
+        fits = (unit > 0.0) & (t_end / unit < math.inf)
+    if not fits.all():
+        raise ValueError(
+            f"{system.name}: time_scale = {unit.min()}: it is not a unit of time"
+        )
+    return unit
+
+
+def _table(size: int, *columns: Any) -> np.ndarray:
+    """Columns side by side, each a number or an array (size,)."""
+    rows = [np.broadcast_to(column, size) for column in columns]
+    return np.array(rows, float).T.copy()

@@ -1,0 +1,74 @@
+"""What the datasets of systems have in common: labels, flags and what they record of a system."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from squealpipe.methods.taylor import layout
+from squealpipe.schema import SYSTEM, Outcome, flag_table, in_words
+from squealpipe.schema.origin import versions
+from squealpipe.systems.definition import System
+
+
+def labels(long_name: str, units: str) -> dict[str, str]:
+    """Attributes of a variable."""
+    return {"long_name": long_name, "units": units}
+
+
+def flag(long_name: str, dims: Any, values: Any, table: Mapping[int, str]) -> Any:
+    """A flag variable: dimensions, values and the names of its values."""
+    attributes = {
+        "long_name": long_name,
+        "flag_values": np.array(list(table), np.int16),
+        "flag_meanings": " ".join(name.replace(" ", "_") for name in table.values()),
+    }
+    return dims, np.asarray(values, np.int16), attributes
+
+
+def regime_flag(
+    system: System, long_name: str, dims: tuple[str, ...], regimes: np.ndarray
+) -> Any:
+    """The flag variable of regimes (…, components); over ``component`` where there are several."""
+    names = dict(enumerate(system.regimes))
+    if (np.asarray(regimes) < 0).any():
+        names[-1] = "not_reached"  # instants after the end of a run
+    if len(system.composition.names) == 1:
+        return flag(long_name, dims, np.asarray(regimes)[..., 0], names)
+    return flag(f"{long_name} of each component", (*dims, "component"), regimes, names)
+
+
+def components_of(system: System) -> dict[str, Any]:
+    """The coordinate of a system's components, if there are several."""
+    names = system.composition.names
+    if len(names) == 1:
+        return {}
+    return {"component": ("component", list(names), {"long_name": "component"})}
+
+
+def outcome(system: System, dims: Any, values: Any) -> Any:
+    """The flag variable that says how runs ended."""
+    table = flag_table(Outcome) | {
+        layout.STOPPED + i: name for i, name in enumerate(system.stops)
+    }
+    dims, values, attributes = flag("how the run ended", dims, values, table)
+    return dims, values, attributes | {"comment": in_words(table)}
+
+
+def attributes_of(
+    system: System, what: str, given: Mapping[str, float], tol: float
+) -> dict[str, Any]:
+    """What a dataset records of its system and its run."""
+    return {
+        "title": f"{system.name}: {what}",
+        "schema": SYSTEM + what,
+        "schema_version": 1,
+        "system": json.dumps(system.text),
+        "parameters": json.dumps(dict(given)),
+        "tolerance": tol,
+        "method": "Taylor series with located events",
+        "package_version": versions()["package_version"],
+    }

@@ -1,0 +1,86 @@
+"""The record of one run with all its events."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from squealpipe.systems.definition import System
+from squealpipe.systems.integrate import RunOptions, integrate
+from squealpipe.systems.trace import TIME
+
+FIRST_LOG = 256
+"""Events kept at first; a run that has more is made again with room for all."""
+_DEFAULT = RunOptions()
+
+
+@dataclass(frozen=True)
+class Motion:
+    """One run with its events.
+
+    Attributes:
+        regimes: numbers, in ``system.joint``, of the first ones and of those after each event.
+        times, kinds, states, entered: of the events, the states after them, the regimes entered.
+        final: state at the end.
+        path, path_regimes: at the asked instants; the regimes of each component.
+        outcome, reached, steps: how and when it ended, and after how many steps.
+    """
+
+    regimes: np.ndarray
+    times: np.ndarray
+    kinds: np.ndarray
+    states: np.ndarray
+    entered: np.ndarray
+    final: np.ndarray
+    path: np.ndarray
+    path_regimes: np.ndarray
+    outcome: int
+    reached: float
+    steps: int
+
+
+def single_run(
+    system: System,
+    values: Mapping[str, float],
+    t_end: float,
+    options: RunOptions = _DEFAULT,
+    *,
+    tol: float,
+    room: int = FIRST_LOG,
+) -> Motion:
+    """Run a system once from states and parameters; ``room`` is that for events at first."""
+    arrays = {name: np.array([value]) for name, value in values.items()}
+    while True:
+        raw = integrate(
+            system,
+            arrays,
+            np.array([t_end]),
+            replace(options, log_events=room),
+            tol=tol,
+        )
+        count = int(raw["n_events"][0])
+        if count <= room or not room:
+            break
+        room = count
+    first = options.regime
+    if not isinstance(first, np.ndarray):
+        first = system.first_regimes({TIME: np.zeros(1), **arrays}, 1, first)
+    events = {
+        key: raw[f"event_{key}"][0, :count]
+        for key in ("times", "kinds", "states", "regimes")
+    }
+    return Motion(
+        regimes=system.joint.along(first[0].tolist(), events["regimes"].tolist()),
+        times=events["times"],
+        kinds=events["kinds"],
+        states=events["states"],
+        entered=events["regimes"],
+        final=raw["final"][0],
+        path=raw["samples"][0],
+        path_regimes=raw["sample_regimes"][0],
+        outcome=int(raw["outcome"][0]),
+        reached=float(raw["reached"][0]),
+        steps=int(raw["steps"][0]),
+    )
