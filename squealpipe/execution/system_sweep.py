@@ -12,11 +12,11 @@ from typing import Any, Self
 import xarray as xr
 
 from squealpipe.execution.scatter import scattered_values
-from squealpipe.systems import basin, simulation
+from squealpipe.systems import basin, runs
 from squealpipe.systems.system import System
 from squealpipe.text import suggestion
 
-WAYS = {"ensemble": simulation.ensemble, "basin": basin.basin}
+WAYS = {"ensemble": runs.ensemble, "basin": basin.basin}
 
 
 def is_system(task: str) -> bool:
