@@ -1,8 +1,9 @@
 """The elastic pad in CalculiX: the same block by another program's elements and eigensolver.
 
-CalculiX 2.20 has no complex frequencies of sliding contacts: ``*COMPLEX FREQUENCY`` knows Coriolis
-and aerodynamic forces alone. So its frequencies with closed contacts and no friction stand beside
-ours, and the complex modes are computed from the matrices that it writes.
+Its frequencies with closed contacts and without friction stand beside ours, and complex modes are
+computed from the matrices that it writes. Complex frequencies by its own contacts are not compared:
+node-to-surface contacts that slid with friction in a static step of this deck had real frequencies
+alone in the frequency step after it, those of a block held along the belt.
 """
 
 import shutil
