@@ -182,6 +182,7 @@ RUN_ENDS = (
     Outcome.singular_geometry,
     Outcome.not_finite,
     Outcome.accumulation,
+    Outcome.hidden_event,
 )
 """Outcomes of a run in time that is to reach its end."""
 

@@ -88,6 +88,10 @@ class Outcome(IntEnum):
         39,
         "no cycle is settled on: chaos, a torus, or slow; raise t_settle or give a guess",
     )
+    hidden_event = (
+        40,
+        "round-off hides when a surface is crossed: give one with a simple root, u for u**3",
+    )
 
     def __new__(cls, number: int, remedy: str = "") -> Self:
         """An outcome from its record."""

@@ -29,6 +29,7 @@ from squealpipe.systems.components import (
 )
 from squealpipe.systems.joint import Joint
 from squealpipe.systems.starts import Starts
+from squealpipe.systems.surfaces import simplest
 from squealpipe.systems.text import describe
 from squealpipe.systems.trace import (
     TIME_UNIT,
@@ -299,7 +300,9 @@ class System:
             self._trace_switch(tracer, switch, left, kinds)
             for switch, left in zip(self.switches, leaves, strict=True)
         ]
-        stops = [tracer.one(f"stop {name!r}", f) for name, f in self.stops.items()]
+        stops = [
+            simplest(tracer.one(f"stop {name!r}", f)) for name, f in self.stops.items()
+        ]
         outputs = [
             tracer.one(f"output {name!r}", f) for name, (_, f) in self.outputs.items()
         ]
@@ -352,7 +355,7 @@ class System:
         self, tracer: Tracer, switch: Switch, leaves: Sequence[int], kinds: list[str]
     ) -> SwitchSymbols:
         what = f"switch {switch.name!r}"
-        surface = tracer.one(f"{what}: when", switch.when)
+        surface = simplest(tracer.one(f"{what}: when", switch.when))
         for regime in leaves:
             inside = tracer.one(
                 f"{what}: when", switch.when, tracer.numbers(self.name_of(regime))

@@ -8,6 +8,7 @@ from scipy.optimize import brentq
 from squealpipe import Switch, System
 from squealpipe.functions import cos, exp, sin, tanh
 from squealpipe.parameters import Parameters
+from squealpipe.schema import Outcome
 from squealpipe.systems.shipped.brake import brake_of, parameters_of_run
 
 
@@ -125,3 +126,48 @@ def test_surfaces_composed_with_monotone_functions_fire_when_dop853_says():
         )
         run = pendulum.simulate(10.0)
         np.testing.assert_allclose(run.event_time, [exact], atol=1e-10)
+
+
+def crossing(when):
+    """An oscillator that passes x = 0 after a quarter of its period of 2π."""
+    return System(
+        "crossing",
+        states={"x": "1", "v": "1"},
+        parameters={"scale": 1.0},
+        regimes={"before": {}, "after": {}},
+        field=lambda t, s, p, r: {"x": s.v, "v": -s.x},
+        switches=[Switch("pass", "before", when, "after")],
+        start={"x": 1.0, "v": 0.0, "regime": "before"},
+    )
+
+
+@pytest.mark.parametrize("power", [3, 5, 7, 9, 11])
+def test_a_root_of_odd_multiplicity_is_an_event(power):
+    oscillator = crossing(lambda t, s, p, r: -1e-165 * tanh(2.0 * (-s.x) ** power))
+    run = oscillator.ensemble(5.0, start={"x": np.linspace(0.5, 2.0, 20)})
+    np.testing.assert_allclose(run.first_pass, np.pi / 2, rtol=1e-14)
+    assert crossing(lambda t, s, p, r: s.x ** (power + 1)).simulate(5.0).event.size == 0
+
+
+@pytest.mark.parametrize("power", [3, 5, 7, 9, 11])
+def test_a_multiple_root_that_round_off_hides_is_an_outcome(power):
+    """The same root, where no form of the surface shows that it is multiple."""
+    oscillator = crossing(lambda t, s, p, r: s.x**power + s.x**power * s.v**2)
+    run = oscillator.ensemble(5.0, start={"x": np.linspace(0.5, 2.0, 20)})
+    assert (run.outcome == Outcome.hidden_event).all()
+    assert run.first_pass.isnull().all()
+
+
+@pytest.mark.parametrize("level", [0.1, 0.25, 0.6])
+@pytest.mark.parametrize("power", [3, 4, 5, 8])
+def test_powers_of_states_fall_when_they_should(power, level):
+    """Order K of the series of xⁿ is up to n^K times that of x."""
+    run = crossing(lambda t, s, p, r: s.x**power - level).simulate(2.0)
+    exact = np.arccos(level ** (1.0 / power))
+    np.testing.assert_allclose(run.event_time, [exact], rtol=2e-12)
+
+
+def test_a_surface_of_any_scale_is_the_same_surface():
+    oscillator = crossing(lambda t, s, p, r: p.scale * (s.x + 0.3 * s.v))
+    run = oscillator.ensemble(5.0, scale=np.array([1e-200, 1e-165, 1.0, 1e150]))
+    np.testing.assert_allclose(run.first_pass, np.arctan(1.0 / 0.3), rtol=1e-14)

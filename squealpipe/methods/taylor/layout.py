@@ -10,14 +10,8 @@ SHARE, ROUND_OFF = 0.1, 2e-14
 """Share of the tolerance by which a step's end may differ, and the least such difference."""
 LATE_BEGINS = -2
 """What ends a step where the late part of a run begins."""
-RUNNING, CONVERGED, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE, ACCUMULATION = (
-    -1,
-    0,
-    3,
-    4,
-    6,
-    38,
-)
+RUNNING, CONVERGED, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE = -1, 0, 3, 4, 6
+ACCUMULATION, HIDDEN = 38, 40
 """How a run ends, by the numbers of ``schema.Outcome``."""
 STOPPED = 100
 """A stop of the system's own is this plus its number."""

@@ -2,16 +2,24 @@
 
 On an interval of width w a function with |p''| ≤ M lies within w² M/8 of the chord of its ends,
 a monotone one has a root where its ends differ in sign, and one that is convex or concave has at
-most one extremum. An interval where none of this decides is halved.
+most one extremum. An interval where none of this decides is halved, down to where round-off
+hides the function: such a band holds a root if the function leaves it on its other side.
 """
 
+import math
 from typing import Any
 
 from squealpipe.methods.compiled import part, polynomial
 
-NO_ROOT = -1.0
+NO_ROOT, UNDECIDED = -1.0, -2.0
 FINEST = 2.0**-48
-"""Share of a step below which an undecided interval (two roots that are one to round-off) goes."""
+"""Share of a step below which round-off hides what an undecided interval holds."""
+ROUND_OFF = 1e-15
+"""Of a polynomial, over the sum of its terms."""
+UNSURE = 1e-6
+"""Share of a step: a root that round-off hides by more on both sides is a multiple one."""
+MOST_LOOKS = 20_000
+"""Intervals of one step that are looked at."""
 
 
 @polynomial
@@ -48,6 +56,32 @@ def largest_third(coefficients: Any, variable: int, lane: int, step: float) -> A
 
 
 @part
+def hidden_below(coefficients: Any, variable: int, lane: int, step: float) -> Any:
+    """The size below which round-off hides a polynomial in its step."""
+    size = 0.0
+    for k in range(coefficients.shape[1] - 1, -1, -1):
+        size = size * step + abs(coefficients[variable, k, lane])
+    return ROUND_OFF * size
+
+
+@part
+def is_hidden(
+    coefficients: Any, variable: int, lane: int, step: float, root: float, floor: float
+) -> Any:
+    """Whether round-off hides where a root is, as it hides that of (x − 1)⁵ multiplied out.
+
+    What is below ``floor`` is round-off. Of two roots close together each is clear on one side.
+    """
+    off = UNSURE * step
+    before = abs(evaluate(coefficients, variable, lane, root - off))
+    after = abs(evaluate(coefficients, variable, lane, root + off))
+    _, slope, _ = evaluate_twice(coefficients, variable, lane, root)
+    if abs(slope) * off > floor:
+        return before <= floor and after <= floor
+    return before <= floor or after <= floor
+
+
+@part
 def first_root(
     coefficients: Any,
     variable: int,
@@ -59,37 +93,67 @@ def first_root(
     """The first t in (start, step] where the polynomial changes its sign or touches zero.
 
     A root at the start itself is where the state comes from; it does not count. ``known`` is the
-    sign just after it where round-off hides it. Returns ``NO_ROOT`` where there is none.
+    sign just after it where round-off hides it.
+
+    Returns:
+        The root, ``NO_ROOT`` where there is none or ``UNDECIDED`` where nothing can be said, and
+        the time up to which the search is complete: a step may end where its sign is hidden.
     """
     third = largest_third(coefficients, variable, lane, step)
-    left, right = start, step
+    floor = hidden_below(coefficients, variable, lane, step)
+    left, right, band, band_side = start, step, start, 0.0
     p0, s0, b0 = evaluate_twice(coefficients, variable, lane, left)
-    while True:
+    for _ in range(MOST_LOOKS):
         p1, s1, b1 = evaluate_twice(coefficients, variable, lane, right)
         width = right - left
         side = p0 if p0 != 0.0 else (s0 if s0 != 0.0 else b0)
         if known != 0.0 and left == start:
             side = known
+        if band_side != 0.0 and abs(p0) > floor:
+            if band_side * side < 0.0:
+                return 0.5 * (band + left), step
+            band_side = 0.0
         decided, root = _look(
             coefficients,
             variable,
             lane,
             left,
             right,
-            side,
+            side if band_side == 0.0 else band_side,
             third,
             (p0, s0, b0),
             (p1, s1, b1),
         )
-        if decided or width < FINEST * step:
-            if decided and root >= 0.0:
-                return root
-            if right >= step:
-                return NO_ROOT
-            left, right = right, step
-            p0, s0, b0 = p1, s1, b1
-        else:
+        bend = max(abs(b0), abs(b1)) + 0.5 * third * width
+        hidden = max(abs(p0), abs(p1)) + 0.125 * bend * width * width <= 2.0 * floor
+        if not (decided or hidden or width < FINEST * step):
             right = left + 0.5 * width
+            continue
+        if decided and root >= 0.0:
+            return root, step
+        if not decided and band_side == 0.0:
+            band, band_side = left, math.copysign(1.0, side)
+        if right >= step:
+            return _at_the_end(step, p1, floor, band, band_side)
+        left, right = right, min(step, right + 2.0 * width)
+        p0, s0, b0 = p1, s1, b1
+    return UNDECIDED, left
+
+
+@part
+def _at_the_end(
+    step: float, value: float, floor: float, band: float, side: float
+) -> Any:
+    """What :func:`first_root` returns if round-off has hidden it since ``band`` (side not 0)."""
+    if side != 0.0 and abs(value) <= floor:
+        return NO_ROOT, band
+    return 0.5 * (band + step) if side * value < 0.0 else NO_ROOT, step
+
+
+@part
+def _agree(a: float, b: float) -> Any:
+    """Whether both are positive, or both negative."""
+    return (a > 0.0 and b > 0.0) or (a < 0.0 and b < 0.0)
 
 
 @part
@@ -109,9 +173,10 @@ def _look(
     p1, s1, b1 = end
     width = right - left
     bend = max(abs(b0), abs(b1)) + 0.5 * third * width
-    monotone = s0 * s1 > 0.0 and min(abs(s0), abs(s1)) > 0.5 * bend * width
-    curved = b0 * b1 > 0.0 and min(abs(b0), abs(b1)) > 0.5 * third * width
-    if side * p1 <= 0.0:
+    # signs, not products: those of small numbers may vanish
+    monotone = _agree(s0, s1) and min(abs(s0), abs(s1)) > 0.5 * bend * width
+    curved = _agree(b0, b1) and min(abs(b0), abs(b1)) > 0.5 * third * width
+    if not _agree(side, p1):
         if monotone or curved:
             return True, _bracketed(coefficients, variable, lane, left, right, side)
         return False, NO_ROOT
@@ -119,12 +184,12 @@ def _look(
         return True, NO_ROOT
     if not curved:
         return False, NO_ROOT
-    if side * b0 < 0.0 or s0 * s1 >= 0.0:
+    if _agree(side, -b0) or not _agree(s0, -s1):
         # An arch is lowest at its ends; a bow without a turning point likewise.
         return True, NO_ROOT
     lowest = _bracketed(coefficients, variable, lane, left, right, s0, of_slope=True)
     value, _, _ = evaluate_twice(coefficients, variable, lane, lowest)
-    if side * value > 0.0:
+    if _agree(side, value):
         return True, NO_ROOT
     return True, _bracketed(coefficients, variable, lane, left, lowest, side)
 
@@ -152,7 +217,7 @@ def _bracketed(
             value, slope = slope, bend
         if value == 0.0:
             return time
-        if value * side > 0.0:
+        if _agree(value, side):
             low = time
         else:
             high = time
@@ -179,20 +244,24 @@ def first_crossing(
 ) -> Any:
     """The first t in [0, step] where the polynomial falls, or rises, through zero as is asked.
 
-    One that starts from zero (``fresh``) has the side that it first takes by more than its noise,
-    which grows by ``drift`` with time; a side that is the wrong one is a crossing at 0.
+    Returns it and the time up to which the search is complete, as :func:`first_root`. One that
+    starts from zero (``fresh``) has the side that it first takes by more than its noise, which
+    grows by ``drift`` with time; a side that is the wrong one is a crossing at 0.
     """
     start, side = 0.0, coefficients[variable, 0, lane]
-    if fresh:
+    if not fresh:  # a step may start where round-off hides the side
+        noise, drift = hidden_below(coefficients, variable, lane, step), 0.0
+    hidden = abs(side) <= noise
+    if fresh or (hidden and is_hidden(coefficients, variable, lane, step, 0.0, noise)):
         start, side = _leaves_zero(coefficients, variable, lane, step, noise, drift)
         if (side < 0.0 and falls) or (side > 0.0 and rises):
-            return 0.0
+            return 0.0, step
     while side != 0.0:
-        root = first_root(coefficients, variable, lane, step, start, side)
+        root, looked = first_root(coefficients, variable, lane, step, start, side)
         if root < 0.0 or (side > 0.0 and falls) or (side < 0.0 and rises):
-            return root
+            return root, looked
         start, side = root, -side
-    return NO_ROOT
+    return NO_ROOT, step
 
 
 @part

@@ -59,6 +59,8 @@ SEARCHES, LEAST = 6, 1e-12
 """Tries to make such a step long, and the least share of the step that is left."""
 SHARE, CLOSE = 0.3, 2.0
 """How far such an argument may go in a step: a share of what lies beyond, and at least so far."""
+MOST_DEGREE = 2
+"""Of polynomials that are as good as the states: order K of uⁿ is up to n^K times that of u."""
 TANH = "(splat(1.0) - splat(2.0) / (exp({0} + {0}) + splat(1.0)))"
 TOGETHER = 2
 """Convolutions in one loop: their sums fill the registers of AVX2."""
@@ -92,13 +94,15 @@ class HybridSystem:
 
     @property
     def bent(self) -> np.ndarray:
-        """(events,) 1 where a surface or an output is no polynomial."""
-        return _no_polynomials(self.events)
+        """(events,) 1 where a surface or an output shows less in its series than the states do."""
+        return np.array(
+            [degree(event) > MOST_DEGREE for event in self.events], np.int64
+        )
 
     def checked(self) -> dict[int, Symbol]:
         """Rates and events that a step's end is checked by, by their rows.
 
-        Polynomials need no check: they hold as far as the states do.
+        Rates that are polynomials need no check: they hold as far as the states do.
         """
         marks = [*self.steep, *self.bent]
         roots = [*self.rates[: self.size], *self.events]

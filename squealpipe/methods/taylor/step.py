@@ -9,9 +9,12 @@ from squealpipe.methods.compiled import inline, part
 from squealpipe.methods.taylor import layout
 from squealpipe.methods.taylor.lanes import call
 from squealpipe.methods.taylor.roots import (
+    UNDECIDED,
     evaluate,
     evaluate_twice,
     first_crossing,
+    hidden_below,
+    is_hidden,
     largest_third,
 )
 from squealpipe.methods.taylor.simd import (
@@ -28,11 +31,16 @@ from squealpipe.methods.taylor.simd import (
     splat,
     store,
 )
+from squealpipe.methods.taylor.switching import NOISE, gauge
 
 SPARE = 100.0
 """What the last orders of such a series may be more than those of the states."""
 FITS = 4
 """Times that a step is fitted to the size of a series, which depends on the step."""
+SUSPECT = 1e6
+"""A root that this many times the round-off would hide may be hidden by that of its terms."""
+LEAST = 0.1
+"""Share of a step to which it may be shortened where round-off hides a surface at its end."""
 NOTHING = 1e-30
 """Below the round-off of any quantity."""
 
@@ -223,7 +231,8 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
     """When the first watched surface is crossed, whose switch goes into ``HIT``; or the step."""
     integers = m.integers
     bit = 1 << lane
-    first, tie = step, step * 2.0**-44
+    first, tie, complete, winner = step, step * 2.0**-44, step, -1
+    unclear = False
     for surface in range(t.n_surfaces):
         regime = integers[layout.REGIMES + m.owner[surface], lane]
         falls, rises = m.falls[regime, surface], m.rises[regime, surface]
@@ -231,7 +240,7 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
             continue
         root = 0.0
         if not m.beyond[surface] & bit:
-            root = first_crossing(
+            root, looked = first_crossing(
                 c,
                 t.n_variables + surface,
                 lane,
@@ -242,6 +251,8 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
                 m.noise[surface, 0, lane],
                 m.noise[surface, 1, lane],
             )
+            unclear |= root == UNDECIDED
+            complete = min(complete, looked)
         if root < 0.0 or root > first + tie:
             continue
         _, slope, _ = evaluate_twice(c, t.n_variables + surface, lane, root)
@@ -250,7 +261,33 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
         # of switches at one instant the first by name goes first, whatever their order
         if earlier or which < integers[layout.HIT, lane]:
             first, integers[layout.HIT, lane] = min(root, first), which
+            winner = surface
+    if winner >= 0:
+        at_once = (m.beyond[winner] | m.fresh[winner]) & bit and first == 0.0
+        unclear = not at_once and _is_hidden(t, m, c, lane, winner, step, first)
+    elif complete > LEAST * step:  # the rest is looked at from there
+        first = min(first, complete)
+        unclear = False
+    if unclear:
+        integers[layout.OUTCOME, lane] = layout.HIDDEN
     return first
+
+
+@part
+def _is_hidden(
+    t: Any, m: Any, c: Any, lane: int, surface: int, step: float, root: float
+) -> bool:
+    """Whether round-off of a surface's series, or of its terms, hides where it is crossed."""
+    index = t.n_variables + surface
+    floor = hidden_below(c, index, lane, step)
+    if not is_hidden(c, index, lane, step, root, SUSPECT * floor):
+        return False
+    for variable in range(t.n_variables):
+        value = evaluate(c, variable, lane, root)
+        m.scratch[0, variable], m.scratch[1, variable] = value, abs(value)
+    gauge(t, lane, m.scratch.shape[1])
+    floor = max(floor, NOISE * m.scratch[2, 3 * surface + 1])
+    return bool(is_hidden(c, index, lane, step, root, floor))
 
 
 @part
@@ -292,7 +329,10 @@ def cut(t: Any, m: Any, c: Any, lane: int) -> None:
     if turns_late:
         step, ends = late, ends and late >= remaining
     first = _first_switch(t, m, c, lane, step)
-    if integers[layout.HIT, lane] >= 0:
+    if integers[layout.OUTCOME, lane] == layout.HIDDEN:
+        integers[layout.HIT, lane] = -1
+        step, ends, turns_late = first, False, False
+    elif integers[layout.HIT, lane] >= 0 or first < step:
         step, ends, turns_late = first, False, False
     if step != rows[layout.STEP, lane]:
         rows[layout.STEP, lane] = step

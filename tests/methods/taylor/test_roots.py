@@ -11,7 +11,7 @@ ORDER, STEP = 15, 0.7
 
 @numba.njit(error_model="numpy")
 def _first(coefficients, step):
-    return first_root(coefficients, 0, 0, step)
+    return first_root(coefficients, 0, 0, step)[0]
 
 
 def found(polynomial, step=STEP):
