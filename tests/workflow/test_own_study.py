@@ -38,8 +38,11 @@ SCALED = {
     "length2": 175.0, "belt_speed": 0.75, "damping1": 0.02, "damping2": 0.02,
 }  # fmt: skip
 STUDIES = {
-    "Coulomb, contact table, the other way": {**CONTACT_TABLE, "belt_speed": -2.0},
-    "static limit, belt at rest": {"mu_static": 0.6, "belt_speed": 0.0},
+    "static limit, contact table, belt at rest": {
+        **CONTACT_TABLE,
+        "mu_static": 0.6,
+        "belt_speed": 0.0,
+    },
     "exponential, contact dashpot": {
         "friction_law": "exponential",
         **FALLING,
