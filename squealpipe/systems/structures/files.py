@@ -15,6 +15,7 @@ from squealpipe.config.yaml_files import read_yaml
 from squealpipe.laws.friction_laws import COLUMNS
 from squealpipe.laws.tables import named
 from squealpipe.parameters import brief, is_finite_number
+from squealpipe.systems.structures.contact import Contact
 from squealpipe.systems.structures.contact_table import read_contacts
 from squealpipe.systems.structures.definition import Structure
 from squealpipe.systems.structures.matrices import real_square
@@ -68,9 +69,8 @@ def read(path: str | PathLike[str], form: type[Form]) -> Form:
     arguments: dict[str, Any] = {**matrices}
     if "contacts" in content:
         table = source.parent / str(content["contacts"])
-        arguments["contacts"] = read_contacts(
-            table, labels, matrices["mass"].shape[0], scales
-        )
+        size = matrices["mass"].shape[0]
+        arguments["contacts"] = _contacts(table, labels, size, scales)
     for name in NUMBERS:
         if name in content:
             arguments[name] = content[name]
@@ -89,6 +89,16 @@ def read(path: str | PathLike[str], form: type[Form]) -> Form:
         return form(**arguments)
     except ValueError as error:
         raise ValueError(f"{source}: {error}") from error
+
+
+def _contacts(
+    table: Path, labels: list[str] | None, size: int, scales: Scales
+) -> list[Contact]:
+    """Those of a table that has some."""
+    contacts = read_contacts(table, labels, size, scales)
+    if not contacts:
+        raise ValueError(f"{table} has no row; leave `contacts` out if there are none")
+    return contacts
 
 
 def _content(source: Path) -> dict[str, Any]:

@@ -81,7 +81,12 @@ def checked_mass(mass: sp.csr_array) -> sp.csr_array:
             )
         )
     mass = sp.csr_array(0.5 * (mass + mass.T))
-    bare = np.flatnonzero(mass.diagonal() <= 0)
+    negative = np.flatnonzero(mass.diagonal() < 0)
+    if negative.size:
+        raise ValueError(
+            f"mass is negative at degree of freedom {negative[0]}, counted from 0: change its sign"
+        )
+    bare = np.flatnonzero(mass.diagonal() == 0)
     if bare.size:
         few = ", ".join(map(str, bare[:5])) + (", …" if bare.size > 5 else "")
         raise ValueError(

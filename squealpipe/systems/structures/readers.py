@@ -29,7 +29,12 @@ DAMAGED = (
     zlib.error,
 )
 """What libraries raise on files that are cut off or of another form."""
+UNENDED = "its last line has no end; add one if the file is whole"
 EXTRA = "install squealpipe[fe] to read it"
+
+
+class ChoiceError(ValueError):
+    """A file holds several matrices, or not the one that is named."""
 
 
 class Labelled(NamedTuple):
@@ -72,6 +77,8 @@ def read_matrix(path: Path, key: str, variable: str | None = None) -> Labelled:
         return readers[path.suffix.lower()]()
     except ImportError as error:
         raise ValueError(f"{key}: {path} needs {error.name}; {EXTRA}") from error
+    except ChoiceError as error:
+        raise ValueError(f"{key}: {path}: {error}") from error
     except DAMAGED as error:
         raise ValueError(
             f"{key}: {path} is cut off, or not what its ending says: {error}"
@@ -99,10 +106,14 @@ def _refuse_missing_entries(path: Path) -> None:
             "general": rows * columns,
             "skew-symmetric": rows * (rows - 1) // 2,
         }.get(symmetry, rows * (rows + 1) // 2)
+    lines, last = 0, "\n"
     with path.open(encoding="utf-8", errors="replace") as file:
-        lines = sum(1 for line in file if line.strip() and not line.startswith("%"))
+        for last in file:
+            lines += bool(last.strip()) and not last.startswith("%")
     if lines - 1 != stated:
         raise ValueError(f"{lines - 1} entries, but its size says {stated}")
+    if not last.endswith("\n"):
+        raise ValueError(UNENDED)
 
 
 def _abaqus(path: Path) -> Labelled:
@@ -163,9 +174,7 @@ def _numbers(path: Path) -> np.ndarray:
         for number, line in enumerate(file, 1):
             words = line.replace(",", " ").split()
             if not line.endswith("\n"):  # a number may be cut off within its digits
-                raise ValueError(
-                    f"line {number}, the last, has no end; add one if the file is whole"
-                )
+                raise ValueError(UNENDED)
             if not words or words[0].startswith(("*", "#")):
                 continue
             try:
@@ -235,7 +244,7 @@ def _chosen(names: list[str], variable: str | None) -> str:
     if variable in names:
         return str(variable)
     listed = ", ".join(names)
-    raise ValueError(
+    raise ChoiceError(
         f"it holds {listed}; say which, like {{file: brake.mat, variable: {names[0]}}}"
         if variable is None and names
         else f"it has no variable {variable!r} but {listed or 'none'}"

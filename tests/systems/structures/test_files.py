@@ -182,6 +182,19 @@ def cut_off(folder):
     (folder / "K.mtx").write_text("\n".join(content[:-3]))
 
 
+def cut_within_the_last_number(folder):
+    content = (folder / "K.mtx").read_text()
+    (folder / "K.mtx").write_text(content.rstrip()[:-2])
+
+
+def empty_table(folder):
+    (folder / "contacts.csv").write_text(CONTACTS.splitlines()[0])
+
+
+def negative_mass(folder):
+    scipy.io.mmwrite(folder / "M.mtx", sp.coo_array(-MASS), symmetry="symmetric")
+
+
 def another_size(folder):
     scipy.io.mmwrite(folder / "K.mtx", STIFFNESS[:2, :2])
 
@@ -209,6 +222,9 @@ def no_such_row(folder):
         (complex_entries, "complex entries"),
         (not_a_number, "finite numbers"),
         (cut_off, "cut off"),
+        (cut_within_the_last_number, "last line has no end"),
+        (empty_table, "leave `contacts` out"),
+        (negative_mass, "change its sign"),
         (another_size, "3 × 3"),
         (without_mass, "no.* mass|mass is singular"),
         (wrong_units, "no mass"),
