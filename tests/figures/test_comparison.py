@@ -5,7 +5,14 @@ import pytest
 
 from squealpipe.schema import build
 from squealpipe.schema.comparison import BENCHMARK, FAILURE_ATLAS, Reliability, Role
-from squealpipe.study.figures.comparison import failure_atlas, work_precision_benchmark
+from squealpipe.schema.ladder import MODEL_LADDER, QUESTIONS, Level
+from squealpipe.study.figures.comparison import (
+    failure_atlas,
+    model_needed,
+    speed_and_accuracy,
+    where_methods_fail,
+    work_precision_benchmark,
+)
 from squealpipe.study.figures.panels import work_precision
 
 
@@ -80,3 +87,52 @@ def test_atlas_prints_verdicts_and_counts(benchmark):
     labels = [label for axes in figure.axes for label in axes.get_yticklabels()]
     bold = [label.get_text() for label in labels if label.get_fontweight() == "bold"]
     assert bold == ["squealpipe", "ours", "closed form"]
+
+
+def test_failures_are_counted_by_class_and_nobody_is_blamed_for_what_was_not_asked(
+    benchmark,
+):
+    table = where_methods_fail.answers(benchmark)
+    theirs = table.sel(solver="theirs")
+    assert theirs.silent.to_series().to_dict() == {"order": 2, "chaos": 0}
+    assert theirs.asked.to_series().to_dict() == {"order": 2, "chaos": 1}
+    text = written(where_methods_fail.draw(benchmark))
+    assert "2/2" in text
+    assert "0/" not in text
+
+
+def test_speed_is_compared_on_scenes_of_the_model_alone(benchmark):
+    own = benchmark.assign_coords(problem=["A1: hammering", "long run"])
+    assert speed_and_accuracy.scenes_of_a1(own).problem.values == ["A1: hammering"]
+    axes = speed_and_accuracy.draw(own).axes
+    crosses = [
+        line
+        for panel in axes
+        for line in panel.get_lines()
+        if line.get_label() == "silently wrong"
+    ]
+    assert [len(line.get_xdata()) for line in crosses] == [2, 2]
+
+
+def test_bars_tell_hindsight_from_what_is_known_beforehand():
+    cheapest = np.full((4, 2, 2), Level.a1)
+    cheapest[0] = [[Level.a3, Level.a3], [Level.a3, Level.a1]]
+    axes = {
+        "alpha1": [0.5, 1.0],
+        "alpha2": [0.5, 1.0],
+        "question": list(QUESTIONS),
+        "level": [level.name for level in Level],
+    }
+    data = {
+        "error": np.zeros((4, len(Level), 2, 2)), "cheapest": cheapest,
+        "chosen": [[Level.a3, Level.a1], [Level.a1, Level.a1]], "tolerance": 0.05,
+        "chosen_wrong": np.zeros((2, 2), bool), "always_cpu_time": 2.0, "chosen_cpu_time": 1.0,
+        "belt_reached": np.zeros((2, 2), bool), "outcome": np.zeros((2, 2)),
+    }  # fmt: skip
+    ladder = build(MODEL_LADDER, data, axes)
+    assert model_needed.shares_of_a3(ladder) == (75.0, 25.0)
+    text = written(model_needed.draw(ladder))
+    assert "beforehand" in text
+    caption = model_needed.caption(ladder)
+    assert "75 % of the angles" in caption
+    assert "50 % of the CPU time" in caption

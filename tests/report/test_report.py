@@ -16,7 +16,7 @@ from squealpipe.study.report import content as contents
 from squealpipe.study.report.build import TEMPLATES, write_document
 from squealpipe.study.report.content import PAPER, picture_files, provenance
 from squealpipe.study.report.lineage import lineage
-from squealpipe.study.report.sections import BEYOND, COMPARED, FIGURES
+from squealpipe.study.report.sections import BEYOND, COMPARED, FIGURES, METHODS
 from tests.browser import chromium_path, open_page
 from tests.conftest import ROOT
 
@@ -133,7 +133,7 @@ def test_after_an_edit_the_page_shows_changes_and_no_narrative(text, small_repor
 def test_narrative_has_words_for_every_part():
     words = (TEMPLATES / "narrative.typ").read_text(encoding="utf-8")
     written = set(re.findall(r"^  (\w+): \(\) => \[", words, flags=re.MULTILINE))
-    assert written == {*COMPARED, *BEYOND} - {"model"}
+    assert written == {*COMPARED, *BEYOND, *METHODS} - {"model"}
 
 
 def test_the_front_has_at_most_400_words():

@@ -76,6 +76,7 @@ def gather(
         "numbers": {} if changed else numbers(run),
         "parameters": parameter_table(parameters),
         "compared": _sections(sections.COMPARED),
+        "methods": _sections(sections.METHODS),
         "beyond": _sections(sections.BEYOND),
         "supplement": _sections(sections.SUPPLEMENT),
         "figures": pictures(sections.FIGURES, figures, run),

@@ -7,12 +7,18 @@ import xarray as xr
 
 from squealpipe.schema import meanings
 from squealpipe.schema.claims import Basis, Origin, Verdict
+from squealpipe.schema.comparison import Role
 from squealpipe.schema.curves import ChartLine
 from squealpipe.schema.inference import of_study
 from squealpipe.study.claims.evidence import Run
 from squealpipe.study.claims.maps import unstable_yet_sliding
+from squealpipe.study.figures.comparison.model_needed import shares_of_a3
+from squealpipe.study.figures.comparison.speed_and_accuracy import scenes_of_a1
+from squealpipe.study.figures.comparison.where_methods_fail import answers
 from squealpipe.study.figures.linear.critical_friction import LARGEST
 from squealpipe.study.figures.linear.frequency_shift import NO_SHIFT
+
+QUOTED_TOLERANCE = 1e-10
 
 
 def numbers(run: Run) -> dict[str, float | str]:
@@ -27,6 +33,7 @@ def numbers(run: Run) -> dict[str, float | str]:
             _valid,
             _bounded,
             _motions_and_shares,
+            _methods,
         )
         for key, value in part(run).items()
     }
@@ -157,4 +164,24 @@ def _motions_and_shares(run: Run) -> dict[str, Any]:
         ),
         "far_short": far[0],
         "far_long": far[-1],
+    }
+
+
+def _methods(run: Run) -> dict[str, Any]:
+    benchmark = run["benchmark"]
+    scenes = scenes_of_a1(benchmark).sel(tol=QUOTED_TOLERANCE).median("problem")
+    mine, theirs = (scenes.sel(solver=name) for name in ("squealpipe", "DOP853"))
+    table = answers(benchmark)
+    public = (benchmark.role == Role.public).values
+    hindsight, beforehand = shares_of_a3(run["model_ladder"])
+    return {
+        "ours_error": mine.error,
+        "their_error": theirs.error,
+        "ours_cpu": mine.cpu_ratio / theirs.cpu_ratio,
+        "public_answers": table.asked.isel(solver=public).sum(),
+        "public_silent": table.silent.isel(solver=public).sum(),
+        "our_answers": table.asked.isel(solver=~public).sum(),
+        "our_silent": table.silent.isel(solver=~public).sum(),
+        "a3_hindsight": hindsight,
+        "a3_beforehand": beforehand,
     }

@@ -31,6 +31,13 @@ COMPARED = {
 }
 """The paper, figure by figure."""
 
+METHODS = {
+    "speed": Section("Speed against accuracy", ("speed_and_accuracy",)),
+    "failures": Section("Where methods fail", ("where_methods_fail",)),
+    "needed": Section("No more model than a scene needs", ("model_needed",)),
+}
+"""What a user of the methods asks first; the evidence is in the supplement."""
+
 BEYOND = {
     "charts": Section("How far each scene is from a boundary", ("regime_charts",)),
     "whirl": Section("Where the growth of Fig. 3 ends", ("whirl",)),
@@ -61,7 +68,7 @@ SUPPLEMENT = {
 
 FIGURES = tuple(
     name
-    for parts in (COMPARED, BEYOND, SUPPLEMENT)
+    for parts in (COMPARED, METHODS, BEYOND, SUPPLEMENT)
     for section in parts.values()
     for name in section.figures
 )

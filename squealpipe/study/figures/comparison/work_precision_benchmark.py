@@ -18,7 +18,7 @@ SHOWN = (
     "method can be asked; no answer, or an error above 1, counts as 1. Points of a line run over "
     "the tolerance, the same for all solvers; a Taylor step of order p counts as p + 1 "
     "evaluations, a Moreau–Jean step as one. Filled: right on every problem of the class; "
-    "hollow: not on all, and said so; crossed out in red: silently wrong on at least one, by its "
+    "hollow: not on all, and said so; crossed out: silently wrong on at least one, by its "
     "events or its error. Grey band: Pareto front of the filled points; red ring: the setting "
     "that our maps use. Machine and versions are named below the panels."
 )

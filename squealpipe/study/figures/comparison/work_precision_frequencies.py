@@ -11,7 +11,7 @@ READS = ("work_precision_frequencies",)
 CAPTION = (
     "Harmonic balance on model A4: median error of ω at equal peak of y against exact orbits, over "
     "the wall time of a point; points of a line run over N_h or σ. The exact orbit itself is shown "
-    "with the velocity left after half a period. Crossed out in red: off by more than 1 %, which "
+    "with the velocity left after half a period. Crossed out: off by more than 1 %, which "
     "no setting mends. Grey band: Pareto front of the others; red rings: our settings. Machine and "
     "versions are named below."
 )

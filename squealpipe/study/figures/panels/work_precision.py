@@ -71,16 +71,30 @@ def draw_methods(
         axes.plot([], [], **look | {"ls": dash}, label=style.symbols(method))
     wrong = fine & (worth == Reliability.silently_wrong)
     rings: list[tuple[np.ndarray, dict[str, Any]]] = [
-        (wrong, {"marker": "x", "ms": 5.5, "mew": 1.1, "label": "silently wrong"}),
+        (
+            wrong,
+            {
+                "marker": "x",
+                "ms": 5.5,
+                "mew": 1.1,
+                "color": style.BLACK,
+                "label": "silently wrong",
+            },
+        ),
         (
             fine & (rows.role.values == Role.our_setting),
-            {"marker": "o", "ms": 9, "mfc": "none", "mew": 1.0, "label": "our setting"},
+            {
+                "marker": "o",
+                "ms": 9,
+                "mfc": "none",
+                "mew": 1.0,
+                "color": style.RED,
+                "label": "our setting",
+            },
         ),
     ]
     for marks, look in rings:
-        axes.plot(
-            error[marks], values[marks], ls="none", color=style.RED, zorder=3, **look
-        )
+        axes.plot(error[marks], values[marks], ls="none", zorder=3, **look)
     axes.set(xscale="log", yscale="log")
     axes.minorticks_off()
     if values[fine].max() < _FEW_DECADES * values[fine].min():

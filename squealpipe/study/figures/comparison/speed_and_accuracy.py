@@ -1,0 +1,58 @@
+"""Speed against accuracy at a glance: hard scenes of A1, asked of every integrator."""
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from squealpipe.plotting.style import PAGE, new_figure, panel_letter
+from squealpipe.study.figures.comparison.work_precision_benchmark import (
+    COSTS,
+    knowable,
+    medians,
+)
+from squealpipe.study.figures.panels.work_precision import draw_methods
+
+READS = ("benchmark",)
+OF_A1 = "A1: "
+"""How the names of the model's own problems begin."""
+ALT = "Two charts, CPU time and evaluations of every integrator against its error."
+TITLES = {"cpu_ratio": "CPU time", "evaluations": "evaluations of the field"}
+LABELS = {"cpu_ratio": "CPU time over that of DOP853 at 10⁻⁸", "evaluations": "calls"}
+
+
+def scenes_of_a1(benchmark: xr.Dataset) -> xr.Dataset:
+    """The problems of model A1 that have an answer: every method can be asked all of them."""
+    own = benchmark.problem.str.startswith(OF_A1) & knowable(benchmark)
+    chosen: xr.Dataset = benchmark.isel(problem=own.values)
+    return chosen
+
+
+def caption(benchmark: xr.Dataset) -> str:
+    """What is shown, and on how many scenes."""
+    return (
+        f"Median error and cost over {scenes_of_a1(benchmark).sizes['problem']} hard scenes of "
+        "A1, the same for all integrators; left and low is better. A line runs from a tolerance "
+        "of 10⁻⁶ to 10⁻¹². Filled: right in all scenes; hollow: not in all, and said so; crossed "
+        "out: silently wrong in one or more, so no bargain at any price. Grey band: the "
+        "filled points that no other beats; red ring: the setting of our maps."
+    )
+
+
+CAPTION = caption
+
+
+def draw(benchmark: xr.Dataset) -> Figure:
+    """One panel for each cost, from dataset ``benchmark``."""
+    figure, axes = new_figure(PAGE, 3.3, ncols=2, sharex=True)
+    runs = medians(scenes_of_a1(benchmark))
+    methods = benchmark.solver.values.tolist()
+    for panel, letter, cost in zip(axes[0], "ab", sorted(COSTS), strict=True):
+        draw_methods(panel, runs, cost, 1.0, methods)
+        panel.set(xlabel="median error over growth", ylabel=LABELS[cost])
+        panel_letter(panel, letter, TITLES[cost])
+    figure.legend(
+        *axes[0, 0].get_legend_handles_labels(),
+        loc="outside lower center",
+        ncols=5,
+        fontsize=6.5,
+    )
+    return figure

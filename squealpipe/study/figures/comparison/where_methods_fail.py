@@ -1,0 +1,73 @@
+"""Failures at a glance: how often each integrator is silently wrong, by class of problem."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from squealpipe.plotting import style
+from squealpipe.schema.comparison import Reliability, Role
+from squealpipe.study.figures.comparison.work_precision_benchmark import knowable
+
+READS = ("benchmark",)
+CAPTION = (
+    "How often an integrator is silently wrong: wrong answers that nothing was said of, over all "
+    "answers at tolerances from 10⁻⁶ to 10⁻¹², by what makes a problem hard. White: all right; "
+    "light: some wrong or without an answer, and said so; the darker the red, the more are "
+    "silently wrong; a dash: cannot be asked. Problems without "
+    "an answer are left out. Ours is in bold."
+)
+ALT = "A table of integrators in rows and classes of problems in columns; red cells are failures."
+_RED = np.array([213, 94, 0]) / 255
+_SAID = np.array([0.86, 0.93, 0.97])
+_LEAST = 0.25
+"""Strength of the red where a single answer is silently wrong."""
+
+
+def answers(benchmark: xr.Dataset) -> xr.Dataset:
+    """``asked``, ``right`` and ``silent``: numbers of answers over class and solver."""
+    known = benchmark.isel(problem=knowable(benchmark).values)
+    counts = {
+        "asked": known.verdict != Reliability.not_applicable,
+        "right": known.verdict == Reliability.right,
+        "silent": known.verdict == Reliability.silently_wrong,
+    }
+    table = xr.Dataset(counts).sum("tol").groupby(known.group).sum()
+    order = list(dict.fromkeys(known.group.values.tolist()))
+    summed: xr.Dataset = table.sel(group=order)
+    return summed
+
+
+def draw(benchmark: xr.Dataset) -> Figure:
+    """The table, from dataset ``benchmark``."""
+    table = answers(benchmark).transpose("solver", "group")
+    asked, right, silent = (table[n].values for n in ("asked", "right", "silent"))
+    share = silent / np.maximum(asked, 1)
+    colours = np.ones((*asked.shape, 3))
+    colours[(right < asked) & (silent == 0)] = _SAID
+    strength = (_LEAST + (1.0 - _LEAST) * share)[..., None]
+    red = silent > 0
+    colours[red] = (1.0 - strength[red]) + strength[red] * _RED
+    rows, columns = asked.shape
+    figure, axes = style.new_figure(style.PAGE, 0.21 * rows + 1.1)
+    panel = axes[0, 0]
+    panel.imshow(colours, aspect="auto", interpolation="nearest")
+    for row, column in np.ndindex(rows, columns):
+        number = f"{silent[row, column]}/{asked[row, column]}"
+        words = number if silent[row, column] else "" if asked[row, column] else "–"
+        panel.text(column, row, words, ha="center", va="center", fontsize=6.5)
+    panel.set_xticks(
+        range(columns),
+        table.group.values.tolist(),
+        rotation=30,
+        ha="left",
+        rotation_mode="anchor",
+    )
+    panel.xaxis.tick_top()
+    panel.set_yticks(range(rows), [style.symbols(n) for n in table.solver.values])
+    for label, role in zip(panel.get_yticklabels(), benchmark.role.values, strict=True):
+        label.set_fontweight("bold" if role != Role.public else "normal")
+    panel.set_xticks(np.arange(columns + 1) - 0.5, minor=True)
+    panel.set_yticks(np.arange(rows + 1) - 0.5, minor=True)
+    panel.grid(visible=True, which="minor", color=style.LIGHT, lw=0.6)
+    panel.tick_params(which="both", length=0)
+    return figure
