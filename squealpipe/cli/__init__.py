@@ -33,6 +33,7 @@ from squealpipe.cli.project import run as run_study
 from squealpipe.cli.structures import modes, squeal
 from squealpipe.cli.study import archive, compare, explain, verify
 from squealpipe.cli.sweep import sweep
+from squealpipe.execution.supervised import StoppedError, stops_raise
 
 HELP = """Friction-induced vibration with contact loss: from one run to the whole study.
 
@@ -118,6 +119,9 @@ def run(arguments: Sequence[str]) -> int:
         except KeyboardInterrupt:
             print(f"squealpipe: interrupted; {SESSION.remedy}", file=sys.stderr)
             return INTERRUPTED
+        except StoppedError as stop:
+            print(f"squealpipe: {stop}; {SESSION.remedy}", file=sys.stderr)
+            return 128 + stop.number
         except Exception as error:  # noqa: BLE001 (one line, not a trace)
             with contextlib.suppress(BrokenPipeError):  # nobody reads it
                 if SESSION.verbose:
@@ -141,7 +145,8 @@ def main() -> None:
     """Entry point of the command ``squealpipe``."""
     sys.stdout.reconfigure(errors="replace")  # type: ignore[union-attr]  # no Greek: question marks
     try:
-        code = run(sys.argv[1:])
+        with stops_raise():  # what is held or half done is put away first
+            code = run(sys.argv[1:])
     finally:
         _flush()
     sys.exit(code)

@@ -51,7 +51,7 @@ def sweep(
             further dimensions.
         option: a further keyword of the task, for instance t_end=100; repeat for more.
     """
-    from squealpipe.execution.chunks import Chunks
+    from squealpipe.execution.chunks import beside
     from squealpipe.execution.sweep import outcome_lines, planned, run_sweep
     from squealpipe.rerun.key import rule_key, sources
 
@@ -75,11 +75,8 @@ def sweep(
     check_output(output, force=brake.force)
     runs = prod(len(plan.vary[name]) for name in plan.names)
     say(f"{runs} runs of {task} over {', '.join(plan.names)}")
-    kept = Chunks(
-        output.with_name(f".{output.name}.runs"),
-        rule_key(settings, sources(Path(inspect.getfile(planned)))),
-    )
-    if done := kept.finished():
+    kept = beside(output, rule_key(settings, sources(Path(inspect.getfile(planned)))))
+    if done := plan.finished(kept):
         say(f"{done} of them are there from before")
     with working(f"sweep of {task}"):
         dataset = write(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import io
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,8 @@ from squealpipe.store.whole_files import checksum, whole_file
 
 Run = dict[str, np.ndarray]
 """What one run gave: array by name."""
+SHAPES = " shapes"
+"""Ends the name of the array with the shapes of another one's parts."""
 
 
 @dataclass(frozen=True)
@@ -36,35 +38,32 @@ class Chunks:
 
     def save(self, first: int, runs: list[Run]) -> None:
         """Write consecutive runs, whole or not at all."""
-        arrays: dict[str, Any] = {
-            f"{number} {name}": values
-            for number, run in enumerate(runs)
-            for name, values in run.items()
-        }
         content = io.BytesIO()
-        np.savez(content, **arrays)
+        np.savez(content, **_end_to_end(runs))
         digest = hashlib.sha256(content.getvalue()).hexdigest()
         target = self.place / f"{first}-{first + len(runs)}-{digest}.npz"
         with whole_file(target) as temporary:
             temporary.write_bytes(content.getvalue())
 
     def finished(self) -> int:
-        """Number of runs from the first on that are there without a gap."""
-        end = 0
+        """Number of runs from the first on that are there without a gap.
+
+        Chunks that are damaged, or lie behind a gap, are removed: their runs are made again.
+        """
+        end, follows = 0, True
         for first, last, path in self._files():
-            if first != end or not _is_whole(path):
-                break
-            end = last
+            follows = follows and first == end and _is_whole(path)
+            if follows:
+                end = last
+            else:
+                path.unlink(missing_ok=True)
         return end
 
     def runs(self) -> Iterator[Run]:
         """The runs that are there, in order, one chunk at a time in memory."""
         for first, last, path in self._files():
             with np.load(path, allow_pickle=False) as chunk:
-                runs: list[Run] = [{} for _ in range(last - first)]
-                for entry in chunk.files:
-                    number, _, name = entry.partition(" ")
-                    runs[int(number)][name] = chunk[entry]
+                runs = _one_by_one(chunk, last - first)
             yield from runs
 
     def remove(self) -> None:
@@ -79,9 +78,35 @@ class Chunks:
         return sorted(found)
 
 
+def beside(output: Path, key: str) -> Chunks:
+    """Where the runs of a sweep are kept until its dataset is written."""
+    return Chunks(output.with_name(f".{output.name}.runs"), key)
+
+
+def _end_to_end(runs: list[Run]) -> dict[str, Any]:
+    """Each name's values of all runs in one array, for an entry of a file costs a kilobyte."""
+    arrays = {}
+    for name in runs[0]:
+        values = [run[name] for run in runs]
+        arrays[name] = np.concatenate([each.ravel() for each in values])
+        arrays[name + SHAPES] = np.array([each.shape for each in values])
+    return arrays
+
+
+def _one_by_one(chunk: Mapping[str, np.ndarray], count: int) -> list[Run]:
+    """The runs that :func:`_end_to_end` put together."""
+    runs: list[Run] = [{} for _ in range(count)]
+    for name in chunk:
+        if name.endswith(SHAPES):
+            continue
+        shapes = chunk[name + SHAPES].astype(int)
+        ends = np.cumsum(shapes.prod(axis=1))
+        parts = np.split(chunk[name], ends[:-1])
+        for run, part, shape in zip(runs, parts, shapes.tolist(), strict=True):
+            run[name] = part.reshape(shape)
+    return runs
+
+
 def _is_whole(path: Path) -> bool:
-    """Whether a chunk is as it was written; one that is damaged is removed and made again."""
-    if path.stem.endswith(f"-{checksum(path)}"):
-        return True
-    path.unlink()
-    return False
+    """Whether a chunk is as it was written."""
+    return path.stem.endswith(f"-{checksum(path)}")

@@ -17,12 +17,13 @@ class Job:
     Attributes:
         settings: slice of the configuration.
         item: part of what is scattered, "i-of-n".
+        key: of its rule.
     """
 
     def __init__(self, snakemake: Any) -> None:
         """From the object of that name in a script."""
         self.settings, self.out = snakemake.params.get("settings", {}), snakemake.output
-        self._key = snakemake.params.key
+        self.key = snakemake.params.key
         self.item = snakemake.wildcards.get("scatteritem", "1-of-1")
 
     @cached_property
@@ -58,4 +59,4 @@ class Job:
             further: what it is given beside the slice.
         """
         config, target = {**self.settings, **further}, output or self.out[0]
-        produce(task, config=config, output=target, inputs=inputs, key=self._key)
+        produce(task, config=config, output=target, inputs=inputs, key=self.key)

@@ -8,6 +8,7 @@ from typing import Any, Self
 
 import xarray as xr
 
+from squealpipe.execution.chunks import Chunks
 from squealpipe.systems.structures.factors import asked_of
 from squealpipe.systems.structures.structure import Structure
 
@@ -56,6 +57,10 @@ class StructureSweep:
         if item != "1-of-1":
             raise ValueError(f"{self.task} is made in one part, not {item}")
         return self
+
+    def finished(self, kept: Chunks) -> int:  # noqa: ARG002 (as of other sweeps)
+        """None: it is computed in one piece."""
+        return 0
 
     def run(self) -> xr.Dataset:
         """The dataset over friction, belt speed and further factors."""

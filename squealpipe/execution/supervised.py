@@ -13,7 +13,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-STOPS = (signal.SIGTERM, signal.SIGHUP)
+STOPS = [
+    getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)
+]
 PATIENCE = 20.0
 """Time that interrupted jobs have to tidy up before they are killed, s."""
 HOLDERS = Path(".snakemake/squealpipe")
@@ -38,7 +40,7 @@ def run_to_its_end(command: Sequence[str], env: Mapping[str, str]) -> int:
         KeyboardInterrupt, StoppedError: a signal ended it; by then no process of it is left.
     """
     with (
-        _stops_raise(),
+        stops_raise(),
         _holder(),
         subprocess.Popen(command, env=dict(env), start_new_session=True) as made,
     ):
@@ -131,7 +133,9 @@ def _guard(group: int) -> int:
 
 
 @contextmanager
-def _stops_raise() -> Iterator[None]:
+def stops_raise() -> Iterator[None]:
+    """Have a signal to stop raise :class:`StoppedError`, unless it is ignored (nohup)."""
+
     def stop(number: int, _: object) -> None:
         raise StoppedError(number)
 

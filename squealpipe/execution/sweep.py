@@ -164,6 +164,10 @@ class Sweep:
             angles = [np.atleast_1d(angle) for angle in angles]
         return task(params, *angles, **given)
 
+    def finished(self, kept: Chunks) -> int:
+        """Number of runs that are there."""
+        return kept.finished()
+
     @property
     def origin(self) -> dict[str, Any]:
         """Attributes that record what makes the result; swept parameters are its coordinates."""
@@ -209,7 +213,7 @@ def run_sweep(
     if isinstance(sweep, StructureSweep):
         return sweep.run()
     if isinstance(sweep, SystemSweep):
-        return sweep.run(workers)  # an ensemble shares its runs by itself
+        return sweep.run(workers, kept)  # an ensemble shares its runs by itself
     made: list[Run] = []
     done, written = (kept.finished(), time.monotonic()) if kept else (0, 0.0)
     total = len(sweep.points)

@@ -3,19 +3,31 @@
 from __future__ import annotations
 
 import inspect
+import math
 import runpy
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Self
 
+import numpy as np
 import xarray as xr
 
+from squealpipe.config.ranges import longest
+from squealpipe.execution.chunks import Chunks, Run
 from squealpipe.execution.scatter import scattered_values
+from squealpipe.methods.processes import available_cores
+from squealpipe.methods.progress import part_of_work
+from squealpipe.methods.taylor.simd import LANES
 from squealpipe.systems import basin, runs
 from squealpipe.systems.system import System
 from squealpipe.text import suggestion
 
+FIRST, MOST = 8 * LANES, 8192
+"""Runs of the first block, and of the largest."""
+EVERY = 5.0
+"""Time that a block should take, s."""
 WAYS = {"ensemble": runs.ensemble, "basin": basin.basin}
 
 
@@ -84,12 +96,99 @@ class SystemSweep:
         """One part of a scattered sweep, ``i-of-n`` along its longest name."""
         return replace(self, vary=scattered_values(self.vary, item))
 
-    def run(self, workers: int | None = None) -> xr.Dataset:
-        """The dataset, its dimensions starts first."""
-        given = {**self.fixed, **self.vary}
+    def run(self, workers: int | None = None, kept: Chunks | None = None) -> xr.Dataset:
+        """The dataset, its dimensions starts first.
+
+        Args:
+            workers: processes; None takes all cores.
+            kept: where finished runs are kept on disk; those that are there are not made again.
+        """
+        along = self._cut()
+        if kept is None or along is None:
+            return self._block({}, workers)
+        rows = len(self.vary[along])
+        runs_of_row = math.prod(map(len, self.vary.values())) // rows
+        done, size, part = kept.finished(), FIRST, None
+        while done < rows:
+            count = min(max(1, size // runs_of_row), rows - done)
+            used = workers or available_cores()
+            used = max(1, min(used, count * runs_of_row // LANES))
+            started = time.monotonic()
+            with part_of_work(done / rows, count / rows):
+                chosen = slice(done, done + count)
+                part = self._block({along: self.vary[along][chosen]}, used)
+            kept.save(done, _rows(part, along))
+            done += count
+            quick = time.monotonic() - started < EVERY
+            size = min(2 * size, MOST) if quick else max(size // 2, FIRST)
+        if part is None:  # all were there, but for what names and describes them
+            part = self._block({along: self.vary[along][:1]}, workers)
+        return self._joined(part, along, kept)
+
+    def finished(self, kept: Chunks) -> int:
+        """Number of runs that are there."""
+        along = self._cut()
+        if along is None:
+            return 0
+        runs = math.prod(map(len, self.vary.values()))
+        return kept.finished() * runs // len(self.vary[along])
+
+    def _cut(self) -> str | None:
+        """The name along which blocks of runs do not differ from the whole; None: there is none."""
+        names = list(self.vary)
+        if self.fixed.get("run") == "basin":
+            # which looks at as many periods of the forcing as fit at all parameters
+            names = [name for name in names if name in self.system.start_names.values()]
+        return longest({name: self.vary[name] for name in names}) if names else None
+
+    def _joined(self, part: xr.Dataset, along: str, kept: Chunks) -> xr.Dataset:
+        """The whole of a part and of what is on disk."""
+        rows = len(self.vary[along])
+        arrays = {
+            name: np.empty(
+                [
+                    rows if dim == along else size
+                    for dim, size in variable.sizes.items()
+                ],
+                variable.dtype,
+            )
+            for name, variable in part.variables.items()
+            if along in variable.dims
+        }
+        axes = {name: part[name].dims.index(along) for name in arrays}
+        for number, row in enumerate(kept.runs()):
+            for name, array in arrays.items():
+                np.moveaxis(array, axes[name], 0)[number] = row[str(name)]
+        whole = {
+            name: variable if name not in arrays else (
+                variable.dims, arrays[name], variable.attrs
+            )
+            for name, variable in part.variables.items()
+        }  # fmt: skip
+        found = xr.Dataset(whole, attrs=part.attrs).set_coords([*part.coords])
+        return basin.renumbered(found) if "attractor" in found else found
+
+    def _block(
+        self, some: Mapping[str, Sequence[float]], workers: int | None
+    ) -> xr.Dataset:
+        """The runs with some of the values."""
+        given = {**self.fixed, **self.vary, **some}
         way = WAYS[given.pop("run", "ensemble")]
         names = self.system.start_names.items()
         start = {state: given.pop(name) for state, name in names if name in given}
         return way(
             self.system, given.pop("t_end"), start=start, workers=workers, **given
         )
+
+
+def _rows(part: xr.Dataset, along: str) -> list[Run]:
+    """What a part holds, one value of a name after another."""
+    values = {
+        str(name): np.moveaxis(variable.values, variable.dims.index(along), 0)
+        for name, variable in part.variables.items()
+        if along in variable.dims
+    }
+    return [
+        {name: np.asarray(array[row]) for name, array in values.items()}
+        for row in range(part.sizes[along])
+    ]

@@ -23,16 +23,23 @@ def report(share: Callable[[], float]) -> None:
         _NOW.show(_NOW.low + _NOW.size * min(max(float(share()), 0.0), 1.0))
 
 
+@contextmanager
+def part_of_work(first: float, size: float) -> Iterator[None]:
+    """Show what is computed meanwhile as so large a part of the work, from a share of it on."""
+    low, whole = _NOW.low, _NOW.size
+    _NOW.low, _NOW.size = low + whole * first, whole * size
+    try:
+        report(lambda: 0.0)
+        yield
+    finally:
+        _NOW.low, _NOW.size = low, whole
+
+
 def with_progress(items: Sequence[Item]) -> Iterator[Item]:
     """The items one after another, each an equal part of the work."""
-    low, size = _NOW.low, _NOW.size
-    try:
-        for place, item in enumerate(items):
-            _NOW.low, _NOW.size = low + size * place / len(items), size / len(items)
-            report(lambda: 0.0)
+    for place, item in enumerate(items):
+        with part_of_work(place / len(items), 1 / len(items)):
             yield item
-    finally:
-        _NOW.low, _NOW.size = low, size
 
 
 @contextmanager

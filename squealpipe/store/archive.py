@@ -96,6 +96,8 @@ def archive(
             for file in regular_files(draft):
                 file.chmod(file.stat().st_mode & 0o444)
                 sync(file)
+            for place in [draft, *(at for at in draft.rglob("*") if at.is_dir())]:
+                sync(place)  # the names of the files in it
             draft.rename(target)
             sync(target.parent)
     except OSError as error:

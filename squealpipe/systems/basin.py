@@ -78,6 +78,28 @@ def basin(
     return build("basin", found, grid.coordinates, attributes)
 
 
+def renumbered(dataset: xr.Dataset) -> xr.Dataset:
+    """A basin put together from parts, its attractors numbered over all starts."""
+    names = [
+        name.removesuffix("_min")
+        for name in map(str, dataset.data_vars)
+        if name.endswith("_min") and f"{name.removesuffix('_min')}_max" in dataset
+    ]
+    extremes = np.stack(
+        [
+            np.stack(
+                [dataset[f"{name}_{which}"].values.ravel() for which in ("min", "max")],
+                axis=-1,
+            )
+            for name in names
+        ],
+        axis=1,
+    )
+    motion = dataset.motion
+    numbers = _numbered(motion.values.ravel(), extremes).reshape(motion.shape)
+    return dataset.assign(attractor=dataset.attractor.copy(data=numbers))
+
+
 def _numbered(motion: np.ndarray, extremes: np.ndarray) -> np.ndarray:
     """Equal numbers for rests, or cycles, whose extremes are equal, in the order of their runs."""
     numbers = np.full(motion.size, -1)

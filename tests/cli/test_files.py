@@ -1,5 +1,6 @@
 """Files that commands write, and parameters that they take from a study."""
 
+import fcntl
 import json
 import math
 import os
@@ -9,6 +10,7 @@ import subprocess
 import sys
 import time
 import warnings
+from contextlib import ExitStack
 from functools import partial
 from unittest.mock import Mock
 
@@ -29,7 +31,7 @@ from squealpipe import (
     stability_map,
     summarize,
 )
-from squealpipe.cli import run
+from squealpipe.cli import reservation, run
 from squealpipe.config.settings import parse_study, read_study
 from squealpipe.plotting import picture
 
@@ -69,6 +71,36 @@ def test_one_of_two_commands_that_write_to_one_name_is_refused_before_it_compute
         "a.nc", "b.nc",
     ]  # fmt: skip
     assert not list(tmp_path.glob(".*"))
+
+
+def test_a_file_that_another_command_has_just_finished_is_kept(
+    tmp_path, monkeypatch, capsys
+):
+    reserve = reservation.reserve
+
+    def late(path, *rest):
+        path.write_text("theirs")
+        reserve(path, *rest)
+
+    monkeypatch.setattr("squealpipe.cli.output.reserve", late)
+    assert run([*STABILITY, "-o", "a.nc"]) == 2
+    assert "a.nc exists; add --force" in capsys.readouterr().err
+    assert (tmp_path / "a.nc").read_text() == "theirs"
+
+
+def test_a_lock_whose_holder_took_it_away_meanwhile_is_no_lock(tmp_path, monkeypatch):
+    lockf, lock = fcntl.lockf, tmp_path / ".a.nc.writing"
+
+    def late(*given):
+        monkeypatch.setattr(fcntl, "lockf", lockf)
+        lock.unlink()  # as its holder does when it ends
+        lockf(*given)
+
+    monkeypatch.setattr(fcntl, "lockf", late)
+    with ExitStack() as held:
+        reservation.reserve(tmp_path / "a.nc", held, "-o")
+        assert lock.exists()  # so others see that the name is taken
+    assert not lock.exists()
 
 
 @pytest.mark.parametrize("words", [["-o", "~/x.nc"], ["--output=~/x.nc"]])

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import yaml
 
+from squealpipe.cli import run as command
 from squealpipe.config.ranges import longest, parse_range
 from squealpipe.config.settings import parse_study
 from squealpipe.execution.chunks import Chunks
@@ -250,6 +251,50 @@ def test_a_damaged_chunk_is_made_again(tmp_path):
     chunk.write_bytes(content)
     assert kept.finished() == 0
     assert run_sweep(plan, workers=2, kept=kept).identical(whole)
+
+
+@pytest.mark.parametrize("lost", [0, 1, 2, 3])
+def test_runs_behind_a_lost_chunk_are_made_again(tmp_path, monkeypatch, lost):
+    kept, plan = Chunks(tmp_path / ".runs", "0" * 16), Sweep(**RAGGED)
+    with monkeypatch.context() as patch:
+        patch.setattr("squealpipe.execution.sweep.MOST", 2)
+        whole = run_sweep(plan, workers=1, kept=kept)
+    chunks = sorted(kept.place.iterdir())
+    chunks[lost].unlink()
+    # in chunks of other lengths, so that those behind the gap would overlap
+    assert run_sweep(plan, workers=1, kept=kept).identical(whole)
+    assert len(list(kept.runs())) == 8
+
+
+@pytest.mark.parametrize("changed", ["settings", "code", "nothing"])
+def test_runs_of_other_settings_or_other_code_are_not_gone_on_with(
+    tmp_path, monkeypatch, capsys, changed
+):
+    monkeypatch.chdir(tmp_path)
+    words = ["sweep", "quasi_static_map", "--vary", "mu=0.1:0.6:6", "--workers", "1"]
+    words += ["--alpha1", "1", "--alpha2", "2", "-o", "a.nc"]
+    with monkeypatch.context() as patch:
+        run, made = Sweep.run, []
+
+        def stopped(self, point, workers=None):
+            made.append(point)
+            if len(made) > 3:
+                raise KeyboardInterrupt
+            return run(self, point, workers)
+
+        patch.setattr(Sweep, "run", stopped)
+        assert command(words) == 130
+    if changed == "settings":
+        words += ["--k3", "3"]
+    if changed == "code":
+        others = [Path(__file__)]
+        monkeypatch.setattr("squealpipe.rerun.key.sources", lambda *_: others)
+    capsys.readouterr()
+    assert command(words) == 0
+    resumed = "3 of them are there from before" in capsys.readouterr().out
+    assert resumed is (changed == "nothing")
+    assert command([*words, "--force"]) == 0  # the whole of it
+    assert not list(tmp_path.glob(".*"))
 
 
 def test_a_killed_worker_is_told_with_its_remedy(monkeypatch):

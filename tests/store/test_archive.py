@@ -1,5 +1,6 @@
 """An archive is whole, sealed, and every changed, missing or extra byte is found."""
 
+import os
 import shutil
 from pathlib import Path
 
@@ -100,6 +101,28 @@ def test_links_are_found_beside_files_and_in_their_place(frozen, tmp_path):
     assert found.findings == ["changed: figures/fig06.png", "extra: data/link"]
 
 
+def test_all_of_an_archive_is_on_disk_before_its_name_and_its_name_before_the_end(
+    run, keys_of, monkeypatch
+):
+    synced, named_after = set(), []
+    fsync, rename = os.fsync, Path.rename
+
+    def seen_fsync(handle):
+        synced.add(Path(f"/proc/self/fd/{handle}").readlink())
+        fsync(handle)
+
+    def seen_rename(self, target):
+        named_after.extend({self, *self.rglob("*")} - synced)
+        synced.clear()
+        return rename(self, target)
+
+    monkeypatch.setattr(os, "fsync", seen_fsync)
+    monkeypatch.setattr(Path, "rename", seen_rename)
+    target = archive("first", keys=keys_of(run), root=run)
+    assert not named_after
+    assert synced == {target.parent}
+
+
 @pytest.mark.parametrize("name", ["", "..", "a/b", "/abs", ".hidden", "a" * 81, "a\nb"])
 def test_names_that_could_escape_are_refused(run, name, keys_of):
     with pytest.raises(ValueError, match="archive name"):
@@ -122,6 +145,10 @@ def spoil_figure(path):
     path.write_bytes(path.read_bytes()[:3])
 
 
+def copy_of_another(path):
+    save(load(path).assign_attrs(key=file_key("0" * 16, "data/other.nc")), path)
+
+
 def other_code(path):
     save(load(path).assign_attrs(key=file_key("f" * 16, path)), path)
 
@@ -131,6 +158,7 @@ def other_code(path):
     [
         ("data/stability_map.nc", Path.unlink, "missing"),
         ("data/stability_map.nc", spoil_figure, "changed or damaged"),
+        ("data/stability_map.nc", copy_of_another, "is a copy of data/other.nc"),
         ("data/stability_map.nc", other_code, "another configuration or other code"),
         ("figures/fig06.png", Path.unlink, "missing"),
         ("figures/fig06.png", spoil_figure, "does not state what it was made from"),

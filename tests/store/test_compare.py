@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -87,6 +88,17 @@ def test_round_off_agrees_and_the_largest_difference_its_place_and_flags_are_tol
         assert entry.where == pytest.approx(
             {"alpha1": np.pi / 4, "alpha2": 7 * np.pi / 12}
         )
+
+
+@pytest.mark.parametrize(
+    ("factor", "verdict"),
+    [(1 + 1e-10, Agreement.within_tolerance), (1 + 1e-8, Agreement.different)],
+)
+def test_nine_digits_are_held_against_each_other(dataset_file, factor, verdict):
+    """In digits and not in the schema's tolerances, which may be edited too."""
+    one, other = load(dataset_file), load(dataset_file)
+    other["growth_rate"] = one.growth_rate * factor
+    assert compare_datasets("map", one, other).verdict == verdict
 
 
 def ensemble(values, dims=("x0", "k"), **more):
@@ -189,6 +201,60 @@ def test_grids_without_common_points_are_refused(dataset_file):
     found = compare(dataset_file, path)
     assert found.exit_code == 2
     assert "the grids of alpha1 share 0 of 13 and 13 points" in found.datasets[0].reason
+
+
+@pytest.mark.parametrize(("shift", "code"), [(1e-13, 0), (1e-6, 2)])
+def test_grid_points_are_the_same_to_nine_digits(dataset_file, shift, code):
+    dataset = load(dataset_file)
+    moved_grid = (dataset.alpha1 + shift).assign_attrs(dataset.alpha1.attrs)
+    path = dataset_file.with_name("moved.nc")
+    save(dataset.assign_coords(alpha1=moved_grid), path)
+    assert compare(dataset_file, path).exit_code == code
+
+
+def test_flags_of_another_meaning_are_a_difference():
+    flags = {"flag_values": np.array([0, 1], "i1"), "units": "1"}
+    words = ["rest cycle", "cycle rest"]
+    sides = [
+        ensemble(
+            np.eye(3),
+            outcome=(
+                ("x0", "k"),
+                np.zeros((3, 3), "i1"),
+                {**flags, "flag_meanings": each},
+            ),
+        )
+        for each in words
+    ]
+    assert both_ways(sides[0], sides[0])[0] == Agreement.equal
+    assert both_ways(*sides)[0] == Agreement.different
+
+
+@pytest.fixture(scope="module")
+def branch():
+    """Of cycles, of which the continuation's steps choose the points."""
+    root = Path(__file__).parents[2]
+    return load(root / "results/archive/reference/data/cycles/branch_F3_down.nc")
+
+
+@pytest.mark.parametrize(
+    ("off", "verdict"), [(0.0, Agreement.within_tolerance), (0.05, Agreement.different)]
+)
+def test_a_point_that_one_branch_has_more_lies_on_the_other_or_is_a_difference(
+    branch, off, verdict
+):
+    smooth = 4
+    rest = [place for place in range(branch.sizes["point"]) if place != smooth]
+    more = branch.copy(deep=True)
+    more.period[smooth] += off * float(np.ptp(branch.period))
+    assert both_ways(branch.isel(point=rest), more)[0] == verdict
+
+
+def test_points_that_all_moved_off_a_branch_are_a_difference(branch):
+    moved_off = branch.copy(deep=True)
+    for name in ("x_max", "y_max"):
+        moved_off[name][2:] *= 1.5
+    assert both_ways(branch, moved_off)[0] == Agreement.different
 
 
 def test_missing_datasets_are_a_difference(tmp_path, write_run):

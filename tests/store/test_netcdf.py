@@ -72,6 +72,15 @@ def test_what_a_reader_sees_beside_the_values_is_covered_too(path):
         load(path)
 
 
+@pytest.mark.parametrize("share", [0.02, 0.5, 0.97, 1.0])
+def test_one_byte_that_changed_is_noticed_wherever_it_lies(path, share):
+    content = bytearray(path.read_bytes())
+    content[int(share * (len(content) - 1)) - 1] ^= 1
+    path.write_bytes(content)
+    with pytest.raises(StoreError, match="was changed or damaged since"):
+        load(path)
+
+
 def values(dataset):
     dataset["growth_rate"] = dataset.growth_rate * 3
 
