@@ -246,7 +246,7 @@ def test_a_point_that_one_branch_has_more_lies_on_the_other_or_is_a_difference(
     smooth = 4
     rest = [place for place in range(branch.sizes["point"]) if place != smooth]
     more = branch.copy(deep=True)
-    more.period[smooth] += off * float(np.ptp(branch.period))
+    more.period[smooth] += off * float(np.ptp(branch.period.values))
     assert both_ways(branch.isel(point=rest), more)[0] == verdict
 
 
