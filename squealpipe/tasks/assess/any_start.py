@@ -2,6 +2,8 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -81,7 +83,8 @@ def _climb(
         waiting = [side for side in waiting if side.rungs]
     open_sides = [side for side in sides if math.isnan(side.answer)]
     bisect(open_sides, always, test, LOCATED_ANY)
-    _follow([side for side in open_sides if not math.isnan(side.outer)], always, follow)
+    brackets = [side for side in open_sides if not math.isnan(side.outer)]
+    _follow(brackets, always, follow, test)
     if always:
         for side in sides:
             if math.isnan(side.answer):
@@ -89,52 +92,118 @@ def _climb(
     return sides
 
 
-def _follow(sides: Sequence[Side], always: bool, test: Test) -> None:
-    """Move each bracket on as long as the motion at its lasting end lasts at the other one, too.
+def _follow(sides: Sequence[Side], always: bool, follow: Test, test: Test) -> None:
+    """Follow the motion at the lasting end of each bracket to where it ends.
 
-    A value may have been tried from a motion at a distant one, which is no start of what lasts.
+    Another value may have been tried from a motion at a distant one, which is no start of what
+    lasts there. Steps grow while the motion lasts; before one in which it dies out counts, it is
+    tried in smaller ones. Where it ends no other start may last either, or that is followed.
     """
-    while sides:
-        ends = [side.inner if always else side.outer for side in sides]
-        answers = test(sides, ends)
-        moved = []
-        for side, end, dies in zip(sides, ends, answers, strict=True):
-            if dies:
-                continue
-            if always:
-                step = side.inner - side.outer
-                side.inner, side.outer = side.inner + step, end
-                within = (side.inner - side.cure.value) * step < 0
-                side.inner = side.inner if within else side.cure.value
-            else:
-                side.inner, side.outer = end, side.beyond(end, LOCATED_ANY)
-                within = side.outer != end
-                side.outer = side.outer if within else math.nan
-            side.answer = side.inner if always else side.outer
-            if within:
-                moved.append(side)
-        sides = moved
+    open_ones = [_Step.of(side, always) for side in sides]
+    while open_ones:
+        at = [step.next for step in open_ones]
+        dies = follow([step.side for step in open_ones], at)
+        ends = [
+            step
+            for step, gone in zip(open_ones, dies, strict=True)
+            if gone and step.is_small
+        ]
+        dies_always = test([step.side for step in ends], [step.next for step in ends])
+        left = [step for step, gone in zip(ends, dies_always, strict=True) if not gone]
+        open_ones = [
+            step
+            for step, gone in zip(open_ones, dies, strict=True)
+            if (step.lasts() if not gone or step in left else step.ended())
+        ]
+
+
+@dataclass(eq=False)
+class _Step:
+    """One step from a value at which a motion lasts towards one at which it may not.
+
+    Attributes:
+        lasting: the value at which it lasts.
+        size: of the step, with its sign.
+        end: the last value of the range.
+    """
+
+    side: Side
+    always: bool
+    lasting: float
+    size: float
+    end: float
+
+    @classmethod
+    def of(cls, side: Side, always: bool) -> Self:
+        if always:
+            size = side.inner - side.outer
+            return cls(side, always, side.outer, size, side.cure.value)
+        size = side.outer - side.inner
+        return cls(side, always, side.inner, size, float(side.values[-1]))
+
+    @property
+    def next(self) -> float:
+        """Where the step leads, within the range."""
+        ends = (self.lasting + self.size, self.end)
+        return min(ends, key=lambda value: abs(value - self.lasting))
+
+    @property
+    def is_small(self) -> bool:
+        """Whether the step is as small as a boundary is located."""
+        near = min(self.lasting, self.next, key=abs)
+        return abs(self.size) <= self.side.scale(LOCATED_ANY, near) * (1.0 + 1e-9)
+
+    def lasts(self) -> bool:
+        """Take the step; whether the range goes on."""
+        self.lasting, self.size = self.next, 2.0 * self.size
+        self.side.answer = self.end if self.always else math.nan
+        return self.lasting != self.end
+
+    def ended(self) -> bool:
+        """Note where the motion dies out; whether a smaller step is to be tried."""
+        self.side.answer = self.next
+        if self.is_small:
+            return False
+        least = self.side.scale(LOCATED_ANY, min(self.lasting, self.next, key=abs))
+        self.size = math.copysign(max(0.25 * abs(self.size), least), self.size)
+        return True
 
 
 def lead(sides: Sequence[Side], nearest: dict[str, float], *, tol: float) -> None:
     """Lead the motions of each side that has a ``quiet_from`` to the values next to it.
 
     From the present value to one beyond ``quiet_from`` they could leave their basin, although they
-    last there.
+    last there. What is left of the way is halved until the boundary of any start is not located
+    any finer.
     """
-    led = []
-    for side in sides:
+    ways = {}
+    for row, side in enumerate(sides):
         way = nearest.get(side.name, math.nan) - side.cure.value
-        if way * (side.values[0] - side.cure.value) > 0:
-            led.append((side, side.cure.apply(side.cure.value + ALONG * way)))
-    starts = [
-        start_at(design, Sliding.of(design), state)
-        for side, design in led
-        for state in side.motions
-    ]
-    ends = iter(settle(starts, tol=tol) if starts else [])
-    for side, _ in led:
-        side.motions = [next(ends).last.final for _ in side.motions]
+        if side.motions and way * (side.values[0] - side.cure.value) > 0:
+            ways[row] = way
+    left = 1.0 - ALONG
+    while ways:
+        led = [
+            (row, sides[row].cure.apply(sides[row].cure.value + (1.0 - left) * way))
+            for row, way in ways.items()
+        ]
+        starts = [
+            start_at(design, Sliding.of(design), state)
+            for row, design in led
+            for state in sides[row].motions
+        ]
+        ends = iter(settle(starts, tol=tol))
+        for row, _ in led:
+            settled = [next(ends) for _ in sides[row].motions]
+            lasting = [
+                each.last.final for each in settled if each.verdict is not Verdict.quiet
+            ]
+            quiet_from = nearest[sides[row].name]
+            near = sides[row].scale(LOCATED_ANY, quiet_from)
+            sides[row].motions = lasting or sides[row].motions
+            if not lasting or abs(left * ways[row]) <= near:
+                del ways[row]
+        left *= 0.5
 
 
 def dies_out_always(

@@ -18,6 +18,9 @@ from squealpipe.tasks.assess.sliding import Sliding
 LOCATED = 1e-3
 """To which a boundary is located: of the value, or rad."""
 
+LEAST = 1e-3
+"""Values below this, over the present one, are located as if they were this."""
+
 RUNGS = 8
 """Values beyond the linear boundary that are run at most."""
 
@@ -48,16 +51,16 @@ class Side:
     outer: float = math.nan
     motions: list[np.ndarray] = field(default_factory=list)
 
-    def scale(self, located: float) -> float:
-        """Distance that counts as located."""
+    def scale(self, located: float, value: float) -> float:
+        """Distance next to a value that counts as located."""
         if self.name.startswith("alpha"):
             return located
-        return located * max(abs(self.cure.value), abs(float(self.inner)), 1e-12)
+        return located * max(abs(value), LEAST * abs(self.cure.value), 1e-12)
 
     def beyond(self, value: float, located: float) -> float:
         """The next value outward that counts as another, within the range."""
         farthest = float(self.values[-1])
-        step = math.copysign(self.scale(located), farthest - self.cure.value)
+        step = math.copysign(self.scale(located, value), farthest - self.cure.value)
         return min((value + step, farthest), key=lambda end: abs(end - value))
 
 
@@ -140,7 +143,7 @@ def _plan(side: Side, quiet: bool, located: float) -> None:
             return
         low = float(reached[-2]) if len(reached) > 1 else side.inner
         kept, side.exact = _halve(stable, low, float(reached[-1]))
-        back = kept - math.copysign(side.scale(located), kept - side.inner)
+        back = kept - math.copysign(side.scale(located, kept), kept - side.inner)
         beyond = (back - side.inner) * (kept - side.inner) > 0
         side.rungs = [back if beyond else 0.5 * (side.inner + kept)]
         side.exact = kept
@@ -193,7 +196,8 @@ def bisect(sides: Sequence[Side], quiet: bool, test: Test, located: float) -> No
             side
             for side in sides
             if not math.isnan(side.outer)
-            and abs(side.outer - side.inner) > side.scale(located)
+            and abs(side.outer - side.inner)
+            > side.scale(located, min(side.inner, side.outer, key=abs))
         ]
         if not wide:
             break
