@@ -65,13 +65,14 @@ def reduce(
     """
     if not is_finite_number(tol) or not 0 < tol < 1:
         raise ValueError(f"tol = {brief(tol)}: a number between 0 and 1 is needed")
-    fewest = max(len(structure.contacts), 1)
+    # a contact's two directions are apart in two coordinates at least
+    fewest = max(len(structure.contacts), 2 if structure.contacts else 1)
     if n_modes is not None and not (
         is_whole_number(n_modes) and fewest <= n_modes <= structure.size
     ):
         raise ValueError(
-            f"n_modes = {brief(n_modes)}: a whole number from {fewest}, one a contact, to "
-            f"{structure.size} is needed"
+            f"n_modes = {brief(n_modes)}: a whole number from {fewest} (one for each contact, two "
+            f"at least) to {structure.size} is needed"
         )
     if frequency_max is not None and not (
         is_finite_number(frequency_max) and frequency_max > 0

@@ -169,6 +169,45 @@ def test_the_command_says_it_in_words_and_writes_a_picture(
     assert "its axes are in 1/s, kHz" in capsys.readouterr().err
 
 
+def two_pads():
+    """Two pads of two degrees of freedom with a caliper between them, at 1.6 and 2 kHz."""
+    stiffness = np.zeros((4, 4))
+    stiffness[:2, :2] = [[4e7, -1.2e7], [-1.2e7, 1e7]]
+    stiffness[2:, 2:] = [[6e7, -1.4e7], [-1.4e7, 1e7]]
+    caliper = np.array([0.0, 1.0, 0.0, -1.0])
+    stiffness += 4e6 * np.outer(caliper, caliper)
+    contacts = [
+        Contact("inner", {1: 1.0}, {0: 1.0}, stiffness=3e7, preload=2e3),
+        Contact("outer", {3: 1.0}, {2: 1.0}, stiffness=5e7, preload=2e3),
+    ]
+    return Structure(
+        0.4 * np.eye(4), stiffness, modal_damping=0.01, contacts=contacts, mu=0.5, belt_speed=2.0
+    )  # fmt: skip
+
+
+def test_a_quasi_periodic_motion_of_two_contacts_is_told_without_a_search_for_its_cycle():
+    """A cycle would come back: its samples repeat, and a torus' nearest one stays apart."""
+    answer = squealing_modes(two_pads(), samples=2, workers=1)
+    assert Verdict(int(answer.verdict)) is Verdict.hammers
+    assert (answer.kind == Kind.torus).all()
+    structure = two_pads()
+    plant = Plant(structure)
+    run = plant.system.simulate(
+        0.6,
+        start=dict(
+            zip(plant.system.states, plant.pushed(plant.unstable[0], 0.01), strict=True)
+        ),
+    )
+    kinds, times = run.event_kind.values, run.event_time.values
+    name = run.event_kind.attrs["flag_meanings"].split().index("outer_contact")
+    landings = times[(kinds == name) & (times > 0.3)]
+    intervals = np.diff(landings)
+    # after no number of landings up to a third of all do the intervals repeat
+    for lag in range(1, len(intervals) // 3):
+        off = np.abs(intervals[lag:] - intervals[:-lag]).max()
+        assert off > 1e-3 * intervals.mean()
+
+
 @pytest.mark.release
 def test_between_both_onsets_the_lower_mode_of_the_pad_squeals():
     pad = elastic_pad(modal_damping=0.01, mu=0.382).reduce(n_modes=12)

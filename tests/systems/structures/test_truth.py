@@ -102,6 +102,12 @@ def test_the_elastic_pad_has_the_published_modes():
         assert int(near.unstable.sum()) == grows
 
 
+def test_one_contact_keeps_the_two_modes_that_its_directions_need():
+    assert elastic_pad(contacts=1).reduce().record["n_modes"] == 2
+    with pytest.raises(ValueError, match="from 2 "):
+        elastic_pad(contacts=1).reduce(n_modes=1)
+
+
 def test_a_reduced_pad_states_errors_that_are_true():
     pad = elastic_pad()
     reduced = pad.reduce(frequency_max=60e3)

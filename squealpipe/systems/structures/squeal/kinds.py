@@ -31,8 +31,8 @@ APART, FAR = 1e3, 1e-2
 """Growth of the distance from which it is exponential; extent beyond which it grows no more."""
 LINEAR = 30.0
 """Growth of the distance up to which it may be one of phases, as on a torus."""
-REPEATED = 1e-5
-"""Largest difference of intervals, over their mean, of what is taken for a cycle at first."""
+REPEATED, NEARLY = 1e-5, 1e-3
+"""Largest difference of intervals, over their mean, of what repeats, and of what may do so."""
 LINES = 3
 
 
@@ -100,10 +100,12 @@ def described(
     if grown >= APART:
         kind = Kind.irregular
     else:
-        cycle = _closed(plant, settled, raw, frequency, length)
+        # on a torus near returns are many, and closing each takes minutes
+        if _repeats(raw, length, NEARLY):
+            cycle = _closed(plant, settled, raw, frequency)
         if cycle is not None:
             kind = Kind.cycle
-        elif grown <= LINEAR and not _repeats(raw, length):
+        elif grown <= LINEAR and not _repeats(raw, length, REPEATED):
             kind = Kind.torus
     return Described(
         kind, frequency, 1.0 / length, exponent, cycle, omega / (2.0 * np.pi), power
@@ -127,21 +129,17 @@ def _apart(
     return grown, float(rate)
 
 
-def _repeats(raw: dict[str, np.ndarray], length: float) -> float:
+def _repeats(raw: dict[str, np.ndarray], length: float, within: float) -> float:
     """Period of the second half, by its events; 0 where none is seen."""
     count = int(raw["n_events"][0])
     at, kinds = raw["event_times"][0, :count], raw["event_kinds"][0, :count]
     late = at > 0.5 * length
-    lag = repeats_after(at[late], kinds[late], REPEATED)
+    lag = repeats_after(at[late], kinds[late], within)
     return float(at[late][lag] - at[late][0]) if lag else 0.0
 
 
 def _closed(
-    plant: Plant,
-    settled: Settled,
-    raw: dict[str, np.ndarray],
-    frequency: float,
-    length: float,
+    plant: Plant, settled: Settled, raw: dict[str, np.ndarray], frequency: float
 ) -> Cycle | None:
     """The stable cycle through the end of the run, if the exact map finds it there."""
     if raw["outcome"][0] != Outcome.converged or not np.isfinite(frequency):
