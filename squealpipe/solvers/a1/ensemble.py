@@ -161,13 +161,14 @@ class Ensemble:
     def outcome(self) -> np.ndarray:
         """``schema.Outcome`` of each run."""
         codes = self._raw["outcome"]
-        # a state that is lost next to a pivot is so by its doing
+        # a state that is lost next to a pivot is so by its doing, and so is the sight of it
         away = self._raw["final"][:, None, :2] - self._raw["points"]
         lengths = np.stack(
             [self.jobs.values[name] for name in ("length1", "length2")], axis=-1
         )
         near = (np.linalg.norm(away, axis=-1) < NEAR_PIVOT * lengths).any(axis=1)
-        lost = (codes >= STOPPED) | ((codes == Outcome.not_finite) & near)
+        unknown = np.isin(codes, (Outcome.not_finite, Outcome.hidden_event))
+        lost = (codes >= STOPPED) | (unknown & near)
         found = np.where(lost, Outcome.singular_geometry, codes)
         found[codes == BY_EVENT] = Outcome.separated
         found[codes == BY_TURNS] = Outcome.amplitude_reached
