@@ -323,22 +323,26 @@ def test_a_small_start_grows_at_the_rate_of_the_complex_mode():
 
 
 @pytest.mark.release
-def test_the_settled_pad_hammers_as_an_integrator_apart_found():
-    run = (
-        twelve_modes().system().simulate(40e-3, times=np.linspace(24e-3, 40e-3, 2**16))
-    )
+def test_the_settled_pad_hammers_as_an_integrator_apart_has_it():
+    """A cycle with nine events, whatever the start.
+
+    An integrator from the finite elements on, with all roots of each event's polynomial, has open
+    0.000, 0.312, 0.395, 0.306, stick 0.0109 and 374.7 events a ms, from rest and from two random
+    starts. The second contact overtakes the belt for so short a time before it sticks that a
+    search for events by signs at the ends of steps misses some of it: solve_ivp has 303 to 336
+    events a ms, and less stick.
+    """
+    pad, times = twelve_modes(), np.linspace(24e-3, 40e-3, 2**16)
+    run = pad.system().simulate(40e-3, times=times)
     regimes = labels(run.regime).values.astype(str)
     is_open, sticks = (
         [float(np.char.endswith(row, name).mean()) for row in regimes.T]
         for name in ("separated", "stick")
     )
-    # of an integrator apart, and the frequency of the unstable mode that wins
     assert is_open == pytest.approx([0.0, 0.312, 0.395, 0.306], abs=1e-3)
-    rate = np.abs(np.fft.rfft(run.v1.values - run.v1.values.mean()))
-    frequency = np.fft.rfftfreq(2**16, 16e-3 / (2**16 - 1))[rate.argmax()]
-    assert frequency == pytest.approx(41.6e3, rel=2e-3)
-    # nine events a period: the second contact comes to the belt's speed, sticks and slips too
+    assert sticks == pytest.approx([0.0, 0.0109, 0.0, 0.0], abs=3e-4)
+    spectrum = np.abs(np.fft.rfft(run.v1.values - run.v1.values.mean()))
+    frequency = np.fft.rfftfreq(2**16, 16e-3 / (2**16 - 1))[spectrum.argmax()]
+    assert frequency == pytest.approx(41.62e3, rel=1e-3)
     late = run.event_time.values > 24e-3
-    assert late.sum() / 16e-3 / frequency == pytest.approx(9, abs=0.02)
-    assert [share > 0 for share in sticks] == [False, True, False, False]
-    assert sticks[1] < 0.015
+    assert late.sum() / 16.0 == pytest.approx(374.7, abs=0.2)
