@@ -156,12 +156,8 @@ class _Batch:
         options: RunOptions,
         tol: float,
     ) -> None:
-        self.system, self.options, self.tol, self.size = (
-            system,
-            options,
-            tol,
-            len(t_end),
-        )
+        self.system, self.options, self.tol = system, options, tol
+        self.size = len(t_end)
         self.unit = unit = _time_units(system, values, t_end)
         self.initial = _table(self.size, *(values[name] for name in system.states))
         derive, names = system.derived
@@ -255,7 +251,7 @@ class _Batch:
         n_rows = layout.FIXED_ROWS + len(t.variables) + t.size + 2 * len(self.watched)
         n_rows += len(system.regimes) + 3 * n_points + t.n_components
         n_rows += len(t.parameters) + n_constants
-        number = {kind: place for place, kind in enumerate(t.kinds)}
+        number: dict[str | None, int] = {kind: i for i, kind in enumerate(t.kinds)}
         options = self.options
         return {
             "n_terms": lanes.taylor_terms(self.tol),
@@ -275,10 +271,8 @@ class _Batch:
             "n_sums": sum(count for _, count in self._sums()),
             "n_logged": options.log_events,
             "n_points": n_points,
-            "until": -1 if options.until is None else number.get(options.until, -1),
-            "late_from": (
-                -1 if options.late_from is None else number.get(options.late_from, -1)
-            ),
+            "until": number.get(options.until, -1),
+            "late_from": number.get(options.late_from, -1),
             "n_rounds": lanes.ROUNDS,
             "tangent": int(options.tangent),
             "take_step": code.address("series"),

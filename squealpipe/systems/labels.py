@@ -54,7 +54,12 @@ def outcome(system: System, dims: Any, values: Any) -> Any:
     table = flag_table(Outcome) | {
         layout.STOPPED + i: name for i, name in enumerate(system.stops)
     }
-    dims, values, attributes = flag("how the run ended", dims, values, table)
+    return explained("how the run ended", dims, values, table)
+
+
+def explained(long_name: str, dims: Any, values: Any, table: Mapping[int, str]) -> Any:
+    """A flag variable of outcomes, with what each means and what helps."""
+    dims, values, attributes = flag(long_name, dims, values, table)
     return dims, values, attributes | {"comment": in_words(table)}
 
 

@@ -12,7 +12,7 @@ from squealpipe.schema.curves import ChartLine
 from squealpipe.schema.inference import of_study
 from squealpipe.study.claims.evidence import Run
 from squealpipe.study.claims.maps import unstable_yet_sliding
-from squealpipe.study.figures.comparison.model_needed import shares_of_a3
+from squealpipe.study.figures.comparison.model_ladder import shares_of_a3
 from squealpipe.study.figures.comparison.speed_and_accuracy import scenes_of_a1
 from squealpipe.study.figures.comparison.where_methods_fail import answers
 from squealpipe.study.figures.linear.critical_friction import LARGEST

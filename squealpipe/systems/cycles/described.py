@@ -9,12 +9,13 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.methods.taylor.layout import STOPPED
-from squealpipe.schema import Outcome, flag_table, in_words
+from squealpipe.schema import Outcome, flag_table
 from squealpipe.systems.cycles.event_map import FREE
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.labels import (
     attributes_of,
     components_of,
+    explained,
     flag,
     labels,
     regime_flag,
@@ -82,8 +83,7 @@ def outcome_of(system: System, dims: Any, values: Any) -> Any:
     }
     more = np.unique(np.asarray(values)[np.asarray(values) > SETTLED_ON])
     table |= {int(k): f"settled_on_{int(k) - SETTLED_ON}_periods" for k in more}
-    dims, values, attributes = flag("how the cycle was found", dims, values, table)
-    return dims, values, attributes | {"comment": in_words(table)}
+    return explained("how the cycle was found", dims, values, table)
 
 
 def describe_columns(

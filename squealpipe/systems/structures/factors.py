@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.parameters import brief, is_finite_number, is_whole_number
+from squealpipe.parameters import brief, is_whole_number
 from squealpipe.schema.structures import ARGUMENTS, OF_CONTACT, SCALED
 from squealpipe.systems.structures.definition import Structure
 from squealpipe.systems.structures.pencil import DENSE
-from squealpipe.systems.structures.spectrum import Limits
+from squealpipe.systems.structures.spectrum import Limits, check_frequency
 from squealpipe.text import suggestion
 from squealpipe.validation import real_array
 
@@ -156,12 +156,7 @@ def _stiffness(contact: str, factors: Mapping[str, float]) -> float:
 def _limits(
     structure: Structure, frequency_max: float | None, n_modes: int | None
 ) -> Limits:
-    if frequency_max is not None and not (
-        is_finite_number(frequency_max) and frequency_max > 0
-    ):
-        raise ValueError(
-            f"frequency_max = {brief(frequency_max)}: a number greater than 0, Hz, is needed"
-        )
+    check_frequency(frequency_max)
     if n_modes is not None and not (is_whole_number(n_modes) and n_modes >= 1):
         raise ValueError(
             f"n_modes = {brief(n_modes)}: a whole number from 1 on is needed"

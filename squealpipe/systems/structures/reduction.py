@@ -14,7 +14,7 @@ from squealpipe.systems.structures.dense import all_modes
 from squealpipe.systems.structures.modes import modes_at_rest
 from squealpipe.systems.structures.pencil import DENSE
 from squealpipe.systems.structures.sliding import pencil_about, steady_sliding
-from squealpipe.systems.structures.spectrum import Limits, Solver
+from squealpipe.systems.structures.spectrum import Limits, Solver, check_frequency
 
 AND_LARGER = 3
 """Larger numbers of modes that must do as well: convergence is not monotonic."""
@@ -74,12 +74,7 @@ def reduce(
             f"n_modes = {brief(n_modes)}: a whole number from {fewest} (one for each contact, two "
             f"at least) to {structure.size} is needed"
         )
-    if frequency_max is not None and not (
-        is_finite_number(frequency_max) and frequency_max > 0
-    ):
-        raise ValueError(
-            f"frequency_max = {brief(frequency_max)}: a number greater than 0, Hz, is needed"
-        )
+    check_frequency(frequency_max)
     if structure.size > DENSE and frequency_max is None:
         raise ValueError(
             f"{structure.size} degrees of freedom: give frequency_max (Hz), up to which unstable "

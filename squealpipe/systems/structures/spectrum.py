@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from squealpipe.parameters import brief, is_finite_number
 from squealpipe.systems.structures import band, dense
 from squealpipe.systems.structures.definition import Structure
 from squealpipe.systems.structures.modes import modal_damping_of, modes_at_rest
@@ -85,6 +86,16 @@ class Limits:
 
     frequency_max: float | None = None
     n_modes: int | None = None
+
+
+def check_frequency(frequency_max: float | None) -> None:
+    """Refuse a limit of frequencies, Hz, that is none."""
+    if frequency_max is not None and not (
+        is_finite_number(frequency_max) and frequency_max > 0
+    ):
+        raise ValueError(
+            f"frequency_max = {brief(frequency_max)}: a number greater than 0, Hz, is needed"
+        )
 
 
 @dataclass

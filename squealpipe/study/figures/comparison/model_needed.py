@@ -7,7 +7,11 @@ from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
 from squealpipe.schema.ladder import Level
-from squealpipe.study.figures.comparison.model_ladder import QUESTION_NAMES, colour_of
+from squealpipe.study.figures.comparison.model_ladder import (
+    QUESTION_NAMES,
+    colour_of,
+    shares_of_a3,
+)
 
 READS = ("model_ladder",)
 ALT = "Five bars, each divided among model levels by the share of angles they suffice for."
@@ -35,12 +39,6 @@ def caption(ladder: xr.Dataset) -> str:
 CAPTION = caption
 
 
-def shares_of_a3(ladder: xr.Dataset) -> tuple[float, float]:
-    """Per cent of the cells in which A3 tells whether contact is lost: in hindsight, beforehand."""
-    hindsight = ladder.cheapest.sel(question="contact_lost") == Level.a3
-    return tuple(100 * float(c.mean()) for c in (hindsight, ladder.chosen == Level.a3))  # type: ignore[return-value]
-
-
 def draw(ladder: xr.Dataset) -> Figure:
     """The bars, from dataset ``model_ladder``."""
     lost, *others = ladder.question.values.tolist()
@@ -52,7 +50,7 @@ def draw(ladder: xr.Dataset) -> Figure:
         bars[QUESTION_NAMES[question]] = ladder.cheapest.sel(question=question)
     present = [
         level
-        for level in sorted(Level, key=list(Level).index)
+        for level in Level
         if any((cells == level).any() for cells in bars.values())
     ]
     figure, axes = style.new_figure(style.PAGE, 2.3)

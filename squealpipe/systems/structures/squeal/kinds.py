@@ -129,13 +129,12 @@ def _apart(
     return grown, float(rate)
 
 
-def _repeats(raw: dict[str, np.ndarray], length: float, within: float) -> float:
-    """Period of the second half, by its events; 0 where none is seen."""
+def _repeats(raw: dict[str, np.ndarray], length: float, within: float) -> bool:
+    """Whether the second half has a period, by its events."""
     count = int(raw["n_events"][0])
     at, kinds = raw["event_times"][0, :count], raw["event_kinds"][0, :count]
     late = at > 0.5 * length
-    lag = repeats_after(at[late], kinds[late], within)
-    return float(at[late][lag] - at[late][0]) if lag else 0.0
+    return repeats_after(at[late], kinds[late], within) > 0
 
 
 def _closed(
