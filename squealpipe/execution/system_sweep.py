@@ -166,7 +166,9 @@ class SystemSweep:
             for name, variable in part.variables.items()
         }  # fmt: skip
         found = xr.Dataset(whole, attrs=part.attrs).set_coords([*part.coords])
-        return basin.renumbered(found) if "attractor" in found else found
+        if "attractor" in found:
+            return basin.renumbered(self.system, found)
+        return found
 
     def _block(
         self, some: Mapping[str, Sequence[float]], workers: int | None

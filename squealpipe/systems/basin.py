@@ -78,26 +78,18 @@ def basin(
     return build("basin", found, grid.coordinates, attributes)
 
 
-def renumbered(dataset: xr.Dataset) -> xr.Dataset:
-    """A basin put together from parts, its attractors numbered over all starts."""
-    names = [
-        name.removesuffix("_min")
-        for name in map(str, dataset.data_vars)
-        if name.endswith("_min") and f"{name.removesuffix('_min')}_max" in dataset
-    ]
-    extremes = np.stack(
+def renumbered(system: Any, dataset: xr.Dataset) -> xr.Dataset:
+    """A system's basin put together from parts, its attractors numbered over all starts."""
+    extremes = np.array(
         [
-            np.stack(
-                [dataset[f"{name}_{which}"].values.ravel() for which in ("min", "max")],
-                axis=-1,
-            )
-            for name in names
-        ],
-        axis=1,
+            [dataset[f"{name}_{which}"].values.ravel() for which in ("min", "max")]
+            for name in system.units
+        ]
     )
     motion = dataset.motion
-    numbers = _numbered(motion.values.ravel(), extremes).reshape(motion.shape)
-    return dataset.assign(attractor=dataset.attractor.copy(data=numbers))
+    numbers = _numbered(motion.values.ravel(), np.moveaxis(extremes, -1, 0))
+    attractor = dataset.attractor.copy(data=numbers.reshape(motion.shape))
+    return dataset.assign(attractor=attractor)
 
 
 def _numbered(motion: np.ndarray, extremes: np.ndarray) -> np.ndarray:
