@@ -70,7 +70,7 @@ class Row:
                 f"{name} = {brief(value)}: unknown; {near}, {self.laws.FILES}"
             )
         try:
-            read = number_of(value, self.units, UNITS_OF_INPUTS)
+            read = number_of(value, self.units, KEYS_THAT_TAKE)
         except ValueError as error:
             raise ValueError(f"{name} = {brief(value)}: {error}") from error
         if not is_finite_number(read):
@@ -385,6 +385,9 @@ UNITS_OF_INPUTS = {
     **{name: other.units for name, other in SUBSTITUTES.items()},
 }
 """Name → CF unit of every input of a brake that is one number."""
+
+KEYS_THAT_TAKE = UNITS_OF_INPUTS | {"alpha1": "rad", "alpha2": "rad", "t_end": "s"}
+"""The same with what else a question of a brake is asked with, for messages that name a key."""
 
 NUMBERS_OF_A1: dict[str, str] = {
     "static_mu" if name == "mu_static" else name: name

@@ -15,7 +15,7 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import CoreSchema, core_schema
 
 from squealpipe.config.ranges import parse_angle
-from squealpipe.parameters import UNITS_OF_INPUTS, Parameters
+from squealpipe.parameters import KEYS_THAT_TAKE, Parameters
 from squealpipe.units import has_unit, number_of
 
 UNIT_PATTERN = r"^\s*[-+−]?(\d|\.\d).*[^\d\s.].*$"
@@ -53,7 +53,7 @@ class In:
     def _read(self, value: Any, info: ValidationInfo) -> Any:
         if self.units == "rad" and isinstance(value, str):
             return _over_pi(value)
-        number = number_of(value, self.units, UNITS_OF_INPUTS)
+        number = number_of(value, self.units, KEYS_THAT_TAKE)
         if not self.of_study or number is value or not isinstance(number, float):
             return number
         if info.context is None:

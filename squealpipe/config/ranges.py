@@ -9,7 +9,13 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
-from squealpipe.parameters import BEYOND_A_TURN, FULL_TURN, TABLE, UNITS_OF_INPUTS
+from squealpipe.parameters import (
+    BEYOND_A_TURN,
+    FULL_TURN,
+    KEYS_THAT_TAKE,
+    TABLE,
+    UNITS_OF_INPUTS,
+)
 from squealpipe.units import UnitError, has_unit, in_si
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
@@ -37,6 +43,11 @@ MOST_VALUES = 100_000
 def parse_angle(text: str) -> float:
     """An angle in rad from ``0.4pi``, ``2pi/5``, ``72deg`` or plain radians."""
     value = _angle_in(text.strip().lower())
+    if value is None and has_unit(text):  # 0.4 mrad, or a wrong kind, which is named
+        try:
+            value = in_si(text, "rad", KEYS_THAT_TAKE)
+        except UnitError as error:
+            raise UnitError(f"{text!r}: {error}; or {ANGLE_FORMS}") from None
     if value is None or not math.isfinite(value):
         raise ValueError(f"{text!r} is not a valid angle; {ANGLE_FORMS}")
     if abs(value) > FULL_TURN:
@@ -61,7 +72,7 @@ def parse_number(text: str, units: str | None = None) -> float:
     """A finite number, or a text with a unit where CF units are given."""
     if units is not None and has_unit(text):
         try:
-            return in_si(text, units, UNITS_OF_INPUTS)
+            return in_si(text, units, KEYS_THAT_TAKE)
         except UnitError as error:
             raise UnitError(f"{text!r}: {error}") from None
     try:

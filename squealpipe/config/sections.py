@@ -235,7 +235,8 @@ class BenchmarkComparison(Section):
         *("tanh, σ = 10", "tanh, σ = 1000", "tanh, σ = 1e+07", "Moreau–Jean"),
     )
     tolerances: Annotated[
-        tuple[Annotated[float, Field(ge=1e-13, lt=1e-2)], ...], Field(min_length=1)
+        tuple[Annotated[float, Field(ge=1e-13, lt=1e-2), In("1")], ...],
+        Field(min_length=1),
     ] = (1e-6, 1e-8, 1e-10, 1e-12)
 
 
@@ -243,7 +244,7 @@ class LadderComparison(Section):
     """The cheapest adequate model over both angles; horizon in √(m/k1)."""
 
     points: Annotated[int, Field(ge=3, le=361), WHOLE] = 46
-    tolerance: Annotated[float, Field(gt=0, lt=1)] = 0.05
+    tolerance: Annotated[float, Field(gt=0, lt=1), In("1")] = 0.05
     horizon: Time = 200.0
 
 
@@ -258,7 +259,7 @@ class ComparisonSection(Section):
 class DynamicsSection(Section):
     """Nonlinear runs; times in √(m/k1), amplitudes in l_pre, speeds in l_pre √(k1/m)."""
 
-    tol: Annotated[float, Field(gt=1e-18, lt=1e-2)] = 1e-12
+    tol: Annotated[float, Field(gt=1e-18, lt=1e-2), In("1")] = 1e-12
     validity_horizon: Time = 200.0
     validity_points: Points = 181
     refined_points: Points = 1441
@@ -324,7 +325,7 @@ class Distribution(Section):
     mean: Number | None = None
     std: Number | None = None
     median: Number | None = None
-    log_std: Number | None = None
+    log_std: Annotated[Number, In("1")] | None = None
 
     @model_serializer(mode="wrap")
     def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
@@ -348,7 +349,7 @@ class RobustnessSection(Section):
     scene: tuple[Angle, Angle] = (0.305, 0.07)
     samples: Annotated[int, Field(ge=64, le=2**20), WHOLE] = 4096
     horizon: Time = 200.0
-    spring_correlation: Annotated[float, Field(gt=-1, lt=1)] = 0.0
+    spring_correlation: Annotated[float, Field(gt=-1, lt=1), In("1")] = 0.0
     distributions: Annotated[dict[str, Distribution], Field(min_length=1)] | None = None
 
     @field_validator("distributions", mode="before")
