@@ -390,7 +390,7 @@ def test_every_key_refuses_another_kind_and_says_which_key_takes_it():
             "no two springs have",
         ),
         ("dynamics: {validity_horizon: 3 mm}", "that is a length; a time is needed"),
-        ("cycles: {flutter: [54 deg, 3 mm]}", "'3 mm' is not a valid angle"),
+        ("cycles: {flutter: [54 deg, 3 mm]}", "that is a length; an angle is needed"),
         (
             "robustness: {distributions: {k1: {distribution: normal, mean: 4 kN, std: 1}}}",
             "that is a force; a stiffness is needed",
