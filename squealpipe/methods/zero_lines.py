@@ -42,6 +42,11 @@ RUNGS = np.array(
     [-3.0, -1.0, -0.3, -0.1, -0.03, -0.01, 0.0, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0]
 )
 """Distances from a chord, over its length, between which a zero is looked for."""
+SHORT_OF, BESIDE_TANGENT = 0.6, 0.06
+"""Share of the way to where tangents meet that is gone along them; how far beside them, over that
+way, a line is looked for."""
+SHARP = 0.5
+"""Cosine of the turn at a corner that is enclosed along both tangents."""
 FLATTISH, STEEPEST = 0.5, 3.0
 """Slope over a chord up to which a line is taken for a cubic; largest in the area beside it."""
 CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
@@ -70,6 +75,8 @@ class ZeroLines:
         finer: how many times finer the grid is where the sign changes, a power of two.
         off: how far lines may be on average, over a chord, from those that are drawn.
         residual: of the function at a point.
+        touching: whether regions may touch in a point. Sharp corners are enclosed along both
+            tangents then, which takes more places.
 
     Attributes:
         place: (points, 2).
@@ -92,6 +99,7 @@ class ZeroLines:
         jump: float,
         off: float = 1e-8,
         residual: float = 1e-11,
+        touching: bool = False,
     ) -> None:
         self.value, self._mark, self.jump, self.off, self.most = (
             value,
@@ -100,6 +108,7 @@ class ZeroLines:
             off,
             residual,
         )
+        self._touching = touching
         self.place, self.slope = np.empty((0, 2)), np.empty((0, 2))
         self.residual, self.mark = np.empty(0), np.empty(0)
         self.chords, self.error, self.unresolved = (
@@ -202,10 +211,17 @@ class ZeroLines:
                 break
             error, new, *across = self._divided(chords)
             lost = ~((new >= 0.0) & (new <= 1.0)).all(axis=1) | ~across[0].any(axis=1)
-            self._keep(chords[lost], self._length(chords[lost]) ** 2)
-            self.unresolved = max([self.unresolved, *self._length(chords[lost])])
-            chords, error = chords[~lost], error[~lost]
-            middle = self._add(new[~lost], *(each[~lost] for each in across))
+            middle = np.full(len(chords), -1)
+            middle[~lost] = self._add(new[~lost], *(each[~lost] for each in across))
+            cut = np.zeros(len(chords), bool)
+            if self._touching:
+                cut[lost] = True
+                cut[~lost] = self._astray(chords[~lost], middle[~lost])
+            shorter, cut[cut] = self._cut(chords[cut])
+            ended, divided = lost & ~cut, ~lost & ~cut
+            self._keep(chords[ended], self._length(chords[ended]) ** 2)
+            self._not_divided(chords[ended])
+            chords, error, middle = (each[divided] for each in (chords, error, middle))
             kinked = self._jumps(chords) | (error > self._bent(chords))
             self.marks(np.concatenate([chords[kinked].ravel(), middle[kinked]]))
             chords, error = _split(chords, middle), np.repeat(0.5 * error, 2)
@@ -229,9 +245,62 @@ class ZeroLines:
             self._keep(
                 _split(around, corner), np.repeat(0.5 * error[~going & jumps], 2)
             )
-            chords, error = chords[going], error[going]
-        self.unresolved = max([self.unresolved, *self._length(chords)])
-        self._keep(chords, error)
+            chords = np.concatenate([chords[going], shorter])
+        self._not_divided(chords)
+        self._keep(chords, self._length(chords) ** 2)
+
+    def _not_divided(self, chords: Indices) -> None:
+        """Take account of chords that should be shorter; the shortest ones need not."""
+        length = self._length(chords)
+        long = length > SHORTEST * self.off
+        self.unresolved = max([self.unresolved, *length[long]])
+
+    def _astray(self, chords: Indices, middle: Indices) -> Any:
+        """Whether chords have a sharp corner beside them, or middles may lie beyond one.
+
+        Where two regions touch, a zero beside such a chord may be that of a line that leads
+        elsewhere. The line through such a middle runs back, or does not meet the branch of one end.
+        """
+        kinked = self._jumps(chords)
+        self.marks(middle[kinked])
+        first, last = self._tangents(chords)
+        astray = (first * last).sum(axis=-1) < SHARP
+        for parts in _split(chords, middle).reshape(-1, 2, 2).swapaxes(0, 1):
+            chord = np.diff(self.place[parts], axis=1)
+            forward = self.slope[parts][..., ::-1] * [1.0, -1.0]
+            astray |= ((chord * forward).sum(axis=-1) < 0.0).any(axis=1)
+            apart = np.isnan(self._meeting(parts)[1][:, 0])
+            astray |= self._jumps(parts) & apart
+        return astray & kinked
+
+    def _cut(self, chords: Indices) -> tuple[Indices, Any]:
+        """Chords across a place at which lines meet, in three pieces each, and which could be cut.
+
+        Where two regions touch in a point, no zero lies beside the chord from the edge of one to
+        that of the other, or one of a line that leads elsewhere. So both edges are followed by
+        their tangents, most of the way to where these meet.
+        """
+        ends = self.place[chords]
+        ahead = self._meeting(chords)[1][:, None] - ends
+        far = np.linalg.norm(ahead, axis=-1)
+        longest = LONGEST * self._length(chords)[:, None]
+        cut = ((far > 0.0) & (far < longest)).all(axis=1)
+        slope = self.slope[chords[cut]]
+        normal = slope / np.linalg.norm(slope, axis=-1)[..., None]
+        way = (-2.0 * BESIDE_TANGENT * far[cut, :, None] * normal).reshape(-1, 2)
+        start = (ends + SHORT_OF * ahead)[cut].reshape(-1, 2) - 0.5 * way
+        rate = (slope.reshape(-1, 2) * way).sum(axis=1)
+        share, *there = self._roots(start, way, np.full(len(way), 0.5), rate)
+        new = start + share[:, None] * way
+        known = ((new >= 0.0) & (new <= 1.0)).all(axis=1).reshape(-1, 2).all(axis=1)
+        cut[cut] = known
+        both = np.repeat(known, 2)
+        nearer = self._add(new[both], way[both], *(each[both] for each in there))
+        first, last = chords[cut].T
+        line = np.stack([first, *nearer.reshape(-1, 2).T, last], axis=1)
+        pieces = np.concatenate([line[:, i : i + 2] for i in range(3)])
+        self.marks(pieces)
+        return pieces, cut
 
     def _jumps(self, chords: Indices) -> Any:
         """Whether chords join two branches, as far as the marks of their ends are known."""
@@ -459,6 +528,7 @@ class ZeroLines:
         """Pieces of the square's border with one sign, counter-clockwise, as pairs of points."""
         place = np.concatenate([self.place, CORNERS])
         on = np.flatnonzero(np.isin(place, (0.0, 1.0)).any(axis=1))
+        on = on[(on >= len(self.place)) | np.isin(on, self.chords)]
         x, y = place[on].T
         around = np.select(
             [y == 0.0, x == 1.0, y == 1.0], [x, 1.0 + y, 3.0 - x], 4.0 - y

@@ -60,8 +60,7 @@ def regime_chart(
 
     Returns:
         Dataset ``regime_chart`` over ``point`` and ``region``. A line that is right to about a cell
-        only has the outcome ``unresolved``, as next to places where the static force under falling
-        friction has no limit.
+        only has the outcome ``unresolved``.
 
     Raises:
         ValueError: as :func:`contact_boundary`, or design or curves have other parameters.

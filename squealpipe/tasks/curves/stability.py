@@ -29,8 +29,9 @@ EDGES = {
 ASIDE, NEXT = np.array([2e-9, 1e-9]), 1e-7
 """Shift of places, without which a grid's points all lie where the springs are in line, so that
 the static force vanishes and friction's slope with it; way from a line to what is beside it."""
-FINER = 2
-"""How many times finer the grid is where regimes change, if damped."""
+ODD = 2 * GRID
+"""Points per side of the grid on which regimes change, if damped: none is in the middle, where over
+both angles, from 0 to π, the springs are in line and upright and three regimes meet."""
 
 
 class Regimes:
@@ -46,9 +47,10 @@ class Regimes:
             which: ZeroLines(
                 partial(self._edge, which=which),
                 self._outside,
-                coarse=GRID,
-                finer=FINER if self.damped else 1,
+                coarse=ODD if self.damped else GRID,
+                finer=1,
                 jump=0.5,
+                touching=self.damped,
             )
             for which in EDGES
         }

@@ -5,6 +5,7 @@ import pytest
 
 from squealpipe import Parameters, contact_boundary, regime_chart
 from squealpipe.codes import LinearRegime
+from squealpipe.schema import Outcome
 from squealpipe.schema.curves import ChartLine
 from squealpipe.tasks.curves.stability import GRID
 from squealpipe.tasks.dynamics.runs import simulate, validity_map
@@ -87,6 +88,7 @@ def places(chart, axes, params, rng, count):
 def test_charts_of_random_damped_brakes_are_their_maps_and_runs(seed):
     params, axes = random_brake(seed)
     chart = regime_chart(params, **axes, t_end=T_END)
+    assert (chart.outcome == Outcome.converged).all(), dict(chart.outcome.to_series())
     rng = np.random.default_rng(seed)
     for cell, there, angles in places(chart, axes, params, rng, 300):
         found = stability_map(there, *angles).regime_linear.item()
