@@ -221,7 +221,7 @@ class ZeroLines:
             ended, divided = lost & ~cut, ~lost & ~cut
             self._keep(chords[ended], self._length(chords[ended]) ** 2)
             self._not_divided(chords[ended])
-            chords, error, middle = (each[divided] for each in (chords, error, middle))
+            chords, middle, error = chords[divided], middle[divided], error[divided]
             kinked = self._jumps(chords) | (error > self._bent(chords))
             self.marks(np.concatenate([chords[kinked].ravel(), middle[kinked]]))
             chords, error = _split(chords, middle), np.repeat(0.5 * error, 2)

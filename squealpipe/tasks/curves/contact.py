@@ -139,7 +139,7 @@ def two_axes(
 
 
 def contact_lines(
-    square: Square, coarse: int, finest: int, **options: float
+    square: Square, coarse: int, finest: int, **accuracy: float
 ) -> ZeroLines:
     """The boundary of kept contact, begun on a grid of at least ``finest`` cells per side."""
     finer = 2 ** max(0, int(np.ceil(np.log2(finest / (coarse - 1)))))
@@ -149,7 +149,8 @@ def contact_lines(
         coarse=coarse,
         finer=finer,
         jump=JUMP,
-        **options,
+        touching=False,
+        **accuracy,
     )
 
 

@@ -74,11 +74,16 @@ def places(chart, axes, params, rng, count):
     free = np.argwhere(~crossed(chart))
     for cell in free[rng.choice(len(free), count)]:
         place = low + (high - low) * (cell + rng.uniform(0.02, 0.98, 2)) / GRID
-        values = dict(zip(names, map(float, place), strict=True))
-        angles = [[values.pop(name, axes[name])] for name in ("alpha1", "alpha2")]
-        if "kappa" in values:
-            values["k3"] = values.pop("kappa") * params.k1
-        yield tuple(cell), params.with_(**values), angles
+        yield tuple(cell), *design(place, names, axes, params)
+
+
+def design(place, names, axes, params):
+    """Parameters and angles at a place."""
+    values = dict(zip(names, map(float, place), strict=True))
+    angles = [[values.pop(name, axes[name])] for name in ("alpha1", "alpha2")]
+    if "kappa" in values:
+        values["k3"] = values.pop("kappa") * params.k1
+    return params.with_(**values), angles
 
 
 @pytest.mark.parametrize(
@@ -96,6 +101,39 @@ def test_charts_of_random_damped_brakes_are_their_maps_and_runs(seed):
     for cell, there, angles in places(chart, axes, params, rng, 25):
         lost = bool(validity_map(there, *angles, t_end=T_END).separates.item())
         assert lost != chart.cell_kept.values[cell], (cell, there, angles)
+
+
+def beside(boundary, rng, count):
+    """Places 1e-5 of the ranges to the left and to the right of a boundary, (2, count, 2)."""
+    low, high = boundary.range.values.T
+    line = np.stack([boundary[str(name)].values for name in boundary.parameter.values])
+    line = (line.T - low) / (high - low)
+    ahead = np.diff(line, axis=0)
+    length = np.where(np.diff(boundary.curve.values) == 0, np.hypot(*ahead.T), 0.0)
+    at = np.searchsorted(
+        np.cumsum(length), rng.uniform(0.05, 0.95, count) * length.sum()
+    )
+    left = 1e-5 * ahead[at, ::-1] * [-1.0, 1.0] / length[at, None]
+    middle = line[at] + rng.uniform(0.0, 1.0, (count, 1)) * ahead[at]
+    sides = np.clip(np.stack([middle + left, middle - left]), 0.0, 1.0)
+    return low + sides * (high - low)
+
+
+@pytest.mark.parametrize(
+    "seed", [7, *(pytest.param(i, marks=pytest.mark.release) for i in (3, 5, 18))]
+)
+def test_boundaries_of_random_damped_brakes_part_their_runs(seed):
+    """Contact is kept on the left of each line and lost on its right."""
+    params, axes = random_brake(seed)
+    boundary = contact_boundary(params, **axes, t_end=T_END)
+    assert boundary.outcome == Outcome.converged
+    names = [str(name) for name in boundary.parameter.values]
+    sides = beside(boundary, np.random.default_rng(seed), 40)
+    for right, places in enumerate(sides):
+        for place in places:
+            there, angles = design(place, names, axes, params)
+            lost = validity_map(there, *angles, t_end=T_END).separates.item()
+            assert lost == right, (there, angles)
 
 
 @pytest.mark.parametrize(
