@@ -11,6 +11,7 @@ import time
 import psutil
 import pytest
 
+from squealpipe.cli import main
 from squealpipe.cli.console import INTERRUPTED
 from squealpipe.execution.supervised import remove_stale_lock
 
@@ -43,6 +44,28 @@ def test_interrupt_stops_the_command_and_its_processes(name, tmp_path):
     assert done.returncode == INTERRUPTED
     assert told == "squealpipe: interrupted; run the same command again\n"
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
+def test_other_signals_that_stop_a_command_leave_no_lock_either(
+    name, tmp_path, monkeypatch, capsys
+):
+    number = getattr(signal, name)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(
+        "squealpipe.tasks.linear.maps.stability_map",
+        lambda *_, **__: signal.raise_signal(number),
+    )
+    words = ["map", "stability", "--alpha1", "1,2", "--alpha2", "1,2", "-o", "a.nc"]
+    monkeypatch.setattr("sys.argv", ["squealpipe", *words])
+    before = signal.getsignal(number)
+    with pytest.raises(SystemExit) as left:
+        main()
+    assert left.value.code == 128 + number
+    told = f"squealpipe: stopped by {name}; run the same command again\n"
+    assert capsys.readouterr().err == told
+    assert not list(tmp_path.iterdir())
+    assert signal.getsignal(number) is before
 
 
 HEAD = """

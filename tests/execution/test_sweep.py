@@ -2,11 +2,14 @@
 
 import os
 import re
+import runpy
 import signal
 import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -24,6 +27,8 @@ from squealpipe.store.identity import dataset_id
 from squealpipe.tasks.dynamics.runs import simulate, validity_map
 from squealpipe.tasks.linear.maps import stability_map
 from tests.former import FORMER
+
+SCRIPTS = Path(__file__).parents[2] / "workflow/scripts"
 
 ANGLES = [0.0, 1.0, 2.0]
 
@@ -295,6 +300,36 @@ def test_runs_of_other_settings_or_other_code_are_not_gone_on_with(
     assert resumed is (changed == "nothing")
     assert command([*words, "--force"]) == 0  # the whole of it
     assert not list(tmp_path.glob(".*"))
+
+
+def test_a_job_of_the_study_goes_on_where_it_was(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    script = SCRIPTS / "execution/run_sweep.py"
+    vary, fixed = {"mu": "0.1:0.6:6"}, {"alpha1": 1.0, "alpha2": 2.0}
+    given = {"task": "quasi_static_map", "vary": vary, "fixed": fixed}
+    study = parse_study({"sweeps": {"one": given}})
+    job = SimpleNamespace(
+        params=Mock(get=lambda *_: study.sweep("one"), key="0" * 16),
+        output=["data/sweeps/one.nc"],
+        wildcards={},
+        threads=1,
+    )
+    run, made = Sweep.run, []
+
+    def stopped(self, point, workers=None):
+        if len(made) == 3:
+            made.append(None)
+            raise KeyboardInterrupt
+        made.append(point)
+        return run(self, point, workers)
+
+    monkeypatch.setattr(Sweep, "run", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        runpy.run_path(str(script), {"snakemake": job})
+    runpy.run_path(str(script), {"snakemake": job})
+    assert len(made) == 7  # the one that was stopped among them
+    assert load("data/sweeps/one.nc").sizes["mu"] == 6
+    assert [path.name for path in Path("data/sweeps").iterdir()] == ["one.nc"]
 
 
 def test_a_killed_worker_is_told_with_its_remedy(monkeypatch):

@@ -250,6 +250,14 @@ def test_a_point_that_one_branch_has_more_lies_on_the_other_or_is_a_difference(
     assert both_ways(branch.isel(point=rest), more)[0] == verdict
 
 
+def test_where_no_curve_can_be_drawn_through_the_others_a_point_more_is_a_difference(
+    branch,
+):
+    coarse = 14
+    rest = [place for place in range(branch.sizes["point"]) if place != coarse]
+    assert both_ways(branch.isel(point=rest), branch)[0] == Agreement.different
+
+
 def test_points_that_all_moved_off_a_branch_are_a_difference(branch):
     moved_off = branch.copy(deep=True)
     for name in ("x_max", "y_max"):

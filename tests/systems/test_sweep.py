@@ -42,43 +42,63 @@ def test_a_sweep_of_a_system_is_its_ensemble_whole_or_in_parts(task, run):
         xr.testing.assert_equal(join(parts, "omega"), whole)
 
 
-@pytest.mark.parametrize("run", ["ensemble", "basin"])
+@pytest.mark.parametrize(("run", "along"), [("ensemble", "omega"), ("basin", "x0")])
 @pytest.mark.parametrize("blocks", [0, 1, 2, 99])
 def test_a_sweep_of_a_system_that_was_stopped_goes_on_where_it_was(
-    task, run, blocks, tmp_path, monkeypatch
+    task, run, along, blocks, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr("squealpipe.execution.system_sweep.FIRST", 3)
-    monkeypatch.setattr("squealpipe.execution.system_sweep.MOST", 6)
+    monkeypatch.setattr("squealpipe.execution.system_sweep.FIRST", 6)
+    monkeypatch.setattr("squealpipe.execution.system_sweep.MOST", 12)
     given = config(task, run=run, amplitude=0.6)
-    given["vary"] |= {"x0": [0.0, 0.5, 0.6, 0.7, 0.9]}
+    omega, x0 = [0.8, 1.0, 1.2, 1.4, 1.6, 1.9], [0.0, 0.5, 0.6, 0.7, 0.9]
+    given["vary"] = {"omega": omega, "x0": x0}
     plan, kept = planned(given), Chunks(tmp_path / ".runs", "0" * 16)
     whole, made, block = run_sweep(plan), [], SystemSweep._block
 
-    def stopped(self, some, workers):
+    def seen(self, some, workers):
         if len(made) == blocks:
             raise KeyboardInterrupt
-        made.append(some["x0"])
+        made.append(some[along])
         return block(self, some, workers)
 
     with monkeypatch.context() as patch:
-        patch.setattr(SystemSweep, "_block", stopped)
+        patch.setattr(SystemSweep, "_block", seen)
         if blocks == 99:
             run_sweep(plan, kept=kept)
         else:
             with pytest.raises(KeyboardInterrupt):
                 run_sweep(plan, kept=kept)
-    assert plan.finished(kept) == 3 * sum(map(len, made))
-    assert (plan.finished(kept) == 15) is (blocks == 99)
-    monkeypatch.setattr(
-        SystemSweep,
-        "_block",
-        lambda self, some, workers: (
-            made.append(some["x0"]) or block(self, some, workers)
-        ),
-    )
+    done = sum(map(len, made))
+    assert plan.finished(kept) == done * 30 // len(given["vary"][along])
+    assert (plan.finished(kept) == 30) is (blocks == 99)
+    blocks = -1
+    monkeypatch.setattr(SystemSweep, "_block", seen)
     xr.testing.assert_identical(run_sweep(plan, kept=kept), whole)
-    if blocks != 99:  # no run was made twice
-        assert [x0 for part in made for x0 in part] == given["vary"]["x0"]
+    if done < len(given["vary"][along]):  # no run was made twice
+        assert [value for part in made for value in part] == given["vary"][along]
+
+
+WELLS = """
+from squealpipe import System
+wells = System(
+    "two wells", states={"x": "m", "v": "m/s"}, parameters={"c": 1.0}, regimes={"free": {}},
+    field=lambda t, s, p, r: {"x": s.v, "v": s.x - s.x**3 - p.c * s.v},
+    switches=[], start={"x": 0.5, "v": 0.0},
+)
+"""
+
+
+def test_attractors_are_numbered_over_all_parts(tmp_path, monkeypatch):
+    monkeypatch.setattr("squealpipe.execution.system_sweep.FIRST", 1)
+    monkeypatch.chdir(tmp_path)
+    Path("wells.py").write_text(WELLS)
+    fixed = {"run": "basin", "t_end": 60.0}
+    vary = {"x0": [1.0, -1.0], "c": [1.0, 2.0]}  # the first is in a block of its own
+    plan = planned(
+        sweep_config(task="wells.py:wells", vary=vary, fixed=fixed, parameters={})
+    )
+    found = run_sweep(plan, kept=Chunks(tmp_path / ".runs", "0" * 16))
+    assert found.attractor.values.tolist() == [[0, 0], [1, 1]]
 
 
 @pytest.mark.parametrize(
