@@ -124,7 +124,16 @@ def working(what: str) -> Iterator[None]:
         *columns, console=console, transient=True, disable=SESSION.quiet
     ) as progress:
         task = progress.add_task(what, total=None)
-        with shown(lambda share: progress.update(task, completed=share, total=1.0)):
+        begun = False
+
+        def tell(share: float) -> None:
+            nonlocal begun
+            # the speed is that of what comes after: a resumed sweep begins at a share
+            show: Callable[..., None] = progress.update if begun else progress.reset
+            show(task, completed=share, total=1.0)
+            begun = True
+
+        with shown(tell):
             yield
 
 
@@ -133,14 +142,17 @@ def _lines_of_a_log(what: str) -> Callable[[float], None]:
     from squealpipe.text import duration
 
     started = told = time.monotonic()
+    first: float | None = None
 
     def tell(share: float) -> None:
-        nonlocal told
+        nonlocal told, started, first
         now = time.monotonic()
-        if now - told < LOG_EVERY or not share:
+        if first is None:  # what was there from before took no time
+            first, started = share, now
+        if now - told < LOG_EVERY or share <= first:
             return
         told = now
-        left = (now - started) * (1 - share) / share
+        left = (now - started) * (1 - share) / (share - first)
         print(
             f"{what}: {share:.0%} done, about {duration(left)} left",
             file=sys.stderr,

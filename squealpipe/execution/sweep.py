@@ -219,6 +219,7 @@ def run_sweep(
     total = len(sweep.points)
     number = done
     with alone() as show:
+        show(done / total)
         try:
             for number, run in enumerate(_runs(sweep, workers, done), done + 1):
                 made.append(run)

@@ -9,8 +9,10 @@ import pytest
 
 from squealpipe import Parameters, load, stability_map
 from squealpipe.cli import run
+from squealpipe.cli.console import working
 from squealpipe.config.mistakes import ConfigError
 from squealpipe.config.settings import read_study
+from squealpipe.methods.progress import alone
 
 SHORT = ["simulate", "5pi/6", "5pi/6", "--t-end", "5"]
 
@@ -43,6 +45,17 @@ def test_a_log_has_the_time_that_is_left(capsys, monkeypatch):
     assert told[1].endswith(" left")
     assert run([*words, "--workers", "1", "-o", "t.nc", "-q"]) == 0
     assert capsys.readouterr().err == ""
+
+
+def test_what_was_there_from_before_does_not_shorten_the_time_that_is_left(
+    capsys, monkeypatch
+):
+    clock = iter([0.0, 1.0, 61.0])
+    monkeypatch.setattr("squealpipe.cli.console.time.monotonic", lambda: next(clock))
+    with working("sweep"), alone() as show:
+        show(0.5)  # a resumed sweep begins there
+        show(0.6)  # a tenth in a minute
+    assert capsys.readouterr().err == "sweep: 60% done, about 4 min 0 s left\n"
 
 
 def test_symbols_of_the_paper_are_understood_or_name_their_key(tmp_path, capsys):
