@@ -3,13 +3,14 @@
 import os
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from squealpipe import Parameters, load, stability_map
 from squealpipe.cli import run
-from squealpipe.cli.console import working
+from squealpipe.cli.console import SESSION, working
 from squealpipe.config.mistakes import ConfigError
 from squealpipe.config.settings import read_study
 from squealpipe.methods.progress import alone
@@ -51,7 +52,9 @@ def test_what_was_there_from_before_does_not_shorten_the_time_that_is_left(
     capsys, monkeypatch
 ):
     clock = iter([0.0, 1.0, 61.0])
-    monkeypatch.setattr("squealpipe.cli.console.time.monotonic", lambda: next(clock))
+    monkeypatch.setattr(SESSION, "quiet", False)
+    ours = SimpleNamespace(monotonic=lambda: next(clock))
+    monkeypatch.setattr("squealpipe.cli.console.time", ours)
     with working("sweep"), alone() as show:
         show(0.5)  # a resumed sweep begins there
         show(0.6)  # a tenth in a minute

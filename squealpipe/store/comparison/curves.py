@@ -125,12 +125,15 @@ def _gaps(
         return
     line = curve[placing] / extents[placing, None]
     at = _nearest_place(line, point[placing] / extents[placing])
-    cubic, error, around = _interpolated(curve, line, at)
-    # errors of the columns by which the place was found move it along the curve
-    chord = np.abs(around[:, -1] - around[:, 0])
-    length = np.linalg.norm((chord / extents)[placing])
-    moved = np.linalg.norm((error / extents)[placing]) / length if length else 0.0
-    error = 2 * (error + chord * moved)
+    with np.errstate(
+        invalid="ignore"
+    ):  # what is not finite is compared with its neighbours
+        cubic, error, around = _interpolated(curve, line, at)
+        # errors of the columns by which the place was found move it along the curve
+        chord = np.abs(around[:, -1] - around[:, 0])
+        length = np.linalg.norm((chord / extents)[placing])
+        moved = np.linalg.norm((error / extents)[placing]) / length if length else 0.0
+        error = 2 * (error + chord * moved)
     for column, value, curved, off, near, extent in zip(
         columns, point, cubic, error, around, extents, strict=True
     ):
