@@ -154,9 +154,15 @@ def stops_raise() -> Iterator[None]:
 def _holder() -> Iterator[None]:
     """State beside Snakemake's lock who holds it, so that a later run sees whether it lives."""
     path = HOLDERS / f"{os.getpid()}.json"
-    path.parent.mkdir(parents=True, exist_ok=True)
     about = {"pid": os.getpid(), "host": socket.gethostname()}
-    path.write_text(json.dumps(about), encoding="utf-8")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(json.dumps(about), encoding="utf-8")
+    except OSError as error:
+        raise OSError(
+            f"cannot write {path.resolve()}: {error.strerror}; free space or fix permissions, "
+            "then run the same command again, or run it in another folder"
+        ) from error
     try:
         yield
     finally:

@@ -6,6 +6,7 @@ import inspect
 import math
 import runpy
 import time
+import traceback
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -17,6 +18,7 @@ import xarray as xr
 from squealpipe.config.ranges import longest
 from squealpipe.execution.chunks import Chunks, Run
 from squealpipe.execution.scatter import scattered_values
+from squealpipe.laws.one_file import without_neighbours
 from squealpipe.methods.processes import available_cores
 from squealpipe.methods.progress import part_of_work
 from squealpipe.methods.taylor.simd import LANES
@@ -43,7 +45,7 @@ def find_system(place: str) -> System:
         raise ValueError(
             f"no file {file!r}; a system is named like impact.py:impact_oscillator"
         )
-    defined = runpy.run_path(file)
+    defined = _run(file)
     found = defined.get(name)
     if not isinstance(found, System):
         known = [key for key, value in defined.items() if isinstance(value, System)]
@@ -51,6 +53,28 @@ def find_system(place: str) -> System:
             f"{file} defines no system {name!r}; {suggestion(name, known)}"
         )
     return found
+
+
+def _run(file: str) -> dict[str, Any]:
+    """What a file defines; whatever it raises becomes an error that says where."""
+    try:
+        with without_neighbours():
+            return runpy.run_path(file)
+    except ImportError as error:
+        raise ValueError(
+            f"{file} imports what is not there ({error}); a system is one file, so put its code "
+            "in there"
+        ) from error
+    except (Exception, SystemExit) as error:
+        if isinstance(error, SyntaxError):
+            at = error.lineno
+        else:
+            frames = traceback.extract_tb(error.__traceback__)
+            at = max((each.lineno or 0) for each in frames if each.filename == file)
+        raise ValueError(
+            f"{file}, line {at}, failed with {type(error).__name__}: {error}; mend it, then run "
+            "the same command again"
+        ) from error
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,6 +13,7 @@ from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from squealpipe.laws.one_file import without_neighbours
 from squealpipe.laws.table_files import ENDINGS, read_pairs
 
 BETWEEN = ("linear", "cubic")
@@ -116,7 +117,8 @@ def functions_of(source: str) -> dict[str, Any]:
     """What the source of a law in Python defines; its own code, run as a script is."""
     found: dict[str, Any] = {}
     try:
-        exec(compile(source, "<law>", "exec"), found)  # noqa: S102 (the user's own file)
+        with without_neighbours():
+            exec(compile(source, "<law>", "exec"), found)  # noqa: S102 (the user's own file)
     except SyntaxError as error:
         raise ValueError(
             f"line {error.lineno} of the law is not Python: {error.msg}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import re
 from importlib.util import find_spec
 from pathlib import Path
@@ -108,10 +109,10 @@ def _write_csv(
 def _write_sheets(dataset: xr.Dataset, path: Path) -> list[Path]:
     tables = _tables(dataset)
     about = {**_numbers(dataset), **_about(dataset)}
-    with (
-        whole_file(path) as temporary,
-        pd.ExcelWriter(temporary, engine="openpyxl") as book,
-    ):
+    content = (
+        io.BytesIO()
+    )  # a full disk in the middle of a zip file ends in a traceback
+    with pd.ExcelWriter(content, engine="openpyxl") as book:
         sheets: set[str] = set()
         for dims, frame in tables.items():
             sheet = _sheet_name("_".join(dims), sheets | {"about"})
@@ -127,6 +128,8 @@ def _write_sheets(dataset: xr.Dataset, path: Path) -> list[Path]:
                 for cell in row:
                     if cell.data_type == "f":  # a text that begins with =, no formula
                         cell.data_type = "s"
+    with whole_file(path) as temporary:
+        temporary.write_bytes(content.getvalue())
     return [path]
 
 

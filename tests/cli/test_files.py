@@ -10,7 +10,7 @@ import subprocess
 import sys
 import time
 import warnings
-from contextlib import ExitStack
+from contextlib import ExitStack, chdir
 from functools import partial
 from unittest.mock import Mock
 
@@ -332,7 +332,10 @@ def test_odd_yaml_is_named_with_its_remedy(capsys, tmp_path, text, message):
         ),
     ],
 )
-def test_faults_inside_a_law_are_told_as_such(capsys, tmp_path, law, message):
+def test_faults_inside_a_law_are_told_as_such(
+    capsys, tmp_path, monkeypatch, law, message
+):
+    monkeypatch.syspath_prepend(".")  # as `python -m squealpipe` does
     (tmp_path / "law.py").write_text(law + "\n")
     (tmp_path / "helper.py").write_text("")
     (tmp_path / "l.yaml").write_text("parameters: {friction_law: {python: law.py}}\n")
@@ -341,6 +344,48 @@ def test_faults_inside_a_law_are_told_as_such(capsys, tmp_path, law, message):
     assert message in told
     assert "friction_law" in told
     assert "unexpected error" not in told
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("import sys\nsys.exit(2)\n", "own.py, line 2, failed with SystemExit: 2"),
+        ("\n\n1 / 0\n", "own.py, line 3, failed with ZeroDivisionError"),
+        ("def f(:\n", "own.py, line 1, failed with SyntaxError"),
+        ("import helper\n", "a system is one file, so put its code in there"),
+        (
+            (
+                "from squealpipe import System\nown = System('own', states={'x': 'm'}, "
+                "parameters={}, switches=[], regimes={'free': {}}, start={'x': 0}, "
+                "field=lambda t, s, p, r: {'x': s.y})"
+            ),
+            "has no 'y'; choose from x",
+        ),
+    ],
+)
+def test_faults_inside_the_file_of_a_system_are_told_as_such(
+    capsys, tmp_path, monkeypatch, text, message
+):
+    monkeypatch.syspath_prepend(".")
+    (tmp_path / "own.py").write_text(text)
+    (tmp_path / "helper.py").write_text("")
+    words = ["sweep", "own.py:own", "--vary", "x0=0:1:3", "--option", "t_end=1"]
+    assert run([*words, "-o", "a.nc"]) == 2
+    told = capsys.readouterr().err
+    assert message in told
+    assert "unexpected error" not in told
+
+
+def test_a_study_in_a_folder_that_cannot_be_written_says_what_to_do(
+    capsys, tmp_path, read_only
+):
+    folder = tmp_path / "read_only"
+    folder.mkdir()
+    with read_only(folder), chdir(folder):
+        assert run(["run"]) == 2
+    told = capsys.readouterr().err
+    assert f"cannot write {folder}" in told
+    assert "free space or fix permissions, then run the same command again" in told
 
 
 def test_a_picture_has_the_size_and_the_dots_of_a_journal(capsys):

@@ -1,6 +1,8 @@
 """Datasets for other programs, read back by the libraries that read them elsewhere."""
 
+import gc
 import re
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +13,7 @@ from scipy.io import loadmat
 
 from squealpipe import convert, save, simulate
 from squealpipe.cli import run as command
+from squealpipe.store import StoreError
 from squealpipe.systems.shipped.impact_oscillator import impact_oscillator
 from tests.former import FORMER
 
@@ -164,3 +167,20 @@ def test_command_draws_and_converts_a_system_of_ones_own(tmp_path, monkeypatch, 
     assert "has x, v" in capsys.readouterr().err
     assert command(["convert", "own.nc", "-o", "own.csv"]) == 0
     assert "x [m]" in (tmp_path / "own.csv").read_text()
+
+
+def test_a_full_disk_ends_a_workbook_in_one_message(motion, tmp_path, monkeypatch):
+    """A zip file that is half written complains again when it is thrown away."""
+    later: list[object] = []
+    monkeypatch.setattr("sys.unraisablehook", later.append)
+    mount = ["mount", "-t", "tmpfs", "-o", "size=8k", "tmpfs", tmp_path]
+    if subprocess.run(mount, capture_output=True, check=False).returncode:
+        pytest.skip("a small file system cannot be mounted here (needs root)")
+    try:
+        with pytest.raises(StoreError, match="free space or fix permissions"):
+            convert(motion, tmp_path / "run.xlsx")
+        gc.collect()
+        assert not list(tmp_path.iterdir())
+    finally:
+        subprocess.run(["umount", "-l", tmp_path], check=True)
+    assert not later
