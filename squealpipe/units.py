@@ -55,6 +55,12 @@ SPELLINGS = (
 )
 """Units as engineers write them that pint does not know."""
 
+_ABROAD = (
+    dict.fromkeys(("km/t", "km/tim", "km/std", "km/u", "км/ч"), "km/h")
+    | {"m/sek": "m/s", "м/с": "m/s", "мм/с": "mm/s", "кН": "kN", "Н": "N"}
+    | {"мкм": "µm", "мм": "mm", "м": "m"}
+)
+"""Units in other languages; to pint km/t is one of a kilometre and a ton."""
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?"
 _QUANTITY = re.compile(
     rf"({NUMBER})\s*((?:\b1\s*/\s*)?[^\d\s.,;:+#_-][^,;:#]*)", re.ASCII
@@ -84,6 +90,11 @@ def has_unit(text: object) -> bool:
 def is_unit(text: str) -> bool:
     """Whether pint knows a unit."""
     return _unit(text) is not None
+
+
+def is_long_name(text: str) -> bool:
+    """Whether a word is a unit in full, like point or rod, which may be no unit at all."""
+    return str(_unit(text)) == text.lower()
 
 
 def in_si(text: str, units: str, keys: Mapping[str, str] | None = None) -> float:
@@ -235,6 +246,7 @@ def _unit(text: str) -> Any:
     # the tokenizer and evaluator below pint fail in their own ways on what is no expression
     failures = (PintError, ValueError, TypeError, AttributeError, AssertionError)
     try:
+        text = _ABROAD.get(text, text)
         text = text.replace("U/min", "rpm")  # German; U is an enzyme's unit to pint
         return _registry().parse_units(_POWER.sub(r"**\1", text))  # m s-1, cm2
     except (*failures, ArithmeticError, SyntaxError, tokenize.TokenError, LookupError):

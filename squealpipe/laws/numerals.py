@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-_SIGNS = str.maketrans("−⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "--0123456789")
+_SIGNS = str.maketrans("−–⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "---0123456789")
 _BLANKS = "\u0020\u00a0\u2009\u202f"
 """Between thousands: blanks of four widths."""
 _BY_BLANKS = re.compile(rf"[+-]?\d{{1,3}}([{_BLANKS}'’]\d{{3}})+(?!\d)")

@@ -1,13 +1,12 @@
-"""Rows of cells of text files in any encoding and separation, and of Excel sheets."""
+"""Rows of cells of text files in any encoding and separation."""
 
 import csv
 import io
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
-from decimal import Decimal
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from squealpipe.laws.numerals import are_numbers
 
@@ -20,35 +19,68 @@ EXCEL_ERRORS = (
 _RULER = re.compile(r"[\s|+:=_-]{3,}|\s*\\[a-z]+\b.*")  # of Markdown, of LaTeX
 _QUOTED = re.compile(r'^="(.*)"$')  # a number that Excel is to leave alone
 _TRAILING = re.compile(r"\s(#|//|;|!).*|\s*\\\\.*")
+_CLEAN = {code + 0xFEE0: code for code in range(0x21, 0x7F)} | dict.fromkeys(
+    (0x200B, 0x200C, 0x200D, 0x2060, 0xFEFF, 0x1A)
+)
+"""Wide signs of East Asia → those of a keyboard; what has no width, and DOS's end, → nothing."""
 _NUMERIC = re.compile(r"[\s|]*[\"']?[-+.,−]?\d")
 
 
 class Rows(NamedTuple):
-    """Rows of a file by their number, and what separates their cells."""
+    """Rows of a file by their number, what separates their cells, and its comments."""
 
     rows: list[tuple[int, list[str]]]
     separator: str
+    comments: Sequence[tuple[int, str]] = ()
 
 
-def text_rows(path: Path) -> Rows:
-    """Rows of a text file, without comments, rulers and empty ones."""
+def text_rows(path: Path, is_header: Callable[[Sequence[str]], object]) -> Rows:
+    """Rows of a text file, without comments, rulers and empty ones.
+
+    Args:
+        is_header: whether a row names the columns; one in a comment, as numpy and gnuplot have it,
+            becomes a row where no other does.
+    """
     lines = _whole_lines(_decoded(path).splitlines())
     separator = None
     kept: list[tuple[int, str]] = []
+    comments: list[tuple[int, str]] = []
     for number, line in lines:
         if match := re.fullmatch(r"\s*sep=(.)\s*", line):  # Excel's
             separator = match[1]
-        elif (
-            line.strip(" ;,\t") and not _is_comment(line) and not _RULER.fullmatch(line)
-        ):
+        elif is_comment(line):
+            comments.append((number, line.lstrip(" \t#%/!")))
+        elif line.strip(" ;,\t") and not _RULER.fullmatch(line):
             kept.append((number, line))
     separator = separator or _separator([line for _, line in kept])
-    kept = [(number, _without_remark(line, separator)) for number, line in kept]
+    rows = _split_rows(kept, separator)
+    if rows and not any(is_header(cells) for _, cells in rows):
+        in_comments = [
+            (number, cells)
+            for line in comments
+            for number, cells in _split_rows([line], separator, len(rows[0][1]))
+            if line[0] < rows[0][0] and len(cells) == len(rows[0][1])
+        ]
+        headers = [place for place, row in enumerate(in_comments) if is_header(row[1])]
+        if headers:  # and the units that may stand below it
+            rows = in_comments[headers[-1] :] + rows
+    return Rows(rows, separator, comments)
+
+
+def _split_rows(
+    lines: Sequence[tuple[int, str]], separator: str, width: int | None = None
+) -> list[tuple[int, list[str]]]:
+    """Cells of lines.
+
+    Args:
+        width: how many cells a row between blanks has; by default as most of the lines.
+    """
+    lines = [(number, _without_remark(line, separator)) for number, line in lines]
     if separator == " ":
-        return Rows(_by_blanks(kept), " ")
-    quote = "'" if kept and kept[0][1].lstrip().startswith("'") else '"'
+        return _by_blanks(lines, width)
+    quote = "'" if lines and lines[0][1].lstrip().startswith("'") else '"'
     rows = []
-    for number, line in kept:
+    for number, line in lines:
         text = io.StringIO(line.strip(" |") if separator == "|" else line)
         cells = next(
             csv.reader(
@@ -57,7 +89,7 @@ def text_rows(path: Path) -> Rows:
             [],
         )
         rows.append((number, [_QUOTED.sub(r"\1", cell.strip()) for cell in cells]))
-    return Rows(rows, separator)
+    return rows
 
 
 def _whole_lines(lines: Iterable[str]) -> list[tuple[int, str]]:
@@ -75,13 +107,14 @@ def _whole_lines(lines: Iterable[str]) -> list[tuple[int, str]]:
 def _is_open(line: str) -> bool:
     """Whether a cell begins with a quotation mark that its line does not close."""
     return (
-        not _is_comment(line)
+        not is_comment(line)
         and line.count('"') % 2 == 1
         and re.search(r'(^|[;,\t])\s*"[^"]*$', line) is not None
     )
 
 
-def _is_comment(text: str) -> bool:
+def is_comment(text: str) -> bool:
+    """Whether a line or cell is a comment, and no error of Excel."""
     text = text.lstrip()
     return text.startswith(COMMENTS) and not text.startswith(EXCEL_ERRORS)
 
@@ -96,18 +129,29 @@ def _without_remark(line: str, separator: str) -> str:
     return line if match[1] == separator else line[: match.start()]
 
 
+def clean(text: str) -> str:
+    """A text without signs that nobody sees, and with those of a keyboard for wide ones."""
+    return text.translate(_CLEAN)
+
+
 def _decoded(path: Path) -> str:
     """Text in UTF-8, UTF-16 or, where it is neither, as Windows writes it."""
-    raw = path.read_bytes()
+    text = _text_of(path.read_bytes())
+    if text is None or "\x00" in text:
+        raise ValueError(
+            f"{path} is no text file; save the table as CSV in UTF-8, or as .xlsx"
+        )
+    return clean(text)
+
+
+def _text_of(raw: bytes) -> str | None:
     try:
         if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
             return raw.decode("utf-16")
         if b"\x00" in raw:
             return raw.decode("utf-16-le" if raw[1:2] == b"\x00" else "utf-16-be")
     except UnicodeDecodeError:
-        raise ValueError(
-            f"{path} is no text file; save the table as CSV in UTF-8, or as .xlsx"
-        ) from None
+        return None
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -129,12 +173,14 @@ def _separator(lines: Sequence[str]) -> str:
     return ","
 
 
-def _by_blanks(lines: Sequence[tuple[int, str]]) -> list[tuple[int, list[str]]]:
+def _by_blanks(
+    lines: Sequence[tuple[int, str]], width: int | None
+) -> list[tuple[int, list[str]]]:
     """Cells between blanks; names of columns may hold single ones, like ``speed (m/s)``."""
     widths = Counter(
         len(line.split()) for _, line in lines if _NUMERIC.match(line)
     ) or Counter([2])
-    width = widths.most_common(1)[0][0]
+    width = width or widths.most_common(1)[0][0]
     return [(number, _cells_between_blanks(line, width)) for number, line in lines]
 
 
@@ -145,64 +191,3 @@ def _cells_between_blanks(line: str, width: int) -> list[str]:
         re.findall(r"[^\s\[(]+(?:\s*/)?(?:\s*[\[(][^\])]*[\])])?", line),
     )
     return next((cells for cells in ways if len(cells) == width), ways[0])
-
-
-def sheet(path: Path, is_header: Callable[[Sequence[str]], object]) -> Rows:
-    """Rows of an Excel file: of its only sheet, or of the only one with a header.
-
-    Args:
-        is_header: whether a row names the columns.
-    """
-    # loaded where an Excel file is met: that takes half a second
-    from openpyxl import load_workbook  # type: ignore[import-untyped]
-
-    try:
-        book, written = (load_workbook(path, data_only=only) for only in (True, False))
-    except OSError:
-        raise
-    except Exception as error:  # a damaged file fails anywhere below openpyxl
-        raise ValueError(f"{path} is no Excel file (.xlsx): {error}") from error
-    pages = {page.title: _page_rows(page) for page in book.worksheets}
-    filled = [title for title, rows in pages.items() if rows]
-    headed = [
-        title for title in filled if any(is_header(row) for _, row in pages[title])
-    ]
-    title = headed[0] if len(headed) == 1 else filled[0] if len(filled) == 1 else None
-    if title is None:
-        raise ValueError(
-            f"{path} has sheets with content: {', '.join(filled) or 'none'}; save the one of the "
-            "table as a file of its own"
-        )
-    for row in written[title].iter_rows():
-        for cell in row:
-            if cell.data_type == "f" and book[title][cell.coordinate].value is None:
-                raise ValueError(
-                    f"{path}, row {cell.row}: the formula in {cell.coordinate} has no stored "
-                    "value; write its value there, or open the file in Excel and save it"
-                )
-    return Rows(pages[title], ",")  # numbers of cells have a decimal point
-
-
-def _page_rows(page: Any) -> list[tuple[int, list[str]]]:
-    """Rows of a sheet, without comments and empty ones."""
-    rows = [
-        (number, [_cell_text(cell) for cell in row])
-        for number, row in enumerate(page.iter_rows(), 1)
-    ]
-    return [
-        (number, row)
-        for number, row in rows
-        if any(row) and not _is_comment(next(filter(None, row)))
-    ]
-
-
-def _cell_text(cell: Any) -> str:
-    """A cell as people see it, with all digits."""
-    value = cell.value
-    if value is None:
-        return ""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return str(value).strip()
-    if "%" in cell.number_format:
-        return f"{Decimal(repr(value)) * 100:f} %"
-    return repr(value)

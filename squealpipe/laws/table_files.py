@@ -4,44 +4,32 @@ What cannot be known is refused by file, row and reason, never guessed: a comma 
 thousands, a row with more cells than names, a column without a known name.
 """
 
-import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from os import PathLike
 from pathlib import Path
 from typing import NamedTuple
 
+from squealpipe.laws.headers import (
+    NO_UNIT,
+    UNITS,
+    Place,
+    cell_at,
+    header_row,
+    named,
+    places,
+    refuse_units_elsewhere,
+    units_row,
+)
 from squealpipe.laws.numerals import Numeral, decimal_sign, numeral, plain
-from squealpipe.laws.rows import Rows, sheet, text_rows
-from squealpipe.units import UnitError, in_si, is_unit, plain_unit
+from squealpipe.laws.rows import text_rows
+from squealpipe.laws.sheets import sheet
+from squealpipe.units import UnitError, in_si, is_unit
 
 ENDINGS = (".csv", ".txt", ".tsv", ".dat", ".xlsx")
 """Of files that are read as tables without being called so."""
-UNITS = {"speed": "m s-1", "coefficient": "1", "compression": "m", "force": "N"}
-"""Column → CF unit in which its values are stored, and meant where none is written."""
 LARGEST_COEFFICIENT = 2.0
 """A larger coefficient of friction is rather one in per cent, or another column."""
-
-_BRACKETS = re.compile(r"(.*?)\s*/?\s*[\[({<]\s*(.*?)\s*[\])}>]\s*(.*)", re.DOTALL)
-_BEHIND = re.compile(r"(.+?)(\s+in\s+|\s*/\s*)(.+)")
-_LAST_WORDS = (
-    re.compile(r"(.+?)[\s_,:;=/-]+([^\W\d_]+_[^\W\d_]+)"),  # speed_mm_s
-    re.compile(r"(.+?)[\s_,:;=/-]+([^\s_,:;=]+)"),
-)
-_NAMES = ("c", "in")
-"""Last words of names that are hardly the speed of light, or inches."""
-_NO_UNIT = {"", "-", "–", "—", "1", "/"}
-_SHOWN = {"\t": "<tab>", " ": "  "}
-"""Separators as a message shows them."""
-
-
-class Place(NamedTuple):
-    """A column of the table: its name, where it stands, as the file heads it, and its unit."""
-
-    name: str
-    at: int
-    head: str
-    unit: str
 
 
 class Cell(NamedTuple):
@@ -69,190 +57,39 @@ def read_pairs(
     path = Path(path)
 
     def is_header(row: Sequence[str]) -> list[int]:
-        return _named(row, chosen[0] or columns[0], UNITS[columns[0]])
+        return named(row, chosen[0] or columns[0], UNITS[columns[0]])
 
     excel = path.suffix.lower() == ".xlsx"
-    table = sheet(path, is_header) if excel else text_rows(path)
-    start = _header(path, table, columns, is_header)
+    table = (sheet if excel else text_rows)(path, is_header)
+    start = header_row(path, table, columns, is_header)
     header = table.rows[start][1]
-    places = _places(path, header, columns, chosen)
+    wanted = places(path, header, columns, chosen)
     data = [row for row in table.rows[start + 1 :] if row[1] != header]
-    if data and (units := _units_row(path, data[0], places)) is not None:
-        places = [
+    if data and (units := units_row(path, data[0], wanted)) is not None:
+        wanted = [
             place._replace(unit=unit or place.unit)
-            for place, unit in zip(places, units, strict=True)
+            for place, unit in zip(wanted, units, strict=True)
         ]
         first = data[0][1]
         data = [row for row in data if row[1] != first]
+    above = [(number, "\t".join(cells)) for number, cells in table.rows[:start]]
+    for place in wanted:
+        refuse_units_elsewhere(path, place, [*table.comments, *above])
     if not data:
         raise ValueError(f"{path} has no rows below its header")
     for row, cells in data:
-        if places[0].at in is_header(cells):
+        if wanted[0].at in is_header(cells):
             raise ValueError(
                 f"{path}, row {row} is the header of a second table; save each as a file of its own"
             )
     _check_rows(path, len(header), data)
     columns_of_cells = [
-        [Cell(row, _at(cells, place.at)) for row, cells in data] for place in places
+        [Cell(row, cell_at(cells, place.at)) for row, cells in data] for place in wanted
     ]
-    knots, values = _in_si(path, table.separator, places, columns_of_cells)
+    knots, values = _in_si(path, table.separator, wanted, columns_of_cells)
     pairs = list(zip(knots, values, strict=True))
     _check_values(path, columns, [row for row, _ in data], pairs)
     return pairs
-
-
-def _at(cells: Sequence[str], at: int) -> str:
-    return cells[at] if at < len(cells) else ""
-
-
-def _header(
-    path: Path,
-    table: Rows,
-    columns: tuple[str, str],
-    is_header: Callable[[Sequence[str]], list[int]],
-) -> int:
-    """Which row is the header: that with the name of the knots over a number."""
-    cells = [row for _, row in table.rows]
-    named = {number: at for number, row in enumerate(cells) if (at := is_header(row))}
-    of_words = {n: at for n, at in named.items() if not any(map(numeral, cells[n]))}
-    named = of_words or named  # not a line like speed;2 m/s above the table
-    for number, at in named.items():
-        below = [numeral(_at(row, at[0])) for row in cells[number + 1 : number + 3]]
-        if any(below[:1]) or (any(below[1:]) and number + 1 not in named):
-            return number
-    if named:
-        return max(named)
-    first = next((number for number, row in enumerate(cells) if _is_data(row)), None)
-    if not cells or first == 0:
-        example = _SHOWN.get(table.separator, table.separator).join(columns)
-        raise ValueError(f"{path} has no header; write a first row like {example}")
-    if first is None:
-        first = len(cells)
-    return first - 2 if first > 1 and _are_units(cells[first - 1]) else first - 1
-
-
-def _is_data(row: Sequence[str]) -> bool:
-    """Whether a row is one of numbers: its first cell with content is one."""
-    return numeral(next(filter(None, row), "")) is not None
-
-
-def _are_units(row: Sequence[str]) -> bool:
-    written = [unit for cell in row if (unit := _bare(cell)) not in _NO_UNIT]
-    return bool(written) and all(map(is_unit, written))
-
-
-def _units_row(
-    path: Path, row: tuple[int, Sequence[str]], places: Sequence[Place]
-) -> list[str] | None:
-    """Units of both columns, if the row below the header is one of units."""
-    written = [_bare(_at(row[1], place.at)) for place in places]
-    if any(numeral(unit) and unit not in _NO_UNIT for unit in written):
-        return None
-    if not any(unit not in _NO_UNIT for unit in written) and "1" in written:
-        return None
-    for unit, place in zip(written, places, strict=True):
-        if unit not in _NO_UNIT and not is_unit(unit):
-            raise ValueError(
-                f"{path}, row {row[0]}: {unit!r} is no number, nor a unit that is known; write a "
-                f"number there, or a unit of {place.name}, or take the row out if the column is "
-                f"in {_unit_in_words(place)}"
-            )
-    return [unit if unit not in _NO_UNIT else "" for unit in written]
-
-
-def _unit_in_words(place: Place) -> str:
-    unit = place.unit or plain_unit(UNITS[place.name])
-    return unit or "plain numbers"
-
-
-def _bare(cell: str) -> str:
-    return cell.strip("[]() ")
-
-
-def _split(name: str, units: str) -> tuple[str, str]:
-    """Name and unit of a header like ``speed (km/h)``, ``v / (m/s)``, ``v in m/s``, ``v_kmh``.
-
-    Args:
-        units: CF unit of the column: one that fits may be set apart by a blank alone.
-    """
-    if match := _BRACKETS.fullmatch(name):
-        unit = match[2].removeprefix("in ").strip("[]() ")
-        return match[1] or match[3], _known(unit, units)
-    for form in _LAST_WORDS:
-        if (match := form.fullmatch(name)) and match[2] not in _NAMES:
-            unit = _known(match[2].replace("_", "/"), units)
-            if _fits(unit, units):
-                return match[1].removesuffix(" in").rstrip(" /"), unit
-    if match := _BEHIND.fullmatch(name):
-        unit = _bare(match[3])
-        if is_unit(unit) or "in" in match[2] or unit in _NO_UNIT:
-            return match[1], unit
-    return name, ""
-
-
-def _known(unit: str, units: str) -> str:
-    """A unit, in small letters where it is one of the column only so, like KM/H."""
-    small = unit.lower()
-    return small if not is_unit(unit) and _fits(small, units) else unit
-
-
-def _fits(unit: str, units: str) -> bool:
-    try:
-        in_si(f"1 {unit}", units)
-    except UnitError:
-        return False
-    return True
-
-
-def _named(header: Sequence[str], name: str, units: str) -> list[int]:
-    """Where a name stands in a header, with or without its unit."""
-    wanted = name.casefold().strip()
-    return [
-        at
-        for at, cell in enumerate(header)
-        if wanted in {cell.casefold(), _split(cell, units)[0].casefold()}
-    ]
-
-
-def _places(
-    path: Path,
-    header: Sequence[str],
-    columns: tuple[str, str],
-    chosen: tuple[str | None, str | None],
-) -> list[Place]:
-    """Where the columns of knots and values are."""
-    filled = [at for at, name in enumerate(header) if name]
-    options = (f"{columns[0]}_column", "value_column")
-    where = [
-        _named(header, name or column, UNITS[column])
-        for name, column in zip(chosen, columns, strict=True)
-    ]
-    if len(where[0]) == 1 and not where[1] and chosen[1] is None and len(filled) == 2:
-        where[1] = [at for at in filled if at != where[0][0]]
-    for at, name, column, option in zip(where, chosen, columns, options, strict=True):
-        if len(at) > 1:
-            raise ValueError(
-                f"{path} has {len(at)} columns {name or column!r}; rename all but one"
-            )
-        if not at:
-            names = ", ".join(header[number] for number in filled)
-            raise ValueError(
-                f"{path} has no column {name or column!r}; its columns: {names}; name "
-                f"one of them {column!r}, or write {option}: with its name"
-                f"{_unit_too(column)}"
-            )
-    if where[0] == where[1]:
-        raise ValueError(f"{path}: knots and values are to be two columns, not one")
-    return [
-        Place(column, at[0], header[at[0]], _split(header[at[0]], UNITS[column])[1])
-        for column, at in zip(columns, where, strict=True)
-    ]
-
-
-def _unit_too(column: str) -> str:
-    """What a column needs that is renamed and is not in SI."""
-    unit = plain_unit(UNITS[column])
-    return f" (what is not in {unit} needs its unit behind the name)" if unit else ""
 
 
 def _check_rows(path: Path, width: int, data: Iterable[tuple[int, list[str]]]) -> None:
@@ -269,7 +106,7 @@ def _check_rows(path: Path, width: int, data: Iterable[tuple[int, list[str]]]) -
 def _in_si(
     path: Path,
     separator: str,
-    places: Sequence[Place],
+    wanted: Sequence[Place],
     columns: Sequence[Sequence[Cell]],
 ) -> list[list[float]]:
     """Both columns in SI; all their cells together tell the decimal sign."""
@@ -290,7 +127,7 @@ def _in_si(
             _value(path, place, cell, number, sign)
             for cell, number in zip(column, numbers, strict=True)
         ]
-        for place, column, numbers in zip(places, columns, numerals, strict=True)
+        for place, column, numbers in zip(wanted, columns, numerals, strict=True)
     ]
 
 
@@ -307,15 +144,13 @@ def _numeral(path: Path, cell: Cell) -> Numeral:
 def _value(path: Path, place: Place, cell: Cell, number: Numeral, sign: str) -> float:
     text = plain(number.text, sign)
     unit = number.unit or place.unit
-    if unit in _NO_UNIT:
+    if unit in NO_UNIT:
         return float(text)
     try:
         return in_si(f"{text} {unit}", UNITS[place.name])
     except UnitError as error:
         column = f"column {place.head!r} in {unit!r}"
-        hint = (
-            "" if is_unit(unit) else "; or take the brackets out, if they hold no unit"
-        )
+        hint = "" if is_unit(unit) else "; or take it out of the name, if it is no unit"
         raise ValueError(f"{path}, row {cell.row}, {column}: {error}{hint}") from None
 
 

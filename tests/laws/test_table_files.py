@@ -8,6 +8,7 @@ from squealpipe import Parameters
 from squealpipe.config.settings import ConfigError, read_study
 from squealpipe.laws.contact_laws import COLUMNS as CONTACT
 from squealpipe.laws.friction_laws import COLUMNS as FRICTION
+from squealpipe.laws.sheets import shown_as
 from squealpipe.laws.table_files import read_pairs
 
 SI = [(0.0, 0.5), (0.1, 0.45), (1.5, 0.3)]
@@ -64,6 +65,14 @@ READ = {
     "numbers before the header": "rig,7\nspeed,2 m/s\n2024,3\nspeed,mu\n0,0.5\n0.1,0.45\n1.5,0.3\n",
     "the header again": "speed;mu\nmm/s;-\n0;0,5\nspeed;mu\nmm/s;-\n100;0,45\n1500;0,3\n",
     "remarks behind numbers": "speed,mu\n0,0.5 # at rest, new\n0.1,0.45 ; warm\n1.5,0.3\n",
+    "MATLAB's names": "speed_km_h_,mu___\n0,0.5\n0.36,0.45\n5.4,0.3\n",
+    "numpy's header": "# speed mu\n0 0.5\n0.1 0.45\n1.5 0.3\n",
+    "gnuplot's header": "# rig 4\n# speed mu\n# km/h %\n0 50\n0.36 45\n5.4 30\n",
+    "wide signs of East Asia": "speed（km/h），μ\n０，0.5\n0.36，0.45\n5.4，0.3\n",
+    "signs of no width": "\ufeff\ufeffspeed\u200b,mu\n0,0.5\n0.1,0.45\n1.5,0.3\n\x1a",
+    "Russian units": "speed, км/ч;коэффициент\n0;0,5\n0,36;0,45\n5,4;0,3\n",
+    "Norwegian units": "speed [km/t];friksjon\n0;0,5\n0,36;0,45\n5,4;0,3\n",
+    "a dash for a minus": "speed;mu\n0;50e–2\n0,1;45e–2\n1,5;30e–2\n",
     "Markdown": "| speed | mu |\n|---|---|\n| 0 | 0.5 |\n| 0.1 | 0.45 |\n| 1.5 | 0.3 |\n",
     "LaTeX": "speed & mu \\\\\n\\midrule\n0 & 0.5 \\\\\n0.1 & 0.45 \\\\\n1.5 & 0.3 \\\\\n",
 }  # fmt: skip
@@ -111,7 +120,7 @@ REFUSED = {
     ),
     "brackets without a unit": (
         "speed,mu (dynamic)\n0,0.5\n1,0.3\n",
-        "in % is needed, like 30 %; or take the brackets out, if they hold no unit",
+        "in % is needed, like 30 %; or take it out of the name, if it is no unit",
         "speed,mu dynamic\n0,0.5\n1,0.3\n",
     ),
     "a rate of rotation": (
@@ -179,6 +188,37 @@ REFUSED = {
         "0;0,5\n1;0,3\n",
         "has no header; write a first row like speed;coefficient",
         "speed;coefficient\n0;0,5\n1;0,3\n",
+    ),
+    "a unit in a comment alone": (
+        "# units: km/h, -\nspeed,mu\n0,0.5\n3.6,0.3\n",
+        "row 1 speaks of km/h, and column 'speed' has no unit; write it behind the name, like",
+        "# units: km/h, -\nspeed [km/h],mu\n0,0.5\n3.6,0.3\n",
+    ),
+    "a unit above the header alone": (
+        "Dimension;mm/s\nspeed;mu\n0;0,5\n100;0,3\n",
+        "row 1 speaks of mm/s, and column 'speed' has no unit",
+        "Dimension;mm/s\nspeed [mm/s];mu\n0;0,5\n100;0,3\n",
+    ),
+    "an unknown unit behind a comma": (
+        "speed, km/hr-ish;mu\n0;0,5\n1;0,3\n",
+        "unknown unit 'km/hr-ish'; a speed is needed, like 7.2 km/h; or take it out of the name",
+        "speed;mu\n0;0,5\n1;0,3\n",
+    ),
+    "a word below a name, beside a unit": (
+        "speed;mu\nkm/h;mean\n0;0,5\n3,6;0,3\n",
+        ("row 2: 'mean' is no number, nor a unit that is known; write a number there, or a unit of "
+        "coefficient, or - for none"),
+        "speed;mu\nkm/h;-\n0;0,5\n3,6;0,3\n",
+    ),
+    "a table on its side": (
+        "speed;0;0,5;1\nmu;0,5;0,4;0,3\n",
+        "the names stand in its first column: turn it, so that each name stands above its numbers",
+        "speed;mu\n0;0,5\n0,5;0,4\n1;0,3\n",
+    ),
+    "an unknown separator": (
+        "speed^mu\n0^0.5\n1^0.3\n",
+        "only 'speed^mu'; separate the cells of a row with ; or a tab",
+        "speed;mu\n0;0.5\n1;0.3\n",
     ),
     "no rows": ("speed;mu\n", "has no rows below its header", "speed;mu\n0;0,5\n"),
 }  # fmt: skip
@@ -254,6 +294,46 @@ def test_excel_shows_per_cent_and_stores_no_value_of_a_new_formula(tmp_path):
     book.save(path)
     with pytest.raises(ValueError, match=r"row 3: the formula in A3 has no stored"):
         read_pairs(path, FRICTION)
+
+
+def test_excel_is_read_as_people_see_it(tmp_path):
+    openpyxl = pytest.importorskip("openpyxl", reason="of the extra export")
+    book = openpyxl.Workbook()
+    sheet = book.active
+    for row in (["compression", "force [kN]"], [0, 0], [0.2, 400], [1.2, 12345.6]):
+        sheet.append(row)
+    for row in sheet.iter_rows(min_row=2):
+        row[0].number_format = '0.00" mm";[Red]-0.00\\ "mm"'
+        row[1].number_format = "#,##0.0,"  # in thousands
+    hidden = book.create_sheet("old")
+    hidden.sheet_state = "hidden"
+    for row in (["compression", "force"], [0, 0], [1, 1]):
+        hidden.append(row)
+    path = tmp_path / "contact.xlsx"
+    book.save(path)
+    assert read_pairs(path, CONTACT) == [(0, 0), (2e-4, 400), (1.2e-3, 12345.6)]
+    sheet.row_dimensions[3].hidden = True
+    book.save(path)
+    with pytest.raises(ValueError, match="row 3 is hidden, by a filter maybe; show it"):
+        read_pairs(path, CONTACT)
+
+
+@pytest.mark.parametrize(
+    ("form", "shown"),
+    [
+        ("General", (0, "")),
+        ("0.00E+00", (0, "")),
+        ("#,##0.00_);[Red]\\(#,##0.00\\)", (0, "")),
+        ("_-* #,##0.00\\ _€_-;-* #,##0.00\\ _€_-", (0, "")),
+        ("[$-407]0.00", (0, "")),
+        ("0.0 %", (2, "%")),
+        ("0.00 [$km/h]", (0, "km/h")),
+        ("0.00\\ \\k\\N", (0, "kN")),
+        ("0.0,,", (-6, "")),
+    ],
+)
+def test_formats_of_excel(form, shown):
+    assert shown_as(form) == shown
 
 
 def test_a_contact_in_kilonewtons_over_micrometres(tmp_path):

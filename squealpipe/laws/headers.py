@@ -1,0 +1,234 @@
+"""Headers of tables: where the columns of knots and values stand, and their units.
+
+A unit stands behind a name in many ways, in a row of its own, or only in a comment, which is no
+place to guess from.
+"""
+
+import re
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from squealpipe.laws.numerals import numeral
+from squealpipe.laws.rows import Rows
+from squealpipe.units import UnitError, in_si, is_long_name, is_unit, plain_unit
+
+UNITS = {"speed": "m s-1", "coefficient": "1", "compression": "m", "force": "N"}
+"""Column → CF unit in which its values are stored, and meant where none is written."""
+
+_BRACKETS = re.compile(r"(.*?)\s*/?\s*[\[({<]\s*(.*?)\s*[\])}>]\s*(.*)", re.DOTALL)
+_BEHIND = re.compile(r"(.+?)(\s+in\s+|\s*/\s*)(.+)")
+_LAST_WORDS = (
+    re.compile(r"(.+?)[\s_,:;=/-]+([^\W\d_]+_[^\W\d_]+)"),  # speed_mm_s
+    re.compile(r"(.+?)[\s_,:;=/-]+([^\s_,:;=]+)"),
+)
+_NAMES = ("c", "in")
+"""Last words of names that are hardly the speed of light, or inches."""
+_WORD = re.compile(r"(?<![\d.,]\s)(?<![\w.,/^])[^\W\d][^\s,;:=()\[\]{}]*")
+"""A word without a number before it: in ``preload 4 kN`` there is no unit of a column."""
+NO_UNIT = {"", "-", "–", "—", "1", "/"}
+_SHOWN = {"\t": "<tab>", " ": "  "}
+"""Separators as a message shows them."""
+
+
+def cell_at(cells: Sequence[str], at: int) -> str:
+    """A cell of a row, which may be shorter than its header."""
+    return cells[at] if at < len(cells) else ""
+
+
+class Place(NamedTuple):
+    """A column of the table: its name, where it stands, as the file heads it, and its unit."""
+
+    name: str
+    at: int
+    head: str
+    unit: str
+
+
+def header_row(
+    path: Path,
+    table: Rows,
+    columns: tuple[str, str],
+    is_header: Callable[[Sequence[str]], list[int]],
+) -> int:
+    """Which row is the header: that with the name of the knots over a number."""
+    cells = [row for _, row in table.rows]
+    named = {number: at for number, row in enumerate(cells) if (at := is_header(row))}
+    of_words = {n: at for n, at in named.items() if not any(map(numeral, cells[n]))}
+    named = of_words or named  # not a line like speed;2 m/s above the table
+    for number, at in named.items():
+        below = [numeral(cell_at(row, at[0])) for row in cells[number + 1 : number + 3]]
+        if any(below[:1]) or (any(below[1:]) and number + 1 not in named):
+            return number
+    if named:
+        return max(named)
+    first = next((number for number, row in enumerate(cells) if _is_data(row)), None)
+    if not cells or first == 0:
+        example = _SHOWN.get(table.separator, table.separator).join(columns)
+        raise ValueError(f"{path} has no header; write a first row like {example}")
+    if first is None:
+        first = len(cells)
+    return first - 2 if first > 1 and _are_units(cells[first - 1]) else first - 1
+
+
+def _is_data(row: Sequence[str]) -> bool:
+    """Whether a row is one of numbers: its first cell with content is one."""
+    return numeral(next(filter(None, row), "")) is not None
+
+
+def _are_units(row: Sequence[str]) -> bool:
+    written = [unit for cell in row if (unit := _bare(cell)) not in NO_UNIT]
+    return bool(written) and all(map(is_unit, written))
+
+
+def units_row(
+    path: Path, row: tuple[int, Sequence[str]], places: Sequence[Place]
+) -> list[str] | None:
+    """Units of both columns, if the row below the header is one of units."""
+    written = [_bare(cell_at(row[1], place.at)) for place in places]
+    if any(numeral(unit) and unit not in NO_UNIT for unit in written):
+        return None
+    if not any(unit not in NO_UNIT for unit in written) and "1" in written:
+        return None
+    has_units = any(unit not in NO_UNIT and is_unit(unit) for unit in written)
+    for unit, place in zip(written, places, strict=True):
+        if unit not in NO_UNIT and not is_unit(unit):
+            without = (
+                "- for none"  # the row holds the unit of the other column
+                if has_units
+                else f"take the row out if the column is in {_unit_in_words(place)}"
+            )
+            raise ValueError(
+                f"{path}, row {row[0]}: {unit!r} is no number, nor a unit that is known; write a "
+                f"number there, or a unit of {place.name}, or {without}"
+            )
+    return [unit if unit not in NO_UNIT else "" for unit in written]
+
+
+def _unit_in_words(place: Place) -> str:
+    unit = place.unit or plain_unit(UNITS[place.name])
+    return unit or "plain numbers"
+
+
+def _bare(cell: str) -> str:
+    return cell.strip("[]() ")
+
+
+def _split(name: str, units: str) -> tuple[str, str]:
+    """Name and unit of a header like ``speed (km/h)``, ``v / (m/s)``, ``v in m/s``, ``v_kmh``.
+
+    Args:
+        units: CF unit of the column: one that fits may be set apart by a blank alone.
+    """
+    if match := _BRACKETS.fullmatch(name):
+        unit = match[2].removeprefix("in ").strip("[]() ")
+        return match[1] or match[3], _known(unit, units)
+    for form in _LAST_WORDS:  # MATLAB writes speed_km_h_
+        if (match := form.fullmatch(name.rstrip("_"))) and match[2] not in _NAMES:
+            unit = _known(match[2].replace("_", "/"), units)
+            if _fits(unit, units):
+                return match[1].removesuffix(" in").rstrip(" /"), unit
+    if match := _BEHIND.fullmatch(name):
+        unit = _bare(match[3])
+        if is_unit(unit) or "in" in match[2] or unit in NO_UNIT:
+            return match[1], unit
+    if (match := _LAST_WORDS[1].fullmatch(name)) and re.search(r"\w/\w", match[2]):
+        return match[1], match[2]  # like a unit, and unknown: refused if it is needed
+    return name, ""
+
+
+def _known(unit: str, units: str) -> str:
+    """A unit, in small letters where it is one of the column only so, like KM/H."""
+    small = unit.lower()
+    return small if not is_unit(unit) and _fits(small, units) else unit
+
+
+def _fits(unit: str, units: str) -> bool:
+    try:
+        in_si(f"1 {unit}", units)
+    except UnitError:
+        return False
+    return True
+
+
+def named(header: Sequence[str], name: str, units: str) -> list[int]:
+    """Where a name stands in a header, with or without its unit."""
+    wanted = name.casefold().strip()
+    return [
+        at
+        for at, cell in enumerate(header)
+        if wanted in {cell.casefold(), _split(cell, units)[0].casefold()}
+    ]
+
+
+def places(
+    path: Path,
+    header: Sequence[str],
+    columns: tuple[str, str],
+    chosen: tuple[str | None, str | None],
+) -> list[Place]:
+    """Where the columns of knots and values are."""
+    filled = [at for at, name in enumerate(header) if name]
+    options = (f"{columns[0]}_column", "value_column")
+    where = [
+        named(header, name or column, UNITS[column])
+        for name, column in zip(chosen, columns, strict=True)
+    ]
+    if len(where[0]) == 1 and not where[1] and chosen[1] is None and len(filled) == 2:
+        where[1] = [at for at in filled if at != where[0][0]]
+    for at, name, column, option in zip(where, chosen, columns, options, strict=True):
+        if len(at) > 1:
+            raise ValueError(
+                f"{path} has {len(at)} columns {name or column!r}; rename all but one"
+            )
+        if not at:
+            names = ", ".join(header[number] for number in filled)
+            what = f"{path} has no column {name or column!r}"
+            if len(filled) == 1:
+                raise ValueError(
+                    f"{what}, only {names!r}; separate the cells of a row with ; or a tab"
+                )
+            if all(numeral(header[number]) for number in filled[1:]):
+                raise ValueError(
+                    f"{what}; the names stand in its first column: turn it, so that each name "
+                    "stands above its numbers"
+                )
+            looks = "" if names.isascii() else " (do they look wrong? save it in UTF-8)"
+            raise ValueError(
+                f"{what}; its columns: {names}{looks}; name one of them {column!r}, or write "
+                f"{option}: with its name{_unit_too(column)}"
+            )
+    if where[0] == where[1]:
+        raise ValueError(f"{path}: knots and values are to be two columns, not one")
+    return [
+        Place(column, at[0], header[at[0]], _split(header[at[0]], UNITS[column])[1])
+        for column, at in zip(columns, where, strict=True)
+    ]
+
+
+def _unit_too(column: str) -> str:
+    """What a column needs that is renamed and is not in SI."""
+    unit = plain_unit(UNITS[column])
+    return f" (what is not in {unit} needs its unit behind the name)" if unit else ""
+
+
+def refuse_units_elsewhere(
+    path: Path, place: Place, lines: Iterable[tuple[int, str]]
+) -> None:
+    """Refuse a column without a unit where a comment, or a line above, speaks of one.
+
+    Args:
+        lines: comments and what stands above the header, with their numbers.
+    """
+    units = UNITS[place.name]
+    if place.unit or units == "1":
+        return
+    usual = plain_unit(units)
+    for number, line in lines:
+        for word in _WORD.findall(line):
+            if word in (usual, *_NAMES) or is_long_name(word) or not _fits(word, units):
+                continue
+            raise ValueError(
+                f"{path}, row {number} speaks of {word}, and column {place.head!r} has no unit; "
+                f"write it behind the name, like {place.head} [{word}] or {place.head} [{usual}]"
+            )

@@ -1,0 +1,102 @@
+"""Rows of cells of Excel sheets, as people see them there."""
+
+import re
+from collections.abc import Callable, Sequence
+from decimal import Decimal
+from pathlib import Path
+from typing import Any
+
+from squealpipe.laws.rows import Rows, clean, is_comment
+
+_FOR_POSITIVE = re.compile(r'(?:"[^"]*"|\\.|[^;"\\])*')
+"""Of a format its part for positive numbers, the first."""
+_WORDS = re.compile(r'"([^"]*)"|\\(.)|\[\$([^\]-]*)[^\]]*\]|\[[^\]]*\]|[_*].')
+"""What a format writes beside the number; colours and gaps, too, which are no words."""
+
+
+def sheet(path: Path, is_header: Callable[[Sequence[str]], object]) -> Rows:
+    """Rows of an Excel file: of its only sheet, or of the only one with a header.
+
+    Args:
+        is_header: whether a row names the columns.
+    """
+    # loaded where an Excel file is met: that takes half a second
+    from openpyxl import load_workbook  # type: ignore[import-untyped]
+
+    try:
+        book, written = (load_workbook(path, data_only=only) for only in (True, False))
+    except OSError:
+        raise
+    except Exception as error:  # a damaged file fails anywhere below openpyxl
+        raise ValueError(
+            f"{path} is no Excel file (.xlsx): {error}; save it so in Excel, or as CSV"
+        ) from error
+    pages = {
+        page.title: _page_rows(page)
+        for page in book.worksheets
+        if page.sheet_state == "visible"
+    }
+    filled = [title for title, rows in pages.items() if rows]
+    headed = [
+        title for title in filled if any(is_header(row) for _, row in pages[title])
+    ]
+    title = headed[0] if len(headed) == 1 else filled[0] if len(filled) == 1 else None
+    if title is None:
+        raise ValueError(
+            f"{path} has sheets with content: {', '.join(filled) or 'none'}; save the one of the "
+            "table as a file of its own"
+        )
+    heights = book[title].row_dimensions
+    for number, _ in pages[title]:
+        if number in heights and heights[number].hidden:
+            raise ValueError(
+                f"{path}, row {number} is hidden, by a filter maybe; show it, or delete it"
+            )
+    for row in written[title].iter_rows():
+        for cell in row:
+            if cell.data_type == "f" and book[title][cell.coordinate].value is None:
+                raise ValueError(
+                    f"{path}, row {cell.row}: the formula in {cell.coordinate} has no stored "
+                    "value; write its value there, or open the file in Excel and save it"
+                )
+    return Rows(pages[title], ",")  # numbers of cells have a decimal point
+
+
+def _page_rows(page: Any) -> list[tuple[int, list[str]]]:
+    """Rows of a sheet, without comments and empty ones."""
+    rows = [
+        (number, [_cell_text(cell) for cell in row])
+        for number, row in enumerate(page.iter_rows(), 1)
+    ]
+    return [
+        (number, row)
+        for number, row in rows
+        if any(row) and not is_comment(next(filter(None, row)))
+    ]
+
+
+def _cell_text(cell: Any) -> str:
+    """A cell as people see it, with all digits."""
+    value = cell.value
+    if value is None:
+        return ""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return clean(str(value)).strip()
+    factor, unit = shown_as(cell.number_format)
+    if not factor and not unit:
+        return repr(value)
+    return f"{Decimal(repr(value)).scaleb(factor):f} {unit}".rstrip()
+
+
+def shown_as(number_format: str) -> tuple[int, str]:
+    """Power of ten by which a format shows a number, and the words behind it.
+
+    ``0.0 %`` shows it times a hundred, ``0.0,`` in thousands, ``0.0" km/h"`` with a unit.
+    """
+    form = _FOR_POSITIVE.match(number_format)[0]  # type: ignore[index]  # it may be empty
+    words = "".join(map("".join, _WORDS.findall(form))).strip()
+    signs = _WORDS.sub("", form)
+    thousands = max(map(len, re.findall(r"(?<=[0#?]),+(?![0#?,])", signs)), default=0)
+    if "%" in signs:
+        return 2 - 3 * thousands, f"% {words}".rstrip()
+    return -3 * thousands, words
