@@ -53,15 +53,15 @@ def test_damaged_dataset_is_named_with_its_remedy(small, undisturbed):
     whole = path.read_bytes()
     damaged = bytearray(whole)
     damaged[len(whole) // 2] ^= 255
-    for content in (whole[: len(whole) // 2], bytes(damaged)):
+    for content in (bytes(damaged), whole[: len(whole) // 2]):
         path.write_bytes(content)
         with pytest.raises(StoreError, match="delete it and run snakemake again"):
             load(path)
-        failed = run(small, "results/figures/fig07.png")  # the map is read
-        assert failed.returncode != 0
-        assert "delete it and run snakemake again" in failed.stdout + failed.stderr
-        path.unlink()
-        assert completed(small) == undisturbed
+    failed = run(small, "results/figures/fig07.png")  # the map is read
+    assert failed.returncode != 0
+    assert "delete it and run snakemake again" in failed.stdout + failed.stderr
+    path.unlink()
+    assert completed(small) == undisturbed
 
 
 def test_full_disk_is_told_and_the_next_run_completes(small, undisturbed):

@@ -194,10 +194,10 @@ def test_samples_and_maps_are_judged_alike():
 
 @pytest.mark.release
 def test_the_feasible_set_of_the_study():
-    """A quarter of the study's samples give 159, 0, 0; round-off decides a few chaotic runs."""
-    found = infer_parameters(STUDY, samples=5_120)
+    """An eighth of the study's samples give 78, 0, 0; round-off decides a few chaotic runs."""
+    found = infer_parameters(STUDY, samples=2_560)
     as_printed, along, against = found.feasible_count.values
-    assert abs(as_printed - 159) <= 3
+    assert abs(as_printed - 78) <= 2
     assert along <= 1
     assert against == 0
 
