@@ -1,19 +1,26 @@
-"""A table of contacts: name, normal, tangential, stiffness, preload and speed by column."""
+"""A table of contacts: name, normal, tangential, stiffness, preload and speed by column.
+
+Text in any encoding, with commas, semicolons or tabs between its cells, or an Excel sheet.
+"""
 
 from __future__ import annotations
 
-import csv
+import re
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from squealpipe.laws.rows import text_rows
+from squealpipe.laws.sheets import sheet
 from squealpipe.parameters import brief
 from squealpipe.systems.structures.contact import Contact
 from squealpipe.systems.structures.units import Scales
 from squealpipe.text import suggestion
 
 CONTACT_COLUMNS = ("name", "normal", "tangential", "stiffness", "preload")
+KNOWN = (*CONTACT_COLUMNS, "speed")
+HEADER = f"its first row must name the columns, like {','.join(CONTACT_COLUMNS)}"
 
 
 def read_contacts(
@@ -29,54 +36,74 @@ def read_contacts(
         FileNotFoundError: no such file.
         ValueError: names the line and what is wrong there.
     """
-    if not path.is_file():
-        raise FileNotFoundError(f"contacts: no file {path}")
-    with path.open(encoding="utf-8-sig", newline="") as file:
-        rows = csv.DictReader(file, skipinitialspace=True)
-        columns = [name.strip() for name in rows.fieldnames or []]
-        rows.fieldnames = columns
-        for name in columns:
-            if name not in (*CONTACT_COLUMNS, "speed"):
-                known = (*CONTACT_COLUMNS, "speed")
-                raise ValueError(f"{path}: column {name!r}: {suggestion(name, known)}")
+    header, rows = _rows(path)
+    contacts = []
+    for line, cells in rows:
+        where = f"{path}, line {line}"
+        row = dict(zip(header, cells, strict=False))
+        if row.pop("", "") or any(cells[len(header) :]):
+            raise ValueError(
+                f"{where} has {len(cells)} cells, but the header {len(header)} columns"
+            )
+        numbers = {
+            name: _number(row[name], f"{where}: {name}")
+            for name in ("stiffness", "preload", "speed")
+            if row.get(name)
+        }
         for name in CONTACT_COLUMNS:
-            if name not in columns:
-                raise ValueError(
-                    f"{path} has no column {name!r}; it has {', '.join(columns)}"
+            if not row.get(name):
+                raise ValueError(f"{where}: {name} is missing")
+        try:
+            contacts.append(
+                Contact(
+                    row["name"],
+                    _direction(row["normal"], labels, size),
+                    _direction(row["tangential"], labels, size),
+                    numbers["stiffness"] * scales.stiffness,
+                    numbers["preload"] * scales.force,
+                    numbers.get("speed", 1.0),
                 )
-        contacts = []
-        for row in rows:
-            where = f"{path}, line {rows.line_num}"
-            numbers = {
-                name: _number(row.get(name), f"{where}: {name}")
-                for name in ("stiffness", "preload", "speed")
-                if (row.get(name) or "").strip()
-            }
-            for name in ("stiffness", "preload"):
-                if name not in numbers:
-                    raise ValueError(f"{where}: {name} is missing")
-            try:
-                contacts.append(
-                    Contact(
-                        (row["name"] or "").strip(),
-                        _direction(row["normal"], labels, size),
-                        _direction(row["tangential"], labels, size),
-                        numbers["stiffness"] * scales.stiffness,
-                        numbers["preload"] * scales.force,
-                        numbers.get("speed", 1.0),
-                    )
-                )
-            except ValueError as error:
-                raise ValueError(f"{where}: {error}") from error
+            )
+        except ValueError as error:
+            raise ValueError(f"{where}: {error}") from error
     return contacts
 
 
-def _direction(
-    text: str | None, labels: list[str] | None, size: int
-) -> dict[int, float]:
+def _rows(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
+    """The names of the columns, and the rows below by their line."""
+    if not path.is_file():
+        raise FileNotFoundError(f"contacts: no file {path}")
+    excel = path.suffix.lower() == ".xlsx"
+    table = (sheet if excel else text_rows)(path, lambda row: "name" in row)
+    if not table.rows:
+        raise ValueError(f"{path} is empty; {HEADER}")
+    header = table.rows[0][1]
+    if not set(header) & set(KNOWN):
+        raise ValueError(f"{path} begins with {brief(header)}; {HEADER}")
+    for name in header:
+        if name in KNOWN or not name:
+            continue
+        if any(name.startswith(known) for known in KNOWN):
+            raise ValueError(
+                f"{path}: column {name!r}: {suggestion(name, KNOWN)} Units stand in the "
+                "structure's file, like `units: mm-t-s`"
+            )
+        raise ValueError(f"{path}: column {name!r}: {suggestion(name, KNOWN)}")
+    for name in CONTACT_COLUMNS:
+        if name not in header:
+            raise ValueError(
+                f"{path} has no column {name!r}; it has {', '.join(header)}"
+            )
+    names = [name for name in header if name]
+    if len(set(names)) < len(names):
+        raise ValueError(f"{path}: a column is there twice; it has {', '.join(names)}")
+    return header, table.rows[1:]
+
+
+def _direction(text: str, labels: list[str] | None, size: int) -> dict[int, float]:
     """{degree of freedom from 0: coefficient} of ``12:1 40:-1``, or of ``31.2:1``."""
     direction: dict[int, float] = {}
-    for part in (text or "").split():
+    for part in re.sub(r"\s*:\s*", ":", text.replace(",", " ")).split():
         place, colon, coefficient = part.partition(":")
         if not colon:
             raise ValueError(f"{part!r} is no direction; write for instance 12:1 40:-1")
@@ -89,8 +116,9 @@ def _direction(
                 raise ValueError(f"{place}: no such node and direction in the matrices")
             number = labels.index(place)
         else:
-            number = int(_number(place, "degree of freedom")) - 1
-            if not 0 <= number < size:
+            row = _number(place, "degree of freedom")
+            number = int(row) - 1
+            if row != int(row) or not 0 <= number < size:
                 raise ValueError(
                     f"{place}: degrees of freedom are 1 to {size} in files"
                 )
@@ -102,7 +130,9 @@ def _number(text: Any, what: str) -> float:
     try:
         value = float(text)
     except (TypeError, ValueError):
-        raise ValueError(f"{what} = {brief(text)}: a number is needed") from None
+        raise ValueError(
+            f"{what} = {brief(text)}: a number is needed, with a decimal point"
+        ) from None
     if not np.isfinite(value):
         raise ValueError(f"{what} = {brief(text)}: a finite number is needed")
     return value

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
-import scipy.io
 import scipy.sparse as sp
 
 from squealpipe.config.yaml_files import read_yaml
@@ -45,14 +44,15 @@ def read(path: str | PathLike[str], form: type[Form]) -> Form:
     """A structure from its file.
 
     The file has the keys ``mass`` and ``stiffness``, and where needed ``damping``: names of matrix
-    files beside it, or ``{file: NAME, variable: NAME}``; ``contacts``, a table (CSV) with the
-    columns name, normal, tangential, stiffness, preload and optionally speed, where a direction is
-    ``12:1 40:-1``, degrees of freedom counted from 1, or ``31.2:1``, node and direction, where the
-    matrix file has them; ``mu``, ``belt_speed``, ``friction_law``, ``mu_static``,
-    ``friction_speed``, ``modal_damping`` and ``load`` (a file with one number a line, or 0) as of
-    :class:`Structure`; ``units`` (``m-kg-s``; all numbers of a file with ``mm-t-s`` are in mm, t, s
-    and N and become SI's; degrees of freedom must be displacements); ``triangle``: ``mirror`` where
-    a file has one triangle of a symmetric matrix, ``keep`` where it is meant as it is.
+    files beside it, or ``{file: NAME, variable: NAME}``; ``contacts``, a table (text or .xlsx)
+    with the columns name, normal, tangential, stiffness, preload and optionally speed, where a
+    direction is ``12:1 40:-1``, degrees of freedom counted from 1, or ``31.2:1``, node and
+    direction, where the matrix file has them; ``mu``, ``belt_speed``, ``friction_law``,
+    ``mu_static``, ``friction_speed``, ``modal_damping`` and ``load`` (a file with one number a
+    line, or 0) as of :class:`Structure`; ``units`` (``m-kg-s``; all numbers of a file with
+    ``mm-t-s`` are in mm, t, s and N and become SI's; a rotation then counts as the displacement at
+    an arm of one unit of length); ``triangle``: ``mirror`` where a file has one triangle of a
+    symmetric matrix, ``keep`` where it is meant as it is.
 
     Args:
         path: the YAML file; names in it are relative to its folder.
@@ -68,7 +68,7 @@ def read(path: str | PathLike[str], form: type[Form]) -> Form:
     matrices, labels = _matrices(content, source.parent, scales)
     arguments: dict[str, Any] = {**matrices}
     if "contacts" in content:
-        table = source.parent / str(content["contacts"])
+        table = source.parent / _file_name("contacts", content["contacts"])
         size = matrices["mass"].shape[0]
         arguments["contacts"] = _contacts(table, labels, size, scales)
     for name in NUMBERS:
@@ -101,6 +101,12 @@ def _contacts(
     return contacts
 
 
+def _file_name(key: str, given: Any) -> str:
+    if not isinstance(given, str) or not given:
+        raise ValueError(f"{key} = {brief(given)}: the name of a file is needed")
+    return given
+
+
 def _content(source: Path) -> dict[str, Any]:
     content = read_yaml(source)
     for key in content:
@@ -111,7 +117,7 @@ def _content(source: Path) -> dict[str, Any]:
     for key in ("mass", "stiffness"):
         if key not in content:
             raise ValueError(
-                f"{source} lacks {key}; name its matrix, like `{key}: {key[0].upper()}.mtx`"
+                f"{source} lacks {key}; name its matrix, like `{key}: {key}.mtx`"
             )
     return content
 
@@ -138,17 +144,29 @@ def _matrices(
             file, variable = entry["file"], entry.get("variable")
         else:
             file, variable = entry, None
-        path = folder / str(file)
+        path = folder / _file_name(key, file)
         one = read_matrix(path, key, variable)
         whole = _completed(
             real_square(f"{key}: {path}", one.matrix), path, one, triangle
         )
-        read_in[key] = Labelled(whole, one.labels)
+        read_in[key] = one._replace(matrix=whole)
+    _refuse_orders(read_in)
     labels = next((each.labels for each in read_in.values() if each.labels), None)
     return {
         key: _in_order(key, each, labels) * getattr(scales, key)
         for key, each in read_in.items()
     }, labels
+
+
+def _refuse_orders(read_in: Mapping[str, Labelled]) -> None:
+    """Refuse rows without labels beside rows whose order is that of nodes."""
+    sorted_ones = [key for key, each in read_in.items() if each.by_node]
+    bare = [key for key, each in read_in.items() if each.labels is None]
+    if sorted_ones and bare:
+        raise ValueError(
+            f"{sorted_ones[0]} names nodes and directions, {bare[0]} has rows alone, whose order "
+            "nobody knows; write both in one format"
+        )
 
 
 def _completed(matrix: Any, path: Path, given: Labelled, triangle: str | None) -> Any:
@@ -179,17 +197,27 @@ def _completed(matrix: Any, path: Path, given: Labelled, triangle: str | None) -
 
 def _in_order(key: str, given: Labelled, labels: list[str] | None) -> Any:
     """The matrix with its rows in the order of these labels."""
-    if labels is None or given.labels is None or given.labels == labels:
-        size = given.matrix.shape[0]
-        if labels is not None and size != len(labels):
-            raise ValueError(f"{key} has {size} rows, but {len(labels)} are labelled")
+    if labels is None:
         return given.matrix
     if len(set(labels)) < len(labels):
-        raise ValueError(f"{key}: a label is there twice")
+        twice = next(label for label in labels if labels.count(label) > 1)
+        raise ValueError(f"{key}: {twice} (node.direction) is there twice; rename one")
+    if given.labels is None or given.labels == labels:
+        size = given.matrix.shape[0]
+        if size != len(labels):
+            raise ValueError(f"{key} has {size} rows, but {len(labels)} are labelled")
+        return given.matrix
     place_of = {label: place for place, label in enumerate(labels)}
     if unknown := [label for label in given.labels if label not in place_of]:
         raise ValueError(
-            f"{key} has {unknown[0]} (node.direction), which the other matrix has not"
+            f"{key} has {unknown[0]} (node.direction), which the mass has not; condense what has "
+            "no mass in your program, or give it a small one"
+        )
+    if key != "damping" and len(given.labels) < len(labels):
+        missing = next(label for label in labels if label not in set(given.labels))
+        raise ValueError(
+            f"{key} lacks {missing} (node.direction), which the mass has; if its file is whole, "
+            "add an entry of 0 on the diagonal"
         )
     places = np.array([place_of[label] for label in given.labels])
     entries = given.matrix.tocoo()
@@ -209,10 +237,15 @@ def _load(given: Any, folder: Path, scales: Scales) -> Any:
         raise FileNotFoundError(f"load: no file {path}")
     try:
         if path.suffix == ".mtx":
-            entries = scipy.io.mmread(path)
+            entries = read_matrix(path, "load").matrix
             entries = entries.toarray() if sp.issparse(entries) else entries
         else:
-            entries = np.loadtxt(path)
+            entries = np.loadtxt(path, ndmin=2)
     except ValueError as error:
-        raise ValueError(f"load: {path}: {error}") from error
+        text = str(error).removeprefix("load: ").removeprefix(f"{path}: ")
+        raise ValueError(
+            f"load: {path}: {text}; one number a line is needed"
+        ) from error
+    if 1 not in entries.shape or np.iscomplexobj(entries):
+        raise ValueError(f"load: {path}: one real number a line is needed")
     return np.asarray(entries, dtype=float).ravel() * scales.force

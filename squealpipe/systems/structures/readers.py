@@ -6,6 +6,7 @@ Matrix Market, ``.npz`` of scipy.sparse, MATLAB ``.mat`` (5 and 7.3), Abaqus ``*
 
 from __future__ import annotations
 
+import re
 import zipfile
 import zlib
 from collections.abc import Callable
@@ -15,6 +16,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import scipy.io
 import scipy.sparse as sp
+
+from squealpipe.systems.structures.matrix_market import (
+    BANNER,
+    UNENDED,
+    read_matrix_market,
+)
 
 DAMAGED = (
     OSError,
@@ -29,7 +36,12 @@ DAMAGED = (
     zlib.error,
 )
 """What libraries raise on files that are cut off or of another form."""
-UNENDED = "its last line has no end; add one if the file is whole"
+MARKS = {
+    b"\x1f\x8b": "is packed by gzip; unpack it, with gunzip, and name what comes out",
+    b"\xef\xbb\xbf": "begins with a byte order mark; save it as UTF-8 without one",
+    b"\xff\xfe": "is UTF-16; save it as UTF-8 without byte order mark",
+}
+"""First bytes of files that no reader of matrices takes, and what to do."""
 EXTRA = "install squealpipe[fe] to read it"
 
 
@@ -42,11 +54,13 @@ class Labelled(NamedTuple):
 
     Attributes:
         halved: the format has one triangle of symmetric matrices.
+        by_node: its rows are in the order of nodes, as the file has none.
     """
 
     matrix: Any
     labels: list[str] | None = None
     halved: bool = False
+    by_node: bool = False
 
 
 def read_matrix(path: Path, key: str, variable: str | None = None) -> Labelled:
@@ -69,12 +83,17 @@ def read_matrix(path: Path, key: str, variable: str | None = None) -> Labelled:
         ".sti": lambda: _calculix(path),
         ".mas": lambda: _calculix(path),
     }
+    with path.open("rb") as file:
+        start = file.read(3)
+    for mark, remedy in MARKS.items():
+        if start.startswith(mark):
+            raise ValueError(f"{key}: {path} {remedy}")
     if path.suffix.lower() not in readers:
         raise ValueError(
             f"{key}: {path} ends in {path.suffix!r}; matrices are read from {', '.join(readers)}"
         )
     try:
-        return readers[path.suffix.lower()]()
+        return _without_gaps(readers[path.suffix.lower()](), key)
     except ImportError as error:
         raise ValueError(f"{key}: {path} needs {error.name}; {EXTRA}") from error
     except ChoiceError as error:
@@ -91,29 +110,41 @@ def _mtx(path: Path, key: str) -> Labelled:
         lines = (line for line in file if line.strip() and not line.startswith("**"))
         first = next(lines, "")
     if first.startswith("%%MatrixMarket"):
-        _refuse_missing_entries(path)
-        return Labelled(scipy.io.mmread(path))
+        return Labelled(read_matrix_market(path))
+    if first.startswith("%"):
+        raise ValueError(BANNER)
     if first.startswith("*"):
         return _substructure(path, key)
     return _abaqus(path)
 
 
-def _refuse_missing_entries(path: Path) -> None:
-    """Count the lines of a Matrix Market file: a cut-off array is filled with zeros when read."""
-    rows, columns, stated, form, _, symmetry = scipy.io.mminfo(path)
-    if form == "array":
-        stated = {
-            "general": rows * columns,
-            "skew-symmetric": rows * (rows - 1) // 2,
-        }.get(symmetry, rows * (rows + 1) // 2)
-    lines, last = 0, "\n"
-    with path.open(encoding="utf-8", errors="replace") as file:
-        for last in file:
-            lines += bool(last.strip()) and not last.startswith("%")
-    if lines - 1 != stated:
-        raise ValueError(f"{lines - 1} entries, but its size says {stated}")
-    if not last.endswith("\n"):
-        raise ValueError(UNENDED)
+def _without_gaps(one: Labelled, key: str) -> Labelled:
+    """A matrix that a program wrote whole: each entry once, with a diagonal but of damping.
+
+    Raises:
+        ValueError: an entry is there twice, or the diagonal has a gap.
+    """
+    if not one.halved:
+        return one
+    entries = sp.coo_array(one.matrix)
+    size = entries.shape[0]
+    places = entries.row.astype(np.int64) * size + entries.col
+    unique, counts = np.unique(places, return_counts=True)
+
+    def name(place: int) -> str:
+        return one.labels[place] if one.labels else str(place + 1)
+
+    if (counts > 1).any():
+        row, column = divmod(int(unique[counts > 1][0]), size)
+        raise ValueError(
+            f"the entry of {name(row)} and {name(column)} is there twice; leave the sum of both"
+        )
+    bare = np.setdiff1d(np.arange(size), entries.row[entries.row == entries.col])
+    if bare.size and key != "damping":
+        raise ValueError(
+            f"{name(int(bare[0]))} has no entry on the diagonal; if the file is whole, add one of 0"
+        )
+    return one
 
 
 def _abaqus(path: Path) -> Labelled:
@@ -136,7 +167,7 @@ def _abaqus(path: Path) -> Labelled:
     )
     size = len(places)
     matrix = sp.coo_array((rows[:, 4], (row, column)), (size, size))
-    return Labelled(matrix, [f"{node}.{way}" for node, way in places], True)
+    return Labelled(matrix, [f"{node}.{way}" for node, way in places], True, True)
 
 
 def _substructure(path: Path, key: str) -> Labelled:
@@ -157,14 +188,18 @@ def _calculix(path: Path) -> Labelled:
     labels = None
     if beside.is_file():
         words = beside.read_text(encoding="utf-8").split()
-        labels = [_without_zeros(word) for word in words]
+        labels = [_without_zeros(word, beside) for word in words]
     return Labelled(_of_triplets(_numbers(path), len(labels or ())), labels, True)
 
 
-def _without_zeros(label: str) -> str:
+def _without_zeros(label: str, path: Path) -> str:
     """``12.1`` of ``12.10000``, which some versions write."""
-    node, _, way = label.partition(".")
-    return f"{int(node)}.{way.rstrip('0') or '0'}"
+    match = re.fullmatch(r"(\d+)\.(\d+)", label)
+    if match is None:
+        raise ChoiceError(
+            f"{path} has {label[:20]!r}; node and direction are needed, like 12.1"
+        )
+    return f"{int(match[1])}.{match[2].rstrip('0') or '0'}"
 
 
 def _numbers(path: Path) -> np.ndarray:
@@ -200,7 +235,9 @@ def _of_triplets(rows: np.ndarray, size: int = 0) -> Any:
         )
     places = rows[:, :2].astype(int)
     if (places != rows[:, :2]).any() or places.min() < 1:
-        raise ValueError("rows and columns must be whole numbers from 1 on")
+        raise ValueError(
+            "rows and columns must be whole numbers from 1 on; add 1 where a program counts from 0"
+        )
     size = max(size, int(places.max()))
     return sp.coo_array(
         (rows[:, 2], (places[:, 0] - 1, places[:, 1] - 1)), (size, size)

@@ -21,6 +21,9 @@ from squealpipe.systems.structures.pencil import LowRank, Pencil
 SINGULAR = 1e-13
 """Residual of the steady state, over the forces in it, beyond which the stiffness is singular."""
 
+MOST_SOUGHT = 16
+"""Contacts up to which all combinations of open and closed ones are tried."""
+
 
 class NoSlidingError(ValueError):
     """There is no steady sliding."""
@@ -61,10 +64,10 @@ def steady_sliding(structure: Structure, mu: float, belt_speed: float) -> Slidin
     sizes = np.abs(speeds)
     drag = np.sign(speeds) * [float(friction.coefficient(size)) for size in sizes]
     slope = np.array([float(friction.slope(size)) for size in sizes])
-    closed = np.ones(len(speeds), bool)
+    closed: Any = np.ones(len(speeds), bool)
     seen: set[bytes] = set()
     # contacts change one at a time, the first in order: such pivoting ends or comes back
-    while closed.tobytes() not in seen:
+    while closed is not None and closed.tobytes() not in seen:
         seen.add(closed.tobytes())
         displacement = _balance(structure, closed, drag)
         reach = structure.preloads - structure.stiffnesses * (
@@ -75,11 +78,54 @@ def steady_sliding(structure: Structure, mu: float, belt_speed: float) -> Slidin
             force = np.where(closed, reach, 0.0)
             return Sliding(displacement, force, closed, drag, slope)
         closed[wrong[0]] = ~closed[wrong[0]]
+        if (
+            closed.tobytes() in seen
+        ):  # with much friction pivoting may pass the state by
+            closed = _sought(structure, drag)
     names = [each.name for each in structure.contacts]
-    raise NoSlidingError(
-        f"no steady sliding at mu = {mu:g}, belt_speed = {belt_speed:g}: the contacts "
-        f"{', '.join(names)} can be neither open nor closed together; check preloads and load"
+    reason = (
+        f"the contacts {', '.join(names)} can be neither open nor closed together"
+        if len(names) <= MOST_SOUGHT
+        else "a search among the states of the contacts did not end"
     )
+    raise NoSlidingError(
+        f"no steady sliding at mu = {mu:g}, belt_speed = {belt_speed:g}: {reason}; check preloads "
+        "and load"
+    )
+
+
+def _sought(structure: Structure, drag: np.ndarray) -> np.ndarray | None:
+    """Which contacts are closed in a state that fits, of all combinations; None if none does.
+
+    With springs kᵢ at all contacts the nearing uᵢ = nᵢᵀq is linear in u itself and in the forces
+    of the closed contacts, so that each combination is a small system.
+    """
+    number = len(drag)
+    if number > MOST_SOUGHT:
+        return None
+    normals, stiffnesses = structure.normals, structure.stiffnesses
+    all_closed = np.ones(number, bool)
+    held = structure.stiffness + _contact_stiffness(structure, all_closed, normals)
+    try:
+        factors = splu(sp.csc_array(held))
+    except RuntimeError:  # exactly singular
+        return None
+    by_load = normals.T @ factors.solve(structure.load)
+    by_force = normals.T @ factors.solve(_acting(structure, all_closed, drag))
+    by_springs = np.eye(number) - normals.T @ factors.solve(normals * stiffnesses)
+    combinations = (np.arange(2**number)[:, None] >> np.arange(number)) % 2 == 1
+    # most of them closed first
+    order = np.argsort(-combinations.sum(axis=1), kind="stable")
+    for chunk in np.array_split(combinations[order], max(len(order) // 4096, 1)):
+        matrices = by_springs + by_force * (chunk * stiffnesses)[:, None, :]
+        right = by_load + (chunk * structure.preloads) @ by_force.T
+        regular = np.linalg.det(matrices) != 0
+        nearing = np.linalg.solve(matrices[regular], right[regular][:, :, None])
+        reach = structure.preloads - stiffnesses * nearing[:, :, 0]
+        fits = (chunk[regular] == (reach > 0)).all(axis=1)
+        if fits.any():
+            return np.array(chunk[regular][fits][0])
+    return None
 
 
 def _balance(structure: Structure, closed: np.ndarray, drag: np.ndarray) -> np.ndarray:

@@ -1,5 +1,7 @@
 """Structures from files of other programs: each is read right or refused."""
 
+import gzip
+
 import numpy as np
 import pytest
 import scipy.io
@@ -215,9 +217,94 @@ def no_such_row(folder):
     replaced(folder / "contacts.csv", "1:1,", "7:1,")
 
 
+def both_triangles_of_a_symmetric_file(folder):
+    scipy.io.mmwrite(folder / "K.mtx", sp.coo_array(STIFFNESS), symmetry="general")
+    replaced(folder / "K.mtx", "general", "symmetric")
+
+
+def coordinates(folder, first):
+    banner = "%%MatrixMarket matrix coordinate real general\n3 3 3\n"
+    (folder / "K.mtx").write_text(banner + first + "2 2 1.0\n3 3 1.0\n")
+
+
+def exponents_of_fortran(folder):
+    coordinates(folder, "1 1 4.0D+01\n")
+
+
+def decimal_commas(folder):
+    coordinates(folder, "1 1 40,5\n")
+
+
+def rows_from_zero(folder):
+    coordinates(folder, "0 0 1.0\n")
+
+
+def without_values(folder):
+    banner = "%%MatrixMarket matrix coordinate pattern general\n3 3 3\n"
+    (folder / "K.mtx").write_text(banner + "1 1\n2 2\n3 3\n")
+
+
+def without_banner(folder):
+    replaced(folder / "K.mtx", "%%MatrixMarket matrix array real symmetric\n", "")
+
+
+def packed(folder):
+    (folder / "K.mtx").write_bytes(gzip.compress((folder / "K.mtx").read_bytes()))
+
+
+def with_a_byte_order_mark(folder):
+    content = (folder / "K.mtx").read_text()
+    (folder / "K.mtx").write_text(content, encoding="utf-8-sig")
+
+
+def two_columns_of_load(folder):
+    (folder / "load.txt").write_text("1 2\n3 4\n5 6\n")
+    replaced(folder / "pad.yaml", "contacts:", "load: load.txt\ncontacts:")
+
+
+def complex_load(folder):
+    scipy.io.mmwrite(folder / "f.mtx", np.full((3, 1), 1 + 1j))
+    replaced(folder / "pad.yaml", "contacts:", "load: f.mtx\ncontacts:")
+
+
+def more_cells_than_columns(folder):
+    replaced(folder / "contacts.csv", "-2\n", "-2,7\n")
+
+
+def units_in_the_header(folder):
+    replaced(folder / "contacts.csv", "stiffness", "stiffness (N/mm)")
+
+
+def without_a_header(folder):
+    (folder / "contacts.csv").write_text(CONTACTS.splitlines()[1] + "\n")
+
+
+def row_between_rows(folder):
+    replaced(folder / "contacts.csv", "1:1,", "19e-1:1,")
+
+
+def no_name_of_a_file(folder):
+    replaced(folder / "pad.yaml", "contacts.csv", "")
+
+
 @pytest.mark.parametrize(
     ("spoil", "words"),
     [
+        (both_triangles_of_a_symmetric_file, "write `general`"),
+        (exponents_of_fortran, "line 3 is no entry: .*an e"),
+        (decimal_commas, "line 3 is no entry: .*decimal point"),
+        (rows_from_zero, "line 3 is no entry: .*from 1"),
+        (without_values, "pattern"),
+        (without_banner, "%%MatrixMarket matrix coordinate"),
+        (packed, "gunzip"),
+        (with_a_byte_order_mark, "UTF-8 without"),
+        (two_columns_of_load, "one real number a line"),
+        (complex_load, "one real number a line"),
+        (more_cells_than_columns, "7 cells, but the header 6"),
+        (units_in_the_header, "did you mean 'stiffness'. Units stand in"),
+        (without_a_header, "first row must name the columns"),
+        (row_between_rows, "1 to 3 in files"),
+        (no_name_of_a_file, "the name of a file is needed"),
         (one_triangle, "triangle: mirror"),
         (complex_entries, "complex entries"),
         (not_a_number, "finite numbers"),
@@ -237,6 +324,65 @@ def test_a_bad_file_is_refused_with_its_remedy(tmp_path, spoil, words):
     spoil(tmp_path)
     with pytest.raises(ValueError, match=words):
         Structure.read(tmp_path / "pad.yaml")
+
+
+def last_lines_lost(folder, form):
+    content = (folder / form).read_text().splitlines(keepends=True)
+    (folder / form).write_text("".join(content[:-2]))
+
+
+def a_line_twice(folder, form):
+    content = (folder / form).read_text().splitlines(keepends=True)
+    (folder / form).write_text("".join([*content, content[-1]]))
+
+
+@pytest.mark.parametrize(
+    ("form", "file"), [(as_abaqus, "K.mtx"), (as_calculix, "pad.sti")]
+)
+@pytest.mark.parametrize(
+    ("spoil", "words"),
+    [
+        (last_lines_lost, "17.1 (has no entry|.*lacks)|lacks 17.1"),
+        (a_line_twice, "twice"),
+    ],
+)
+def test_formats_without_a_number_of_entries_are_read_whole_or_not(
+    tmp_path, form, file, spoil, words
+):
+    text = form(tmp_path)
+    spoil(tmp_path, file)
+    with pytest.raises(ValueError, match=words):
+        structure_of(tmp_path, text)
+
+
+def test_labels_that_name_two_rows_or_no_order_are_refused(tmp_path):
+    text = as_calculix(tmp_path)
+    (tmp_path / "pad.dof").write_text("3.1\n3.1\n17.1\n")
+    with pytest.raises(ValueError, match=r"3\.1 .* twice"):
+        structure_of(tmp_path, text)
+    (tmp_path / "pad.dof").write_text("3.1\nx.2\n17.1\n")
+    with pytest.raises(ValueError, match=r"pad\.dof has 'x\.2'"):
+        structure_of(tmp_path, text)
+    text = as_abaqus(tmp_path)
+    scipy.io.mmwrite(tmp_path / "K.mtx", STIFFNESS)
+    with pytest.raises(ValueError, match="write both in one format"):
+        structure_of(tmp_path, text)
+
+
+@pytest.mark.parametrize(
+    "table",
+    [
+        CONTACTS.replace(",", ";").encode("utf-16"),
+        ("# of the pad\r\n\r\n" + CONTACTS.replace(",", "\t")).encode("utf-8-sig"),
+        CONTACTS.replace("2:1 3:-0.5", '"2: 1, 3: -0.5"').encode(),
+    ],
+)
+def test_a_table_of_contacts_is_read_as_spreadsheets_write_it(tmp_path, table):
+    structure_of(tmp_path, as_matrix_market(tmp_path))
+    (tmp_path / "contacts.csv").write_bytes(table)
+    (edge,) = Structure.read(tmp_path / "pad.yaml").contacts
+    assert edge.normal == {1: 1.0, 2: -0.5}
+    assert (edge.stiffness, edge.preload, edge.speed) == (4.0, 1.5, -2.0)
 
 
 def test_the_remedies_for_one_triangle_work(tmp_path):

@@ -361,6 +361,24 @@ def test_a_pad_has_one_critical_friction_for_both_directions_of_the_belt():
     assert one.growth_rate.values == pytest.approx(other.growth_rate.values, abs=1e-6)
 
 
+def test_steady_sliding_is_met_where_one_contact_after_the_other_would_come_back():
+    """The first contact is open: a state that pivoting from all closed ones passes by."""
+    contacts = [
+        Contact("a", {0: 1.0}, {1: 3.0, 2: 3.0}, stiffness=5.0, preload=2.0),
+        Contact("b", {1: 1.0}, {0: 3.0, 1: -3.0}, stiffness=3.0, preload=3.0),
+    ]
+    stiffness, load = np.diag([4.0, 5.0, 5.0]), np.array([0.0, -2.0, -2.0])
+    modes = Structure(
+        np.eye(3), stiffness, contacts=contacts, mu=0.8, load=load
+    ).complex_modes(mu=[0.8])
+    acting = np.array([2.4, 1.0 - 2.4, 0.0])
+    q = np.linalg.solve(
+        stiffness + 3.0 * np.outer(acting, [0.0, 1.0, 0.0]), load + 3.0 * acting
+    )
+    assert q[0] * 5.0 > 2.0
+    assert modes.normal_force.values.ravel() == pytest.approx([0.0, 3.0 - 3.0 * q[1]])
+
+
 def test_modes_that_cannot_grow_are_not_unstable_by_round_off():
     pair = np.array([[1.0, -1.0], [-1.0, 1.0]])  # nothing holds it
     free = Structure(np.eye(2), pair).complex_modes()
