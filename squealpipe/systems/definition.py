@@ -16,7 +16,7 @@ from squealpipe.methods.taylor.scalar import (
     evaluate,
     numpy_function,
 )
-from squealpipe.methods.taylor.symbols import Symbol, in_order, parameter, symbol
+from squealpipe.methods.taylor.symbols import Symbol, in_order, only, parameter, symbol
 from squealpipe.parameters import is_finite_number
 from squealpipe.schema import Outcome
 from squealpipe.systems.components import (
@@ -27,6 +27,7 @@ from squealpipe.systems.components import (
     Regimes,
     Switch,
 )
+from squealpipe.systems.entries import check_entries
 from squealpipe.systems.joint import Joint
 from squealpipe.systems.starts import Starts
 from squealpipe.systems.surfaces import simplest
@@ -276,10 +277,7 @@ class System:
             found = tracer.several(what, self.field[regime], tracer.numbers(regime))
             here = parameter(REGIME + _indicator(regime))
             rates = self._complete(what, found)
-            total = [
-                a if b is symbol(0.0) else a + here * b
-                for a, b in zip(total, rates, strict=True)
-            ]
+            total = [a + only(here, b) for a, b in zip(total, rates, strict=True)]
         return total
 
     def _complete(self, what: str, found: Mapping[str, Symbol]) -> list[Symbol]:
@@ -348,7 +346,9 @@ class System:
             outputs=tuple(outputs),
             starts=tuple(starts),
         )
-        check_progress(tracer, traced, [each.name for each in self.switches], leaves)
+        names = [each.name for each in self.switches]
+        check_progress(tracer, traced, names, leaves)
+        check_entries(tracer, traced, names, leaves)
         return traced
 
     def _trace_switch(

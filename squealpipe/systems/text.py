@@ -94,6 +94,8 @@ def expression(node: Symbol, names: Mapping[int, str] = MappingProxyType({})) ->
     ]
     if node.kind in FUNCTIONS:
         return f"{node.kind}({inner[0]})"
+    if node.kind == "only":
+        return f"({inner[1]} if {inner[0]} else 0)"
     if node.kind == "joined":
         return f"({inner[0]} * {inner[1]} * {inner[2]} + {inner[3]} * {inner[4]} * {inner[5]})"
     return f"({f' {node.kind} '.join(inner)})"

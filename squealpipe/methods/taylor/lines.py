@@ -82,6 +82,8 @@ class Writer:
         ]
         if node.kind in FUNCTIONS:
             return f"math.{node.kind}({given[0]})"
+        if node.kind == "only":
+            return f"only({given[0]}, {given[1]})"
         if node.kind == "joined":
             c1, a1, b1, c2, a2, b2 = given
             return f"{c1} * ({a1} * {b1}) + {c2} * ({a2} * {b2})"
@@ -115,6 +117,8 @@ class Writer:
             return " + ".join(inner)
         if node.kind == "*":
             return " * ".join(inner)
+        if node.kind == "only":
+            return f"only({self.names[id(node.arguments[0])]}, {inner[1]})"
         if node.kind == "joined":
             first, second = inner[:3], inner[3:]
             return f"{' * '.join(first)} + {' * '.join(second)}"
@@ -151,6 +155,9 @@ class Writer:
             moving = [a for a in node.arguments if isinstance(a, Symbol) and a.varies]
             if node.kind == "+":
                 code = " + ".join(rates[id(a)] for a in moving)
+            elif node.kind == "only":
+                mark = self.names[id(node.arguments[0])]
+                code = f"only({mark}, {rates[id(moving[0])]})"
             elif node.kind in {"*", "joined"}:
                 code = " + ".join(self._rates_of_products(node))
             else:

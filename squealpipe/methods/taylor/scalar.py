@@ -203,9 +203,19 @@ def python_function(
     source = f"def function({', '.join(names.values())}):\n" + "".join(
         f" {x}\n" for x in lines
     )
-    scope: dict[str, Any] = {"math": module}
+    scope: dict[str, Any] = {"math": module, "only": _only}
     exec(source, scope)  # noqa: S102
-    return scope["function"]
+    if not any(node.kind == "only" for node in in_order(list(roots))):
+        return scope["function"]
+    # fields of other regimes need not be numbers
+    return np.errstate(invalid="ignore", divide="ignore")(scope["function"])
+
+
+def _only(mark: Any, value: Any) -> Any:
+    """A value where a mark is above zero, else zero."""
+    if isinstance(mark, float) and isinstance(value, float):
+        return value if mark > 0.0 else 0.0
+    return np.where(np.asarray(mark) > 0.0, value, 0.0)
 
 
 def numpy_function(roots: Sequence[Symbol]) -> tuple[Any, list[str]]:

@@ -617,6 +617,8 @@ def pointwise(node: Symbol, name: Name) -> str:
     if node.kind == "joined":
         c1, a1, b1, c2, a2, b2 = (name(each) for each in node.arguments)
         return f"{c1} * ({a1} * {b1}) + {c2} * ({a2} * {b2})"
+    if node.kind == "only":
+        return f"only({', '.join(map(name, node.arguments))})"
     if node.kind in FUNCTIONS:
         code = TANH if node.kind == "tanh" else f"{node.kind}({{0}})"
         return code.format(name(node.arguments[0]))
@@ -631,6 +633,8 @@ def _linear(node: Symbol, name: Name) -> str:
     a, b = node.arguments
     if node.kind == "*":
         return f"{name(a)} * {name(b)}"
+    if node.kind == "only":
+        return f"only({name(a)}, {name(b)})"
     if not a.varies:
         return name(b)
     if not b.varies:

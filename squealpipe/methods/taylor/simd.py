@@ -161,6 +161,12 @@ def _choose(builder: Any, bits: Any, then: Any, otherwise: Any) -> Any:
     return builder.select(mask, then, otherwise)
 
 
+def _only(builder: Any, mark: Any, value: Any) -> Any:
+    """A value where a mark is above zero, else zero (also for NaN)."""
+    zero = ir.Constant(mark.type, None)
+    return _choose_below(builder, zero, mark, value, zero)
+
+
 def _larger(builder: Any, first: Any, second: Any) -> Any:
     return _choose_below(builder, second, first, first, second)
 
@@ -241,6 +247,7 @@ def written(width: int) -> dict[str, Any]:
         "table": _table,
         "space": _space,
         "larger": _larger,
+        "only": _only,
         "smaller": lambda builder, a, b: _choose_below(builder, a, b, a, b),
     }
 

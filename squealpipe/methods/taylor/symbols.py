@@ -18,7 +18,8 @@ class Symbol:
 
     Attributes:
         kind: "variable", "parameter", "number", "+", "*", "**", a function of
-            :data:`FUNCTIONS`, or "joined": Σ c A B over triples whose B differ by constants.
+            :data:`FUNCTIONS`, "joined": Σ c A B over triples whose B differ by constants, or
+            "only": a value where a mark is 1, and 0 where it is 0, whatever the value is there.
         arguments: symbols; of a variable or parameter its name, of a number its value, of "**"
             the base and a float.
         varies: whether it depends on a variable.
@@ -147,6 +148,12 @@ def function(name: str, value: Any) -> Symbol:
     return Symbol(name, value)
 
 
+def only(mark: Symbol, value: Any) -> Symbol:
+    """A value in the regime that a parameter marks with 1; 0 in others, where it may be NaN."""
+    value = symbol(value)
+    return value if _is(value, 0.0) else Symbol("only", mark, value)
+
+
 def _is(value: Symbol, number: float) -> bool:
     return value.kind == "number" and value.arguments[0] == number
 
@@ -228,6 +235,9 @@ def derivative(value: Symbol, by: Symbol) -> Any:
         c1, a1, b1, c2, a2, b2 = value.arguments
         first = c1 * (derivative(a1, by) * b1 + a1 * derivative(b1, by))
         return first + c2 * (derivative(a2, by) * b2 + a2 * derivative(b2, by))
+    if value.kind == "only":
+        mark, inner = value.arguments
+        return only(mark, derivative(inner, by))
     base, exponent = value.arguments
     return exponent * base ** (exponent - 1.0) * derivative(base, by)
 
@@ -251,7 +261,7 @@ def degree(value: Symbol) -> float:
     inner = [degree(a) if isinstance(a, Symbol) else 0.0 for a in value.arguments]
     if value.kind == "variable" or not value.varies:
         return float(value.kind == "variable")
-    if value.kind == "+":
+    if value.kind in {"+", "only"}:
         return max(inner)
     if value.kind == "*":
         return sum(inner)
