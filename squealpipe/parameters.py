@@ -531,6 +531,13 @@ SCENES: dict[str, Scene] = {
 }
 """The paper's named scenes (its figures 2–5 and 10–13)."""
 
+SCENE_ANGLES = tuple(
+    sorted(
+        {angle for scene in SCENES.values() for angle in (scene.alpha1, scene.alpha2)}
+    )
+)
+"""Every spring angle that a scene has, rad; π/2 among them."""
+
 
 def parameters_of(part: Mapping[str, Any]) -> Parameters:
     """``Parameters`` from a slice of the configuration that holds the section ``parameters``."""

@@ -82,6 +82,21 @@ def regime(invariants: Spectrum) -> Any:
     )
 
 
+def shape_similarity(invariants: Spectrum, mu: Any, k3: Any, mass: Any) -> Any:
+    """Modal assurance criterion |v1ᴴ v2|²/(|v1|² |v2|²) of the two mode shapes.
+
+    Henrici's departure from normality g of a 2×2 matrix gives it as g²/(g² + |λ1 − λ2|²)
+    (1962); here g² = h² of real λ, h² − |λ1 − λ2|² of complex ones, with
+    h = μ k3/m the difference of the two couplings. It is 1 at the onset of flutter alone.
+    """
+    asymmetry = (mu * k3 / mass) ** 2
+    apart = 4.0 * np.abs(invariants.discriminant)
+    departure = np.where(invariants.discriminant < 0, asymmetry - apart, asymmetry)
+    whole = departure + apart
+    alike = departure / np.where(whole > 0, whole, 1.0)
+    return np.clip(alike.astype(float), 0.0, 1.0)
+
+
 def static_state(
     stiffness: Stiffness, spring_determinant: Any, *, k3: Any, mu: Any, actuation: Any
 ) -> tuple[Any, Any, Any]:

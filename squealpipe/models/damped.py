@@ -153,11 +153,14 @@ def eigenvalues(s: DampedSystem) -> np.ndarray:
 
 
 class Stability(NamedTuple):
-    """Largest real part, 1/s; |Im s| of both modes (mode last), rad/s; :class:`LinearRegime`."""
+    """Largest real part, 1/s; |Im s| of both modes (mode last), rad/s; :class:`LinearRegime`;
+    modal assurance criterion of the two mode shapes.
+    """
 
     growth_rate: Any
     frequency: Any
     regime: Any
+    shape_similarity: Any
 
 
 def stability(s: DampedSystem) -> Stability:
@@ -177,7 +180,28 @@ def stability(s: DampedSystem) -> Stability:
             np.where(oscillates, LinearRegime.flutter, LinearRegime.divergence),
             LinearRegime.stable,
         ),
+        shape_similarity(s, found[..., 0], found[..., 1]),
     )
+
+
+def shape_similarity(s: DampedSystem, first: Any, second: Any) -> Any:
+    """Modal assurance criterion |v1ᴴ v2|²/(|v1|² |v2|²) of the shapes at two eigenvalues.
+
+    A shape is perpendicular to the larger row of s² + C s + K; where both vanish any shape will do,
+    and the two count as different.
+    """
+    shapes = []
+    for value in (first, second):
+        upper = (value * (value + s.c11) + s.k11, value * s.c12 + s.k12)
+        lower = (value * s.c21 + s.k21, value * (value + s.c22) + s.k22)
+        larger = np.hypot(*np.abs(upper)) >= np.hypot(*np.abs(lower))
+        x, y = (np.where(larger, *pair) for pair in zip(upper, lower, strict=True))
+        shapes.append((-y, x))
+    (x1, y1), (x2, y2) = shapes
+    size = np.hypot(np.abs(x1), np.abs(y1)) * np.hypot(np.abs(x2), np.abs(y2))
+    product = np.abs(np.conj(x1) * x2 + np.conj(y1) * y2)
+    ratio = product / np.where(size > 0, size, 1.0)
+    return (ratio * ratio).astype(float)
 
 
 def regime(s: DampedSystem) -> np.ndarray:

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from enum import IntEnum
-from typing import Any
 
 from squealpipe.codes import LinearRegime
 from squealpipe.schema import (
@@ -26,14 +25,8 @@ ONE_PAIR = {name: replace(entry, dims=()) for name, entry in ANGLES.items()}
 MODES = {"mode": Variable("mode, by ascending frequency", dims=("mode",), dtype="i4")}
 
 
-MERGED = 1e-6
-"""Relative difference of two frequencies up to which they have merged."""
-
-
-def merge(frequency: Any) -> Any:
-    """Whether both modes (last axis, ascending) have one frequency, as where they couple."""
-    slow, fast = frequency[..., 0], frequency[..., 1]
-    return fast - slow <= MERGED * fast
+ALIKE = 0.5
+"""Modal assurance criterion from which two shapes are nearer to one than to perpendicular ones."""
 
 
 REGIME_LINEAR = Variable("stability regime of model A3", dims=MAP, flags=LinearRegime)
@@ -48,6 +41,11 @@ STABILITY_MAP = DatasetSchema(
             "imaginary part of the eigenvalues", "rad s-1", (*MAP, "mode")
         ),
         "regime_linear": REGIME_LINEAR,
+        "shape_similarity": or_nan(
+            "modal assurance criterion of both modes: 1 where they have one shape",
+            dims=MAP,
+            optional=True,
+        ),
         "outcome": outcome(*MAP, among=LINEAR_ENDS),
     },
 )

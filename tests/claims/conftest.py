@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from squealpipe.parameters import SCENES, Parameters
+from squealpipe.parameters import SCENE_ANGLES, SCENES, Parameters
 from squealpipe.reading import READINGS, corrected, for_linear
 from squealpipe.schema.dynamics.growth import HORIZON
 from squealpipe.tasks.backbones.backbone import backbone
@@ -56,12 +56,17 @@ def compute_evidence(params, reading="along_plus_x", *, beside=False):
 def of_the_paper(params, model):
     """The scenes of Figs. 2–5, and the maps."""
     unit = params.time_unit
-    angles = np.linspace(0.0, np.pi, POINTS)
+    angles, of_scenes = np.linspace(0.0, np.pi, POINTS), np.array(SCENE_ANGLES)
     found = {
         "quasi_static_map": quasi_static_map(params, angles, angles),
         "stability_map": stability_map(params, angles, angles),
         "natural_frequencies": natural_frequencies(params, angles, angles),
         "linear_pull": linear_pull_map(params, angles, angles, t_end=50.0 * unit),
+        "at_scenes/quasi_static_map": quasi_static_map(params, of_scenes, of_scenes),
+        "at_scenes/stability_map": stability_map(params, of_scenes, of_scenes),
+        "at_scenes/natural_frequencies": natural_frequencies(
+            params, of_scenes, of_scenes
+        ),
         "validity_map": validity_map(
             params, angles, angles, t_end=200.0 * unit, model=model, workers=1
         ),

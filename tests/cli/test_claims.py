@@ -11,7 +11,7 @@ from squealpipe.store.netcdf import save
 from squealpipe.store.provenance import stamped
 from squealpipe.study.claims.judge import judge
 from squealpipe.tasks.dynamics.runs import simulate
-from squealpipe.tasks.linear.maps import quasi_static_map
+from squealpipe.tasks.linear.maps import quasi_static_map, stability_map
 
 SCENE = SCENES["F2d"]
 
@@ -22,11 +22,12 @@ def file(tmp_path_factory):
     angles = np.linspace(0.0, np.pi, 41)
     params = Parameters()
     found = {
-        "simulate/F2d": simulate(params, SCENE.alpha1, SCENE.alpha2, t_end=SCENE.t_end),
-        "quasi_static_map": quasi_static_map(params, angles, angles),
+        "simulate/F2d": simulate(params, SCENE.alpha1, SCENE.alpha2, t_end=SCENE.t_end)
     }
     mended = params.with_(belt_speed=-100.0)
-    found["corrected/quasi_static_map"] = quasi_static_map(mended, angles, angles)
+    for of, belt in (("", params), ("corrected/", mended)):
+        found[f"{of}quasi_static_map"] = quasi_static_map(belt, angles, angles)
+        found[f"{of}stability_map"] = stability_map(belt, angles, angles)
     path = tmp_path_factory.mktemp("claims") / "claims.nc"
     save(stamped(lambda: judge(params, found, "as_printed"), config={}), path)
     return str(path)
@@ -42,7 +43,9 @@ def test_a_line_for_each_statement_at_any_width(width, file, capsys, monkeypatch
     assert all(len(line) <= width for line in lines + changed)
     assert every[end].startswith(f"{len(lines)} statements")
     assert every[end + 2] == "With friction of one sign throughout these change:"
-    assert [line.split()[:2] for line in changed] == [["F6a", "fails"], ["E3", "fails"]]
+    assert [line.split()[:2] for line in changed] == [
+        [name, "fails"] for name in ("F6b", "F6c", "C2")
+    ]
     assert lines[0].split()[0] == "T1"
     statement = "contact is kept throughout at (0.5π, π)"
     assert lines[4].removesuffix("…").split("  ")[-1].strip() in statement

@@ -13,6 +13,12 @@ for folder, reading in SHOWN.items():
                 for name in ("natural_frequencies", "stability_boundaries", "linear_pull")
                 if PAPERS_FRICTION
             },
+            # the statements on single scenes are judged there, whatever the grid
+            **{
+                f"scenes_{name}": data(f"{folder}at_scenes/{name}")
+                for name in ("quasi_static_map", "stability_map", "natural_frequencies")
+                if STUDY.paper and (PAPERS_FRICTION or name != "natural_frequencies")
+            },
         params:
             settings=settings("parameters", "linear.points", read_as=reading),
         script:

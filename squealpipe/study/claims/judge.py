@@ -14,7 +14,7 @@ from squealpipe.schema import build
 from squealpipe.schema.claims import CLAIMS, Basis, Origin, Verdict
 from squealpipe.schema.inference import of_study
 from squealpipe.study.claims.evidence import Finding, MissingDataError, Run
-from squealpipe.study.claims.statement import Statement
+from squealpipe.study.claims.statement import Check, Statement
 from squealpipe.study.claims.statements import PAPER, STATEMENTS
 
 BESIDE = "corrected/"
@@ -28,7 +28,11 @@ def judge(
     sources: Mapping[str, Path | xr.Dataset],
     reading: str = "along_plus_x",
 ) -> xr.Dataset:
-    """The verdict on every statement, in the study's reading and in the corrected physics."""
+    """The verdict on every statement, in the study's reading and in the corrected physics.
+
+    What holds in the reading and fails in the physics with one sign holds only as printed. A study
+    whose reading has one sign already is its own physics.
+    """
     run = Run(for_linear(parameters, reading), sources)
     mended = {
         name.removeprefix(BESIDE): source
@@ -50,10 +54,14 @@ def judge(
 def _row(statement: Statement, run: Run, second: Run) -> dict[str, Any]:
     basis, share, count = standing(statement, run)
     run.forget()
-    here = _judged(statement, run)
+    here = _judged(statement.check, run)
     datasets = "; ".join(run.forget())
-    mended = here if second is run else _judged(statement, second)
-    verdict, corrected_verdict = here.verdict, mended.verdict
+    physics = statement.physics or statement.check
+    same = second is run and physics is statement.check
+    mended = here if same else _judged(physics, second)
+    printed = here.verdict == Verdict.holds and mended.verdict == Verdict.fails
+    verdict_here = Verdict.holds_only_as_printed if printed else here.verdict
+    verdict, corrected_verdict = verdict_here, mended.verdict
     # The paper prints no parameters: what divides the feasible set depends on those one takes.
     if DECIDED < share < 1.0 - DECIDED and verdict != Verdict.cannot_be_decided:
         verdict = Verdict.depends_on_the_parameters
@@ -70,7 +78,7 @@ def _row(statement: Statement, run: Run, second: Run) -> dict[str, Any]:
         "feasible_share": share,
         "feasible_count": count,
         "verdict": verdict,
-        "verdict_here": here.verdict,
+        "verdict_here": verdict_here,
         **{
             key: getattr(here, key)
             for key in ("value", "relation", "threshold", "evidence")
@@ -104,9 +112,9 @@ def standing(statement: Statement, run: Run) -> tuple[Basis, float, int]:
     return Basis.predicted, float(share), count
 
 
-def _judged(statement: Statement, run: Run) -> Finding:
+def _judged(check: Check, run: Run) -> Finding:
     try:
-        return statement.check(run)
+        return check(run)
     except MissingDataError as error:
         undecided = Verdict.cannot_be_decided
         return Finding(undecided, nan, "", nan, f"Not decided: {error}.")

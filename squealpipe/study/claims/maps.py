@@ -7,16 +7,20 @@ import xarray as xr
 
 from squealpipe.study.claims.evidence import MissingDataError, Run
 
+AT_SCENES = "at_scenes/"
+"""Folder of the linear maps at the angles of the paper's scenes alone."""
+
 SAME_STIFFNESS = 1e-12
 """Share of a stiffness below which a difference of stiffnesses counts as none."""
 
 
 def cell(
-    dataset: xr.Dataset, alpha1_over_pi: float, alpha2_over_pi: float
+    run: Run, name: str, alpha1_over_pi: float, alpha2_over_pi: float
 ) -> xr.Dataset:
-    """The cell of a map at a pair of angles."""
+    """A linear map's cell at a pair of angles: of the map at the paper's angles, on no grid."""
     where = f"cell ({alpha1_over_pi:g}π, {alpha2_over_pi:g}π)"
-    return _nearest(dataset, alpha1_over_pi * np.pi, alpha2_over_pi * np.pi, where)
+    angles = alpha1_over_pi * np.pi, alpha2_over_pi * np.pi
+    return _nearest(run[f"{AT_SCENES}{name}"], *angles, where)
 
 
 def on_grid_of(dataset: xr.Dataset, other: xr.Dataset) -> xr.Dataset:
@@ -85,12 +89,12 @@ def coupling_is_negative(run: Run) -> xr.DataArray:
     return stiffness(run, "stiffness_xy") < -SAME_STIFFNESS * largest
 
 
-def order_turns_over(run: Run) -> xr.DataArray:
+def order_turns_over(run: Run, sliding: xr.Dataset) -> xr.DataArray:
     """Cells in which x is the softer direction in contact and y when separated.
 
     In contact x is the softer direction while K11 < K22 + k3, separated while K11 < K22.
     """
-    difference = stiffness(run, "stiffness_x") - stiffness(run, "stiffness_y")
+    difference = sliding.stiffness_x - sliding.stiffness_y
     k3 = run.parameters.k3
     return (difference > SAME_STIFFNESS * k3) & (difference < (1 - SAME_STIFFNESS) * k3)
 

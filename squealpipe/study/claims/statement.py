@@ -17,7 +17,8 @@ class Statement:
 
     Attributes:
         recorded: what its check finds at the shipped baseline; anything else is a regression.
-        check: reads datasets only.
+        check: reads datasets only; of the equations as they are printed.
+        physics: what is asked of the physics with one sign, where that is another question.
         consequence: what the inference judges at each feasible parameter set and what decides
             about this statement there; empty where it judges nothing of the kind.
     """
@@ -29,6 +30,7 @@ class Statement:
     recorded: Verdict
     check: Check
     consequence: str = ""
+    physics: Check | None = None
 
     @property
     def measure(self) -> str:

@@ -26,6 +26,9 @@ STATEMENTS = (*PAPER, *misprints.rows)
 
 READ = (
     "assumptions",
+    "at_scenes/natural_frequencies",
+    "at_scenes/quasi_static_map",
+    "at_scenes/stability_map",
     "hammering_map",
     "harmonic_forms",
     "linear_pull",

@@ -111,10 +111,10 @@ def _linear(run: Run) -> dict[str, Any]:
 
 
 def _valid(run: Run) -> dict[str, Any]:
-    unstable = run["validity_map"].regime_linear.values > 0
-    boundary = run["validity_boundary"]
+    validity, boundary = run["validity_map"], run["validity_boundary"]
+    unstable = validity.regime_linear > 0
     return {
-        "black": (unstable & boundary.kept.values).sum(),
+        "black": (unstable & (validity.separates == 0)).sum(),
         "unstable": unstable.sum(),
         "lost": 100 * (1.0 - float(boundary.kept_share)),
     }

@@ -16,7 +16,7 @@ from squealpipe.models.contact_system import contact_system
 from squealpipe.models.damped import damped_system, is_undamped, stability
 from squealpipe.parameters import Parameters
 from squealpipe.schema.inference import DAMPED_GRID
-from squealpipe.schema.linear import merge
+from squealpipe.schema.linear import ALIKE
 
 RIM = 192
 """Points around the disc of flutter."""
@@ -52,7 +52,7 @@ def _on_grid(params: Parameters) -> Unstable:
     """Several statements ask for the cells of one set, which take a tenth of a second."""
     alpha1, alpha2 = midpoints(DAMPED_GRID)
     found = stability(damped_system(params, alpha1, alpha2))
-    couples = (found.regime == LinearRegime.flutter) & merge(found.frequency)
+    couples = (found.regime == LinearRegime.flutter) & (found.shape_similarity >= ALIKE)
     return _where(found.regime, alpha1, alpha2, couples)
 
 

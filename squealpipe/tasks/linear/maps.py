@@ -106,12 +106,17 @@ def stability_map(
         )
         s = np.stack(a3.eigenvalues(invariants), axis=-1)
         growth, frequency, regime = s.real.max(axis=-1), s.imag, a3.regime(invariants)
+        similarity = a3.shape_similarity(
+            invariants, params.drag, a2.contact_stiffness(params, sigma), params.mass
+        )
     else:
         pair = (
             alpha1.astype(np.longdouble)[:, None],
             alpha2.astype(np.longdouble)[None, :],
         )
-        growth, frequency, regime = stability(damped_system(params, *pair, sigma=sigma))
+        growth, frequency, regime, similarity = stability(
+            damped_system(params, *pair, sigma=sigma)
+        )
     outcomes = np.array([Outcome.converged, Outcome.complex_pair, Outcome.divergence])
     return build(
         STABILITY_MAP,
@@ -119,6 +124,7 @@ def stability_map(
             "growth_rate": growth,
             "frequency": frequency,
             "regime_linear": regime,
+            "shape_similarity": similarity,
             "outcome": np.where(
                 np.isnan(growth), Outcome.singular_static_state, outcomes[regime]
             ),

@@ -2,6 +2,7 @@
 
 import numpy as np
 from squealpipe.execution.job import Job
+from squealpipe.parameters import SCENE_ANGLES
 from squealpipe.tasks.dynamics.assumptions import linear_pull_map
 from squealpipe.tasks.linear.boundaries import stability_boundaries
 from squealpipe.tasks.linear.maps import (
@@ -13,12 +14,18 @@ from squealpipe.tasks.linear.maps import (
 job = Job(snakemake)
 params, settings = job.params, job.settings
 angles = np.linspace(0.0, np.pi, settings["linear.points"])
+of_scenes = np.array(SCENE_ANGLES)
 tasks = {
     "quasi_static": lambda: quasi_static_map(params, angles, angles),
     "stability": lambda: stability_map(params, angles, angles),
     "natural_frequencies": lambda: natural_frequencies(params, angles, angles),
     "stability_boundaries": lambda: stability_boundaries(params),
     "linear_pull": lambda: linear_pull_map(params, angles, angles),
+    "scenes_quasi_static_map": lambda: quasi_static_map(params, of_scenes, of_scenes),
+    "scenes_stability_map": lambda: stability_map(params, of_scenes, of_scenes),
+    "scenes_natural_frequencies": lambda: natural_frequencies(
+        params, of_scenes, of_scenes
+    ),
 }
 for name, path in job.out.items():
     job.make(tasks[name], path)

@@ -2,7 +2,7 @@
 
 from squealpipe.codes import Event, LinearRegime
 from squealpipe.schema.claims import Verdict
-from squealpipe.schema.linear import merge
+from squealpipe.schema.linear import ALIKE
 from squealpipe.study.claims.checks.motions import events, scene
 from squealpipe.study.claims.evidence import Finding, Run, finding
 from squealpipe.study.claims.maps import share
@@ -21,11 +21,10 @@ IMPULSE = 0.5
 
 @rows.add(
     "T1",
-    "four model levels, each with its assumptions; where each assumption holds along the computed "
-    "motions",
+    "four model levels, each with its assumptions, which hold along the motions that it computes",
     section="Table 1",
     figure="",
-    recorded=Verdict.holds_only_as_printed,
+    recorded=Verdict.fails,
 )
 def levels_have_assumptions(run: Run) -> Finding:
     """Smallest share of scenes, over the levels, in which all of a level's assumptions held."""
@@ -41,9 +40,6 @@ def levels_have_assumptions(run: Run) -> Finding:
         f"{counts}. In A4, which takes the angles as constant to {float(turned.limit):g} rad, a "
         f"spring turns by {float(turned.measure.min()):.2g} to {float(turned.measure.max()):.2g} "
         "rad.",
-        otherwise=Verdict.holds_only_as_printed
-        if whole["A1"] == scenes
-        else Verdict.fails,
     )
 
 
@@ -53,8 +49,8 @@ def levels_have_assumptions(run: Run) -> Finding:
     section="abstract, 3",
 )
 def hammering_occurs(run: Run) -> Finding:
-    """Largest contact force after the first return to the belt at (0.83π, 0.83π), over the
-    preload.
+    """Largest contact force after the first return to the belt at (0.83π, 0.83π), over the load
+    from which the motion starts.
     """
     motion = scene(run, "F2d")
     returns = events(motion, Event.contact).size
@@ -68,9 +64,10 @@ def hammering_occurs(run: Run) -> Finding:
     return finding(
         (force, "≥", IMPULSE),
         f"At (0.83π, 0.83π) the mass returns to the belt {returns} times, at up to {speed:.3g} "
-        f"l_pre √(k1/m), with forces of up to {force:.3g} of the static preload after the first "
-        f"return. Over all angles it returns in {100 * strikes.mean():.3g} % of {strikes.size} "
-        f"cells, with a larger force than the preload in {int((forces > ABOVE).sum())}, "
+        f"l_pre √(k1/m), and is pressed by up to {force:.3g} of the load k3 l_pre from which it "
+        f"starts; from {IMPULSE:g} of it a return counts as an impulse. Over all angles it returns "
+        f"in {100 * strikes.mean():.3g} % of {strikes.size} cells, with a larger force than that "
+        f"at the start in {int((forces > ABOVE).sum())}, "
         f"{forces.max(initial=0.0):.3g} of it at most.",
         also=returns >= 2,
     )
@@ -98,18 +95,23 @@ def earlier_assumptions_fail(run: Run) -> Finding:
 
 @rows.add(
     "S3",
-    "the linear model has coupled modes (eigenvalues merge)",
+    "the linear model has coupled modes: two merge into one shape",
     figure="fig06",
     section="abstract, 6",
     consequence="S3",
 )
 def modes_couple(run: Run) -> Finding:
-    """Cells that flutter with both frequencies equal."""
+    """Largest modal assurance criterion of the two modes: 1 is one shape, 0 two that are
+    perpendicular, as without friction. That some cell flutters is a further condition.
+    """
     stability = run["stability_map"]
     flutter = stability.regime_linear == LinearRegime.flutter
-    merged = flutter & merge(stability.frequency.transpose(..., "mode").values)
-    evidence = (
-        f"{int(flutter.sum())} of {flutter.size} cells flutter ({100 * share(flutter):.2g} %); in "
-        f"{int(merged.sum())} of them the two eigenvalues have merged into a pair of one frequency."
+    similarity = stability.shape_similarity
+    largest, usual = float(similarity.max()), float(similarity.median())
+    return finding(
+        (largest, "≥", ALIKE),
+        f"{int(flutter.sum())} of {flutter.size} cells flutter ({100 * share(flutter):.2g} %). At "
+        f"their edge the criterion reaches {largest:.3g} on the grid; its median over all cells is "
+        f"{usual:.2g}.",
+        also=bool(flutter.any()),
     )
-    return finding((int(merged.sum()), ">", 0), evidence)

@@ -2,10 +2,14 @@
 
 import numpy as np
 import xarray as xr
+from scipy.interpolate import CubicHermiteSpline
 
 from squealpipe.codes import Event
 from squealpipe.schema.dynamics.growth import HORIZON, WINDOW, WINDOWS
 from squealpipe.study.claims.evidence import MissingDataError, Run
+
+FEWEST_RETURNS = 8
+"""Returns to the belt without which nothing can be said of repetition."""
 
 
 def scene(run: Run, name: str) -> xr.Dataset:
@@ -42,6 +46,34 @@ def windows(run: Run, motion: xr.Dataset) -> np.ndarray:
     size = np.abs(motion.x.values) / float(motion.preload)
     window = (motion.time.values / (WINDOW * run.parameters.time_unit)).astype(int)
     return np.array([size[window == number].max() for number in range(WINDOWS)])
+
+
+def repetition(motion: xr.Dataset) -> tuple[float, int, int]:
+    """How nearly a motion repeats, from its states at the returns to the belt.
+
+    Returns:
+        Over the second half of the returns the least, over the number of returns that lie between
+        two of them, of the largest change of x or a velocity, as a share of its range; that number
+        of returns; and the number of all.
+    """
+    instants = events(motion, Event.contact)
+    if instants.size < FEWEST_RETURNS:
+        raise MissingDataError(f"the run has {instants.size} returns to the belt")
+    time = motion.time.values
+    tracks = [
+        CubicHermiteSpline(time, motion[name].values, motion[f"v{name}"].values)
+        for name in "xy"
+    ]
+    states = np.stack(
+        [tracks[0](instants), *(track(instants, 1) for track in tracks)], axis=1
+    )
+    late = states[states.shape[0] // 2 :] / np.ptp(states, axis=0)
+    changes = [
+        np.abs(late[apart:] - late[:-apart]).max()
+        for apart in range(1, late.shape[0] // 2 + 1)
+    ]
+    best = int(np.argmin(changes))
+    return float(changes[best]), best + 1, int(instants.size)
 
 
 def frequency(motion: xr.Dataset) -> float:

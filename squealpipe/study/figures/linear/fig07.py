@@ -41,14 +41,15 @@ def caption(found: Mapping[str, xr.Dataset]) -> str:
     lines = [
         _inside(found, _kind(name)) for name in maps if f"{_kind(name)}{LINES}" in found
     ]
+    blue = f" Blue: {BLUE_LINES} {_listed(lines)}." if lines else ""
     return (
         f"Where the linear model A3 is valid{f': {several}' if len(maps) > 1 else ''}. White: A1, "
         "started at rest, loses contact although A3 is stable; orange: it does and A3 is unstable. "
         "Grey: contact is kept and A3 is stable; black: kept and unstable by the eigenvalues of "
         "A3, as the paper's text says. By A1's own response, as its caption says (|x| grows "
         f"{GROWTH_THRESHOLD:g} times or more from the first half of the run to the second), "
-        f"{growing} of the cells that keep contact are unstable. Numbers of cells are in the "
-        f"titles and the key.{f' Blue: {BLUE_LINES} {_listed(lines)}.' if lines else ''}"
+        f"{growing} of the cells that keep contact are unstable. Numbers of cells, each judged by "
+        f"its run, are in the titles and the key.{blue}"
     )
 
 
@@ -80,13 +81,10 @@ def grows(validity: xr.Dataset) -> np.ndarray:
 def draw_kinds(
     panel: Axes, validity: xr.Dataset, boundary: xr.Dataset | None = None
 ) -> np.ndarray:
-    """The four kinds of cells, orange ones hatched for reading in greyscale.
-
-    With the boundary as curves it is drawn too, and contact is kept or lost by its side.
+    """The four kinds of cells by their runs, orange ones hatched for reading in greyscale; beside
+    them the boundary as curves.
     """
     if boundary is not None:
-        lost = (~boundary.kept.values).astype("i1")
-        validity = validity.assign(separates=(validity.separates.dims, lost))
         angles = boundary.alpha1.values, boundary.alpha2.values
         look = {
             "color": style.BLUE,
