@@ -92,7 +92,7 @@ def test_only_as_printed_is_true_as_printed_and_false_with_one_sign(
     assert left == ["F6b", "F6c", "C2"]  # Eq. (11) is told from the reaction force
 
 
-@pytest.mark.parametrize("every", [2, 3, 7])
+@pytest.mark.parametrize("every", [2, 8])
 def test_coarse_grids_leave_nothing_undecided(every, evidence, baseline):
     """What is said of a scene is judged at its angles, on no grid."""
     linear = ("quasi_static_map", "stability_map", "natural_frequencies", "linear_pull")
@@ -117,11 +117,11 @@ def test_exit_code(tmp_path, evidence, parameters, change, code):
     claims = judge(parameters, evidence, "as_printed")
     claims["verdict_here"] = claims.recorded.copy().assign_attrs(claims.verdict.attrs)
     if change:
-        claims.verdict_here[0] = Verdict.fails
+        claims.verdict_here[1] = Verdict.fails
     path = save(stamped(lambda: claims, config={}), tmp_path / "claims.nc")
     found, exit_code = table(path)
     assert exit_code == code
-    assert found[0]["as_recorded"] is not change
+    assert found[1]["as_recorded"] is not change
     columns = "id statement verdict value threshold evidence dataset figure"
     assert set(found[0]) >= set(columns.split())
 

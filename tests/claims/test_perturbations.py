@@ -154,7 +154,8 @@ def test_the_verdict_flips(
     (statement,) = (statement for statement in STATEMENTS if statement.id == claim)
     assert verdict != statement.recorded
     monkeypatch.setattr(judging, "STATEMENTS", [statement])
-    changed = {**evidence, dataset: change(evidence[dataset])}
+    both = [name for name in (dataset, f"corrected/{dataset}") if name in evidence]
+    changed = {**evidence, **{name: change(evidence[name]) for name in both}}
     found = judging.judge(baseline, changed, "as_printed").sel(claim=claim)
     assert Verdict(int(found.verdict_here)) == verdict, str(found.evidence.item())
 

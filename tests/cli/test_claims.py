@@ -75,7 +75,7 @@ def test_only_a_verdict(file, capsys):
         (["XYZ"], "no statement 'XYZ'; known: T1"),
         (
             ["--only", "maybe"],
-            "no statement has this verdict; cannot be decided, depends on",
+            "no statement has this verdict; cannot be decided, fails, holds",
         ),
     ],
 )

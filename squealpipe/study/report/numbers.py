@@ -42,16 +42,18 @@ def numbers(run: Run) -> dict[str, float | str]:
 def _verdicts(run: Run) -> dict[str, Any]:
     claims = run["claims"]
     own = claims.isel(claim=(claims.origin != Origin.misprints).values)
-    found = {verdict.name: (own.verdict == verdict).sum() for verdict in Verdict}
     changed = (own.corrected_verdict != own.verdict).sum()
     fitted = own.basis == Basis.fitted
+    parts = {"fitted": fitted, "tests": ~fitted}
     return {
         "statements": own.sizes["claim"],
         "one_sign_changes": changed,
-        "fitted": fitted.sum(),
-        "tests": (~fitted).sum(),
-        "tests_held": (~fitted & (own.verdict == Verdict.holds)).sum(),
-        **found,
+        **{name: part.sum() for name, part in parts.items()},
+        **{
+            f"{name}_{verdict.name}": (part & (own.verdict == verdict)).sum()
+            for name, part in parts.items()
+            for verdict in Verdict
+        },
     }
 
 
@@ -115,6 +117,7 @@ def _valid(run: Run) -> dict[str, Any]:
     unstable = validity.regime_linear > 0
     return {
         "black": (unstable & (validity.separates == 0)).sum(),
+        "black_by_curves": (unstable.values & boundary.kept.values).sum(),
         "unstable": unstable.sum(),
         "lost": 100 * (1.0 - float(boundary.kept_share)),
     }
@@ -130,6 +133,9 @@ def _bounded(run: Run) -> dict[str, Any]:
     }
     return {
         "F4_size": abs(run["simulate/F4"].x).max() / run.parameters.preload,
+        "F4_growth": run["simulate/F4"].growth,
+        "F4_time": run["simulate/F4"].time[-1] / unit,
+        "F4_change": 100 * run["claims"].value.sel(claim="F4"),
         "transient_runs": lifetimes.size,
         "transient_ended": int(ended.sum()),
         "transient_time": transient.t_end / unit,

@@ -187,3 +187,31 @@ def test_a_small_separated_frequency_keeps_its_digits(nearby):
     found = natural_frequencies(BASELINE, [first], [second]).isel(alpha1=0, alpha2=0)
     lower = float(found.omega.sel(mode=1, contact_state="separated"))
     assert lower == pytest.approx(exact, rel=1e-13)
+
+
+@pytest.mark.parametrize(
+    "beyond", [{}, {"mu": 0.05, "k2": 1.7}, {"damping1": 0.2, "damping2": 0.03}]
+)
+def test_shapes_are_those_of_the_eigenvectors(beyond):
+    """The criterion against eigenvectors of the first-order matrix; 0 without any coupling."""
+    params = FORMER.with_(**beyond)
+    angles = np.linspace(0.1, 3.0, 14)
+    found = stability_map(params, angles, angles).shape_similarity.values
+    c1, c2 = np.cos(angles[:, None]), np.cos(angles[None, :])
+    s1, s2 = np.sin(angles[:, None]), np.sin(angles[None, :])
+    for i, j in np.ndindex(found.shape):
+        along = np.array([[c1[i, 0], s1[i, 0]], [c2[0, j], -s2[0, j]]])
+        stiffness = along.T @ np.diag([params.k1, params.k2]) @ along
+        damping = along.T @ np.diag([params.damping1, params.damping2]) @ along
+        stiffness += params.k3 * np.array([[0.0, params.mu], [0.0, 1.0]])
+        matrix = np.block([[np.zeros((2, 2)), np.eye(2)], [-stiffness, -damping]])
+        values, vectors = np.linalg.eig(matrix)
+        upper = np.argsort(-values.imag)[:2]
+        first, second = (vectors[:2, k] / np.linalg.norm(vectors[:2, k]) for k in upper)
+        if abs(values[upper[0]] - values[upper[1]]) > 1e-4:
+            expected = abs(np.vdot(first, second)) ** 2
+            assert found[i, j] == pytest.approx(expected, abs=1e-7), (i, j)
+    frictionless = stability_map(
+        params.with_(mu=0.0, damping1=0.0, damping2=0.0), angles, angles
+    )
+    assert not frictionless.shape_similarity.values.any()

@@ -198,10 +198,10 @@ def black_region_is_there(run: Run) -> Finding:
     black = int((unstable & kept).sum())
     growing = int((kept & (validity.response_growth >= GROWTH_THRESHOLD)).sum())
     evidence = (
-        f"Of the {int(kept.sum())} cells whose runs keep contact, {black} of {int(unstable.sum())} "
-        f"that A3 calls unstable are among them (the text's reading), and in {growing} |x| grows "
-        f"as fast as time or faster, {GROWTH_THRESHOLD:g} times from the first half of the run to "
-        "the second (the caption's reading)."
+        f"Of the {int(unstable.sum())} cells that A3 calls unstable {black} keep contact in their "
+        f"runs (the text's reading). Of the {int(kept.sum())} that keep it |x| grows as fast as "
+        f"time or faster, {GROWTH_THRESHOLD:g} times from the first half of the run to the second, "
+        f"in {growing} (the caption's reading)."
     )
     if "validity_boundary" in run:
         within = int((unstable.values & run["validity_boundary"].kept.values).sum())

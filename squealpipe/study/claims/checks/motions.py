@@ -52,9 +52,9 @@ def repetition(motion: xr.Dataset) -> tuple[float, int, int]:
     """How nearly a motion repeats, from its states at the returns to the belt.
 
     Returns:
-        Over the second half of the returns the least, over the number of returns that lie between
-        two of them, of the largest change of x or a velocity, as a share of its range; that number
-        of returns; and the number of all.
+        The largest change of x or a velocity from one return to another, as a share of its range
+        in the run, over the second half of the returns, for the number of returns apart for which
+        it is least; that number; and the number of all returns.
     """
     instants = events(motion, Event.contact)
     if instants.size < FEWEST_RETURNS:
@@ -67,7 +67,8 @@ def repetition(motion: xr.Dataset) -> tuple[float, int, int]:
     states = np.stack(
         [tracks[0](instants), *(track(instants, 1) for track in tracks)], axis=1
     )
-    late = states[states.shape[0] // 2 :] / np.ptp(states, axis=0)
+    ranges = [np.ptp(motion[name].values) for name in ("x", "vx", "vy")]
+    late = states[states.shape[0] // 2 :] / np.array(ranges)
     changes = [
         np.abs(late[apart:] - late[:-apart]).max()
         for apart in range(1, late.shape[0] // 2 + 1)
