@@ -27,6 +27,7 @@ QUANTITIES = {
     "m2": ("an area", "40 cm^2"),
     "m-1": ("an inverse length", "1000 1/m"),
     "rad": ("an angle", "22 deg"),
+    "Hz": ("a frequency", "2 kHz"),
     "1": ("a number without a unit, or in %", "30 %"),
 }
 """CF unit → what it measures, and an example of how people write it."""

@@ -67,6 +67,7 @@ def init(
     *,
     results: str | None = None,
     own: Switch = False,
+    structure: Switch = False,
     force: Force = False,
 ) -> int:
     """Write a configuration to edit: the paper's parameters, and every other key as a comment.
@@ -77,13 +78,34 @@ def init(
         file: configuration to write (.yaml).
         results: folder of its results; results/NAME of the file by default.
         own: a short study of scenes of your own in SI units instead, without the paper.
+        structure: a study of a structure with contacts instead, with an example of its files in a
+            folder NAME beside it.
     """
+    from squealpipe.cli.structure_example import FILES, STUDY
     from squealpipe.config.settings import PAPER, read_study
     from squealpipe.store.whole_files import whole_file
 
     check_output(file, force=force, kinds=(".yaml", ".yml"), option="FILE")
-    folder = results or f"results/{NOT_IN_NAMES.sub('_', file.stem)}"
-    if own:
+    if own and structure:
+        raise ValueError("--own and --structure are two studies; choose one")
+    stem = NOT_IN_NAMES.sub("_", file.stem)
+    folder = results or f"results/{stem}"
+    if structure:
+        parts = file.parent / stem
+        if parts.exists() and not force:
+            raise ValueError(
+                f"{parts} exists; add --force to write the example's files into it, or change FILE"
+            )
+        for name, content in FILES.items():
+            with whole_file(parts / name) as draft:
+                draft.write_text(content, encoding="utf-8")
+        text = STUDY.format(
+            file=shlex.quote(str(file)),
+            results=folder,
+            folder=stem,
+            matrices=shlex.quote(str(parts / "structure.yaml")),
+        )
+    elif own:
         text = OWN.format(file=shlex.quote(str(file)), results=folder)
     else:
         text = overlay_text(

@@ -18,6 +18,7 @@ from squealpipe.config.mistakes import ConfigError, mistakes
 from squealpipe.config.quantities import scales
 from squealpipe.config.ranges import sweep_config
 from squealpipe.config.sections import Name, Section
+from squealpipe.config.structure import StructureSection, place_file
 from squealpipe.config.yaml_files import flat, overlay, read_yaml
 from squealpipe.laws.table_files import ENDINGS
 from squealpipe.laws.tables import named, stood_for
@@ -47,6 +48,7 @@ class Study(Section):
     paper: bool = True
     reading: Literal["as_printed", "along_plus_x", "along_minus_x"] = "as_printed"
     scenes: dict[Name, sections.OwnScene] = Field(default={})
+    structure: StructureSection | None = None
     parameters: sections.ParametersSection = sections.ParametersSection()
     linear: sections.LinearSection = sections.LinearSection()
     inference: sections.InferenceSection = sections.InferenceSection()
@@ -72,10 +74,17 @@ class Study(Section):
 
     @model_validator(mode="after")
     def _has_something_to_show(self) -> Self:
-        if not self.paper and not self.scenes:
+        if self.structure is not None:
+            if self.paper or self.scenes:
+                raise ValueError(
+                    "structure: it has a study of its own; write paper: false, and scenes into "
+                    "another configuration"
+                )
+        elif not self.paper and not self.scenes:
             raise ValueError(
                 "paper: false makes a report of scenes of your own and needs one; write for "
-                "instance scenes: {mine: {alpha1: 30deg, alpha2: 140deg}}"
+                "instance scenes: {mine: {alpha1: 30deg, alpha2: 140deg}}, or structure: {file: "
+                "pad.yaml}"
             )
         return self
 
@@ -127,6 +136,7 @@ def read_study(*paths: str | Path, changes: Mapping[str, Any] | None = None) -> 
     for path in map(Path, paths):
         content = read_yaml(path)
         faults.extend(_read_laws(path, content))
+        faults.extend(place_file(path, content))
         faults.extend(_lay_over(merged, content))
     faults.extend(_lay_over(merged, changes or {}))
     return parse_study(merged, faults)

@@ -82,7 +82,7 @@ def rule_key(
         )
         for path in code
     }
-    files = {name: digest(Path(name).read_bytes()) for name in _files_named_in(part)}
+    files = {name: digest(Path(name).read_bytes()) for name in files_named_in(part)}
     # keys of a sweep in the order given, which is that of its dimensions
     return digest(
         json.dumps(part, allow_nan=False)
@@ -155,19 +155,22 @@ def key_behind(path: str | Path) -> str | None:
     )
 
 
-def _files_named_in(value: Any, folder: Path | None = None) -> Iterator[str]:
+def files_named_in(value: Any, folder: Path | None = None) -> Iterator[str]:
     """Files that a slice names: a table of friction, a system or a structure as FILE:NAME.
 
-    A structure's file names others in its folder.
+    A structure's file names others in its folder; labels of CalculiX lie beside its matrices.
     """
     if isinstance(value, str):
         name = value.partition(":")[0]
         file = Path(name) if folder is None else folder / name
         if "." in name and file.is_file():
             yield name if folder is None else file.as_posix()
+            labels = file.with_suffix(".dof")
+            if file.suffix.lower() in {".sti", ".mas"} and labels.is_file():
+                yield labels.as_posix()
             if folder is None and file.suffix in {".yaml", ".yml"}:
                 content = yaml.safe_load(file.read_text(encoding="utf-8"))
-                yield from _files_named_in(content, file.parent)
+                yield from files_named_in(content, file.parent)
     elif isinstance(value, Mapping | list | tuple):
         for item in value.values() if isinstance(value, Mapping) else value:
-            yield from _files_named_in(item, folder)
+            yield from files_named_in(item, folder)

@@ -7,6 +7,8 @@ from squealpipe.schema.agreement import Listing
 from squealpipe.schema.assess import Verdict
 
 NO_ATTRACTOR = -1
+MOST_DAMPING = 0.2
+"""Largest ratio of damping that is tried as a remedy."""
 
 
 class Kind(IntEnum):
@@ -94,7 +96,7 @@ SQUEALING = DatasetSchema(
             "resolution of the spectrum", "Hz", _ATTRACTOR, volatile=True
         ),
         "nearest_mode": Variable(
-            "mode nearest to that line, an unstable one where one is within 2 %",
+            "mode nearest to that line, an unstable one where one is within 2 % of either",
             dims=_ATTRACTOR,
             dtype="i4",
         ),
@@ -181,6 +183,10 @@ SQUEALING = DatasetSchema(
             "1",
             ("attractor", "line"),
             volatile=True,
+        ),
+        "added_damping": or_nan(
+            "smallest ratio of damping, added to every mode, from which none grows",
+            rtol=1e-5,
         ),
         "n_modes": Variable("modes in which the structure was run", dtype="i4"),
         "frequency_error": or_nan(

@@ -14,6 +14,9 @@ from typing import Any
 import yaml
 
 from squealpipe.config.settings import Study, files_of_laws, read_study
+from squealpipe.config.structure import file_in
+from squealpipe.config.yaml_files import read_yaml
+from squealpipe.rerun.key import files_named_in
 from squealpipe.store.checkout import commit
 from squealpipe.store.crate import METADATA, describe
 from squealpipe.store.keys import refuse_misfits
@@ -105,6 +108,30 @@ def archive(
     return target
 
 
+def _copy_structure(config: Path, file: str, folder: Path) -> str:
+    """Copy a structure's file and all that it names; its name in the archive's folder.
+
+    It keeps its place beside the configuration if it lies there, so that the copy runs as it is.
+
+    Raises:
+        ValueError: a matrix lies elsewhere than the structure's file.
+    """
+    source = Path(os.path.normpath(config.parent / file))
+    beside = source.is_relative_to(config.parent)
+    root = config.parent if beside else source.parent
+    target = folder if beside else folder / "structure"
+    for name in files_named_in({"file": str(source)}):
+        part = Path(os.path.normpath(name))
+        if not part.is_relative_to(root):
+            raise ValueError(
+                f"{source} names {part}, which is not archived with it; move it below {root}"
+            )
+        copy = target / part.relative_to(root)
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(part, copy)
+    return (target / source.relative_to(root)).relative_to(folder).as_posix()
+
+
 def _sums(draft: Path) -> dict[str, dict[str, Any]]:
     """Path of each file → its size and checksum."""
     return {
@@ -130,6 +157,9 @@ def _copy_setting(
                 copy.parent.mkdir(parents=True, exist_ok=True)
                 shutil.copyfile(path.parent / file, copy)
     resolved = study.model_dump(mode="json")
+    for path in configs:
+        if (named := file_in(read_yaml(path))) is not None:
+            resolved["structure"]["file"] = _copy_structure(path, named, folder)
     (folder / "resolved.yaml").write_text(yaml.safe_dump(resolved), encoding="utf-8")
     for name in ("requirements.lock", "LICENSE", "CITATION.cff"):
         if (base / name).is_file():

@@ -5,12 +5,12 @@ import inspect
 import pytest
 
 from squealpipe.study.figures import declared
-from squealpipe.study.report.sections import FIGURES, OWN
+from squealpipe.study.report.sections import FIGURES, OWN, STRUCTURE
 
 NAMES = [f"simulate/F2{letter}" for letter in "abcd"]
 
 
-@pytest.mark.parametrize("name", [*FIGURES, *OWN])
+@pytest.mark.parametrize("name", [*FIGURES, *OWN, *STRUCTURE])
 def test_every_figure_of_the_report_can_be_drawn_from_what_it_declares(name):
     module = declared._import(name)
     takes = inspect.signature(module.draw)
@@ -29,7 +29,7 @@ def test_no_module_is_left_without_a_place():
         for path in declared.FOLDER.glob("*/*.py")
         if "\nREADS = " in path.read_text()
     }
-    assert declaring == {*FIGURES, *OWN}
+    assert declaring == {*FIGURES, *OWN, *STRUCTURE}
 
 
 def test_a_wildcard_stands_for_all_that_match_and_plain_names_keep_their_order():

@@ -8,6 +8,7 @@ import pytest
 import xarray as xr
 from rocrate.rocrate import ROCrate
 
+from squealpipe import Structure
 from squealpipe.cli import run as cli
 from squealpipe.config.settings import read_study
 from squealpipe.rerun.key import file_key
@@ -60,6 +61,28 @@ def test_an_archive_holds_the_files_of_its_laws(run, keys_of):
     for names in (["resolved.yaml"], ["paper.yaml", "mine.yaml"]):
         study = read_study(*(frozen / "config" / name for name in names))
         assert study.parameters.friction_law == "linear 0.0:0.4 1.0:0.3"
+
+
+def test_an_archive_holds_the_files_of_its_structure(run, keys_of, tmp_path):
+    """Beside the configuration in their places; files from elsewhere in a folder of their own."""
+    assert (
+        cli(["init", str(run / "pads.yaml"), "--structure", "--results", "results"])
+        == 0
+    )
+    text = (run / "pads.yaml").read_text()
+    shutil.copytree(run / "pads", tmp_path / "elsewhere")
+    (run / "far.yaml").write_text(
+        text.replace("pads/structure.yaml", "../elsewhere/structure.yaml")
+    )
+    for name in ("pads", "far"):
+        configs = ("workflow/config/paper.yaml", f"{name}.yaml")
+        frozen = archive(name, keys=keys_of(run), root=run, configs=configs)
+        study = read_study(frozen / "config/resolved.yaml")
+        assert Path(study.structure.file).is_relative_to(frozen / "config")
+        assert len(Structure.read(study.structure.file).contacts) == 2
+    config = run / "results/archive/pads/config"
+    again = read_study(config / "paper.yaml", config / "pads.yaml")
+    assert Structure.read(again.structure.file).size == 4
 
 
 def test_crate_is_read_by_its_own_library(frozen):

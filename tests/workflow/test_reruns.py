@@ -24,7 +24,8 @@ pytestmark = pytest.mark.release
 ROOT = Path(__file__).resolve().parents[2]
 STATED = Path(__file__).with_name("direct_readers.yaml")
 FIX = "SQUEALPIPE_FIX=1 python -m pytest -m release tests/workflow/test_reruns.py"
-KEYS = sorted(set(flat(Study().model_dump(mode="json"))) - {"results", "paper"})
+OF_OTHERS = {"results", "paper", "structure"}
+KEYS = sorted(set(flat(Study().model_dump(mode="json"))) - OF_OTHERS)
 
 
 @pytest.fixture(scope="module")

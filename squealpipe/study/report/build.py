@@ -81,7 +81,10 @@ def _page(content: Mapping[str, Any], made: str) -> str:
     body = _between(made, "<body>", "</body>").translate(SPACING_ACCENTS)
     return shell.render(
         title=content["title"],
-        mathematics_style=_between(made, "<style>", "</style>"),
+        # a page without a formula has none
+        mathematics_style=_between(made, "<style>", "</style>")
+        if "<style>" in made
+        else "",
         style=(TEMPLATES / "style.css").read_text(encoding="utf-8"),
         sections=re.findall(r'<h2 id="([^"]+)">(.*?)</h2>', body),
         body=body,

@@ -76,3 +76,6 @@ FIGURES = tuple(
 
 OWN = ("own_settled", "own_map", "own_model", "own_motion", "propensity")
 """Figures of the report of a study of one's own."""
+
+STRUCTURE = ("what_squeals", "modes_over_friction")
+"""Figures of the report of a structure."""

@@ -47,7 +47,7 @@ def headline(answer: xr.Dataset) -> str:
     ends = answer.ends_in.values[:1]
     alike = answer.motion.values == verdict
     first = answer.isel(attractor=int(ends[0] if ends.size else alike.argmax()))
-    at = engineering(float(first.dominant_frequency), "Hz")
+    at = engineering(float(first.dominant_frequency), "Hz") + _near(answer, first)
     if verdict is Verdict.squeals:
         return f"Squeals at {at}; contact is kept."
     worst = int(first.separated_fraction.values.argmax())
@@ -58,6 +58,50 @@ def headline(answer: xr.Dataset) -> str:
         f"{_percent(float(loses.separated_fraction))} of the time, the peak force is {force} times "
         "the preload of its contact."
     )
+
+
+def _near(answer: xr.Dataset, motion: xr.Dataset) -> str:
+    """The unstable mode that is nearest to a motion, in words."""
+    if not answer.sizes["mode"]:
+        return ""
+    away = np.abs(answer.frequency.values - float(motion.dominant_frequency))
+    mode = answer.isel(mode=int(away.argmin()))
+    at = engineering(float(mode.frequency), "Hz")
+    return f", nearest to unstable mode {int(mode.mode)} ({at})"
+
+
+def level(answer: xr.Dataset) -> str:
+    """How loud what a small push ends in is, and where contact is lost, in one sentence."""
+    end = int(answer.ends_in[0]) if answer.sizes["mode"] else NO_ATTRACTOR
+    if end == NO_ATTRACTOR or Verdict(int(answer.motion[end])) is Verdict.quiet:
+        return "Level: none."
+    one = answer.isel(attractor=end)
+    return (
+        f"Level: rms speed of vibration {engineering(float(one.velocity_rms), 'm s-1')} at the "
+        f"contacts, at most {engineering(float(one.velocity_peak), 'm s-1')}; open "
+        f"{_of_contacts(one)} of the time."
+    )
+
+
+def beside(answer: xr.Dataset) -> str | None:
+    """What random starts end in other than what a small push does, in one sentence."""
+    end = int(answer.ends_in[0]) if answer.sizes["mode"] else NO_ATTRACTOR
+    others = [
+        one
+        for place in range(answer.sizes["attractor"])
+        for one in [answer.isel(attractor=place)]
+        if place != end
+        and int(one["count"])
+        and Verdict(int(one.motion)) is not Verdict.quiet
+    ]
+    if not others:
+        return None
+    told = [
+        f"{int(one['count'])} of {answer.sizes['sample']} random starts at "
+        f"{engineering(float(one.dominant_frequency), 'Hz')}"
+        for one in others[:LISTED]
+    ]
+    return f"From other starts it ends elsewhere: {'; '.join(told)}."
 
 
 def modes(answer: xr.Dataset) -> Iterator[str]:

@@ -61,7 +61,7 @@ def behind(paths):
 TARGETS += KEYS if STUDY.paper else sorted(KEYS.keys() & behind(TARGETS))
 
 for known in workflow.rules:  # the report holds what it shows against the keys
-    if known.name in ("write_report", "write_own_report"):
+    if known.name in ("write_report", "write_own_report", "write_structure_report"):
         known.set_params(expected={path: KEYS[path] for path in KEYS if path in known.input})
 
 

@@ -6,10 +6,11 @@ not make is left out.
 
 from squealpipe.study.figures import declared
 from squealpipe.study.report.lineage import lineage
-from squealpipe.study.report.sections import FIGURES, OWN as OWN_FIGURES
+from squealpipe.study.report.sections import FIGURES, OWN as OWN_FIGURES, STRUCTURE as OF_STRUCTURE
 
 MADE = lineage(workflow.rules, f"{RESULTS}/data/")
-READ_BY = {name: declared.datasets_of(name, MADE) for name in (FIGURES if STUDY.paper else OWN_FIGURES)}
+SHOWN_FIGURES = FIGURES if STUDY.paper else OWN_FIGURES if STUDY.structure is None else OF_STRUCTURE
+READ_BY = {name: declared.datasets_of(name, MADE) for name in SHOWN_FIGURES}
 READ_BY = {name: found for name, found in READ_BY.items() if found is not None}
 
 

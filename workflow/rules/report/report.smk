@@ -49,6 +49,26 @@ if STUDY.paper:
             "../../scripts/report/write_report.py"
 
     TARGETS += rules.write_report.output
+elif STUDY.structure is not None:
+    told = {name: MADE[name] for name in ("structure/modes", "structure/squeal")}
+
+    rule write_structure_report:
+        input:
+            datasets=[made["path"] for made in told.values()],
+            figures=[made["path"] for made in DRAWN.values()],
+            templates=TEMPLATES,
+        output:
+            page=f"{RESULTS}/report/index.html",
+            pdf=f"{RESULTS}/report/report.pdf",
+            provenance=f"{RESULTS}/report/provenance.json",
+        params:
+            modules=[from_root(declared.find_module(name)) for name in READ_BY],
+            made=told,
+            drawn=DRAWN,
+        script:
+            "../../scripts/structure/write_structure_report.py"
+
+    TARGETS += rules.write_structure_report.output
 else:
     read = {"verdict_map", "verdict_shares"}
     own = {name: made for name, made in MADE.items() if name in read or name.startswith(("own/", "assess/"))}

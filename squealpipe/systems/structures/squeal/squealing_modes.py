@@ -16,6 +16,7 @@ from squealpipe.schema.squealing import NO_ATTRACTOR, SQUEALING, Kind
 from squealpipe.systems.structures.squeal.attractors import grouped
 from squealpipe.systems.structures.squeal.kinds import Described, described
 from squealpipe.systems.structures.squeal.plant import Plant
+from squealpipe.systems.structures.squeal.remedies import added_damping
 from squealpipe.systems.structures.squeal.settling import Settled, settle
 from squealpipe.validation import Natural, Positive, Seed, Tolerance, Workers, checked
 
@@ -113,6 +114,7 @@ def squealing_modes(
             "settled_by": np.array([run.elapsed for run in settled[len(pushes) :]]),
             "pole_frequency": plant.frequencies,
             "pole_growth_rate": plant.spectrum.values.real,
+            "added_damping": added_damping(plant.structure),
             "n_modes": plant.size,
             "frequency_error": record.get("frequency_error", 0.0),
             "growth_rate_error": record.get("growth_rate_error", 0.0),
@@ -253,12 +255,16 @@ def _table(rows: list[dict[str, Any]], name: str, shape: tuple[int, int]) -> np.
 
 
 def _nearest(plant: Plant, frequency: float) -> int:
-    """Place of the mode nearest to a frequency; an unstable one where one is close."""
+    """Place of the mode nearest to a frequency; an unstable one where one is close to it."""
     away = np.abs(plant.frequencies - np.nan_to_num(frequency))
     unstable = plant.unstable
     if unstable.size and away[unstable].min() <= CLOSE * frequency:
         return int(unstable[away[unstable].argmin()])
-    return int(away.argmin())
+    near = int(away.argmin())
+    # two modes that have met ring alike: the one that grows is meant
+    at = plant.frequencies[near]
+    twins = unstable[np.abs(plant.frequencies[unstable] - at) <= CLOSE * at]
+    return int(twins[away[twins].argmin()]) if twins.size else near
 
 
 def _spectra(found: list[Described]) -> tuple[np.ndarray, np.ndarray]:

@@ -1,0 +1,59 @@
+"""The files of ``squealpipe init --structure``: two brake pads on a disc, joined by a caliper."""
+
+from __future__ import annotations
+
+STUDY = """\
+# A structure of your own: which of its unstable modes squeal, how loud, why, and what stops it?
+# Put your matrices and contacts in place of those in {folder}, then
+#   squealpipe modes {matrices} --mu 0:0.8:81   complex eigenvalues, in seconds
+#   squealpipe run --config {file}   the report, in minutes at most where modes are few
+results: {results}
+paper: false
+
+structure:
+  file: {folder}/structure.yaml
+  samples: 24 # random starts beside a push along each unstable mode
+  seed: 0 # that they follow from
+  # t_end: 1 s # longest time of a run; by default 8000 periods of the slowest unstable mode
+  # n_modes: 12 # to reduce it to; by default as many as errors below 1 % need
+  # frequency_max: 10 kHz # highest mode of interest; needed beyond 1000 degrees of freedom
+"""
+FILES = {
+    "structure.yaml": """\
+# Two pads on a disc, each with one contact. Degrees of freedom: 1 inner pad along the disc, 2 inner
+# pad off the disc, 3 and 4 those of the outer pad. SI units; `units: mm-t-s` converts.
+mass: mass.mtx # Matrix Market, .npz, .mat, Abaqus *MATRIX OUTPUT or CalculiX .mas
+stiffness: stiffness.mtx
+contacts: contacts.csv
+modal_damping: 0.01 # ratio, of all modes
+mu: 0.5
+belt_speed: 2.0 # m/s, of the disc under the pads
+""",
+    "mass.mtx": """\
+%%MatrixMarket matrix coordinate real symmetric
+% kg: two pads of 0.4 kg
+4 4 4
+1 1 0.4
+2 2 0.4
+3 3 0.4
+4 4 0.4
+""",
+    "stiffness.mtx": """\
+%%MatrixMarket matrix coordinate real symmetric
+% N/m: abutments of both pads, which couple their directions, and a caliper of 4e6 between them
+4 4 7
+1 1 4.0e7
+2 1 -1.2e7
+2 2 1.4e7
+3 3 6.0e7
+4 2 4.0e6
+4 3 -1.4e7
+4 4 1.4e7
+""",
+    "contacts.csv": """\
+name,normal,tangential,stiffness,preload
+inner,2:1,1:1,3e7,2000
+outer,4:1,3:1,5e7,2000
+""",
+}
+"""Name → text. A direction is degree of freedom:coefficient, counted from 1."""

@@ -1,0 +1,67 @@
+"""What a study of a structure computes: complex modes over friction, and which of them squeal."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.systems.structures.pencil import DENSE
+from squealpipe.systems.structures.squeal.plant import MOST_MODES
+from squealpipe.systems.structures.squeal.squealing_modes import squealing_modes
+from squealpipe.systems.structures.structure import Structure
+
+BEYOND = 2.0
+"""Largest friction of the modes, over the structure's."""
+POINTS = ((MOST_MODES, 41), (DENSE, 13))
+"""Degrees of freedom up to which there are so many frictions; odd, so that one is its own."""
+FEWEST = 5
+
+
+def read_structure(section: Mapping[str, Any]) -> Structure:
+    """The structure of a section ``structure``.
+
+    Raises:
+        FileNotFoundError: a file is missing.
+        ValueError: a file or a key that is wrong, or one that a large structure needs.
+    """
+    structure = Structure.read(section["file"])
+    if structure.size > DENSE and section["frequency_max"] is None:
+        raise ValueError(
+            f"structure.frequency_max: {structure.size} degrees of freedom need it; write up to "
+            "which frequency modes count, for instance 10 kHz"
+        )
+    if not structure.contacts:
+        raise ValueError(
+            f"structure.file: {section['file']} names no contacts: nothing rubs"
+        )
+    return structure
+
+
+def modes_over_friction(section: Mapping[str, Any]) -> xr.Dataset:
+    """Complex modes of the whole structure, from no friction to twice its own."""
+    structure = read_structure(section)
+    points = next((n for size, n in POINTS if structure.size <= size), FEWEST)
+    most = BEYOND * structure.mu or 1.0
+    return structure.complex_modes(
+        mu=np.linspace(0.0, most, points), frequency_max=section["frequency_max"]
+    )
+
+
+def squealing(section: Mapping[str, Any], workers: int) -> xr.Dataset:
+    """Which unstable modes squeal, of the structure reduced as its section says."""
+    structure = read_structure(section)
+    limits = {
+        name: section[name]
+        for name in ("n_modes", "frequency_max")
+        if section[name] is not None
+    }
+    # a small structure is run as it is, whatever frequencies are shown
+    whole = structure.size <= MOST_MODES and section["n_modes"] is None
+    return squealing_modes(
+        structure if whole or not limits else structure.reduce(**limits),
+        **{name: section[name] for name in ("samples", "seed", "t_end")},
+        workers=workers,
+    )

@@ -1,0 +1,23 @@
+"""What eigenvalues name, and what becomes of it."""
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from squealpipe.plotting import squealing
+
+READS = ("structure/squeal",)
+CAPTION = (
+    "(a) Growth rate over frequency of the complex modes, as eigenvalue codes draw it; dashed: "
+    "the strongest line of each settled motion. (b) Share of the random starts that end in it, "
+    "with its 95 % interval. (c) Rms speed of vibration at the contacts. (d) Share of the time "
+    "without contact, a bar for each contact."
+)
+ALT = (
+    "Growth over frequency, and bars for each settled motion: share of starts, speed, contact "
+    "loss."
+)
+
+
+def draw(answer: xr.Dataset) -> Figure:
+    """Four panels from the dataset ``structure/squeal``."""
+    return squealing.figure(answer)

@@ -1,0 +1,266 @@
+"""What the report of a structure shows, as plain data: the answer first."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.schema import meanings
+from squealpipe.schema.assess import Verdict
+from squealpipe.schema.squealing import MOST_DAMPING, NO_ATTRACTOR
+from squealpipe.schema.structures import Onset
+from squealpipe.store import load
+from squealpipe.study.report import squealing
+from squealpipe.study.report.content import Made, pictures
+from squealpipe.study.report.sections import STRUCTURE
+from squealpipe.text import number
+from squealpipe.units import engineering
+
+LASTING = (
+    "Whether a vibration that lasts dies out as well where small motions do: less friction and "
+    "more damping are judged by small motions."
+)
+
+
+def gather_structure(
+    datasets: Mapping[str, Made], figures: Mapping[str, Made]
+) -> dict[str, Any]:
+    """Content of ``templates/structure.typ``."""
+    run = {name: load(made.path) for name, made in datasets.items()}
+    modes, answer = run["structure/modes"], run["structure/squeal"]
+    verdict = Verdict(int(answer.verdict))
+    own = json.loads(modes.attrs["parameters"])
+    told = (cause(modes, answer), squealing.level(answer), squealing.beside(answer))
+    return {
+        "title": "Which mode squeals? Report of a structure",
+        "set": f"mu = {number(own['mu'])}, belt speed {engineering(own['belt_speed'], 'm s-1')}",
+        "verdict": verdict.name,
+        "headline": squealing.headline(answer),
+        "lines": [line for line in told if line],
+        "quiet": verdict is Verdict.quiet,
+        "stops": stops(modes, answer),
+        "fates": list(squealing.modes(answer)),
+        "ends": list(squealing.attractors(answer)),
+        "onsets": onsets(modes),
+        "contacts": contacts(answer),
+        "structure": structure(modes, answer),
+        "rest": not_examined(answer),
+        "figures": pictures(STRUCTURE, figures, run),
+    }
+
+
+def _unstable(modes: xr.Dataset) -> list[xr.Dataset]:
+    """Modes over friction that grow at the structure's own, the fastest first."""
+    place = _own_friction(modes)
+    at = modes.isel(mu=place)
+    order = np.argsort(-at.growth_rate.values, kind="stable")
+    return [modes.isel(mode=int(i)) for i in order if bool(at.unstable[i])]
+
+
+def _own_friction(modes: xr.Dataset) -> int:
+    own = json.loads(modes.attrs["parameters"])["mu"]
+    return int(np.abs(modes.mu.values - own).argmin())
+
+
+def _critical(modes: xr.Dataset) -> float:
+    """The smallest friction at which any mode turns unstable; 0 if one always is, NaN if none."""
+    if (modes.onset == Onset.unstable_throughout).any():
+        return 0.0
+    located = modes.critical_mu.values[np.isfinite(modes.critical_mu.values)]
+    return float(located.min()) if located.size else float("nan")
+
+
+def cause(modes: xr.Dataset, answer: xr.Dataset) -> str:
+    """Why, in a sentence for each of the fastest modes."""
+    growing = _unstable(modes)
+    if not growing:
+        damped = answer.pole_growth_rate.values.max() < 0
+        fades = "small motions die out" if damped else "no small motion grows"
+        return f"Steady sliding is stable: {fades}."
+    return "Cause: " + "; ".join(_origin(modes, mode) for mode in growing[:3]) + "."
+
+
+def _origin(modes: xr.Dataset, mode: xr.Dataset) -> str:
+    """What feeds a mode, by where it comes from."""
+    frequency = float(mode.frequency[_own_friction(modes)])
+    if not frequency > 0:
+        return "a mode that does not oscillate grows (divergence)"
+    if int(mode.onset) == Onset.unstable_throughout:
+        return (
+            f"the mode at {engineering(frequency, 'Hz')} grows at any friction: friction that "
+            "falls with speed, or matrices that are not symmetric, feed it"
+        )
+    since = (
+        f", from mu = {number(float(mode.critical_mu))} on"
+        if np.isfinite(mode.critical_mu)
+        else ""
+    )
+    partner = int(mode.merges_with)
+    if not partner:
+        return (
+            f"the mode at {engineering(frequency, 'Hz')} grows without meeting another{since}: "
+            "friction that falls with speed, or matrices that are not symmetric, feed it"
+        )
+    apart = sorted(
+        float(modes.sel(mode=each).frequency[0]) for each in (int(mode.mode), partner)
+    )
+    return (
+        f"friction couples the modes that without it are at {engineering(apart[0], 'Hz', 4)} and "
+        f"{engineering(apart[1], 'Hz', 4)} until one of them grows{since} (flutter)"
+    )
+
+
+def stops(modes: xr.Dataset, answer: xr.Dataset) -> list[str]:
+    """What stops it, or how far from noise it is."""
+    own = float(modes.mu[_own_friction(modes)])
+    critical, damping = _critical(modes), float(answer.added_damping)
+    if not _unstable(modes):
+        if np.isfinite(critical):
+            upto = f"mu = {number(critical)} ({_change(critical, own)})"
+            return [f"Friction: small motions die out up to {upto}."]
+        most = number(float(modes.mu[-1]))
+        return [f"Friction: no mode grows up to mu = {most}."]
+    if critical > 0:
+        friction = (
+            f"Less friction: below mu = {number(critical)} ({_change(critical, own)}) no mode "
+            "grows."
+        )
+    else:
+        friction = "Friction: at no friction are all modes stable."
+    if np.isfinite(damping):
+        damper = (
+            f"More damping: with {number(100 * damping, 2)} points of damping ratio added to "
+            "every mode none grows."
+        )
+    else:
+        damper = f"Damping: {100 * MOST_DAMPING:.0f} points added to every mode do not suffice."
+    return [friction, damper]
+
+
+def _change(value: float, now: float) -> str:
+    change = 100.0 * (value / now - 1.0) if now else float("inf")
+    return f"{'+' if change > 0 else '−'}{number(abs(change), 2)} %"
+
+
+def onsets(modes: xr.Dataset) -> list[dict[str, str]]:
+    """A row for each mode that is unstable anywhere in the range, by onset."""
+    place = _own_friction(modes)
+    rows = []
+    ever = modes.unstable.any("mu").values
+    places = np.flatnonzero(ever).tolist()
+    for index in sorted(places, key=lambda place: _since(modes, place)):
+        mode = modes.isel(mode=index)
+        critical = float(mode.critical_mu)
+        words = meanings(modes.onset)[int(mode.onset)].replace("_", " ")
+        rows.append(
+            {
+                "frequency": engineering(float(mode.frequency[place]), "Hz", 4),
+                "growth": number(float(mode.growth_rate[place])),
+                "critical": number(critical, 4) if np.isfinite(critical) else words,
+                "partner": _partner(modes, int(mode.merges_with)),
+            }
+        )
+    return rows
+
+
+def _since(modes: xr.Dataset, index: int) -> float:
+    critical = float(modes.critical_mu[index])
+    return critical if np.isfinite(critical) else 0.0
+
+
+def _partner(modes: xr.Dataset, number_: int) -> str:
+    """Frequency without friction of the mode that another one meets."""
+    if not number_:
+        return "–"
+    return engineering(float(modes.sel(mode=number_).frequency[0]), "Hz", 4)
+
+
+def contacts(answer: xr.Dataset) -> list[dict[str, Any]]:
+    """Tables of the contacts, one for each motion that lasts."""
+    tables: list[dict[str, Any]] = []
+    for place in range(min(answer.sizes["attractor"], squealing.LISTED)):
+        one = answer.isel(attractor=place)
+        if Verdict(int(one.motion)) is Verdict.quiet:
+            continue
+        rows = [
+            {
+                "name": str(contact),
+                "open": _percent(float(at.separated_fraction)),
+                "stick": _percent(float(at.stick_fraction)),
+                "force": number(float(at.peak_force)),
+                "impacts": number(float(at.impacts_per_period)),
+                "speed": engineering(float(at.contact_velocity_rms), "m s-1"),
+            }
+            for contact in one.contact.values
+            for at in [one.sel(contact=contact)]
+        ]
+        tables.append(
+            {
+                "title": f"Motion {len(tables) + 1}, at "
+                f"{engineering(float(one.dominant_frequency), 'Hz')}",
+                "rows": rows,
+            }
+        )
+    return tables
+
+
+def structure(modes: xr.Dataset, answer: xr.Dataset) -> dict[str, Any]:
+    """What was run: size, friction, contacts."""
+    whole = json.loads(modes.attrs["parameters"])
+    static = whole["mu_static"]
+    damping = np.atleast_1d(whole["modal_damping"])
+    ratios = {float(ratio) for ratio in damping}
+    rows = [
+        ("Degrees of freedom", str(whole["degrees_of_freedom"])),
+        ("Modes in which it was run", str(int(answer.n_modes))),
+        ("Friction mu", number(whole["mu"])),
+        ("Friction law", str(whole["friction_law"]).partition(" ")[0]),
+        ("Belt speed", engineering(whole["belt_speed"], "m s-1")),
+        (
+            "Damping ratio of modes",
+            f"{number(100 * ratios.pop())} %" if len(ratios) == 1 else "by mode",
+        ),
+    ]
+    if static is not None:
+        rows.insert(3, ("Limit of friction in stick", number(static)))
+    return {
+        "rows": [{"words": words, "value": value} for words, value in rows],
+        "contacts": [
+            {
+                "name": name,
+                "stiffness": engineering(each["stiffness"], "N m-1"),
+                "preload": engineering(each["preload"], "N"),
+                "speed": number(each["speed"]),
+            }
+            for name, each in whole["contacts"].items()
+        ],
+    }
+
+
+def not_examined(answer: xr.Dataset) -> list[str]:
+    """What the answer does not cover, in sentences."""
+    errors = [float(answer.frequency_error), float(answer.growth_rate_error)]
+    rest = [
+        "Wear, heat, the sound that is radiated, and parameters that scatter.",
+        "Starts of more energy than the preload stores in the contacts.",
+        LASTING,
+    ]
+    if max(errors) > 0:
+        rest.insert(
+            1,
+            f"What the {int(answer.n_modes)} modes leave out: of the unstable ones frequencies "
+            f"are within {_percent(errors[0])}, growth rates within {_percent(errors[1])}.",
+        )
+    if float(answer.share_undetermined) > 0:
+        rest.append("The starts that had not settled at the end of their runs.")
+    if (answer.ends_in == NO_ATTRACTOR).any():
+        rest.append("What pushes along some modes end in: they had not settled.")
+    return rest
+
+
+def _percent(share: float) -> str:
+    return f"{number(100 * share, 2)} %"

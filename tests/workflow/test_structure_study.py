@@ -1,0 +1,36 @@
+"""The study of a structure from ``init`` to the report."""
+
+import re
+
+import pytest
+import yaml
+
+from squealpipe import load
+from squealpipe.cli import run
+from squealpipe.study.report import squealing
+from tests.conftest import ROOT, run_snakemake
+
+pytestmark = [pytest.mark.release, pytest.mark.timeout(1800)]
+
+
+def test_the_report_says_its_onsets_and_its_headline(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert run(["init", "pads.yaml", "--structure"]) == 0
+    fewer = tmp_path / "fewer.yaml"
+    fewer.write_text(yaml.safe_dump({"structure": {"samples": 4}}))
+    configs = [str(tmp_path / "pads.yaml"), str(fewer)]
+    words = ["--directory", str(tmp_path), "--configfile", *configs]
+    done = run_snakemake(ROOT, *words, "--cores", "1", "--quiet", "all")
+    assert done.returncode == 0, done.stderr[-3000:]
+    results = tmp_path / "results/pads"
+    page = (results / "report/index.html").read_text(encoding="utf-8")
+    text = " ".join(re.sub(r"<[^>]+>", " ", page).split())
+    told = load(results / "data/structure/squeal.nc")
+    assert told.sizes["sample"] == 4
+    for sentence in (*squealing.lines(told), squealing.level(told)):
+        assert sentence in text
+    for onset in ("mu = 0.29 on", "0.2901", "mu = 0.408 on", "0.4077"):
+        assert onset in text
+    assert " nan" not in text
+    assert "None" not in text
+    assert (results / "report/report.pdf").stat().st_size > 1000

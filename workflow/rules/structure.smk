@@ -1,0 +1,27 @@
+"""A study of a structure (``structure:``): its complex modes, and which of them squeal."""
+
+from squealpipe.rerun.key import files_named_in
+
+STRUCTURE = settings("structure")
+
+if workflow.is_main_process:  # jobs need not check again: the import takes a second
+    from squealpipe.config.mistakes import ConfigError
+    from squealpipe.execution.structure_study import read_structure
+
+    try:
+        read_structure(STRUCTURE["structure"])
+    except (ValueError, FileNotFoundError) as fault:
+        raise ConfigError([str(fault)]) from fault
+
+
+rule analyse_structure:
+    input:
+        files=sorted(set(files_named_in(STRUCTURE))),
+    output:
+        modes=data("structure/modes"),
+        squeal=data("structure/squeal"),
+    params:
+        settings=STRUCTURE,
+    threads: workflow.cores
+    script:
+        "../scripts/structure/analyse_structure.py"
