@@ -155,7 +155,8 @@ def test_one_meaning_has_one_slice(written, first, second):
 def test_default_values_are_those_of_the_paper_file():
     assert read_study(PAPER) == Study()
     written = flat(yaml.safe_load(PAPER.read_text()))
-    assert written.keys() == flat(Study().model_dump(mode="json")).keys()
+    shown = Study().model_dump(mode="json", exclude={"structure"})  # a study of its own
+    assert written.keys() == flat(shown).keys()
 
 
 def test_json_schema_is_generated_from_the_types():

@@ -25,6 +25,7 @@ def elastic_pad(
     elements: tuple[Natural, Natural] = (24, 6),
     contacts: Natural = 4,
     *,
+    young: Positive = YOUNG,
     contact_stiffness: Positive = 8e8,
     preload: NotNegative = 800.0,
     mu: NotNegative = 0.5,
@@ -41,6 +42,7 @@ def elastic_pad(
         elements: along and across.
         contacts: points ``p1``… equally spaced from edge to edge, ``p1`` at x = 0, which the belt
             meets first; a single one is in the middle. Between nodes a point has both.
+        young: modulus of elasticity, Pa.
         contact_stiffness, preload: of all points together, N/m and N.
         mu, belt_speed, modal_damping: as of :class:`Structure`.
 
@@ -54,8 +56,8 @@ def elastic_pad(
         raise ValueError(
             f"contacts = {contacts}: at most {elements[0] + 1}, one a node, are independent"
         )
-    first = YOUNG * POISSON / ((1 + POISSON) * (1 - 2 * POISSON))
-    shear = YOUNG / (2 * (1 + POISSON))
+    first = young * POISSON / ((1 + POISSON) * (1 - 2 * POISSON))
+    shear = young / (2 * (1 + POISSON))
 
     @BilinearForm
     def elasticity(u: Any, v: Any, _: Any) -> Any:

@@ -1,6 +1,7 @@
 """Which unstable modes squeal, against an integrator apart and what is known without one."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -70,7 +71,10 @@ def test_modes_attractors_and_words_agree(answer, tmp_path):
     assert "Hammers at" in text
     assert f"{int(answer.sizes['sample'])} random starts" in text
     # a push may leave steady sliding although none of its modes is unstable
-    assert headline(answer.isel(mode=slice(0))) == headline(answer)
+    told = headline(answer.isel(mode=slice(0)))
+    assert (
+        told == re.sub(r", nearest to [^:]*", "", headline(answer)) != headline(answer)
+    )
     assert f"peak {float(answer.velocity_peak[0]):.3g} m/s" in text
     save(answer, tmp_path / "squeal.nc")
     assert load(tmp_path / "squeal.nc").drop_attrs().identical(answer.drop_attrs())
