@@ -15,7 +15,7 @@ from squealpipe.plotting.modes import draw_modes
 from squealpipe.plotting.modes import figure as modes_figure
 from squealpipe.plotting.propensity import draw_shares
 from squealpipe.plotting.propensity import figure as propensity_figure
-from squealpipe.plotting.quantities import SHOWN, draw_quantity, mark_changed, shown
+from squealpipe.plotting.quantities import draw_quantity, mark_changed, shown
 from squealpipe.plotting.run import draw_force, draw_spectrum, draw_spectrum_in_hertz
 from squealpipe.plotting.run import figure as run_figure
 from squealpipe.plotting.squealing import draw_poles
@@ -49,7 +49,7 @@ DRAWN: dict[str, Callable[[Axes, xr.Dataset], None]] = {
     SYSTEM + "cycle branch": draw_branch,
     SYSTEM + "cycle curve": draw_curves,
 }
-"""Schema → what draws it; :data:`~squealpipe.plotting.quantities.SHOWN` has the others."""
+"""Schema → what draws it; :data:`squealpipe.plotting.quantities.SHOWN` has the others."""
 
 FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
     "assess": assess_figure,
@@ -135,12 +135,12 @@ def _draw(axes: Axes, dataset: xr.Dataset, variable: str | None) -> None:
     if variable is None and "schema" not in dataset.attrs:
         variable = _first_drawable(dataset)
     if variable not in dataset:
-        known = ", ".join(sorted([*DRAWN, *SHOWN]))
+        there = ", ".join(map(str, dataset.data_vars)) or "none"
         raise ValueError(
-            f"{schema} has no picture of its own (there are those of {known}); name a variable "
-            f"of it: {', '.join(map(str, dataset.data_vars))}"
+            f"{schema} has no picture of its own; name one of its variables with variable "
+            f"(--variable): {there}"
             if variable is None
-            else f"variable = {variable!r}: {schema} has {', '.join(map(str, dataset.data_vars))}"
+            else f"variable = {variable!r}: {schema} has {there}"
         )
     draw_quantity(axes, dataset[variable])
 

@@ -8,6 +8,8 @@ from pathlib import Path
 import pandas as pd
 import xarray as xr
 
+from squealpipe.laws.numerals import decimal_sign, numeral
+from squealpipe.laws.rows import text_rows
 from squealpipe.store.netcdf import DAMAGED, MARK, load
 from squealpipe.store.whole_files import StoreError
 
@@ -46,7 +48,10 @@ def load_any(path: str | os.PathLike[str]) -> xr.Dataset:
 def _table(path: Path) -> xr.Dataset:
     """The columns of a table over its first one, or over its rows where that repeats values."""
     try:
-        frame = pd.read_csv(path, comment="#", skipinitialspace=True)
+        separator, decimal = _signs(path)
+        frame = pd.read_csv(
+            path, sep=separator, decimal=decimal, comment="#", skipinitialspace=True
+        )
     except ValueError as error:  # as which pandas reports what is no table
         raise StoreError(
             f"{path} is no table of columns with a name in the first line ({error})"
@@ -65,3 +70,23 @@ def _table(path: Path) -> xr.Dataset:
         if variable.dtype == object:
             variable.values = variable.values.astype(str)
     return dataset
+
+
+def _signs(path: Path) -> tuple[str, str]:
+    """What separates the cells of a table, and its decimal sign.
+
+    Raises:
+        ValueError: a comma of some number is decimal or separates thousands.
+    """
+    table = text_rows(path)
+    if table.separator == ",":
+        return ",", "."
+    numbers = [
+        (f"row {row}", number.text)
+        for row, cells in table.rows
+        for cell in cells
+        if (number := numeral(cell)) is not None
+    ]
+    comma = decimal_sign(numbers, table.separator) == "comma"
+    blanks = table.separator == " "
+    return (r"\s+" if blanks else table.separator), ("," if comma else ".")

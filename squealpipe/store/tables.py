@@ -66,7 +66,8 @@ def convert(dataset: xr.Dataset, path: AnyPath) -> list[Path]:
         )
         with whole_file(files[-1]) as temporary:
             if target.suffix == ".csv":
-                _write_csv(dataset, frame, temporary, with_numbers=not place)
+                head = _head_of_csv(dataset, frame, target, with_numbers=not place)
+                _write_csv(head, frame, temporary)
             else:
                 frame.attrs = _about(dataset)
                 frame.rename(columns=lambda name: _header(dataset, name)).to_parquet(
@@ -92,15 +93,21 @@ def _tables(dataset: xr.Dataset) -> dict[tuple[str, ...], pd.DataFrame]:
     }
 
 
-def _write_csv(
-    dataset: xr.Dataset, frame: pd.DataFrame, path: Path, *, with_numbers: bool
-) -> None:
+def _head_of_csv(
+    dataset: xr.Dataset, frame: pd.DataFrame, target: Path, *, with_numbers: bool
+) -> list[str]:
     columns = ", ".join(_header(dataset, name) for name in frame.columns)
     about = _about(dataset)
-    head = [f"# {about.pop('title', path.stem)}", f"# columns: {columns}"]
+    head = [f"# {about.pop('title', target.stem)}", f"# columns: {columns}"]
     if with_numbers:
         head += [f"# {name} = {value}" for name, value in _numbers(dataset).items()]
-    head += [f"# {key}: {' '.join(text.split())}" for key, text in about.items()]
+    return [
+        *head,
+        *(f"# {key}: {' '.join(text.split())}" for key, text in about.items()),
+    ]
+
+
+def _write_csv(head: list[str], frame: pd.DataFrame, path: Path) -> None:
     with path.open("w", encoding="utf-8", newline="") as file:
         file.write("\n".join(head) + "\n")
         frame.to_csv(file, index=False)

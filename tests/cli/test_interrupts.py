@@ -140,8 +140,10 @@ def test_workers_end_with_a_killed_sweep(tmp_path):
     command = [sys.executable, "-m", "squealpipe", *LONG["sweep"]]
     with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.DEVNULL) as sweep:
         process = psutil.Process(sweep.pid)
-        wait_until(lambda: len(process.children()) >= 2, 60)
-        workers = [child.pid for child in process.children()]
-        time.sleep(1.0)
-        sweep.kill()
+        try:
+            wait_until(lambda: len(process.children()) >= 2, 120)
+            workers = [child.pid for child in process.children()]
+            time.sleep(1.0)
+        finally:  # or it would be waited for
+            sweep.kill()
     wait_until(lambda: not any(map(lives, workers)), 5)
