@@ -1,6 +1,7 @@
 """The import closure: every way to import counts, types-only imports do not."""
 
 import json
+import re
 import time
 from pathlib import Path
 
@@ -145,7 +146,13 @@ def test_result_of_code_that_changed_meanwhile_is_not_published(tmp_path, monkey
     picture = tmp_path / "fig06.png"
     picture.write_bytes(b"picture")
     monkeypatch.setenv(STARTED, "0")
-    with pytest.raises(RuntimeError, match=r"key\.py.*changed while it was computed"):
-        state_key(picture, "0" * 16)
+    with pytest.raises(
+        RuntimeError, match=r"changed in .* while it was computed"
+    ) as told:
+        state_key(picture, "0" * 16)  # a new installation changes all files
+    assert "written: squealpipe/__init__.py, squealpipe/" in str(told.value)
+    assert re.search(r" and \d+ more changed", str(told.value))
+    assert len(str(told.value)) < 500
+    assert "a new installation; run the same command again" in str(told.value)
     monkeypatch.setenv(STARTED, str(time.time()))
     state_key(picture, "0" * 16)

@@ -1,5 +1,6 @@
 """One look for every figure: sizes, colours, angle axes, and how files are written."""
 
+import io
 import math
 import os
 from collections.abc import Iterable, Sequence
@@ -301,5 +302,7 @@ def save_figure(
         metadata = (
             {"Date": None} if path.suffix == ".svg" else {"Software": "squealpipe"}
         )
+        content = io.BytesIO()  # on a full disk a PDF is closed with an error of zlib
+        figure.savefig(content, format=path.suffix[1:], metadata=metadata, dpi=dots)
         with whole_file(path) as temporary:
-            figure.savefig(temporary, metadata=metadata, dpi=dots)
+            temporary.write_bytes(content.getvalue())

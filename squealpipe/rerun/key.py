@@ -32,6 +32,9 @@ STARTED = "SQUEALPIPE_STARTED"
 PLAN = "SQUEALPIPE_PLAN"
 """Environment variable with the file into which the workflow writes what its results should be."""
 
+SHOWN = 3
+"""Names of files that a message has at most."""
+
 MARK = b"squealpipe key: "
 
 COMMENTS = dict.fromkeys((".svg", ".html"), (b"\n<!-- ", b" -->\n"))
@@ -117,14 +120,16 @@ def refuse_edited(output: str | os.PathLike[str]) -> None:
             }
     now = time.time()  # a file dated later has another clock's date, not one of an edit
     edited = [
-        path.name
+        path.relative_to(PACKAGE.parent).as_posix()
         for path in sorted(own)
         if not path.exists() or started < path.stat().st_mtime <= now
     ]
     if edited:
+        more = f" and {len(edited) - SHOWN} more" if len(edited) > SHOWN else ""
         raise RuntimeError(
-            f"{output} is not written: {', '.join(edited)} changed while it was computed; "
-            "run snakemake again"
+            f"{output} is not written: {', '.join(edited[:SHOWN])}{more} changed in "
+            f"{PACKAGE.parent} while it was computed, by an edit or a new installation; "
+            "run the same command again"
         )
 
 

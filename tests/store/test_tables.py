@@ -13,7 +13,6 @@ from scipy.io import loadmat
 
 from squealpipe import convert, save, simulate
 from squealpipe.cli import run as command
-from squealpipe.store import StoreError
 from squealpipe.systems.shipped.impact_oscillator import impact_oscillator
 from tests.former import FORMER
 
@@ -177,18 +176,25 @@ def test_command_draws_and_converts_a_system_of_ones_own(tmp_path, monkeypatch, 
     assert "x [m]" in (tmp_path / "own.csv").read_text()
 
 
-def test_a_full_disk_ends_a_workbook_in_one_message(motion, tmp_path, monkeypatch):
-    """A zip file that is half written complains again when it is thrown away."""
+def test_a_full_disk_ends_a_workbook_and_a_picture_in_one_message(
+    motion, tmp_path, monkeypatch, capsys
+):
+    """Half a zip file complains again when it is thrown away, half a PDF when it is closed."""
     later: list[object] = []
     monkeypatch.setattr("sys.unraisablehook", later.append)
-    mount = ["mount", "-t", "tmpfs", "-o", "size=8k", "tmpfs", tmp_path]
+    monkeypatch.chdir(tmp_path)
+    save(motion, tmp_path / "run.nc")
+    full = tmp_path / "full"
+    full.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=8k", "tmpfs", full]
     if subprocess.run(mount, capture_output=True, check=False).returncode:
         pytest.skip("a small file system cannot be mounted here (needs root)")
     try:
-        with pytest.raises(StoreError, match="free space or fix permissions"):
-            convert(motion, tmp_path / "run.xlsx")
+        for words in ("convert run.nc -o full/run.xlsx", "plot run.nc -o full/run.pdf"):
+            assert command(words.split()) == 2
+            assert "free space or fix permissions" in capsys.readouterr().err
         gc.collect()
-        assert not list(tmp_path.iterdir())
+        assert not list(full.iterdir())
     finally:
-        subprocess.run(["umount", "-l", tmp_path], check=True)
+        subprocess.run(["umount", "-l", full], check=True)
     assert not later
