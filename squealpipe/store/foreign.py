@@ -78,7 +78,7 @@ def _signs(path: Path) -> tuple[str, str]:
     Raises:
         ValueError: a comma of some number is decimal or separates thousands.
     """
-    table = text_rows(path)
+    table = text_rows(path, is_header=lambda _: False)  # comments are left out
     if table.separator == ",":
         return ",", "."
     numbers = [
