@@ -1,5 +1,6 @@
 """Functions that laws need besides + − × and ``**``, for every kind of number."""
 
+import cmath
 import math
 from functools import singledispatch
 from typing import Any
@@ -14,3 +15,4 @@ def exp(value: Any) -> Any:
 
 
 exp.register(float, math.exp)
+exp.register(complex, cmath.exp)

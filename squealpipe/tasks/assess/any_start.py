@@ -3,14 +3,14 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 from typing import Self
 
 import numpy as np
 
-from squealpipe.schema.assess import Verdict
 from squealpipe.tasks.assess.designs import Cure
 from squealpipe.tasks.assess.search import Side, Test, bisect, nearer, thinned
-from squealpipe.tasks.assess.settling import Start, settle, start_at
+from squealpipe.tasks.assess.settling import MOST, Start, settle, start_at
 from squealpipe.tasks.assess.sliding import Design, Sliding
 
 LOCATED_ANY = 1e-2
@@ -19,6 +19,9 @@ LOCATED_ANY = 1e-2
 ALONG = 0.95
 """How far towards ``quiet_from``, over the whole way, a lasting motion is led before it is followed
 in small steps."""
+
+FADES = 6.0
+"""Decay of a strike until it is as small as a push, in logarithm."""
 
 MOST_MOTIONS = 2
 """Motions of a side that are followed at most."""
@@ -61,8 +64,25 @@ def any_start(
         side.rungs = thinned(outer)
         if not quiet:
             side.rungs = [side.beyond(side.inner, LOCATED_ANY), *side.rungs[1:]]
+        elif math.isnan(side.exact):
+            side.rungs = _shown(side)
     climbed = _climb(sides, quiet=quiet, always=always, test=test, follow=follow)
     return nearer(cures, climbed)
+
+
+def _shown(side: Side) -> list[float]:
+    """Values up to the first at which strikes decay too slowly to be told from what lasts."""
+
+    def is_slow(value: float) -> bool:
+        design = side.cure.apply(value)
+        sliding = Sliding.of(design)
+        if sliding is None or sliding.is_unstable:
+            return False
+        return sliding.growth_rate * design.period * MOST > -FADES
+
+    if is_slow(side.cure.value):
+        return side.rungs
+    return list(takewhile(lambda value: not is_slow(value), side.rungs))
 
 
 def _climb(
@@ -195,9 +215,7 @@ def lead(sides: Sequence[Side], nearest: dict[str, float], *, tol: float) -> Non
         ends = iter(settle(starts, tol=tol))
         for row, _ in led:
             settled = [next(ends) for _ in sides[row].motions]
-            lasting = [
-                each.last.final for each in settled if each.verdict is not Verdict.quiet
-            ]
+            lasting = [each.last.final for each in settled if each.lasts]
             quiet_from = nearest[sides[row].name]
             near = sides[row].scale(LOCATED_ANY, quiet_from)
             sides[row].motions = lasting or sides[row].motions
@@ -236,7 +254,7 @@ def dies_out_always(
         for row, settled in zip(
             owners, settle(starts, tol=tol) if starts else [], strict=True
         ):
-            if settled.verdict is not Verdict.quiet:
+            if settled.lasts:
                 lasting.setdefault(row, []).append(settled.last.final)
         for row, states in lasting.items():
             found[row], sides[row].motions = False, states[:MOST_MOTIONS]

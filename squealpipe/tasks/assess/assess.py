@@ -19,6 +19,9 @@ from squealpipe.tasks.assess.sliding import Design, Sliding
 from squealpipe.tasks.linear.maps import stability_map
 from squealpipe.validation import Angle, Tolerance
 
+SEARCHED = 1e-9
+"""Tolerance of the runs that search boundaries, which are located far more coarsely."""
+
 
 @recorded(model="A1", method="Taylor series with located events")
 def assess(
@@ -57,10 +60,11 @@ def assess(
     others = [each for each in settled if each.verdict is not Verdict.quiet]
     scalars, pictured = levels(design, of_verdict, sliding, tol=tol)
     sudden_scalars, _ = levels(design, of_sudden, sliding, tol=tol)
+    coarse = max(tol, SEARCHED)
     cures = boundaries(
-        design, of_verdict.verdict, [each.last.final for each in others[:2]], tol=tol
+        design, of_verdict.verdict, [each.last.final for each in others[:2]], tol=coarse
     )
-    nearest = nearest_angles(design, of_verdict.verdict, tol=tol)
+    nearest = nearest_angles(design, of_verdict.verdict, tol=coarse)
     outcome = Outcome.converged
     if of_verdict.verdict is Verdict.undetermined:
         outcome = Outcome.unresolved

@@ -18,8 +18,6 @@ from squealpipe.validation import Angles, Tolerance, Workers
 
 MOST = 1600.0
 """Periods after which a cell that has not settled is undetermined."""
-SAMPLES = 512
-"""States of each window."""
 GROWN = 30.0
 """Factor of the push where small motions grow: they would pass there anyhow."""
 
@@ -48,7 +46,7 @@ def verdict_map(
             designs = [Design(params, float(alpha1[row]), float(b)) for b in alpha2]
             slides = [Sliding.of(design) for design in designs]
             starts = [_start(*each) for each in zip(designs, slides, strict=True)]
-            settled = settle(starts, tol=tol, most=MOST, samples=SAMPLES)
+            settled = settle(starts, tol=tol, most=MOST)
             arrays["verdict"][cells] = [each.verdict for each in settled]
             arrays["mechanism"][cells] = [
                 Mechanism.no_sliding_state if each is None else each.mechanism

@@ -9,8 +9,10 @@ runs bisect. All sides are tested side by side in one ensemble.
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
+from scipy.optimize import brentq
 
 from squealpipe.tasks.assess.designs import Cure
 from squealpipe.tasks.assess.sliding import Sliding
@@ -24,8 +26,8 @@ LEAST = 1e-3
 RUNGS = 8
 """Values beyond the linear boundary that are run at most."""
 
-HALVINGS = 50
-"""Bisections of the linear boundary."""
+ROOT = 1e-14
+"""To which the linear boundary is located, relatively."""
 
 
 @dataclass
@@ -123,15 +125,10 @@ def search(sides: list[Side], quiet: bool, test: Test, located: float) -> list[S
 
 def _plan(side: Side, quiet: bool, located: float) -> None:
     """The linear boundary of a side, and the values that are to be run."""
-
-    def stable(value: float) -> bool:
-        sliding = Sliding.of(side.cure.apply(value))
-        return sliding is not None and not sliding.is_unstable
-
-    now = stable(side.inner)
+    now = _is_stable(side, side.inner)
     flags = []
     for value in side.values:
-        flags.append(stable(float(value)))
+        flags.append(_is_stable(side, float(value)))
         if quiet and not flags[-1]:
             break
         if not quiet and len(flags) > 1 and flags[-2] and not flags[-1]:
@@ -142,7 +139,7 @@ def _plan(side: Side, quiet: bool, located: float) -> None:
             side.rungs = thinned(reached)
             return
         low = float(reached[-2]) if len(reached) > 1 else side.inner
-        kept, side.exact = _halve(stable, low, float(reached[-1]))
+        kept, side.exact = _locate(side, low, float(reached[-1]))
         back = kept - math.copysign(side.scale(located, kept), kept - side.inner)
         beyond = (back - side.inner) * (kept - side.inner) > 0
         side.rungs = [back if beyond else 0.5 * (side.inner + kept)]
@@ -157,27 +154,44 @@ def _plan(side: Side, quiet: bool, located: float) -> None:
         return
     first = int(steady[0])
     low = float(reached[first - 1]) if first else side.inner
-    _, side.exact = _halve(stable, low, float(reached[first]))
+    _, side.exact = _locate(side, low, float(reached[first]))
     check = side.beyond(side.exact, located)
     side.inner = side.exact
     rest = [v for v in outer if abs(v - side.cure.value) > abs(check - side.cure.value)]
     side.rungs = [check, *thinned(np.array(rest))]
 
 
-def _halve(
-    stable: Callable[[float], bool], inner: float, outer: float
-) -> tuple[float, float]:
-    """The last value like the inner one and the first like the outer one."""
-    like = stable(inner)
-    for _ in range(HALVINGS):
-        middle = 0.5 * (inner + outer)
-        if middle in (inner, outer):
-            break
-        if stable(middle) == like:
-            inner = middle
-        else:
-            outer = middle
-    return inner, outer
+def _locate(side: Side, inner: float, outer: float) -> tuple[float, float]:
+    """The last value like the inner one and the first like the outer one, round-off apart.
+
+    Where the growth rate crosses zero (Brent's method, which bisects where it jumps).
+    """
+    ends, signs = [inner, outer], [_is_stable(side, end) for end in (inner, outer)]
+    if signs[0] == signs[1]:
+        return outer, outer
+    near = ROOT * abs(outer - inner)
+    root = brentq(partial(_margin, side), inner, outer, xtol=near, rtol=ROOT)
+    for at, end in enumerate(ends):
+        step = near + ROOT * abs(root)
+        value = root
+        while value != end and _is_stable(side, value) != signs[at]:
+            way = min(step, abs(end - root))
+            value, step = root + math.copysign(way, end - root), 4.0 * step
+        ends[at] = value
+    return ends[0], ends[1]
+
+
+def _margin(side: Side, value: float) -> float:
+    """By how much small motions grow faster than round-off, 1/s; positive without any sliding."""
+    design = side.cure.apply(value)
+    sliding = Sliding.of(design)
+    if sliding is None:
+        return design.rate
+    return sliding.growth_rate - sliding.marginal
+
+
+def _is_stable(side: Side, value: float) -> bool:
+    return _margin(side, value) <= 0.0
 
 
 def thinned(values: np.ndarray) -> list[float]:

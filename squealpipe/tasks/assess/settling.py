@@ -14,7 +14,7 @@ import numpy as np
 from squealpipe.models.damped import is_undamped
 from squealpipe.schema.assess import Verdict
 from squealpipe.tasks.assess.sliding import Design, Sliding
-from squealpipe.tasks.assess.windows import SAMPLES, Windows, run_windows
+from squealpipe.tasks.assess.windows import Windows, run_windows
 
 PUSH = 0.01
 """Push of steady sliding, over the static compression."""
@@ -81,6 +81,16 @@ class Settled:
     last: Windows
     time: float
 
+    @property
+    def lasts(self) -> bool:
+        """Whether a motion is known to last, or has at least not lost its events by the horizon.
+
+        What slides in contact by then, and has only not become small, dies out with small motions.
+        """
+        if self.verdict is Verdict.undetermined:
+            return bool(self.last.nonlinear or not self.last.finished)
+        return self.verdict is not Verdict.quiet
+
 
 def pushed(design: Design, sliding: Sliding) -> Start:
     """Steady sliding, pushed in the direction in which small motions grow fastest."""
@@ -102,9 +112,7 @@ def start_at(design: Design, sliding: Sliding | None, state: np.ndarray) -> Star
     return Start(design, np.asarray(state, float), sliding, speed)
 
 
-def settle(
-    starts: Sequence[Start], *, tol: float, most: float = MOST, samples: int = SAMPLES
-) -> list[Settled]:
+def settle(starts: Sequence[Start], *, tol: float, most: float = MOST) -> list[Settled]:
     """Run each start until it has settled, ``most`` periods at most."""
     found: dict[int, Settled] = {}
     states = np.array([start.state for start in starts])
@@ -115,7 +123,7 @@ def settle(
     while rows := [row for row in range(len(starts)) if row not in found]:
         seconds = length[rows] * period[rows]
         designs = [starts[row].design for row in rows]
-        windows = run_windows(designs, states[rows], seconds, tol=tol, samples=samples)
+        windows = run_windows(designs, states[rows], seconds, tol=tol)
         elapsed[rows] += length[rows]
         for at, row in enumerate(rows):
             now, start = windows.row(at), starts[row]
@@ -126,6 +134,8 @@ def settle(
             length[row] = min(length[row], most - elapsed[row])
             if verdict is None and (elapsed[row] >= most or not now.finished):
                 verdict = Verdict.undetermined
+                if now.finished and _decays(start, *before[row], now, seconds[at]):
+                    verdict = Verdict.quiet  # too slowly to become small
             if verdict is not None:
                 time = float(elapsed[row] * period[row])
                 found[row] = Settled(verdict, now, time)
@@ -175,10 +185,18 @@ def _dies_out(
         return bool(decay < -SEEN and start.size(now.final) < left)
     if now.peak_speed < FADED * start.speed or start.rate == 0.0:
         return True
-    # half of what small motions decay from the middle of one window to that of the next
+    return _decays(start, before, span, now, seconds)
+
+
+def _decays(
+    start: Start, before: Windows, span: float, now: Windows, seconds: float
+) -> bool:
+    """Whether two windows without events show at least half of the decay of small motions."""
+    if start.rate >= 0.0 or before.nonlinear or now.nonlinear:
+        return False
+    # from the middle of one window to that of the next
     decay = 0.5 * start.rate * 0.5 * (span + seconds)
-    quieter = np.hypot(*now.rms) < np.hypot(*before.rms) * np.exp(decay)
-    return bool(not before.nonlinear and quieter)
+    return bool(np.hypot(*now.rms) < np.hypot(*before.rms) * np.exp(decay))
 
 
 def _agree(before: Windows, now: Windows) -> bool:

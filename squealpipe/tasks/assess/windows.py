@@ -12,8 +12,8 @@ from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import PEAK, REACH, Ensemble, run_ensemble
 from squealpipe.tasks.assess.sliding import Design
 
-SAMPLES = 2048
-"""States of a window, if no other number is asked for."""
+SAMPLES = 512
+"""States of a window from which its mean squares are formed."""
 NUMBERS = tuple(
     name
     for name, row in TABLE.items()
@@ -54,24 +54,18 @@ class Windows:
 
 
 def run_windows(
-    designs: Sequence[Design],
-    starts: np.ndarray,
-    lengths: np.ndarray,
-    *,
-    tol: float,
-    samples: int = SAMPLES,
+    designs: Sequence[Design], starts: np.ndarray, lengths: np.ndarray, *, tol: float
 ) -> Windows:
     """Run each design from its start for its length of time.
 
     Args:
         starts: (runs, 4), m and m/s.
         lengths: (runs,), s.
-        samples: states of each window from which its mean squares are formed.
     """
     parts: dict[str, np.ndarray] = {}
     for rows in _alike(designs):
         run = _ensemble(
-            [designs[row] for row in rows], starts[rows], lengths[rows], tol, samples
+            [designs[row] for row in rows], starts[rows], lengths[rows], tol
         )
         for name, values in vars(_statistics(run, lengths[rows])).items():
             whole = parts.setdefault(
@@ -93,11 +87,7 @@ def _alike(designs: Sequence[Design]) -> list[np.ndarray]:
 
 
 def _ensemble(
-    designs: Sequence[Design],
-    starts: np.ndarray,
-    lengths: np.ndarray,
-    tol: float,
-    samples: int,
+    designs: Sequence[Design], starts: np.ndarray, lengths: np.ndarray, tol: float
 ) -> Ensemble:
     params = [design.params for design in designs]
     given: dict[str, Any] = {
@@ -111,7 +101,7 @@ def _ensemble(
         np.array([design.alpha1 for design in designs]),
         np.array([design.alpha2 for design in designs]),
         t_end=lengths,
-        times=lengths[:, None] * np.linspace(0.0, 1.0, samples + 1)[1:],
+        times=lengths[:, None] * np.linspace(0.0, 1.0, SAMPLES + 1)[1:],
         initial_state=starts,
         tol=tol,
         tracked=(PEAK, REACH),
@@ -120,11 +110,13 @@ def _ensemble(
 
 
 def _statistics(run: Ensemble, lengths: np.ndarray) -> Windows:
-    velocity = run.samples[..., 2:]
+    # a run that ends early has no states from there on
+    known = np.isfinite(run.samples[..., 2:])
+    square = np.where(known, run.samples[..., 2:], 0.0) ** 2
     return Windows(
         final=run.final_state,
-        rms=np.sqrt(np.nanmean(velocity**2, axis=1)),
-        peak_speed=np.sqrt(np.nanmax((velocity**2).sum(axis=-1), axis=1)),
+        rms=np.sqrt(square.sum(axis=1) / np.maximum(known.sum(axis=1), 1)),
+        peak_speed=np.sqrt(square.sum(axis=-1).max(axis=1)),
         separated=run.separated_time / lengths,
         stuck=run.stick_time / lengths,
         separations=run.separations,

@@ -8,6 +8,7 @@ import pytest
 from squealpipe import Parameters, Sweep, assess, load, run_sweep, save, stability_map
 from squealpipe.schema.assess import CURES, Mechanism, Verdict
 from squealpipe.tasks.assess.designs import cures_of
+from squealpipe.tasks.assess.levels import levels
 from squealpipe.tasks.assess.settling import _judge, pushed, settle, start_at
 from squealpipe.tasks.assess.sliding import Design, Sliding
 from squealpipe.tasks.assess.windows import run_windows
@@ -28,8 +29,20 @@ def hammering():
 
 
 @pytest.fixture(scope="module")
-def squealing():
-    return assess(PAD, *SQUEAL)
+def swept(tmp_path_factory):
+    sweep = Sweep(
+        task="assess",
+        params=PAD,
+        vary={"belt_speed": [0.0, 2.0]},
+        fixed={"alpha1": SQUEAL[0], "alpha2": SQUEAL[1]},
+    )
+    path = tmp_path_factory.mktemp("assess") / "swept.nc"
+    return load(save(run_sweep(sweep, workers=1), path))
+
+
+@pytest.fixture(scope="module")
+def squealing(swept):
+    return swept.sel(belt_speed=2.0)
 
 
 def test_a_pad_that_hammers(hammering):
@@ -84,7 +97,7 @@ def test_the_boundary_of_a_cure_has_noise_on_one_side_and_none_on_the_other(
         design = Design(Parameters(**changed), *SQUEAL)
         start = pushed(design, Sliding.of(design)).state
         size = np.hypot(*(start - Sliding.of(design).state)[:2])
-        run = Pad(changed, *SQUEAL).run(start, 0.4, 0.35, tol=1e-10)
+        run = Pad(changed, *SQUEAL).run(start, 0.15, 0.1, tol=1e-9)
         late = np.abs(run.velocity[0]).max() / (
             size * 2 * math.pi * float(squealing.frequency)
         )
@@ -132,6 +145,8 @@ def test_without_friction_it_is_quiet_and_the_margin_is_where_it_starts():
     assert float(quiet.growth_rate) < 0.0
     onset = float(quiet.quiet_from.sel(cure="mu"))
     assert onset > 0.05
+    # strikes die out with any damping, though ever more slowly
+    assert np.isnan(quiet.quiet_from_any_start.sel(cure="damping"))
     for mu, sign in ((onset * 1.02, 1.0), (onset * 0.98, -1.0)):
         growth = stability_map(damped.with_(mu=mu), HAMMER[:1], HAMMER[1:]).growth_rate
         assert growth.item() * sign > 0.0
@@ -203,8 +218,30 @@ def test_a_long_window_that_begins_loud_and_ends_small_is_quiet():
     window = run_windows([design], start.state[None], np.array([seconds]), tol=1e-9)
     now = window.row(0)
     assert not now.nonlinear
-    assert now.peak_speed > 20.0 * start.speed
+    assert now.peak_speed > 15.0 * start.speed
     assert _judge(start, now, seconds, now, seconds) is Verdict.quiet
+
+
+def test_what_decays_as_small_motions_do_is_quiet_though_the_horizon_ends_before():
+    pad = PAD.with_(mu=0.1, mu_static=None, friction_law="coulomb")
+    design = Design(pad, math.radians(60), math.radians(60))
+    sliding = Sliding.of(design)
+    loud = 0.3 * (pad.preload - sliding.state[1]) * sliding.push
+    start = start_at(design, sliding, sliding.state + loud)
+    most = 1.2 / abs(sliding.growth_rate) / design.period
+    (settled,) = settle([start], tol=1e-9, most=most)
+    assert settled.verdict is Verdict.quiet
+    assert settled.last.peak_speed > 10.0 * start.speed
+    assert settled.time == pytest.approx(most * design.period)
+
+
+def test_a_run_that_ends_at_once_is_undetermined_without_a_warning(recwarn):
+    design = Design(PAD, 0.0, math.radians(2.0))
+    pivot = np.array([PAD.length1, 0.0, 0.0, 0.0])
+    (settled,) = settle([start_at(design, None, pivot)], tol=1e-9, most=100.0)
+    assert settled.verdict is Verdict.undetermined
+    assert not settled.last.finished
+    assert not recwarn.list
 
 
 def test_an_undamped_brake_is_quiet_where_a_push_stays_small():
@@ -227,14 +264,32 @@ def test_a_cure_at_the_present_value_changes_nothing(cure):
     )
 
 
-def test_a_measured_table_gives_the_answer_of_its_law(squealing):
+def measured_pad():
+    """The pad with its law at twelve speeds."""
     speeds = np.array([0.0, 0.2, 0.5, 0.8, 1.1, 1.4, 1.7, 2.0, 2.3, 2.8, 3.5, 5.0])
     law = "cubic" + "".join(
         f" {w!r}:{0.37 + 0.18 * math.exp(-w / 1.7)!r}" for w in speeds.tolist()
     )
-    given = {k: v for k, v in NUMBERS.items() if k not in {"mu", "mu_static"}}
-    del given["friction_speed"]
-    table = assess(Parameters(**given | {"friction_law": law}), *SQUEAL)
+    law_of = {"mu", "mu_static", "friction_speed", "friction_law"}
+    given = {name: value for name, value in NUMBERS.items() if name not in law_of}
+    return Parameters(**given, friction_law=law)
+
+
+def test_a_measured_table_squeals_as_its_law_does(squealing):
+    design = Design(measured_pad(), *SQUEAL)
+    sliding = Sliding.of(design)
+    (settled,) = settle([pushed(design, sliding)], tol=1e-9)
+    found, _ = levels(design, settled, sliding, tol=1e-9)
+    assert settled.verdict is Verdict.squeals
+    assert found["frequency"] == pytest.approx(float(squealing.frequency), rel=2e-3)
+    assert found["stick_fraction"] == pytest.approx(
+        float(squealing.stick_fraction), abs=5e-3
+    )
+
+
+@pytest.mark.release
+def test_a_measured_table_gives_the_answer_of_its_law(squealing):
+    table = assess(measured_pad(), *SQUEAL)
     assert float(table.frequency) == pytest.approx(float(squealing.frequency), rel=2e-3)
     assert float(table.stick_fraction) == pytest.approx(
         float(squealing.stick_fraction), abs=5e-3
@@ -248,14 +303,7 @@ def test_a_measured_table_gives_the_answer_of_its_law(squealing):
     assert ratio == pytest.approx(float(falls.quiet_from / falls.value), rel=0.1)
 
 
-def test_it_sweeps_and_survives_a_file(tmp_path):
-    sweep = Sweep(
-        task="assess",
-        params=PAD,
-        vary={"belt_speed": [2.0, 8.0]},
-        fixed={"alpha1": SQUEAL[0], "alpha2": SQUEAL[1], "tol": 1e-9},
-    )
-    made = load(save(run_sweep(sweep, workers=1), tmp_path / "swept.nc"))
-    assert made.verdict.values.tolist() == [Verdict.squeals, Verdict.quiet]
-    assert made.change.sel(cure="mu").dims == ("belt_speed",)
-    assert float(made.quiet_from.sel(cure="mu")[0]) < PAD.mu
+def test_it_sweeps_and_survives_a_file(swept):
+    assert swept.verdict.values.tolist() == [Verdict.quiet, Verdict.squeals]
+    assert swept.change.sel(cure="mu").dims == ("belt_speed",)
+    assert float(swept.quiet_from.sel(cure="mu")[1]) < PAD.mu
