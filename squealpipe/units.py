@@ -119,7 +119,7 @@ def in_si(text: str, units: str, keys: Mapping[str, str] | None = None) -> float
     if unit is None:
         raise UnitError(f"unknown unit {match[2]!r}; {what} is needed, like {example}")
     if _cf_unit(unit, [units]) is None:
-        raise UnitError(_wrong_kind(unit, f"{what} is needed, like {example}", keys))
+        raise UnitError(_wrong_kind(unit, units, keys))
     quantity = _registry().Quantity(Decimal(match[1]), unit)
     return float(quantity.to(_pint_text(units)).magnitude)
 
@@ -266,6 +266,9 @@ def _cf_unit(unit: Any, candidates: Any) -> str | None:
         if units in {"1", "rad"}:
             if str(unit) in (PLAIN if units == "1" else TURNS):
                 return str(units)
+        elif units == "Hz":  # not rad/s, nor a rate in 1/s
+            if conversion(str(unit), units) and _names_any(unit, CYCLES):
+                return str(units)
         elif (
             unit.dimensionality
             == _registry().parse_units(_pint_text(units)).dimensionality
@@ -274,18 +277,22 @@ def _cf_unit(unit: Any, candidates: Any) -> str | None:
     return None
 
 
-def _wrong_kind(unit: Any, needed: str, keys: Mapping[str, str] | None) -> str:
+def _wrong_kind(unit: Any, units: str, keys: Mapping[str, str] | None) -> str:
     """What a unit measures, what is needed, and which inputs take what was written."""
     kind = _cf_unit(unit, QUANTITIES)
     is_kind = f"that is {QUANTITIES[kind][0]}" if kind else f"{unit} does not fit"
     if kind is None and _is_rotation(unit):
-        is_kind = (
-            "that is a rate of rotation, a speed only when multiplied by the radius"
+        becomes = (
+            "in rad/s 2π times a frequency"
+            if units == "Hz"
+            else "a speed only when multiplied by the radius"
         )
+        is_kind = f"that is a rate of rotation, {becomes}"
     takers = [name for name, units in (keys or {}).items() if kind and units == kind]
     elsewhere = (
         f"; {QUANTITIES[kind][0]} goes to {' or '.join(takers)}"
         if kind and takers
         else ""
     )
-    return f"{is_kind}; {needed}{elsewhere}"
+    what, example = QUANTITIES[units]
+    return f"{is_kind}; {what} is needed, like {example}{elsewhere}"

@@ -22,6 +22,7 @@ from pydantic import (
 )
 from xarray import Dataset
 
+from squealpipe.inputs import with_units
 from squealpipe.parameters import BEYOND_A_TURN, FULL_TURN, brief, is_whole_number
 from squealpipe.text import in_words, suggestion
 
@@ -52,8 +53,9 @@ def checked(function: Callable[Given, Result]) -> Callable[Given, Result]:
 
     @functools.wraps(function)
     def run(*args: Given.args, **kwargs: Given.kwargs) -> Result:
+        read, named = with_units(names, args, kwargs)
         try:
-            return call(*args, **kwargs)
+            return call(*read, **named)
         except ValidationError as error:
             if error.title not in (function.__name__, function.__qualname__):
                 raise

@@ -8,12 +8,12 @@ from hypothesis import strategies as st
 
 from squealpipe.config.ranges import (
     longest,
-    parse_angle,
     parse_range,
     read_fixed,
     read_values,
     sweep_config,
 )
+from squealpipe.inputs import parse_angle
 
 FORMS = {
     "0.4pi": 0.4, "2pi/5": 0.4, "72deg": 0.4, "1.25": 1.25 / math.pi, "1.25rad": 1.25 / math.pi,

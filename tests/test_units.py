@@ -1,13 +1,16 @@
 """Numbers with a unit: exact, of the right kind, or refused with what to write."""
 
 import math
+import re
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from squealpipe import Contact, Structure, simulate
 from squealpipe.config.ranges import parse_range, read_fixed, read_values
 from squealpipe.parameters import UNITS_OF_INPUTS, Parameters
 from squealpipe.units import (
@@ -163,3 +166,82 @@ def test_turns_are_counted_once(unit, other, factor):
 def test_a_growth_rate_is_no_frequency(frequency):
     assert conversion("1/s", frequency) is None
     assert conversion(frequency, "1/s") is None
+
+
+PAD = Parameters(k1=1e7, k2=1e7, k3=7e6, mass=0.45, preload=5e-4, length1=0.02)
+
+
+def test_functions_take_units():
+    in_words = simulate(
+        PAD,
+        "22 deg",
+        "0.4pi",
+        t_end="0.4 ms",
+        tol="1e-8 %",
+        initial_state=["0.1 mm", 0, 0, "3.6 km/h"],
+    )
+    in_si = simulate(
+        PAD,
+        math.radians(22.0),
+        0.4 * math.pi,
+        t_end=4e-4,
+        tol=1e-10,
+        initial_state=[1e-4, 0.0, 0.0, 1.0],
+    )
+    assert in_words.identical(in_si)
+
+
+@pytest.mark.parametrize(
+    ("asked", "says"),
+    [
+        ({"t_end": "2 mm"}, "t_end = '2 mm': that is a length; a time is needed, like"),
+        ({"t_end": "2,5 ms"}, "t_end = '2,5 ms': write a decimal point: 2.5 ms"),
+        ({"t_end": "long"}, "t_end = 'long': numbers are needed, not text"),
+        ({"alpha1": "22 mm"}, "that is a length; an angle is needed, like 22 deg"),
+        ({"times": ["1 ms", "2 mm"]}, "a length goes to preload or length1 or length2"),
+        ({"initial_state": ["1 s", 0, 0, 0]}, "that is a time; a length is needed"),
+    ],
+)
+def test_functions_name_a_quantity_of_another_kind(asked, says):
+    arguments = {"alpha1": 0.4, "alpha2": 0.8, "t_end": 1e-3} | asked
+    with pytest.raises(ValueError, match=re.escape(says)):
+        simulate(PAD, **arguments)
+
+
+def test_structures_take_units():
+    contact = Contact("pad", {0: 1.0}, {1: 1.0}, "7 kN/mm", "0.2 kN")
+    assert (contact.stiffness, contact.preload) == (7e6, 200.0)
+    pad = Structure(
+        np.eye(2),
+        1e6 * np.eye(2),
+        contacts=[contact],
+        belt_speed="7.2 km/h",
+        mu="30 %",
+        modal_damping="1 %",
+    )
+    assert (pad.belt_speed, pad.mu, pad.modal_damping) == (2.0, 0.3, 0.01)
+    assert pad.complex_modes(frequency_max="1 kHz").identical(
+        pad.complex_modes(frequency_max=1000.0)
+    )
+    with pytest.raises(ValueError, match="preload = '1 mm': that is a length; a force"):
+        Contact("pad", {0: 1.0}, {1: 1.0}, 1.0, "1 mm")
+
+
+@pytest.mark.parametrize(
+    ("text", "hertz"), [("2 kHz", 2000.0), ("50 Hz", 50.0), ("0.1 MHz", 1e5)]
+)
+def test_frequencies(text, hertz):
+    assert in_si(text, "Hz") == hertz
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("300 rad/s", "that is a rate of rotation, in rad/s 2π times a frequency"),
+        ("3 1/s", "does not fit; a frequency is needed, like 2 kHz"),
+        ("3 mm", "that is a length; a frequency is needed"),
+    ],
+)
+def test_what_is_no_frequency(text, says):
+    with pytest.raises(UnitError, match=says):
+        in_si(text, "Hz")

@@ -1,5 +1,6 @@
 """The option types that every command shares, and parameters taken from a study."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -8,7 +9,8 @@ from typing import Annotated, Any
 
 from cyclopts import Group, Parameter
 
-from squealpipe.config.ranges import parse_angle, parse_number, parse_range, reader
+from squealpipe.config.ranges import parse_range
+from squealpipe.inputs import STATE, parse_angle, parse_number, reader
 from squealpipe.parameters import SYMBOLS, Parameters
 from squealpipe.substitutes import SUBSTITUTES
 from squealpipe.units import has_unit, in_si
@@ -20,9 +22,14 @@ def _reader(read: Callable[[str], Any]) -> Callable[[Any, Sequence[Any]], Any]:
 
 
 def _parse_whole(text: str) -> int:
-    number = parse_number(text)
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
     if not number.is_integer():
-        raise ValueError(f"{text!r} is not a whole number")
+        raise ValueError(
+            f"{text!r} is not a whole number; write for instance 100, without a unit"
+        )
     return int(number)
 
 
@@ -40,7 +47,12 @@ def _signed(read: Callable[[str], Any], metavar: str, **further: Any) -> Paramet
     )
 
 
-Numbers = Annotated[list[float] | None, _signed(parse_range, "RANGE", negative="")]
+parse_share = partial(parse_number, units="1")
+"""A number without a unit, or in per cent."""
+Numbers = Annotated[
+    list[float] | None,
+    _signed(partial(parse_range, one=parse_share), "RANGE", negative=""),
+]
 """A number, a list of them or first:last:count."""
 Ranges = Annotated[list[str], Parameter(metavar="NAME=RANGE", negative="")]
 Whole = Annotated[int, Parameter(converter=_whole, metavar="INT", n_tokens=1)]
@@ -78,7 +90,20 @@ Speeds = Annotated[
     list[float] | None,
     _signed(partial(parse_range, one=reader("vx")), "RANGE", negative=""),
 ]
+Frequency = Annotated[
+    float | None, _signed(partial(parse_number, units="Hz"), "FREQUENCY", negative="")
+]
 INCH = 0.0254
+
+
+def parse_state(text: str) -> list[float]:
+    """Displacements and speeds from a text like ``0.1mm,0.2mm,0,50mm/s``."""
+    parts = text.split(",")
+    if len(parts) != len(STATE):
+        raise ValueError(
+            f"{text!r} is not a state x,y,vx,vy; write for instance 0.1mm,0.2mm,0,50mm/s"
+        )
+    return [reader(name)(part) for name, part in zip(STATE, parts, strict=True)]
 
 
 def parse_size(text: str) -> tuple[float, float]:
@@ -122,7 +147,11 @@ Units = Annotated[
         help="unit of the axes of its kind, like mm, kN or Hz; repeatable.",
     ),
 ]
-Tolerance = Annotated[float, Parameter(help="tolerance of the integration.")]
+State = Annotated[list[float] | None, _signed(parse_state, "X,Y,VX,VY", negative="")]
+Tolerance = Annotated[
+    float, _signed(parse_share, "FLOAT", help="tolerance of the integration.")
+]
+Share = Annotated[float, _signed(parse_share, "FLOAT")]
 Workers = Annotated[
     int | None,
     Parameter(converter=_whole, metavar="INT", help="processes; all cores by default."),

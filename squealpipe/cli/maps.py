@@ -16,6 +16,7 @@ from squealpipe.cli.arguments import (
     Drawn,
     Lengths,
     Output,
+    Share,
     Speeds,
     Time,
     Tolerance,
@@ -26,7 +27,7 @@ from squealpipe.cli.console import ANSWER_IS_NO, DONE, SESSION, answer
 from squealpipe.cli.motions import Model
 from squealpipe.cli.output import compute, ending
 from squealpipe.cli.signatures import options_of
-from squealpipe.config.ranges import parse_number, reader
+from squealpipe.inputs import parse_number, reader
 from squealpipe.parameters import HORIZON
 
 if TYPE_CHECKING:
@@ -187,7 +188,7 @@ def disturbance(
     leads_to: Literal["contact_lost", "whirl"],
     model: Model,
     t_end: Time | None,
-    bound: float | None,
+    bound: Share | None,
     directions: Whole,
     seed: Whole,
     tol: Tolerance,
@@ -244,7 +245,7 @@ def propensity(
     ],
     samples: Whole = 1024,
     t_end: Time | None = None,
-    spring_correlation: float,
+    spring_correlation: Share,
     seed: Whole,
     output: Output = Path("propensity.nc"),
     brake: Drawn = DRAWN,

@@ -14,18 +14,19 @@ from squealpipe.cli.arguments import (
     Angle2,
     Drawn,
     Length,
-    Numbers,
     Output,
     Speed,
+    State,
     Switch,
     Time,
     Tolerance,
     Whole,
+    parse_state,
 )
 from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer
 from squealpipe.cli.output import compute, ending
 from squealpipe.cli.signatures import options_of
-from squealpipe.config.ranges import parse_range, reader
+from squealpipe.inputs import reader
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -171,7 +172,7 @@ def cycle(
     alpha2: Angle2,
     /,
     *,
-    guess: Numbers,
+    guess: State,
     t_settle: Time | None,
     output: Output = Path("cycle.nc"),
     brake: Drawn = DRAWN,
@@ -275,7 +276,7 @@ def _start(text: str | None) -> Any:
         from squealpipe.store import load
 
         return load(text)
-    return parse_range(text)
+    return parse_state(text)
 
 
 def _special(found: xr.Dataset, values: xr.DataArray) -> Iterator[str]:

@@ -14,7 +14,7 @@ from typing import Any
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import CoreSchema, core_schema
 
-from squealpipe.config.ranges import parse_angle
+from squealpipe.inputs import parse_angle
 from squealpipe.parameters import KEYS_THAT_TAKE, Parameters
 from squealpipe.units import has_unit, number_of
 

@@ -3,92 +3,21 @@
 Both are read into one canonical form, so a sweep has one meaning wherever it stands.
 """
 
-import math
-import re
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
 from typing import Any
 
-from squealpipe.parameters import (
-    BEYOND_A_TURN,
-    FULL_TURN,
-    KEYS_THAT_TAKE,
-    TABLE,
-    UNITS_OF_INPUTS,
-)
-from squealpipe.units import UnitError, has_unit, in_si
+from squealpipe.inputs import ANGLES, parse_angle, parse_number, reader
+from squealpipe.parameters import TABLE
+from squealpipe.units import UnitError, has_unit
 
-_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
-_IN_PI = re.compile(rf"([+-]?)({_NUMBER})?\s*\*?\s*(?:pi|π)(?:/({_NUMBER}))?")
-_IN_UNITS = re.compile(rf"({_NUMBER})\s*(deg|°|rad)?")
-ANGLE_FORMS = "write 0.4pi, 2pi/5, 72deg or radians"
-ANGLES = ("alpha1", "alpha2")
 PHYSICAL = tuple(TABLE)
 NUMBERS = tuple(name for name, row in TABLE.items() if row.allowed != "law")
 """Parameters that are numbers, so that they can be swept."""
-UNITS = UNITS_OF_INPUTS | {
-    **dict.fromkeys(("t_end", "t_late", "t_settle"), "s"),
-    **dict.fromkeys(("x", "y", "x0", "y0", "y_peak"), "m"),
-    **dict.fromkeys(("y_peak_max", "x_amplitude_max"), "m"),
-    **dict.fromkeys(("vx", "vy", "vx0", "vy0"), "m s-1"),
-}
-"""CF units of parameters and of the options of tasks, whose values may be texts with a unit."""
 WHOLE = ("mode",)
 """Options that are swept over whole numbers."""
 
 MOST_VALUES = 100_000
 """A range of more values is a slip of the pen."""
-
-
-def parse_angle(text: str) -> float:
-    """An angle in rad from ``0.4pi``, ``2pi/5``, ``72deg`` or plain radians."""
-    value = _angle_in(text.strip().lower())
-    if value is None and has_unit(text):  # 0.4 mrad, or a wrong kind, which is named
-        try:
-            value = in_si(text, "rad", KEYS_THAT_TAKE)
-        except UnitError as error:
-            raise UnitError(f"{text!r}: {error}; or {ANGLE_FORMS}") from None
-    if value is None or not math.isfinite(value):
-        raise ValueError(f"{text!r} is not a valid angle; {ANGLE_FORMS}")
-    if abs(value) > FULL_TURN:
-        raise ValueError(
-            f"{text.strip()}: {BEYOND_A_TURN}; degrees are written like 72deg"
-        )
-    return value
-
-
-def _angle_in(text: str) -> float | None:
-    if match := _IN_PI.fullmatch(text):
-        sign, head, below = match.groups("1")
-        above = float(head) * (-1 if sign == "-" else 1) * math.pi
-        return above / float(below) if float(below) else None
-    if not (match := _IN_UNITS.fullmatch(text)):
-        return None
-    value = float(match[1])
-    return math.radians(value) if match[2] in {"deg", "°"} else value
-
-
-def parse_number(text: str, units: str | None = None) -> float:
-    """A finite number, or a text with a unit where CF units are given."""
-    if units is not None and has_unit(text):
-        try:
-            return in_si(text, units, KEYS_THAT_TAKE)
-        except UnitError as error:
-            raise UnitError(f"{text!r}: {error}") from None
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise ValueError(f"{text!r} is not a number; write for instance 0.3 or 1e-3")
-    return value
-
-
-def reader(name: str) -> Callable[[str], float]:
-    """What reads a text as a value of a parameter, an angle or an option."""
-    if name in ANGLES:
-        return parse_angle
-    return partial(parse_number, units=UNITS.get(name))
 
 
 def parse_range(text: str, one: Callable[[str], float] = parse_number) -> list[float]:
@@ -166,17 +95,6 @@ def read_fixed(name: str, given: object) -> Any:
     if isinstance(given, float) and given.is_integer() and abs(given) < 2**53:
         return int(given)
     return given
-
-
-def read_distribution(name: str, numbers: Mapping[str, Any]) -> dict[str, Any]:
-    """A distribution whose numbers may be texts with the unit of its parameter or an angle."""
-    one = reader(name)
-    return {
-        key: one(value)
-        if isinstance(value, str) and key not in {"distribution", "log_std"}
-        else value
-        for key, value in numbers.items()
-    }
 
 
 def is_structure(task: str) -> bool:

@@ -22,12 +22,8 @@ from pydantic import (
 )
 
 from squealpipe.config.quantities import In
-from squealpipe.config.ranges import (
-    parse_angle,
-    read_distribution,
-    read_fixed,
-    read_values,
-)
+from squealpipe.config.ranges import read_fixed, read_values
+from squealpipe.inputs import parse_angle, read_distribution
 from squealpipe.laws.tables import BETWEEN
 from squealpipe.parameters import DEFAULTS, TABLE, Parameters, Row, without_defaults
 from squealpipe.substitutes import (

@@ -17,12 +17,13 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from squealpipe.config.ranges import ANGLES, NUMBERS, PHYSICAL, is_structure
+from squealpipe.config.ranges import NUMBERS, PHYSICAL, is_structure
 from squealpipe.execution.catalogue import MAPS, NEEDED, TASKS, options_of
 from squealpipe.execution.chunks import Chunks, Run
 from squealpipe.execution.scatter import scattered_values
 from squealpipe.execution.structure_sweep import StructureSweep
 from squealpipe.execution.system_sweep import SystemSweep, is_system
+from squealpipe.inputs import ANGLES
 from squealpipe.methods.processes import available_cores, leave_interrupts_to_the_parent
 from squealpipe.methods.progress import alone
 from squealpipe.models.refusals import refuse_unread

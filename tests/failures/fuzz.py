@@ -13,9 +13,10 @@ import numpy as np
 import xarray as xr
 
 import squealpipe as sp
-from squealpipe.config.ranges import parse_angle, parse_range
+from squealpipe.config.ranges import parse_range
 from squealpipe.config.settings import parse_study
 from squealpipe.functions import cos
+from squealpipe.inputs import parse_angle
 from squealpipe.laws.friction_laws import LAWS
 from squealpipe.parameters import TABLE
 from squealpipe.schema.ladder import QUESTIONS

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from squealpipe.inputs import takes_units
 from squealpipe.methods.progress import with_progress
 from squealpipe.schema import Outcome, build, find
 from squealpipe.schema.origin import versions
@@ -25,6 +26,7 @@ STEPS, STEPS_IF_LARGE = 9, 3
 FLOATS = ("growth_rate", "growth_rate_error", "frequency", "damping_ratio", "residual")
 
 
+@takes_units
 def complex_modes(
     structure: Structure,
     *,

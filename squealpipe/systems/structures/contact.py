@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from squealpipe.parameters import brief, is_finite_number, is_whole_number
+from squealpipe.units import number_of
 
 DEPENDENT = 1e-9
 """Smallest singular value of unit directions that are independent."""
@@ -25,8 +26,8 @@ class Contact:
         name: for events and outputs.
         normal: n, {degree of freedom: coefficient}, counted from 0, or an array of all.
         tangential: t, likewise.
-        stiffness: N/m, greater than 0.
-        preload: normal force where nᵀq = 0, N.
+        stiffness: N/m, or a text like ``7 kN/mm``; greater than 0.
+        preload: normal force where nᵀq = 0, N, or a text like ``0.2 kN``.
         speed: the belt's speed here over ``belt_speed``, as a radius; negative where the belt
             moves against t.
 
@@ -46,8 +47,11 @@ class Contact:
             raise ValueError(
                 f"contact {brief(self.name)}: letters, digits and _ are needed for a name"
             )
-        for key in ("stiffness", "preload", "speed"):
-            value = getattr(self, key)
+        for key, units in (("stiffness", "N m-1"), ("preload", "N"), ("speed", "1")):
+            try:
+                value = number_of(getattr(self, key), units)
+            except ValueError as error:
+                raise self._refusal(key, getattr(self, key), str(error)) from None
             if not is_finite_number(value):
                 raise self._refusal(key, value, "a finite number is needed")
             object.__setattr__(self, key, float(value))

@@ -17,6 +17,7 @@ from squealpipe.parameters import brief
 from squealpipe.systems.structures.contact import Contact
 from squealpipe.systems.structures.units import Scales
 from squealpipe.text import suggestion
+from squealpipe.units import has_unit, in_si
 
 CONTACT_COLUMNS = ("name", "normal", "tangential", "stiffness", "preload")
 KNOWN = (*CONTACT_COLUMNS, "speed")
@@ -46,8 +47,12 @@ def read_contacts(
                 f"{where} has {len(cells)} cells, but the header {len(header)} columns"
             )
         numbers = {
-            name: _number(row[name], f"{where}: {name}")
-            for name in ("stiffness", "preload", "speed")
+            name: _in_si(row[name], f"{where}: {name}", units, factor)
+            for name, units, factor in (
+                ("stiffness", "N m-1", scales.stiffness),
+                ("preload", "N", scales.force),
+                ("speed", "1", 1.0),
+            )
             if row.get(name)
         }
         for name in CONTACT_COLUMNS:
@@ -59,8 +64,8 @@ def read_contacts(
                     row["name"],
                     _direction(row["normal"], labels, size),
                     _direction(row["tangential"], labels, size),
-                    numbers["stiffness"] * scales.stiffness,
-                    numbers["preload"] * scales.force,
+                    numbers["stiffness"],
+                    numbers["preload"],
                     numbers.get("speed", 1.0),
                 )
             )
@@ -124,6 +129,16 @@ def _direction(text: str, labels: list[str] | None, size: int) -> dict[int, floa
                 )
         direction[number] = direction.get(number, 0.0) + _number(coefficient, place)
     return direction
+
+
+def _in_si(text: Any, what: str, units: str, factor: float) -> float:
+    """A cell with a unit of its own, or a number in the units of the file."""
+    if not has_unit(text):
+        return _number(text, what) * factor
+    try:
+        return in_si(text, units)
+    except ValueError as error:
+        raise ValueError(f"{what} = {brief(text)}: {error}") from None
 
 
 def _number(text: Any, what: str) -> float:

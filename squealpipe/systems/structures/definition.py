@@ -13,6 +13,7 @@ from squealpipe.parameters import brief, is_finite_number
 from squealpipe.systems.structures.contact import Contact, directions
 from squealpipe.systems.structures.friction import Friction, default_mu
 from squealpipe.systems.structures.matrices import checked_mass, real_square
+from squealpipe.units import number_of
 
 
 class Structure:
@@ -20,6 +21,7 @@ class Structure:
 
     Friction Tᵢ is μ(|wᵢ|) Nᵢ sgn wᵢ in slip, at most μ_s Nᵢ in stick, with the sliding speed
     wᵢ = speedᵢ · belt_speed − tᵢᵀq̇. Consistent units of any system work; names here are SI's.
+    Numbers may be texts with a unit, like ``7.2 km/h``.
 
     Args:
         mass: M, (n, n), dense or sparse, symmetric and positive definite, kg.
@@ -63,6 +65,7 @@ class Structure:
             nothing if damping is None else real_square("damping", damping, self.size)
         )
         self.modal_damping = _ratios(modal_damping, self.size)
+        belt_speed = _in_si("belt_speed", belt_speed, "m s-1")
         self.contacts = tuple(contacts)
         for contact in self.contacts:
             if not isinstance(contact, Contact):
@@ -70,9 +73,9 @@ class Structure:
         self.normals, self.tangentials = directions(self.contacts, self.size)
         self.friction = Friction(
             friction_law=friction_law,
-            mu=default_mu(friction_law) if mu is None else mu,
-            mu_static=mu_static,
-            friction_speed=friction_speed,
+            mu=default_mu(friction_law) if mu is None else _in_si("mu", mu, "1"),
+            mu_static=_in_si("mu_static", mu_static, "1"),
+            friction_speed=_in_si("friction_speed", friction_speed, "m s-1"),
         )
         if not is_finite_number(belt_speed):
             raise ValueError(
@@ -188,10 +191,19 @@ class Structure:
         }
 
 
+def _in_si(name: str, value: Any, units: str) -> Any:
+    """A number in SI from a text with a unit; else the value as it is."""
+    try:
+        return number_of(value, units)
+    except ValueError as error:
+        raise ValueError(f"{name} = {brief(value)}: {error}") from None
+
+
 def _ratios(given: Any, size: int) -> np.ndarray:
     """Damping ratios, one number or one for each of the lowest modes."""
+    ratio = _in_si("modal_damping", given, "1")
     try:
-        ratios = np.asarray(given, dtype=float)
+        ratios = np.asarray(ratio, dtype=float)
     except (TypeError, ValueError):
         raise ValueError(
             f"modal_damping = {brief(given)}: numbers are needed"

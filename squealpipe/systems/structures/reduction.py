@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from squealpipe.inputs import takes_units
 from squealpipe.methods.progress import report
 from squealpipe.parameters import brief, is_finite_number, is_whole_number
 from squealpipe.systems.structures.contact import Contact
@@ -36,6 +37,7 @@ class Errors(NamedTuple):
     growth: float
 
 
+@takes_units
 def reduce(
     structure: Structure,
     *,

@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
-from squealpipe.config.ranges import ANGLES, NUMBERS
+from squealpipe.config.ranges import NUMBERS
+from squealpipe.inputs import ANGLES
 from squealpipe.laws.friction_laws import COULOMB, FALLING
 from squealpipe.parameters import Parameters, brief, is_finite_number
 from squealpipe.schema.propensity import TRUNCATION

@@ -13,7 +13,7 @@ from annotated_types import Ge, Interval, MinLen
 from scipy import stats
 
 from squealpipe.codes import LinearRegime
-from squealpipe.config.ranges import ANGLES
+from squealpipe.inputs import ANGLES
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.methods.progress import with_progress
 from squealpipe.models import a3
