@@ -185,7 +185,9 @@ def run(
         return 128 + stop.number
     if failed:
         print(
-            f"squealpipe: the study in {study.results} is not complete", file=sys.stderr
+            f"squealpipe: the study in {study.results} is not complete; mend what is told above, "
+            "then run the same command again: what is finished stays",
+            file=sys.stderr,
         )
         return NOT_DONE
     say(

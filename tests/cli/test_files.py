@@ -388,6 +388,13 @@ def test_a_study_in_a_folder_that_cannot_be_written_says_what_to_do(
     assert "free space or fix permissions, then run the same command again" in told
 
 
+def test_a_study_that_failed_says_how_to_go_on(capsys, monkeypatch):
+    monkeypatch.setattr("squealpipe.execution.supervised.run_to_its_end", lambda *_: 1)
+    assert run(["run"]) == 2
+    told = capsys.readouterr().err
+    assert "results is not complete; mend what is told above, then run the same" in told
+
+
 def test_a_picture_has_the_size_and_the_dots_of_a_journal(capsys):
     from PIL import Image
 
