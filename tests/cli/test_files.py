@@ -382,6 +382,10 @@ def test_a_study_in_a_folder_that_cannot_be_written_says_what_to_do(
     folder = tmp_path / "read_only"
     folder.mkdir()
     with read_only(folder), chdir(folder):
+        assert run(["init"]) == 2
+        told = capsys.readouterr().err
+        assert "cannot write mine.yaml" in told
+        assert "free space or fix permissions" in told
         assert run(["run"]) == 2
     told = capsys.readouterr().err
     assert f"cannot write {folder}" in told
