@@ -72,7 +72,7 @@ def headline(answer: xr.Dataset, prefix: str = "") -> str:
     if verdict is Verdict.hammers:
         return (
             f"Hammers at {at}: contact is lost {lost} of the time, the peak force is {force} "
-            "times the preload."
+            "times the preload force."
         )
     if verdict is Verdict.squeals:
         stuck = value("stick_fraction")
@@ -277,4 +277,5 @@ def _share(share: float) -> str:
 
 def _force(answer: xr.Dataset) -> str:
     newtons = engineering(float(answer.peak_contact_force), "N")
-    return f"{newtons}, {number(float(answer.peak_contact_force_over_preload))} times the preload"
+    times = number(float(answer.peak_contact_force_over_preload))
+    return f"{newtons}, {times} times the preload force"

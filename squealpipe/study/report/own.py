@@ -114,7 +114,7 @@ def _numbers(told: xr.Dataset) -> list[dict[str, str]]:
         ("velocity_rms_across", "m s-1", "Velocity across the belt, rms"),
         ("displacement_peak", "m", "Largest distance from the mean position"),
         ("peak_contact_force", "N", "Largest contact force"),
-        ("peak_contact_force_over_preload", "1", "The same over the preload"),
+        ("peak_contact_force_over_preload", "1", "The same over the preload force"),
         ("separated_fraction", "%", "Time without contact"),
         ("stick_fraction", "%", "Time sticking to the belt"),
         ("impact_rate", "s-1", "Impacts per second"),

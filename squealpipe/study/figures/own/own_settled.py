@@ -15,8 +15,8 @@ from squealpipe.plotting.assess import (
 READS = ("assess/*",)
 CAPTION = (
     "The settled motion of each scene, one row for each. Left: path of the mass, coloured by what "
-    "it does; dotted: contact is lost above. Middle: contact force over the preload; red strips "
-    "below zero: contact is lost. Right: amplitude of the velocity over the frequency; the "
+    "it does; dotted: contact is lost above. Middle: contact force over the preload force; red "
+    "strips below zero: contact is lost. Right: amplitude of the velocity over the frequency; the "
     "triangle marks the strongest line."
 )
 ALT = "For each scene the path of the mass, the contact force over time, and a spectrum in hertz."
