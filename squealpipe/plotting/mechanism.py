@@ -93,6 +93,23 @@ def _label(
         place = 0.58 * direction + 0.27 * side
         name = f"$k_{index},\\ L_{index}$"
         axes.text(place[0], place[1], name, color=SPRING_COLOURS[index - 1], **text)
+    # y = 0 at the start, contact is lost at y = l_pre
+    top, aside = 0.28, 1.08
+    for height in (0.0, top):
+        axes.plot(
+            [aside - 0.14, aside + 0.14], [height, height], color=GREY, linewidth=0.6
+        )
+    look: dict[str, Any] = {
+        "arrowstyle": "<|-|>",
+        "mutation_scale": 7,
+        "color": "black",
+    }
+    axes.add_patch(
+        FancyArrowPatch(
+            (aside, 0.0), (aside, top), shrinkA=0, shrinkB=0, lw=0.6, **look
+        )
+    )
+    axes.text(aside - 0.27, 0.5 * top, r"$l_\mathrm{pre}$", **text)
     span = 0.42
     axes.plot([-0.62, 0.62], [0, 0], color=GREY, linewidth=0.6, linestyle=":")
     degrees = np.degrees(angles)

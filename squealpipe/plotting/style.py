@@ -57,7 +57,7 @@ REGIME_COLOURS = {
     "contact_kept": BLUE,
     "stick_slip": ORANGE,
     "periodic_hammering": GREEN,
-    "quasi_periodic_hammering": "#66C2A5",
+    "quasi_periodic_hammering": "#004D3A",  # dark: apart from whirl without colour too
     "undetermined": "#B8E3D4",
     "at_rest": "#9ECAE1",
     "hammered_then_contact": "#DEC24A",

@@ -11,8 +11,10 @@ import pytest
 import yaml
 
 from squealpipe.config.settings import parse_study
+from squealpipe.parameters import Parameters
 from squealpipe.study.claims.statements import STATEMENTS
 from squealpipe.study.report import content as contents
+from squealpipe.study.report import edited
 from squealpipe.study.report.build import TEMPLATES, write_document
 from squealpipe.study.report.content import PAPER, picture_files, provenance
 from squealpipe.study.report.lineage import lineage
@@ -244,3 +246,56 @@ def test_changed_keys_are_those_that_differ():
     edited = parse_study({"parameters": {"mu": 0.4}, "results": "results/mine"})
     assert edited.changes_of(shipped) == [("parameters.mu", shipped.parameters.mu, 0.4)]
     assert shipped.changes_of(shipped) == []
+
+
+@pytest.mark.parametrize(
+    ("parameters", "reading", "words"),
+    [
+        (
+            Parameters(),
+            "as_printed",
+            "along −x; the linear models are dragged along +x",
+        ),
+        (Parameters(), "along_minus_x", "Friction drags along −x in A1"),
+        (Parameters(belt_speed=-1.0), "along_plus_x", "Friction drags along −x in A1"),
+        (
+            Parameters(friction_law="exponential", mu_static=0.5, friction_speed=2.0),
+            "along_plus_x",
+            "exponential (mu = 0.3, mu_static = 0.5, friction_speed = 2)",
+        ),
+    ],
+)
+def test_a_page_says_which_friction_its_models_have(parameters, reading, words):
+    assert words in edited.friction_in_words(parameters, reading)
+
+
+def test_what_was_edited_is_told_physics_first():
+    changed = [
+        ("linear.points", 181, 31),
+        ("parameters.friction_law", None, "hyperbolic"),
+    ]
+    said = edited.what_changed([*changed, ("reading", "as_printed", "along_plus_x")])
+    assert "friction_law (friction law): hyperbolic (shipped: coulomb)" in said
+    assert "(shipped: A1 by Eq. (4) as printed" in said
+    assert "linear.points" not in said
+    assert "only grids" in edited.what_changed(changed[:1])
+
+
+def test_the_edited_page_counts_tests_and_fitted_apart_and_groups_what_is_undecided(
+    small_report,
+):
+    content = small_report.content
+    rows = content["statements"]
+    for part in content["tally"]:
+        assert part["number"] == sum(part["counts"])
+    assert sum(part["number"] for part in content["tally"]) == len(rows)
+    undecided = {
+        name for part in content["undecided"] for name in part["ids"].split(", ")
+    }
+    claims = small_report.datasets["claims"]
+    assert undecided == set(claims.claim.values[(claims.verdict == 4).values])
+    text = small_report.page.read_text(encoding="utf-8")
+    assert "Friction drags along" in text or "A1 has Eq. (4)" in text
+    assert text.index("The physics is that of the shipped study") < text.index(
+        "linear.points"
+    )

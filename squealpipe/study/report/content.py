@@ -12,13 +12,14 @@ from typing import Any
 from PIL import Image
 
 from squealpipe.parameters import TABLE, Parameters, law_in_words
-from squealpipe.schema.claims import Origin
+from squealpipe.schema.claims import Origin, Verdict
 from squealpipe.store.netcdf import attributes
 from squealpipe.store.whole_files import checksum
 from squealpipe.study.claims.evidence import Run
 from squealpipe.study.claims.table import rows
 from squealpipe.study.figures import declared
-from squealpipe.study.report import sections
+from squealpipe.study.figures.dynamics import regime_charts
+from squealpipe.study.report import edited, sections
 from squealpipe.study.report.numbers import numbers
 from squealpipe.text import RAISED
 
@@ -47,6 +48,7 @@ def gather(
     figures: Mapping[str, Made],
     parameters: Parameters,
     *,
+    reading: str = "as_printed",
     changed: Sequence[tuple[str, Any, Any]] = (),
     links: Mapping[str, str | Path] | None = None,
     page: Path | None = None,
@@ -54,11 +56,13 @@ def gather(
     """Content of the paper's report and of its supplement; see ``templates/``.
 
     Args:
+        reading: how the paper's sign of friction is read.
         changed: keys of the configuration that differ from the shipped one, with both values. The
             narrative is shown only where there are none.
     """
     run = Run(parameters, {name: made.path for name, made in datasets.items()})
     claims = rows(run["claims"]) if "claims" in run else []
+    papers = [row for row in claims if row["origin"] != Origin.misprints.name]
 
     def link(path: str | Path) -> str | None:
         return None if page is None else os.path.relpath(path, page.parent)
@@ -67,11 +71,25 @@ def gather(
         "title": TITLE,
         "paper": PAPER,
         "shipped": not changed,
-        "changed": changed_rows(changed),
+        "friction": edited.friction_in_words(parameters, reading),
+        "edit": edited.what_changed(changed),
+        "changed": changed_rows(
+            sorted(changed, key=lambda row: not edited.is_physical(row[0]))
+        ),
+        "undecided": edited.undecided(claims),
+        "tally": edited.tally(papers),
+        "levels": levels(run),
+        "distances": distances(run),
         "changed_verdicts": [
-            {"id": row["id"], "shipped": row["recorded"], "here": row["verdict_here"]}
+            {
+                "id": row["id"],
+                "statement": row["statement"],
+                "shipped": row["recorded"],
+                "here": row["verdict_here"],
+            }
             for row in claims
             if not row["as_recorded"]
+            and row["verdict_here"] != Verdict.cannot_be_decided.words
         ],
         "numbers": {} if changed else numbers(run),
         "parameters": parameter_table(parameters),
@@ -84,7 +102,7 @@ def gather(
         "links": [
             {"words": words, "to": link(to)} for words, to in (links or {}).items()
         ],
-        "statements": [row for row in claims if row["origin"] != Origin.misprints.name],
+        "statements": papers,
         "misprints": [row for row in claims if row["origin"] == Origin.misprints.name],
     }
 
@@ -166,6 +184,54 @@ def parameter_table(
         for law in [TABLE[name].laws]
         if (TABLE[name].enters_a1 or not of_a1) and name not in parameters.in_laws
     ]
+
+
+TABLE_1 = {
+    "A1": ("friction, kinematic and clearance", "–", "time histories, Figs. 2–5, 7"),
+    "A2": (
+        "linearized",
+        "angles do not change; surface separation is ignored",
+        "quasi-static sliding, Fig. 6",
+    ),
+    "A3": (
+        "linearized and nondimensional",
+        "angles do not change; surface separation is ignored",
+        "dynamic stability, Fig. 6",
+    ),
+    "A4": (
+        "clearance alone",
+        "angles do not change; the friction nonlinearity is ignored",
+        "frequency responses, Figs. 8–13",
+    ),
+}
+"""The paper's Table 1: level → nonlinearities, assumptions, use."""
+
+
+def levels(run: Run) -> list[list[str]]:
+    """The paper's Table 1, with the scenes in which each assumption held along the motion."""
+    if "assumptions" not in run:
+        return []
+    table = run["assumptions"]
+    found = []
+    for level, words in TABLE_1.items():
+        own = table.sel(level=level)
+        needed = [
+            name for name in own.assumption.values if own.needed.sel(assumption=name)
+        ]
+        held = "; ".join(
+            f"{name}: {int(own.held.sel(assumption=name).sum())}" for name in needed
+        )
+        found.append([level, *words, f"{held}; of {table.sizes['scene']}"])
+    return found
+
+
+def distances(run: Run) -> dict[str, Any] | None:
+    """The table beside the charts of regimes, None where the study has none."""
+    names = [name for name in run if name.startswith("friction_chart/")]
+    if "angle_chart" not in run or not names:
+        return None
+    charts = {name: run[name] for name in names}
+    return regime_charts.distances(run["angle_chart"], charts)
 
 
 def title(name: str) -> str:

@@ -22,6 +22,7 @@ content = gather(
     datasets,
     figures,
     parameters_of(params.settings),
+    reading=params.settings["reading"],
     changed=params.changed,
     links=params.links,
     page=Path(out.page),

@@ -32,17 +32,9 @@ ALT = "Charts over both angles and over κ and μ with lines, regions, and cross
 
 
 def caption(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> str:
-    """What the lines mean, and the distances of each scene."""
+    """What the lines mean."""
     horizon = number(float(angles.t_end) / time_unit(angles))
-    charts = [angles, *scenes.values()]
-    known = [
-        which for which in LOOKS if any(which.name in each.boundary for each in charts)
-    ]
-    distances = "; ".join(
-        f"{_title(name)}: {_listed(known, angles, place, np.degrees(1.0))} deg; "
-        f"{_listed(known, scenes[name], 0, 1.0)}"
-        for place, name in enumerate(sorted(scenes))
-    )
+    known = _known(angles, scenes)
     dashpots = json.loads(angles.attrs["config"]).get("cycles.damping", 0.0)
     cycles = (
         "The whirl, a fast cycle around the fixed ends of the springs, is that of A1 with dashpots "
@@ -53,13 +45,31 @@ def caption(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> str:
         f"{horizon} √(m/k1), and where A3 without damping flutters and diverges, as curves. "
         "(a) Over both spring angles, with the scenes as crosses; then over κ = k₃/k₁ and μ at the "
         "angles of scenes, with the study's own values as a cross. "
-        f"{cycles if ChartLine.whirl in known else ''}Distances of the crosses to the nearest "
-        f"lines ({', '.join(LOOKS[which][0] for which in known)}; none: no line found "
-        f"in the range), first in (a), then in (κ, μ): {distances}."
-    )
+        f"{cycles if ChartLine.whirl in known else ''}"
+    ).strip()
 
 
 CAPTION = caption
+
+
+def distances(
+    angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]
+) -> dict[str, list[Any]]:
+    """Table of how far each scene is from the nearest line of each kind: columns and rows."""
+    known = _known(angles, scenes)
+    rows = []
+    for place, name in enumerate(sorted(scenes)):
+        of_angles = _listed(known, angles, place, np.degrees(1.0))
+        rows.append([f"{_title(name)}: angles (°)", *of_angles])
+        rows.append([f"{_title(name)}: (κ, μ)", *_listed(known, scenes[name], 0, 1.0)])
+    return {"columns": ["Scene", *(LOOKS[which][0] for which in known)], "rows": rows}
+
+
+def _known(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> list[ChartLine]:
+    charts = [angles, *scenes.values()]
+    return [
+        which for which in LOOKS if any(which.name in each.boundary for each in charts)
+    ]
 
 
 def draw(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> Figure:
@@ -135,9 +145,9 @@ def _title(name: str) -> str:
 
 def _listed(
     known: Iterable[ChartLine], chart: xr.Dataset, place: int, unit: float
-) -> str:
+) -> list[str]:
     by_line = dict(
         zip(chart.boundary.values, unit * chart.distance.values[place], strict=True)
     )
     found = (by_line.get(which.name, np.inf) for which in known)
-    return ", ".join(number(far, 3) if np.isfinite(far) else "none" for far in found)
+    return [number(far, 3) if np.isfinite(far) else "none" for far in found]

@@ -10,9 +10,12 @@ READS = ()
 CAPTION = (
     "The model: a particle of mass m on two inclined springs k₁ and k₂, pressed through the "
     "contact spring k₃ on a belt that moves at V. The foot of k₃ slides along with the mass, and "
-    "k₃ can only push."
+    "k₃ can only push: it is compressed by l_pre at the start, and contact is lost where y = l_pre."
 )
-ALT = "A round mass on two slanted springs, and a vertical contact spring that stands on a belt."
+ALT = (
+    "A round mass on two slanted springs and a vertical contact spring that stands on a belt; "
+    "beside it the height at which contact is lost."
+)
 
 
 def draw() -> Figure:

@@ -13,10 +13,12 @@ import numpy as np
 import xarray as xr
 from jinja2 import Environment, StrictUndefined
 
-from squealpipe.parameters import SCENES
+from squealpipe.parameters import SCENES, direction_of
+from squealpipe.plotting.origin import parameter
 from squealpipe.schema import meanings
 from squealpipe.store.whole_files import whole_file
 from squealpipe.study.report.explorer.layers import Layer
+from squealpipe.units import engineering
 
 HERE = Path(str(files("squealpipe.study.report.explorer")))
 HISTORIES = ("x", "y", "normalized_contact_force", "force_spectrum")
@@ -43,7 +45,8 @@ def write_explorer(
     }
     with whole_file(Path(path)) as temporary:
         temporary.write_text(
-            page(explorer, layers, papers | dict(scenes or {})), encoding="utf-8"
+            page(explorer, layers, papers | dict(scenes or {}), paper=paper),
+            encoding="utf-8",
         )
 
 
@@ -51,6 +54,8 @@ def page(
     explorer: xr.Dataset,
     layers: Mapping[str, Layer],
     scenes: Mapping[str, Mapping[str, Any]],
+    *,
+    paper: bool = False,
 ) -> str:
     """The text of the page."""
     environment = Environment(undefined=StrictUndefined, autoescape=True)
@@ -61,11 +66,24 @@ def page(
         chart=(HERE / "chart.js").read_text(encoding="utf-8"),
         layers={key: layer.label for key, layer in layers.items()},
         branches="end" in explorer,
+        belt=belt_in_words(explorer, paper=paper),
         payload=in_script(payload(explorer, layers, scenes)),
         blocks=blocks(explorer, layers),
         commit=explorer.attrs.get("commit", "unknown"),
         dataset_id=explorer.attrs.get("dataset_id", "unknown"),
     )
+
+
+def belt_in_words(explorer: xr.Dataset, *, paper: bool) -> str:
+    """Which belt all motions of the page have."""
+    speed = parameter(explorer, "belt_speed")
+    side = "+x" if direction_of(speed) > 0 else "−x"
+    told = f"The belt runs along {side} at {engineering(abs(speed), 'm s-1')}, in all models."
+    if paper:
+        told += (
+            " That is the corrected physics; A1 by Eq. (4) as printed is in the report."
+        )
+    return told
 
 
 def in_script(content: Mapping[str, Any]) -> str:
