@@ -48,6 +48,10 @@ def score_answers(path: str | os.PathLike[str]) -> xr.Dataset:
         raise ValueError(f"{path} is no JSON: {error}") from None
     if not isinstance(table, Mapping) or not {"solver", "answers"} <= set(table):
         raise ValueError(f"{path}: an object with 'solver' and 'answers' is needed")
+    if not isinstance(table["solver"], str) or not table["solver"].strip():
+        raise ValueError(f"{path}: solver {table['solver']!r}: its name is needed")
+    if not isinstance(table["answers"], list):
+        raise ValueError(f"{path}: 'answers' is no list")
     known = {data["name"]: data for data in all_data()}
     truth = references()
     scores: dict[tuple[str, float], Score] = {}
@@ -83,15 +87,25 @@ def _check(place: str, answer: Any, known: Mapping[str, Any]) -> None:
         if key not in (*NEEDED, *OPTIONAL):
             allowed = ", ".join((*NEEDED, *OPTIONAL))
             raise ValueError(f"{place}: {key!r} is unknown; one of {allowed}")
-    if answer["problem"] not in known:
+    if not isinstance(answer["problem"], str) or answer["problem"] not in known:
         raise ValueError(
             f"{place}: problem {answer['problem']!r} is unknown; one of {'; '.join(known)}"
         )
     tolerance = answer["tolerance"]
-    if not isinstance(tolerance, int | float) or not tolerance > 0.0:
+    if not _is_number(tolerance) or not tolerance > 0.0:
         raise ValueError(
             f"{place}: tolerance {tolerance!r}: a number above 0 is needed"
         )
+    for key in ("evaluations", "cpu_time"):
+        value = answer.get(key)
+        if value is not None and not (_is_number(value) and value >= 0.0):
+            raise ValueError(
+                f"{place}: {key} {value!r}: a number that is not negative is needed, or null"
+            )
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _score(
@@ -101,7 +115,7 @@ def _score(
         answer["times"],
         answer["kinds"],
         answer["state"],
-        answer.get("evaluations", 0),
+        answer.get("evaluations") or 0,
         answer.get("flag", ""),
         answer.get("derivative"),
     )
@@ -109,4 +123,5 @@ def _score(
         found = score(data, truth, parts, float(answer["tolerance"]))
     except (TypeError, ValueError) as failure:
         found = failed(data, f"{type(failure).__name__}: {failure}")
-    return found._replace(cpu_time=float(answer.get("cpu_time", np.nan)))
+    spent = answer.get("cpu_time")
+    return found._replace(cpu_time=np.nan if spent is None else float(spent))

@@ -207,7 +207,16 @@ def failed(data: Mapping[str, Any], flag: str, calls: int = 0) -> Score:
 def _altered(problem: Problem, data: Mapping[str, Any]) -> str:
     """Names of what a solver has changed in the copy of the problem that it was given."""
     fresh = Problem(data)
-    names = ("start", "parameters", "states", "regime", "t_end", "times", "data")
+    names = [
+        "start",
+        "parameters",
+        "states",
+        "regime",
+        "t_end",
+        "times",
+        "data",
+        "patience",
+    ]
     changed = [n for n in names if repr(getattr(problem, n)) != repr(getattr(fresh, n))]
     return ", ".join(changed)
 

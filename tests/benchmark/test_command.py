@@ -1,12 +1,14 @@
 """``squealpipe benchmark`` and ``squealpipe benchmark compare``."""
 
 import json
+import re
 import shutil
 import subprocess
 
 import pytest
 
 import squealpipe
+from squealpipe.benchmark.answers import score_answers
 from squealpipe.cli import run
 
 MINE = """
@@ -127,3 +129,31 @@ def test_problems_are_written_for_any_language(tmp_path):
     assert len(problems) == 32
     for problem in problems:
         assert {"field", "switches", "start", "reference"} <= set(problem)
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "words"),
+    [
+        ("cpu_time", "fast", "answer 0: cpu_time 'fast'"),
+        ("evaluations", -3, "answer 0: evaluations -3"),
+        ("problem", [1], "answer 0: problem [1] is unknown"),
+        ("tolerance", True, "answer 0: tolerance True"),
+        ("solver", None, "solver None"),
+        ("answers", 5, "'answers' is no list"),
+    ],
+)
+def test_an_answer_that_cannot_be_read_is_refused_by_its_number_and_key(
+    key, value, words, tmp_path
+):
+    answer = {
+        "problem": "two gates", "tolerance": 1e-8, "times": None, "kinds": None, "state": [0, 0],
+        "evaluations": None, "cpu_time": None,
+    }  # fmt: skip
+    table = {"solver": "mine", "answers": [answer]}
+    path = tmp_path / "answers.json"
+    path.write_text(json.dumps(table))
+    assert score_answers(path).verdict.size == 1
+    (answer if key in answer else table)[key] = value
+    path.write_text(json.dumps(table))
+    with pytest.raises(ValueError, match=re.escape(words)):
+        score_answers(path)
