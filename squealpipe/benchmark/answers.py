@@ -51,7 +51,7 @@ def score_answers(path: str | os.PathLike[str]) -> xr.Dataset:
     if not isinstance(table["solver"], str) or not table["solver"].strip():
         raise ValueError(f"{path}: solver {table['solver']!r}: its name is needed")
     if not isinstance(table["answers"], list):
-        raise ValueError(f"{path}: 'answers' is no list")
+        raise ValueError(f"{path}: 'answers' is no list")  # noqa: TRY004 (of a file)
     known = {data["name"]: data for data in all_data()}
     truth = references()
     scores: dict[tuple[str, float], Score] = {}
