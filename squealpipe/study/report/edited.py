@@ -95,4 +95,6 @@ def _value(key: str, value: Any) -> str:
         return reading_of(value).meaning
     if value is None:  # parameters beyond the paper's are left out at their defaults
         value = DEFAULTS[key.removeprefix("parameters.")]
+    if value is None:
+        return "not given"
     return number(value) if isinstance(value, int | float) else str(value)

@@ -151,8 +151,12 @@ def limit_cycle_is_bounded(run: Run) -> Finding:
             f" A small change of the start has grown {float(motion.growth):.2g} times by "
             f"{until(run, motion)}."
         )
-    transient = run["transient"]
-    if float(transient.belt_speed) == run.parameters.belt_speed:  # not as printed
+    # it is of a reading with one sign, not of the equations as printed
+    if (
+        "transient" in run
+        and float(run["transient"].belt_speed) == run.parameters.belt_speed
+    ):
+        transient = run["transient"]
         ended = int(np.isfinite(transient.lifetime.values).sum())
         evidence += (
             f" Of {transient.lifetime.size} runs from starts at most a billionth of l_pre apart "

@@ -161,16 +161,20 @@ def spring_pulls(run: Run) -> Finding:
     consequence="F7a",
 )
 def invalid_where_separated(run: Run) -> Finding:
-    """Share of the angles at which A1 separates, within curves."""
-    boundary = run["validity_boundary"]
-    lost, error = 1.0 - float(boundary.kept_share), float(boundary.kept_share_error)
+    """Share of the angles at which A1 separates: within curves, or of the cells without them."""
     cells = run["validity_map"].separates == 1
-    return finding(
-        (lost, ">", LARGE_REGION),
-        f"By the curves of its boundary A1 loses contact in {100 * lost:.4g} % of the square of "
-        f"angles, right to {100 * error:.1g} %; in the map in {int(cells.sum())} of {cells.size} "
-        "cells.",
+    evidence = (
+        f"A1 loses contact in the runs of {int(cells.sum())} of {cells.size} cells."
     )
+    lost = share(cells)
+    if "validity_boundary" in run:
+        boundary = run["validity_boundary"]
+        lost, error = 1.0 - float(boundary.kept_share), float(boundary.kept_share_error)
+        evidence += (
+            f" By the curves of its boundary it loses it in {100 * lost:.4g} % of the square of "
+            f"angles, right to {100 * error:.1g} %."
+        )
+    return finding((lost, ">", LARGE_REGION), evidence)
 
 
 @rows.add(
