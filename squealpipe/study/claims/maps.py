@@ -43,7 +43,7 @@ def _nearest(dataset: xr.Dataset, alpha1: Any, alpha2: Any, what: str) -> xr.Dat
         ) from error
 
 
-def angle_sum_over_pi(dataset: xr.Dataset) -> xr.DataArray:
+def angle_sum_over_pi(dataset: xr.Dataset | xr.DataArray) -> xr.DataArray:
     """(α1 + α2)/π over a map."""
     total: xr.DataArray = (dataset.alpha1 + dataset.alpha2) / np.pi
     return total
@@ -96,7 +96,10 @@ def order_turns_over(run: Run, sliding: xr.Dataset) -> xr.DataArray:
     """
     difference = sliding.stiffness_x - sliding.stiffness_y
     k3 = run.parameters.k3
-    return (difference > SAME_STIFFNESS * k3) & (difference < (1 - SAME_STIFFNESS) * k3)
+    turned: xr.DataArray = (difference > SAME_STIFFNESS * k3) & (
+        difference < (1 - SAME_STIFFNESS) * k3
+    )
+    return turned
 
 
 def stiffness(run: Run, name: str) -> xr.DataArray:

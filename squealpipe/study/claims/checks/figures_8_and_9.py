@@ -82,7 +82,7 @@ def first_is_largest_on_lines(run: Run) -> Finding:
         each.where(is_multiple(angle_sum_over_pi(each), 0.5, odd=True)).max(over)
         for each in (square, of_scenes)
     ]
-    largest, line = square.max(over), np.fmax(*lines)
+    largest, line = square.max(over), xr.concat(lines, "map").max("map")
     separated, contact = (
         float(largest.sel(contact_state=name) / line.sel(contact_state=name) - 1)
         for name in ("separated", "contact")
