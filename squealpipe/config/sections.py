@@ -362,6 +362,20 @@ class RobustnessSection(Section):
         }
 
 
+class ContactPointsSection(Section):
+    """An elastic pad on several contact points of equal total stiffness and preload."""
+
+    points: Annotated[
+        tuple[Annotated[int, Field(ge=1, le=16), WHOLE], ...], Field(min_length=1)
+    ] = (1, 2, 4, 8)
+    stiff_points: Annotated[int, Field(ge=1, le=16), WHOLE] = 4
+    mu: NotNegative = 0.5
+    modal_damping: Annotated[float, Field(ge=0, lt=1)] = 0.01
+    n_modes: Annotated[int, Field(ge=2, le=32), WHOLE] = 12
+    samples: Annotated[int, Field(ge=1, le=10_000), WHOLE] = 4
+    t_end: Annotated[Positive, In("s")] = 0.06
+
+
 class ExplorerSection(Section):
     """The click grid of the explorer page; times in √(m/k1)."""
 

@@ -57,6 +57,7 @@ class Study(Section):
     backbones: sections.BackbonesSection = sections.BackbonesSection()
     cycles: sections.CyclesSection = sections.CyclesSection()
     robustness: sections.RobustnessSection = sections.RobustnessSection()
+    contact_points: sections.ContactPointsSection = sections.ContactPointsSection()
     explorer: sections.ExplorerSection = sections.ExplorerSection()
     sweeps: dict[Name, sections.SweepSection] = Field(default={})
 

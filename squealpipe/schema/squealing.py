@@ -175,6 +175,18 @@ SQUEALING = DatasetSchema(
         "pole_growth_rate": Variable(
             "growth rate of the mode", "s-1", _POLE, rtol=1e-6, atol=1e-6
         ),
+        **{
+            name: or_nan(
+                f"{words} of a state of the motion, in the coordinates of its run",
+                units,
+                ("attractor", "coordinate"),
+                volatile=True,
+            )
+            for name, words, units in (
+                ("displacement", "displacements", "m"),
+                ("velocity", "velocities", "m s-1"),
+            )
+        },
         "line_frequency": or_nan(
             "frequency of the spectrum", "Hz", ("line",), volatile=True
         ),

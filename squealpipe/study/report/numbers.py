@@ -33,6 +33,7 @@ def numbers(run: Run) -> dict[str, float | str]:
             _valid,
             _bounded,
             _motions_and_shares,
+            _contact_points,
             _methods,
         )
         for key, value in part(run).items()
@@ -141,6 +142,24 @@ def _bounded(run: Run) -> dict[str, Any]:
         "transient_time": transient.t_end / unit,
         **{f"{name}_low": omega.min() for name, omega in branches.items()},
         **{f"{name}_linear": omega[0] for name, omega in branches.items()},
+    }
+
+
+def _contact_points(run: Run) -> dict[str, Any]:
+    pads = run["contact_points"]
+    loud = {}
+    for count in ("4", "8"):
+        pad = pads.sel(design=count)
+        loud |= {
+            f"points{count}_onset": pad.critical_mu,
+            f"points{count}_kilohertz": pad.dominant_frequency / 1e3,
+            f"points{count}_least": 100 * pad.separated_fraction.min(),
+            f"points{count}_most": 100 * pad.separated_fraction.max(),
+        }
+    return {
+        **loud,
+        "points_modes": pads.n_modes.max(),
+        "points_growth_error": 100 * pads.growth_rate_error.max(),
     }
 
 

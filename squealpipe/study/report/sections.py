@@ -46,6 +46,7 @@ BEYOND = {
     "cycles": Section(
         "Limit cycles with damping", ("cycle_branches", "cycle_path", "impact_branch")
     ),
+    "contacts": Section("Beyond the point contact", ("beyond_the_point",)),
     "damping": Section("Critical friction with dashpots", ("critical_friction",)),
     "basins": Section("Other starts", ("basins", "disturbance")),
     "propensity": Section("Uncertain parameters", ("propensity",)),

@@ -198,6 +198,8 @@ def _of_attractors(
         ]
     ).reshape(shape)
     lines, spectra = _spectra(found)
+    states = np.array([runs[0].last.final for runs in members], float)
+    states = states.reshape(count, 2 * plant.size)
     lost = [
         max(int(run.last.landings.max()) for run in runs) >= AGAIN for runs in members
     ]
@@ -236,6 +238,8 @@ def _of_attractors(
         "peak_force": peak,
         "impacts_per_period": landings
         / np.where(np.isfinite(frequency), frequency, np.inf)[:, None],
+        "displacement": states[:, : plant.size],
+        "velocity": states[:, plant.size :],
         "line_frequency": lines,
         "spectrum": spectra,
         "outcome": np.array(

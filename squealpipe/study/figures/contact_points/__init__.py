@@ -1,0 +1,1 @@
+"""Figures of pads on several contact points."""

@@ -1,0 +1,113 @@
+"""An elastic pad on one, two and more contact points: critical friction, contact loss, timing."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from squealpipe.plotting import style
+from squealpipe.schema.assess import Verdict
+
+READS = ("contact_points",)
+MOST_FRICTION = 1.0
+
+
+def _quiet(pads: xr.Dataset) -> str:
+    quiet = pads.design.values[pads.verdict.values == Verdict.quiet]
+    return "; ".join(map(str, quiet)) or "none"
+
+
+def CAPTION(pads: xr.Dataset) -> str:  # noqa: N802
+    """What to see, with the pads that are quiet."""
+    return (
+        "An elastic pad on several contact points of equal total stiffness and preload, and a "
+        "stiff one. (a) Friction at which the first mode turns unstable; dashed: friction of the "
+        "runs; triangles: none up to 1. (b) Share of the time without contact, over the pad's "
+        "length from the edge that the belt meets first, of the pads that do not stay quiet "
+        f"(quiet: {_quiet(pads)}). (c), (d) Which point is open (white) when, over four periods "
+        "of the strongest line."
+    )
+
+
+ALT = (
+    "Critical friction by pad; share of time without contact over the pad's length; open and "
+    "closed contact points over time."
+)
+
+
+def draw(pads: xr.Dataset) -> Figure:
+    """Critical friction, contact loss along the pad, and its timing in each that hammers."""
+    loud = np.flatnonzero(np.isfinite(pads.dominant_frequency.values))
+    shown = loud[-2:]
+    count = max(len(shown), 1)
+    figure, axes = style.new_figure(
+        style.PAGE, 2.6, ncols=2 + count, width_ratios=[1.0, 1.2, *[1.2] * count]
+    )
+    _draw_onsets(axes[0, 0], pads)
+    _draw_loss(axes[0, 1], pads, loud)
+    if not len(shown):
+        style.say_instead(axes[0, 2], "every pad is quiet")
+    for panel, place in zip(axes[0, 2:], shown, strict=False):
+        _draw_timing(panel, pads.isel(design=int(place)))
+    titles = ["first onset", "contact loss", *_titles(pads, shown)]
+    for letter, panel, title in zip("abcd", axes[0], titles, strict=False):
+        style.panel_letter(panel, letter, title)
+    return figure
+
+
+def _titles(pads: xr.Dataset, shown: np.ndarray) -> list[str]:
+    return [
+        f"{pads.design.values[place]} points, "
+        f"{float(pads.dominant_frequency[place]) / 1e3:.3g} kHz"
+        for place in shown
+    ]
+
+
+def _draw_onsets(axes: Axes, pads: xr.Dataset) -> None:
+    critical = pads.critical_mu.values
+    places = np.arange(len(critical))
+    known = np.isfinite(critical)
+    axes.plot(places[known], critical[known], "o", color=style.RED)
+    axes.plot(
+        places[~known], np.full((~known).sum(), MOST_FRICTION), "^", color=style.BLUE
+    )
+    axes.axhline(_friction(pads), color=style.GREY, linestyle="--", linewidth=0.8)
+    names = [str(name).replace(", ", "\n") for name in pads.design.values]
+    axes.set_xticks(places, names)
+    axes.set(
+        xlabel="contact points", ylabel="critical friction", ylim=(0.0, 1.08 * MOST_FRICTION),
+        xlim=(-0.5, len(places) - 0.5),
+    )  # fmt: skip
+
+
+def _friction(pads: xr.Dataset) -> float:
+    return float(json.loads(pads.attrs["parameters"])["mu"])
+
+
+def _draw_loss(axes: Axes, pads: xr.Dataset, loud: np.ndarray) -> None:
+    for place, colour in zip(loud, style.PALETTE, strict=False):
+        one = pads.isel(design=int(place))
+        axes.plot(
+            one.position, one.separated_fraction, "o-", color=colour, ms=3,
+            label=f"{one.design.item()} points",
+        )  # fmt: skip
+    if len(loud):
+        axes.legend()
+    axes.set(xlabel="place along the pad", ylabel="share of time open", ylim=(0.0, 1.0))
+
+
+def _draw_timing(axes: Axes, pad: xr.Dataset) -> None:
+    count = int(pad.contacts)
+    is_open = pad.force.values[:count] <= 0.0
+    axes.imshow(
+        ~is_open, aspect="auto", cmap="Greys", vmin=0, vmax=1.6, interpolation="nearest",
+        extent=(0.0, float(pad.instant[-1]), count + 0.5, 0.5),
+    )  # fmt: skip
+    for edge in np.arange(1.5, count):
+        axes.axhline(edge, color=style.LIGHT, linewidth=0.5)
+    axes.set_yticks(np.arange(1, count + 1))
+    axes.set(xlabel="periods", ylabel="point, leading first")

@@ -1,0 +1,1 @@
+"""Questions to structures that the study of the paper asks."""

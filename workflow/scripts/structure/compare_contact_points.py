@@ -1,0 +1,10 @@
+"""An elastic pad on one, two and more contact points, and a stiff one."""
+
+from squealpipe.execution.job import Job
+from squealpipe.tasks.structures.contact_points import Run, contact_points
+
+job = Job(snakemake)
+section = dict(job.settings["contact_points"])
+points, stiff = section.pop("points"), section.pop("stiff_points")
+how = Run(**section)
+job.make(lambda: contact_points(points, stiff, how, workers=snakemake.threads))
