@@ -147,7 +147,7 @@ def _bounded(run: Run) -> dict[str, Any]:
 
 def _contact_points(run: Run) -> dict[str, Any]:
     pads = run["contact_points"]
-    loud = {}
+    loud: dict[str, Any] = {}
     for count in ("4", "8"):
         pad = pads.sel(design=count)
         loud |= {

@@ -97,11 +97,11 @@ def _pad(
     whole = elastic_pad(
         contacts=count, young=young, mu=how.mu, modal_damping=how.modal_damping
     )
-    pad = whole.reduce(n_modes=max(how.n_modes, count))
+    pad: Any = whole.reduce(n_modes=max(how.n_modes, count))
     modes = pad.complex_modes(mu=FRICTIONS)
     if not modes.unstable.any():
         # what only dies out needs no fast modes, whose steps are short
-        pad = pad.reduce(n_modes=max(count, FEW))
+        pad = pad.reduce(n_modes=min(max(count, FEW), pad.size))
     onsets = modes.critical_mu.values[np.isfinite(modes.critical_mu.values)]
     answer = squealing_modes(
         pad, samples=how.samples, t_end=how.t_end, tol=how.tol, workers=workers
