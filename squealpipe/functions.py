@@ -1,4 +1,4 @@
-"""cos, sin, exp, log, sqrt and tanh of floats, arrays and the symbols of a system."""
+"""cos, sin, exp, log, sqrt, tanh, … of floats, arrays and the symbols of a system."""
 
 from typing import Any
 
@@ -37,6 +37,26 @@ def log(value: Any) -> Any:
 def tanh(value: Any) -> Any:
     """tanh x."""
     return _of("tanh", value)
+
+
+def sinh(value: Any) -> Any:
+    """sinh x."""
+    return _of("sinh", value)
+
+
+def cosh(value: Any) -> Any:
+    """cosh x."""
+    return _of("cosh", value)
+
+
+def atan(value: Any) -> Any:
+    """arctan x."""
+    return _of("atan", value)
+
+
+def asin(value: Any) -> Any:
+    """arcsin x, −1 < x < 1."""
+    return _of("asin", value)
 
 
 def sqrt(value: Any) -> Any:

@@ -40,7 +40,8 @@ class Switch:
         to: the next regime, or a list of (regime, condition) or (regime, condition, kind) and a
             last regime (or (regime, None, kind)): the first whose condition is ≥ 0. ``kind``
             renames the event.
-        reset: the states that jump, as a mapping from (t, s, p, r).
+        reset: the states that jump, as a mapping from (t, s, p, r), or one such function for
+            each regime entered: ``{"stick": …}``; in those left out no state jumps.
 
     ``when``, ``to`` and ``reset`` see the state before the reset and the constants ``r`` of the
     regime that is left. Regimes are those of the switch's own component.
@@ -50,7 +51,10 @@ class Switch:
     leaves: Annotated[str | Sequence[str], needed("a regime, or a list of them, is")]
     when: Function
     to: Targets
-    reset: Function | None = None
+    reset: Annotated[
+        Function | Mapping[str, Function] | None,
+        needed("a function, or one for each regime entered, is"),
+    ] = None
 
 
 Switch.__init__ = checked(Switch.__init__)  # type: ignore[method-assign]
@@ -200,8 +204,12 @@ def _renamed(component: str, switch: Switch, known: Sequence[str]) -> Switch:
             else (*target, switch.name)[:3]
         )
         long.append((joined(component, regime), condition, joined(component, kind)))
+    reset = switch.reset
+    if isinstance(reset, Mapping):
+        reset = {joined(component, name): each for name, each in reset.items()}
     return replace(
         switch,
+        reset=reset,
         name=joined(component, switch.name),
         leaves=tuple(joined(component, regime) for regime in leaves),
         to=long,

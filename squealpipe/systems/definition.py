@@ -27,19 +27,12 @@ from squealpipe.systems.components import (
     Regimes,
     Switch,
 )
-from squealpipe.systems.entries import check_entries
+from squealpipe.systems.entries import Entries
 from squealpipe.systems.joint import Joint
 from squealpipe.systems.starts import Starts
 from squealpipe.systems.surfaces import simplest
 from squealpipe.systems.text import describe
-from squealpipe.systems.trace import (
-    TIME_UNIT,
-    Names,
-    Traced,
-    Tracer,
-    check_progress,
-    long_name,
-)
+from squealpipe.systems.trace import TIME_UNIT, Names, Traced, Tracer, long_name
 from squealpipe.text import suggestion
 from squealpipe.validation import Identifier, Number, Positive, Word, checked, needed
 
@@ -60,6 +53,7 @@ RESERVED = frozenset(
     (
         *(
             "t_end",
+            "t_start",
             "times",
             "start",
             "tol",
@@ -314,7 +308,7 @@ class System:
                     "starts_in has no last resort: end it with a regime alone"
                 )
         every = [*rates, *stops, *outputs, *(each.surface for each in switches)]
-        every += [value for each in switches for value in each.reset.values()]
+        every += [value for each in switches for value in each.after]
         every += [c for each in switches for _, c, _ in each.targets if c is not None]
         timed = any(node is tracer.time for node in in_order(every))
         unit = parameter(TIME_UNIT)
@@ -341,14 +335,16 @@ class System:
             falls=falls,
             rises=rises,
             owner=owner,
+            marks=_marks(falls, rises, switches),
             switches=tuple(switches),
             kinds=tuple(kinds),
             outputs=tuple(outputs),
             starts=tuple(starts),
         )
-        names = [each.name for each in self.switches]
-        check_progress(tracer, traced, names, leaves)
-        check_entries(tracer, traced, names, leaves)
+        checks = Entries(tracer, traced)
+        for each, switch, left in zip(self.switches, switches, leaves, strict=True):
+            checks.check_progress(each.name, switch, left)
+            checks.check_series(each.name, switch, left)
         return traced
 
     def _trace_switch(
@@ -386,9 +382,28 @@ class System:
                 else tracer.one(f"{what}: to {regime!r}", condition)
             )
             targets.append((tracer.regime(what, regime), symbols, kinds.index(kind)))
-        reset = tracer.several(f"{what}: reset", switch.reset) if switch.reset else {}
-        places = {self.states.index(name): value for name, value in reset.items()}
-        return SwitchSymbols(surface, tuple(targets), places)
+        resets = self._trace_resets(
+            tracer, switch, [regime for regime, _, _ in targets]
+        )
+        return SwitchSymbols(surface, tuple(targets), resets)
+
+    def _trace_resets(
+        self, tracer: Tracer, switch: Switch, entered: Sequence[int]
+    ) -> dict[int, dict[int, Symbol]]:
+        """The states that jump on the way into each regime."""
+        what = f"switch {switch.name!r}: reset"
+
+        def traced(function: Any) -> dict[int, Symbol]:
+            values = tracer.several(what, function) if function else {}
+            return {self.states.index(name): value for name, value in values.items()}
+
+        if not isinstance(switch.reset, Mapping):
+            alike = traced(switch.reset)
+            return dict.fromkeys(entered, alike)
+        for name in switch.reset:
+            if tracer.regime(what, name) not in entered:
+                raise ValueError(f"{what}: the switch does not lead to regime {name!r}")
+        return {k: traced(switch.reset.get(self.name_of(k))) for k in entered}
 
     def name_of(self, regime: int) -> str:
         """The name of a regime, with its component's."""
@@ -556,6 +571,20 @@ def _components(
                 f"{name}: a system with components has them there; move them into a component"
             )
     return dict(components)
+
+
+def _marks(
+    falls: np.ndarray, rises: np.ndarray, switches: Sequence[SwitchSymbols]
+) -> np.ndarray:
+    """(regime, surface) 1 where the only switch keeps the regime and the state: a marker."""
+    found = np.zeros(falls.shape, np.int64)
+    for regime, surface in np.argwhere((falls >= 0) != (rises >= 0)):
+        number = max(falls[regime, surface], rises[regime, surface])
+        if number < len(switches):
+            switch = switches[number]
+            stays = {each for each, _, _ in switch.targets} == {regime}
+            found[regime, surface] = stays and not switch.after
+    return np.ascontiguousarray(found)
 
 
 def _indicator(regime: str) -> str:

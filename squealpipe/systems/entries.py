@@ -1,50 +1,187 @@
-"""Whether the field of a regime has a Taylor series where a switch enters it."""
+"""Whether switches make progress, and whether fields have a Taylor series where they are entered.
 
-from collections.abc import Iterator, Sequence
+Both are tried on random states of a switch's surface.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
 
-from squealpipe.methods.taylor.scalar import REGIME, evaluate, numpy_function
-from squealpipe.methods.taylor.symbols import Symbol, symbol
+from squealpipe.methods.taylor.scalar import (
+    REGIME,
+    SwitchSymbols,
+    evaluate,
+    numpy_function,
+)
+from squealpipe.methods.taylor.symbols import Symbol, derivative, symbol
 from squealpipe.systems.text import expression
 from squealpipe.systems.trace import Traced, Tracer
 
 SAMPLES, HALVINGS = 64, 55
 """States that are tried, and halvings of the way to a surface."""
+REACHES = (3.0, 60.0, 6e4)
+"""Largest values of the random states between which a surface is looked for, one after another."""
+MOST_REGIMES = 8
+"""Regimes of a switch in which its progress is tried."""
+STAYS = 1e-9
+"""Height, over the change in a unit of time, that leaves a surface where it was."""
 VANISHES, ALIKE = 1e-14, 1e-6
 """A base this small vanishes, unless it has the same value within this share at every entry."""
+Values = dict[str, Any]
 
 
-def check_entries(
-    tracer: Tracer,
-    traced: Traced,
-    names: Sequence[str],
-    leaves: Sequence[Sequence[int]],
-) -> None:
-    """Refuse a power that is not whole and whose base vanishes where its regime is entered.
+class Entries:
+    """How the regimes of a system are entered."""
 
-    So does the depth d of a Hertz contact d^1.5, whatever the state in which contact begins.
-    """
-    powers: dict[int, list[Symbol]] = {}
-    bases: dict[int, Any] = {}
-    for name, switch, left in zip(names, traced.switches, leaves, strict=True):
-        states = None
-        for regime in sorted({target for target, _, _ in switch.targets}):
-            if regime not in powers:
-                powers[regime] = list(_powers(tracer, traced, regime))
-                roots = [symbol(power.arguments[0]) for power in powers[regime]]
-                bases[regime] = numpy_function(roots)
-            if not powers[regime]:
+    def __init__(self, tracer: Tracer, traced: Traced) -> None:
+        self.tracer, self.traced = tracer, traced
+        self.on_surface = cache(self._on_surface)
+        self.bases = cache(self._bases)
+
+    def check_progress(
+        self, name: str, switch: SwitchSymbols, leaves: Sequence[int]
+    ) -> None:
+        """Refuse a switch that would fire again at once, wherever its surface is crossed.
+
+        It then leads to a regime that it leaves, where the surface is beyond zero, or at zero and
+        falling. One that changes nothing at all only marks an event.
+        """
+        entered = {regime for regime, _, _ in switch.targets}
+        marks = len(leaves) == 1 and entered == set(leaves) and not switch.after
+        if marks or not entered & set(leaves):
+            return
+        tried = leaves[:: -(-len(leaves) // MOST_REGIMES)]
+        every = [self._fires_again(switch, regime, leaves) for regime in tried]
+        again = np.concatenate(every)
+        if again.size and again.all():
+            raise ValueError(
+                f"switch {name!r} leads back into a regime that it leaves, and its reset leaves "
+                "the state where the surface goes on falling: it would fire again at once, without "
+                "end; reset a state that turns it, or lead to another regime"
+            )
+
+    def _fires_again(
+        self, switch: SwitchSymbols, regime: int, leaves: Sequence[int]
+    ) -> np.ndarray:
+        """Whether it does, for each state in which its surface falls through zero."""
+        traced, surface = self.traced, switch.surface
+        slope: Any = symbol(0.0)
+        for variable, rate in zip(traced.variables, traced.rates, strict=True):
+            slope = slope + derivative(surface, variable) * rate
+        before = self.on_surface(surface, regime)
+        conditions = [symbol(c) for _, c, _ in switch.targets if c is not None]
+        with np.errstate(all="ignore"):
+            (speed,) = evaluate([symbol(slope)], before)
+            chosen = evaluate(conditions, before)
+        speed = np.broadcast_to(speed, _count(before, self.tracer))
+        waiting, again = speed < 0.0, np.zeros(speed.shape, bool)
+        falls = waiting.copy()
+        for (into, condition, _), value in zip(
+            switch.targets, [*chosen, np.inf], strict=False
+        ):
+            here = waiting if condition is None else waiting & (value >= 0.0)
+            waiting = waiting & ~here
+            if into not in leaves:
                 continue
-            states = states or _after(tracer, traced, switch, left[0])
-            function, arguments = bases[regime]
-            values = states | _held(traced, regime)
+            after = self._after(switch.resets[into], before)
+            after |= constants_of(traced, into)
+            with np.errstate(all="ignore"):
+                height, rate = evaluate([surface, symbol(slope)], after)
+                level = STAYS * np.abs(speed)
+                fires = (height < -level) | ((np.abs(height) <= level) & (rate < 0.0))
+            falls &= ~here | np.isfinite(np.asarray(height) + np.asarray(rate))
+            again |= here & fires
+        return again[falls]
+
+    def check_series(
+        self, name: str, switch: SwitchSymbols, leaves: Sequence[int]
+    ) -> None:
+        """Refuse a power that is not whole and whose base vanishes where its regime is entered.
+
+        So does the depth d of a Hertz contact d^1.5, whatever the state in which contact begins.
+        """
+        for regime in sorted({target for target, _, _ in switch.targets}):
+            powers, function, arguments = self.bases(regime)
+            if not powers:
+                continue
+            states = self.on_surface(switch.surface, leaves[0])
+            values = self._after(switch.resets[regime], states)
+            values |= constants_of(self.traced, regime)
             with np.errstate(all="ignore"):
                 found = function(*(values[argument] for argument in arguments))
-            for power, base in zip(powers[regime], found, strict=True):
+            for power, base in zip(powers, found, strict=True):
                 if _vanishes(np.asarray(base)):
-                    _refuse(name, tracer.regimes[regime], power)
+                    _refuse(name, self.tracer.regimes[regime], power)
+
+    def _bases(self, regime: int) -> tuple[list[Symbol], Any, list[str]]:
+        """Powers in the field of a regime, and a function that gives their bases."""
+        powers = list(_powers(self.tracer, self.traced, regime))
+        roots = [symbol(power.arguments[0]) for power in powers]
+        return powers, *numpy_function(roots)
+
+    def _on_surface(self, surface: Symbol, regime: int) -> Values:
+        """States where lines between two random ones meet a surface of a regime; maybe none."""
+        rng = np.random.default_rng(0)
+        known = self.tracer.samples(rng, SAMPLES) | constants_of(self.traced, regime)
+        ends = rng.uniform(-1.0, 1.0, (2, len(self.tracer.states), SAMPLES))
+        for reach in REACHES:
+            found = self._between(surface, known, reach * ends)
+            if _count(found, self.tracer):
+                break
+        return found
+
+    def _between(self, surface: Symbol, known: Values, ends: np.ndarray) -> Values:
+        """States of a surface on the lines between two states each."""
+        low, high = ends
+        function, arguments = numpy_function([surface])
+
+        def at(share: np.ndarray) -> Values:
+            between = low + share * (high - low)
+            return known | dict(zip(self.tracer.states, between, strict=True))
+
+        def height(share: np.ndarray) -> Any:
+            state = at(share)
+            (found,) = function(*(state[name] for name in arguments))
+            return np.broadcast_to(found, SAMPLES)
+
+        with np.errstate(all="ignore"):
+            first, last = np.zeros(SAMPLES), np.ones(SAMPLES)
+            start = np.sign(height(first))
+            meets = start * np.sign(height(last)) < 0.0
+            for _ in range(HALVINGS if meets.any() else 0):
+                middle = 0.5 * (first + last)
+                same = np.sign(height(middle)) == start
+                first = np.where(same, middle, first)
+                last = np.where(same, last, middle)
+        return {
+            name: np.broadcast_to(value, SAMPLES)[meets]
+            for name, value in at(first).items()
+        }
+
+    def _after(self, reset: Mapping[int, Symbol], before: Values) -> Values:
+        """Values after some states have jumped."""
+        with np.errstate(all="ignore"):
+            jumped = evaluate(list(reset.values()), before)
+        count = _count(before, self.tracer)
+        places = (self.tracer.states[place] for place in reset)
+        return before | {
+            name: np.broadcast_to(value, count)
+            for name, value in zip(places, jumped, strict=True)
+        }
+
+
+def _count(values: Values, tracer: Tracer) -> int:
+    """Number of states."""
+    return len(values[tracer.states[0]])
+
+
+def constants_of(traced: Traced, regime: int) -> dict[str, float]:
+    """The constants of a regime by name."""
+    columns = traced.columns(int(traced.component_of[regime]))
+    row = traced.regimes[regime, columns].tolist()
+    return dict(zip(traced.constants[columns], row, strict=True))
 
 
 def _vanishes(base: np.ndarray) -> bool:
@@ -71,48 +208,6 @@ def _powers(tracer: Tracer, traced: Traced, regime: int) -> Iterator[Symbol]:
             node.kind == "log" or (node.kind == "**" and node.arguments[1] % 1.0)
         ):
             yield node
-
-
-def _held(traced: Traced, regime: int) -> dict[str, float]:
-    """The constants of a regime by name."""
-    columns = traced.columns(int(traced.component_of[regime]))
-    row = traced.regimes[regime, columns].tolist()
-    return dict(zip(traced.constants[columns], row, strict=True))
-
-
-def _after(tracer: Tracer, traced: Traced, switch: Any, left: int) -> dict[str, Any]:
-    """States after a switch, where lines between random states meet its surface; maybe none."""
-    rng = np.random.default_rng(0)
-    values = tracer.samples(rng, SAMPLES) | _held(traced, left)
-    low, high = rng.uniform(-3.0, 3.0, (2, len(tracer.states), SAMPLES))
-    surface, arguments = numpy_function([switch.surface])
-
-    def at(share: np.ndarray) -> dict[str, Any]:
-        between = low + share * (high - low)
-        return values | dict(zip(tracer.states, between, strict=True))
-
-    def height(share: np.ndarray) -> Any:
-        state = at(share)
-        (found,) = surface(*(state[name] for name in arguments))
-        return np.broadcast_to(found, SAMPLES)
-
-    with np.errstate(all="ignore"):
-        first, last = np.zeros(SAMPLES), np.ones(SAMPLES)
-        start = height(first)
-        meets = start * height(last) < 0.0
-        for _ in range(HALVINGS):
-            middle = 0.5 * (first + last)
-            same = height(middle) * start > 0.0
-            first, last = np.where(same, middle, first), np.where(same, last, middle)
-        states = at(first)
-        resets = evaluate(list(switch.reset.values()), states)
-    states |= {
-        tracer.states[place]: value
-        for place, value in zip(switch.reset, resets, strict=True)
-    }
-    return {
-        name: np.broadcast_to(value, SAMPLES)[meets] for name, value in states.items()
-    }
 
 
 def _refuse(switch: str, regime: str, power: Symbol) -> None:

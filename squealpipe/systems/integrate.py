@@ -88,6 +88,8 @@ class RunOptions:
         log_events: room for the events of each run.
         most_steps, most_events: of each run.
         unit_sizes: of the states; by default the system's.
+        t_start: what the system's functions take for the time where a run begins; all other
+            times count from there.
     """
 
     regime: Any = None
@@ -104,6 +106,7 @@ class RunOptions:
     most_steps: Any = MOST_STEPS
     most_events: Any = MOST_EVENTS
     unit_sizes: np.ndarray | None = None
+    t_start: float = 0.0
 
 
 _DEFAULT = RunOptions()
@@ -168,7 +171,7 @@ class _Batch:
         )
         self.regimes = options.regime
         if not isinstance(self.regimes, np.ndarray):
-            at_start = {TIME: np.zeros(self.size), **values}
+            at_start = {TIME: np.full(self.size, options.t_start), **values}
             self.regimes = system.first_regimes(at_start, self.size, self.regimes)
         self.watched = self._watched()
         self.limits = _table(
@@ -179,6 +182,7 @@ class _Batch:
             options.most_events,
             math.log(layout.LOST_ERROR / tol),
             options.most_turns,
+            options.t_start,
         )
         samples = (
             np.empty((1, 0)) if options.times is None else np.atleast_2d(options.times)
@@ -308,6 +312,7 @@ class _Batch:
             "component_of": t.component_of,
             "first_constant": t.first_constant,
             "owner": t.owner,
+            "marks": t.marks,
             "active": active,
             "fresh": np.zeros(len(t.surfaces), np.int64),
             "beyond": np.zeros(len(t.surfaces), np.int64),

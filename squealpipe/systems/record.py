@@ -66,7 +66,8 @@ def single_run(
         room = count
     first = options.regime
     if not isinstance(first, np.ndarray):
-        first = system.first_regimes({TIME: np.zeros(1), **arrays}, 1, first)
+        at_start = {TIME: np.full(1, options.t_start), **arrays}
+        first = system.first_regimes(at_start, 1, first)
     events = {
         key: raw[f"event_{key}"][0, :count]
         for key in ("times", "kinds", "states", "regimes")

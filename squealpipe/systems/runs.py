@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -25,14 +26,7 @@ from squealpipe.systems.labels import (
 )
 from squealpipe.systems.record import Motion, single_run
 from squealpipe.systems.trace import TIME
-from squealpipe.validation import (
-    NotNegative,
-    Tolerance,
-    Values,
-    Vector,
-    Workers,
-    checked,
-)
+from squealpipe.validation import Number, Tolerance, Values, Vector, Workers, checked
 
 SAMPLES_PER_STEP, MOST_SAMPLES = 4, 20_001
 
@@ -40,8 +34,9 @@ SAMPLES_PER_STEP, MOST_SAMPLES = 4, 20_001
 @checked
 def simulate(
     system: Any,
-    t_end: NotNegative,
+    t_end: Number,
     *,
+    t_start: Number = 0.0,
     times: Vector | None = None,
     start: Values | None = None,
     tol: Tolerance = 1e-12,
@@ -51,6 +46,8 @@ def simulate(
     """One run of a system, with every switch located.
 
     Args:
+        t_end: when it ends.
+        t_start: when it begins.
         times: instants, ascending; by default four a step of the integrator, evenly spaced.
         start: states that differ from the system's start, and ``regime`` if it is to be given.
         tol: tolerance of the Taylor integrator, relative to the states' sizes.
@@ -66,19 +63,20 @@ def simulate(
     values = {
         n: scalar(n, v) for n, v in call_values(system, start, parameters).items()
     }
-    regime = (start or {}).get("regime")
+    duration = _duration(t_start, t_end)
+    options = RunOptions(regime=(start or {}).get("regime"), t_start=t_start)
     if times is None:
-        options = RunOptions(regime=regime)
-        steps = single_run(system, values, t_end, options, tol=tol, room=0).steps
+        steps = single_run(system, values, duration, options, tol=tol, room=0).steps
         times = np.linspace(
-            0.0, t_end, int(np.clip(SAMPLES_PER_STEP * steps, 2, MOST_SAMPLES))
+            t_start, t_end, int(np.clip(SAMPLES_PER_STEP * steps, 2, MOST_SAMPLES))
         )
-    elif times[0] < 0.0 or times[-1] > t_end or (np.diff(times) < 0.0).any():
+    elif times[0] < t_start or times[-1] > t_end or (np.diff(times) < 0.0).any():
         raise ValueError(
-            f"times = {brief(times)}: they must ascend from 0 to t_end = {t_end!r}"
+            f"times = {brief(times)}: they must ascend from {t_start:g} to t_end = {t_end!r}"
         )
-    options = RunOptions(regime=regime, times=times)
-    run = single_run(system, values, t_end, options, tol=tol)
+    options = replace(options, times=times - t_start)
+    run = single_run(system, values, duration, options, tol=tol)
+    run = replace(run, times=run.times + t_start, reached=run.reached + t_start)
     kinds = dict(enumerate(system.traced.kinds))
     names = dict(enumerate(system.regimes))
     found: dict[str, Any] = {
@@ -93,13 +91,19 @@ def simulate(
     found["outcome"] = outcome(system, (), run.outcome)
     found["end_time"] = ((), run.reached, labels("time reached", "s"))
     if sensitivity:
-        found |= sensitivities(system, sensitivity, values, run, times)
+        found |= sensitivities(system, sensitivity, values, run, times, t_start)
     coordinates = {
         "time": ("time", times, labels("time", "s")),
         **components_of(system),
     }
     attributes = attributes_of(system, "simulate", values, tol)
     return build("simulate", found, coordinates, attributes)
+
+
+def _duration(t_start: float, t_end: float) -> float:
+    if t_end < t_start:
+        raise ValueError(f"t_end = {t_end!r}: a time not before {t_start:g} is needed")
+    return t_end - t_start
 
 
 def _outputs_along(
@@ -126,10 +130,11 @@ def _outputs_along(
 @checked
 def ensemble(
     system: Any,
-    t_end: NotNegative,
+    t_end: Number,
     *,
+    t_start: Number = 0.0,
     start: Values | None = None,
-    t_late: NotNegative | None = None,
+    t_late: Number | None = None,
     tol: Tolerance = 1e-12,
     horizon: bool = False,
     workers: Workers = None,
@@ -138,9 +143,11 @@ def ensemble(
     """Many runs: an outer product over all starts and parameters that are given as 1-D arrays.
 
     Args:
+        t_end: when they end.
+        t_start: when they begin.
         start: states that differ from the system's start, and ``regime`` if it is to be given; an
             array of ``x`` has dimension ``x0``.
-        t_late: from when the ``late_…`` extremes are kept; 0.8 t_end by default.
+        t_late: from when the ``late_…`` extremes are kept; after four fifths by default.
         horizon: with the growth of a perturbation and the horizon of predictability.
         workers: processes; None takes all cores. The result is the same bit for bit.
         parameters: those that differ from the system's.
@@ -152,16 +159,17 @@ def ensemble(
     """
     grid = outer_product(system, start, parameters)
     shape, size = grid.shape, math.prod(grid.shape)
-    late = 0.8 * t_end if t_late is None else t_late
-    if late > t_end:
+    duration = _duration(t_start, t_end)
+    late = 0.8 * duration if t_late is None else t_late - t_start
+    if not 0.0 <= late <= duration:
         raise ValueError(
             f"t_late = {t_late!r}: a time up to t_end = {t_end!r} is needed"
         )
     raw = integrate(
         system,
         grid.values,
-        np.full(size, t_end),
-        RunOptions(regime=grid.regime, t_late=late, tangent=horizon),
+        np.full(size, duration),
+        RunOptions(regime=grid.regime, t_late=late, tangent=horizon, t_start=t_start),
         tol=tol,
         workers=workers,
     )
@@ -193,7 +201,7 @@ def ensemble(
             f"number of events {name}", "1", raw["counts"][:, i]
         )
         found[f"first_{name}"] = field(
-            f"time of the first {name}", "s", raw["firsts"][:, i]
+            f"time of the first {name}", "s", raw["firsts"][:, i] + t_start
         )
     for i, name in enumerate(system.regimes):
         found[f"time_in_{name}"] = field(
@@ -204,7 +212,7 @@ def ensemble(
             rate = np.where(raw["reached"], raw["log_growth"] / raw["reached"], np.nan)
         found["lyapunov_exponent"] = field("growth rate of a perturbation", "s-1", rate)
         found["predictability_horizon"] = field(
-            "time at which an error of tol is lost", "s", raw["horizon"]
+            "time at which an error of tol is lost", "s", raw["horizon"] + t_start
         )
     found["outcome"] = outcome(system, over, raw["outcome"].reshape(shape))
     attributes = attributes_of(system, "ensemble", grid.fixed, tol)

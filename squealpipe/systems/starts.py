@@ -59,7 +59,11 @@ class Starts:
                     (traced.falls[regime], 1.0),
                     (traced.rises[regime], -1.0),
                 ):
-                    watched = np.flatnonzero((table >= 0) & (table < n_switches))
+                    watched = np.flatnonzero(
+                        (table >= 0)
+                        & (table < n_switches)
+                        & (traced.marks[regime] == 0)  # beyond these nothing is
+                    )
                     asked += [(traced.surfaces[index], sign) for index in watched]
             checks = [_Asked(*numpy_function([root]), sign) for root, sign in asked]
             found.append((regime, checks))

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from squealpipe.methods.taylor.symbols import Symbol, symbol
 
-INCREASING = frozenset({"tanh"})
+INCREASING = frozenset({"tanh", "sinh", "atan", "asin"})
 """Functions that grow, and vanish where their argument does."""
 
 

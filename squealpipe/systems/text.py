@@ -36,8 +36,10 @@ def describe(
         for regime, condition, kind in symbols.targets:
             name = regimes[regime]
             margins[f"{switch.name} to {name} as {traced.kinds[kind]}"] = condition
-        for place, value in symbols.reset.items():
-            roots[f"{switch.name} resets {states[place]}"] = value
+        for regime, reset in symbols.resets.items():
+            into = "" if symbols.has_one_reset else f" into {regimes[regime]}"
+            for place, value in reset.items():
+                roots[f"{switch.name}{into} resets {states[place]}"] = value
     roots |= dict(zip(outputs, traced.outputs, strict=True))
     found = _written(roots, margins)
     for row, component, name in zip(

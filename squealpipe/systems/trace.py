@@ -6,11 +6,10 @@ from typing import Any, Self
 
 import numpy as np
 
-from squealpipe.methods.taylor.scalar import REGIME, SwitchSymbols, evaluate
+from squealpipe.methods.taylor.scalar import REGIME, SwitchSymbols
 from squealpipe.methods.taylor.symbols import (
     Symbol,
     constant_parts,
-    derivative,
     in_order,
     parameter,
     substituted,
@@ -53,6 +52,7 @@ class Traced:
         surfaces: functions whose roots switch or stop, no two the same but for sign.
         falls, rises: (regime, surface) the switch that fires there, or −1; stops follow switches.
         owner: (surface,) the component whose regime says whether it is watched.
+        marks: (regime, surface) 1 where the only switch there changes nothing.
         outputs: tracked quantities beside the states.
         starts: (regime, condition or None, equality or None) of each component.
         derived: what holds parameters alone, computed once a run: parameters after the given ones.
@@ -72,6 +72,7 @@ class Traced:
     falls: np.ndarray
     rises: np.ndarray
     owner: np.ndarray
+    marks: np.ndarray
     switches: tuple[SwitchSymbols, ...]
     kinds: tuple[str, ...]
     outputs: tuple[Symbol, ...]
@@ -118,7 +119,7 @@ class Traced:
         """
         roots = [*self.rates, *self.surfaces, *self.outputs]
         for switch in self.switches if skipped else ():
-            roots += [switch.surface, *switch.reset.values()]
+            roots += [switch.surface, *switch.after]
             roots += [c for _, c, _ in switch.targets if c is not None]
         parts = constant_parts(roots, skipped)
         made = {id(n): parameter(f"{prefix}{i}") for i, n in enumerate(parts)}
@@ -130,7 +131,10 @@ class Traced:
             SwitchSymbols(
                 of(each.surface),
                 tuple((regime, of(c), kind) for regime, c, kind in each.targets),
-                {place: of(value) for place, value in each.reset.items()},
+                {
+                    regime: {place: of(value) for place, value in reset.items()}
+                    for regime, reset in each.resets.items()
+                },
             )
             for each in self.switches
         )
@@ -286,59 +290,3 @@ class Tracer:
         constants = [REGIME + c for c in self.constants]
         names = [TIME, TIME_UNIT, *self.states, *vars(self.p), *constants]
         return {name: rng.uniform(0.3, 1.7, size) for name in names}
-
-
-def check_progress(
-    tracer: Tracer,
-    traced: Traced,
-    names: Sequence[str],
-    leaves: Sequence[Sequence[int]],
-) -> None:
-    """Refuse a switch that would fire again at once, whatever the state.
-
-    At every one of many random states in which its surface falls it leads to a regime that it
-    leaves, and there the surface is on the same height or lower, and goes on falling.
-    """
-    rng = np.random.default_rng(0)
-    for name, switch, left in zip(names, traced.switches, leaves, strict=True):
-        if not {regime for regime, _, _ in switch.targets} & set(left):
-            continue
-        slope: Any = symbol(0.0)
-        for variable, rate in zip(traced.variables, traced.rates, strict=True):
-            slope = slope + derivative(switch.surface, variable) * rate
-        values = tracer.samples(rng, 400)
-        values |= {state: rng.uniform(-2.0, 2.0, 400) for state in tracer.states}
-
-        columns = traced.columns(int(traced.component_of[left[0]]))
-
-        def held(
-            regimes: np.ndarray, columns: slice = columns
-        ) -> dict[str, np.ndarray]:
-            constants = traced.regimes[regimes, columns].T
-            return dict(zip(traced.constants[columns], constants, strict=True))
-
-        values |= held(rng.choice(left, 400))
-        with np.errstate(all="ignore"):
-            height, rate = evaluate([switch.surface, symbol(slope)], values)
-            *ways, (last, _, _) = switch.targets
-            found = evaluate([symbol(condition) for _, condition, _ in ways], values)
-            regimes = np.full(400, last)
-            for value, (regime, _, _) in zip(found[::-1], ways[::-1], strict=True):
-                regimes = np.where(value >= 0.0, regime, regimes)
-            resets = evaluate(list(switch.reset.values()), values)
-            after = {
-                tracer.states[p]: v for p, v in zip(switch.reset, resets, strict=True)
-            }
-            after = values | after | held(regimes)
-            later, new_rate = evaluate([switch.surface, symbol(slope)], after)
-        rise = later - height
-        falling = np.asarray(rate < 0) & np.isfinite(
-            np.asarray(rate) + np.asarray(new_rate)
-        )
-        again = (rise < -1e-9) | ((np.abs(rise) <= 1e-9) & np.asarray(new_rate < 0))
-        if falling.any() and (again & np.isin(regimes, left))[falling].all():
-            raise ValueError(
-                f"switch {name!r} leads back into a regime that it leaves, and its reset leaves "
-                "the state where the surface goes on falling: it would fire again at once, without "
-                "end; reset a state that turns it, or lead to another regime"
-            )

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from squealpipe import Switch, System
+from squealpipe import Switch, System, labels
 from squealpipe.functions import cos
 from squealpipe.schema import Outcome, meanings
 from squealpipe.schema.branch_labels import Label
@@ -353,3 +353,54 @@ def test_derivatives_through_events_are_those_of_differences(
         np.testing.assert_allclose(
             np.concatenate(ours), slopes, atol=2e-7 * np.abs(slopes).max()
         )
+
+
+@pytest.mark.release
+def test_a_cycle_passes_through_a_regime_that_it_is_entered_beyond():
+    """Regime b is left at once: y decays at one rate up to x = 1, at another up to x = 2."""
+
+    def relay(kick):
+        return System(
+            "relay",
+            states={"x": "1", "y": "1"},
+            parameters={"place": 1.0, "kick": kick},
+            regimes={"a": {"rate": 0.3}, "b": {"rate": 50.0}, "c": {"rate": 0.8}},
+            field=lambda t, s, p, r: {"x": 1.0, "y": -r.rate * s.y},
+            switches=[
+                Switch("ab", "a", lambda t, s, p, r: p.place + 0.1 * s.y - s.x, "b"),
+                Switch("bc", "b", lambda t, s, p, r: 0.2 - s.y, "c"),
+                Switch(
+                    "ca",
+                    "c",
+                    lambda t, s, p, r: 2.0 - s.x,
+                    "a",
+                    reset=lambda t, s, p, r: {"x": 0.0, "y": s.y + p.kick},
+                ),
+            ],
+            start={"x": 0.0, "y": 1.0, "regime": "a"},
+        )
+
+    cycle = relay(1.0).limit_cycle()
+    assert cycle.outcome == Outcome.converged
+    assert list(labels(cycle.event_kind).values).count("bc") == 1
+
+    def after(y):
+        """A round, with the instant of x = 1 + y/10 by fixed-point iteration."""
+        time = 1.0
+        for _ in range(100):
+            time = 1.0 + 0.1 * y * np.exp(-0.3 * time)
+        return y * np.exp(-0.3 * time - 0.8 * (2.0 - time)) + 1.0
+
+    y = 1.0
+    for _ in range(200):
+        y = after(y)
+    assert float(cycle.y_max) == pytest.approx(y, rel=1e-12)
+    assert float(cycle.period) == pytest.approx(2.0, rel=1e-13)
+    slope = (after(y + 1e-5) - after(y - 1e-5)) / 2e-5
+    multipliers = np.sort(cycle.multiplier_real.values)
+    np.testing.assert_allclose(multipliers, [slope, 1.0], rtol=1e-8)
+    branch = relay(1.0).cycle_branch("kick", 2.0, start=cycle, n_points=20)
+    for kick, highest in zip(branch.kick.values, branch.y_max.values, strict=True):
+        # the highest y is that after the reset: y = g(y) + kick
+        level = highest
+        assert after(level) - 1.0 + kick == pytest.approx(level, rel=1e-9)

@@ -19,16 +19,16 @@ BY_EVENT, BY_TURNS = 98, 99
 """Ends of runs that were to end at the first event of a kind, or after so many turns."""
 (
     CLOCK, CORRECTION, STEP, LONGEST, T_END, T_LATE, NEXT_SAMPLE, STEPS, MOST_STEPS, LOST,
-    DELAY, GAP, FIXED_ROWS,
-) = range(13)  # fmt: skip
+    DELAY, GAP, ORIGIN, FIXED_ROWS,
+) = range(14)  # fmt: skip
 """Rows of numbers of the lanes that every system has; those of a system follow."""
 JOB, OUTCOME, SAMPLE, EVENTS, CHAINED, HIT, LATE, REGIMES = range(8)
 """Rows of integers of the lanes; the last is the first of the regimes, one a component."""
 
 ARRAYS = (
     "rows", "integers", "series", "inverses", "sizes", "tracked", "regimes", "falls", "rises",
-    "component_of", "first_constant", "owner", "active", "fresh", "beyond", "exact", "steep",
-    "bent", "share", "noise", "scratch", "initial", "parameters", "first_regime", "limits",
+    "component_of", "first_constant", "owner", "marks", "active", "fresh", "beyond", "exact",
+    "steep", "bent", "share", "noise", "scratch", "initial", "parameters", "first_regime", "limits",
     "final", "extremes", "counts", "firsts", "durations", "ends", "summary", "sample_times",
     "samples", "sample_regimes", "sample_sums", "event_times", "event_kinds", "event_regimes",
     "event_states", "peaks", "points", "half_turns", "queue",

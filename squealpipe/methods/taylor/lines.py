@@ -6,6 +6,20 @@ from dataclasses import dataclass, field
 from squealpipe.methods.taylor.sums import Sums
 from squealpipe.methods.taylor.symbols import FUNCTIONS, Symbol, in_order
 
+_SIZES = {
+    # of a long time an angle has lost digits
+    "sin": "{inner} + abs({value})",
+    "cos": "{inner} + abs({value})",
+    "tanh": "min(1.0, {inner}) + abs({value})",
+    "atan": "min(2.0, {inner}) + abs({value})",
+    "asin": "{slope} * {inner} + abs({value})",
+    "sinh": "{slope} * {inner} + abs({value})",
+    "cosh": "{slope} * {inner} + abs({value})",
+    "exp": "abs({value}) * (1.0 + {inner})",
+    "log": "1.0 + abs({value})",
+}
+"""Size of the terms of a function from its value, its slope and the size of its argument."""
+
 
 @dataclass
 class Writer:
@@ -122,14 +136,9 @@ class Writer:
         if node.kind == "joined":
             first, second = inner[:3], inner[3:]
             return f"{' * '.join(first)} + {' * '.join(second)}"
-        if node.kind in {"sin", "cos"}:  # of a long time an angle has lost digits
-            return f"{inner[0]} + abs({value})"
-        if node.kind == "tanh":
-            return f"min(1.0, {inner[0]}) + abs({value})"
-        if node.kind == "exp":
-            return f"abs({value}) * (1.0 + {inner[0]})"
-        if node.kind == "log":
-            return f"1.0 + abs({value})"
+        if node.kind in FUNCTIONS:
+            slope = _slope_size(self, node)
+            return _SIZES[node.kind].format(value=value, inner=inner[0], slope=slope)
         return f"abs({value})"
 
     def rate_scale(self, root: Symbol, of_rates: Mapping[int, str]) -> str:
@@ -191,6 +200,13 @@ def _slope_size(writer: Writer, node: Symbol) -> str:
         return f"abs(1.0 / {writer.names[id(inner)]})"
     if node.kind in {"sin", "cos"}:
         return f"({size} + 1.0)"
+    if node.kind in {"sinh", "cosh"}:
+        return f"(1.0 + abs({value}))"
+    if node.kind == "atan":
+        return f"(1.0 / (1.0 + {writer.names[id(inner)]} * {writer.names[id(inner)]}))"
+    if node.kind == "asin":
+        square = f"{writer.names[id(inner)]} * {writer.names[id(inner)]}"
+        return f"(1.0 / (1.0 - {square})) ** 0.5"
     if node.kind == "**":
         return f"abs({node.arguments[1]!r} * {value} / {writer.names[id(inner)]})"
     return f"(1.0 + {value} * {value})"

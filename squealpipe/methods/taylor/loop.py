@@ -139,6 +139,7 @@ def _start(
         m.limits[job, 1],
     )
     rows[layout.MOST_STEPS, lane] = m.limits[job, 2]
+    rows[layout.ORIGIN, lane] = m.limits[job, 6]
     if m.limits[job, 1] <= 0.0:
         rows[layout.T_LATE, lane], integers[layout.LATE, lane] = math.inf, 1
     times = m.sample_times[job]
@@ -150,6 +151,8 @@ def _start(
     for variable in range(t.n_states):
         c[variable, 0, lane] = m.initial[job, variable]
         rows[tangent_row + variable, lane] = m.sizes[variable] / math.sqrt(t.n_states)
+    if t.n_variables > t.n_states:
+        c[t.n_states, 0, lane] = rows[layout.ORIGIN, lane]
     for index in range(t.n_tracked):
         clear_extremes(m, lane, index, first)
     row = first + 2 * t.n_tracked
@@ -298,6 +301,7 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
                 t.rows + layout.CORRECTION * ROW
             )
             now = clock * load(t.rows + time_unit * ROW)
+            now = now + load(t.rows + layout.ORIGIN * ROW)
             store(t.series + t.n_states * t.n_terms * ROW, now)
         switch_all(t, m, c, special, tangent_row)
         if t.tangent:
@@ -323,6 +327,7 @@ def _advance(table: Any) -> int:
         component_of=view(t.component_of, (t.n_regimes,), np.int64),
         first_constant=view(t.first_constant, (t.n_components + 1,), np.int64),
         owner=view(t.owner, (t.n_surfaces,), np.int64),
+        marks=view(t.marks, (t.n_regimes, t.n_surfaces), np.int64),
         active=view(t.active, (n_events,), np.int64),
         fresh=view(t.fresh, (t.n_surfaces,), np.int64),
         beyond=view(t.beyond, (t.n_surfaces,), np.int64),
@@ -335,7 +340,7 @@ def _advance(table: Any) -> int:
         initial=view(t.initial, (t.n_jobs, size), np.float64),
         parameters=view(t.parameters, (t.n_jobs, t.n_parameters), np.float64),
         first_regime=view(t.first_regime, (t.n_jobs, t.n_components), np.int64),
-        limits=view(t.limits, (t.n_jobs, 6), np.float64),
+        limits=view(t.limits, (t.n_jobs, 7), np.float64),
         final=view(t.final, (t.n_jobs, size), np.float64),
         extremes=view(t.extremes, (t.n_jobs, t.n_tracked, 2, 2), np.float64),
         counts=view(t.counts, (t.n_jobs, t.n_kinds), np.int64),

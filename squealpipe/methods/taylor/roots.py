@@ -239,6 +239,7 @@ def first_crossing(
     falls: bool,
     rises: bool,
     fresh: bool,
+    at_once: bool,
     noise: float,
     drift: float = 0.0,
 ) -> Any:
@@ -246,7 +247,8 @@ def first_crossing(
 
     Returns it and the time up to which the search is complete, as :func:`first_root`. One that
     starts from zero (``fresh``) has the side that it first takes by more than its noise, which
-    grows by ``drift`` with time; a side that is the wrong one is a crossing at 0.
+    grows by ``drift`` with time; a side that is the wrong one is a crossing ``at_once``, at 0,
+    unless the switch changes nothing.
     """
     start, side = 0.0, coefficients[variable, 0, lane]
     if not fresh:  # a step may start where round-off hides the side
@@ -254,7 +256,7 @@ def first_crossing(
     hidden = abs(side) <= noise
     if fresh or (hidden and is_hidden(coefficients, variable, lane, step, 0.0, noise)):
         start, side = _leaves_zero(coefficients, variable, lane, step, noise, drift)
-        if (side < 0.0 and falls) or (side > 0.0 and rises):
+        if at_once and ((side < 0.0 and falls) or (side > 0.0 and rises)):
             return 0.0, step
     while side != 0.0:
         root, looked = first_root(coefficients, variable, lane, step, start, side)

@@ -21,11 +21,26 @@ REGIME = "regime "
 
 @dataclass(frozen=True, eq=False)
 class SwitchSymbols:
-    """One switch as symbols: its surface, where it may lead, and the states that jump."""
+    """One switch as symbols: its surface, where it may lead, and the states that jump.
+
+    Attributes:
+        resets: value by state, of each regime that it may lead to.
+    """
 
     surface: Symbol
     targets: tuple[tuple[int, Symbol | None, int], ...]
-    reset: dict[int, Symbol]
+    resets: dict[int, dict[int, Symbol]]
+
+    @property
+    def after(self) -> list[Symbol]:
+        """All values that states may jump to."""
+        return [value for reset in self.resets.values() for value in reset.values()]
+
+    @property
+    def has_one_reset(self) -> bool:
+        """Whether states jump alike, whatever regime is entered."""
+        first, *others = self.resets.values()
+        return all(each == first for each in others)
 
 
 class ScalarSource:
@@ -118,14 +133,15 @@ class ScalarSource:
         ]
         for index, switch in enumerate(self.switches):
             conditions = [c for _, c, _ in switch.targets if c is not None]
-            roots = [*switch.reset.values(), *conditions]
-            writer = self._writer(f"v{index}_", roots=roots)
-            for place, symbols in switch.reset.items():
-                value = writer.value(symbols)
-                writer.lines.append(f"put(out + {16 + 8 * place}, {value})")
+            writer = self._writer(f"v{index}_", roots=[*switch.after, *conditions])
+            values = {id(each): writer.value(each) for each in switch.after}
             body = writer.lines
             for regime, condition, kind in switch.targets:
-                found = [f"put(out, {regime}.0)", f"put(out + 8, {kind}.0)", "return"]
+                found = [
+                    f"put(out + {16 + 8 * place}, {values[id(value)]})"
+                    for place, value in switch.resets[regime].items()
+                ]
+                found += [f"put(out, {regime}.0)", f"put(out + 8, {kind}.0)", "return"]
                 if condition is not None:
                     body.append(f"if {writer.value(condition)} >= 0.0:")
                     found = [f" {line}" for line in found]
@@ -135,9 +151,10 @@ class ScalarSource:
         return _function("change(switch, z, p, out)", lines)
 
     def jump(self) -> str:
-        """``jump(switch, at_once, delay, z, after, p, r, d, out)``: perturbation d across a switch.
+        """``jump(switch, regime, at_once, delay, z, after, p, r, d, out)``: d across a switch.
 
-        ``r`` are the constants before it, ``delay`` is the address of δτ.
+        ``regime`` is the one entered, ``r`` are the constants before it, ``delay`` is the address
+        of δτ, and d is a perturbation.
 
         With h the surface, g the reset and f, f₊ the fields before and after: the switch comes
         δτ = −∇h·d / (∇h·f + ∂h/∂t) later, and d becomes Dg (d + f δτ) + ∂g/∂t δτ − f₊ δτ.
@@ -158,19 +175,42 @@ class ScalarSource:
             writer.lines += [f"w = {rate or '0.0'}", "tau = number(delay)"]
             writer.lines += ["if at_once == 0:", " tau = 0.0", " if w != 0.0:"]
             writer.lines += [f"  tau = -({along}) / w", "put(delay, tau)"]
-            for i in range(size):
-                moved = self._slopes(writer, switch.reset.get(i, self.variables[i]))
-                terms = [
-                    f"{s} * (d{j} + {rates[j]} * tau)"
-                    if j < size
-                    else f"{s} * {rates[j]} * tau"
-                    for j, s in moved
-                ]
-                total = " + ".join(terms) or "0.0"
-                writer.lines.append(f"put(out + {8 * i}, {total} - {later[i]} * tau)")
+            resets = switch.resets
+            if switch.has_one_reset:
+                writer.lines += self._jumped(
+                    writer, next(iter(resets.values())), rates, later
+                )
+                resets = {}
+            ways = {
+                k: self._jumped(writer, reset, rates, later)
+                for k, reset in resets.items()
+            }
+            for regime, way in ways.items():
+                writer.lines += [f"if regime == {regime}:", *(f" {x}" for x in way)]
             lines += [f"if switch == {index}:", *(f" {line}" for line in writer.lines)]
-        head_of = "jump(switch, at_once, delay, z, after, p, r, d, out)"
+        head_of = "jump(switch, regime, at_once, delay, z, after, p, r, d, out)"
         return _function(head_of, [*head, *lines])
+
+    def _jumped(
+        self,
+        writer: Writer,
+        reset: Mapping[int, Symbol],
+        before: Sequence[str],
+        later: Sequence[str],
+    ) -> list[str]:
+        """Lines that put a perturbation after a reset; those of its slopes go to the writer."""
+        lines = []
+        for i in range(self.size):
+            moved = self._slopes(writer, reset.get(i, self.variables[i]))
+            terms = [
+                f"{s} * (d{j} + {before[j]} * tau)"
+                if j < self.size
+                else f"{s} * {before[j]} * tau"
+                for j, s in moved
+            ]
+            total = " + ".join(terms) or "0.0"
+            lines.append(f"put(out + {8 * i}, {total} - {later[i]} * tau)")
+        return lines
 
     def _slopes(self, writer: Writer, root: Symbol) -> list[tuple[int, str]]:
         found = [(j, symbol(derivative(root, v))) for j, v in enumerate(self.variables)]

@@ -25,6 +25,8 @@ from squealpipe.methods.taylor.symbols import (
     function,
     in_order,
     moving_part,
+    slope_of_asin,
+    slope_of_atan,
     symbol,
 )
 
@@ -51,6 +53,10 @@ PARTNERS: dict[str, Callable[[Symbol], Symbol]] = {
     "sin": lambda node: function("cos", node.arguments[0]),
     "cos": lambda node: function("sin", node.arguments[0]),
     "tanh": lambda node: Symbol("*", node, node),
+    "sinh": lambda node: function("cosh", node.arguments[0]),
+    "cosh": lambda node: function("sinh", node.arguments[0]),
+    "atan": lambda node: slope_of_atan(node.arguments[0]),
+    "asin": lambda node: slope_of_asin(node.arguments[0]),
 }
 """Whose lower orders the recurrence of a function reads in place of its own."""
 HIDDEN = {"exp": 20.0, "tanh": 10.0}
@@ -657,9 +663,9 @@ def _with_partners(nodes: list[Symbol]) -> list[Symbol]:
     found = list(nodes)
     for node in nodes:
         if node.varies and node.kind in PARTNERS:
-            partner = PARTNERS[node.kind](node)
-            if not any(each is partner for each in found):
-                found.append(partner)
+            for each in in_order([PARTNERS[node.kind](node)]):
+                if not any(other is each for other in found):
+                    found.append(each)
     return found
 
 

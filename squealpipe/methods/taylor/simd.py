@@ -135,11 +135,26 @@ def _called(name: str) -> Callable[..., Any]:
     return generate
 
 
-def _tanh(builder: Any, value: Any) -> Any:
-    kind = ir.FunctionType(value.type, [value.type])
-    return builder.call(
-        _cgutils.get_or_insert_function(builder.module, kind, "tanh"), [value]
-    )
+def _of_libm(name: str) -> Callable[..., Any]:
+    """A function of the C library, one lane after the other."""
+
+    def generate(builder: Any, value: Any) -> Any:
+        double = ir.DoubleType()
+        kind = ir.FunctionType(double, [double])
+        function = _cgutils.get_or_insert_function(builder.module, kind, name)
+        if not isinstance(value.type, ir.VectorType):
+            return builder.call(function, [value])
+        row = value
+        for lane in range(value.type.count):
+            place = ir.Constant(ir.IntType(32), lane)
+            number = builder.call(function, [builder.extract_element(value, place)])
+            row = builder.insert_element(row, number, place)
+        return row
+
+    return generate
+
+
+_OF_LIBM = ("tanh", "sinh", "cosh", "atan", "asin")
 
 
 def _bits_below(builder: Any, first: Any, second: Any) -> Any:
@@ -236,7 +251,7 @@ def written(width: int) -> dict[str, Any]:
         **{name: _called(name) for name in ("fma", "exp", "log", "sin", "cos", "pow")},
         "root": _called("sqrt"),
         "abs": _called("fabs"),
-        "tanh": _tanh,
+        **{name: _of_libm(name) for name in _OF_LIBM},
         "min": lambda builder, a, b: _choose_below(builder, b, a, b, a),
         "put": _put,
         "load": partial(_load, width=width),

@@ -248,6 +248,7 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
                 falls >= 0,
                 rises >= 0,
                 (m.fresh[surface] & bit) != 0,
+                m.marks[regime, surface] == 0,
                 m.noise[surface, 0, lane],
                 m.noise[surface, 1, lane],
             )

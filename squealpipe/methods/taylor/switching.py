@@ -53,7 +53,8 @@ def watch(t: Any, m: Any, c: Any, lane: int, span: float) -> None:
     """Which surfaces a lane watches in its regimes, and where they start.
 
     One that the state is beyond fires at once. Within the tolerance of zero it starts from there,
-    and fires if it goes on. A surface with a switch on both sides has nothing beyond it.
+    and fires if it goes on. A surface with a switch on both sides has nothing beyond it, nor has
+    one whose switch changes nothing.
     """
     bit, keep = 1 << lane, ~(1 << lane)
     z, sizes, out = m.scratch[0], m.scratch[1], m.scratch[2]
@@ -83,6 +84,7 @@ def watch(t: Any, m: Any, c: Any, lane: int, span: float) -> None:
         m.active[surface] |= bit
         height, terms = out[3 * surface], out[3 * surface + 1]
         passed = falls != rises and (height < 0.0) == falls
+        passed = passed and m.marks[regime, surface] == 0
         if passed and abs(height) > max(SLACK, located) * terms:
             m.beyond[surface] |= bit
         elif passed or abs(height) <= SLACK * terms:
@@ -133,7 +135,9 @@ def _note_constants(t: Any, m: Any, lane: int) -> None:
 
 
 @part
-def _carry_over(t: Any, m: Any, lane: int, tangent_row: int, at_once: int) -> None:
+def _carry_over(
+    t: Any, m: Any, lane: int, tangent_row: int, regime: int, at_once: int
+) -> None:
     """A perturbation across the switch whose states and constants before it are in the scratch."""
     d, out, stride = m.scratch[4], m.scratch[2], m.scratch.shape[1] * 8
     for variable in range(t.n_states):
@@ -141,7 +145,8 @@ def _carry_over(t: Any, m: Any, lane: int, tangent_row: int, at_once: int) -> No
     z, y, constants = t.scratch, t.scratch + 3 * stride, t.scratch + 5 * stride
     at, which = t.scratch + 4 * stride, m.integers[layout.HIT, lane]
     arguments = z, y, parameters_of(t, lane), constants, at, t.scratch + 2 * stride
-    call(t.jump, (which, at_once, t.rows + layout.DELAY * ROW + 8 * lane, *arguments))
+    delay = t.rows + layout.DELAY * ROW + 8 * lane
+    call(t.jump, (which, regime, at_once, delay, *arguments))
     for variable in range(t.n_states):
         m.rows[tangent_row + variable, lane] = out[variable]
 
@@ -173,7 +178,7 @@ def _switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
     put_into(t, m, lane, component, regime)
     settle(t, lane)
     if t.tangent:
-        _carry_over(t, m, lane, tangent_row, at_once)
+        _carry_over(t, m, lane, tangent_row, regime, at_once)
     for variable in range(t.n_states):
         c[variable, 0, lane] = after[variable]
     integers[layout.CHAINED, lane] += 1

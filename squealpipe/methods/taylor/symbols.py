@@ -136,7 +136,8 @@ def parameter(name: str) -> Symbol:
     return Symbol("parameter", name)
 
 
-FUNCTIONS = {name: getattr(math, name) for name in ("exp", "log", "sin", "cos", "tanh")}
+_NAMES = ("exp", "log", "sin", "cos", "tanh", "sinh", "cosh", "atan", "asin")
+FUNCTIONS = {name: getattr(math, name) for name in _NAMES}
 """Functions of one argument that have a recurrence, as floats compute them."""
 
 
@@ -252,7 +253,23 @@ def _slope(value: Symbol, inner: Symbol) -> Symbol:
         return function("cos", inner)
     if value.kind == "cos":
         return -function("sin", inner)
+    if value.kind in {"sinh", "cosh"}:
+        return function("cosh" if value.kind == "sinh" else "sinh", inner)
+    if value.kind == "atan":
+        return slope_of_atan(inner)
+    if value.kind == "asin":
+        return slope_of_asin(inner)
     return 1.0 - value * value
+
+
+def slope_of_atan(inner: Symbol) -> Symbol:
+    """1/(1 + u²)."""
+    return (1.0 + inner * inner) ** -1.0
+
+
+def slope_of_asin(inner: Symbol) -> Symbol:
+    """1/√(1 − u²), whose factors are exact next to u = ±1."""
+    return ((1.0 - inner) * (1.0 + inner)) ** -0.5
 
 
 @cache

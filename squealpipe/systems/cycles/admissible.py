@@ -56,6 +56,11 @@ def margins(cycle: Cycle) -> dict[Margin, float]:
     joint = system.joint
     for leg, event in enumerate(events):
         entry, duration = events[leg - 1], float(parts.durations[leg])
+        if event.at_once:
+            height = -event.sign * bounds[event.surface][0][leg]
+            found[Margin(Kind.edge, leg, event.surface)] = height / size[event.surface]
+            found |= _conditions(cycle, leg)
+            continue
         held = joint.holds(entry.before)
         for watched, sign in ((joint.falls, 1.0), (joint.rises, -1.0)):
             for s in np.flatnonzero(watched(event.before) >= 0):

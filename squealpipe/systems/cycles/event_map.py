@@ -209,7 +209,7 @@ class EventMap:
     def _surface(
         self, parts: Parts, leg: int, by_end: Vector, by_time: Vector
     ) -> tuple[float, Vector]:
-        """The equation of a surface, or of the section, and its row."""
+        """The equation of a surface, of the section or of no time, and its row."""
         n, crossing = self.flow.size, parts.crossings[leg]
         if self.events[leg].surface == FREE:
             row = np.zeros(by_end.shape[1])
@@ -219,6 +219,10 @@ class EventMap:
             row[:n] = self.section.normal / self.scale
             offset = (parts.states[0] - self.section.state) / self.scale
             return float(self.section.normal @ offset), row
+        if self.events[leg].at_once:
+            row = np.zeros(by_end.shape[1])
+            row[self.legs * n + leg] = 1.0 / self.time
+            return float(parts.durations[leg]) / self.time, row
         size = float(np.abs(crossing.height_by_state) @ self.scale)
         # a surface of the time alone changes by nothing else
         size = max(

@@ -65,6 +65,7 @@ class Event(NamedTuple):
         sign: of the surface before the event.
         before, after: regimes.
         kind: number of the event's name.
+        at_once: whether its regime is entered beyond the surface, by the event before.
     """
 
     switch: int
@@ -73,6 +74,7 @@ class Event(NamedTuple):
     before: int
     after: int
     kind: int
+    at_once: bool = False
 
 
 class Turn(NamedTuple):
@@ -183,10 +185,14 @@ class Crossing:
         return float(self.height_by_state @ self.rate) + self.height_by_time
 
     @property
+    def delay(self) -> Vector:
+        """The derivative of the event's time by the state before it."""
+        return np.asarray(-self.height_by_state / self.speed)
+
+    @property
     def saltation(self) -> Vector:
         """The derivative of a motion's later state by its earlier one, both at one time."""
-        delay = -self.height_by_state / self.speed
-        return np.asarray(self.after_by_state + np.outer(self.jump, delay))
+        return np.asarray(self.after_by_state + np.outer(self.jump, self.delay))
 
     @property
     def jump(self) -> Vector:
@@ -296,25 +302,27 @@ class Flow:
 
         Of a surface alone with −1 as ``switch``; of neither with −1 as ``surface``, too.
         """
-        if (switch, surface) not in self._functions:
-            t = self.system.traced
+        t = self.system.traced
+        each = t.switches[switch] if switch >= 0 else None
+        entered = -1
+        if each and not each.has_one_reset:
+            entered = self.system.joint.entered_by(regimes[1], switch)
+        key = (switch, surface, "into", entered)
+        if key not in self._functions:
             states = t.variables[: t.size]
-            each = t.switches[switch] if switch >= 0 else None
+            jumps = next(iter(each.resets.values())) if each else {}
+            jumps = each.resets[entered] if each and entered >= 0 else jumps
             alone = t.surfaces[surface] if surface >= 0 else symbol(0.0)
             roots = [each.surface if each else alone]
-            roots += [each.reset.get(i, z) if each else z for i, z in enumerate(states)]
+            roots += [jumps.get(i, z) for i, z in enumerate(states)]
             targets = [c for _, c, _ in each.targets if c is not None] if each else []
             by = [*states, *[self.time] * self.timed, *self.by]
             sloped = [
                 [root, *(symbol(derivative(root, b)) for b in by)] for root in roots
             ]
             every = [*chain(*sloped), *t.rates[: t.size], *targets]
-            self._functions[switch, surface] = python_function(
-                every, self.arguments, np
-            )
-        flat = self._at(
-            self._functions[switch, surface], values, regimes[0], state, time
-        )
+            self._functions[key] = python_function(every, self.arguments, np)
+        flat = self._at(self._functions[key], values, regimes[0], state, time)
         n, width = self.size, 1 + self.size + self.timed + len(self.by)
         # values, and slopes by states, the time and parameters: of the surface and what comes after
         rows, rest = (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice
 from typing import TYPE_CHECKING, Any
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 _BRIEF = 1e-3
 """Share of the period below which a leg may have vanished."""
 MOST_ROUNDS = 32
+_BEYOND = 1e-11
+"""Of a surface's terms, below which round-off does not hide that a state is beyond it."""
 _ROOM = 4
 """Steps that a leg may need, over those of a whole period in the run that it is guessed from."""
 
@@ -90,6 +92,32 @@ def events_of(
     return tuple(found)
 
 
+def marked_at_once(
+    flow: Flow,
+    values: Mapping[str, float],
+    motion: Motion,
+    events: Sequence[Event],
+    first: int,
+) -> tuple[Event, ...]:
+    """Events of a run, with those that fired where their regime was entered marked.
+
+    The first of a run has none before it, by which its regime would be entered.
+    """
+    found = []
+    for number, event in enumerate(events, first):
+        if number and motion.times[number] == motion.times[number - 1]:
+            state, time = motion.states[number - 1], float(motion.times[number])
+            regimes = event.before, event.after
+            there = flow.crossing(
+                values, event.switch, event.surface, regimes, state, time
+            )
+            size = np.maximum(np.abs(state), flow.system.sizes)
+            terms = float(np.abs(there.height_by_state) @ size)
+            event = event._replace(at_once=there.height < -_BEYOND * terms)
+        found.append(event)
+    return tuple(found)
+
+
 def guess_of(
     flow: Flow,
     values: Mapping[str, float],
@@ -126,14 +154,18 @@ def guess_of(
     events = events_of(flow.system, motion, first, count)
     if len(events) < count:
         return None
+    events = marked_at_once(flow, values, motion, events, first)
     chosen = slice(first, first + count)
     times = motion.times[chosen] - origin
     durations = np.append(np.diff(times), times[0] + period - times[-1])
     # legs begin after each event: the last ends at the first event
-    equations = replace(equations, events=(*events[1:], events[0]))
-    return equations, equations.pack(
-        motion.states[chosen], durations, float(times[0]), followed
-    )
+    events = (*events[1:], events[0])
+    # nor does a cycle begin between two events at one instant
+    begin = next((i for i, event in enumerate(events) if not event.at_once), 0)
+    equations = replace(equations, events=(*events[begin:], *events[:begin]))
+    states = np.roll(motion.states[chosen], -begin, axis=0)
+    durations = np.roll(durations, -begin)
+    return equations, equations.pack(states, durations, float(times[begin]), followed)
 
 
 def eventless(

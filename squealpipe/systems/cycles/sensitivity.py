@@ -28,6 +28,7 @@ def sensitivities(
     values: Mapping[str, float],
     motion: Motion,
     times: Vector,
+    t_start: float = 0.0,
 ) -> dict[str, Any]:
     """``<state>_by_<name>`` over ``time`` and ``event_time_by_<name>`` over ``event``.
 
@@ -35,8 +36,9 @@ def sensitivities(
 
     Args:
         names: of parameters, and ``<state>0`` for starts.
-        values: of states at t = 0 and parameters.
+        values: of states at the start and parameters.
         motion: the run, with its states at ``times``.
+        t_start: when it begins.
     """
     starts = list(system.start_names.values())
     known = [*system.parameters, *starts]
@@ -57,7 +59,7 @@ def sensitivities(
     stops += [(time, 1, i) for i, time in enumerate(times) if time <= motion.reached]
     stops.sort()
     legs: list[tuple[float, Vector, int]] = []
-    clock, regime = 0.0, int(motion.regimes[0])
+    clock, regime = t_start, int(motion.regimes[0])
     for time, sampled, i in stops:
         legs.append((clock, states, regime))
         clock = time

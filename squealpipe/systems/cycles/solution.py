@@ -64,13 +64,17 @@ class Cycle:
     def monodromy(self) -> Vector:
         """The derivative of the first state after a period by itself, over the scales."""
         n, total = self.map.flow.size, np.eye(self.map.flow.size)
+        delay = np.full(n, np.nan)  # no cycle begins with an event at once
         for event, slopes, crossing in zip(
             self.map.events, self.parts.slopes, self.parts.crossings, strict=True
         ):
             total = slopes[:, :n] @ total
-            if event.switch != FREE:
-                with np.errstate(all="ignore"):
-                    total = crossing.saltation @ total
+            if event.switch == FREE:
+                continue
+            with np.errstate(all="ignore"):
+                if not event.at_once:
+                    delay = crossing.delay @ total
+                total = crossing.after_by_state @ total + np.outer(crossing.jump, delay)
         total = total * self.map.scale / self.map.scale[:, None]
         for _, normal in self.map.held(
             self.parts
