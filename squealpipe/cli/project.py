@@ -162,6 +162,7 @@ def run(
         StoppedError,
         remove_stale_lock,
         run_to_its_end,
+        standing_lock,
     )
     from squealpipe.methods.processes import available_cores
 
@@ -184,8 +185,9 @@ def run(
         print(f"squealpipe: {stop}; run the same command again", file=sys.stderr)
         return 128 + stop.number
     if failed:
+        remedy = standing_lock() or "mend what is told above"
         print(
-            f"squealpipe: the study in {study.results} is not complete; mend what is told above, "
+            f"squealpipe: the study in {study.results} is not complete; {remedy}, "
             "then run the same command again: what is finished stays",
             file=sys.stderr,
         )

@@ -76,6 +76,22 @@ def remove_stale_lock(folder: Path = Path()) -> str:
     return f"removed the lock of a run that was killed (process {numbers})"
 
 
+def standing_lock(folder: Path = Path()) -> str:
+    """What to do about a lock that stays, for its holder may live; empty: there is none."""
+    locks = folder / LOCKS
+    if not locks.is_dir() or not any(locks.iterdir()):
+        return ""
+    stated = [
+        json.loads(path.read_text(encoding="utf-8"))
+        for path in (folder / HOLDERS).glob("*.json")
+    ]
+    who = ", ".join(f"process {each['pid']} on {each['host']}" for each in stated)
+    return (
+        f"another run holds the lock of this folder ({who or 'not started by squealpipe'}); "
+        f"wait for it or, if it is dead, delete the folder {locks.resolve()}"
+    )
+
+
 def _works_in(folder: Path) -> bool:
     """Whether a Snakemake of this machine works in a folder."""
     import psutil

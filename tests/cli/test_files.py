@@ -12,6 +12,7 @@ import time
 import warnings
 from contextlib import ExitStack, chdir
 from functools import partial
+from pathlib import Path
 from unittest.mock import Mock
 
 import numpy as np
@@ -397,6 +398,18 @@ def test_a_study_that_failed_says_how_to_go_on(capsys, monkeypatch):
     assert run(["run"]) == 2
     told = capsys.readouterr().err
     assert "results is not complete; mend what is told above, then run the same" in told
+    locks = Path(".snakemake/locks")
+    locks.mkdir(parents=True)
+    (locks / "0.output.lock").touch()
+    assert run(["run"]) == 2
+    told = capsys.readouterr().err
+    assert "(not started by squealpipe); wait for it or, if it is dead, delete" in told
+    assert str(locks.resolve()) in told
+    Path(".snakemake/squealpipe").mkdir()
+    about = json.dumps({"pid": 7, "host": "another"})
+    Path(".snakemake/squealpipe/7.json").write_text(about)
+    assert run(["run"]) == 2
+    assert "lock of this folder (process 7 on another)" in capsys.readouterr().err
 
 
 def test_a_picture_has_the_size_and_the_dots_of_a_journal(capsys):
