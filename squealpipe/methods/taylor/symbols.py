@@ -234,13 +234,18 @@ def derivative(value: Symbol, by: Symbol) -> Any:
         return _slope(value, inner) * derivative(inner, by)
     if value.kind == "joined":
         c1, a1, b1, c2, a2, b2 = value.arguments
-        first = c1 * (derivative(a1, by) * b1 + a1 * derivative(b1, by))
-        return first + c2 * (derivative(a2, by) * b2 + a2 * derivative(b2, by))
+        return _of_lever(c1, a1, b1, by) + _of_lever(c2, a2, b2, by)
     if value.kind == "only":
         mark, inner = value.arguments
         return only(mark, derivative(inner, by))
     base, exponent = value.arguments
     return exponent * base ** (exponent - 1.0) * derivative(base, by)
+
+
+def _of_lever(factor: Symbol, a: Symbol, b: Symbol, by: Symbol) -> Any:
+    """The derivative of c A B, whose c may hold the parameter."""
+    moved = derivative(a, by) * b + a * derivative(b, by)
+    return derivative(factor, by) * a * b + factor * moved
 
 
 def _slope(value: Symbol, inner: Symbol) -> Symbol:

@@ -10,6 +10,7 @@ import pytest
 from squealpipe.functions import exp
 from squealpipe.methods.taylor import series
 from squealpipe.methods.taylor.lanes import INVERSES, aligned, compile_system
+from squealpipe.methods.taylor.scalar import python_function
 from squealpipe.methods.taylor.series import HybridSystem, series_source
 from squealpipe.methods.taylor.simd import LANES
 from squealpipe.methods.taylor.symbols import (
@@ -132,6 +133,17 @@ def test_derivatives_of_symbols():
     assert x**0.3 is exp(0.3 * function("log", x))
     with pytest.raises(TypeError, match="make each side a regime"):
         abs(x)
+
+
+def test_a_parameter_before_two_levers_has_its_derivative():
+    """Of two springs' force by their stiffness, which was 0."""
+    x, y = variables("x", "y")
+    k, c = parameter("k"), parameter("c")
+    force = k * (x * y) * (x + 1.0) + c * k * (y * y) * (x - 2.0)
+    assert force.kind == "joined"
+    by = [symbol(derivative(force, each)) for each in (k, c, x)]
+    found = python_function(by, [x, y, k, c], np)(3.0, 5.0, 7.0, 11.0)
+    assert found == (60.0 + 275.0, 175.0, 7.0 * 35.0 + 77.0 * 25.0)
 
 
 def test_series_are_told_apart_by_what_they_are_not_by_a_hash(monkeypatch):

@@ -6,8 +6,13 @@ from scipy.optimize import brentq
 
 from squealpipe import Parameters, cycle_branch, cycle_curve, limit_cycle, stability_map
 from squealpipe.codes import Event
+from squealpipe.parameters import NUMBERS_OF_A1
+from squealpipe.schema.branch_labels import Label
+from squealpipe.systems.cycles.branch import first_point
+from squealpipe.tasks.cycles.cycle import cycle_from
 from squealpipe.tasks.cycles.scene import Scene
 from tests.former import FORMER
+from tests.oracles.differences import assert_jacobian
 
 ANGLES = 0.1 * np.pi, 0.5 * np.pi
 LAW = """
@@ -105,6 +110,62 @@ def test_what_nothing_reads_is_not_followed(change, parameter, why):
     params = Parameters(**change)
     with pytest.raises(ValueError, match=f"{parameter} cannot vary.*{why}"):
         cycle_branch(params, *ANGLES, parameter=parameter, to=2.0)
+
+
+@pytest.fixture(scope="module")
+def pad():
+    """Stick, slip, dashpots and a law that reads all of its numbers."""
+    return Parameters(
+        friction_law="exponential",
+        mu_static=0.45,
+        friction_speed=0.5,
+        belt_speed=0.5,
+        damping1=0.05,
+        damping2=0.05,
+    )
+
+
+@pytest.fixture(scope="module")
+def cycle(pad):
+    return cycle_from(Scene(pad, *ANGLES))[0]
+
+
+@pytest.mark.parametrize(
+    "name", [name for name in (*NUMBERS_OF_A1, "alpha1") if name != "damping3"]
+)
+def test_cycles_change_with_each_parameter_as_their_equations_say(cycle, name):
+    """By both stiffnesses and dashpots the equations' derivative was 0."""
+    state, first = first_point(cycle, name, cycle.parts.values[name] * 1.1)
+    known, step = state.point[:-1], 1e-6
+
+    def equations(followed):
+        values, jacobian = first.map.evaluate(np.append(known, followed))
+        return values, jacobian[:, -1:]
+
+    assert_jacobian(equations, state.point[-1:], step=step, rtol=1e-6, atol=1e-8)
+    assert np.abs(equations(state.point[-1:])[1]).max() > 1e-4
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param("k1", marks=pytest.mark.release), "damping1"]
+)
+def test_an_onset_of_stick_is_followed_in_stiffness_and_damping(pad, name):
+    over_speed = cycle_branch(pad, *ANGLES, parameter="belt_speed", to=1.0)
+    curve = cycle_curve(
+        pad,
+        *ANGLES,
+        label="stick_onset",
+        parameters=("belt_speed", name),
+        start=over_speed,
+        n_points=7,
+    )
+    assert curve.sizes["point"] == 7
+    value, speed = float(curve[name][-1]), float(curve.belt_speed[-1])
+    assert value > getattr(pad, name) * 1.005
+    there = pad.with_(**{name: value})
+    alone = cycle_branch(there, *ANGLES, parameter="belt_speed", to=1.0)
+    onsets = alone.belt_speed.values[alone.label.values == Label.stick_onset]
+    assert onsets == pytest.approx([speed], rel=1e-10)
 
 
 @pytest.mark.parametrize("name", ["mass", "k1", "preload", "belt_speed", "k3"])
