@@ -14,7 +14,7 @@ from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import COULOMB, FALLING, LAWS, coefficient
 from squealpipe.laws.tables import is_table
 from squealpipe.models.refusals import WHY_A4
-from squealpipe.parameters import DEFAULTS, NUMBERS_OF_A1, TABLE, Parameters
+from squealpipe.parameters import DEFAULTS, NUMBERS_OF_A1, TABLE, Parameters, brief
 from squealpipe.systems.shipped.brake import brake, brake_of, has_own_laws
 from squealpipe.systems.system import System
 from squealpipe.text import suggestion
@@ -111,10 +111,13 @@ def _own_system(parameters: Parameters, model: str) -> System:
         model == "A1-no-separation" and parameters.contact_law == LINEAR
     ):
         return brake_of(parameters, model)
-    raise ValueError(
-        f"model = {model!r}: a table, a law in Python or a contact law is carried by A1 "
-        "alone, not by its variants"
+    known: dict[str, Any] = {"friction_law": LAWS, "contact_law": (LINEAR,)}
+    own = ", ".join(
+        f"{name} = {brief(law)}"
+        for name in known
+        if (law := getattr(parameters, name)) not in known[name]
     )
+    raise ValueError(f"model = {model!r} cannot carry {own}; use model = 'A1'")
 
 
 def plain(parameters: Parameters) -> Parameters:

@@ -1,11 +1,13 @@
 """simulate, validity_map, hammering_map, refine_validity_map as users and rules call them."""
 
+import re
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
 from squealpipe.codes import Regime
-from squealpipe.parameters import SCENES
+from squealpipe.parameters import SCENES, Parameters
 from squealpipe.schema import Outcome
 from squealpipe.store import load, save
 from squealpipe.tasks.dynamics.hammering import hammering_map
@@ -168,3 +170,19 @@ def test_long_runs_follow_the_direction_of_the_belt():
     np.testing.assert_allclose(sizes.amplitude, np.abs(run.x).max(), rtol=1e-5)
     other = whirl_sizes(params.with_(belt_speed=20.0), [20.0], t_end=100.0)
     assert abs(float(other.amplitude[0] / sizes.amplitude[0]) - 1.0) > 0.05
+
+
+@pytest.mark.parametrize(
+    ("model", "law"),
+    [
+        ("A1-linear-springs", {"friction_law": "linear 0:0.5 1:0.3"}),
+        ("A1-no-separation", {"contact_law": "linear 0:0 1:1"}),
+        ("A1-as-printed", {"contact_law": "dashpot"}),
+    ],
+)
+def test_a_variant_names_the_law_that_it_cannot_carry(model, law):
+    """A law was said to be A1's alone, which is not so, and which law was not said."""
+    ((name, value),) = law.items()
+    what = re.escape(f"model = '{model}' cannot carry {name} = '{value}'; use model")
+    with pytest.raises(ValueError, match=what):
+        simulate(Parameters(**law), 1.0, 2.0, t_end=1.0, model=model)
