@@ -43,7 +43,26 @@ def successors(first: Spectrum, second: Spectrum) -> tuple[np.ndarray, np.ndarra
     rows, columns = linear_sum_assignment(cost)
     places[rows], shared[rows] = columns, mac[rows, columns]
     _order_merged(places, first, second)
+    _keep_twins(places, first, second)
     return places, shared
+
+
+def _keep_twins(places: np.ndarray, first: Spectrum, second: Spectrum) -> None:
+    """Two modes that have merged stay together while another passes: all three shapes are alike."""
+    for row, value in enumerate(first.values):
+        twins = np.flatnonzero(first.values == -value.conjugate())
+        if value.real <= 0 or value.imag == 0 or not twins.size or places[row] < 0:
+            continue
+        reached = second.values[places[row]]
+        other = np.flatnonzero(second.values == -reached.conjugate())
+        if reached.real == 0 or reached.imag == 0 or not other.size:
+            continue
+        growing, falling = sorted(
+            (places[row], other[0]), key=lambda k: -second.values[k].real
+        )
+        for mode, place in ((row, growing), (int(twins[0]), falling)):
+            holder = np.flatnonzero(places == place)
+            places[holder], places[mode] = places[mode], place
 
 
 def _order_merged(places: np.ndarray, first: Spectrum, second: Spectrum) -> None:

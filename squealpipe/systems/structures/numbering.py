@@ -11,7 +11,7 @@ from squealpipe.schema.structures import Onset
 from squealpipe.systems.structures.following import followed, successors
 from squealpipe.systems.structures.onset import onset
 from squealpipe.systems.structures.refinement import Eigenpair
-from squealpipe.systems.structures.sliding import NoSlidingError
+from squealpipe.systems.structures.sliding import NoSlidingError, changes
 from squealpipe.systems.structures.spectrum import Solver, Spectrum
 
 MERGED = 0.5
@@ -79,6 +79,19 @@ class Way:
         return self._carried(before.numbers, places, len(spectrum.pairs))
 
     def _go(self, low: float, high: float) -> None:
+        """To the next friction, past each at which contacts open or close."""
+        solver = self.solver
+        try:
+            passed = changes(solver.structure, low, high, solver.belt_speed)
+        except NoSlidingError:
+            passed = []
+        stations = [*(mu for pair in passed for mu in pair), high]
+        for station in stations:
+            if station > low:
+                self._go_smoothly(low, station)
+                low = station
+
+    def _go_smoothly(self, low: float, high: float) -> None:
         start = self.steps[low]
         for mu, places in followed(self.solver.at, low, high, self.solver.selected):
             spectrum = self.solver.at(mu)

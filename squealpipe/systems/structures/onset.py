@@ -2,13 +2,14 @@
 
 Without damping two modes merge: their eigenvalues there depend on friction by a square root, but
 the 2 × 2 matrix of both, λ of K v = λ M v on their common subspace, is smooth, and its discriminant
-passes through zero. With damping the growth of one mode itself passes through zero.
+passes through zero. With damping the growth of one mode itself passes through zero. Where a contact
+opens or closes the matrices jump, and a mode may turn unstable there.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
@@ -17,15 +18,22 @@ from scipy.sparse.linalg import splu
 
 from squealpipe.systems.structures.pencil import Pencil
 from squealpipe.systems.structures.refinement import SLOW, Eigenpair, polished
+from squealpipe.systems.structures.sliding import LOCATED
 
-LOCATED = 1e-12
-"""Tolerance of the friction located."""
 NARROW = 2.0**-6
 """Share of a step to which it is narrowed first, so that other modes are not nearer."""
+VANISHED = 1e-3
+"""Share of its size at both sides up to which a measure has vanished."""
 ASIDE = 1e-5
 """Shift off the mean of two squares, relative: the factor of its square must not vanish."""
-TURNS = 4
-"""Inverse iterations for a subspace."""
+TURNS = 6
+"""Inverse iterations for a subspace, at most; one from a place nearby takes three."""
+SETTLED = 1e-8
+"""Relative change of a subspace's eigenvalues from which it converges at once."""
+ALIKE = 0.5
+"""Cosine of the angle between shapes up to which they may be those of one mode."""
+HALVINGS = 12
+"""How often a step in friction is halved where shapes change more."""
 
 
 def onset(
@@ -43,8 +51,10 @@ def onset(
         None where the mode cannot be followed to it.
     """
     (low, before), (high, after) = stable, unstable
+    if high - low <= LOCATED:  # a contact opens or closes between both
+        return high
     if pencil_at(high).is_undamped and pencil_at(low).is_undamped:
-        measure: Callable[[float], float] = _Subspace(pencil_at, after)
+        measure: Callable[[float], float] = _Subspace(pencil_at, high, after)
     else:
         measure = _Growth(pencil_at, before, after, (low, high))
     measured: dict[float, float] = {}
@@ -75,60 +85,158 @@ def _zero(measure: Callable[[float], float], low: float, high: float) -> float |
     if not measure(lower) <= 0:
         return None
     zero = brentq(measure, lower, upper, xtol=LOCATED, rtol=4 * np.finfo(float).eps)
-    return float(zero)
+    # the measure jumps where the mode has become another one on the way
+    largest = max(abs(measure(lower)), abs(measure(upper)))
+    return float(zero) if abs(measure(zero)) <= VANISHED * largest else None
 
 
-class _Subspace:
-    """Positive where the modes of a subspace grow, without damping; smooth in friction."""
+class _Followed:
+    """A measure along friction, each value from what is known at the nearest friction.
 
-    def __init__(self, pencil_at: Callable[[float], Pencil], after: Eigenpair) -> None:
-        self.pencil_at = pencil_at
-        self.square = -(after.value**2)
-        pair = after.value.imag != 0
-        self.right, self.left = (
-            np.stack([v.real, v.imag], 1) if pair else v.real[:, None]
-            for v in (after.right, after.left)
-        )
+    Where the step is too large to know what has become of it, the middle comes first.
+    """
+
+    def __init__(self) -> None:
+        self.known: dict[float, Any] = {}
 
     def __call__(self, mu: float) -> float:
+        self._reach(mu, HALVINGS)
+        return self._measure(mu)
+
+    def _reach(self, mu: float, halvings: int) -> None:
+        if mu in self.known:
+            return
+        near = min(self.known, key=lambda each: abs(each - mu))
+        reached = self._moved(near, mu)
+        if reached is not None:
+            self.known[mu] = reached
+            return
+        if not halvings:
+            raise RuntimeError("the mode is lost on its way")
+        self._reach(0.5 * (near + mu), halvings - 1)
+        self._reach(mu, halvings - 1)
+
+    def _moved(self, near: float, mu: float) -> Any:
+        """What is known at a friction from what is at another; None if it may be another mode."""
+        raise NotImplementedError
+
+    def _measure(self, mu: float) -> float:
+        """At a friction that was reached."""
+        raise NotImplementedError
+
+
+class _Block(NamedTuple):
+    """Two modes, or one.
+
+    Attributes:
+        right, left: orthonormal bases, (n, 2).
+        roots: λ.
+        split: the square of half the distance of both; of one mode λ itself.
+    """
+
+    right: np.ndarray
+    left: np.ndarray
+    roots: list[complex]
+    split: float
+
+
+class _Subspace(_Followed):
+    """Positive where the modes of a subspace grow, without damping; smooth in friction."""
+
+    def __init__(
+        self, pencil_at: Callable[[float], Pencil], high: float, after: Eigenpair
+    ) -> None:
+        super().__init__()
+        self.pencil_at = pencil_at
+        square = -(after.value**2)
+        pair = after.value.imag != 0
+        roots = [square, square.conjugate()] if pair else [complex(square.real)]
+        right, left = (
+            np.linalg.qr(np.stack([v.real, v.imag], 1) if pair else v.real[:, None])[0]
+            for v in (after.right, after.left)
+        )
+        self.known[high] = _turned(pencil_at(high), _Block(right, left, roots, 0.0))
+
+    def _moved(self, near: float, mu: float) -> _Block | None:
+        start = last = self.known[near]
         pencil = self.pencil_at(mu)
         for _ in range(TURNS):
-            solve = _solver(pencil, self.square.real)
-            self.right = np.linalg.qr(solve(pencil.mass @ self.right, False))[0]
-            self.left = np.linalg.qr(solve(pencil.mass @ self.left, True))[0]
-            block = self._block(pencil)
-            self.square = complex(np.trace(block) / len(block))
-        if len(block) == 1:
-            return -float(block[0, 0])
-        half = 0.5 * (block[0, 0] - block[1, 1])
-        return -float(half**2 + block[0, 1] * block[1, 0])
+            block = _turned(pencil, last)
+            size = abs(np.mean(block.roots))
+            moved = abs(np.mean(block.roots) - np.mean(last.roots)) / size
+            opened = abs(block.split - last.split) / size**2
+            last = block
+            if max(moved, opened) <= SETTLED:  # what is left vanishes in one more turn
+                last = _turned(pencil, last)
+                alike = np.linalg.svd(start.right.T @ last.right, compute_uv=False)
+                return last if alike.min() >= ALIKE else None
+        return None
 
-    def _block(self, pencil: Pencil) -> Any:
-        """(WᵀMV)⁻¹ WᵀKV, summed in extended precision."""
-        columns = [pencil.products(column) for column in self.right.T]
-        left = self.left.T.astype(np.longdouble)
-        mass = np.stack([left @ each[0].real for each in columns], 1)
-        stiffness = np.stack([left @ each[2].real for each in columns], 1)
-        if len(mass) == 1:
-            return stiffness / mass
-        (a, b), (c, d) = mass
-        inverse = np.array([[d, -b], [-c, a]]) / (a * d - b * c)
-        return inverse @ stiffness
+    def _measure(self, mu: float) -> float:
+        return -self.known[mu].split  # type: ignore[no-any-return]
 
 
-def _solver(pencil: Pencil, square: float) -> Callable[[np.ndarray, bool], np.ndarray]:
-    """Solutions with K − λ M, or its transpose."""
-    shift = square + ASIDE * max(abs(square), (SLOW * pencil.unit) ** 2)
-    factors = splu(sp.csc_array(pencil.stiffness - shift * pencil.mass))
+def _turned(pencil: Pencil, start: _Block) -> _Block:
+    """The block after one inverse iteration from both sides."""
+    solve = _solver(pencil, start.roots)
+    right = np.linalg.qr(solve(start.right, False))[0]
+    left = np.linalg.qr(solve(start.left, True))[0]
+    matrix = _projected(pencil, right, left)
+    if len(matrix) == 1:
+        return _Block(right, left, [complex(matrix[0, 0])], float(matrix[0, 0]))
+    mean, half = 0.5 * np.trace(matrix), 0.5 * (matrix[0, 0] - matrix[1, 1])
+    split = float(half**2 + matrix[0, 1] * matrix[1, 0])
+    distance = np.sqrt(complex(split))
+    return _Block(right, left, [float(mean) + distance, float(mean) - distance], split)
 
-    def solve(right: Any, transposed: bool) -> Any:
-        return factors.solve(np.asarray(right), trans="T" if transposed else "N")
+
+def _projected(pencil: Pencil, right: np.ndarray, left: np.ndarray) -> Any:
+    """(WᵀMV)⁻¹ WᵀKV, summed in extended precision."""
+    columns = [pencil.products(column) for column in right.T]
+    rows = left.T.astype(np.longdouble)
+    mass = np.stack([rows @ each[0].real for each in columns], 1)
+    stiffness = np.stack([rows @ each[2].real for each in columns], 1)
+    if len(mass) == 1:
+        return stiffness / mass
+    (a, b), (c, d) = mass
+    inverse = np.array([[d, -b], [-c, a]]) / (a * d - b * c)
+    return inverse @ stiffness
+
+
+def _solver(
+    pencil: Pencil, roots: list[complex]
+) -> Callable[[np.ndarray, bool], np.ndarray]:
+    """Inverse iterations about each root in turn, or with the transposed matrices.
+
+    About their mean alone an eigenvalue between both would come in.
+    """
+    aside = ASIDE * max(float(abs(np.mean(roots))), (SLOW * pencil.unit) ** 2)
+    is_pair = roots[0].imag != 0
+    shifts = [roots[0]] if is_pair else [root.real for root in roots]
+    factors = [
+        splu(sp.csc_array(pencil.stiffness - (shift + aside) * pencil.mass))
+        for shift in shifts
+    ]
+
+    def solve(vectors: Any, transposed: bool) -> Any:
+        trans = "T" if transposed else "N"
+        for each in factors:
+            right = pencil.mass @ vectors
+            vectors = each.solve(
+                right.astype(complex) if is_pair else right, trans=trans
+            )
+        if (
+            is_pair
+        ):  # the matrices are real: factors about a root are those about its conjugate
+            right = (pencil.mass @ vectors).conj()
+            vectors = each.solve(right, trans=trans).conj().real
+        return vectors
 
     return solve
 
 
-class _Growth:
-    """Growth rate of a mode, each estimate starting from the nearest friction known."""
+class _Growth(_Followed):
+    """Growth rate of a mode."""
 
     def __init__(
         self,
@@ -137,20 +245,22 @@ class _Growth:
         after: Eigenpair,
         ends: tuple[float, float],
     ) -> None:
+        super().__init__()
         self.pencil_at = pencil_at
         self.known = dict(zip(ends, (before, after), strict=True))
 
-    def __call__(self, mu: float) -> float:
-        if mu not in self.known:
-            near = sorted(self.known, key=lambda each: abs(each - mu))
-            guess = self.known[near[0]]
-            value = guess.value
-            if (
-                len(near) > 1 and near[0] != near[1]
-            ):  # along the line through the nearest two
-                other = self.known[near[1]].value
-                value += (other - value) * (mu - near[0]) / (near[1] - near[0])
-            self.known[mu] = polished(
-                self.pencil_at(mu), value, guess.right, guess.left
-            )
-        return self.known[mu].value.real
+    def _moved(self, near: float, mu: float) -> Eigenpair | None:
+        guess = self.known[near]
+        value = guess.value
+        # along the line through the nearest two
+        others = sorted(self.known, key=lambda known: abs(known - mu))
+        if len(others) > 1:
+            other = others[1] if others[0] == near else others[0]
+            slope = (self.known[other].value - value) / (other - near)
+            value += float(mu - near) * slope
+        pair = polished(self.pencil_at(mu), value, guess.right, guess.left)
+        alike = abs(np.vdot(guess.right, pair.right))
+        return pair if alike >= ALIKE else None
+
+    def _measure(self, mu: float) -> float:
+        return self.known[mu].value.real  # type: ignore[no-any-return]

@@ -89,7 +89,7 @@ class Pencil:
 
     @cached_property
     def _extended(self) -> list[Any]:
-        return [_Extended(each) for each in (self.mass, self.damping, self.stiffness)]
+        return [Extended(each) for each in (self.mass, self.damping, self.stiffness)]
 
     @cached_property
     def _squares(self) -> list[Any]:
@@ -143,7 +143,7 @@ class Pencil:
         return Factors(self, s)
 
 
-class _Extended:
+class Extended:
     """A sparse matrix whose products are summed in extended precision."""
 
     def __init__(self, matrix: Any) -> None:
@@ -155,9 +155,10 @@ class _Extended:
 
     def product(self, vector: np.ndarray) -> np.ndarray:
         """A x."""
-        total = np.zeros(self.size, LONG)
+        total = np.zeros(self.size, np.result_type(vector, np.longdouble))
         if self.filled.size:
-            terms = self.data * vector.astype(LONG)[self.indices]
+            wide = LONG if vector.dtype.kind == "c" else np.longdouble
+            terms = self.data * vector.astype(wide)[self.indices]
             total[self.filled] = np.add.reduceat(terms, self.starts)
         return total
 

@@ -7,6 +7,7 @@ pencil M s² + (C + Σ Nᵢ μᵢ′ tᵢtᵢᵀ) s + K + Σ kᵢ (nᵢ + σᵢ 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,11 +17,19 @@ from scipy.sparse.linalg import splu
 
 from squealpipe.systems.structures.definition import Structure
 from squealpipe.systems.structures.friction import with_mu
-from squealpipe.systems.structures.pencil import LowRank, Pencil
+from squealpipe.systems.structures.pencil import Extended, LowRank, Pencil
 
 SINGULAR = 1e-13
 """Residual of the steady state, over the forces in it, beyond which the stiffness is singular."""
 
+REFINEMENTS = 2
+"""Corrections of the steady state by its residual."""
+UNSETTLED = 1e-4
+"""Share by which the last correction changes contact forces that round-off alone makes."""
+LOCATED = 1e-12
+"""Tolerance of a friction that is located."""
+MOST_CHANGES = 32
+"""Contacts that open or close between two frictions, at most."""
 MOST_SOUGHT = 16
 """Contacts up to which all combinations of open and closed ones are tried."""
 
@@ -128,6 +137,37 @@ def _sought(structure: Structure, drag: np.ndarray) -> np.ndarray | None:
     return None
 
 
+def changes(
+    structure: Structure, low: float, high: float, belt_speed: float
+) -> list[tuple[float, float]]:
+    """Where contacts open or close on the way from one friction to another.
+
+    Returns:
+        The last friction with the contacts of before and the first with others, for each change
+        that is needed to come from the contacts closed at ``low`` to those at ``high``.
+
+    Raises:
+        NoSlidingError: there is no steady sliding on the way.
+    """
+
+    def closed_at(mu: float) -> np.ndarray:
+        return steady_sliding(structure, mu, belt_speed).closed
+
+    passed: list[tuple[float, float]] = []
+    closed, last = closed_at(low), closed_at(high)
+    while (closed != last).any() and len(passed) < MOST_CHANGES:
+        before, after = low, high
+        while after - before > LOCATED:
+            middle = 0.5 * (before + after)
+            if np.array_equal(closed_at(middle), closed):
+                before = middle
+            else:
+                after = middle
+        passed.append((before, after))
+        low, closed = after, closed_at(after)
+    return passed
+
+
 def _balance(structure: Structure, closed: np.ndarray, drag: np.ndarray) -> np.ndarray:
     """q of K q + Σ k (n + σ μ t) nᵀ q = f + Σ (n + σ μ t) preload over closed contacts."""
     acting = _acting(structure, closed, drag)
@@ -136,17 +176,59 @@ def _balance(structure: Structure, closed: np.ndarray, drag: np.ndarray) -> np.n
     if not force.any():
         return np.zeros(structure.size)
     try:
-        solution = splu(sp.csc_array(matrix)).solve(force)
-        missed = np.abs(matrix @ solution - force).max()
+        factors = splu(sp.csc_array(matrix))
+        solution = factors.solve(force)
+        # a structure that its contacts alone hold, and barely, loses digits, which residuals in
+        # extended precision bring back
+        unbalanced = _unbalanced(structure, closed, drag)
+        change = solution
+        for _ in range(REFINEMENTS):
+            change = factors.solve(unbalanced(solution))
+            solution = solution + change
+        missed = np.abs(unbalanced(solution)).max()
         carried = (abs(matrix) @ np.abs(solution)).max()
+        forces, changes_of_forces = (
+            np.abs(structure.stiffnesses * (structure.normals.T @ each)).max(
+                initial=0.0
+            )
+            for each in (solution, change)
+        )
+        pressed = max(forces, np.abs(structure.preloads).max(initial=0.0))
+        unsettled = changes_of_forces > UNSETTLED * pressed
     except RuntimeError:  # the factor is exactly singular
-        missed, carried = np.inf, 1.0
-    if not missed <= 1e3 * SINGULAR * max(carried, np.abs(force).max()):
+        missed, carried, unsettled = np.inf, 1.0, True
+    if unsettled or not missed <= 1e3 * SINGULAR * max(carried, np.abs(force).max()):
         raise NoSlidingError(
             "nothing holds the structure against its load: the stiffness is singular with "
             f"{'all' if closed.all() else 'some'} contacts closed; add supports"
         )
     return np.asarray(solution)
+
+
+def _unbalanced(
+    structure: Structure, closed: np.ndarray, drag: np.ndarray
+) -> Callable[[np.ndarray], np.ndarray]:
+    """f + Σ (n + σ μ t) N − K q over closed contacts as a function of q, rounded once."""
+    stiffness = Extended(structure.stiffness)
+    load, preloads, stiffnesses, tangentials = (
+        each.astype(np.longdouble)
+        for each in (
+            structure.load,
+            structure.preloads,
+            structure.stiffnesses,
+            structure.tangentials,
+        )
+    )
+    acting = (structure.normals + tangentials * drag) * closed
+
+    def unbalanced(displacement: np.ndarray) -> np.ndarray:
+        forces = preloads - stiffnesses * (
+            structure.normals.T @ displacement.astype(np.longdouble)
+        )
+        rest = load + acting @ forces - stiffness.product(displacement)
+        return rest.astype(float)  # type: ignore[no-any-return]
+
+    return unbalanced
 
 
 def _acting(structure: Structure, closed: np.ndarray, drag: np.ndarray) -> Any:

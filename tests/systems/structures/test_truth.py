@@ -379,6 +379,20 @@ def test_steady_sliding_is_met_where_one_contact_after_the_other_would_come_back
     assert modes.normal_force.values.ravel() == pytest.approx([0.0, 3.0 - 3.0 * q[1]])
 
 
+def test_normal_forces_keep_their_digits_where_a_soft_contact_holds_a_stiff_structure():
+    pair = 1e12 * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    contact = Contact("c", {0: 1.0}, {1: 1.0}, stiffness=1.0, preload=0.0)
+    structure = Structure(
+        np.eye(2), pair, contacts=[contact], mu=0.5, load=[-3.0, -1.0]
+    )
+    # what the contact carries is the load along the motion of the whole
+    force = structure.complex_modes(mu=[0.5]).normal_force.item()
+    assert force == pytest.approx(4.0 / 1.5, rel=1e-10)
+    between = Contact("c", {0: 1.0, 1: -1.0}, {1: 1.0}, stiffness=1.0, preload=1.0)
+    with pytest.raises(NoSlidingError, match="add supports"):
+        structure.with_(contacts=[between]).complex_modes()
+
+
 def test_modes_that_cannot_grow_are_not_unstable_by_round_off():
     pair = np.array([[1.0, -1.0], [-1.0, 1.0]])  # nothing holds it
     free = Structure(np.eye(2), pair).complex_modes()

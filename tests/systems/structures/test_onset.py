@@ -1,0 +1,65 @@
+"""Where modes turn unstable, against eigenvalues of matrices put together here."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+
+from squealpipe import Contact, Structure
+
+
+def undamped(seed):
+    """M, K, contacts' n, t, k, preload and direction of the belt, of a random structure."""
+    generator = np.random.default_rng([55, seed])
+    size = int(generator.integers(2, 9))
+    mass, stiffness = (
+        generator.standard_normal((size, size)) / np.sqrt(size) for _ in range(2)
+    )
+    generator.random()
+    number = int(generator.integers(1, max(2, size // 2 + 1)))
+    normal, tangential = (generator.standard_normal((number, size)) for _ in range(2))
+    springs, preload = (
+        generator.uniform(0.5, 8, number),
+        generator.uniform(3, 6, number),
+    )
+    belt = generator.choice([-1.0, 1.0]) * generator.uniform(0.5, 3)
+    speeds = generator.choice([1.0, -1.0, 2.0], number)
+    return (
+        mass @ mass.T + 0.5 * np.eye(size),
+        10 * stiffness @ stiffness.T + np.eye(size),
+        normal, tangential, springs, preload, np.sign(speeds * belt),
+    )  # fmt: skip
+
+
+def growing(case, mu):
+    """How many of s² = −λ grow about the state that fits, of all open and closed ones."""
+    mass, stiffness, normal, tangential, springs, preload, side = case
+    for closed in product([1.0, 0.0], repeat=len(springs)):
+        acting = ((normal + mu * (side * tangential.T).T).T * closed).T
+        matrix = stiffness + (acting.T * springs) @ normal
+        q = np.linalg.solve(matrix, (acting - normal).T @ preload)
+        if np.array_equal(preload - springs * (normal @ q) > 0, np.array(closed) > 0):
+            squares = np.linalg.eigvals(np.linalg.solve(mass, matrix))
+            return int((squares.imag > 0).sum() + (squares.real < 0).sum())
+    raise AssertionError("no steady sliding")
+
+
+# a contact opens at 1.372 and frees a mode that grows; a third eigenvalue lies between two that
+# merge, and coarse steps pass a window of stability by
+@pytest.mark.parametrize(("seed", "located"), [(17, 4), (77, 2)])
+def test_a_critical_friction_that_is_stated_is_one(seed, located):
+    case = undamped(seed)
+    mass, stiffness, *_, side = case
+    contacts = [
+        Contact(f"c{number}", *each, speed)
+        for number, (each, speed) in enumerate(
+            zip(zip(*case[2:6], strict=True), side, strict=True)
+        )
+    ]
+    modes = Structure(mass, stiffness, contacts=contacts).complex_modes(
+        mu=np.linspace(0, 1.5, 16)
+    )
+    critical = modes.critical_mu.values[np.isfinite(modes.critical_mu)]
+    assert len(critical) == located
+    for mu in critical:
+        assert growing(case, mu * (1 - 1e-9)) < growing(case, mu * (1 + 1e-9))
