@@ -13,7 +13,7 @@ from decimal import Decimal
 from functools import lru_cache
 from typing import Any
 
-from squealpipe.text import number
+from squealpipe.text import RAISED, number
 
 QUANTITIES = {
     "kg": ("a mass", "0.45 kg"),
@@ -31,7 +31,6 @@ QUANTITIES = {
     "1": ("a number without a unit, or in %", "30 %"),
 }
 """CF unit → what it measures, and an example of how people write it."""
-RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 SHOWN_IN: dict[str, tuple[tuple[float, str, float], ...]] = {
     "m": ((1.0, "m", 0.1), (1e3, "mm", 1e-4), (1e6, "µm", 0.0)),
     "s": ((1.0, "s", 1.0), (1e3, "ms", 0.0)),

@@ -4,6 +4,7 @@ A picture is drawn in the units of its dataset. Then ticks and labels of each ax
 which works for every picture alike and moves no line.
 """
 
+import math
 import re
 from collections.abc import Sequence
 from typing import Any
@@ -23,9 +24,9 @@ from matplotlib.ticker import (
     NullLocator,
 )
 
-from squealpipe.plotting.style import ANGLES, angle_in_words, symbol
+from squealpipe.plotting.style import ANGLES, SMALL, angle_in_words, symbol
 from squealpipe.schema.sizes import is_real
-from squealpipe.text import number
+from squealpipe.text import RAISED, number
 from squealpipe.units import conversion, shown_in
 
 READABLE = {"m": "m", "s": "s", "N": "N", "Hz": "Hz", "m/s": "m s-1", "N/m": "N m-1"}
@@ -114,6 +115,11 @@ def _make_readable(axis: Axis, words: str, unit: str) -> None:
 def _convert(axis: Axis, words: str, factor: float, unit: str) -> None:
     words = "frequency" if words == "ω" and "rad" not in unit else words
     axis.set_label_text(f"{words} ({unit})")
+    largest = factor * float(np.abs(axis.get_view_interval()).max())
+    if axis.get_scale() != "log" and 0 < largest < SMALL:  # one power of ten for all
+        power = math.floor(math.log10(largest))
+        factor *= 10.0**-power
+        axis.set_label_text(f"{words} (10{str(power).translate(RAISED)} {unit})")
     if axis.get_scale() == "log":
         axis.set_major_locator(_ScaledLog(factor))
         axis.set_minor_locator(NullLocator())

@@ -6,9 +6,11 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from squealpipe.plotting import style
 from squealpipe.plotting.quantities import label
+from squealpipe.units import shown_in
 
 GROWTH = "growth rate (1/s)"
 DEEPEST = 1.5
@@ -54,10 +56,12 @@ def _one_way(modes: xr.Dataset, dims: list[str]) -> xr.Dataset:
 
 def _draw_spectrum(axes: Axes, modes: xr.Dataset) -> None:
     unstable = modes.unstable.values
-    frequency, growth = modes.frequency.values / 1e3, modes.growth_rate.values
+    frequency, growth = modes.frequency.values, modes.growth_rate.values
     if not np.isfinite(growth).any():
         style.say_instead(axes, "no mode within the limits")
         return
+    factor, unit = frequency_unit(frequency)
+    frequency = frequency * factor
     axes.axhline(0.0, color=style.GREY, linewidth=0.6)
     axes.plot(
         frequency[~unstable], growth[~unstable], ".", color=style.BLUE, label="stable"
@@ -66,7 +70,8 @@ def _draw_spectrum(axes: Axes, modes: xr.Dataset) -> None:
         frequency[unstable], growth[unstable], "o", color=style.RED, label="unstable"
     )
     show_what_grows(axes, growth)
-    axes.set(xlabel="frequency (kHz)", ylabel=GROWTH)
+    axes.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
+    axes.set(xlabel=f"frequency ({unit})", ylabel=GROWTH)
     axes.legend()
 
 
@@ -74,23 +79,32 @@ def _draw_along(axes: Axes, modes: xr.Dataset, name: str, dim: str) -> None:
     """All modes along a factor; where one is unstable it is red, its onset a mark."""
     values = modes[name].transpose(dim, "mode").values
     unstable = modes.unstable.transpose(dim, "mode").values
-    x, unit = modes[dim].values, 1e3 if name == "frequency" else 1.0
+    x = modes[dim].values
     if not np.isfinite(values).any():
         style.say_instead(axes, "no mode within the limits")
         return
-    axes.plot(x, values / unit, color=style.BLUE, linewidth=0.7)
-    axes.plot(x, np.where(unstable, values, np.nan) / unit, ".-", color=style.RED, ms=3)
+    words = GROWTH
+    if name == "frequency":
+        factor, unit = frequency_unit(values)
+        values, words = values * factor, f"frequency ({unit})"
+    axes.plot(x, values, color=style.BLUE, linewidth=0.7)
+    axes.plot(x, np.where(unstable, values, np.nan), ".-", color=style.RED, ms=3)
     if dim == "mu":
         onsets = modes.critical_mu.values
         for place in np.flatnonzero(np.isfinite(onsets)):
-            at = np.interp(onsets[place], x, values[:, place] / unit)
+            at = np.interp(onsets[place], x, values[:, place])
             at = at if name == "frequency" else 0.0
             axes.plot(onsets[place], at, "D", color=style.BLACK, ms=3)
     if name == "growth_rate":
         axes.axhline(0.0, color=style.GREY, linewidth=0.6)
         show_what_grows(axes, values)
-    words = "frequency (kHz)" if name == "frequency" else GROWTH
     axes.set(xlabel=label(modes[dim]), ylabel=words)
+
+
+def frequency_unit(frequencies: np.ndarray) -> tuple[float, str]:
+    """Factor and unit in which people write frequencies up to the largest of some in Hz."""
+    finite = frequencies[np.isfinite(frequencies)]
+    return shown_in(float(finite.max(initial=0.0)), "Hz")
 
 
 def show_what_grows(axes: Axes, growth: np.ndarray) -> None:

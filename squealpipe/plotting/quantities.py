@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
+from squealpipe.parameters import TABLE
 from squealpipe.plotting import style
 from squealpipe.schema import SYSTEM, meanings
 
@@ -187,5 +188,7 @@ def label(variable: xr.DataArray) -> str:
     """What a variable is, with its unit, for an axis."""
     unit = UNITS.get(unit := str(variable.attrs.get("units", "1")), unit)
     name = str(variable.name)
-    words = style.symbol(name) if name in style.ANGLES else _words(variable)
+    words = _words(variable)
+    if name in style.ANGLES or (words == name and name in TABLE):
+        words = style.symbol(name)
     return words if unit == "1" else f"{words} ({unit})"

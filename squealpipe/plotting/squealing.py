@@ -6,10 +6,13 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from squealpipe.plotting import style
-from squealpipe.plotting.modes import GROWTH, show_what_grows
+from squealpipe.plotting.modes import GROWTH, frequency_unit, show_what_grows
 from squealpipe.schema import meanings
+from squealpipe.text import number
+from squealpipe.units import engineering
 
 MOST = 6
 """Attractors drawn, those of most random starts."""
@@ -27,14 +30,20 @@ def figure(answer: xr.Dataset) -> Figure:
     made, axes = style.new_figure(
         style.PAGE, min(height, 6.0), ncols=4, width_ratios=[1.7, 1.0, 1.0, 1.2]
     )
+    made.get_layout_engine().set(w_pad=0.08)  # type: ignore[union-attr, call-arg]
     poles, shares, levels, losses = axes[0]
-    draw_poles(poles, answer)
+    _poles(poles, answer)
+    made.legend(*poles.get_legend_handles_labels(), loc="outside lower left", ncols=3)
     draw_shares(shares, shown)
     _bars(levels, shown.velocity_rms.values)
     levels.set(xlabel="rms speed (m/s)")
     _losses(losses, shown)
     for axes_ in (levels, losses):
         axes_.set_yticks(np.arange(shown.sizes["attractor"]), [])
+    for axes_ in (shares, levels, losses):  # few and short: the panels are narrow
+        if len(axes_.get_xticks()):
+            axes_.xaxis.set_major_locator(MaxNLocator(3, steps=[1, 2, 5, 10]))
+            axes_.xaxis.set_major_formatter(FuncFormatter(lambda x, _: number(x, 3)))
     titles = ("what grows", "ends in", "how loud", "contact loss")
     for letter, panel, title in zip("abcd", axes[0], titles, strict=True):
         style.panel_letter(panel, letter, title)
@@ -43,10 +52,17 @@ def figure(answer: xr.Dataset) -> Figure:
 
 def draw_poles(axes: Axes, answer: xr.Dataset) -> None:
     """Growth over frequency as eigenvalue codes draw it; dashed, where the motions ring."""
-    frequency, growth = answer.pole_frequency.values / 1e3, answer.pole_growth_rate
+    _poles(axes, answer)
+    axes.legend()
+
+
+def _poles(axes: Axes, answer: xr.Dataset) -> None:
+    frequencies = answer.pole_frequency.values
+    factor, unit = frequency_unit(frequencies)
+    frequency, growth = frequencies * factor, answer.pole_growth_rate
     unstable = np.isin(answer.pole.values, answer.mode.values)
     axes.axhline(0.0, color=style.GREY, linewidth=0.6)
-    for place, ring in enumerate(answer.dominant_frequency.values / 1e3):
+    for place, ring in enumerate(answer.dominant_frequency.values * factor):
         if np.isfinite(ring):
             label = None if place else "strongest line"
             axes.axvline(
@@ -61,8 +77,9 @@ def draw_poles(axes: Axes, answer: xr.Dataset) -> None:
                 frequency[which], growth[which], mark, ms=4, color=colour, label=label
             )
     show_what_grows(axes, growth.values)
-    axes.set(xlabel="frequency (kHz)", ylabel=GROWTH)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=3)
+    axes.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
+    axes.margins(x=0.08)
+    axes.set(xlabel=f"frequency ({unit})", ylabel=GROWTH)
 
 
 def draw_shares(axes: Axes, answer: xr.Dataset) -> None:
@@ -84,7 +101,7 @@ def _names(answer: xr.Dataset) -> list[str]:
     return [
         word.replace(" ", "\n")
         if np.isnan(frequency)
-        else f"{frequency / 1e3:.4g} kHz\n{word}"
+        else f"{engineering(frequency, 'Hz', 4)}\n{word}"
         for word, frequency in zip(words, answer.dominant_frequency.values, strict=True)
     ]
 

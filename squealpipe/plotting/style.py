@@ -271,6 +271,8 @@ def _resize(figure: Figure, size: tuple[float, float]) -> None:
             if ticks:
                 axis.set_tick_params(labelsize=ticks[0].get_fontsize())
     figure.set_size_inches(size)
+    if any(axes.get_aspect() != "auto" for axes in figure.axes):
+        figure.set_layout_engine("compressed")  # a map in the middle of a wide picture
 
 
 def save_figure(
