@@ -156,3 +156,7 @@ def test_result_of_code_that_changed_meanwhile_is_not_published(tmp_path, monkey
     assert "a new installation; run the same command again" in str(told.value)
     monkeypatch.setenv(STARTED, str(time.time()))
     state_key(picture, "0" * 16)
+    # a file that is dated later than now has another clock's date, and was not edited
+    monkeypatch.setenv(STARTED, "0")
+    monkeypatch.setattr(time, "time", lambda: 1.0)
+    state_key(picture, "0" * 16)

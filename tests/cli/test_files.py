@@ -59,14 +59,17 @@ def test_one_of_two_commands_that_write_to_one_name_is_refused_before_it_compute
     with subprocess.Popen(
         [sys.executable, "-m", "squealpipe", *long], cwd=tmp_path, stderr=subprocess.DEVNULL
     ) as other:  # fmt: skip
-        while not (tmp_path / ".a.nc.writing").exists():
+        try:
+            while not (tmp_path / ".a.nc.writing").exists():
+                time.sleep(0.1)
             time.sleep(0.1)
-        time.sleep(0.1)
-        assert run(words) == 2
-        assert "a.nc is being written by another command" in capsys.readouterr().err
-        assert run([*words, "--force"]) == 2
-        assert run([*STABILITY, "-o", "b.nc"]) == 0
-        other.kill()  # the name is free again, however its holder ended
+            assert run(words) == 2
+            told = capsys.readouterr().err
+            assert "a.nc is being written by another command" in told
+            assert run([*words, "--force"]) == 2
+            assert run([*STABILITY, "-o", "b.nc"]) == 0
+        finally:
+            other.kill()  # the name is free again, however its holder ended
     assert run(words) == 0
     assert sorted(entry.name for entry in tmp_path.iterdir() if entry.suffix == ".nc") == [
         "a.nc", "b.nc",
