@@ -48,9 +48,15 @@ def system(
     """
     size = structure.size
     if 2 * size > MOST_STATES:
+        most = MOST_STATES // 2
         raise ValueError(
-            f"{size} degrees of freedom: a system can have {MOST_STATES // 2}; "
-            "take structure.reduce().system()"
+            f"{size} degrees of freedom: a system can have {most}; "
+            + (
+                "take structure.reduce().system()"
+                if structure.modes is None
+                else f"reduce the whole structure with n_modes={most}, and see the errors in its "
+                "record"
+            )
         )
     if len(structure.contacts) > MOST_COMPONENTS:
         raise ValueError(

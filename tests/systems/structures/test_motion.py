@@ -184,6 +184,15 @@ def test_a_run_tells_force_and_speed_at_each_contact_and_displacements_by_name()
         structure.system(displacements={"far": 4})
 
 
+def test_what_is_too_large_for_a_system_says_how_to_make_it_small():
+    whole = Structure(np.eye(40), np.diag(np.arange(1.0, 41.0)))
+    with pytest.raises(ValueError, match=r"take structure\.reduce\(\)"):
+        whole.system()
+    with pytest.raises(ValueError, match="n_modes=32"):
+        whole.reduce(n_modes=33).system()
+    assert len(whole.reduce(n_modes=32).system().states) == 64
+
+
 def test_three_contacts_land_at_one_instant():
     # three light feet, each with a spring of its own along the belt, under one mass
     stiffness = np.diag([1.0, 2.0, 3.0, 4.0])
