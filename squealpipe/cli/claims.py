@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -42,7 +43,8 @@ def claims(
         print(*map(_line, rows), sep="\n")
         if rows:
             print(
-                f"{len(rows)} statements; `squealpipe claims {rows[0]['id']}` shows one in full"
+                f"{len(rows)} statements; {_counts(rows)}; "
+                f"`squealpipe claims {rows[0]['id']}` shows one in full"
             )
         if changed := [row for row in rows if row["changes"]]:
             print("\nWith friction of one sign throughout these change:")
@@ -82,8 +84,27 @@ def _line(row: Mapping[str, Any]) -> str:
     return text if len(text) <= width else f"{text[: width - 1]}…"
 
 
+def _counts(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Verdicts counted, those of fitted statements apart from those of tests."""
+    words = {
+        "predicted": "tests",
+        "fitted": "fitted",
+        "unknown": "fitted or not unknown",
+    }
+    told = []
+    for basis, name in words.items():
+        counts = Counter(row["verdict"] for row in rows if row["basis"] == basis)
+        if counts:
+            listed = ", ".join(
+                f"{number} {verdict}" for verdict, number in counts.items()
+            )
+            told.append(f"{name}: {listed}")
+    return "; ".join(told)
+
+
 def _details(row: Mapping[str, Any]) -> list[str]:
     lines = [f"{row['id']}  {row['verdict']}  ({row['section']})", row["statement"]]
+    lines.append(f"basis: {row['basis']}")
     if row["value"] is not None:
         but = ", but a further condition is not met" if row["unmet"] else ""
         lines.append(
