@@ -85,15 +85,16 @@ def _line(row: Mapping[str, Any]) -> str:
 
 
 def _counts(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Verdicts counted, those of fitted statements apart from those of tests."""
+    """Verdicts counted: those that were fitted, those that test, and our list of misprints."""
     words = {
         "predicted": "tests",
         "fitted": "fitted",
         "unknown": "fitted or not unknown",
     }
-    told = []
+    own = [row for row in rows if row["origin"] == "paper"]
+    told = [f"{len(own)} of them the paper's"]
     for basis, name in words.items():
-        counts = Counter(row["verdict"] for row in rows if row["basis"] == basis)
+        counts = Counter(row["verdict"] for row in own if row["basis"] == basis)
         if counts:
             listed = ", ".join(
                 f"{number} {verdict}" for verdict, number in counts.items()
