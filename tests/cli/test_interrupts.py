@@ -13,7 +13,7 @@ import pytest
 
 from squealpipe.cli import main
 from squealpipe.cli.console import INTERRUPTED
-from squealpipe.execution.supervised import remove_stale_lock
+from squealpipe.execution.supervised import end_group, remove_stale_lock
 
 LONG = {
     "simulate": ["simulate", "0.4pi", "0.6pi", "--t-end", "1e6"],
@@ -101,6 +101,22 @@ def test_a_workflow_ends_with_its_head_however_that_ends(name, tmp_path):
     wait_until(lambda: not any(map(lives, numbers)))
     assert (tmp_path / "tidied").exists()
     assert bool(list(tmp_path.glob(".snakemake/squealpipe/*"))) is (name == "SIGKILL")
+
+
+DEAF = "import signal, time; signal.signal(2, signal.SIG_IGN); print(1, flush=True); time.sleep(99)"
+
+
+def test_a_job_that_does_not_heed_an_interrupt_is_killed(monkeypatch):
+    monkeypatch.setattr("squealpipe.execution.supervised.PATIENCE", 0.3)
+    with subprocess.Popen(
+        [sys.executable, "-c", DEAF], stdout=subprocess.PIPE, start_new_session=True
+    ) as job:
+        try:
+            job.stdout.readline()
+            end_group(job.pid)
+            assert job.wait(timeout=10) == -signal.SIGKILL
+        finally:
+            job.kill()
 
 
 def lives(number):
