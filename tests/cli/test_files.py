@@ -266,7 +266,11 @@ def test_completion_is_offered(capsys, monkeypatch, tmp_path):
     assert any("backbone" in path.read_text(encoding="utf-8") for path in written)
 
 
-def test_a_map_that_does_not_fit_is_refused_with_what_it_would_take(capsys):
+def test_a_map_that_does_not_fit_is_refused_with_what_it_would_take(
+    capsys, monkeypatch
+):
+    begun = Mock(side_effect=AssertionError("it would take all memory"))
+    monkeypatch.setattr("squealpipe.tasks.linear.maps.stability_map", begun)
     words = ["map", "stability", "--alpha1", "0:pi:30000", "--alpha2", "0:pi:30000"]
     assert run([*words, "-o", "big.nc"]) == 2
     told = capsys.readouterr().err
