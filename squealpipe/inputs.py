@@ -136,6 +136,8 @@ def with_units(
 def _argument(name: str, value: Any, about: Mapping[str, Any]) -> Any:
     is_end = name == "to" and "parameter" in about
     name_of_unit = str(about["parameter"]) if is_end else name
+    if name_of_unit not in {"distributions", *STATES, *ANGLES, *UNITS}:
+        return value
     try:
         if name == "distributions" and isinstance(value, Mapping):
             return {

@@ -42,9 +42,9 @@ def traced(data, system):
             made["to"].append(
                 [system.name_of(regime), text(condition), system.traced.kinds[kind]]
             )
-        made["reset"] = {
-            system.states[i]: text(value) for i, value in symbols.reset.items()
-        }
+        assert symbols.has_one_reset
+        reset = next(iter(symbols.resets.values()))
+        made["reset"] = {system.states[i]: text(value) for i, value in reset.items()}
         switches.append(made)
     rates = zip(system.states, system.traced.rates, strict=False)
     field = {name: text(rate) for name, rate in rates}
