@@ -27,7 +27,7 @@ from squealpipe.inputs import ANGLES
 from squealpipe.methods.processes import available_cores, leave_interrupts_to_the_parent
 from squealpipe.methods.progress import alone
 from squealpipe.models.refusals import refuse_unread
-from squealpipe.parameters import TABLE, Parameters, parameters_of
+from squealpipe.parameters import Parameters, parameters_of
 from squealpipe.schema import (
     ABSENT,
     DatasetSchema,
@@ -109,8 +109,8 @@ class Sweep:
             )
         # a table of contact is read anew at the preload of each run
         params, _ = self._with(self.fixed)
-        ranges = [name for name in self.vary if name in NUMBERS and name != "preload"]
-        refuse_unread(params, [name for name in ranges if TABLE[name].enters_a1])
+        ranges = {*self.vary} & {*NUMBERS} - {"preload", *options}
+        refuse_unread(params, sorted(ranges))
         self._refuse_other_times()
 
     def _with(self, given: Mapping[str, Any]) -> tuple[Parameters, dict[str, Any]]:

@@ -105,6 +105,14 @@ def test_angles_and_options_can_be_swept_and_ragged_runs_are_filled_up(tmp_path)
             {"vary": {"friction_speed": [1, 2], "alpha1": [0]}},
             "friction_speed cannot vary: friction_law = 'coulomb' does not read it",
         ),
+        (
+            {
+                "task": "simulate",
+                "vary": {"sigma": [10.0, 100.0], "alpha1": [0]},
+                "fixed": {"alpha2": 0, "t_end": 5.0},
+            },
+            "sigma cannot vary: A1 does not read it",
+        ),
     ],
 )
 def test_plans_that_cannot_work_are_refused(changes, message):
