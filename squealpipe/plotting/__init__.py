@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from squealpipe.plotting.assess import draw_settled_orbit
 from squealpipe.plotting.assess import figure as assess_figure
 from squealpipe.plotting.axis_units import in_units
+from squealpipe.plotting.contact_points import draw_onsets
 from squealpipe.plotting.curves import draw_curves
 from squealpipe.plotting.cycles import draw_backbone, draw_branch, draw_cycle
 from squealpipe.plotting.modes import draw_modes
@@ -42,6 +43,7 @@ DRAWN: dict[str, Callable[[Axes, xr.Dataset], None]] = {
     "stability_boundaries": draw_curves,
     "propensity": draw_shares,
     "squealing_modes": draw_poles,
+    "contact_points": draw_onsets,
     COMPLEX_MODES: draw_modes,
     SYSTEM + "simulate": draw_states,
     SYSTEM + "ensemble": draw_ensemble,

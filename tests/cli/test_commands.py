@@ -232,7 +232,7 @@ def test_cycle_and_branch_go_together(capsys):
         float(found.period), rel=1e-9
     )
     assert Path("branch.png").stat().st_size > 1000
-    assert plot(branch).get_xlabel() == "belt_speed (m/s)"
+    assert plot(branch).get_xlabel() == "V (m/s)"
 
 
 @pytest.mark.parametrize(

@@ -28,7 +28,7 @@ LONGEST = 20.0
 NO_NUMBER = [
     None, "1", "", b"1", 1j, True, np.bool_(True), math.nan, math.inf, -math.inf, 10**400,
     [], {}, object(), np.timedelta64(1, "s"), np.datetime64("2020-01-01"), np.array([1.0, 2.0]),
-    np.ma.masked, np.complex128(1), {1.0}, range(2), np.nan, "π",
+    np.ma.masked, np.complex128(1), {1.0}, range(2), np.nan, "many",
 ]  # fmt: skip
 NO_ANGLES = [
     90.0, [0.1, -7.0],

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
+from squealpipe.plotting.contact_points import draw_onsets
 from squealpipe.schema.assess import Verdict
 
 READS = ("contact_points",)
-MOST_FRICTION = 1.0
 
 
 def _quiet(pads: xr.Dataset) -> str:
@@ -47,7 +45,7 @@ def draw(pads: xr.Dataset) -> Figure:
     figure, axes = style.new_figure(
         style.PAGE, 2.6, ncols=2 + count, width_ratios=[1.0, 1.2, *[1.2] * count]
     )
-    _draw_onsets(axes[0, 0], pads)
+    draw_onsets(axes[0, 0], pads)
     _draw_loss(axes[0, 1], pads, loud)
     if not len(shown):
         style.say_instead(axes[0, 2], "every pad is quiet")
@@ -65,27 +63,6 @@ def _titles(pads: xr.Dataset, shown: np.ndarray) -> list[str]:
         f"{float(pads.dominant_frequency[place]) / 1e3:.3g} kHz"
         for place in shown
     ]
-
-
-def _draw_onsets(axes: Axes, pads: xr.Dataset) -> None:
-    critical = pads.critical_mu.values
-    places = np.arange(len(critical))
-    known = np.isfinite(critical)
-    axes.plot(places[known], critical[known], "o", color=style.RED)
-    axes.plot(
-        places[~known], np.full((~known).sum(), MOST_FRICTION), "^", color=style.BLUE
-    )
-    axes.axhline(_friction(pads), color=style.GREY, linestyle="--", linewidth=0.8)
-    names = [str(name).replace(", ", "\n") for name in pads.design.values]
-    axes.set_xticks(places, names)
-    axes.set(
-        xlabel="contact points", ylabel="critical friction", ylim=(0.0, 1.08 * MOST_FRICTION),
-        xlim=(-0.5, len(places) - 0.5),
-    )  # fmt: skip
-
-
-def _friction(pads: xr.Dataset) -> float:
-    return float(json.loads(pads.attrs["parameters"])["mu"])
 
 
 def _draw_loss(axes: Axes, pads: xr.Dataset, loud: np.ndarray) -> None:
