@@ -85,12 +85,8 @@ def _line(row: Mapping[str, Any]) -> str:
 
 
 def _counts(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Verdicts counted: those that were fitted, those that test, and our list of misprints."""
-    words = {
-        "predicted": "tests",
-        "fitted": "fitted",
-        "unknown": "fitted or not unknown",
-    }
+    """Verdicts of the paper's statements counted: those that test apart from the fitted ones."""
+    words = {"predicted": "tests", "fitted": "fitted", "unknown": "not told apart"}
     own = [row for row in rows if row["origin"] == "paper"]
     told = [f"{len(own)} of them the paper's"]
     for basis, name in words.items():

@@ -53,15 +53,19 @@ def header_row(
 ) -> int:
     """Which row is the header: that with the name of the knots over a number."""
     cells = [row for _, row in table.rows]
-    named = {number: at for number, row in enumerate(cells) if (at := is_header(row))}
-    of_words = {n: at for n, at in named.items() if not any(map(numeral, cells[n]))}
-    named = of_words or named  # not a line like speed;2 m/s above the table
-    for number, at in named.items():
+    candidates = {
+        number: at for number, row in enumerate(cells) if (at := is_header(row))
+    }
+    of_words = {
+        n: at for n, at in candidates.items() if not any(map(numeral, cells[n]))
+    }
+    candidates = of_words or candidates  # not a line like speed;2 m/s above the table
+    for number, at in candidates.items():
         below = [numeral(cell_at(row, at[0])) for row in cells[number + 1 : number + 3]]
-        if any(below[:1]) or (any(below[1:]) and number + 1 not in named):
+        if any(below[:1]) or (any(below[1:]) and number + 1 not in candidates):
             return number
-    if named:
-        return max(named)
+    if candidates:
+        return max(candidates)
     first = next((number for number, row in enumerate(cells) if _is_data(row)), None)
     if not cells or first == 0:
         example = _SHOWN.get(table.separator, table.separator).join(columns)

@@ -93,7 +93,7 @@ def test_the_answer_comes_first_and_says_mode_sound_cause_and_remedy(
     assert cause.index(f"mu = {first} on (flutter)") < cause.index(f"mu = {second} on")
     stops = report.stops(modes, answer)
     assert stops[0].startswith(f"Less friction: below mu = {first} (−42 %)")
-    assert "points of damping ratio added to every mode" in stops[1]
+    assert "percentage points of damping ratio added to every mode" in stops[1]
     assert [row["critical"] for row in report.onsets(modes)] == [
         number(each, 4) for each in onsets()
     ]

@@ -16,7 +16,7 @@ class Statement:
     """One statement, how it is checked, and what came out at the shipped baseline.
 
     Attributes:
-        recorded: what its check finds at the shipped baseline; anything else is a regression.
+        recorded: what the judge finds at the shipped baseline; anything else is a regression.
         check: reads datasets only; of the equations as they are printed.
         physics: what is asked of the physics with one sign, where that is another question.
         consequence: what the inference judges at each feasible parameter set and what decides

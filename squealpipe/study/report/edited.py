@@ -51,8 +51,8 @@ def what_changed(changed: Sequence[tuple[str, Any, Any]]) -> str:
     keys = [(key, old, new) for key, old, new in changed if is_physical(key)]
     if not keys:
         return (
-            "The physics is that of the shipped study; only grids, horizons and samples differ, so "
-            "verdicts that differ do so because of them."
+            "Parameters and reading are those of the shipped study; verdicts that differ do so "
+            "because of the other keys listed below."
         )
     listed = "; ".join(
         f"{_name(key)}: {_value(key, new)} (shipped: {_value(key, old)})"
@@ -78,7 +78,9 @@ def undecided(statements: Sequence[Mapping[str, Any]]) -> list[dict[str, str]]:
     reasons: dict[str, list[str]] = {}
     for row in statements:
         if row["verdict"] == Verdict.cannot_be_decided.words:
-            reason = re.sub(r"the run has no dataset [^:]+: ", "", row["evidence"])
+            reason = re.sub(
+                r"^Not decided: (the run has no dataset [^:]+: )?", "", row["evidence"]
+            ).replace("it is not part", "what is needed is not part", 1)
             reasons.setdefault(reason, []).append(row["id"])
     return [{"why": why, "ids": ", ".join(ids)} for why, ids in reasons.items()]
 

@@ -43,10 +43,7 @@ def headline(answer: xr.Dataset) -> str:
             "Undetermined: the motion after a small push did not settle, or its kind is "
             "not clear."
         )
-    # a push may leave steady sliding although none of its modes is unstable
-    ends = answer.ends_in.values[:1]
-    alike = answer.motion.values == verdict
-    first = answer.isel(attractor=int(ends[0] if ends.size else alike.argmax()))
+    first = answer.isel(attractor=_end(answer))
     at = engineering(float(first.dominant_frequency), "Hz") + _near(answer, first)
     if verdict is Verdict.squeals:
         return f"Squeals at {at}; contact is kept."
@@ -58,6 +55,15 @@ def headline(answer: xr.Dataset) -> str:
         f"{_percent(float(loses.separated_fraction))} of the time, the peak force is {force} times "
         "the preload of its contact."
     )
+
+
+def _end(answer: xr.Dataset) -> int:
+    """The attractor that a small push ends in; NO_ATTRACTOR where it did not settle."""
+    if answer.sizes["mode"]:
+        return int(answer.ends_in[0])
+    # a push may leave steady sliding although none of its modes is unstable
+    alike = answer.motion.values == int(answer.verdict)
+    return int(alike.argmax()) if alike.any() else NO_ATTRACTOR
 
 
 def _near(answer: xr.Dataset, motion: xr.Dataset) -> str:
@@ -72,9 +78,11 @@ def _near(answer: xr.Dataset, motion: xr.Dataset) -> str:
 
 def level(answer: xr.Dataset) -> str:
     """How loud what a small push ends in is, and where contact is lost, in one sentence."""
-    end = int(answer.ends_in[0]) if answer.sizes["mode"] else NO_ATTRACTOR
-    if end == NO_ATTRACTOR or Verdict(int(answer.motion[end])) is Verdict.quiet:
+    if Verdict(int(answer.verdict)) is Verdict.quiet:
         return "Level: none."
+    end = _end(answer)
+    if end == NO_ATTRACTOR:
+        return "Level: not known; the motion did not settle."
     one = answer.isel(attractor=end)
     return (
         f"Level: rms speed of vibration {engineering(float(one.velocity_rms), 'm s-1')} at the "
@@ -85,7 +93,7 @@ def level(answer: xr.Dataset) -> str:
 
 def beside(answer: xr.Dataset) -> str | None:
     """What random starts end in other than what a small push does, in one sentence."""
-    end = int(answer.ends_in[0]) if answer.sizes["mode"] else NO_ATTRACTOR
+    end = _end(answer)
     others = [
         one
         for place in range(answer.sizes["attractor"])

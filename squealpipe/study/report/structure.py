@@ -129,20 +129,27 @@ def stops(modes: xr.Dataset, answer: xr.Dataset) -> list[str]:
             f"Less friction: below mu = {number(critical)} ({_change(critical, own)}) no mode "
             "grows."
         )
+    elif np.isnan(critical):
+        friction = "Friction: where growth begins was not located."
     else:
         friction = "Friction: at no friction are all modes stable."
     if np.isfinite(damping):
         damper = (
-            f"More damping: with {number(100 * damping, 2)} points of damping ratio added to "
-            "every mode none grows."
+            f"More damping: with {number(100 * damping, 2)} percentage points of damping ratio "
+            "added to every mode none grows."
         )
     else:
-        damper = f"Damping: {100 * MOST_DAMPING:.0f} points added to every mode do not suffice."
+        damper = (
+            f"Damping: {100 * MOST_DAMPING:.0f} percentage points added to every mode do not "
+            "suffice."
+        )
     return [friction, damper]
 
 
 def _change(value: float, now: float) -> str:
-    change = 100.0 * (value / now - 1.0) if now else float("inf")
+    if not now:
+        return "now 0"
+    change = 100.0 * (value / now - 1.0)
     return f"{'+' if change > 0 else '−'}{number(abs(change), 2)} %"
 
 
@@ -253,7 +260,8 @@ def not_examined(answer: xr.Dataset) -> list[str]:
         rest.insert(
             1,
             f"What the {int(answer.n_modes)} modes leave out: of the unstable ones frequencies "
-            f"are within {_percent(errors[0])}, growth rates within {_percent(errors[1])}.",
+            f"are within {_percent(errors[0])}, growth rates within {_percent(errors[1])} of "
+            "the larger of themselves and 1 % of the angular frequency.",
         )
     if float(answer.share_undetermined) > 0:
         rest.append("The starts that had not settled at the end of their runs.")

@@ -9,7 +9,7 @@ from squealpipe.tasks.inference.candidates import Candidates
 from squealpipe.tasks.inference.unstable_cells import Unstable
 
 CONSEQUENCES: dict[str, str] = {
-    "S3": "eigenvalues merge somewhere on the angle map",
+    "S3": "a cell flutters in which both modes have nearly one shape",
     "F6b": "no unstable cell has a positive reaction force",
     "F8c": "in contact, ω1 is largest on α1 + α2 = nπ/2, n odd",
     "F8c_separated": "separated, ω1 is largest on α1 + α2 = nπ/2, n odd",

@@ -140,10 +140,12 @@ def _of_motion(
     end = int(answer.ends_in[0]) if answer.sizes["mode"] else NO_ATTRACTOR
     moves = end != NO_ATTRACTOR and np.isfinite(float(answer.dominant_frequency[end]))
     nothing = np.full(count, np.nan)
+    is_quiet = Verdict(int(answer.verdict)) is Verdict.quiet
+    kept = np.zeros(count) if is_quiet else nothing
     values: dict[str, Any] = {
         "position": padded(places),
-        "separated_fraction": padded(np.zeros(count)),
-        "stick_fraction": padded(np.zeros(count)),
+        "separated_fraction": padded(kept),
+        "stick_fraction": padded(kept),
         "peak_force": padded(nothing),
         "lag": padded(nothing),
         "force": padded(np.full((count, SHOWN * EACH), np.nan)),

@@ -14,7 +14,7 @@ from squealpipe.plotting import picture
 from squealpipe.schema.assess import Verdict
 from squealpipe.schema.squealing import Kind
 from squealpipe.structures import elastic_pad
-from squealpipe.study.report.squealing import headline, lines
+from squealpipe.study.report.squealing import headline, level, lines
 from squealpipe.systems.structures.squeal.plant import Plant
 from tests.oracles.exponentials import Exponentials
 
@@ -72,6 +72,7 @@ def test_modes_attractors_and_words_agree(answer, tmp_path):
     assert f"{int(answer.sizes['sample'])} random starts" in text
     # a push may leave steady sliding although none of its modes is unstable
     told = headline(answer.isel(mode=slice(0)))
+    assert level(answer.isel(mode=slice(0))) == level(answer)
     assert (
         told == re.sub(r", nearest to [^:]*", "", headline(answer)) != headline(answer)
     )

@@ -110,8 +110,7 @@ def modes_couple(run: Run) -> Finding:
     largest, usual = float(similarity.max()), float(similarity.median())
     return finding(
         (largest, "≥", ALIKE),
-        f"{int(flutter.sum())} of {flutter.size} cells flutter ({100 * share(flutter):.2g} %). At "
-        f"their edge the criterion reaches {largest:.3g} on the grid; its median over all cells is "
-        f"{usual:.2g}.",
+        f"{int(flutter.sum())} of {flutter.size} cells flutter ({100 * share(flutter):.2g} %). The "
+        f"criterion reaches {largest:.3g} at most; its median over all cells is {usual:.2g}.",
         also=bool(flutter.any()),
     )

@@ -44,9 +44,8 @@ def modes_switch_at_separation(run: Run) -> Finding:
     return finding(
         (sum(switched) / len(switched), "≥", 1.0),
         f"At separation the order turns over in {sum(switched)} of {len(switched)} scenes. At "
-        f"(5π/6, 5π/6) K11 − K22 is {softer:.3g} k3, and it would have to lie between 0 and k3: "
-        "what switches in Fig. 13 switches from one arrangement to another, not from contact to "
-        f"separation. Over all angles the order turns over in {100 * plane:.3g} % of the cells.",
+        f"(5π/6, 5π/6) K11 − K22 is {softer:.3g} k3; the order turns over where that lies "
+        f"between 0 and k3. Over all angles it does so in {100 * plane:.3g} % of the cells.",
     )
 
 

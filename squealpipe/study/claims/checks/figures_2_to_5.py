@@ -124,8 +124,9 @@ def unstable_response_grows(run: Run) -> Finding:
     recorded=Verdict.fails,
 )
 def limit_cycle_is_bounded(run: Run) -> Finding:
-    """Least change of the state from one return to the belt to another in a long run, any number
-    of returns apart, as a share of its range; that |x| is bounded is a further condition.
+    """Largest change of the state between returns to the belt in a long run, as a share of its
+    range, for the number of returns apart for which it is least; that |x| is bounded is a
+    further condition.
     """
     motion = scene(run, "F4")
     early, late = halves(motion)

@@ -26,8 +26,8 @@ def CAPTION(pads: xr.Dataset) -> str:  # noqa: N802
         "stiff one. (a) Friction at which the first mode turns unstable; dashed: friction of the "
         "runs; triangles: none up to 1. (b) Share of the time without contact, over the pad's "
         "length from the edge that the belt meets first, of the pads that do not stay quiet "
-        f"(quiet: {_quiet(pads)}). (c), (d) Which point is open (white) when, over four periods "
-        "of the strongest line."
+        f"(quiet: {_quiet(pads)}). Then, of the last two of these: which point is open (white) "
+        "when, over four periods of the strongest line."
     )
 
 
@@ -38,7 +38,7 @@ ALT = (
 
 
 def draw(pads: xr.Dataset) -> Figure:
-    """Critical friction, contact loss along the pad, and its timing in each that hammers."""
+    """Critical friction, contact loss along the pad, and its timing in the last two that sound."""
     loud = np.flatnonzero(np.isfinite(pads.dominant_frequency.values))
     shown = loud[-2:]
     count = max(len(shown), 1)
@@ -48,7 +48,9 @@ def draw(pads: xr.Dataset) -> Figure:
     draw_onsets(axes[0, 0], pads)
     _draw_loss(axes[0, 1], pads, loud)
     if not len(shown):
-        style.say_instead(axes[0, 2], "every pad is quiet")
+        all_quiet = (pads.verdict == Verdict.quiet).all()
+        said = "every pad is quiet" if all_quiet else "no pad has a settled motion"
+        style.say_instead(axes[0, 2], said)
     for panel, place in zip(axes[0, 2:], shown, strict=False):
         _draw_timing(panel, pads.isel(design=int(place)))
     titles = ["first onset", "contact loss", *_titles(pads, shown)]
@@ -59,7 +61,7 @@ def draw(pads: xr.Dataset) -> Figure:
 
 def _titles(pads: xr.Dataset, shown: np.ndarray) -> list[str]:
     return [
-        f"{pads.design.values[place]} points, "
+        f"points: {pads.design.values[place]}; "
         f"{float(pads.dominant_frequency[place]) / 1e3:.3g} kHz"
         for place in shown
     ]
@@ -70,7 +72,7 @@ def _draw_loss(axes: Axes, pads: xr.Dataset, loud: np.ndarray) -> None:
         one = pads.isel(design=int(place))
         axes.plot(
             one.position, one.separated_fraction, "o-", color=colour, ms=3,
-            label=f"{one.design.item()} points",
+            label=f"points: {one.design.item()}",
         )  # fmt: skip
     if len(loud):
         axes.legend()

@@ -81,7 +81,8 @@ def belt_in_words(explorer: xr.Dataset, *, paper: bool) -> str:
     told = f"The belt runs along {side} at {engineering(abs(speed), 'm s-1')}, in all models."
     if paper:
         told += (
-            " That is the corrected physics; A1 by Eq. (4) as printed is in the report."
+            " That is the physics with one sign of friction; the report says which sign its "
+            "figures have."
         )
     return told
 
