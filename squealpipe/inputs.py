@@ -102,8 +102,8 @@ Result = TypeVar("Result")
 
 
 def takes_units(function: Callable[Given, Result]) -> Callable[Given, Result]:
-    """Have a function read its arguments by :func:`with_units`."""
-    names = list(inspect.signature(function).parameters)
+    """Have a function read its arguments, and friction, by :func:`with_units`."""
+    names = [*inspect.signature(function).parameters, "mu_static", "friction_speed"]
 
     @functools.wraps(function)
     def run(*args: Given.args, **kwargs: Given.kwargs) -> Result:
@@ -114,29 +114,38 @@ def takes_units(function: Callable[Given, Result]) -> Callable[Given, Result]:
 
 
 def with_units(
-    names: Sequence[str], args: Sequence[Any], kwargs: Mapping[str, Any]
+    names: Sequence[str],
+    args: Sequence[Any],
+    kwargs: Mapping[str, Any],
+    units: Mapping[str, str] = UNITS,
 ) -> tuple[list[Any], dict[str, Any]]:
     """Arguments of a function with texts and quantities of pint as numbers in SI.
 
     Args:
-        names: of the function's arguments, in their order.
+        names: of the function's arguments, in their order. Further keywords have names of the
+            user's own system, or are factors: they are left as they are.
+        units: CF unit by name.
 
     Raises:
         ValueError: a quantity of another kind; names the argument and what takes it.
     """
     about = dict(zip(names, args, strict=False)) | dict(kwargs)
     positional = [
-        _argument(name, value, about) for name, value in zip(names, args, strict=False)
+        _argument(name, value, about, units)
+        for name, value in zip(names, args, strict=False)
     ]
     return [*positional, *args[len(positional) :]], {
-        name: _argument(name, value, about) for name, value in kwargs.items()
+        name: _argument(name, value, about, units) if name in names else value
+        for name, value in kwargs.items()
     }
 
 
-def _argument(name: str, value: Any, about: Mapping[str, Any]) -> Any:
-    is_end = name == "to" and "parameter" in about
+def _argument(
+    name: str, value: Any, about: Mapping[str, Any], units: Mapping[str, str]
+) -> Any:
+    is_end = name == "to" and "parameter" in about and "system" not in about
     name_of_unit = str(about["parameter"]) if is_end else name
-    if name_of_unit not in {"distributions", *STATES, *ANGLES, *UNITS}:
+    if name_of_unit not in {"distributions", *STATES, *ANGLES, *units}:
         return value
     try:
         if name == "distributions" and isinstance(value, Mapping):
@@ -150,28 +159,30 @@ def _argument(name: str, value: Any, about: Mapping[str, Any]) -> Any:
             if not any(map(_may_have_unit, value)):
                 return value
             if name in STATES and len(value) == len(STATE):
-                return list(map(_quantity, STATE, value))
-            return [_quantity(name_of_unit, one) for one in value]
-        return _quantity(name_of_unit, value) if _may_have_unit(value) else value
+                return [
+                    _quantity(part, one, units)
+                    for part, one in zip(STATE, value, strict=True)
+                ]
+            return [_quantity(name_of_unit, one, units) for one in value]
+        return _quantity(name_of_unit, value, units)
     except ValueError as error:
         reason = str(error).removeprefix(f"{value!r}: ")
         raise ValueError(f"{name} = {brief(value)}: {reason}") from None
 
 
 def _may_have_unit(value: Any) -> bool:
-    return isinstance(value, str) or hasattr(value, "dimensionality")
+    quantity = hasattr(value, "dimensionality") and hasattr(value, "magnitude")
+    return isinstance(value, str) or quantity
 
 
-def _quantity(name: str, value: Any) -> Any:
+def _quantity(name: str, value: Any, units: Mapping[str, str]) -> Any:
     """A value in SI; one that is no text with a unit is left for others to judge."""
-    units = "rad" if name in ANGLES else UNITS.get(name)
-    if units is None or not _may_have_unit(value):
+    unit = "rad" if name in ANGLES else units.get(name)
+    if unit is None or not _may_have_unit(value):
         return value
-    if isinstance(value, str):
-        if units == "rad":
-            written = has_unit(value) or re.search("pi|π", value)
-            return parse_angle(value) if written else value
-        return number_of(value, units, KEYS_THAT_TAKE)
-    factor = in_si(f"1 {value.units:D}", units, KEYS_THAT_TAKE)
-    magnitude = value.magnitude
-    return (magnitude if hasattr(magnitude, "shape") else float(magnitude)) * factor
+    if isinstance(value, str) and unit == "rad":
+        written = has_unit(value) or re.search("pi|π", value, re.IGNORECASE)
+        return parse_angle(value) if written else value
+    if isinstance(value, str) or not getattr(value.magnitude, "shape", ()):
+        return number_of(value, unit, KEYS_THAT_TAKE)
+    return value.magnitude * in_si(f"1 {value.units:D}", unit, KEYS_THAT_TAKE)

@@ -22,7 +22,7 @@ from pydantic import (
 )
 from xarray import Dataset
 
-from squealpipe.inputs import with_units
+from squealpipe.inputs import UNITS, with_units
 from squealpipe.parameters import BEYOND_A_TURN, FULL_TURN, brief, is_whole_number
 from squealpipe.text import in_words, suggestion
 
@@ -40,8 +40,13 @@ KINDS = {
 """What else than numbers people give, by NumPy's letter."""
 
 
-def checked(function: Callable[Given, Result]) -> Callable[Given, Result]:
+def checked(
+    function: Callable[Given, Result], units: Mapping[str, str] = UNITS
+) -> Callable[Given, Result]:
     """Have a function check and convert its arguments by their annotations.
+
+    Args:
+        units: CF unit by name of the argument, for texts with a unit.
 
     Raises:
         ValueError: an argument that is not allowed; names it, its value and what is needed.
@@ -53,7 +58,7 @@ def checked(function: Callable[Given, Result]) -> Callable[Given, Result]:
 
     @functools.wraps(function)
     def run(*args: Given.args, **kwargs: Given.kwargs) -> Result:
-        read, named = with_units(names, args, kwargs)
+        read, named = with_units(names, args, kwargs, units)
         try:
             return call(*read, **named)
         except ValidationError as error:

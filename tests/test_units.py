@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from squealpipe import Contact, Structure, simulate
 from squealpipe.config.ranges import parse_range, read_fixed, read_values
 from squealpipe.parameters import UNITS_OF_INPUTS, Parameters
+from squealpipe.structures import elastic_pad
 from squealpipe.units import (
     UnitError,
     conversion,
@@ -225,6 +226,14 @@ def test_structures_take_units():
     )
     with pytest.raises(ValueError, match="preload = '1 mm': that is a length; a force"):
         Contact("pad", {0: 1.0}, {1: 1.0}, 1.0, "1 mm")
+    one = elastic_pad(contacts=2, preload="0.8 kN", young="8 GPa", length="60 mm")
+    assert [contact.preload for contact in one.contacts] == [400.0, 400.0]
+    with pytest.raises(ValueError, match="that is a length; a force is needed"):
+        elastic_pad(preload="0.5 mm")
+    # of the pad's mass and preload it is a factor
+    for factor in ({"mass": "2 kg"}, {"preload": "2 mm"}):
+        with pytest.raises(ValueError, match=next(iter(factor))):
+            one.complex_modes(n_modes=4, **factor)
 
 
 @pytest.mark.parametrize(

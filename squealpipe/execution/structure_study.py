@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -44,10 +46,18 @@ def modes_over_friction(section: Mapping[str, Any]) -> xr.Dataset:
     """Complex modes of the whole structure, from no friction to twice its own."""
     structure = read_structure(section)
     points = next((n for size, n in POINTS if structure.size <= size), FEWEST)
-    most = BEYOND * structure.mu or 1.0
-    return structure.complex_modes(
-        mu=np.linspace(0.0, most, points), frequency_max=section["frequency_max"]
-    )
+    frictions = np.linspace(0.0, BEYOND * structure.mu or 1.0, points)
+    allowed = frictions[frictions <= _most_friction(structure)]
+    return structure.complex_modes(mu=allowed, frequency_max=section["frequency_max"])
+
+
+def _most_friction(structure: Structure) -> float:
+    """Friction of sliding that the limit of stick allows, where one is given; else infinite."""
+    friction = structure.friction
+    if friction.mu_static is None or not friction.mu:
+        return math.inf
+    onset = replace(friction, mu_static=None).static_mu
+    return friction.mu * friction.mu_static / onset if onset else math.inf
 
 
 def squealing(section: Mapping[str, Any], workers: int) -> xr.Dataset:

@@ -9,9 +9,10 @@ import signal
 import socket
 import subprocess
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
 STOPS = [
     getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)
@@ -65,9 +66,9 @@ def remove_stale_lock(folder: Path = Path()) -> str:
     locks, holders = folder / LOCKS, list((folder / HOLDERS).glob("*.json"))
     if not locks.is_dir() or not any(locks.iterdir()) or not holders:
         return ""
-    stated = [json.loads(path.read_text(encoding="utf-8")) for path in holders]
+    stated = _stated(holders)
     elsewhere = [each for each in stated if each["host"] != socket.gethostname()]
-    if elsewhere or _works_in(folder):
+    if not stated or elsewhere or _works_in(folder):
         return ""
     shutil.rmtree(locks)
     for path in holders:
@@ -81,15 +82,21 @@ def standing_lock(folder: Path = Path()) -> str:
     locks = folder / LOCKS
     if not locks.is_dir() or not any(locks.iterdir()):
         return ""
-    stated = [
-        json.loads(path.read_text(encoding="utf-8"))
-        for path in (folder / HOLDERS).glob("*.json")
-    ]
+    stated = _stated((folder / HOLDERS).glob("*.json"))
     who = ", ".join(f"process {each['pid']} on {each['host']}" for each in stated)
     return (
         f"another run holds the lock of this folder ({who or 'not started by squealpipe'}); "
         f"wait for it or, if it is dead, delete the folder {locks.resolve()}"
     )
+
+
+def _stated(holders: Iterable[Path]) -> list[dict[str, Any]]:
+    """Who holds the lock, by what files say; one that has gone or was cut off says nothing."""
+    stated = []
+    for path in holders:
+        with suppress(FileNotFoundError, json.JSONDecodeError):
+            stated.append(json.loads(path.read_text(encoding="utf-8")))
+    return stated
 
 
 def _works_in(folder: Path) -> bool:
@@ -175,6 +182,8 @@ def _holder() -> Iterator[None]:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(json.dumps(about), encoding="utf-8")
     except OSError as error:
+        with suppress(OSError):
+            path.unlink(missing_ok=True)
         raise OSError(
             f"cannot write {path.resolve()}: {error.strerror}; free space or fix permissions, "
             "then run the same command again, or run it in another folder"

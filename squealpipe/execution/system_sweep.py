@@ -60,19 +60,20 @@ def _run(file: str) -> dict[str, Any]:
     try:
         with without_neighbours():
             return runpy.run_path(file)
-    except ImportError as error:
+    except ModuleNotFoundError as error:
         raise ValueError(
             f"{file} imports what is not there ({error}); a system is one file, so put its code "
             "in there"
         ) from error
     except (Exception, SystemExit) as error:
         if isinstance(error, SyntaxError):
-            at = error.lineno
+            lines = [error.lineno]
         else:
             frames = traceback.extract_tb(error.__traceback__)
-            at = max((each.lineno or 0) for each in frames if each.filename == file)
+            lines = [frame.lineno for frame in frames if frame.filename == file]
+        where = f"{file}, line {lines[-1]}," if lines else file
         raise ValueError(
-            f"{file}, line {at}, failed with {type(error).__name__}: {error}; mend it, then run "
+            f"{where} failed with {type(error).__name__}: {error}; mend it, then run "
             "the same command again"
         ) from error
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 import xarray as xr
@@ -48,10 +49,7 @@ def load_any(path: str | os.PathLike[str]) -> xr.Dataset:
 def _table(path: Path) -> xr.Dataset:
     """The columns of a table over its first one, or over its rows where that repeats values."""
     try:
-        separator, decimal = _signs(path)
-        frame = pd.read_csv(
-            path, sep=separator, decimal=decimal, comment="#", skipinitialspace=True
-        )
+        frame = pd.read_csv(path, comment="#", skipinitialspace=True, **_form(path))
     except ValueError as error:  # as which pandas reports what is no table
         raise StoreError(
             f"{path} is no table of columns with a name in the first line ({error})"
@@ -72,15 +70,16 @@ def _table(path: Path) -> xr.Dataset:
     return dataset
 
 
-def _signs(path: Path) -> tuple[str, str]:
-    """What separates the cells of a table, and its decimal sign.
+def _form(path: Path) -> dict[str, Any]:
+    """What pandas is told of a table: separator, decimal sign, and where its names stand.
 
     Raises:
         ValueError: a comma of some number is decimal or separates thousands.
     """
     table = text_rows(path, is_header=lambda _: False)  # comments are left out
+    above = table.rows[0][0] - 1 if table.rows else 0
     if table.separator == ",":
-        return ",", "."
+        return {"skiprows": above}
     numbers = [
         (f"row {row}", number.text)
         for row, cells in table.rows
@@ -88,5 +87,14 @@ def _signs(path: Path) -> tuple[str, str]:
         if (number := numeral(cell)) is not None
     ]
     comma = decimal_sign(numbers, table.separator) == "comma"
-    blanks = table.separator == " "
-    return (r"\s+" if blanks else table.separator), ("," if comma else ".")
+    decimal = "," if comma else "."
+    if table.separator != " " or not table.rows:
+        return {"sep": table.separator, "decimal": decimal, "skiprows": above}
+    # names may have single blanks in them: time (s)  force (N)
+    return {
+        "sep": r"\s+",
+        "decimal": decimal,
+        "header": None,
+        "names": table.rows[0][1],
+        "skiprows": above + 1,
+    }

@@ -106,7 +106,12 @@ class Entries:
             powers, function, arguments = self.bases(regime)
             if not powers:
                 continue
-            states = self.on_surface(switch.surface, leaves[0])
+            tried = (
+                self.on_surface(switch.surface, left) for left in leaves[:MOST_REGIMES]
+            )
+            states = next((each for each in tried if _count(each, self.tracer)), None)
+            if states is None:  # no random line meets the surface
+                continue
             values = self._after(switch.resets[regime], states)
             values |= constants_of(self.traced, regime)
             with np.errstate(all="ignore"):

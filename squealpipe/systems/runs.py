@@ -76,7 +76,9 @@ def simulate(
         )
     options = replace(options, times=times - t_start)
     run = single_run(system, values, duration, options, tol=tol)
-    run = replace(run, times=run.times + t_start, reached=run.reached + t_start)
+    # not one round-off before the end
+    reached = t_end if run.reached == duration else run.reached + t_start
+    run = replace(run, times=run.times + t_start, reached=reached)
     kinds = dict(enumerate(system.traced.kinds))
     names = dict(enumerate(system.regimes))
     found: dict[str, Any] = {
@@ -163,7 +165,7 @@ def ensemble(
     late = 0.8 * duration if t_late is None else t_late - t_start
     if not 0.0 <= late <= duration:
         raise ValueError(
-            f"t_late = {t_late!r}: a time up to t_end = {t_end!r} is needed"
+            f"t_late = {t_late!r}: a time from {t_start:g} to t_end = {t_end!r} is needed"
         )
     raw = integrate(
         system,

@@ -359,6 +359,11 @@ def test_faults_inside_a_law_are_told_as_such(
     [
         ("import sys\nsys.exit(2)\n", "own.py, line 2, failed with SystemExit: 2"),
         ("\n\n1 / 0\n", "own.py, line 3, failed with ZeroDivisionError"),
+        (
+            "def half(x):\n    return 1 / x\n\n\nhalf(0)\n",
+            "own.py, line 2, failed with ZeroDivisionError",
+        ),
+        ("from squealpipe import Sytem\n", "own.py, line 1, failed with ImportError"),
         ("def f(:\n", "own.py, line 1, failed with SyntaxError"),
         ("import helper\n", "a system is one file, so put its code in there"),
         (

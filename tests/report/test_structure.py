@@ -47,6 +47,17 @@ def answer(section):
     return squealing(section, 1)
 
 
+def test_friction_goes_no_further_than_the_limit_of_stick_allows(study):
+    text = Path(study.structure.file).read_text(encoding="utf-8")
+    folder = Path(study.structure.file).parent
+    (folder / "limited.yaml").write_text(f"{text}\nmu_static: 0.6\n", encoding="utf-8")
+    found = modes_over_friction(
+        study.slice("structure")["structure"] | {"file": str(folder / "limited.yaml")}
+    )
+    assert MU < float(found.mu[-1]) <= 0.6
+    assert MU in found.mu.values
+
+
 def growths(mu, added=0.0):
     """Growth rates of both pads about steady sliding from numbers typed here, and numpy's own."""
     stiffness = np.zeros((4, 4))

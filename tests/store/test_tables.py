@@ -133,12 +133,20 @@ def test_files_of_other_programs_are_drawn_and_converted(tmp_path, monkeypatch, 
         assert loadmat(f"{file}.mat", squeeze_me=True)[values].tolist() == [1, 2, 4]
     Path("excel.csv").write_text("time;volt\n0,5;1,25\n1;2\n")  # in half of Europe
     Path("blanks.csv").write_text("time  volt\n0.5  1.25\n1    2\n")
-    for file in ("excel.csv", "blanks.csv"):
+    Path("marked.csv").write_text("sep=;\ntime;volt\n0.5;1.25\n1;2\n")
+    for file in ("excel.csv", "blanks.csv", "marked.csv"):
         assert command(["plot", file]) == 0
         assert command(["convert", file, "-o", f"of_{file}"]) == 0
         assert Path(f"of_{file}").read_text() == (
             f"# of_{Path(file).stem}\n# columns: time, volt\ntime,volt\n0.5,1.25\n1.0,2.0\n"
         )
+    Path("units.csv").write_text("time (s)  force (N)\n0.5  1.25\n1  2\n")
+    assert command(["convert", "units.csv", "-o", "of_units.csv"]) == 0
+    assert Path("of_units.csv").read_text().splitlines()[2:] == [
+        "time (s),force (N)",
+        "0.5,1.25",
+        "1.0,2.0",
+    ]
     assert command(["plot", "mine.csv", "--variable", "w", "-o", "w.png"]) == 2
     assert command(["plot", "odd.nc"]) == 2
     assert command(["convert", "odd.nc", "-o", "odd.csv"]) == 2

@@ -1,9 +1,9 @@
-"""Names of starts, which states could have taken."""
+"""Names of starts, which states could have taken, of parameters and of regimes."""
 
 import numpy as np
 import pytest
 
-from squealpipe import System
+from squealpipe import Switch, System
 
 
 def decays(*names, **options):
@@ -46,3 +46,21 @@ def test_starts_have_names_that_no_state_has(names, starts):
 def test_a_parameter_named_as_a_start_is_told_so():
     with pytest.raises(ValueError, match=r"'q10'.*a start.*choose another"):
         decays("q1", q10=2.0)
+
+
+def test_a_parameter_has_no_unit_of_the_brakes_of_its_name():
+    own = System(
+        "own",
+        states={"x": "m"},
+        parameters={"preload": 0.0},
+        regimes={"free": {}},
+        field=lambda t, s, p, r: {"x": p.preload},
+        start={"x": 0.0},
+    )
+    with pytest.raises(ValueError, match="preload = '2 mm'"):
+        own.simulate(1.0, preload="2 mm")
+
+
+def test_a_switch_keeps_the_regimes_that_it_was_given():
+    hit = Switch("hit", ("free", "held"), lambda t, s, p, r: s.x, "free")
+    assert hit.leaves == ("free", "held")

@@ -170,6 +170,10 @@ def test_a_run_that_begins_late_goes_on_where_another_ended():
     falls = np.pi / 0.7 * np.arange(1, 9, 2)
     first_fall = falls[falls > 7.0][0]
     assert float(many.first_falls[0]) == pytest.approx(first_fall, rel=1e-13)
+    # 0.9 − 0.2 + 0.2 is below 0.9
+    short = forced.simulate(0.9, t_start=0.2, sensitivity=["x0"])
+    assert float(short.end_time) == 0.9
+    assert np.isfinite(short.x_by_x0[-1])
     before = forced.simulate(2.0, t_start=-3.0)
     assert float(before.time[0]) == -3.0
     np.testing.assert_allclose(before.event_time, [0.0], atol=1e-13)

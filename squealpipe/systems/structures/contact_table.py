@@ -42,7 +42,9 @@ def read_contacts(
     for line, cells in rows:
         where = f"{path}, line {line}"
         row = dict(zip(header, cells, strict=False))
-        if row.pop("", "") or any(cells[len(header) :]):
+        row.pop("", "")
+        nameless = [cell for name, cell in zip(header, cells, strict=False) if not name]
+        if any(nameless) or any(cells[len(header) :]):
             raise ValueError(
                 f"{where} has {len(cells)} cells, but the header {len(header)} columns"
             )

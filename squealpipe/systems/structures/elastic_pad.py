@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,8 +17,19 @@ YOUNG, DENSITY, POISSON = 8e9, 2500.0, 0.25
 SUPPORT = (3e7, 5e7)
 """Total stiffness of the springs on the upper edge, along and across the belt, N/m."""
 
+UNITS = {
+    **dict.fromkeys(("length", "height", "depth"), "m"),
+    "young": "Pa",
+    "contact_stiffness": "N m-1",
+    "preload": "N",
+    "mu": "1",
+    "belt_speed": "m s-1",
+    "modal_damping": "1",
+}
+"""CF units of the pad's numbers."""
 
-@checked
+
+@partial(checked, units=UNITS)
 def elastic_pad(
     length: Positive = 0.06,
     height: Positive = 0.015,

@@ -157,6 +157,8 @@ def _of_motion(
     force = _forces(pad, one, tol)
     line = np.exp(-2j * np.pi * np.arange(force.shape[1]) / EACH)
     phase = np.angle((force - force.mean(axis=1, keepdims=True)) @ line)
+    delays = (phase[0] - phase) / (2.0 * np.pi) % 1.0
+    moving = np.ptp(force, axis=1) > 0.0  # one that never touches has no phase
     return values | {
         **{
             name: padded(one[name].values)
@@ -166,7 +168,7 @@ def _of_motion(
             name: float(one[name])
             for name in ("dominant_frequency", "velocity_rms", "share")
         },
-        "lag": padded((phase[0] - phase) / (2.0 * np.pi) % 1.0),
+        "lag": padded(np.where(moving & moving[0], delays, np.nan)),
         "force": padded(force[:, : SHOWN * EACH]),
     }
 

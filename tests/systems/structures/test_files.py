@@ -271,6 +271,11 @@ def more_cells_than_columns(folder):
     replaced(folder / "contacts.csv", "-2\n", "-2,7\n")
 
 
+def cells_below_no_name(folder):
+    replaced(folder / "contacts.csv", "\n", ",,\n")
+    replaced(folder / "contacts.csv", "-2\n", "-2,7,\n")
+
+
 def units_in_the_header(folder):
     replaced(folder / "contacts.csv", "stiffness", "stiffness (N/mm)")
 
@@ -301,6 +306,7 @@ def no_name_of_a_file(folder):
         (two_columns_of_load, "one real number a line"),
         (complex_load, "one real number a line"),
         (more_cells_than_columns, "7 cells, but the header 6"),
+        (cells_below_no_name, "8 cells, but the header"),
         (units_in_the_header, "did you mean 'stiffness'. Units stand in"),
         (without_a_header, "first row must name the columns"),
         (row_between_rows, "1 to 3 in files"),
