@@ -23,6 +23,8 @@ SAMPLES, HALVINGS = 64, 55
 """States that are tried, and halvings of the way to a surface."""
 REACHES = (3.0, 60.0, 6e4)
 """Largest values of the random states between which a surface is looked for, one after another."""
+ENOUGH = 16
+"""States that all must fire again before a switch is refused: fewer may do so by chance."""
 MOST_REGIMES = 8
 """Regimes of a switch in which its progress is tried."""
 STAYS = 1e-9
@@ -55,7 +57,7 @@ class Entries:
         tried = leaves[:: -(-len(leaves) // MOST_REGIMES)]
         every = [self._fires_again(switch, regime, leaves) for regime in tried]
         again = np.concatenate(every)
-        if again.size and again.all():
+        if again.size >= ENOUGH and again.all():
             raise ValueError(
                 f"switch {name!r} leads back into a regime that it leaves, and its reset leaves "
                 "the state where the surface goes on falling: it would fire again at once, without "

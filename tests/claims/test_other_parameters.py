@@ -54,9 +54,12 @@ def test_evidence_states_its_data(params):
         name for name, words in text.items() if re.search(r"\b(nan|inf)\b", words)
     ]
     assert all(row["value"] is not None for row in table.values())
-    unstable = data["stability_map"].regime_linear.values > 0
-    black = data["validity_boundary"].kept.values & unstable
-    assert f"{int(black.sum())} are unstable by A3" in text["E10"]
+    validity = data["validity_map"]
+    unstable = validity.regime_linear.values > 0
+    black = (validity.separates.values == 0) & unstable
+    assert f"unstable {int(black.sum())} keep contact in their runs" in text["E10"]
+    within = data["validity_boundary"].kept.values & unstable
+    assert f"lie {int(within.sum())} unstable cells" in text["E10"]
     k12 = data["quasi_static_map"].stiffness_xy
     negative = 100 * float((k12 < -1e-15 * params.k1).mean())
     assert f"K12 is negative in {negative:.3g} %" in text["E5"]

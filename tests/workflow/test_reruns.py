@@ -131,7 +131,8 @@ def missing_inputs(logs, allowed):
             if (path := _source_of(line)) and not path.startswith(NO_INPUTS)
         }
         assert read, script
-        unlisted = min((read - files for files in allowed[script]), key=len) - beside
+        read -= beside
+        unlisted = min((read - files for files in allowed[script]), key=len)
         if unlisted:
             missing[script] = missing.get(script, set()) | unlisted
     return missing
