@@ -187,7 +187,7 @@ def test_where_the_modes_switch_is_read_from_the_map(claims, baseline):
     split = 2.0 * np.cos(sums) * np.cos(differences)
     exact = ((split > 0) & (split < baseline.k3)).mean()
     share = re.search(
-        r"turns over in ([\d.]+) % of the cells", str(row.evidence.item())
+        r"it does so in ([\d.]+) % of the cells", str(row.evidence.item())
     )
     assert float(share[1]) / 100.0 == pytest.approx(exact, abs=0.02)
     assert float(row.value) == 0.0  # of no scene of the paper

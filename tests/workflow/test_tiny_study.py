@@ -48,7 +48,7 @@ def test_a_picture_for_every_kind_of_dataset(tiny_study):
 
 
 def test_narrative_of_the_shipped_study_fits_its_datasets(tiny_study, tmp_path):
-    """Every number is there, and the page has at most 5,000 words."""
+    """Every number is there, and the page has at most 5,600 words, Table 1 and distances among them."""
     data = tiny_study.results / "data"
     datasets = {
         str(path.relative_to(data).with_suffix("")): Made(path=path, rule="some")
@@ -62,7 +62,9 @@ def test_narrative_of_the_shipped_study_fits_its_datasets(tiny_study, tmp_path):
     }
     # its words are about pads on four and eight points, which take a minute
     pads = load(datasets["contact_points"].path).assign_coords(design=["4", "8"])
-    longer = save(pads.fillna(0.3), tmp_path / "contact_points.nc")
+    numbers = [name for name, each in pads.data_vars.items() if each.dtype.kind == "f"]
+    pads.update(pads[numbers].fillna(0.3))
+    longer = save(pads, tmp_path / "contact_points.nc")
     datasets["contact_points"] = Made(path=longer, rule="some")
     content = gather(datasets, figures, Parameters())
     assert set(content["figures"]) == set(FIGURES)
@@ -76,7 +78,7 @@ def test_narrative_of_the_shipped_study_fits_its_datasets(tiny_study, tmp_path):
         flags=re.DOTALL,
     )
     words = text.split()
-    assert len(words) <= 5000
+    assert len(words) <= 5600
     assert not {"None", "nan", "NaN"} & set(words)
     assert "nothing ends this" in " ".join(words)
 
