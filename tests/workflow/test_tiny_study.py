@@ -48,7 +48,7 @@ def test_a_picture_for_every_kind_of_dataset(tiny_study):
 
 
 def test_narrative_of_the_shipped_study_fits_its_datasets(tiny_study, tmp_path):
-    """Every number is there, and the page has at most 5,600 words, Table 1 and distances among them."""
+    """Every number is there, and the page has at most 5,600 words, its tables among them."""
     data = tiny_study.results / "data"
     datasets = {
         str(path.relative_to(data).with_suffix("")): Made(path=path, rule="some")
