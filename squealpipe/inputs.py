@@ -33,6 +33,8 @@ UNITS = UNITS_OF_INPUTS | {
 """CF units of parameters and of the options of tasks, whose values may be texts with a unit."""
 STATE, STATES = ("x", "y", "vx", "vy"), ("initial_state", "guess", "start")
 """What a state consists of, and the arguments that are states."""
+_OF_PARTS = frozenset({"distributions", *STATES, *ANGLES})
+"""Further arguments that may hold texts with units."""
 
 
 def parse_angle(text: str) -> float:
@@ -145,7 +147,7 @@ def _argument(
 ) -> Any:
     is_end = name == "to" and "parameter" in about and "system" not in about
     name_of_unit = str(about["parameter"]) if is_end else name
-    if name_of_unit not in {"distributions", *STATES, *ANGLES, *units}:
+    if name_of_unit not in units and name_of_unit not in _OF_PARTS:
         return value
     try:
         if name == "distributions" and isinstance(value, Mapping):

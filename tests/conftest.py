@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -42,6 +43,12 @@ def copy_checkout(target):
     shutil.rmtree(target / "results")
     (target / "results").mkdir()
     return target
+
+
+def text_of_page(path):
+    """The words of a page of HTML, without its tags."""
+    page = path.read_text(encoding="utf-8")
+    return " ".join(re.sub(r"<[^>]+>", " ", page).split())
 
 
 def run_snakemake(directory, *arguments, surroundings=None):

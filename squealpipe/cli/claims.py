@@ -2,7 +2,6 @@
 
 import json
 import shutil
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -86,16 +85,15 @@ def _line(row: Mapping[str, Any]) -> str:
 
 def _counts(rows: Sequence[Mapping[str, Any]]) -> str:
     """Verdicts of the paper's statements counted: those that test apart from the fitted ones."""
-    words = {"predicted": "tests", "fitted": "fitted", "unknown": "not told apart"}
+    from squealpipe.schema.claims import Verdict
+    from squealpipe.study.claims.table import tally
+
     own = [row for row in rows if row["origin"] == "paper"]
     told = [f"{len(own)} of them the paper's"]
-    for basis, name in words.items():
-        counts = Counter(row["verdict"] for row in own if row["basis"] == basis)
-        if counts:
-            listed = ", ".join(
-                f"{number} {verdict}" for verdict, number in counts.items()
-            )
-            told.append(f"{name}: {listed}")
+    for part in tally(own):
+        counts = zip(part["counts"], Verdict, strict=True)
+        listed = ", ".join(f"{n} {verdict.words}" for n, verdict in counts if n)
+        told.append(f"{part['basis']}: {listed}")
     return "; ".join(told)
 
 

@@ -42,9 +42,8 @@ def read_structure(section: Mapping[str, Any]) -> Structure:
     return structure
 
 
-def modes_over_friction(section: Mapping[str, Any]) -> xr.Dataset:
+def modes_over_friction(structure: Structure, section: Mapping[str, Any]) -> xr.Dataset:
     """Complex modes of the whole structure, from no friction to twice its own."""
-    structure = read_structure(section)
     points = next((n for size, n in POINTS if structure.size <= size), FEWEST)
     frictions = np.linspace(0.0, BEYOND * structure.mu or 1.0, points)
     allowed = frictions[frictions <= _most_friction(structure)]
@@ -60,9 +59,10 @@ def _most_friction(structure: Structure) -> float:
     return friction.mu * friction.mu_static / onset if onset else math.inf
 
 
-def squealing(section: Mapping[str, Any], workers: int) -> xr.Dataset:
+def squealing(
+    structure: Structure, section: Mapping[str, Any], workers: int
+) -> xr.Dataset:
     """Which unstable modes squeal, of the structure reduced as its section says."""
-    structure = read_structure(section)
     limits = {
         name: section[name]
         for name in ("n_modes", "frequency_max")

@@ -7,9 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from squealpipe.plotting import style
-
-MOST_FRICTION = 1.0
-"""The largest friction at which an onset is looked for."""
+from squealpipe.schema.contact_points import MOST_FRICTION
 
 
 def draw_onsets(axes: Axes, pads: xr.Dataset) -> None:

@@ -3,6 +3,8 @@
 from squealpipe.schema import DatasetSchema, Outcome, Variable, or_nan, outcome, text
 from squealpipe.schema.assess import Verdict
 
+MOST_FRICTION = 1.0
+"""The largest friction at which an onset is looked for."""
 _PAD, _AT, _OVER = ("design",), ("design", "point"), ("design", "point", "instant")
 
 
@@ -33,7 +35,10 @@ CONTACT_POINTS = DatasetSchema(
             dims=_PAD, atol=1e-6,
         ),
         "critical_mu": or_nan(
-            "smallest friction at which a mode turns unstable; NaN: none up to 1", "1", _PAD,
+            "smallest friction at which a mode turns unstable; NaN: none up to "
+            f"{MOST_FRICTION:g}",
+            "1",
+            _PAD,
             rtol=1e-6,
         ),
         "unstable": Variable("unstable modes", dims=_PAD, dtype="i4"),

@@ -116,9 +116,8 @@ def _write_csv(head: list[str], frame: pd.DataFrame, path: Path) -> None:
 def _write_sheets(dataset: xr.Dataset, path: Path) -> list[Path]:
     tables = _tables(dataset)
     about = {**_numbers(dataset), **_about(dataset)}
-    content = (
-        io.BytesIO()
-    )  # a full disk in the middle of a zip file ends in a traceback
+    # a full disk in the middle of a zip file ends in a traceback
+    content = io.BytesIO()
     with pd.ExcelWriter(content, engine="openpyxl") as book:
         sheets: set[str] = set()
         for dims, frame in tables.items():

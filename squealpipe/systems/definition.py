@@ -581,9 +581,7 @@ def _marks(
     for regime, surface in np.argwhere((falls >= 0) != (rises >= 0)):
         number = max(falls[regime, surface], rises[regime, surface])
         if number < len(switches):
-            switch = switches[number]
-            stays = {each for each, _, _ in switch.targets} == {regime}
-            found[regime, surface] = stays and not switch.after
+            found[regime, surface] = switches[number].changes_nothing_in(regime)
     return np.ascontiguousarray(found)
 
 

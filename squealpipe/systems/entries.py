@@ -51,7 +51,7 @@ class Entries:
         falling. One that changes nothing at all only marks an event.
         """
         entered = {regime for regime, _, _ in switch.targets}
-        marks = len(leaves) == 1 and entered == set(leaves) and not switch.after
+        marks = len(leaves) == 1 and switch.changes_nothing_in(leaves[0])
         if marks or not entered & set(leaves):
             return
         tried = leaves[:: -(-len(leaves) // MOST_REGIMES)]

@@ -39,21 +39,21 @@ def section(study):
 
 @pytest.fixture(scope="module")
 def modes(section):
-    return modes_over_friction(section)
+    return modes_over_friction(read_structure(section), section)
 
 
 @pytest.fixture(scope="module")
 def answer(section):
-    return squealing(section, 1)
+    return squealing(read_structure(section), section, 1)
 
 
 def test_friction_goes_no_further_than_the_limit_of_stick_allows(study):
     text = Path(study.structure.file).read_text(encoding="utf-8")
     folder = Path(study.structure.file).parent
     (folder / "limited.yaml").write_text(f"{text}\nmu_static: 0.6\n", encoding="utf-8")
-    found = modes_over_friction(
-        study.slice("structure")["structure"] | {"file": str(folder / "limited.yaml")}
-    )
+    section = study.slice("structure")["structure"]
+    limited = section | {"file": str(folder / "limited.yaml")}
+    found = modes_over_friction(read_structure(limited), limited)
     assert MU < float(found.mu[-1]) <= 0.6
     assert MU in found.mu.values
 

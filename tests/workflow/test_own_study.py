@@ -1,13 +1,11 @@
 """The whole study of one's own, with every law and option: its report has the answer."""
 
-import re
-
 import pytest
 import yaml
 
 from squealpipe import load
 from squealpipe.study.report import answer
-from tests.conftest import ROOT, run_snakemake
+from tests.conftest import ROOT, run_snakemake, text_of_page
 
 pytestmark = [pytest.mark.release, pytest.mark.timeout(1800)]
 
@@ -85,8 +83,7 @@ def test_the_report_has_the_answer(name, tmp_path):
     done = run_snakemake(ROOT, *words, "--cores", "1", "--quiet", "all")
     assert done.returncode == 0, done.stderr[-3000:]
     results = tmp_path / "results/mine"
-    report = (results / "report/index.html").read_text(encoding="utf-8")
-    text = " ".join(re.sub(r"<[^>]+>", " ", report).split())
+    text = text_of_page(results / "report/index.html")
     told = load(results / "data/assess/mine.nc")
     for sentence in (answer.headline(told), answer.cause(told), answer.level(told)):
         assert sentence in text

@@ -1,14 +1,12 @@
 """The study of a structure from ``init`` to the report."""
 
-import re
-
 import pytest
 import yaml
 
 from squealpipe import load
 from squealpipe.cli import run
 from squealpipe.study.report import squealing
-from tests.conftest import ROOT, run_snakemake
+from tests.conftest import ROOT, run_snakemake, text_of_page
 
 pytestmark = [pytest.mark.release, pytest.mark.timeout(1800)]
 
@@ -23,8 +21,7 @@ def test_the_report_says_its_onsets_and_its_headline(tmp_path, monkeypatch):
     done = run_snakemake(ROOT, *words, "--cores", "1", "--quiet", "all")
     assert done.returncode == 0, done.stderr[-3000:]
     results = tmp_path / "results/pads"
-    page = (results / "report/index.html").read_text(encoding="utf-8")
-    text = " ".join(re.sub(r"<[^>]+>", " ", page).split())
+    text = text_of_page(results / "report/index.html")
     told = load(results / "data/structure/squeal.nc")
     assert told.sizes["sample"] == 4
     for sentence in (*squealing.lines(told), squealing.level(told)):

@@ -6,6 +6,7 @@ lane's parameters, which the constants of its regimes follow, ``out`` of the res
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -36,11 +37,15 @@ class SwitchSymbols:
         """All values that states may jump to."""
         return [value for reset in self.resets.values() for value in reset.values()]
 
-    @property
+    @cached_property
     def has_one_reset(self) -> bool:
         """Whether states jump alike, whatever regime is entered."""
         first, *others = self.resets.values()
         return all(each == first for each in others)
+
+    def changes_nothing_in(self, regime: int) -> bool:
+        """Whether it keeps the regime and the state, and only marks an event."""
+        return {each for each, _, _ in self.targets} == {regime} and not self.after
 
 
 class ScalarSource:
@@ -245,7 +250,7 @@ def python_function(
     )
     scope: dict[str, Any] = {"math": module, "only": _only}
     exec(source, scope)  # noqa: S102
-    if not any(node.kind == "only" for node in in_order(list(roots))):
+    if "only(" not in source:
         return scope["function"]
     # fields of other regimes need not be numbers
     return np.errstate(invalid="ignore", divide="ignore")(scope["function"])

@@ -125,9 +125,8 @@ def _gaps(
         return
     line = curve[placing] / extents[placing, None]
     at = _nearest_place(line, point[placing] / extents[placing])
-    with np.errstate(
-        invalid="ignore"
-    ):  # what is not finite is compared with its neighbours
+    # what is not finite is compared with its neighbours
+    with np.errstate(invalid="ignore"):
         cubic, error, around = _interpolated(curve, line, at)
         # errors of the columns by which the place was found move it along the curve
         chord = np.abs(around[:, -1] - around[:, 0])

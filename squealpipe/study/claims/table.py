@@ -1,11 +1,13 @@
 """The judged statements as plain rows, for the terminal, for machines and for the report."""
 
 import os
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import xarray as xr
 
 from squealpipe.schema import meanings
+from squealpipe.schema.claims import Verdict
 from squealpipe.store import load
 from squealpipe.study.claims.evidence import passes
 
@@ -34,6 +36,18 @@ def rows(claims: xr.Dataset) -> list[dict[str, Any]]:
                 and passes(row["value"], row["relation"], row["threshold"]),
             }
         )
+    return found
+
+
+def tally(statements: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Numbers of verdicts, those of fitted statements apart from those of tests."""
+    words = {"predicted": "tests", "fitted": "fitted", "unknown": "not told apart"}
+    found = []
+    for basis, name in words.items():
+        own = [row["verdict"] for row in statements if row["basis"] == basis]
+        if own:
+            counts = [own.count(verdict.words) for verdict in Verdict]
+            found.append({"basis": name, "number": len(own), "counts": counts})
     return found
 
 

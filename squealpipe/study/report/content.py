@@ -16,7 +16,7 @@ from squealpipe.schema.claims import Origin, Verdict
 from squealpipe.store.netcdf import attributes
 from squealpipe.store.whole_files import checksum
 from squealpipe.study.claims.evidence import Run
-from squealpipe.study.claims.table import rows
+from squealpipe.study.claims.table import rows, tally
 from squealpipe.study.figures import declared
 from squealpipe.study.figures.dynamics import regime_charts
 from squealpipe.study.report import edited, sections
@@ -77,7 +77,7 @@ def gather(
             sorted(changed, key=lambda row: not edited.is_physical(row[0]))
         ),
         "undecided": edited.undecided(claims),
-        "tally": edited.tally(papers),
+        "tally": tally(papers),
         "levels": levels(run),
         "distances": distances(run),
         "changed_verdicts": [

@@ -61,18 +61,6 @@ def what_changed(changed: Sequence[tuple[str, Any, Any]]) -> str:
     return f"Physics that was edited: {listed}."
 
 
-def tally(statements: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Numbers of verdicts, those of fitted statements apart from those of tests."""
-    words = {"predicted": "tests", "fitted": "fitted", "unknown": "not told apart"}
-    found = []
-    for basis, name in words.items():
-        own = [row["verdict"] for row in statements if row["basis"] == basis]
-        if own:
-            counts = [own.count(verdict.words) for verdict in Verdict]
-            found.append({"basis": name, "number": len(own), "counts": counts})
-    return found
-
-
 def undecided(statements: Sequence[Mapping[str, Any]]) -> list[dict[str, str]]:
     """Why statements were not decided: each reason with the statements that it concerns."""
     reasons: dict[str, list[str]] = {}

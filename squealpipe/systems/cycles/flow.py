@@ -155,6 +155,10 @@ class Path:
         return found
 
 
+BEYOND = 1e-11
+"""Of a surface's terms, below which round-off hides that a state is beyond it."""
+
+
 @dataclass(frozen=True)
 class Crossing:
     """A switch at the end of a leg, in numbers; n states, p directions.
@@ -183,6 +187,11 @@ class Crossing:
     def speed(self) -> float:
         """How fast the surface changes along the motion, before the event."""
         return float(self.height_by_state @ self.rate) + self.height_by_time
+
+    def is_beyond(self, state: Vector, sizes: Vector) -> bool:
+        """Whether a state lay beyond the surface, so that the switch fired at once."""
+        size = np.maximum(np.abs(state), sizes)
+        return bool(abs(self.height) > BEYOND * (np.abs(self.height_by_state) @ size))
 
     @property
     def delay(self) -> Vector:

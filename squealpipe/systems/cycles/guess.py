@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 _BRIEF = 1e-3
 """Share of the period below which a leg may have vanished."""
 MOST_ROUNDS = 32
-_BEYOND = 1e-11
-"""Of a surface's terms, below which round-off does not hide that a state is beyond it."""
 _ROOM = 4
 """Steps that a leg may need, over those of a whole period in the run that it is guessed from."""
 
@@ -111,9 +109,7 @@ def marked_at_once(
             there = flow.crossing(
                 values, event.switch, event.surface, regimes, state, time
             )
-            size = np.maximum(np.abs(state), flow.system.sizes)
-            terms = float(np.abs(there.height_by_state) @ size)
-            event = event._replace(at_once=there.height < -_BEYOND * terms)
+            event = event._replace(at_once=there.is_beyond(state, flow.system.sizes))
         found.append(event)
     return tuple(found)
 

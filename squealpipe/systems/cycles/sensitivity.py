@@ -16,8 +16,6 @@ from squealpipe.text import suggestion
 if TYPE_CHECKING:
     from squealpipe.systems.definition import System
 
-_BEYOND = 1e-11
-"""Of a surface's terms, from where a switch at the instant of another fired beyond its surface."""
 _TOGETHER = 64
 """Legs that are run at once."""
 
@@ -97,9 +95,8 @@ def sensitivities(
             along = crossing.height_by_state @ total
             along[columns] += crossing.height_by
             delays[i] = -along / crossing.speed
-            size = np.maximum(np.abs(path.ends[leg]), system.sizes)
-            terms = np.abs(crossing.height_by_state) @ size
-            if lengths[leg] == 0.0 and abs(crossing.height) > _BEYOND * terms:
+            beyond = crossing.is_beyond(path.ends[leg], system.sizes)
+            if lengths[leg] == 0.0 and beyond:
                 delays[i] = delays[i - 1] if i else 0.0
             total = crossing.after_by_state @ total + np.outer(crossing.jump, delays[i])
             total[:, columns] += crossing.after_by

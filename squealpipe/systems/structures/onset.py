@@ -225,11 +225,10 @@ def _solver(
             vectors = each.solve(
                 right.astype(complex) if is_pair else right, trans=trans
             )
-        if (
-            is_pair
-        ):  # the matrices are real: factors about a root are those about its conjugate
+        # the matrices are real: factors about a root are those about its conjugate
+        if is_pair:
             right = (pencil.mass @ vectors).conj()
-            vectors = each.solve(right, trans=trans).conj().real
+            vectors = factors[0].solve(right, trans=trans).real
         return vectors
 
     return solve

@@ -87,9 +87,8 @@ def steady_sliding(structure: Structure, mu: float, belt_speed: float) -> Slidin
             force = np.where(closed, reach, 0.0)
             return Sliding(displacement, force, closed, drag, slope)
         closed[wrong[0]] = ~closed[wrong[0]]
-        if (
-            closed.tobytes() in seen
-        ):  # with much friction pivoting may pass the state by
+        # with much friction pivoting may pass the state by
+        if closed.tobytes() in seen:
             closed = _sought(structure, drag)
     names = [each.name for each in structure.contacts]
     reason = (

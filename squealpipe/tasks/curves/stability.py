@@ -29,7 +29,7 @@ EDGES = {
 ASIDE, NEXT = np.array([2e-9, 1e-9]), 1e-7
 """Shift of places, without which a grid's points all lie where the springs are in line, so that
 the static force vanishes and friction's slope with it; way from a line to what is beside it."""
-ODD = 2 * GRID
+OFF_CENTRE = 2 * GRID
 """Points per side of the grid on which regimes change, if damped: none is in the middle, where over
 both angles, from 0 to π, the springs are in line and upright and three regimes meet."""
 
@@ -47,7 +47,7 @@ class Regimes:
             which: ZeroLines(
                 partial(self._edge, which=which),
                 self._outside,
-                coarse=ODD if self.damped else GRID,
+                coarse=OFF_CENTRE if self.damped else GRID,
                 finer=1,
                 jump=0.5,
                 touching=self.damped,

@@ -12,7 +12,7 @@ import xarray as xr
 
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.assess import Verdict
-from squealpipe.schema.contact_points import CONTACT_POINTS
+from squealpipe.schema.contact_points import CONTACT_POINTS, MOST_FRICTION
 from squealpipe.schema.origin import versions
 from squealpipe.schema.squealing import NO_ATTRACTOR
 from squealpipe.systems.structures.elastic_pad import YOUNG, elastic_pad
@@ -23,7 +23,7 @@ from squealpipe.systems.structures.squeal.windows import run
 
 STIFFER = 100.0
 """Modulus of the stiff pad, over that of friction material."""
-FRICTIONS = np.linspace(0.0, 1.0, 11)
+FRICTIONS = np.linspace(0.0, MOST_FRICTION, 11)
 """Range in which the critical friction is looked for."""
 FEW = 4
 """Modes of a pad that stays quiet at any friction in that range."""

@@ -207,13 +207,18 @@ def test_a_belt_at_rest_has_no_steady_sliding():
     assert int(still.verdict) == int(still.sudden_verdict) == Verdict.quiet
 
 
-def test_a_long_window_that_begins_loud_and_ends_small_is_quiet():
-    """Before the last window of a lightly damped pad is over, its motion may have died out."""
+def begun_loud():
+    """A lightly damped pad, its steady sliding, and a start that keeps contact and dies out."""
     pad = PAD.with_(mu=0.1, mu_static=None, friction_law="coulomb")
     design = Design(pad, math.radians(60), math.radians(60))
     sliding = Sliding.of(design)
     loud = 0.3 * (pad.preload - sliding.state[1]) * sliding.push
-    start = start_at(design, sliding, sliding.state + loud)
+    return design, sliding, start_at(design, sliding, sliding.state + loud)
+
+
+def test_a_long_window_that_begins_loud_and_ends_small_is_quiet():
+    """Before the last window of a lightly damped pad is over, its motion may have died out."""
+    design, sliding, start = begun_loud()
     seconds = 8.0 / abs(sliding.growth_rate)
     window = run_windows([design], start.state[None], np.array([seconds]), tol=1e-9)
     now = window.row(0)
@@ -223,11 +228,7 @@ def test_a_long_window_that_begins_loud_and_ends_small_is_quiet():
 
 
 def test_what_decays_as_small_motions_do_is_quiet_though_the_horizon_ends_before():
-    pad = PAD.with_(mu=0.1, mu_static=None, friction_law="coulomb")
-    design = Design(pad, math.radians(60), math.radians(60))
-    sliding = Sliding.of(design)
-    loud = 0.3 * (pad.preload - sliding.state[1]) * sliding.push
-    start = start_at(design, sliding, sliding.state + loud)
+    design, sliding, start = begun_loud()
     most = 1.2 / abs(sliding.growth_rate) / design.period
     (settled,) = settle([start], tol=1e-9, most=most)
     assert settled.verdict is Verdict.quiet

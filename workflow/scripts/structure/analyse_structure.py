@@ -1,9 +1,14 @@
 """Complex modes of a structure over friction, and which of them squeal."""
 
 from squealpipe.execution.job import Job
-from squealpipe.execution.structure_study import modes_over_friction, squealing
+from squealpipe.execution.structure_study import (
+    modes_over_friction,
+    read_structure,
+    squealing,
+)
 
 job = Job(snakemake)
 section = job.settings["structure"]
-job.make(lambda: modes_over_friction(section), job.out.modes)
-job.make(lambda: squealing(section, snakemake.threads), job.out.squeal)
+structure = read_structure(section)
+job.make(lambda: modes_over_friction(structure, section), job.out.modes)
+job.make(lambda: squealing(structure, section, snakemake.threads), job.out.squeal)

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from squealpipe.plotting import style
 from squealpipe.plotting.contact_points import draw_onsets
 from squealpipe.schema.assess import Verdict
+from squealpipe.schema.contact_points import MOST_FRICTION
 
 READS = ("contact_points",)
 
@@ -24,9 +25,9 @@ def CAPTION(pads: xr.Dataset) -> str:  # noqa: N802
     return (
         "An elastic pad on several contact points of equal total stiffness and preload, and a "
         "stiff one. (a) Friction at which the first mode turns unstable; dashed: friction of the "
-        "runs; triangles: none up to 1. (b) Share of the time without contact, over the pad's "
-        "length from the edge that the belt meets first, of the pads that do not stay quiet "
-        f"(quiet: {_quiet(pads)}). Then, of the last two of these: which point is open (white) "
+        f"runs; triangles: none up to {MOST_FRICTION:g}. (b) Share of the time without contact, "
+        "over the pad's length from the edge that the belt meets first, of the pads that do not "
+        f"stay quiet (quiet: {_quiet(pads)}). Then, of the last two of these: which point is open (white) "
         "when, over four periods of the strongest line."
     )
 

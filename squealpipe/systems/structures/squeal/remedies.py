@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 from squealpipe.schema.squealing import MOST_DAMPING
 from squealpipe.systems.structures.definition import Structure
 from squealpipe.systems.structures.reduction import reduce
-from squealpipe.systems.structures.spectrum import Limits, Solver
+from squealpipe.systems.structures.spectrum import Limits, Solver, Spectrum
 
 TRIED = np.geomspace(1e-4, MOST_DAMPING, 24)
 """Ratios between which stability is taken to change once at most."""
@@ -20,7 +20,8 @@ def added_damping(structure: Structure) -> float:
     Damping may destabilize before it stabilizes: from this ratio to the largest tried nothing
     grows. 0 where nothing grows without it, NaN where the largest does not suffice.
     """
-    if not _grows(structure):
+    now = _spectrum(structure)
+    if not (now.values.real > now.growth_errors).any():
         return 0.0
     # in coordinates of its modes what damps it already is in its matrix, and ratios are free
     modal = reduce(structure, n_modes=structure.size)
@@ -34,13 +35,8 @@ def added_damping(structure: Structure) -> float:
 
 def _growth(modal: Structure, ratio: float) -> float:
     """The largest growth rate at this ratio, 1/s."""
-    damped = modal.with_(modal_damping=ratio)
-    spectrum = Solver(damped, Limits(None, None), damped.belt_speed).at(damped.mu)
-    return float(spectrum.values.real.max())
+    return float(_spectrum(modal.with_(modal_damping=ratio)).values.real.max())
 
 
-def _grows(structure: Structure) -> bool:
-    spectrum = Solver(structure, Limits(None, None), structure.belt_speed).at(
-        structure.mu
-    )
-    return bool((spectrum.values.real > spectrum.growth_errors).any())
+def _spectrum(structure: Structure) -> Spectrum:
+    return Solver(structure, Limits(), structure.belt_speed).at(structure.mu)
