@@ -27,8 +27,8 @@ def CAPTION(pads: xr.Dataset) -> str:  # noqa: N802
         "stiff one. (a) Friction at which the first mode turns unstable; dashed: friction of the "
         f"runs; triangles: none up to {MOST_FRICTION:g}. (b) Share of the time without contact, "
         "over the pad's length from the edge that the belt meets first, of the pads that do not "
-        f"stay quiet (quiet: {_quiet(pads)}). Then, of the last two of these: which point is open (white) "
-        "when, over four periods of the strongest line."
+        f"stay quiet (quiet: {_quiet(pads)}). Then, of the last two of these: which point is open "
+        "(white) when, over four periods of the strongest line."
     )
 
 
