@@ -143,7 +143,7 @@ def pieces_of(text: str, *, goes_on: bool = False) -> Pieces:
     """The pieces of a table, from 0 on.
 
     Args:
-        goes_on: beyond the last knot with the last slope, not constant.
+        goes_on: beyond the last knot with the slope there, not constant.
     """
     import numpy as np
 
@@ -155,7 +155,10 @@ def pieces_of(text: str, *, goes_on: bool = False) -> Pieces:
     else:
         slopes = np.diff(values) / np.diff(knots)
         inner = np.stack([values[:-1], slopes, 0 * slopes, 0 * slopes], axis=-1)
-    last = [values[-1], inner[-1, 1] if goes_on and len(inner) else 0.0, 0.0, 0.0]
+    slope = 0.0
+    if goes_on and len(inner):
+        slope = polynomial(inner[-1], knots[-1] - knots[-2], derivative=True)
+    last = [values[-1], slope, 0.0, 0.0]
     coefficients = np.vstack([inner.reshape(-1, 4), last])
     if knots[0] > 0:
         knots = np.append(0.0, knots)

@@ -89,6 +89,18 @@ def test_cubic_tables_are_monotone_and_smooth():
     )
 
 
+@pytest.mark.parametrize("between", ["linear", "cubic"])
+def test_a_contact_goes_on_with_its_last_slope(between):
+    """Of a cubic one the slope at its last knot: the force has no corner there."""
+    law = contact_laws.law_of(f"{between} 0:0 0.5:0.2 1:1 2:4")
+    plain, end = Parameters(k3=1.0), 2.0
+    before, after = (
+        (law.force(end + step, 0.0, plain) - law.force(end, 0.0, plain)) / step
+        for step in (-1e-7, 1.0)
+    )
+    assert before == pytest.approx(after, rel=1e-6)
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

@@ -20,7 +20,11 @@ from squealpipe.schema.assess import Mechanism
 from squealpipe.tasks.cycles.sliding import GROWS
 
 MOST_STEPS = 40
-"""Newton steps."""
+"""Newton steps from rest."""
+FEW_STEPS = 7
+"""Newton steps from a place nearby."""
+FIRST_SHARE, LEAST_SHARE = 0.125, 1e-3
+"""Steps in which friction is raised, over the whole."""
 BALANCE = 1e-11
 """Force left over at an equilibrium, over that of the preload."""
 STEP = 1e-30
@@ -63,35 +67,22 @@ class Sliding:
 
     @classmethod
     def of(cls, design: Design) -> Self | None:
-        """The one that Newton's method leads to from r = 0; None where there is none."""
-        params = design.params
-        if params.belt_speed == 0.0:
+        """The one that Newton's method leads to from r = 0; None where there is none.
+
+        Where that fails, or leads out of contact, friction is raised from none step by step.
+        """
+        if design.params.belt_speed == 0.0:
             return None
-        acceleration = _acceleration(design)
-        length, balance = params.preload, params.k3 * params.preload / params.mass
-        place = np.zeros(2)
-        for _ in range(MOST_STEPS):
-            try:
-                force, slopes = _linearized(acceleration, place, design, count=2)
-            except (OverflowError, ZeroDivisionError):
-                return None
-            if not np.isfinite(force).all():
-                return None
-            if np.abs(force).max() < BALANCE * balance:
-                break
-            try:
-                place = place - np.linalg.solve(slopes, force)
-            except np.linalg.LinAlgError:
-                return None
-            if not np.abs(place).max() < 1e3 * (params.length1 + params.length2):
-                return None
-        else:
-            return None
-        normal = float(normal_force(float(place[1]), 0.0, params))
-        if not (place[1] < length and normal > 0.0):
-            return None
-        _, slopes = _linearized(acceleration, place, design)
-        return cls(design, np.array([*place, 0.0, 0.0]), normal, _jacobian(slopes))
+        for looked_for in (_balanced, _followed):
+            place = looked_for(design)
+            if place is None:
+                continue
+            normal = float(normal_force(float(place[1]), 0.0, design.params))
+            if place[1] < design.params.preload and normal > 0.0:
+                _, slopes = _linearized(_acceleration(design), place, design)
+                state = np.array([*place, 0.0, 0.0])
+                return cls(design, state, normal, _jacobian(slopes))
+        return None
 
     @cached_property
     def growth_rate(self) -> float:
@@ -113,7 +104,7 @@ class Sliding:
         """Why it is unstable."""
         if not self.is_unstable:
             return Mechanism.none
-        level = self.design._replace(params=_level(self.design.params))
+        level = _level(self.design)
         _, slopes = _linearized(_acceleration(level), self.state[:2], level)
         roots = np.linalg.eigvals(_jacobian(slopes))
         if roots.real.max() <= GROWS * np.abs(roots).max():
@@ -143,10 +134,62 @@ class Sliding:
         return np.asarray(np.linalg.eigvals(self.jacobian))
 
 
-def _level(params: Parameters) -> Parameters:
-    """The same brake with the coefficient of belt speed at any speed."""
-    return params.with_(
-        friction_law=COULOMB, mu=abs(params.drag), mu_static=None, friction_speed=1.0
+def _balanced(
+    design: Design, start: np.ndarray | None = None, steps: int = MOST_STEPS
+) -> np.ndarray | None:
+    """Where the mass slides steadily, m, by Newton's method from a place, at first r = 0."""
+    params, acceleration = design.params, _acceleration(design)
+    place = np.zeros(2) if start is None else start
+    balance = params.k3 * params.preload / params.mass
+    for _ in range(steps):
+        try:
+            force, slopes = _linearized(acceleration, place, design, count=2)
+        except (OverflowError, ZeroDivisionError):
+            return None
+        if not np.isfinite(force).all():
+            return None
+        if np.abs(force).max() < BALANCE * balance:
+            return place
+        try:
+            place = place - np.linalg.solve(slopes, force)
+        except np.linalg.LinAlgError:
+            return None
+        if not np.abs(place).max() < 1e3 * (params.length1 + params.length2):
+            return None
+    return None
+
+
+def _followed(design: Design) -> np.ndarray | None:
+    """Where the mass slides steadily, followed from no friction to the whole; None: it ends."""
+    share, step = 0.0, FIRST_SHARE
+    place = _balanced(_level(design, 0.0))
+    while place is not None and share < 1.0:
+        more = min(share + step, 1.0)
+        level = _level(design, more)
+        there = _balanced(level, place, FEW_STEPS)
+        if there is not None and _is_static(level, there):
+            place, share = there, more
+        elif step > LEAST_SHARE:
+            step *= 0.5
+        else:
+            return None
+    return place
+
+
+def _is_static(design: Design, place: np.ndarray) -> bool:
+    """Whether a place is held against slow displacements; at a fold of the branch it is not."""
+    _, slopes = _linearized(_acceleration(design), place, design, count=2)
+    return bool(np.linalg.det(slopes) > 0.0)
+
+
+def _level(design: Design, share: float = 1.0) -> Design:
+    """The same brake with the coefficient of belt speed, or a share of it, at any speed."""
+    params = design.params
+    friction = share * abs(params.drag)
+    return design._replace(
+        params=params.with_(
+            friction_law=COULOMB, mu=friction, mu_static=None, friction_speed=1.0
+        )
     )
 
 

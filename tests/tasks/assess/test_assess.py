@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from squealpipe import Parameters, Sweep, assess, load, run_sweep, save, stability_map
 from squealpipe.schema.assess import CURES, Mechanism, Verdict
@@ -198,6 +199,27 @@ def test_growth_about_a_knot_at_belt_speed_is_that_of_a_run():
     assert rate == pytest.approx(sliding.growth_rate, rel=0.02)
     linear = stability_map(pad, SQUEAL[:1], SQUEAL[1:])
     assert float(linear.growth_rate[0, 0]) == pytest.approx(rate, rel=0.1)
+
+
+@pytest.mark.parametrize("mu", [0.87, 0.97, 1.05, 1.13, 1.2])
+def test_steady_sliding_is_where_slowly_raised_friction_leads(mu):
+    """Against an overdamped descent; from rest, Newton's method leaves contact at the larger μ."""
+    pad = NUMBERS | {
+        "mass": 0.147, "k1": 2.99e6, "k2": 1.55e7, "k3": 2.48e6, "preload": 1.73e-3, "mu": mu,
+        "mu_static": None, "friction_law": "coulomb", "length1": 0.127, "length2": 0.0802,
+    }  # fmt: skip
+    angles = np.radians((64.2, 96.7))
+    truth, rate = Pad(pad, *angles), (pad["k1"] + pad["k2"]) / (2.0 * pad["mass"])
+
+    def descent(time, place):
+        truth.p.mu = truth.p.mu_static = mu * min(time / 500.0, 1.0)
+        return np.array(truth.field("slower")(0.0, (*place, 0.0, 0.0))[2:]) / rate
+
+    run = solve_ivp(
+        descent, (0.0, 1500.0), (0.0, 0.0), method="LSODA", rtol=1e-9, atol=1e-12
+    )
+    sliding = Sliding.of(Design(Parameters(**pad), *angles))
+    np.testing.assert_allclose(sliding.state[:2], run.y[:, -1], rtol=1e-5)
 
 
 def test_a_belt_at_rest_has_no_steady_sliding():
