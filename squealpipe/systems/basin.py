@@ -9,10 +9,10 @@ import xarray as xr
 
 from squealpipe.schema import flag_table
 from squealpipe.schema.systems import build
-from squealpipe.systems.grid import outer_product
+from squealpipe.systems.grid import duration_of, outer_product
 from squealpipe.systems.labels import attributes_of, flag, labels, outcome
 from squealpipe.systems.motion import Ensemble, Motion
-from squealpipe.validation import NotNegative, Tolerance, Values, Workers, checked
+from squealpipe.validation import Number, Tolerance, Values, Workers, checked
 
 SAME_ATTRACTOR = 1e-3
 """Extremes of one attractor from two starts differ by less, over those of all attractors."""
@@ -21,8 +21,9 @@ SAME_ATTRACTOR = 1e-3
 @checked
 def basin(
     system: Any,
-    t_end: NotNegative,
+    t_end: Number,
     *,
+    t_start: Number = 0.0,
     start: Values,
     tol: Tolerance = 1e-12,
     workers: Workers = None,
@@ -36,6 +37,8 @@ def basin(
     without events comes back to its state. All else is *unsettled*, as a torus or chaos.
 
     Args:
+        t_end: when they end.
+        t_start: when they begin: of a forced system another basin for each phase of its forcing.
         start: states that differ from the system's start, numbers or 1-D arrays, and ``regime``.
         parameters: those that differ from the system's, numbers or 1-D arrays.
 
@@ -45,7 +48,15 @@ def basin(
         ``<state>_min`` and ``<state>_max`` of the last quarter; ``outcome``.
     """
     grid = outer_product(system, start, parameters)
-    ensemble = Ensemble(system, grid.values, t_end, tol, grid.regime, workers)
+    ensemble = Ensemble(
+        system,
+        grid.values,
+        duration_of(t_start, t_end),
+        t_start,
+        tol,
+        grid.regime,
+        workers,
+    )
     whole = ensemble.run(slice(None), late=0.75)
     motion, period = ensemble.judged(whole)
     last_low, last_high = np.moveaxis(whole["late_extremes"], -1, 0)

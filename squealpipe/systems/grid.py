@@ -58,12 +58,19 @@ def outer_product(
     for name in swept:
         at_start = name in system.units
         label = labels(
-            f"{name} at t = 0" if at_start else f"parameter {name}",
+            f"{name} at the start" if at_start else f"parameter {name}",
             system.units.get(name, "1"),
         )
         dim = system.start_names[name] if at_start else name
         coordinates[dim] = (dim, given[name], label)
     return Grid(shape, values, coordinates, fixed, (start or {}).get("regime"))
+
+
+def duration_of(t_start: float, t_end: float) -> float:
+    """How long runs take; refuses an end before the start."""
+    if t_end < t_start:
+        raise ValueError(f"t_end = {t_end!r}: a time not before {t_start:g} is needed")
+    return t_end - t_start
 
 
 def scalar(name: str, value: Any) -> float:

@@ -42,16 +42,19 @@ class Motion(IntEnum):
 
 @dataclass(frozen=True)
 class Ensemble:
-    """Runs of a system from many starts, each to the same end, that can be made again.
+    """Runs of a system from many starts, each for the same time, that can be made again.
 
     Attributes:
         values: states and parameters, (runs,).
+        duration: of each run; times here count from its begin.
+        t_start: what the system's functions take for the time there.
         regime: in which all start; by default what fits each.
     """
 
     system: Any
     values: Mapping[str, np.ndarray]
-    t_end: float
+    duration: float
+    t_start: float
     tol: float
     regime: str | None
     workers: int | None
@@ -59,15 +62,19 @@ class Ensemble:
     def run(
         self, rows: Any, share: float = 1.0, late: float = 1.0, **options: Any
     ) -> Any:
-        """Some of the runs, up to a share of their end."""
+        """Some of the runs, up to a share of their duration."""
         values = {name: value[rows] for name, value in self.values.items()}
         values |= options.pop("states", {})
         count = values[self.system.states[0]].size
-        chosen = {"regime": self.regime, "t_late": late * self.t_end} | options
+        chosen = {
+            "regime": self.regime,
+            "t_late": late * self.duration,
+            "t_start": self.t_start,
+        } | options
         return integrate(
             self.system,
             values,
-            np.full(count, share * self.t_end),
+            np.full(count, share * self.duration),
             RunOptions(tracked=self.system.states, **chosen),
             tol=self.tol,
             workers=self.workers,
@@ -124,8 +131,8 @@ class Ensemble:
                 f"{self.system.name}: the period of its forcing must be greater than 0"
             )
         most = LEAST_REPEATS * MOST_PERIODS
-        kept = int(np.clip(0.5 * self.t_end / forcing.max(), 0, most))
-        times = self.t_end - forcing[rows, None] * np.arange(kept, -1, -1)
+        kept = int(np.clip(0.5 * self.duration / forcing.max(), 0, most))
+        times = self.duration - forcing[rows, None] * np.arange(kept, -1, -1)
         states = self.run(rows, times=times)["samples"] / spans[rows, None]
         rounds = np.zeros(rows.size, int)
         for lag in range(kept // LEAST_REPEATS, 0, -1):
@@ -151,7 +158,7 @@ class Ensemble:
                 strict=True,
             )
         ):
-            late = times > 0.5 * self.t_end
+            late = times > 0.5 * self.duration
             silent[i] = not late.any()
             marks = states[late] / spans[row]
             lag = repeats_after(times[late], kinds[late], REPEATED, marks)
@@ -163,18 +170,25 @@ class Ensemble:
         self, rows: np.ndarray, spans: np.ndarray, steps: np.ndarray
     ) -> np.ndarray:
         """Times after which an autonomous motion without events is back at its state."""
-        half = self.run(rows, times=np.array([0.5 * self.t_end]))
+        half = self.run(rows, times=np.array([0.5 * self.duration]))
         states, regimes = half["samples"][:, 0], half["sample_regimes"][:, 0]
 
         def at(which: np.ndarray, times: np.ndarray) -> np.ndarray:
             """States over their ranges at times after the middle of the run."""
             named = dict(zip(self.system.states, states[which].T, strict=True))
-            options = {"states": named, "regime": regimes[which], "times": times}
+            options = {
+                "states": named,
+                "regime": regimes[which],
+                "times": times,
+                "t_start": self.t_start + 0.5 * self.duration,
+            }
             run = self.run(rows[which], 0.5, **options)
             return np.asarray(run["samples"] / spans[which, None])
 
         every = np.arange(rows.size)
-        window = 0.5 * self.t_end * np.minimum(1.0, 2.0 * _SAMPLES / _PER_STEP / steps)
+        window = (
+            0.5 * self.duration * np.minimum(1.0, 2.0 * _SAMPLES / _PER_STEP / steps)
+        )
         times = window[:, None] * np.linspace(0.0, 1.0, _SAMPLES)
         path = at(every, times)
         begin = path[:, :1]
@@ -192,14 +206,14 @@ class Ensemble:
             width = window[which] / (_SAMPLES - 1)
             for _ in range(3):
                 places = time[:, None] + width[:, None] * np.linspace(-1.0, 1.0, 9)
-                places = np.clip(places, 0.0, 0.5 * self.t_end)
+                places = np.clip(places, 0.0, 0.5 * self.duration)
                 near = at(which, places) - begin[which]
                 heights = (near * normal[which, None]).sum(axis=2)
                 time = _zeros(places, heights, time)
                 width = width / 200.0
             again = time[:, None] * np.arange(1, LEAST_REPEATS + 1)
-            fits = again[:, -1] <= 0.5 * self.t_end
-            again = np.minimum(again, 0.5 * self.t_end)
+            fits = again[:, -1] <= 0.5 * self.duration
+            again = np.minimum(again, 0.5 * self.duration)
             off = np.abs(at(which, again) - begin[which]).max(axis=(1, 2))
             period[which] = np.where(fits & (off <= REPEATED), time, np.nan)
         return period

@@ -14,7 +14,7 @@ from squealpipe.methods.taylor.scalar import numpy_function
 from squealpipe.parameters import brief
 from squealpipe.schema.systems import build
 from squealpipe.systems.cycles.sensitivity import sensitivities
-from squealpipe.systems.grid import call_values, outer_product, scalar
+from squealpipe.systems.grid import call_values, duration_of, outer_product, scalar
 from squealpipe.systems.integrate import RunOptions, integrate
 from squealpipe.systems.labels import (
     attributes_of,
@@ -63,7 +63,7 @@ def simulate(
     values = {
         n: scalar(n, v) for n, v in call_values(system, start, parameters).items()
     }
-    duration = _duration(t_start, t_end)
+    duration = duration_of(t_start, t_end)
     options = RunOptions(regime=(start or {}).get("regime"), t_start=t_start)
     if times is None:
         steps = single_run(system, values, duration, options, tol=tol, room=0).steps
@@ -100,12 +100,6 @@ def simulate(
     }
     attributes = attributes_of(system, "simulate", values, tol)
     return build("simulate", found, coordinates, attributes)
-
-
-def _duration(t_start: float, t_end: float) -> float:
-    if t_end < t_start:
-        raise ValueError(f"t_end = {t_end!r}: a time not before {t_start:g} is needed")
-    return t_end - t_start
 
 
 def _outputs_along(
@@ -161,7 +155,7 @@ def ensemble(
     """
     grid = outer_product(system, start, parameters)
     shape, size = grid.shape, math.prod(grid.shape)
-    duration = _duration(t_start, t_end)
+    duration = duration_of(t_start, t_end)
     late = 0.8 * duration if t_late is None else t_late - t_start
     if not 0.0 <= late <= duration:
         raise ValueError(

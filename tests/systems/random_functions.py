@@ -127,7 +127,7 @@ def _named(t, z):
 class Lanes:
     """Runs side by side: states (3, runs), in regimes (runs,)."""
 
-    MOST_AT_ONCE = 8
+    MOST_AT_ONCE = 64
 
     def __init__(self, system, inner, starts, drives):
         self.system, self.inner = system, inner
@@ -140,7 +140,7 @@ class Lanes:
         self.counts = {each.name: np.zeros(size, int) for each in self.switches}
         self.firsts = {each.name: np.full(size, np.nan) for each in self.switches}
         self.lowest, self.highest = np.full(size, np.inf), np.full(size, -np.inf)
-        self.unclear = np.zeros(size, bool)
+        self.unclear, self.trapped = np.zeros(size, bool), np.zeros(size, bool)
         self.margin = np.full(size, np.inf)
 
     def rates(self, t, z, rows):
@@ -185,7 +185,7 @@ class Lanes:
             self.regime[mine] = list(self.system.regimes).index(switch.to)
 
     def at_once(self, rows):
-        """Fire what is beyond zero, in order of names."""
+        """Fire what is beyond zero, in order of names; some runs do so for ever."""
         for _ in range(self.MOST_AT_ONCE):
             heights = self.heights(self.z[:, rows], rows)
             self.margin[rows] = np.minimum(
@@ -196,14 +196,14 @@ class Lanes:
                 return
             rows = rows[beyond]
             self.fire(rows, np.argmax(heights[:, beyond] < -1e-11, axis=0))
-        self.unclear[rows] = True
+        self.trapped[rows] = True
 
     def run(self, h):
         every = np.arange(self.z.shape[1])
         self.see(every)
         self.at_once(every)
         while (self.t < T_END).any():
-            rows = np.flatnonzero((self.t < T_END) & ~self.unclear)
+            rows = np.flatnonzero((self.t < T_END) & ~self.trapped)
             if not rows.size:
                 break
             left = np.minimum(h, T_END - self.t[rows])

@@ -6,6 +6,8 @@ from numba import njit
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, fsolve
 
+from squealpipe import System
+from squealpipe.functions import cos
 from squealpipe.schema import Outcome, meanings
 from squealpipe.schema.branch_labels import Label
 from squealpipe.systems.motion import Motion
@@ -122,6 +124,37 @@ def test_a_torus_is_no_cycle_in_a_basin():
     cycle = van_der_pol.basin(200.0, start={"x": np.array([0.5, 3.0])}, workers=1)
     np.testing.assert_array_equal(cycle.motion, Motion.cycle)
     np.testing.assert_allclose(cycle.period, 6.663286859, rtol=1e-8)
+
+
+def test_a_basin_begins_at_any_phase_of_the_forcing():
+    """Half a period later this oscillator is its own mirror image."""
+    period, places = 2.0 * np.pi / 1.2, np.linspace(-1.0, 1.0, 3)
+    starts = {"x": places, "v": 0.4}
+    early = duffing_holmes.basin(150.0 * period, start=starts, force=0.2, workers=1)
+    starts = {"x": -places, "v": -0.4}
+    begin = 0.5 * period
+    late = duffing_holmes.basin(
+        150.0 * period + begin, t_start=begin, start=starts, force=0.2, workers=1
+    )
+    assert len(set(early.attractor.values)) == 2
+    np.testing.assert_array_equal(late.motion, early.motion)
+    np.testing.assert_allclose(late.x_max, -early.x_min, rtol=1e-9)
+    with pytest.raises(ValueError, match="a time not before 3"):
+        duffing_holmes.basin(2.0, t_start=3.0, start=starts)
+
+
+def test_a_motion_whose_forcing_has_no_known_period_is_followed_on_its_own_clock():
+    driven = System(
+        "driven",
+        states={"x": "1", "v": "1"},
+        parameters={},
+        regimes={"all": {}},
+        field=lambda t, s, p, r: {"x": s.v, "v": -s.x - 0.2 * s.v + cos(1.2 * t)},
+        start={"x": 0.0, "v": 0.0},
+    )
+    became = driven.basin(401.0, start={"x": np.array([0.0, 1.0])}, workers=1)
+    np.testing.assert_array_equal(became.motion, Motion.cycle)
+    np.testing.assert_allclose(became.period, 2.0 * np.pi / 1.2, rtol=1e-8)
 
 
 GRID = [

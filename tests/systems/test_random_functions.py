@@ -26,16 +26,22 @@ def judged(seed):
         axis.ravel() for axis in np.meshgrid(STARTS, DRIVES, indexing="ij")
     )
     coarse, fine = (Lanes(system, inner, starts, drives).run(h) for h in (0.02, 0.008))
-    said = ours.outcome.values.ravel() != Outcome.converged
+    outcome = ours.outcome.values.ravel()
+    said = outcome != Outcome.converged
     unclear = coarse.unclear | fine.unclear | (fine.margin < 1e-9)
     agrees = np.ones(len(starts), bool)
+    to_the_end = ~fine.trapped
     for switch in system.switches:
         name = switch.name
-        unclear |= coarse.counts[name] != fine.counts[name]
-        agrees &= ours[f"count_{name}"].values.ravel() == fine.counts[name]
+        unclear |= (coarse.counts[name] != fine.counts[name]) & to_the_end
+        same = ours[f"count_{name}"].values.ravel() == fine.counts[name]
+        agrees &= same | ~to_the_end
         first, theirs = ours[f"first_{name}"].values.ravel(), fine.firsts[name]
         near = np.abs(first - theirs) < 1e-8
         agrees &= near | (np.isnan(first) & np.isnan(theirs))
+    # two regimes beyond each other's surface send a motion back and forth: so it is told
+    trapped = fine.trapped & coarse.trapped & (outcome == Outcome.accumulation)
+    trapped &= agrees
     for place, name in enumerate(NAMES):
         off = np.abs(coarse.z[place] - fine.z[place])
         agrees &= np.abs(ours[name].values.ravel() - fine.z[place]) < 1e-7 + 2.0 * off
@@ -43,9 +49,10 @@ def judged(seed):
     for name, theirs in (("seen_min", fine.lowest), ("seen_max", fine.highest)):
         off = np.abs(ours[name].values.ravel() - theirs)
         agrees &= off < 2e-3 * span + 1e-9
-    right = agrees & ~said
-    wrong = ~agrees & ~said & ~unclear
-    return right, said, unclear & ~right & ~said, wrong
+    said &= ~trapped
+    right = trapped | (agrees & ~said)
+    wrong = ~agrees & ~said & ~unclear & ~trapped
+    return right, said & ~right, unclear & ~right & ~said, wrong
 
 
 @pytest.mark.release
@@ -54,4 +61,4 @@ def test_fifty_runs_of_all_functions_agree_with_another_integrator(seed):
     right, said, _, wrong = judged(seed)
     assert not wrong.any(), np.flatnonzero(wrong)
     assert right.mean() > 0.8
-    assert said.mean() <= 0.2
+    assert said.mean() <= 0.05
