@@ -545,7 +545,7 @@ def started(system: System, start: xr.Dataset) -> Cycle:
         state,
         guess=True,
         periods=int(start["periods"]),
-        regime=int(start["start_regime"]),
+        regime=system.joint.number(np.atleast_1d(start["start_regime"]).tolist()),
     )
     if cycle is None:
         raise ValueError("no cycle is found from start")

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import chain
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -30,6 +30,8 @@ from squealpipe.methods.taylor.series import gauss
 from squealpipe.methods.taylor.simd import FEW, LANES
 from squealpipe.methods.taylor.symbols import derivative, parameter, symbol
 from squealpipe.methods.zeros import bracketed
+from squealpipe.systems.cycles.affine import derivatives as affine_derivatives
+from squealpipe.systems.cycles.affine import is_affine
 from squealpipe.systems.integrate import compiled, symbolic
 from squealpipe.systems.trace import TIME_UNIT, Names
 
@@ -226,24 +228,37 @@ class Flow:
         self._room, self._legs = ROOM, 0
         self.most_steps = MOST_STEPS
         directions = [*t.variables[: t.size], *self.by, *([self.time] * self.timed)]
-        entries = [
-            (i, j, symbol(derivative(rate, by)))
-            for i, rate in enumerate(t.rates[: t.size])
-            for j, by in enumerate(directions)
-        ]
-        self._entries = [
-            e for e in entries if not (e[2].kind == "number" and not e[2].arguments[0])
-        ]
-        self._columns = len(directions)
-        self._slopes = python_function(
-            [e[2] for e in self._entries], self.arguments, np
-        )
+        self._directions, self._columns = directions, len(directions)
+        self._is_affine = not self.timed and is_affine(t.rates[: t.size])
         self._field = python_function(t.rates[: t.size], self.arguments, np)
         names = [*system.parameters, TIME_UNIT]
         self._derived = python_function(
             system.integrated.derived, [parameter(name) for name in names], np
         )
         self._known: tuple[Any, Vector] | None = None
+
+    @cached_property
+    def _entries(self) -> list[tuple[int, int, Any]]:
+        """∂f/∂(states, followed parameters, time) that are not zero: row, column, symbol."""
+        entries = [
+            (i, j, symbol(derivative(rate, by)))
+            for i, rate in enumerate(self.system.traced.rates[: self.size])
+            for j, by in enumerate(self._directions)
+        ]
+        return [
+            e for e in entries if not (e[2].kind == "number" and not e[2].arguments[0])
+        ]
+
+    @cached_property
+    def _slopes(self) -> Any:
+        return python_function([e[2] for e in self._entries], self.arguments, np)
+
+    @cached_property
+    def _by(self) -> Any:
+        """∂f/∂(followed parameters), those of a state side by side."""
+        rates = self.system.traced.rates[: self.size]
+        roots = [symbol(derivative(rate, by)) for rate in rates for by in self.by]
+        return python_function(roots, self.arguments, np)
 
     @cached_property
     def period(self) -> Any:
@@ -499,6 +514,8 @@ class Flow:
 
     def derivatives(self, values: Mapping[str, float], path: Path) -> Vector:
         """Of each leg's end by its start, followed parameters and the time: (legs, n, n + p)."""
+        if self._is_affine:
+            return self._affine_derivatives(values, path)
         pieces, most = 1, max(1, min(FINEST, MOST_PIECES // len(path.steps)))
         while True:
             slopes = self._slopes_along(values, path, pieces)
@@ -518,6 +535,30 @@ class Flow:
         found[:] = np.eye(self._columns)
         transfer(slopes, lengths, np.repeat(path.leg, pieces), _UP_TO, _WEIGHTS, found)
         return found[:, : self.size]
+
+    def _affine_derivatives(self, values: Mapping[str, float], path: Path) -> Vector:
+        """The same where all rates are affine in the states."""
+        first = np.searchsorted(path.leg, np.arange(len(path.regimes)))
+        starts = path.series[first, : self.size, 0]
+        followed = np.array([values[name] for name in self.followed])
+        units = np.where(followed == 0.0, 1.0, np.abs(followed))
+        found = np.empty((len(starts), self.size, self._columns))
+        for leg, regime in enumerate(path.regimes.tolist()):
+            numbers = self.numbers(values, regime)
+
+            def many(function: Any, places: Vector, numbers: Any = numbers) -> Vector:
+                rows = function(*places, *numbers)
+                return np.array([np.broadcast_to(row, len(places.T)) for row in rows])
+
+            found[leg] = affine_derivatives(
+                partial(many, self._field),
+                partial(many, self._by),
+                self.system.sizes,
+                units,
+                starts[leg],
+                float(path.durations[leg]),
+            )
+        return found
 
     def _slopes_along(
         self, values: Mapping[str, float], path: Path, pieces: int
