@@ -34,10 +34,11 @@ def problems_as_json() -> str:
 def score_answers(path: str | os.PathLike[str]) -> xr.Dataset:
     """Dataset ``benchmark`` of the answers in a JSON file.
 
-    The file holds ``solver``, its name, and ``answers``, a list of objects with ``problem``,
-    ``tolerance``, ``times`` and ``kinds`` (null where no events are reported), ``state``, and
-    where there are any ``evaluations``, ``flag``, ``derivative`` and ``cpu_time`` in s. A problem
-    that has no answer at a tolerance cannot be asked.
+    The file holds ``solver``, its name, optionally ``processor``, on which it ran, and
+    ``answers``, a list of objects with ``problem``, ``tolerance``, ``times`` and ``kinds`` (null
+    where no events are reported), ``state``, and where there are any ``evaluations``, ``flag``,
+    ``derivative`` and ``cpu_time`` in s. A problem that has no answer at a tolerance cannot be
+    asked.
 
     Raises:
         ValueError: the file is no JSON, or an answer has a key too few or one that is unknown.
@@ -72,7 +73,8 @@ def score_answers(path: str | os.PathLike[str]) -> xr.Dataset:
         [[scores.get((data["name"], tol), none) for tol in tolerances]]
         for data in chosen
     ]
-    return dataset_of(chosen, [str(table["solver"])], tolerances, cells)
+    machine = str(table.get("processor") or "unknown")
+    return dataset_of(chosen, [table["solver"]], tolerances, cells, machine)
 
 
 def _check(place: str, answer: Any, known: Mapping[str, Any]) -> None:

@@ -1,5 +1,6 @@
 """What an answer is worth: its events against the reference's, its error over the growth."""
 
+import json
 import time
 from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
@@ -12,6 +13,7 @@ from scipy.optimize import linear_sum_assignment
 
 from squealpipe.benchmark.adapters.scipy import solve as reference_solver
 from squealpipe.benchmark.problems import Problem, all_data, references
+from squealpipe.benchmark.results import processor, versions
 from squealpipe.benchmark.worker import Worker
 from squealpipe.schema import build
 from squealpipe.schema.comparison import BENCHMARK, Reliability, Role
@@ -281,8 +283,13 @@ def dataset_of(
     solvers: Sequence[str],
     tolerances: Sequence[float],
     cells: Sequence[Sequence[Sequence[Score]]],
+    machine: str = "",
 ) -> xr.Dataset:
-    """Dataset ``benchmark`` of scores over (problem, solver, tolerance)."""
+    """Dataset ``benchmark`` of scores over (problem, solver, tolerance).
+
+    Args:
+        machine: the processor on which the solvers ran; this one by default.
+    """
     table = np.array(cells, dtype=object)
     columns = {name: table[..., i].tolist() for i, name in enumerate(Score._fields)}
     coordinates = {
@@ -293,9 +300,12 @@ def dataset_of(
     groups = [data["class"] for data in chosen]
     role = [Role.ours if name == "squealpipe" else Role.public for name in solvers]
     columns |= {"group": groups, "role": role}
-    return build(
-        BENCHMARK, columns, coordinates, {"benchmark_version": BENCHMARK_VERSION}
-    )
+    attributes = {
+        "benchmark_version": BENCHMARK_VERSION,
+        "processor": machine or processor(),
+        "solver_versions": json.dumps(versions(solvers)),
+    }
+    return build(BENCHMARK, columns, coordinates, attributes)
 
 
 def verdicts(row: xr.Dataset) -> str:

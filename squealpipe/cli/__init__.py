@@ -98,6 +98,7 @@ def application() -> App:
     peers.command(benchmark.compare, name="compare")
     peers.command(benchmark.problems, name="problems")
     peers.command(benchmark.score, name="score")
+    peers.command(benchmark.results, name="results")
     app.command(peers)
     app.register_install_completion_command()
     return app

@@ -111,27 +111,61 @@ def score(
     return _verdict(found, output)
 
 
+def results(
+    files: Annotated[list[Path], Parameter(consume_multiple=True)],
+    /,
+    *,
+    output: Output = Path("results.json"),
+    force: Force = False,
+) -> int:
+    """Write results as one JSON text with packages and processor, to cite or to send.
+
+    Example: `squealpipe benchmark results mine.nc -o results.json`
+
+    Args:
+        files: datasets of `squealpipe benchmark`, each of other solvers.
+    """
+    from squealpipe.benchmark.results import results_as_json
+    from squealpipe.cli.output import check_output
+    from squealpipe.store.whole_files import whole_file
+
+    check_output(output, force=force, kinds=(".json",))
+    text = results_as_json(map(_loaded, files))
+    with whole_file(output) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+    print(f"wrote {output}")
+    return DONE
+
+
+def _loaded(path: Path) -> xr.Dataset:
+    from squealpipe.benchmark.results import SHIPPED, read_results
+    from squealpipe.store import load
+
+    if path.suffix == ".json" or str(path) == SHIPPED:
+        return read_results(path)
+    dataset = load(path)
+    if dataset.attrs["schema"] != "benchmark":
+        raise ValueError(
+            f"{path} is a dataset {dataset.attrs['schema']!r}, not of the benchmark"
+        )
+    return dataset
+
+
 def compare(one: Path, other: Path, /) -> int:
     """Set the verdicts of two results on what both have side by side; exit code 1: they differ.
 
-    Example: `squealpipe benchmark compare mine.nc theirs.nc`
+    Example: `squealpipe benchmark compare mine.nc shipped`
 
     Args:
-        one: a dataset of `squealpipe benchmark`.
+        one: a dataset of `squealpipe benchmark`, results as JSON, or `shipped`: those that come
+            with the package.
         other: another.
     """
     import xarray as xr
 
     from squealpipe.benchmark.scoring import verdicts
-    from squealpipe.store import load
 
-    found, others = load(one), load(other)
-    for path, each in ((one, found), (other, others)):
-        if each.attrs["schema"] != "benchmark":
-            raise ValueError(
-                f"{path} is a dataset {each.attrs['schema']!r}, not of the benchmark"
-            )
-    found, others = xr.align(found, others, exclude="solver")
+    found, others = xr.align(_loaded(one), _loaded(other), exclude="solver")
     if not found.verdict.size:
         raise ValueError(f"{one} and {other} have no problem at the same tolerance")
     print("tolerances: " + ", ".join(f"{tol:g}" for tol in found.tol.values))

@@ -2,8 +2,9 @@
 
 One way is a Taylor series in 80-bit long double (heyoka, which finds all roots of a step's
 polynomial), the other Gragg's extrapolated midpoint rule (Gragg 1965) in 34 decimal digits. The
-growth of a perturbation comes from displaced runs. ``python -m tests.benchmark.make_references``
-writes ``references.json``.
+growth of a perturbation comes from displaced runs. A Taylor series in 50 digits gives the 30 that
+are written beside the doubles. ``python -m tests.benchmark.make_references`` writes
+``references.json``.
 """
 
 import json
@@ -18,9 +19,12 @@ import numpy as np
 
 import squealpipe
 from squealpipe.benchmark.problems import FUNCTIONS, Problem, all_data
+from tests.benchmark.many_digits import ManyDigits
 
 FILE = Path(squealpipe.__file__).parent / "benchmark/references.json"
 DIGITS = 34
+COMPUTED, WRITTEN = 50, 30
+"""Digits of the Taylor series, and those of them that are written."""
 TOLERANCE = np.longdouble(1e-19)
 COLUMNS = 12
 """Of the extrapolation table: midpoint rules of 2, 4, …, 24 steps."""
@@ -227,13 +231,14 @@ def _first_root(surface, h, flow, samples):  # noqa: C901
 
 def _root(function, low, high):
     """Where a function falls through zero, by Illinois' rule."""
+    close = mpmath.eps if isinstance(high, mpmath.mpf) else CLOSE
     a, b = function(low), function(high)
     if a < 0 or b > 0:
         return high
     for _ in range(100):
         middle = high - b * (high - low) / (b - a)
         value = function(middle)
-        if value == 0 or abs(middle - high) <= CLOSE * abs(high):
+        if value == 0 or abs(middle - high) <= close * abs(high):
             return middle
         if value * b < 0:
             low, a = high, b
@@ -311,6 +316,40 @@ def derivative(data, solve, number, step):
     return total
 
 
+def many_digits(data, digits=COMPUTED):
+    """A problem by its Taylor series in 50 digits."""
+    with mpmath.workdps(digits):
+        run = ManyDigits(data, digits)
+        problem = run.problem
+        return _motion(
+            problem,
+            run.step,
+            mpmath.mpf(0),
+            problem.start,
+            problem.regime,
+            problem.t_end,
+        )
+
+
+def digits_of(data, motion):
+    """Final state, times of events and derivative as texts of 30 digits."""
+
+    def text(value):
+        return mpmath.nstr(mpmath.chop(value, tol=10.0 ** (5 - COMPUTED)), WRITTEN)
+
+    with mpmath.workdps(COMPUTED):
+        written = {
+            "state": list(map(text, motion.state)),
+            "times": list(map(text, motion.times)),
+        }
+        if "derivative" in data:
+            step = mpmath.mpf(2) ** -24
+            written["derivative"] = text(
+                derivative(data, many_digits, mpmath.mpf, step)
+            )
+    return written
+
+
 def reference_of(data):
     """Final state, events, growth and margin of a problem, from the long-double way."""
     run = LongDouble(data)
@@ -366,9 +405,14 @@ def main():
     for data in all_data():
         reference = reference_of(data)
         if "unknowable" not in data:
-            difference = disagreement(reference, extrapolation(data))
-            if difference > LARGEST_DISAGREEMENT:
-                raise ValueError(f"{data['name']}: the ways differ by {difference:.1e}")
+            motion = many_digits(data)
+            for other in (extrapolation(data), motion):
+                difference = disagreement(reference, other)
+                if difference > LARGEST_DISAGREEMENT:
+                    raise ValueError(
+                        f"{data['name']}: the ways differ by {difference:.1e}"
+                    )
+            reference["digits"] = digits_of(data, motion)
         lines.append(f"{json.dumps(data['name'])}: {json.dumps(reference)}")
     FILE.write_text("{\n" + ",\n".join(lines) + "\n}\n", "utf-8")
 

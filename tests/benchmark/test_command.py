@@ -9,6 +9,8 @@ import pytest
 
 import squealpipe
 from squealpipe.benchmark.answers import score_answers
+from squealpipe.benchmark.problems import all_data, references
+from squealpipe.benchmark.results import processor, read_results, shipped
 from squealpipe.cli import run
 
 MINE = """
@@ -80,6 +82,55 @@ def test_unknown_solver_is_refused(solver, message, mine, tmp_path, capsys):
     assert message in capsys.readouterr().err
 
 
+def test_results_as_json_say_what_the_dataset_says(tmp_path, capsys):
+    one, two = str(tmp_path / "a.nc"), str(tmp_path / "b.nc")
+    some = ["--problem", "two gates", "--problem", "light barrier"]
+    for solver, output in (("DOP853", one), ("RK45", two)):
+        assert run(["benchmark", "--solver", solver, *some, "-o", output]) == 1
+    text = str(tmp_path / "results.json")
+    assert run(["benchmark", "results", one, two, "-o", text]) == 0
+    table = json.loads((tmp_path / "results.json").read_text())
+    assert set(table["solvers"]) == {"DOP853", "RK45"}
+    for solver in table["solvers"].values():
+        assert solver["processor"] == processor()
+        assert solver["package"].startswith("scipy ")
+    both = read_results(text)
+    for path in (one, two):
+        dataset = squealpipe.load(path)
+        ours = both.sel(solver=dataset.solver.values, problem=dataset.problem.values)
+        assert (ours.verdict.values == dataset.verdict.values).all()
+    capsys.readouterr()
+    assert run(["benchmark", "compare", one, text]) == 1  # which has one solver more
+    assert run(["benchmark", "compare", text, text]) == 0
+    assert run(["benchmark", "results", one, one, "-o", text, "--force"]) == 2
+    assert "two results of 'DOP853'" in capsys.readouterr().err
+    assert run(["benchmark", "compare", one, str(tmp_path / "mine.json")]) == 2
+
+
+def test_shipped_results_name_what_made_them(tmp_path, capsys):
+    table = shipped()
+    problems = {data["name"] for data in all_data()}
+    for name, solver in table["solvers"].items():
+        assert "unknown" not in solver.values(), name
+        asked = {e["problem"] for e in table["results"] if e["solver"] == name}
+        assert asked == problems, name
+    mine = str(tmp_path / "mine.nc")
+    some = ["--problem", "two gates", "-o", mine]
+    assert run(["benchmark", "--solver", "DOP853", *some]) == 0
+    run(["benchmark", "compare", mine, "shipped"])
+    assert "shipped: " in capsys.readouterr().out
+
+
+def test_problems_as_json_hold_references_of_thirty_digits(tmp_path):
+    output = tmp_path / "problems.json"
+    assert run(["benchmark", "problems", "-o", str(output)]) == 0
+    table = json.loads(output.read_text())
+    for problem in table["problems"]:
+        digits = problem["reference"].get("digits", {})
+        assert digits == references()[problem["name"]].get("digits", {})
+        assert ("unknowable" in problem) == (not digits)
+
+
 ELSEWHERE = r"""
 BEGIN {
   print "{\"solver\": \"closed form\", \"answers\": ["
@@ -109,6 +160,7 @@ def test_answers_of_another_language_are_scored(tmp_path, capsys):
     assert run(["benchmark", "score", str(answers), "-o", str(output)]) == 0
     found = squealpipe.load(output)
     assert found.solver.values.tolist() == ["closed form"]
+    assert found.attrs["processor"] == "unknown"
     assert squealpipe.labels(found.verdict).values.tolist() == [[["right"]]]
 
     table = json.loads(answers.read_text())

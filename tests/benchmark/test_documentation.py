@@ -3,6 +3,8 @@
 import re
 from pathlib import Path
 
+from squealpipe.benchmark.problems import all_data
+from squealpipe.benchmark.results import shipped
 from squealpipe.cli import run
 
 PAGE = (Path(__file__).parents[2] / "docs/benchmark.md").read_text("utf-8")
@@ -36,3 +38,28 @@ def test_reproducers_show_the_errors(capsys):
     assert spurious.count(",") == 6
     exec(BLOCKS[2], {})  # noqa: S102
     assert "time_limit" in capsys.readouterr().out
+
+
+SIGNS = {"right": "✓", "flagged": "!", "silently_wrong": "✗", "not_applicable": "–"}
+
+
+def table_of_solvers():
+    """The page's table from the results that are shipped."""
+    results = shipped()
+    verdicts = {(e["problem"], e["solver"]): e["verdict"] for e in results["results"]}
+    names = ["ours" if n == "squealpipe" else n for n in results["solvers"]]
+    rows = [["problem", "what it tests", *names], ["---"] * (len(names) + 2)]
+    for data in all_data():
+        signs = [
+            "".join(SIGNS[verdict] for verdict in verdicts[data["name"], solver])
+            for solver in results["solvers"]
+        ]
+        rows.append([data["name"], data["purpose"], *signs])
+    lines = ["| " + " | ".join(row) + " |" for row in rows]
+    lines[1] = "|" + "|".join(rows[1]) + "|"
+    return "\n".join(lines)
+
+
+def test_table_is_that_of_the_shipped_results():
+    """Where it is not: print ``table_of_solvers()`` and put it there."""
+    assert table_of_solvers() in PAGE

@@ -2,16 +2,19 @@
 
 import math
 
+import mpmath
 import numpy as np
 import pytest
 
 from squealpipe.benchmark.problems import all_data, references
 from tests.benchmark.make_references import (
     LARGEST_DISAGREEMENT,
+    WRITTEN,
     LongDouble,
     derivative,
     disagreement,
     extrapolation,
+    many_digits,
     reference_of,
 )
 
@@ -101,3 +104,72 @@ def test_closed_forms():
         [1 - 0.02**0.5, 1 + 0.02**0.5]
     )
     assert references()["saved instants"]["times"] == [1.0, 3.0, 5.0]
+
+
+def _closed_forms():
+    """Problem → times of its events in 45 digits, from parameters that are doubles."""
+    mpf, log, sqrt = mpmath.mpf, mpmath.log, mpmath.sqrt
+    flights, times = 2 * sqrt(mpf(2)), [sqrt(mpf(2))]
+    for n in range(1, len(references()["bouncing ball"]["times"])):
+        times.append(times[-1] + flights * mpf(0.9) ** n)
+    barrier = sqrt(1 - 2 * mpf(0.49))
+    forms = {
+        "bouncing ball": times,
+        "light barrier": [1 - barrier, 1 + barrier],
+        "two gates": [sqrt(2 * (1 - mpf(level))) for level in (0.5, 0.499)],
+        "thermostat": [log(mpf(2))],
+    }
+    # cooled from 1 towards 0, heated from 1/2 towards 2, in turn
+    spans = [log(mpf(2)), log(mpf(3) / 2)]
+    for n in range(1, len(references()["thermostat"]["times"])):
+        forms["thermostat"].append(forms["thermostat"][-1] + spans[(n - 1) % 2])
+    for depth in ("0.001", "1e-06", "1e-09", "1e-14"):
+        name = f"tangency, depth {depth}"
+        rise = mpmath.asin(mpf(DATA[name]["parameters"]["level"]))
+        turns = (0, 2 * mpmath.pi)
+        forms[name] = [t + turn for turn in turns for t in (rise, mpmath.pi - rise)]
+    return forms
+
+
+def test_closed_forms_in_thirty_digits():
+    with mpmath.workdps(45):
+        for name, times in _closed_forms().items():
+            written = references()[name]["digits"]["times"]
+            for text, truth in zip(written, times, strict=True):
+                assert abs(mpmath.mpf(text) - truth) < truth * 10.0 ** (1 - WRITTEN)
+
+
+@pytest.mark.parametrize("name", DATA)
+def test_digits_are_those_of_the_doubles(name):
+    reference = references()[name]
+    digits, allowed = reference["digits"], 1e-15
+    for key, growth in (
+        ("state", [reference["growth"]] * len(reference["state"])),
+        ("times", reference["time_growth"]),
+    ):
+        for text, number, factor in zip(
+            digits[key], reference[key], growth, strict=True
+        ):
+            assert abs(float(text) - number) <= allowed * factor * max(1, abs(number))
+    assert float(digits.get("derivative", 0.0)) == pytest.approx(
+        reference.get("derivative", 0.0), rel=1e-14
+    )
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "kept at zero",
+        "chaotic impacts",
+        pytest.param("stick–slip", marks=pytest.mark.release),
+        pytest.param("A1: hammering", marks=pytest.mark.release),
+    ],
+)
+def test_another_order_and_step_give_the_same_digits(name):
+    motion, digits = many_digits(DATA[name], 44), references()[name]["digits"]
+    with mpmath.workdps(44):
+        pairs = [*zip(motion.state, digits["state"], strict=True)]
+        pairs += [*zip(motion.times, digits["times"], strict=True)]
+        for value, text in pairs:
+            error = abs(value - mpmath.mpf(text)) / max(1, abs(value))
+            assert error < 10.0 ** (1 - WRITTEN)

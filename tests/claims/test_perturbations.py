@@ -163,9 +163,10 @@ def test_the_verdict_flips(
 def test_what_the_paper_prints_decides_about_its_parameters(
     evidence, baseline, monkeypatch
 ):
-    monkeypatch.setattr(misprints, "PRINTED_NUMBERS", misprints.GROUPS)
+    monkeypatch.setattr(misprints, "READ_IN_THE_PAPER", misprints.GROUPS)
     found = judging.judge(baseline, evidence, "as_printed").sel(claim="E9")
     assert Verdict(int(found.verdict_here)) == HOLDS
+    assert found.evidence.item().startswith("Read by hand in the paper, not computed")
 
 
 def test_every_statement_is_flipped_by_some_change():

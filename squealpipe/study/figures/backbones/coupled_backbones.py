@@ -11,21 +11,33 @@ from matplotlib.ticker import MaxNLocator
 from squealpipe.plotting.cycles import joined
 from squealpipe.plotting.style import BLACK, GREEN, PURPLE, Y_COLOUR
 from squealpipe.study.figures.panels.backbone_panels import (
-    KEY,
     STABLE_TO_ROUND_OFF,
     draw_scenes,
+    key,
 )
 
 READS = ("backbone/[a-z]*", "doubled_branch/*")
-CAPTION = (
-    "Periodic motions of model A4 in further spring arrangements, one row for each, with the mode "
-    f"of the lower frequency on the left. {KEY} Insets, where mode 1 has period doublings (black "
-    "circles): largest y of the branches of doubled period in green and purple, at twice their "
-    "frequency."
-)
 ALT = "Panels of largest y and amplitude of x over frequency, with insets of doubled branches."
 SHOWN = 1.25
 """Largest y of a doubled branch shown, over that of the backbone."""
+
+
+def caption(
+    branches: Mapping[str, xr.Dataset], doubled: Mapping[str, xr.Dataset]
+) -> str:
+    """What is shown, and what the marks mean."""
+    insets = (
+        " Insets, where mode 1 has period doublings (black circles): largest y of the branches of "
+        "doubled period in green and purple, at twice their frequency."
+    )
+    return (
+        "Periodic motions of model A4 in further spring arrangements, one row for each, with the "
+        f"mode of the lower frequency on the left. {key(branches)}"
+        f"{insets if any(each.sizes['point'] for each in doubled.values()) else ''}"
+    )
+
+
+CAPTION = caption
 
 
 def draw(

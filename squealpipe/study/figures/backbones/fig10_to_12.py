@@ -5,14 +5,21 @@ from collections.abc import Mapping
 import xarray as xr
 from matplotlib.figure import Figure
 
-from squealpipe.study.figures.panels.backbone_panels import KEY, draw_scenes
+from squealpipe.study.figures.panels.backbone_panels import draw_scenes, key
 
 READS = ("backbone/F1[012]_*",)
-CAPTION = (
-    "Periodic motions of model A4 over the frequency, one row for each of Figs. 10, 11 and 12, "
-    f"with the mode of the lower frequency on the left. {KEY}"
-)
 ALT = "Three rows of two panels: largest y and amplitude of x over frequency near each mode."
+
+
+def caption(branches: Mapping[str, xr.Dataset]) -> str:
+    """What is shown, and what the marks mean."""
+    return (
+        "Periodic motions of model A4 over the frequency, one row for each of Figs. 10, 11 and "
+        f"12, with the mode of the lower frequency on the left. {key(branches)}"
+    )
+
+
+CAPTION = caption
 
 
 def draw(branches: Mapping[str, xr.Dataset]) -> Figure:

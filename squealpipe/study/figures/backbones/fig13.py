@@ -5,14 +5,21 @@ from collections.abc import Mapping
 import xarray as xr
 from matplotlib.figure import Figure
 
-from squealpipe.study.figures.panels.backbone_panels import KEY, SCENE_ALT, draw_scenes
+from squealpipe.study.figures.panels.backbone_panels import SCENE_ALT, draw_scenes, key
 
 READS = ("backbone/F13_*",)
-CAPTION = (
-    "Periodic motions of model A4 at (5π/6, 5π/6) over the frequency, (a) near ω₁ and (b) near "
-    f"ω₂. {KEY}"
-)
 ALT = SCENE_ALT
+
+
+def caption(branches: Mapping[str, xr.Dataset]) -> str:
+    """What is shown, and what the marks mean."""
+    return (
+        "Periodic motions of model A4 at (5π/6, 5π/6) over the frequency, (a) near ω₁ and (b) "
+        f"near ω₂. {key(branches)}"
+    )
+
+
+CAPTION = caption
 
 
 def draw(branches: Mapping[str, xr.Dataset]) -> Figure:

@@ -13,14 +13,27 @@ from squealpipe.schema import meanings
 from squealpipe.text import number
 
 READS = ("simulate/whirl", "whirl")
-CAPTION = (
-    "The response of Fig. 3 followed further. (a) x at (0.4π, 0.6π); the band marks the time that "
-    "Fig. 3 shows. (b) Largest |x| late in the run over belt speed. Dashed: the line that follows "
-    "from the energy at speed V in springs of stiffness k₁ + k₂. Only where the mass whirls: a "
-    "full line, fit of the same form, over the speeds that it covers, dotted below them. Cross: "
-    "another kind of motion in the last quarter of the run."
-)
 ALT = "Left, x over time; right, a log–log chart of its final size over belt speed with two lines."
+
+
+def caption(_: xr.Dataset, sizes: xr.Dataset) -> str:
+    """What is shown; the marks of a fit and of late changes where there are any."""
+    below = np.abs(sizes.belt_speed.values).min() < float(sizes.fit_range[0])
+    fitted = (
+        " Only where the mass whirls: a full line, fit of the same form, over the speeds that it "
+        f"covers{', dotted below them' if below else ''}."
+    )
+    changed = " Cross: another kind of motion in the last quarter of the run."
+    return (
+        "The response of Fig. 3 followed further. (a) x at (0.4π, 0.6π); the band marks the time "
+        "that Fig. 3 shows. (b) Largest |x| late in the run over belt speed. Dashed: the line "
+        "that follows from the energy at speed V in springs of stiffness k₁ + k₂."
+        f"{fitted if np.isfinite(sizes.slope) else ''}"
+        f"{changed if (sizes.motion_changed == 1).any() else ''}"
+    )
+
+
+CAPTION = caption
 
 
 def draw(run: xr.Dataset, sizes: xr.Dataset) -> Figure:

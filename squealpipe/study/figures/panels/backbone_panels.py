@@ -17,17 +17,34 @@ QUANTITIES = (
     ("x_amplitude", style.X_COLOUR, "amplitude of x"),
     ("y_peak", style.Y_COLOUR, "largest y"),
 )
-KEY = (
-    "Blue: largest y, so that contact is lost where it reaches the black line at l_pre; orange: "
-    "amplitude of x, half of its peak to peak. Crosses: harmonic balance; lines: exact orbits, "
-    "dotted where unstable, grey where the mass overtakes the belt and A4 does not hold."
-)
-"""What the marks mean, for captions."""
 SCENE_ALT = (
     "Two panels of largest y and amplitude of x over frequency, one for each mode."
 )
 
 STABLE_TO_ROUND_OFF = 2.0 + 1e-6
+
+
+def key(branches: Mapping[str, xr.Dataset]) -> str:
+    """What the marks mean that are drawn, for captions."""
+    exact = [each for name, each in branches.items() if not name.endswith("_hbm")]
+    looks = []
+    if any((_unstable(each) & ~_overtakes(each)).any() for each in exact):
+        looks.append("dotted where unstable")
+    if any(_overtakes(each).any() for each in exact):
+        looks.append("grey where the mass overtakes the belt and A4 does not hold")
+    return (
+        "Blue: largest y, so that contact is lost where it reaches the black line at l_pre; "
+        "orange: amplitude of x, half of its peak to peak. Crosses: harmonic balance; lines: "
+        f"{', '.join(['exact orbits', *looks])}."
+    )
+
+
+def _unstable(exact: xr.Dataset) -> np.ndarray:
+    return np.asarray(np.abs(exact.stability_index.values) > STABLE_TO_ROUND_OFF)
+
+
+def _overtakes(exact: xr.Dataset) -> np.ndarray:
+    return np.asarray(exact.sliding_assumption.values == 0)
 
 
 def draw_scenes(branches: Mapping[str, xr.Dataset], height: float) -> Figure:
@@ -66,8 +83,7 @@ def draw_branch(
     )
     if say_why_empty(panel, exact):
         return
-    unstable = np.abs(exact.stability_index.values) > STABLE_TO_ROUND_OFF
-    overtakes = exact.sliding_assumption.values == 0
+    unstable, overtakes = _unstable(exact), _overtakes(exact)
     omega = exact.omega.values
     shown = _evenly(series)
     for name, colour, label in QUANTITIES:

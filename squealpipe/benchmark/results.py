@@ -1,0 +1,142 @@
+"""Results of the benchmark as JSON: to cite, to ship, and to compare with."""
+
+import json
+import math
+import platform
+from collections.abc import Iterable, Mapping
+from importlib.metadata import PackageNotFoundError, packages_distributions, version
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from squealpipe.benchmark.adapters import SOLVERS
+from squealpipe.schema.comparison import Reliability
+
+INPUT_FILES = ("results.json",)
+SHIPPED = "shipped"
+"""Stands for the results that come with the package, in place of a file's name."""
+COUNTS = ("missed", "spurious", "out_of_order", "evaluations")
+NUMBERS = ("error", "time_error", "cpu_ratio")
+DIGITS = 3
+"""Of errors and CPU times."""
+
+
+def processor() -> str:
+    """What the processor calls itself; the machine's kind where it does not say."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text("utf-8").splitlines()
+    except OSError:
+        lines = []
+    names = [line.partition(":")[2] for line in lines if line.startswith("model name")]
+    named = names[0].strip() if names else platform.processor()
+    return named or platform.machine()
+
+
+def versions(solvers: Iterable[str]) -> dict[str, str]:
+    """Solver → package and version, of those that are shipped and whose package has one."""
+    known = {}
+    for name in solvers:
+        module, needs, _ = SOLVERS.get(name, ("", "", {}))
+        ours = ["squealpipe"] if module == "squealpipe" else []
+        for package in (ours or packages_distributions().get(needs, []))[:1]:
+            try:
+                known[name] = f"{package} {version(package)}"
+            except PackageNotFoundError:
+                continue
+    return known
+
+
+def results_as_json(datasets: Iterable[xr.Dataset]) -> str:
+    """Datasets ``benchmark`` as one JSON text, a line for each problem and solver.
+
+    Raises:
+        ValueError: a solver is in two of them, or they have other tolerances or problems judged
+            by another version.
+    """
+    datasets = list(datasets)
+    said = {
+        (each.attrs["benchmark_version"], tuple(each.tol.values.tolist()))
+        for each in datasets
+    }
+    if len(said) != 1:
+        raise ValueError("results of one benchmark_version and one list of tolerances")
+    ((benchmark_version, tolerances),) = said
+    solvers: dict[str, dict[str, str]] = {}
+    lines = []
+    for dataset in datasets:
+        packages = json.loads(dataset.attrs.get("solver_versions", "{}"))
+        for name in dataset.solver.values.tolist():
+            if name in solvers:
+                raise ValueError(f"two results of {name!r}")
+            solvers[name] = {
+                "package": packages.get(name, "unknown"),
+                "processor": dataset.attrs.get("processor", "unknown"),
+                "platform": dataset.attrs.get("platform", "unknown"),
+            }
+            lines += [_entry(dataset, problem, name) for problem in dataset.problem]
+    head = {
+        "benchmark_version": int(benchmark_version),
+        "tolerances": list(tolerances),
+        "solvers": solvers,
+    }
+    text = json.dumps(head, ensure_ascii=False, indent=1).removesuffix("\n}")
+    body = ",\n".join(json.dumps(line, ensure_ascii=False) for line in lines)
+    return f'{text},\n "results": [\n{body}\n]}}\n'
+
+
+def _entry(dataset: xr.Dataset, problem: xr.DataArray, solver: str) -> dict[str, Any]:
+    cells = dataset.sel(problem=problem, solver=solver)
+    entry: dict[str, Any] = {"problem": str(problem.item()), "solver": solver}
+    entry["verdict"] = [Reliability(v).name for v in cells.verdict.values.tolist()]
+    entry |= {name: cells[name].values.tolist() for name in COUNTS}
+    for name in NUMBERS:
+        values = cells[name].values.tolist()
+        entry[name] = [
+            float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None
+            for value in values
+        ]
+    return entry | {"message": cells.message.values.tolist()}
+
+
+def read_results(path: Path | str) -> xr.Dataset:
+    """Verdicts over (problem, solver, tol) of a JSON text that ``results_as_json`` made.
+
+    Args:
+        path: the file, or ``"shipped"``.
+
+    Raises:
+        ValueError: the file is none.
+    """
+    table = shipped() if str(path) == SHIPPED else _table(Path(path))
+    entries = table["results"]
+    coordinates = {
+        "problem": list(dict.fromkeys(entry["problem"] for entry in entries)),
+        "solver": list(dict.fromkeys(entry["solver"] for entry in entries)),
+        "tol": table["tolerances"],
+    }
+    verdict = xr.DataArray(
+        int(Reliability.not_applicable), coordinates, list(coordinates)
+    )
+    for entry in entries:
+        place = {"problem": entry["problem"], "solver": entry["solver"]}
+        verdict.loc[place] = [Reliability[name] for name in entry["verdict"]]
+    return verdict.to_dataset(name="verdict")
+
+
+def shipped() -> dict[str, Any]:
+    """The results that come with the package, with package and processor of each solver."""
+    text = (files("squealpipe.benchmark") / "results.json").read_text("utf-8")
+    found: dict[str, Any] = json.loads(text)
+    return found
+
+
+def _table(path: Path) -> Mapping[str, Any]:
+    try:
+        table: Mapping[str, Any] = json.loads(path.read_text("utf-8"))
+        if {"tolerances", "results"} <= set(table):
+            return table
+    except (ValueError, TypeError) as error:
+        raise ValueError(f"{path} is no JSON of results: {error}") from None
+    raise ValueError(f"{path} is no JSON of results: 'tolerances' or 'results' lacks")
