@@ -2,16 +2,13 @@
 
 import json
 import math
-import platform
 from collections.abc import Iterable, Mapping
-from importlib.metadata import PackageNotFoundError, packages_distributions, version
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import xarray as xr
 
-from squealpipe.benchmark.adapters import SOLVERS
 from squealpipe.schema.comparison import Reliability
 
 INPUT_FILES = ("results.json",)
@@ -21,31 +18,6 @@ COUNTS = ("missed", "spurious", "out_of_order", "evaluations")
 NUMBERS = ("error", "time_error", "cpu_ratio")
 DIGITS = 3
 """Of errors and CPU times."""
-
-
-def processor() -> str:
-    """What the processor calls itself; the machine's kind where it does not say."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text("utf-8").splitlines()
-    except OSError:
-        lines = []
-    names = [line.partition(":")[2] for line in lines if line.startswith("model name")]
-    named = names[0].strip() if names else platform.processor()
-    return named or platform.machine()
-
-
-def versions(solvers: Iterable[str]) -> dict[str, str]:
-    """Solver → package and version, of those that are shipped and whose package has one."""
-    known = {}
-    for name in solvers:
-        module, needs, _ = SOLVERS.get(name, ("", "", {}))
-        ours = ["squealpipe"] if module == "squealpipe" else []
-        for package in (ours or packages_distributions().get(needs, []))[:1]:
-            try:
-                known[name] = f"{package} {version(package)}"
-            except PackageNotFoundError:
-                continue
-    return known
 
 
 def results_as_json(datasets: Iterable[xr.Dataset]) -> str:

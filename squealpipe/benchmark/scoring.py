@@ -12,8 +12,8 @@ import xarray as xr
 from scipy.optimize import linear_sum_assignment
 
 from squealpipe.benchmark.adapters.scipy import solve as reference_solver
+from squealpipe.benchmark.machine import processor, versions
 from squealpipe.benchmark.problems import Problem, all_data, references
-from squealpipe.benchmark.results import processor, versions
 from squealpipe.benchmark.worker import Worker
 from squealpipe.schema import build
 from squealpipe.schema.comparison import BENCHMARK, Reliability, Role

@@ -9,8 +9,9 @@ import pytest
 
 import squealpipe
 from squealpipe.benchmark.answers import score_answers
+from squealpipe.benchmark.machine import processor
 from squealpipe.benchmark.problems import all_data, references
-from squealpipe.benchmark.results import processor, read_results, shipped
+from squealpipe.benchmark.results import read_results, shipped
 from squealpipe.cli import run
 
 MINE = """
