@@ -184,12 +184,9 @@ class SystemSweep:
         for number, row in enumerate(kept.runs()):
             for name, array in arrays.items():
                 np.moveaxis(array, axes[name], 0)[number] = row[str(name)]
-        whole = {
-            name: variable if name not in arrays else (
-                variable.dims, arrays[name], variable.attrs
-            )
-            for name, variable in part.variables.items()
-        }  # fmt: skip
+        whole: dict[Any, Any] = dict(part.variables)
+        for name, array in arrays.items():
+            whole[name] = (part[name].dims, array, part[name].attrs)
         found = xr.Dataset(whole, attrs=part.attrs).set_coords([*part.coords])
         if "attractor" in found:
             return basin.renumbered(self.system, found)

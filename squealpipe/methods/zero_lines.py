@@ -65,14 +65,25 @@ class Loop(NamedTuple):
     error: float
 
 
+class Grid(NamedTuple):
+    """Points at which a function is first looked at.
+
+    Attributes:
+        coarse: points per side of the grid that sees the whole square.
+        finer: how many times finer the grid is where the sign changes, a power of two.
+    """
+
+    coarse: int
+    finer: int
+
+
 class ZeroLines:
     """The lines on which a function is zero.
 
     Args:
         value: the function, of order one.
         mark: of points on the lines.
-        coarse: points per side of the grid that sees the whole square.
-        finer: how many times finer the grid is where the sign changes, a power of two.
+        grid: the points that see the whole square.
         off: how far lines may be on average, over a chord, from those that are drawn.
         residual: of the function at a point.
         touching: whether regions may touch in a point. Sharp corners are enclosed along both
@@ -93,30 +104,20 @@ class ZeroLines:
         self,
         value: Function,
         mark: Mark,
+        grid: Grid,
         *,
-        coarse: int,
-        finer: int,
         jump: float,
         off: float = 1e-8,
         residual: float = 1e-11,
         touching: bool = False,
     ) -> None:
-        self.value, self._mark, self.jump, self.off, self.most = (
-            value,
-            mark,
-            jump,
-            off,
-            residual,
-        )
-        self._touching = touching
+        self.value, self._mark, self._touching = value, mark, touching
+        self.jump, self.off, self.most = jump, off, residual
         self.place, self.slope = np.empty((0, 2)), np.empty((0, 2))
         self.residual, self.mark = np.empty(0), np.empty(0)
-        self.chords, self.error, self.unresolved = (
-            np.empty((0, 2), int),
-            np.empty(0),
-            0.0,
-        )
-        self._trace(self._on_grid((coarse - 1) * finer + 1, coarse))
+        self.chords, self.error = np.empty((0, 2), int), np.empty(0)
+        self.unresolved = 0.0
+        self._trace(self._on_grid((grid.coarse - 1) * grid.finer + 1, grid.coarse))
 
     def _on_grid(self, size: int, coarse: int) -> Indices:
         """Zeros on the edges of a grid as points, and the chords between them."""

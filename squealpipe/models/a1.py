@@ -17,7 +17,7 @@ exact geometry). ``A1-as-printed`` is Eq. (4) taken literally: friction μ N sgn
 slower mass back and a faster one on, and nothing sticks (see :mod:`squealpipe.reading`).
 """
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from squealpipe.laws import springs
 from squealpipe.laws.contact import normal_force
@@ -26,70 +26,71 @@ from squealpipe.laws.friction import slip_force
 from squealpipe.laws.friction_laws import coefficient
 
 
+class State(NamedTuple):
+    """Displacement, m, and velocity, m/s, of the mass."""
+
+    x: Any
+    y: Any
+    vx: Any
+    vy: Any
+
+
+class Suspension(NamedTuple):
+    """How the springs are described.
+
+    Attributes:
+        linear: K r in place of the exact geometry.
+        long: which of the springs take the form for long ones.
+        dashpots: whether they have dashpots.
+    """
+
+    linear: bool = False
+    long: tuple[bool, bool] = (False, False)
+    dashpots: bool = True
+
+
+EXACT = Suspension()
+
+
 def suspension_force(
-    x: Any,
-    y: Any,
-    vx: Any,
-    vy: Any,
-    p: Any,
-    g: springs.Geometry,
-    *,
-    linear_springs: bool,
-    long_springs: tuple[bool, bool] = (False, False),
-    dashpots: bool = True,
+    s: Any, p: Any, g: springs.Geometry, form: Suspension = EXACT
 ) -> tuple[Any, Any]:
-    """Force of both springs and their dashpots, if any, on the mass, exact or linearized, N."""
-    if linear_springs:
-        fx, fy = springs.linear_elastic_force(x, y, springs.linear_stiffness(p, g))
+    """Force of both springs and their dashpots, if any, on the mass in a state ``s``, N."""
+    if form.linear:
+        fx, fy = springs.linear_elastic_force(s.x, s.y, springs.linear_stiffness(p, g))
     else:
-        fx, fy = springs.elastic_force(x, y, p, g, long_springs)
-    if not dashpots:
+        fx, fy = springs.elastic_force(s.x, s.y, p, g, form.long)
+    if not form.dashpots:
         return fx, fy
-    if linear_springs:
-        cx, cy = linear_damping_force(vx, vy, p, g)
+    if form.linear:
+        cx, cy = linear_damping_force(s.vx, s.vy, p, g)
     else:
-        cx, cy = damping_force(x, y, vx, vy, p, g)
+        cx, cy = damping_force(s.x, s.y, s.vx, s.vy, p, g)
     return fx + cx, fy + cy
 
 
 def acceleration(
-    x: Any,
-    y: Any,
-    vx: Any,
-    vy: Any,
+    s: Any,
     p: Any,
     g: springs.Geometry,
     *,
     contact: Any,
     direction: Any,
     stick: Any = 0.0,
-    linear_springs: bool = False,
-    long_springs: tuple[bool, bool] = (False, False),
-    dashpots: bool = True,
+    form: Suspension = EXACT,
 ) -> tuple[Any, Any]:
     """Eqs. (4), (5): (ẍ, ÿ) within one regime, m/s².
 
     Args:
-        x, y: displacement, m; vx, vy: velocity, m/s.
+        s: the state, with attributes x, y, vx and vy like :class:`State`.
         contact: 1 in contact, 0 separated.
         direction: sgn(V − ẋ).
         stick: 1 while sticking, when friction balances the other x-forces and ẍ = 0.
-        long_springs: which of the springs take the form for long ones.
     """
-    fx, fy = suspension_force(
-        x,
-        y,
-        vx,
-        vy,
-        p,
-        g,
-        linear_springs=linear_springs,
-        long_springs=long_springs,
-        dashpots=dashpots,
-    )
-    normal = contact * normal_force(y, vy, p)
+    fx, fy = suspension_force(s, p, g, form)
+    normal = contact * normal_force(s.y, s.vy, p)
     friction = slip_force(
-        normal, direction, coefficient(direction * (p.belt_speed - vx), p)
+        normal, direction, coefficient(direction * (p.belt_speed - s.vx), p)
     )
     inverse_mass = p.mass**-1.0
     ax = (1.0 - stick) * inverse_mass * (fx + friction)

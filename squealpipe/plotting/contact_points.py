@@ -23,9 +23,11 @@ def draw_onsets(axes: Axes, pads: xr.Dataset) -> None:
     names = [str(name).replace(", ", "\n") for name in pads.design.values]
     axes.set_xticks(places, names)
     axes.set(
-        xlabel="contact points", ylabel="critical friction", ylim=(0.0, 1.08 * MOST_FRICTION),
+        xlabel="contact points",
+        ylabel="critical friction",
+        ylim=(0.0, 1.08 * MOST_FRICTION),
         xlim=(-0.5, len(places) - 0.5),
-    )  # fmt: skip
+    )
 
 
 def _friction(pads: xr.Dataset) -> float:

@@ -27,7 +27,9 @@ WORK_PRECISION = DatasetSchema(
         "role": Variable("public method, ours, or our default", dims=RUN, flags=Role),
         "error": Variable(
             "relative error of ω against the exact orbit, median over peaks",
-            dims=RUN, nan_allowed=True, rtol=1e-3,
+            dims=RUN,
+            nan_allowed=True,
+            rtol=1e-3,
             round_off=RoundOff(
                 ComparedAs.magnitude,
                 "nothing but round-off is left at many harmonics, and the paper's Newton method "
@@ -35,10 +37,12 @@ WORK_PRECISION = DatasetSchema(
                 floor=1e-12,
             ),
         ),
-        "wall_time": Variable("median wall time of one solution", "s", RUN, volatile=True),
+        "wall_time": Variable(
+            "median wall time of one solution", "s", RUN, volatile=True
+        ),
         "outcome": outcome(*RUN, among=(Outcome.converged, Outcome.no_convergence)),
     },
-)  # fmt: skip
+)
 
 
 class Reliability(IntEnum):
@@ -97,7 +101,9 @@ BENCHMARK = DatasetSchema(
     coordinates={
         "problem": text("problem", "problem"),
         "solver": text("solver", "solver"),
-        "tol": Variable("tolerance asked for (xarray keeps the longer name)", dims=("tol",)),
+        "tol": Variable(
+            "tolerance asked for (xarray keeps the longer name)", dims=("tol",)
+        ),
     },
     variables={
         "group": text("class of the problem", "problem"),
@@ -105,31 +111,51 @@ BENCHMARK = DatasetSchema(
         "verdict": Variable(
             "right; flagged: wrong or without an answer, and said so; silently wrong: another list "
             "of events, or an error over growth above 100 tolerances",
-            dims=_CELL, flags=Reliability, round_off=_NEAR,
+            dims=_CELL,
+            flags=Reliability,
+            round_off=_NEAR,
         ),
-        "missed": Variable(f"events missed{_COUNT}", dims=_CELL, dtype="i4", round_off=_NEAR),
-        "spurious": Variable(f"events too many{_COUNT}", dims=_CELL, dtype="i4", round_off=_NEAR),
+        "missed": Variable(
+            f"events missed{_COUNT}", dims=_CELL, dtype="i4", round_off=_NEAR
+        ),
+        "spurious": Variable(
+            f"events too many{_COUNT}", dims=_CELL, dtype="i4", round_off=_NEAR
+        ),
         "out_of_order": Variable(
             f"events found before one that they follow{_COUNT}",
-            dims=_CELL, dtype="i4", round_off=_NEAR,
+            dims=_CELL,
+            dtype="i4",
+            round_off=_NEAR,
         ),
         "time_error": Variable(
-            "largest error of an event's time", dims=_CELL, nan_allowed=True, round_off=_STEPS
+            "largest error of an event's time",
+            dims=_CELL,
+            nan_allowed=True,
+            round_off=_STEPS,
         ),
         "error": Variable(
             "largest error of final state and event times over the growth of a perturbation",
-            dims=_CELL, nan_allowed=True, round_off=_STEPS,
+            dims=_CELL,
+            nan_allowed=True,
+            round_off=_STEPS,
         ),
         "evaluations": Variable(
             "calls of the field, counted by the harness; a solver that makes its own functions "
-            "tells them, a Taylor step of order p as p + 1", dims=_CELL, dtype="i8",
-            rtol=0.5, round_off=_NEAR,
+            "tells them, a Taylor step of order p as p + 1",
+            dims=_CELL,
+            dtype="i8",
+            rtol=0.5,
+            round_off=_NEAR,
         ),
         "cpu_time": Variable("CPU time", "s", _CELL, nan_allowed=True, volatile=True),
         "cpu_ratio": Variable(
             "CPU time over that of scipy's DOP853 at 1e-8 in the same process",
-            dims=_CELL, nan_allowed=True, volatile=True,
+            dims=_CELL,
+            nan_allowed=True,
+            volatile=True,
         ),
-        "message": Variable("what the solver said", dims=_CELL, dtype="U64", round_off=_NEAR),
+        "message": Variable(
+            "what the solver said", dims=_CELL, dtype="U64", round_off=_NEAR
+        ),
     },
-)  # fmt: skip
+)

@@ -19,7 +19,9 @@ CONTACT_POINTS = DatasetSchema(
     title="An elastic pad on one, two and more contact points, and a stiff one",
     coordinates={
         "design": text("the pad's contact points, and whether it is stiff", "design"),
-        "point": Variable("contact point, from the leading edge", dims=("point",), dtype="i4"),
+        "point": Variable(
+            "contact point, from the leading edge", dims=("point",), dtype="i4"
+        ),
         "instant": Variable("time in periods of the strongest line", dims=("instant",)),
     },
     variables={
@@ -27,12 +29,14 @@ CONTACT_POINTS = DatasetSchema(
         "young": Variable("modulus of elasticity", "Pa", _PAD),
         "n_modes": Variable("modes in which it was run", dims=_PAD, dtype="i4"),
         "frequency_error": Variable(
-            "largest relative error of an unstable frequency, from the reduction", dims=_PAD,
+            "largest relative error of an unstable frequency, from the reduction",
+            dims=_PAD,
             atol=1e-6,
         ),
         "growth_rate_error": Variable(
             "largest error of an unstable growth rate, over the larger of it and 1 % of ω",
-            dims=_PAD, atol=1e-6,
+            dims=_PAD,
+            atol=1e-6,
         ),
         "critical_mu": or_nan(
             "smallest friction at which a mode turns unstable; NaN: none up to "
@@ -46,20 +50,29 @@ CONTACT_POINTS = DatasetSchema(
         "growth_rate": or_nan("its growth rate", "s-1", _PAD, rtol=1e-5),
         "verdict": Variable(
             "what steady sliding ends in after a push of 1 % along its least stable mode",
-            dims=_PAD, flags=Verdict,
+            dims=_PAD,
+            flags=Verdict,
         ),
-        "dominant_frequency": or_nan("strongest line of that motion", "Hz", _PAD, rtol=0.01),
-        "velocity_rms": or_nan("its rms speed at the contacts", "m s-1", _PAD, rtol=0.05),
-        "share": or_nan("share of the random starts that end in it", "1", _PAD, atol=0.5),
+        "dominant_frequency": or_nan(
+            "strongest line of that motion", "Hz", _PAD, rtol=0.01
+        ),
+        "velocity_rms": or_nan(
+            "its rms speed at the contacts", "m s-1", _PAD, rtol=0.05
+        ),
+        "share": or_nan(
+            "share of the random starts that end in it", "1", _PAD, atol=0.5
+        ),
         "position": _of_point("place over the pad's length"),
         "separated_fraction": _of_point("share of the time without contact"),
         "stick_fraction": _of_point("share of the time in stick"),
         "peak_force": or_nan("largest force over its preload", "1", _AT, rtol=0.1),
         "lag": or_nan(
             "delay of the force behind that of the first point, at the strongest line, in periods",
-            "1", _AT, volatile=True,
+            "1",
+            _AT,
+            volatile=True,
         ),
         "force": or_nan("normal force over its preload", "1", _OVER, volatile=True),
         "outcome": outcome(*_PAD, among=(Outcome.converged, Outcome.unresolved)),
     },
-)  # fmt: skip
+)

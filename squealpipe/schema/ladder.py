@@ -7,7 +7,6 @@ from squealpipe.schema import DatasetSchema, Outcome, Variable, or_nan, outcome,
 from squealpipe.schema.linear import ANGLES, MAP
 
 
-# fmt: off
 class Level(IntEnum):
     """All levels, cheapest first; a level is one record.
 
@@ -29,29 +28,59 @@ class Level(IntEnum):
     share: float
 
     a3 = (
-        0, "A3 in contact", "contact loss, geometry, reversal of friction",
-        "contact kept, belt not reached, small displacements", "LIGHT",
+        0,
+        "A3 in contact",
+        "contact loss, geometry, reversal of friction",
+        "contact kept, belt not reached, small displacements",
+        "LIGHT",
     )
     a4 = (
-        1, "A4", "geometry, reversal of friction",
-        "belt not reached, small displacements", "BLUE", "A4", 1.0,
+        1,
+        "A4",
+        "geometry, reversal of friction",
+        "belt not reached, small displacements",
+        "BLUE",
+        "A4",
+        1.0,
     )
     a1_linear_springs = (
-        2, "A1, linear springs", "geometry", "small displacements", "PURPLE",
-        "A1-linear-springs", 1.0,
+        2,
+        "A1, linear springs",
+        "geometry",
+        "small displacements",
+        "PURPLE",
+        "A1-linear-springs",
+        1.0,
     )
     a1_no_stick = (
-        3, "A1 without stick", "stick", "short spells of stick", "GREEN", "A1-no-stick", 1.0,
+        3,
+        "A1 without stick",
+        "stick",
+        "short spells of stick",
+        "GREEN",
+        "A1-no-stick",
+        1.0,
     )
     a1_short = (
-        4, "A1, part of the horizon", "the rest of the horizon", "nothing new after that part",
-        "GREY", "A1", 0.5,
+        4,
+        "A1, part of the horizon",
+        "the rest of the horizon",
+        "nothing new after that part",
+        "GREY",
+        "A1",
+        0.5,
     )
     a1 = (5, "A1", "nothing", "nothing", "BLACK", "A1", 1.0)
 
     def __new__(
-        cls, number: int, label: str = "", drops: str = "", needs: str = "", colour: str = "",
-        model: str = "", share: float = 0.0,
+        cls,
+        number: int,
+        label: str = "",
+        drops: str = "",
+        needs: str = "",
+        colour: str = "",
+        model: str = "",
+        share: float = 0.0,
     ) -> Self:
         """A level from its record."""
         level = int.__new__(cls, number)
@@ -59,7 +88,6 @@ class Level(IntEnum):
         level.label, level.drops, level.needs = label, drops, needs
         level.colour, level.model, level.share = colour, model, share
         return level
-# fmt: on
 
 
 QUESTIONS = ("contact_lost", "frequency", "peak_contact_force", "max_displacement")

@@ -8,9 +8,14 @@ from squealpipe.store.runs import locate, verify
 from squealpipe.store.whole_files import whole_file
 
 SOURCES = (
-    "squealpipe", "workflow", "Snakefile", "pyproject.toml", "requirements.lock", "LICENSE",
+    "squealpipe",
+    "workflow",
+    "Snakefile",
+    "pyproject.toml",
+    "requirements.lock",
+    "LICENSE",
     "README.md",
-)  # fmt: skip
+)
 README = """\
 # An archived run of squealpipe
 

@@ -13,10 +13,19 @@ import xarray as xr
 from squealpipe.rerun.key import canonical, digest
 from squealpipe.schema import schema_of
 
-VOLATILE_ATTRIBUTES = frozenset({
-    "history", "wall_time_s", "platform", "libraries", "package_version", "commit", "inputs", "key",
-    "key_content",
-})  # fmt: skip
+VOLATILE_ATTRIBUTES = frozenset(
+    {
+        "history",
+        "wall_time_s",
+        "platform",
+        "libraries",
+        "package_version",
+        "commit",
+        "inputs",
+        "key",
+        "key_content",
+    }
+)
 """Global attributes that describe the run, not the result."""
 
 

@@ -85,12 +85,8 @@ def locate(what: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> 
             if archive.is_dir():
                 return archive
     folders = [Path(place) / ARCHIVES for place in (root, CHECKOUT)]
-    known = sorted({
-        item.name
-        for folder in folders
-        for item in folder.glob("[!.]*")
-        if item.is_dir()
-    })  # fmt: skip
+    items = [item for folder in folders for item in folder.glob("[!.]*")]
+    known = sorted({item.name for item in items if item.is_dir()})
     raise FileNotFoundError(
         f"no archive, folder or file {str(what)!r}; "
         + (

@@ -158,11 +158,12 @@ def _sheet_name(name: str, taken: set[str]) -> str:
 
 def _table_of_numbers(dataset: xr.Dataset) -> pd.DataFrame:
     """The table of a dataset that has single numbers alone: one row."""
-    return pd.DataFrame({
+    numbers = {
         str(name): [_words(variable).item()]
         for name, variable in dataset.data_vars.items()
         if not variable.ndim
-    })  # fmt: skip
+    }
+    return pd.DataFrame(numbers)
 
 
 def _numbers(dataset: xr.Dataset) -> dict[str, str]:

@@ -16,7 +16,9 @@ CONTACT_FORCE = symbols.function(symbols.CONTACT_FORCE)
 def acceleration(params, state, velocity=(0.3, -0.2), **regime):
     g = geometry(state["alpha1"], state["alpha2"])
     return np.array(
-        a1.acceleration(state["x"], state["y"], *velocity, params, g, **regime)
+        a1.acceleration(
+            a1.State(state["x"], state["y"], *velocity), params, g, **regime
+        )
     )
 
 
@@ -33,5 +35,5 @@ def test_acceleration_in_each_regime(params, state, direction, linear):
         ([0.0, slip[1]], {"contact": 1.0, "direction": 0.0, "stick": 1.0}),
         (force / params.mass, {"contact": 0.0, "direction": direction}),
     ):
-        found = acceleration(params, state, **regime, linear_springs=linear)
+        found = acceleration(params, state, **regime, form=a1.Suspension(linear))
         np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12)

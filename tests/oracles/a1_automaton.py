@@ -13,7 +13,7 @@ from squealpipe.codes import Regime
 from squealpipe.laws.contact import contact_force
 from squealpipe.laws.friction import stick_limit
 from squealpipe.laws.springs import Geometry, geometry
-from squealpipe.models.a1 import acceleration, suspension_force
+from squealpipe.models.a1 import State, Suspension, acceleration, suspension_force
 
 EventKind = IntEnum("EventKind", "separation contact belt_speed release", start=0)
 DIRECTION = {Regime.slip_slower: 1.0, Regime.slip_faster: -1.0, Regime.stick: 0.0}
@@ -55,7 +55,7 @@ class A1Automaton:
         self.params, self.as_printed = params, as_printed
         self.geometry = Geometry(*map(float, geometry(alpha1, alpha2)))
         dashpots = params.damping1 + params.damping2 > 0.0
-        self.options = {"linear_springs": linear_springs, "dashpots": dashpots}
+        self.form = Suspension(linear_springs, dashpots=dashpots)
 
     def field(self, regime):
         """The field f(t, z) of a regime."""
@@ -65,11 +65,11 @@ class A1Automaton:
             "stick": float(regime == Regime.stick),
         }
         sign = -1.0 if self.as_printed else 1.0
-        part |= {"direction": sign * DIRECTION.get(regime, 0.0), **self.options}
+        part |= {"direction": sign * DIRECTION.get(regime, 0.0), "form": self.form}
 
         def f(_, z):
             return *z[2:].tolist(), *acceleration(
-                *z.tolist(), self.params, self.geometry, **part
+                State(*z.tolist()), self.params, self.geometry, **part
             )
 
         return f
@@ -101,10 +101,9 @@ class A1Automaton:
 
     def pull(self, z, axis=0):
         """x-force of springs and dashpots, N."""
+        state = State(*z.tolist())
         return float(
-            suspension_force(*z.tolist(), self.params, self.geometry, **self.options)[
-                axis
-            ]
+            suspension_force(state, self.params, self.geometry, self.form)[axis]
         )
 
     def start(self, z):

@@ -16,7 +16,7 @@ from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction import stick_limit
 from squealpipe.laws.functions import exp
 from squealpipe.laws.springs import Geometry
-from squealpipe.models.a1 import acceleration, suspension_force
+from squealpipe.models.a1 import State, acceleration, suspension_force
 from squealpipe.parameters import NUMBERS_OF_A1
 from tests.oracles.a1_automaton import DIRECTION, A1Automaton, EventKind, HybridRun
 
@@ -52,8 +52,9 @@ def _integrator(law):
     p = SimpleNamespace(friction_law=law, contact_law=LINEAR, **value)
     g = Geometry(p.c1, p.s1, p.c2, p.s2)
     regime = {"contact": p.contact, "direction": p.direction, "stick": p.stick}
-    ax, ay = acceleration(x, y, vx, vy, p, g, **regime)
-    pull, _ = suspension_force(x, y, vx, vy, p, g, linear_springs=False)
+    state = State(x, y, vx, vy)
+    ax, ay = acceleration(state, p, g, **regime)
+    pull, _ = suspension_force(state, p, g)
     grip = stick_limit(contact_force(y, p), p)
     surfaces = [  # where a regime does not watch a surface, the surface is the constant 1
         p.preload - y,

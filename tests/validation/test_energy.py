@@ -11,7 +11,7 @@ from squealpipe.laws.contact import contact_force
 from squealpipe.laws.dashpots import damping_force
 from squealpipe.laws.friction_laws import LAWS
 from squealpipe.laws.springs import geometry
-from squealpipe.models.a1 import suspension_force
+from squealpipe.models.a1 import State, suspension_force
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from tests.former import FORMER
@@ -92,7 +92,7 @@ def energy_error(parameters, angles, t_end, panel, model="A1"):
     contact = (regime != Regime.separated) * 1.0
     energy = mechanical_energy(x, y, vx, vy, wide, g, contact)
     dx, dy = damping_force(x, y, vx, vy, wide, g)
-    pull = suspension_force(x, y, vx, vy, wide, g, linear_springs=False)[0]
+    pull = suspension_force(State(x, y, vx, vy), wide, g)[0]
     direction = (regime == Regime.slip_slower) * 1.0 - (regime == Regime.slip_faster)
     belt = (
         vx,

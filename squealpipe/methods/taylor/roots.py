@@ -7,7 +7,7 @@ hides the function: such a band holds a root if the function leaves it on its ot
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 from squealpipe.methods.compiled import part, polynomial
 
@@ -20,6 +20,34 @@ UNSURE = 1e-6
 """Share of a step: a root that round-off hides by more on both sides is a multiple one."""
 MOST_LOOKS = 20_000
 """Intervals of one step that are looked at."""
+
+
+class End(NamedTuple):
+    """A polynomial and its first two derivatives at an end of an interval."""
+
+    time: float
+    value: float
+    slope: float
+    bend: float
+
+
+class Watch(NamedTuple):
+    """Which crossings of zero count.
+
+    Attributes:
+        falls, rises: whether those from above, and those from below.
+        fresh: whether the polynomial starts from zero.
+        at_once: whether a start to the wrong side is a crossing.
+        noise: size within which the value at a fresh start is zero.
+        drift: growth of the noise with time.
+    """
+
+    falls: bool
+    rises: bool
+    fresh: bool
+    at_once: bool
+    noise: float
+    drift: float
 
 
 @polynomial
@@ -105,6 +133,7 @@ def first_root(
     p0, s0, b0 = evaluate_twice(coefficients, variable, lane, left)
     for _ in range(MOST_LOOKS):
         p1, s1, b1 = evaluate_twice(coefficients, variable, lane, right)
+        ends = End(left, p0, s0, b0), End(right, p1, s1, b1)
         width = right - left
         side = p0 if p0 != 0.0 else (s0 if s0 != 0.0 else b0)
         if known != 0.0 and left == start:
@@ -113,17 +142,8 @@ def first_root(
             if band_side * side < 0.0:
                 return 0.5 * (band + left), step
             band_side = 0.0
-        decided, root = _look(
-            coefficients,
-            variable,
-            lane,
-            left,
-            right,
-            side if band_side == 0.0 else band_side,
-            third,
-            (p0, s0, b0),
-            (p1, s1, b1),
-        )
+        before = side if band_side == 0.0 else band_side
+        decided, root = _look(coefficients, variable, lane, ends, before, third)
         bend = max(abs(b0), abs(b1)) + 0.5 * third * width
         hidden = max(abs(p0), abs(p1)) + 0.125 * bend * width * width <= 2.0 * floor
         if not (decided or hidden or width < FINEST * step):
@@ -158,19 +178,11 @@ def _agree(a: float, b: float) -> Any:
 
 @part
 def _look(
-    coefficients: Any,
-    variable: int,
-    lane: int,
-    left: float,
-    right: float,
-    side: float,
-    third: float,
-    start: Any,
-    end: Any,
+    coefficients: Any, variable: int, lane: int, ends: Any, side: float, third: float
 ) -> Any:
-    """Whether an interval is decided, and its first root or ``NO_ROOT``."""
-    p0, s0, b0 = start
-    p1, s1, b1 = end
+    """Whether an interval between two ends is decided, and its first root or ``NO_ROOT``."""
+    left, p0, s0, b0 = ends[0]
+    right, p1, s1, b1 = ends[1]
     width = right - left
     bend = max(abs(b0), abs(b1)) + 0.5 * third * width
     # signs, not products: those of small numbers may vanish
@@ -232,16 +244,7 @@ def _bracketed(
 
 @part
 def first_crossing(
-    coefficients: Any,
-    variable: int,
-    lane: int,
-    step: float,
-    falls: bool,
-    rises: bool,
-    fresh: bool,
-    at_once: bool,
-    noise: float,
-    drift: float = 0.0,
+    coefficients: Any, variable: int, lane: int, step: float, watch: Watch
 ) -> Any:
     """The first t in [0, step] where the polynomial falls, or rises, through zero as is asked.
 
@@ -250,6 +253,7 @@ def first_crossing(
     grows by ``drift`` with time; a side that is the wrong one is a crossing ``at_once``, at 0,
     unless the switch changes nothing.
     """
+    falls, rises, fresh, at_once, noise, drift = watch
     start, side = 0.0, coefficients[variable, 0, lane]
     if not fresh:  # a step may start where round-off hides the side
         noise, drift = hidden_below(coefficients, variable, lane, step), 0.0

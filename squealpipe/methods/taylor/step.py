@@ -10,6 +10,7 @@ from squealpipe.methods.taylor import layout
 from squealpipe.methods.taylor.lanes import call
 from squealpipe.methods.taylor.roots import (
     UNDECIDED,
+    Watch,
     evaluate,
     evaluate_twice,
     first_crossing,
@@ -240,11 +241,7 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
             continue
         root = 0.0
         if not m.beyond[surface] & bit:
-            root, looked = first_crossing(
-                c,
-                t.n_variables + surface,
-                lane,
-                step,
+            watch = Watch(
                 falls >= 0,
                 rises >= 0,
                 (m.fresh[surface] & bit) != 0,
@@ -252,6 +249,8 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
                 m.noise[surface, 0, lane],
                 m.noise[surface, 1, lane],
             )
+            index = t.n_variables + surface
+            root, looked = first_crossing(c, index, lane, step, watch)
             unclear |= root == UNDECIDED
             complete = min(complete, looked)
         if root < 0.0 or root > first + tie:
@@ -321,10 +320,8 @@ def cut(t: Any, m: Any, c: Any, lane: int) -> None:
         return
     done = rows[layout.CLOCK, lane]
     remaining = (rows[layout.T_END, lane] - done) - rows[layout.CORRECTION, lane]
-    step, ends = (
-        min(rows[layout.STEP, lane], remaining),
-        remaining <= rows[layout.STEP, lane],
-    )
+    step = min(rows[layout.STEP, lane], remaining)
+    ends = remaining <= rows[layout.STEP, lane]
     late = (rows[layout.T_LATE, lane] - done) - rows[layout.CORRECTION, lane]
     turns_late = late <= step
     if turns_late:

@@ -209,10 +209,13 @@ def _interpolated(
 
 def _weights(knots: np.ndarray, place: float) -> np.ndarray:
     """Lagrange's weights."""
-    return np.array([
-        np.prod([(place - other) / (knot - other) for other in np.delete(knots, number)])
-        for number, knot in enumerate(knots)
-    ])  # fmt: skip
+    others = [np.delete(knots, number) for number in range(len(knots))]
+    return np.array(
+        [
+            np.prod((place - o) / (knot - o))
+            for knot, o in zip(knots, others, strict=True)
+        ]
+    )
 
 
 def _with_gap(

@@ -18,6 +18,19 @@ from squealpipe.study.report import answer
 LONGEST_NAME = 31
 """Characters of a sheet's name that Excel allows."""
 
+CURES = (
+    "scene",
+    "changed alone",
+    "unit",
+    "now",
+    "quiet from",
+    "change (% or deg)",
+    "quiet from, any start",
+    "lowest tried",
+    "highest tried",
+)
+"""Columns of the sheet that says what stops the squeal."""
+
 
 def write_tables(
     answers: Mapping[str, xr.Dataset], parameters: Parameters, path: Path
@@ -27,12 +40,7 @@ def write_tables(
     first = book.active
     first.title = "Answer"
     _fill(first, ["quantity", "unit", *answers], _scalars(answers))
-    _fill(
-        book.create_sheet("What stops it"),
-        ["scene", "changed alone", "unit", "now", "quiet from", "change (% or deg)",
-         "quiet from, any start", "lowest tried", "highest tried"],
-        _cures(answers),
-    )  # fmt: skip
+    _fill(book.create_sheet("What stops it"), CURES, _cures(answers))
     _fill(
         book.create_sheet("Parameters"),
         ["parameter", "meaning", "value", "unit"],

@@ -20,7 +20,13 @@ from squealpipe.systems.cycles.admissible import (
 )
 from squealpipe.systems.cycles.event_map import EventMap
 from squealpipe.systems.cycles.flow import Event, Vector
-from squealpipe.systems.cycles.guess import follow, guess_of, merged, without_brief_legs
+from squealpipe.systems.cycles.guess import (
+    Repeat,
+    follow,
+    guess_of,
+    merged,
+    without_brief_legs,
+)
 from squealpipe.systems.cycles.line import ALONG, STEPS, Line
 from squealpipe.systems.cycles.solution import Cycle
 
@@ -183,15 +189,8 @@ def run_of(cycle: Cycle) -> tuple[EventMap, Vector] | None:
     run = follow(flow, parts.values, state, cycle.period, regime=regime)
     if run.outcome or len(run.times) > 4 * equations.legs + 8:
         return None
-    found = guess_of(
-        flow,
-        parts.values,
-        run,
-        state,
-        cycle.period,
-        periods=equations.periods,
-        scale=equations.scale,
-    )
+    repeat = Repeat(cycle.period, equations.periods, equations.scale)
+    found = guess_of(flow, parts.values, run, state, repeat)
     if found is None:
         return None
     made = replace(found[0], time=equations.time, units=equations.units)

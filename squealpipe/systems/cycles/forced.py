@@ -11,7 +11,7 @@ import numpy as np
 from squealpipe.schema import Outcome
 from squealpipe.systems.cycles.described import SETTLED_ON
 from squealpipe.systems.cycles.flow import Flow, Vector
-from squealpipe.systems.cycles.guess import as_motion, follow, guess_of
+from squealpipe.systems.cycles.guess import Repeat, as_motion, follow, guess_of
 from squealpipe.systems.cycles.settled import (
     QUARTERS,
     Approach,
@@ -104,18 +104,9 @@ class Watched:
         first, count = _one_period(self.motion.times, origin, duration)
         if periods > 1 and count > _MOST_EVENTS:
             return None
-        found = guess_of(
-            self.flow,
-            self.values,
-            self.motion,
-            path[0],
-            duration,
-            periods=periods,
-            scale=scale_of(path, self.flow.system.sizes),
-            first=first,
-            count=count,
-            origin=origin,
-        )
+        scale = scale_of(path, self.flow.system.sizes)
+        repeat = Repeat(duration, periods, scale, first, count, origin)
+        found = guess_of(self.flow, self.values, self.motion, path[0], repeat)
         point = None if found is None else found[0].solve(found[1])
         if found is not None and point is not None:
             return as_motion(Cycle.at(found[0], point), tries=_LEFT_OUT)
@@ -239,17 +230,8 @@ def near_forced(
         first, count = _one_period(run.times, 0.0, duration)
         passed = run.states[first : first + count]
         scale = scale_of(np.concatenate([path, passed]), flow.system.sizes)
-        found = guess_of(
-            flow,
-            values,
-            run,
-            state,
-            duration,
-            periods=periods,
-            scale=scale,
-            first=first,
-            count=count,
-        )
+        repeat = Repeat(duration, periods, scale, first, count)
+        found = guess_of(flow, values, run, state, repeat)
         point = None if found is None else found[0].solve(found[1])
         if found is None or point is None:
             # perhaps other events are those of the cycle: nearer to it once more

@@ -14,6 +14,7 @@ from squealpipe.systems.cycles.event_map import Section
 from squealpipe.systems.cycles.flow import Event, Flow, Vector
 from squealpipe.systems.cycles.forced import SETTLE
 from squealpipe.systems.cycles.guess import (
+    Repeat,
     follow,
     guess_of,
     once_round,
@@ -188,16 +189,8 @@ def _cycles(stretch: Stretch, far: float, tried: list[float]) -> Iterator[Cycle]
         tried.append(period)
         if not count:
             period = _exact_return(stretch, state, period)
-        found = guess_of(
-            flow,
-            values,
-            stretch.motion,
-            state,
-            period,
-            periods=0,
-            scale=stretch.scale,
-            count=count,
-        )
+        repeat = Repeat(period, 0, stretch.scale, count=count)
+        found = guess_of(flow, values, stretch.motion, state, repeat)
         cycle = None if found is None else solved(*found)
         if cycle is not None and abs(cycle.period - period) <= _FAR * period:
             yield once_round(cycle)

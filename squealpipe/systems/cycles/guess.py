@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -114,28 +114,37 @@ def marked_at_once(
     return tuple(found)
 
 
+class Repeat(NamedTuple):
+    """How a run nearly repeats.
+
+    Attributes:
+        period: after which it does, s.
+        periods: of the forcing in it; 0 without.
+        first, count: the events of one period; by default all of the run.
+        origin: instant of the run that is t = 0 of the forcing.
+    """
+
+    period: float
+    periods: int
+    scale: Vector
+    first: int = 0
+    count: int | None = None
+    origin: float = 0.0
+
+
 def guess_of(
     flow: Flow,
     values: Mapping[str, float],
     motion: Motion,
     state: Vector,
-    period: float,
-    *,
-    periods: int,
-    scale: Vector,
-    first: int = 0,
-    count: int | None = None,
-    origin: float = 0.0,
+    repeat: Repeat,
 ) -> tuple[EventMap, Vector] | None:
     """Equations and guess from a run that is nearly periodic; None where its regimes are not.
 
     Args:
         state: at ``origin``, of a cycle without events.
-        period: after which it nearly repeats, s.
-        periods: of the forcing in it; 0 without.
-        first, count: the events of one period; by default all of the run.
-        origin: instant of the run that is t = 0 of the forcing.
     """
+    period, periods, scale, first, count, origin = repeat
     count = len(motion.times) if count is None else count
     needed = _ROOM * motion.steps * period / max(motion.reached, period)
     flow.most_steps = max(flow.most_steps, int(needed))

@@ -102,23 +102,13 @@ def brake(  # noqa: C901 (one short function for each force and surface)
     default = Parameters(friction_law=friction_law, contact_law=contact_law)
     defaults = {name: getattr(default, name) for name in NUMBERS_OF_A1}
     parameters = {**defaults, "alpha1": 1.0, "alpha2": 1.0}
-    form = (laws.form, damped, model, one_mu, long_springs)
-    if form in _FORMS:
-        return _FORMS[form].with_numbers(laws.regimes(), parameters)
+    traced = (laws.form, damped, model, one_mu, long_springs)
+    if traced in _FORMS:
+        return _FORMS[traced].with_numbers(laws.regimes(), parameters)
+    form = a1.Suspension(rules.linear_springs, long_springs, damped)
 
     def suspension(s: Any, p: Any, r: Any) -> tuple[Any, Any]:
-        q, g = laws.of(p, r)
-        return a1.suspension_force(
-            s.x,
-            s.y,
-            s.vx,
-            s.vy,
-            q,
-            g,
-            linear_springs=rules.linear_springs,
-            long_springs=long_springs,
-            dashpots=damped,
-        )
+        return a1.suspension_force(s, *laws.of(p, r), form)
 
     def pull(s: Any, p: Any, r: Any) -> Any:
         return suspension(s, p, r)[0]
@@ -135,17 +125,12 @@ def brake(  # noqa: C901 (one short function for each force and surface)
 
     def field(t: Any, s: Any, p: Any, r: Any) -> dict[str, Any]:
         ax, ay = a1.acceleration(
-            s.x,
-            s.y,
-            s.vx,
-            s.vy,
+            s,
             *laws.of(p, r),
             contact=r.contact,
             direction=r.direction,
             stick=r.stick,
-            dashpots=damped,
-            linear_springs=rules.linear_springs,
-            long_springs=long_springs,
+            form=form,
         )
         return {"x": s.vx, "y": s.vy, "vx": ax, "vy": ay}
 
@@ -188,7 +173,7 @@ def brake(  # noqa: C901 (one short function for each force and surface)
         stops={} if rules.linear_springs else {"pivot1": pivot(0), "pivot2": pivot(1)},
         time_scale=lambda p: (p.mass / p.k1) ** 0.5,
     )
-    _FORMS[form] = made
+    _FORMS[traced] = made
     return made
 
 

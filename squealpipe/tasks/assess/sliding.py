@@ -201,18 +201,16 @@ def _acceleration(design: Design) -> Any:
         length > LONG * params.preload for length in (params.length1, params.length2)
     )
 
+    form = a1.Suspension(long=(long[0], long[1]))
+
     def acceleration(state: Any) -> tuple[Any, Any]:
-        x, y, vx, vy = state
         return a1.acceleration(
-            x,
-            y,
-            vx,
-            vy,
+            a1.State(*state),
             params,
             g,
             contact=1.0,
             direction=params.belt_direction,
-            long_springs=(long[0], long[1]),
+            form=form,
         )
 
     return acceleration

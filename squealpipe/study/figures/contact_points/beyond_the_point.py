@@ -72,9 +72,13 @@ def _draw_loss(axes: Axes, pads: xr.Dataset, loud: np.ndarray) -> None:
     for place, colour in zip(loud, style.PALETTE, strict=False):
         one = pads.isel(design=int(place))
         axes.plot(
-            one.position, one.separated_fraction, "o-", color=colour, ms=3,
+            one.position,
+            one.separated_fraction,
+            "o-",
+            color=colour,
+            ms=3,
             label=f"points: {one.design.item()}",
-        )  # fmt: skip
+        )
     if len(loud):
         axes.legend()
     axes.set(xlabel="place along the pad", ylabel="share of time open", ylim=(0.0, 1.0))
@@ -84,9 +88,14 @@ def _draw_timing(axes: Axes, pad: xr.Dataset) -> None:
     count = int(pad.contacts)
     is_open = pad.force.values[:count] <= 0.0
     axes.imshow(
-        ~is_open, aspect="auto", cmap="Greys", vmin=0, vmax=1.6, interpolation="nearest",
+        ~is_open,
+        aspect="auto",
+        cmap="Greys",
+        vmin=0,
+        vmax=1.6,
+        interpolation="nearest",
         extent=(0.0, float(pad.instant[-1]), count + 0.5, 0.5),
-    )  # fmt: skip
+    )
     for edge in np.arange(1.5, count):
         axes.axhline(edge, color=style.LIGHT, linewidth=0.5)
     axes.set_yticks(np.arange(1, count + 1))
