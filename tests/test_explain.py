@@ -7,7 +7,7 @@ import pytest
 from squealpipe.execution.durations import job_times
 from squealpipe.execution.explain import (
     Explanation,
-    Job,
+    PlannedJob,
     WorkflowError,
     explain,
     snakemake_command,
@@ -20,7 +20,7 @@ def job(rule, seconds, outputs=(), reasons=(), follows=()):
         "reasons": list(reasons),
         "follows": list(follows),
     }
-    return Job(rule=rule, seconds=seconds, **lists)
+    return PlannedJob(rule=rule, seconds=seconds, **lists)
 
 
 def test_plan_names_figures_and_time():

@@ -11,7 +11,7 @@ from squealpipe.cli.arguments import AsJson, OutputElsewhere
 from squealpipe.cli.console import ANSWER_IS_NO, DONE, working
 
 if TYPE_CHECKING:
-    from squealpipe.store.catalogue import Run
+    from squealpipe.store.catalogue import StoredRun
 
 SHOWN = 4
 """Changed parameters of a run that a line shows."""
@@ -106,7 +106,7 @@ def deposit(name: str, /, *, output: OutputElsewhere = None) -> int:
     return DONE
 
 
-def _warn(found: list[Run]) -> None:
+def _warn(found: list[StoredRun]) -> None:
     """Name the files that are not as they were written; the rest is listed all the same."""
     for run in found:
         for fault in run.faults:

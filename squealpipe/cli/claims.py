@@ -85,13 +85,13 @@ def _line(row: Mapping[str, Any]) -> str:
 
 def _counts(rows: Sequence[Mapping[str, Any]]) -> str:
     """Verdicts of the paper's statements counted: those that test apart from the fitted ones."""
-    from squealpipe.schema.claims import Verdict
+    from squealpipe.schema.claims import ClaimVerdict
     from squealpipe.study.claims.table import tally
 
     own = [row for row in rows if row["origin"] == "paper"]
     told = [f"{len(own)} of them the paper's"]
     for part in tally(own):
-        counts = zip(part["counts"], Verdict, strict=True)
+        counts = zip(part["counts"], ClaimVerdict, strict=True)
         listed = ", ".join(f"{n} {verdict.words}" for n, verdict in counts if n)
         told.append(f"{part['basis']}: {listed}")
     return "; ".join(told)

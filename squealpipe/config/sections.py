@@ -389,7 +389,7 @@ class ExplorerSection(Section):
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$")]
 
 
-class Start(Section):
+class InitialState(Section):
     """Displacements and velocities at the start, m and m/s."""
 
     x: Annotated[Number, In("m")] = 0.0
@@ -407,7 +407,7 @@ class OwnScene(Section):
     )
     alpha1: Annotated[Number, WithJsonSchema({"type": ["string", "number"]})]
     alpha2: Annotated[Number, WithJsonSchema({"type": ["string", "number"]})]
-    start: Start = Start()
+    start: InitialState = InitialState()
     t_end: Time = 200.0
 
     @field_validator("alpha1", "alpha2", mode="before")

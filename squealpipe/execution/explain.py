@@ -36,7 +36,7 @@ class WorkflowError(RuntimeError):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Job:
+class PlannedJob:
     """A rule that would run.
 
     Attributes:
@@ -66,7 +66,7 @@ class Explanation:
         became: what inputs that stand for parameters became, in words.
     """
 
-    jobs: list[Job] = field(default_factory=list)
+    jobs: list[PlannedJob] = field(default_factory=list)
     keys: dict[str, str] = field(default_factory=dict)
     became: list[str] = field(default_factory=list)
     cores: int = field(default_factory=lambda: os.cpu_count() or 1)
@@ -149,7 +149,7 @@ def explain(
             reasons = [_changed_code(there / outputs[0], first["sources"])]
         seconds = times.get(rule)
         jobs.append(
-            Job(
+            PlannedJob(
                 rule=rule,
                 outputs=outputs,
                 reasons=reasons,

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from squealpipe.laws.numerals import numeral
-from squealpipe.laws.rows import Rows
+from squealpipe.laws.rows import FileRows
 from squealpipe.units import UnitError, in_si, is_long_name, is_unit, plain_unit
 
 UNITS = {"speed": "m s-1", "coefficient": "1", "compression": "m", "force": "N"}
@@ -47,7 +47,7 @@ class Place(NamedTuple):
 
 def header_row(
     path: Path,
-    table: Rows,
+    table: FileRows,
     columns: tuple[str, str],
     is_header: Callable[[Sequence[str]], list[int]],
 ) -> int:

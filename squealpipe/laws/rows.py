@@ -26,7 +26,7 @@ _CLEAN = {code + 0xFEE0: code for code in range(0x21, 0x7F)} | dict.fromkeys(
 _NUMERIC = re.compile(r"[\s|]*[\"']?[-+.,−]?\d")
 
 
-class Rows(NamedTuple):
+class FileRows(NamedTuple):
     """Rows of a file by their number, what separates their cells, and its comments."""
 
     rows: list[tuple[int, list[str]]]
@@ -34,7 +34,7 @@ class Rows(NamedTuple):
     comments: Sequence[tuple[int, str]] = ()
 
 
-def text_rows(path: Path, is_header: Callable[[Sequence[str]], object]) -> Rows:
+def text_rows(path: Path, is_header: Callable[[Sequence[str]], object]) -> FileRows:
     """Rows of a text file, without comments, rulers and empty ones.
 
     Args:
@@ -64,7 +64,7 @@ def text_rows(path: Path, is_header: Callable[[Sequence[str]], object]) -> Rows:
         headers = [place for place, row in enumerate(in_comments) if is_header(row[1])]
         if headers:  # and the units that may stand below it
             rows = in_comments[headers[-1] :] + rows
-    return Rows(rows, separator, comments)
+    return FileRows(rows, separator, comments)
 
 
 def _split_rows(

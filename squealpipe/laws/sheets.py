@@ -6,7 +6,7 @@ from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
-from squealpipe.laws.rows import Rows, clean, is_comment
+from squealpipe.laws.rows import FileRows, clean, is_comment
 
 _FOR_POSITIVE = re.compile(r'(?:"[^"]*"|\\.|[^;"\\])*')
 """Of a format its part for positive numbers, the first."""
@@ -14,7 +14,7 @@ _WORDS = re.compile(r'"([^"]*)"|\\(.)|\[\$([^\]-]*)[^\]]*\]|\[[^\]]*\]|[_*].')
 """What a format writes beside the number; colours and gaps, too, which are no words."""
 
 
-def sheet(path: Path, is_header: Callable[[Sequence[str]], object]) -> Rows:
+def sheet(path: Path, is_header: Callable[[Sequence[str]], object]) -> FileRows:
     """Rows of an Excel file: of its only sheet, or of the only one with a header.
 
     Args:
@@ -59,7 +59,7 @@ def sheet(path: Path, is_header: Callable[[Sequence[str]], object]) -> Rows:
                     f"{path}, row {cell.row}: the formula in {cell.coordinate} has no stored "
                     "value; write its value there, or open the file in Excel and save it"
                 )
-    return Rows(pages[title], ",")  # numbers of cells have a decimal point
+    return FileRows(pages[title], ",")  # numbers of cells have a decimal point
 
 
 def _page_rows(page: Any) -> list[tuple[int, list[str]]]:

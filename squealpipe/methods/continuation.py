@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 Vector = NDArray[np.float64]
 
 
-class Problem(Protocol):
+class PathEquations(Protocol):
     """F: R^(n+1) → R^n with its Jacobian."""
 
     def evaluate(self, z: Vector) -> tuple[Vector, Vector]:
@@ -115,7 +115,7 @@ class PseudoArclength:
     own_tangent: bool = False
 
     def correct(
-        self, problem: Problem, guess: Vector, normal: Vector
+        self, problem: PathEquations, guess: Vector, normal: Vector
     ) -> tuple[Vector, Vector, int, float] | None:
         """Newton's method with normal · dz = 0.
 
@@ -154,7 +154,7 @@ class PseudoArclength:
         return z, tangent / np.linalg.norm(tangent), iteration, residual
 
     def solve(
-        self, problem: Problem, guess: Vector, normal: Vector, step: float
+        self, problem: PathEquations, guess: Vector, normal: Vector, step: float
     ) -> ContinuationState | None:
         """The state that :meth:`correct` leads to, of no known curvature, with its next step."""
         found = self.correct(problem, guess, normal)
@@ -166,7 +166,7 @@ class PseudoArclength:
         )
 
     def attempt(
-        self, problem: Problem, state: ContinuationState
+        self, problem: PathEquations, state: ContinuationState
     ) -> ContinuationState | None:
         """One step of the state's own length; None where it is not accepted."""
         settings = self.settings
@@ -192,7 +192,7 @@ class PseudoArclength:
 
     def advance(
         self,
-        problem: Problem,
+        problem: PathEquations,
         state: ContinuationState,
         accepts: Callable[[ContinuationState], bool] = lambda _: True,
     ) -> ContinuationState | None:
@@ -214,7 +214,7 @@ class Continuation:
         adapt: applied to each new state before it is yielded (to describe it otherwise).
     """
 
-    problem: Problem
+    problem: PathEquations
     start: Vector
     direction: Vector
     settings: ContinuationSettings = ContinuationSettings()

@@ -65,7 +65,7 @@ class Loop(NamedTuple):
     error: float
 
 
-class Grid(NamedTuple):
+class FirstGrid(NamedTuple):
     """Points at which a function is first looked at.
 
     Attributes:
@@ -104,7 +104,7 @@ class ZeroLines:
         self,
         value: Function,
         mark: Mark,
-        grid: Grid,
+        grid: FirstGrid,
         *,
         jump: float,
         off: float = 1e-8,

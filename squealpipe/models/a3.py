@@ -15,7 +15,7 @@ import numpy as np
 
 from squealpipe.codes import LinearRegime
 from squealpipe.laws.springs import Stiffness
-from squealpipe.models.a4 import Spectrum, natural_frequencies_squared
+from squealpipe.models.a4 import StiffnessSpectrum, natural_frequencies_squared
 
 
 class Groups(NamedTuple):
@@ -58,7 +58,7 @@ def jacobian(ratios: Groups, mu: Any) -> tuple[tuple[Any, Any], tuple[Any, Any]]
     )
 
 
-def eigenvalues(invariants: Spectrum) -> tuple[Any, Any]:
+def eigenvalues(invariants: StiffnessSpectrum) -> tuple[Any, Any]:
     """The s of largest real part of either mode, complex, 1/s; the others are −s.
 
     Flutter gives both modes the same growth and frequency; divergence gives mode 1 s > 0.
@@ -71,7 +71,7 @@ def eigenvalues(invariants: Spectrum) -> tuple[Any, Any]:
     )
 
 
-def regime(invariants: Spectrum) -> Any:
+def regime(invariants: StiffnessSpectrum) -> Any:
     """:class:`LinearRegime` of each cell: flutter where ω² is complex, divergence where ω1² < 0."""
     flutter = invariants.discriminant < 0
     divergence = ~flutter & (invariants.determinant < 0)
@@ -82,7 +82,7 @@ def regime(invariants: Spectrum) -> Any:
     )
 
 
-def shape_similarity(invariants: Spectrum, mu: Any, k3: Any, mass: Any) -> Any:
+def shape_similarity(invariants: StiffnessSpectrum, mu: Any, k3: Any, mass: Any) -> Any:
     """Modal assurance criterion |v1ᴴ v2|²/(|v1|² |v2|²) of the two mode shapes.
 
     Henrici's departure from normality g of a 2×2 matrix gives it as g²/(g² + |λ1 − λ2|²)

@@ -35,7 +35,7 @@ def contact_matrix(stiffness: Stiffness, k3: Any, mu: Any) -> tuple[Any, Any, An
     return stiffness.k11, stiffness.k12 + mu * k3, stiffness.k12, stiffness.k22 + k3
 
 
-class Spectrum(NamedTuple):
+class StiffnessSpectrum(NamedTuple):
     """Trace/2, determinant and discriminant (trace/2)² − determinant of stiffness/mass."""
 
     half_trace: Any
@@ -45,7 +45,7 @@ class Spectrum(NamedTuple):
 
 def spectrum(
     stiffness: Stiffness, spring_determinant: Any, *, k3: Any, mu: Any, mass: Any
-) -> Spectrum:
+) -> StiffnessSpectrum:
     """Invariants of the matrix whose eigenvalues are ω²: in contact, or separated with k3 = 0.
 
     Both are formed without avoidable cancellation: the determinant as
@@ -57,7 +57,7 @@ def spectrum(
     """
     a11, a12, a21, a22 = contact_matrix(stiffness, k3, mu)
     half_difference = 0.5 * (a11 - a22)
-    return Spectrum(
+    return StiffnessSpectrum(
         0.5 * (a11 + a22) / mass,
         (spring_determinant + k3 * (stiffness.k11 - mu * stiffness.k12))
         / (mass * mass),
@@ -65,7 +65,7 @@ def spectrum(
     )
 
 
-def natural_frequencies_squared(invariants: Spectrum) -> tuple[Any, Any]:
+def natural_frequencies_squared(invariants: StiffnessSpectrum) -> tuple[Any, Any]:
     """Eqs. (22a), (22b) in contact, (25a), (25b) separated: (ω1², ω2²), complex, (rad/s)².
 
     ω2² is a sum of terms of one sign and ω1² follows from the product, so a small ω1 keeps its

@@ -9,7 +9,7 @@ import numpy as np
 from squealpipe.laws import springs
 from squealpipe.laws.friction_laws import coefficient, static_coefficient
 from squealpipe.models.a2 import FEW_ULPS
-from squealpipe.models.a4 import Spectrum, spectrum
+from squealpipe.models.a4 import StiffnessSpectrum, spectrum
 from squealpipe.parameters import direction_of
 
 
@@ -32,7 +32,7 @@ class ContactSystem(NamedTuple):
 
     stiffness: springs.Stiffness
     spring_determinant: Any
-    invariants: Spectrum
+    invariants: StiffnessSpectrum
 
 
 def contact_system(

@@ -152,7 +152,7 @@ def eigenvalues(s: DampedSystem) -> np.ndarray:
     return np.where(known[..., None], roots, np.nan + 0j)
 
 
-class Stability(NamedTuple):
+class LinearStability(NamedTuple):
     """Largest real part, 1/s; |Im s| of both modes (mode last), rad/s; :class:`LinearRegime`;
     modal assurance criterion of the two mode shapes.
     """
@@ -163,7 +163,7 @@ class Stability(NamedTuple):
     shape_similarity: Any
 
 
-def stability(s: DampedSystem) -> Stability:
+def stability(s: DampedSystem) -> LinearStability:
     """How small motions grow: flutter where the fastest growing pair is complex."""
     found = eigenvalues(s)
     leading = np.take_along_axis(
@@ -172,7 +172,7 @@ def stability(s: DampedSystem) -> Stability:
     marginal = MARGINAL * np.finfo(found.real.dtype).eps
     unstable = leading.real > marginal * np.abs(found).max(axis=-1)
     oscillates = np.abs(leading.imag) > np.sqrt(marginal) * np.abs(leading)
-    return Stability(
+    return LinearStability(
         leading.real.astype(float),
         np.maximum(found.imag[..., 1::-1], 0.0).astype(float),
         np.where(

@@ -5,7 +5,7 @@ from enum import IntEnum
 from squealpipe.schema import DatasetSchema, Variable, or_nan, text
 
 
-class Verdict(IntEnum):
+class ClaimVerdict(IntEnum):
     """What the data say about a statement."""
 
     holds = 0
@@ -53,16 +53,18 @@ CLAIMS = DatasetSchema(
         "section": text("where the paper says it", "claim"),
         "check": text("what is measured", "claim"),
         "verdict": _flag(
-            "what the data say, over the inferred feasible set as well", Verdict
+            "what the data say, over the inferred feasible set as well", ClaimVerdict
         ),
         "verdict_here": _flag(
-            "what the data say at the parameters of the run", Verdict
+            "what the data say at the parameters of the run", ClaimVerdict
         ),
-        "recorded": _flag("verdict_here recorded for the shipped baseline", Verdict),
+        "recorded": _flag(
+            "verdict_here recorded for the shipped baseline", ClaimVerdict
+        ),
         "corrected_verdict": _flag(
             "verdict in the corrected physics, friction of one sign throughout; that of the "
             "reading where nothing differs",
-            Verdict,
+            ClaimVerdict,
         ),
         "corrected_value": _number("measured value in the corrected physics"),
         "corrected_evidence": text(

@@ -138,7 +138,7 @@ NATURAL_FREQUENCIES = DatasetSchema(
 )
 
 
-class Boundary(IntEnum):
+class BoundaryCurve(IntEnum):
     """Which curve a boundary point belongs to."""
 
     flutter = 0
@@ -162,7 +162,7 @@ STABILITY_BOUNDARIES = DatasetSchema(
             )
             for i in (1, 2)
         },
-        "boundary": Variable("which boundary", dims=("point",), flags=Boundary),
+        "boundary": Variable("which boundary", dims=("point",), flags=BoundaryCurve),
         "segment": Variable(
             "points of one number are joined by a line", dims=("point",), dtype="i4"
         ),

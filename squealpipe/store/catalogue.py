@@ -24,7 +24,7 @@ EXAMPLE = "write for instance 'mu == 0.25 and L1 > 4'"
 
 
 @dataclass(frozen=True, kw_only=True)
-class Run:
+class StoredRun:
     """One archive or folder of results.
 
     Attributes:
@@ -53,7 +53,7 @@ class Run:
         }
 
 
-def runs(root: str | os.PathLike[str] = ".") -> list[Run]:
+def runs(root: str | os.PathLike[str] = ".") -> list[StoredRun]:
     """All archives and folders of results of a checkout, by name; each file is verified."""
     base = Path(root)
     archives = base / ARCHIVES
@@ -63,7 +63,7 @@ def runs(root: str | os.PathLike[str] = ".") -> list[Run]:
     return [*map(_archived, frozen), *(_results(at, base) for at in made)]
 
 
-def matching(expression: str, found: list[Run]) -> list[str]:
+def matching(expression: str, found: list[StoredRun]) -> list[str]:
     """Names of the runs whose parameters fulfil a condition, as pandas reads it.
 
     Names are parameters (``mu``, ``length1``), the paper's symbols (``L1``), or keys of the
@@ -121,10 +121,10 @@ def paper_configuration() -> dict[str, Any]:
     return flat(read_study(PAPER).model_dump(mode="json"))
 
 
-def _archived(place: Path) -> Run:
+def _archived(place: Path) -> StoredRun:
     manifest = read_manifest(place)
     config = manifest.get("config")
-    return Run(
+    return StoredRun(
         name=place.name,
         date=str(manifest.get("frozen", "")),
         commit=str(manifest.get("commit", "")),
@@ -134,7 +134,7 @@ def _archived(place: Path) -> Run:
     )
 
 
-def _results(place: Path, base: Path) -> Run:
+def _results(place: Path, base: Path) -> StoredRun:
     """A run that is going on or was edited: what can be read of it, and which files cannot."""
     config: dict[str, Any] = {}
     commits, dates, faults = {""}, [""], []
@@ -157,7 +157,7 @@ def _results(place: Path, base: Path) -> Run:
         config |= found
         commits.add(str(stated.get("commit", "")))
         dates.append(str(stated.get("history", "")).partition(" ")[0])
-    return Run(
+    return StoredRun(
         name=place.relative_to(base).as_posix(),
         date=max(dates),
         commit=", ".join(sorted(commits - {""})),

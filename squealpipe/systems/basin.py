@@ -11,7 +11,7 @@ from squealpipe.schema import flag_table
 from squealpipe.schema.systems import build
 from squealpipe.systems.grid import duration_of, outer_product
 from squealpipe.systems.labels import attributes_of, flag, labels, outcome
-from squealpipe.systems.motion import Ensemble, Motion
+from squealpipe.systems.motion import MotionKind, RepeatableRuns
 from squealpipe.validation import Number, Tolerance, Values, Workers, checked
 
 SAME_ATTRACTOR = 1e-3
@@ -48,7 +48,7 @@ def basin(
         ``<state>_min`` and ``<state>_max`` of the last quarter; ``outcome``.
     """
     grid = outer_product(system, start, parameters)
-    ensemble = Ensemble(
+    ensemble = RepeatableRuns(
         system,
         grid.values,
         duration_of(t_start, t_end),
@@ -67,7 +67,7 @@ def basin(
             "what the motion has become",
             over,
             motion.reshape(shape),
-            flag_table(Motion),
+            flag_table(MotionKind),
         ),
         "attractor": (
             over,
@@ -106,7 +106,7 @@ def renumbered(system: Any, dataset: xr.Dataset) -> xr.Dataset:
 def _numbered(motion: np.ndarray, extremes: np.ndarray) -> np.ndarray:
     """Equal numbers for rests, or cycles, whose extremes are equal, in the order of their runs."""
     numbers = np.full(motion.size, -1)
-    settled = np.flatnonzero(motion != Motion.unsettled)
+    settled = np.flatnonzero(motion != MotionKind.unsettled)
     number = 0
     spans = np.ptp(extremes[settled], axis=(0, 2)) if settled.size else np.empty(0)
     while settled.size:

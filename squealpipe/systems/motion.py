@@ -32,7 +32,7 @@ _TRIES, _AT_ONCE = 4, 256
 """Returns that are looked at, and runs whose samples are held at once."""
 
 
-class Motion(IntEnum):
+class MotionKind(IntEnum):
     """Kind of motion in the second half of a run."""
 
     unsettled = 0
@@ -41,7 +41,7 @@ class Motion(IntEnum):
 
 
 @dataclass(frozen=True)
-class Ensemble:
+class RepeatableRuns:
     """Runs of a system from many starts, each for the same time, that can be made again.
 
     Attributes:
@@ -81,7 +81,7 @@ class Ensemble:
         )
 
     def judged(self, whole: Any) -> tuple[np.ndarray, np.ndarray]:
-        """(:class:`Motion`, period; NaN: none is known) of each run.
+        """(:class:`MotionKind`, period; NaN: none is known) of each run.
 
         Args:
             whole: all runs, their late part the last quarter.
@@ -115,9 +115,9 @@ class Ensemble:
                 )
         repeats = np.isfinite(period)
         motion = np.select(
-            [rests, repeats], [Motion.rest, Motion.cycle], Motion.unsettled
+            [rests, repeats], [MotionKind.rest, MotionKind.cycle], MotionKind.unsettled
         )
-        motion[~ended] = Motion.unsettled
+        motion[~ended] = MotionKind.unsettled
         return motion, period
 
     def _after_forcing_periods(self, rows: np.ndarray, spans: np.ndarray) -> np.ndarray:

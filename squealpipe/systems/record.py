@@ -17,7 +17,7 @@ _DEFAULT = RunOptions()
 
 
 @dataclass(frozen=True)
-class Motion:
+class RunRecord:
     """One run with its events.
 
     Attributes:
@@ -49,7 +49,7 @@ def single_run(
     *,
     tol: float,
     room: int = FIRST_LOG,
-) -> Motion:
+) -> RunRecord:
     """Run a system once from states and parameters; ``room`` is that for events at first."""
     arrays = {name: np.array([value]) for name, value in values.items()}
     while True:
@@ -72,7 +72,7 @@ def single_run(
         key: raw[f"event_{key}"][0, :count]
         for key in ("times", "kinds", "states", "regimes")
     }
-    return Motion(
+    return RunRecord(
         regimes=system.joint.along(first[0].tolist(), events["regimes"].tolist()),
         times=events["times"],
         kinds=events["kinds"],

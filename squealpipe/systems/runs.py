@@ -24,7 +24,7 @@ from squealpipe.systems.labels import (
     outcome,
     regime_flag,
 )
-from squealpipe.systems.record import Motion, single_run
+from squealpipe.systems.record import RunRecord, single_run
 from squealpipe.systems.trace import TIME
 from squealpipe.validation import Number, Tolerance, Values, Vector, Workers, checked
 
@@ -103,7 +103,7 @@ def simulate(
 
 
 def _outputs_along(
-    system: Any, values: Mapping[str, float], times: np.ndarray, run: Motion
+    system: Any, values: Mapping[str, float], times: np.ndarray, run: RunRecord
 ) -> dict[str, Any]:
     """Each output at the instants of a run, with the constants of its regimes there."""
     traced = system.traced

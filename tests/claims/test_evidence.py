@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from squealpipe.schema.claims import Verdict
+from squealpipe.schema.claims import ClaimVerdict
 from squealpipe.study.claims.evidence import MissingDataError, finding
 from squealpipe.text import as_people_write
 
@@ -14,7 +14,9 @@ from squealpipe.text import as_people_write
 def test_comparison_and_a_further_condition_that_can_only_turn_it_down(relation, holds):
     for value in (1, 2, 3):
         for also in (True, False):
-            verdict = Verdict.holds if also and value in holds else Verdict.fails
+            verdict = (
+                ClaimVerdict.holds if also and value in holds else ClaimVerdict.fails
+            )
             assert finding((value, relation, 2), "", also=also).verdict == verdict
 
 

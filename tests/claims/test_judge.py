@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from squealpipe.parameters import Parameters
-from squealpipe.schema.claims import Basis, Verdict
+from squealpipe.schema.claims import Basis, ClaimVerdict
 from squealpipe.schema.inference import of_study
 from squealpipe.store.netcdf import save
 from squealpipe.store.provenance import stamped
@@ -64,7 +64,9 @@ def test_without_datasets_nothing_is_decided_and_the_reason_names_what_is_missin
     params, reason
 ):
     found = judge(params, {}, "as_printed")
-    decided = found.claim.values[(found.verdict != Verdict.cannot_be_decided).values]
+    decided = found.claim.values[
+        (found.verdict != ClaimVerdict.cannot_be_decided).values
+    ]
     assert list(decided) == ["E9"]  # of the paper alone
     found = found.sel(claim=found.claim != "E9")
     assert all(reason in str(text) for text in found.evidence.values)
@@ -103,7 +105,7 @@ def test_coarse_grids_leave_nothing_undecided(every, evidence, baseline):
         )
     claims = judge(baseline, coarse, "as_printed")
     undecided = claims.claim.values[
-        (claims.verdict == Verdict.cannot_be_decided).values
+        (claims.verdict == ClaimVerdict.cannot_be_decided).values
     ]
     assert list(undecided) == []
 
@@ -117,7 +119,7 @@ def test_exit_code(tmp_path, evidence, parameters, change, code):
     claims = judge(parameters, evidence, "as_printed")
     claims["verdict_here"] = claims.recorded.copy().assign_attrs(claims.verdict.attrs)
     if change:
-        claims.verdict_here[1] = Verdict.fails
+        claims.verdict_here[1] = ClaimVerdict.fails
     path = save(stamped(lambda: claims, config={}), tmp_path / "claims.nc")
     found, exit_code = table(path)
     assert exit_code == code
@@ -133,8 +135,8 @@ def test_a_statement_that_divides_the_feasible_set_depends_on_the_parameters(
     inference.feasible_share[:, list(inference.consequence.values).index("S3")] = 0.7
     data = {**evidence, "parameter_inference": inference}
     claims = judge(baseline, data, "as_printed").sel(claim="S3")
-    assert int(claims.verdict) == Verdict.depends_on_the_parameters
-    assert int(claims.verdict_here) == Verdict.holds
+    assert int(claims.verdict) == ClaimVerdict.depends_on_the_parameters
+    assert int(claims.verdict_here) == ClaimVerdict.holds
     assert float(claims.feasible_share) == pytest.approx(0.7)
 
 

@@ -5,12 +5,12 @@ import pytest
 import xarray as xr
 
 from squealpipe.codes import Event
-from squealpipe.schema.claims import Verdict
+from squealpipe.schema.claims import ClaimVerdict
 from squealpipe.study.claims import judge as judging
 from squealpipe.study.claims.checks import misprints
 from squealpipe.study.claims.statements import STATEMENTS
 
-HOLDS, FAILS = Verdict.holds, Verdict.fails
+HOLDS, FAILS = ClaimVerdict.holds, ClaimVerdict.fails
 
 
 def put(name, value):
@@ -80,11 +80,11 @@ FLIPS = [
     ("F2a", "simulate/F2a", TOUCHING, FAILS), ("F2b", "simulate/F2b", TOUCHING, FAILS),
     ("F2c", "simulate/F2c", TOUCHING, FAILS), ("F2d", "simulate/F2d", without_events, FAILS),
     ("F2e", "simulate/F2b", scaled("normalized_contact_force", 0.5), FAILS),
-    ("F2e", "simulate/F2d", STAYS, Verdict.cannot_be_decided),
+    ("F2e", "simulate/F2d", STAYS, ClaimVerdict.cannot_be_decided),
     ("F3", "simulate/F3_long", NO_GROWTH, FAILS),
-    ("F3", "simulate/F3_long", SWINGS, Verdict.cannot_be_decided),
+    ("F3", "simulate/F3_long", SWINGS, ClaimVerdict.cannot_be_decided),
     ("F4", "simulate/F4_long", repeated, HOLDS),
-    ("F4", "simulate/F4_long", without_events, Verdict.cannot_be_decided),
+    ("F4", "simulate/F4_long", without_events, ClaimVerdict.cannot_be_decided),
     ("F5a", "simulate/F5b", scaled("normalized_contact_force", 1 + 1e-8), FAILS),
     ("F5b", "simulate/F5a", without_events, FAILS), ("F6a", "quasi_static_map", AS_PHYSICAL, HOLDS),
     ("F6b", "quasi_static_map", EVERYWHERE_PRINTED, FAILS),
@@ -157,7 +157,7 @@ def test_the_verdict_flips(
     both = [name for name in (dataset, f"corrected/{dataset}") if name in evidence]
     changed = {**evidence, **{name: change(evidence[name]) for name in both}}
     found = judging.judge(baseline, changed, "as_printed").sel(claim=claim)
-    assert Verdict(int(found.verdict_here)) == verdict, str(found.evidence.item())
+    assert ClaimVerdict(int(found.verdict_here)) == verdict, str(found.evidence.item())
 
 
 def test_what_the_paper_prints_decides_about_its_parameters(
@@ -165,7 +165,7 @@ def test_what_the_paper_prints_decides_about_its_parameters(
 ):
     monkeypatch.setattr(misprints, "READ_IN_THE_PAPER", misprints.GROUPS)
     found = judging.judge(baseline, evidence, "as_printed").sel(claim="E9")
-    assert Verdict(int(found.verdict_here)) == HOLDS
+    assert ClaimVerdict(int(found.verdict_here)) == HOLDS
     assert found.evidence.item().startswith("Read by hand in the paper, not computed")
 
 

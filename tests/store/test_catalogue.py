@@ -8,7 +8,7 @@ import pytest
 from squealpipe.cli import run as command
 from squealpipe.store import load, save
 from squealpipe.store.archive import archive
-from squealpipe.store.catalogue import Run, matching
+from squealpipe.store.catalogue import StoredRun, matching
 from squealpipe.store.runs import locate
 
 
@@ -61,14 +61,14 @@ def test_find_prints_the_runs_that_match(memory, capsys, expression, names):
 def test_a_law_says_what_mu_and_mu_static_are(law, holds, fails):
     """A law in Python is somebody's code, which a search does not run."""
     config = {"parameters.mu": 0.3, "parameters.friction_law": law}
-    kept = [Run(name="kept", date="", commit="", size=0, config=config)]
+    kept = [StoredRun(name="kept", date="", commit="", size=0, config=config)]
     assert matching(holds, kept) == ["kept"]
     assert matching(fails, kept) == []
 
 
 def test_a_table_of_contact_says_what_k3_is():
     config = {"parameters.contact_law": "linear 0:0 1:0.5 2:2"}
-    kept = [Run(name="kept", date="", commit="", size=0, config=config)]
+    kept = [StoredRun(name="kept", date="", commit="", size=0, config=config)]
     assert matching("k3 == 0.5", kept) == ["kept"]
 
 

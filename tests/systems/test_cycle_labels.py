@@ -10,7 +10,7 @@ from squealpipe import System
 from squealpipe.functions import cos
 from squealpipe.schema import Outcome, meanings
 from squealpipe.schema.branch_labels import Label
-from squealpipe.systems.motion import Motion
+from squealpipe.systems.motion import MotionKind
 from tests.systems.smooth_systems import (
     ball_on_a_table,
     block_on_a_table,
@@ -116,13 +116,15 @@ def test_a_torus_is_no_cycle():
 def test_a_torus_is_no_cycle_in_a_basin():
     starts = {"y": np.array([0.0, 1.0])}
     found = two_oscillators(2.0).basin(400.0, start=starts, workers=1)
-    np.testing.assert_array_equal(found.motion, [Motion.cycle, Motion.unsettled])
+    np.testing.assert_array_equal(
+        found.motion, [MotionKind.cycle, MotionKind.unsettled]
+    )
     np.testing.assert_allclose(found.period, [2.0 * np.pi, np.nan], rtol=1e-8)
     found = two_oscillators(4.0).basin(400.0, start=starts, workers=1)
-    np.testing.assert_array_equal(found.motion, [Motion.cycle, Motion.cycle])
+    np.testing.assert_array_equal(found.motion, [MotionKind.cycle, MotionKind.cycle])
     np.testing.assert_allclose(found.period, 2.0 * np.pi, rtol=1e-8)
     cycle = van_der_pol.basin(200.0, start={"x": np.array([0.5, 3.0])}, workers=1)
-    np.testing.assert_array_equal(cycle.motion, Motion.cycle)
+    np.testing.assert_array_equal(cycle.motion, MotionKind.cycle)
     np.testing.assert_allclose(cycle.period, 6.663286859, rtol=1e-8)
 
 
@@ -153,7 +155,7 @@ def test_a_motion_whose_forcing_has_no_known_period_is_followed_on_its_own_clock
         start={"x": 0.0, "v": 0.0},
     )
     became = driven.basin(401.0, start={"x": np.array([0.0, 1.0])}, workers=1)
-    np.testing.assert_array_equal(became.motion, Motion.cycle)
+    np.testing.assert_array_equal(became.motion, MotionKind.cycle)
     np.testing.assert_allclose(became.period, 2.0 * np.pi / 1.2, rtol=1e-8)
 
 

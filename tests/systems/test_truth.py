@@ -11,7 +11,7 @@ from scipy.linalg import expm
 
 from squealpipe.functions import sqrt
 from squealpipe.schema import Outcome
-from squealpipe.systems.motion import Motion
+from squealpipe.systems.motion import MotionKind
 from squealpipe.systems.shipped.belt_friction import exponential_oscillator
 from squealpipe.systems.shipped.bouncing_ball import bouncing_ball
 from squealpipe.systems.shipped.impact_oscillator import impact_oscillator
@@ -163,8 +163,8 @@ def test_the_basin_of_the_fixed_point_has_its_exact_share():
     """0.356596 of [−2, 2] × [0, 2], the area within the unstable cycle, by 800 cells."""
     start = {"x": midpoints(-2.0, 2.0, 40), "v": midpoints(0.0, 2.0, 20)}
     found = exponential_oscillator.basin(1500.0, start=start, belt_speed=1.55)
-    assert set(np.unique(found.motion)) == {Motion.rest, Motion.cycle}
-    assert float((found.motion == Motion.rest).mean()) == pytest.approx(
+    assert set(np.unique(found.motion)) == {MotionKind.rest, MotionKind.cycle}
+    assert float((found.motion == MotionKind.rest).mean()) == pytest.approx(
         0.35659639, abs=0.01
     )
     assert set(np.unique(found.attractor)) == {0, 1}
@@ -185,7 +185,7 @@ def test_a_forced_motion_is_a_cycle_of_so_many_periods_or_unsettled():
     early = impact_oscillator.basin(
         20.0, start={"x": 0.3}, omega=2.1, amplitude=amplitude
     )
-    assert (early.motion == Motion.unsettled).all()
+    assert (early.motion == MotionKind.unsettled).all()
     assert np.isnan(early.period).all()
 
 

@@ -51,7 +51,7 @@ LAWS = {
 """Contact laws by name."""
 
 
-class Table:
+class ContactTable:
     """A measured law; its last slope goes on beyond the last knot.
 
     Compressions are over l_pre and forces over k3 l_pre, which is the force at l_pre.
@@ -69,7 +69,7 @@ class Table:
         return p.k3 * self.pieces.value(compression * p.preload**-1.0, derivative=True)
 
 
-class Piece:
+class ContactPiece:
     """One piece of a table, whose start and coefficients are the constants of a regime."""
 
     def __init__(self, start: Any, coefficients: Any) -> None:
@@ -138,5 +138,5 @@ def law_of(name: Any, preload: float = 1.0) -> ContactLaw | None:
     if not isinstance(name, str):
         return cast("ContactLaw", name)
     if is_table(name):
-        return Table(pieces_of(relative(name, preload), goes_on=True))
+        return ContactTable(pieces_of(relative(name, preload), goes_on=True))
     return LAWS.get(name)

@@ -62,7 +62,7 @@ def _is_complex(speed: Any) -> bool:
     return isinstance(speed, complex) or getattr(dtype, "kind", None) == "c"
 
 
-class Table:
+class FrictionTable:
     """A measured law; speeds in units of ``p.friction_speed``, which is 1 m/s in SI parameters."""
 
     PARAMETERS = ()
@@ -91,7 +91,7 @@ class Table:
         return unit * 0.5 * (below + above)
 
 
-class Piece:
+class FrictionPiece:
     """One piece of a table, whose start and coefficients are the constants of a regime."""
 
     PARAMETERS = ()
@@ -129,7 +129,7 @@ def _faults_named(what: str) -> Iterator[None]:
 def _own(name: str) -> FrictionLaw | None:
     """A law of the user's own; None if the name is none."""
     if is_table(name):
-        return Table(pieces_of(name))
+        return FrictionTable(pieces_of(name))
     if "\n" not in name:
         return None
     with _faults_named("the file of the law"):

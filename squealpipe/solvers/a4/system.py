@@ -120,7 +120,7 @@ def scaled_system(params: Parameters, alpha1: float, alpha2: float) -> ScaledSys
     )
 
 
-def _obstacle(invariants: a4.Spectrum, gap: float) -> Outcome:
+def _obstacle(invariants: a4.StiffnessSpectrum, gap: float) -> Outcome:
     """``gap`` is (l_pre − y*)/l_pre, det K over det K_contact."""
     if invariants.discriminant < 0.0:
         return Outcome.complex_pair

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import xarray as xr
 
-from squealpipe.schema.claims import CLAIMS, Verdict
+from squealpipe.schema.claims import CLAIMS, ClaimVerdict
 from squealpipe.store.comparison.differences import outside_tolerance
 
 
@@ -40,7 +40,7 @@ def changed_statements(a: xr.Dataset, b: xr.Dataset) -> list[StatementChange]:
         rows = a.isel(claim=i), b.isel(claim=i)
         codes = [int(row.verdict) for row in rows]
         if codes[0] != codes[1] or beyond[i]:
-            words = ["" if code < 0 else Verdict(code).words for code in codes]
+            words = ["" if code < 0 else ClaimVerdict(code).words for code in codes]
             numbers = [
                 value if math.isfinite(value := float(row.value)) else None
                 for row in rows

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.parameters import TABLE, Parameters
-from squealpipe.schema.claims import Verdict
+from squealpipe.schema.claims import ClaimVerdict
 from squealpipe.store import load
 from squealpipe.text import as_people_write
 
@@ -20,7 +20,7 @@ class MissingDataError(LookupError):
 
 
 @dataclass
-class Run(Mapping[str, xr.Dataset]):
+class Evidence(Mapping[str, xr.Dataset]):
     """The datasets of one run by name; each that is looked at is noted in ``used``.
 
     Attributes:
@@ -77,7 +77,7 @@ class Finding(NamedTuple):
         value, relation, threshold: the deciding number and the comparison that it passes or not.
     """
 
-    verdict: Verdict
+    verdict: ClaimVerdict
     value: float
     relation: str
     threshold: float
@@ -93,8 +93,8 @@ def finding(
     compared: tuple[float, str, float],
     evidence: str,
     *,
-    otherwise: Verdict = Verdict.fails,
-    passed: Verdict = Verdict.holds,
+    otherwise: ClaimVerdict = ClaimVerdict.fails,
+    passed: ClaimVerdict = ClaimVerdict.holds,
     also: bool = True,
 ) -> Finding:
     """A finding from one comparison.

@@ -11,9 +11,9 @@ import xarray as xr
 from squealpipe.parameters import Parameters
 from squealpipe.reading import corrected, for_linear
 from squealpipe.schema import build
-from squealpipe.schema.claims import CLAIMS, Basis, Origin, Verdict
+from squealpipe.schema.claims import CLAIMS, Basis, ClaimVerdict, Origin
 from squealpipe.schema.inference import of_study
-from squealpipe.study.claims.evidence import Finding, MissingDataError, Run
+from squealpipe.study.claims.evidence import Evidence, Finding, MissingDataError
 from squealpipe.study.claims.statement import Check, Statement
 from squealpipe.study.claims.statements import PAPER, STATEMENTS
 
@@ -33,14 +33,16 @@ def judge(
     What holds in the reading and fails in the physics with one sign holds only as printed. A study
     whose reading has one sign already is its own physics.
     """
-    run = Run(for_linear(parameters, reading), sources)
+    run = Evidence(for_linear(parameters, reading), sources)
     mended = {
         name.removeprefix(BESIDE): source
         for name, source in sources.items()
         if name.startswith(BESIDE)
     }
     second = (
-        Run(corrected(parameters, reading), {**sources, **mended}) if mended else run
+        Evidence(corrected(parameters, reading), {**sources, **mended})
+        if mended
+        else run
     )
     rows = [_row(statement, run, second) for statement in STATEMENTS]
     names = [statement.id for statement in STATEMENTS]
@@ -51,7 +53,7 @@ def judge(
     )
 
 
-def _row(statement: Statement, run: Run, second: Run) -> dict[str, Any]:
+def _row(statement: Statement, run: Evidence, second: Evidence) -> dict[str, Any]:
     basis, share, count = standing(statement, run)
     run.forget()
     here = _judged(statement.check, run)
@@ -59,12 +61,14 @@ def _row(statement: Statement, run: Run, second: Run) -> dict[str, Any]:
     physics = statement.physics or statement.check
     same = second is run and physics is statement.check
     mended = here if same else _judged(physics, second)
-    printed = here.verdict == Verdict.holds and mended.verdict == Verdict.fails
-    verdict_here = Verdict.holds_only_as_printed if printed else here.verdict
+    printed = (
+        here.verdict == ClaimVerdict.holds and mended.verdict == ClaimVerdict.fails
+    )
+    verdict_here = ClaimVerdict.holds_only_as_printed if printed else here.verdict
     verdict, corrected_verdict = verdict_here, mended.verdict
     # The paper prints no parameters: what divides the feasible set depends on those one takes.
-    if DECIDED < share < 1.0 - DECIDED and verdict != Verdict.cannot_be_decided:
-        verdict = Verdict.depends_on_the_parameters
+    if DECIDED < share < 1.0 - DECIDED and verdict != ClaimVerdict.cannot_be_decided:
+        verdict = ClaimVerdict.depends_on_the_parameters
         if mended.verdict == here.verdict:
             corrected_verdict = verdict
     return {
@@ -90,7 +94,7 @@ def _row(statement: Statement, run: Run, second: Run) -> dict[str, Any]:
     }
 
 
-def standing(statement: Statement, run: Run) -> tuple[Basis, float, int]:
+def standing(statement: Statement, run: Evidence) -> tuple[Basis, float, int]:
     """How a statement stands to the inference of a run.
 
     Returns:
@@ -112,9 +116,9 @@ def standing(statement: Statement, run: Run) -> tuple[Basis, float, int]:
     return Basis.predicted, float(share), count
 
 
-def _judged(check: Check, run: Run) -> Finding:
+def _judged(check: Check, run: Evidence) -> Finding:
     try:
         return check(run)
     except MissingDataError as error:
-        undecided = Verdict.cannot_be_decided
+        undecided = ClaimVerdict.cannot_be_decided
         return Finding(undecided, nan, "", nan, f"Not decided: {error}.")

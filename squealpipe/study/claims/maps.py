@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.study.claims.evidence import MissingDataError, Run
+from squealpipe.study.claims.evidence import Evidence, MissingDataError
 
 AT_SCENES = "at_scenes/"
 """Folder of the linear maps at the angles of the paper's scenes alone."""
@@ -15,7 +15,7 @@ SAME_STIFFNESS = 1e-12
 
 
 def cell(
-    run: Run, name: str, alpha1_over_pi: float, alpha2_over_pi: float
+    run: Evidence, name: str, alpha1_over_pi: float, alpha2_over_pi: float
 ) -> xr.Dataset:
     """A linear map's cell at a pair of angles: of the map at the paper's angles, on no grid."""
     where = f"cell ({alpha1_over_pi:g}π, {alpha2_over_pi:g}π)"
@@ -69,13 +69,13 @@ def place(dataset: xr.Dataset, values: xr.DataArray) -> tuple[float, float]:
     return float(dataset.alpha1[row] / np.pi), float(dataset.alpha2[column] / np.pi)
 
 
-def unstable_cells(run: Run) -> xr.DataArray:
+def unstable_cells(run: Evidence) -> xr.DataArray:
     """Cells of the stability map in which A3 is unstable."""
     cells: xr.DataArray = run["stability_map"].regime_linear > 0
     return cells
 
 
-def unstable_yet_sliding(run: Run) -> tuple[xr.DataArray, xr.DataArray]:
+def unstable_yet_sliding(run: Evidence) -> tuple[xr.DataArray, xr.DataArray]:
     """Unstable cells where sliding is possible: by Eq. (11) as printed, and by R_n > 0."""
     unstable, sliding = unstable_cells(run), run["quasi_static_map"]
     return unstable & (sliding.possible_as_printed == 1), unstable & (
@@ -83,13 +83,13 @@ def unstable_yet_sliding(run: Run) -> tuple[xr.DataArray, xr.DataArray]:
     )
 
 
-def coupling_is_negative(run: Run) -> xr.DataArray:
+def coupling_is_negative(run: Evidence) -> xr.DataArray:
     """Cells with K12 < 0."""
     largest = run.parameters.k1 + run.parameters.k2
     return stiffness(run, "stiffness_xy") < -SAME_STIFFNESS * largest
 
 
-def order_turns_over(run: Run, sliding: xr.Dataset) -> xr.DataArray:
+def order_turns_over(run: Evidence, sliding: xr.Dataset) -> xr.DataArray:
     """Cells in which x is the softer direction in contact and y when separated.
 
     In contact x is the softer direction while K11 < K22 + k3, separated while K11 < K22.
@@ -102,6 +102,6 @@ def order_turns_over(run: Run, sliding: xr.Dataset) -> xr.DataArray:
     return turned
 
 
-def stiffness(run: Run, name: str) -> xr.DataArray:
+def stiffness(run: Evidence, name: str) -> xr.DataArray:
     """K11 (``stiffness_x``), K12 (``stiffness_xy``) or K22 (``stiffness_y``) over the map, N/m."""
     return run["quasi_static_map"][name]

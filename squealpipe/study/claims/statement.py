@@ -4,10 +4,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from squealpipe.schema.claims import Verdict
-from squealpipe.study.claims.evidence import Finding, Run
+from squealpipe.schema.claims import ClaimVerdict
+from squealpipe.study.claims.evidence import Evidence, Finding
 
-Check = Callable[[Run], Finding]
+Check = Callable[[Evidence], Finding]
 """Reads datasets only."""
 
 
@@ -27,7 +27,7 @@ class Statement:
     section: str
     text: str
     figure: str
-    recorded: Verdict
+    recorded: ClaimVerdict
     check: Check
     consequence: str = ""
     physics: Check | None = None
@@ -39,11 +39,14 @@ class Statement:
         return words[0].lower() + words[1:].removesuffix(".")
 
 
-class Rows(list[Statement]):
+class StatementRows(list[Statement]):
     """The statements of one module, in the paper's order: each is added where its check stands."""
 
     def __init__(
-        self, section: str = "", figure: str = "", recorded: Verdict = Verdict.holds
+        self,
+        section: str = "",
+        figure: str = "",
+        recorded: ClaimVerdict = ClaimVerdict.holds,
     ) -> None:
         """With what most of them have."""
         super().__init__()

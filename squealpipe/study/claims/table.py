@@ -7,7 +7,7 @@ from typing import Any
 import xarray as xr
 
 from squealpipe.schema import meanings
-from squealpipe.schema.claims import Verdict
+from squealpipe.schema.claims import ClaimVerdict
 from squealpipe.store import load
 from squealpipe.study.claims.evidence import passes
 
@@ -46,7 +46,7 @@ def tally(statements: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     for basis, name in words.items():
         own = [row["verdict"] for row in statements if row["basis"] == basis]
         if own:
-            counts = [own.count(verdict.words) for verdict in Verdict]
+            counts = [own.count(verdict.words) for verdict in ClaimVerdict]
             found.append({"basis": name, "number": len(own), "counts": counts})
     return found
 

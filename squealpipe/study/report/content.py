@@ -12,10 +12,10 @@ from typing import Any
 from PIL import Image
 
 from squealpipe.parameters import TABLE, Parameters, law_in_words
-from squealpipe.schema.claims import Origin, Verdict
+from squealpipe.schema.claims import ClaimVerdict, Origin
 from squealpipe.store.netcdf import attributes
 from squealpipe.store.whole_files import checksum
-from squealpipe.study.claims.evidence import Run
+from squealpipe.study.claims.evidence import Evidence
 from squealpipe.study.claims.table import rows, tally
 from squealpipe.study.figures import declared
 from squealpipe.study.figures.dynamics import regime_charts
@@ -60,7 +60,7 @@ def gather(
         changed: keys of the configuration that differ from the shipped one, with both values. The
             narrative is shown only where there are none.
     """
-    run = Run(parameters, {name: made.path for name, made in datasets.items()})
+    run = Evidence(parameters, {name: made.path for name, made in datasets.items()})
     claims = rows(run["claims"]) if "claims" in run else []
     papers = [row for row in claims if row["origin"] != Origin.misprints.name]
 
@@ -89,7 +89,7 @@ def gather(
             }
             for row in claims
             if not row["as_recorded"]
-            and row["verdict_here"] != Verdict.cannot_be_decided.words
+            and row["verdict_here"] != ClaimVerdict.cannot_be_decided.words
         ],
         "numbers": {} if changed else numbers(run),
         "parameters": parameter_table(parameters),
@@ -207,7 +207,7 @@ TABLE_1 = {
 """The paper's Table 1: level → nonlinearities, assumptions, use."""
 
 
-def levels(run: Run) -> list[list[str]]:
+def levels(run: Evidence) -> list[list[str]]:
     """The paper's Table 1, with the scenes in which each assumption held along the motion."""
     if "assumptions" not in run:
         return []
@@ -225,7 +225,7 @@ def levels(run: Run) -> list[list[str]]:
     return found
 
 
-def distances(run: Run) -> dict[str, Any] | None:
+def distances(run: Evidence) -> dict[str, Any] | None:
     """The table beside the charts of regimes, None where the study has none."""
     names = [name for name in run if name.startswith("friction_chart/")]
     if "angle_chart" not in run or not names:
@@ -253,7 +253,7 @@ def made_files(table: Mapping[str, Mapping[str, Any]]) -> dict[str, Made]:
     }
 
 
-def _sections(parts: Mapping[str, sections.Section]) -> list[dict[str, Any]]:
+def _sections(parts: Mapping[str, sections.ReportSection]) -> list[dict[str, Any]]:
     return [{"id": name, **part._asdict()} for name, part in parts.items()]
 
 

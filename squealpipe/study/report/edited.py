@@ -12,7 +12,7 @@ from squealpipe.parameters import (
     law_in_words,
 )
 from squealpipe.reading import for_linear, reading_of
-from squealpipe.schema.claims import Verdict
+from squealpipe.schema.claims import ClaimVerdict
 from squealpipe.text import number
 
 PHYSICS = ("parameters.", "reading")
@@ -65,7 +65,7 @@ def undecided(statements: Sequence[Mapping[str, Any]]) -> list[dict[str, str]]:
     """Why statements were not decided: each reason with the statements that it concerns."""
     reasons: dict[str, list[str]] = {}
     for row in statements:
-        if row["verdict"] == Verdict.cannot_be_decided.words:
+        if row["verdict"] == ClaimVerdict.cannot_be_decided.words:
             reason = re.sub(
                 r"^Not decided: (the run has no dataset [^:]+: )?", "", row["evidence"]
             ).replace("it is not part", "what is needed is not part", 1)

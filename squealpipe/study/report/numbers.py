@@ -6,11 +6,11 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.schema import meanings
-from squealpipe.schema.claims import Basis, Origin, Verdict
+from squealpipe.schema.claims import Basis, ClaimVerdict, Origin
 from squealpipe.schema.comparison import Role
 from squealpipe.schema.curves import ChartLine
 from squealpipe.schema.inference import of_study
-from squealpipe.study.claims.evidence import Run
+from squealpipe.study.claims.evidence import Evidence
 from squealpipe.study.claims.maps import unstable_yet_sliding
 from squealpipe.study.figures.comparison.model_ladder import shares_of_a3
 from squealpipe.study.figures.comparison.speed_and_accuracy import scenes_of_a1
@@ -21,7 +21,7 @@ from squealpipe.study.figures.linear.frequency_shift import NO_SHIFT
 QUOTED_TOLERANCE = 1e-10
 
 
-def numbers(run: Run) -> dict[str, float | str]:
+def numbers(run: Evidence) -> dict[str, float | str]:
     """Name in ``templates/narrative.typ`` → number; percentages are between 0 and 100."""
     return {
         key: value.item() if isinstance(value, np.generic | xr.DataArray) else value
@@ -40,7 +40,7 @@ def numbers(run: Run) -> dict[str, float | str]:
     }
 
 
-def _verdicts(run: Run) -> dict[str, Any]:
+def _verdicts(run: Evidence) -> dict[str, Any]:
     claims = run["claims"]
     own = claims.isel(claim=(claims.origin != Origin.misprints).values)
     changed = (own.corrected_verdict != own.verdict).sum()
@@ -53,12 +53,12 @@ def _verdicts(run: Run) -> dict[str, Any]:
         **{
             f"{name}_{verdict.name}": (part & (own.verdict == verdict)).sum()
             for name, part in parts.items()
-            for verdict in Verdict
+            for verdict in ClaimVerdict
         },
     }
 
 
-def _inferred(run: Run) -> dict[str, Any]:
+def _inferred(run: Evidence) -> dict[str, Any]:
     found = run["parameter_inference"]
     shares = {
         f"share_{reading}{end}": 100 * found[f"share{end}"].sel(reading=reading)
@@ -75,7 +75,7 @@ def _inferred(run: Run) -> dict[str, Any]:
     }
 
 
-def _growth(run: Run) -> dict[str, Any]:
+def _growth(run: Evidence) -> dict[str, Any]:
     unit, preload = run.parameters.time_unit, run.parameters.preload
     whirl = run["whirl"].sortby(
         abs(abs(run["whirl"].belt_speed) - abs(run.parameters.belt_speed))
@@ -93,7 +93,7 @@ def _growth(run: Run) -> dict[str, Any]:
     }
 
 
-def _linear(run: Run) -> dict[str, Any]:
+def _linear(run: Evidence) -> dict[str, Any]:
     regime = run["stability_map"].regime_linear
     _, physical = unstable_yet_sliding(run)
     beside, sliding = run["corrected/stability_map"], run["corrected/quasi_static_map"]
@@ -113,7 +113,7 @@ def _linear(run: Run) -> dict[str, Any]:
     }
 
 
-def _valid(run: Run) -> dict[str, Any]:
+def _valid(run: Evidence) -> dict[str, Any]:
     validity, boundary = run["validity_map"], run["validity_boundary"]
     unstable = validity.regime_linear > 0
     return {
@@ -124,7 +124,7 @@ def _valid(run: Run) -> dict[str, Any]:
     }
 
 
-def _bounded(run: Run) -> dict[str, Any]:
+def _bounded(run: Evidence) -> dict[str, Any]:
     transient, unit = run["transient"], run.parameters.time_unit
     lifetimes = transient.lifetime.values
     ended = np.isfinite(lifetimes)
@@ -145,7 +145,7 @@ def _bounded(run: Run) -> dict[str, Any]:
     }
 
 
-def _contact_points(run: Run) -> dict[str, Any]:
+def _contact_points(run: Evidence) -> dict[str, Any]:
     pads = run["contact_points"]
     loud: dict[str, Any] = {}
     for count in ("4", "8"):
@@ -163,7 +163,7 @@ def _contact_points(run: Run) -> dict[str, Any]:
     }
 
 
-def _motions_and_shares(run: Run) -> dict[str, Any]:
+def _motions_and_shares(run: Evidence) -> dict[str, Any]:
     hammering, spread = run["hammering_map"], run["propensity"]
     kinds = {
         f"motion_{name}": 100 * (hammering.motion == code).mean()
@@ -192,7 +192,7 @@ def _motions_and_shares(run: Run) -> dict[str, Any]:
     }
 
 
-def _methods(run: Run) -> dict[str, Any]:
+def _methods(run: Evidence) -> dict[str, Any]:
     benchmark = run["benchmark"]
     scenes = scenes_of_a1(benchmark)
     tolerances = scenes.tol.values

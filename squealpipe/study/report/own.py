@@ -12,7 +12,7 @@ from squealpipe.codes import Regime
 from squealpipe.parameters import Parameters
 from squealpipe.schema.assess import Verdict
 from squealpipe.schema.dynamics.intervals import intervals
-from squealpipe.study.claims.evidence import Run
+from squealpipe.study.claims.evidence import Evidence
 from squealpipe.study.report import answer
 from squealpipe.study.report.content import (
     Made,
@@ -40,7 +40,7 @@ def gather_own(
         left_out: parts of the study that its laws cannot have, in words.
         became: what inputs that stand for parameters became, in words.
     """
-    run = Run(parameters, {name: made.path for name, made in datasets.items()})
+    run = Evidence(parameters, {name: made.path for name, made in datasets.items()})
     names = [
         name.removeprefix("assess/") for name in datasets if name.startswith("assess/")
     ]
@@ -149,7 +149,7 @@ def _from_start(run: xr.Dataset) -> dict[str, str]:
     }
 
 
-def _scatter(run: Run) -> dict[str, Any] | None:
+def _scatter(run: Evidence) -> dict[str, Any] | None:
     """Shares of the verdicts over configured distributions; None where none are."""
     if "verdict_shares" not in run:
         return None

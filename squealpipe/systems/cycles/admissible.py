@@ -20,7 +20,7 @@ _LATE = 1e-6
 """Share of a leg after which a surface that it starts from is watched."""
 
 
-class Kind(IntEnum):
+class MarginKind(IntEnum):
     """What a margin is of."""
 
     touch = 0
@@ -38,7 +38,7 @@ class Kind(IntEnum):
 class Margin(NamedTuple):
     """Which margin: of a leg (or the event at its end) and a surface (or a condition)."""
 
-    kind: Kind
+    kind: MarginKind
     leg: int
     which: int
 
@@ -58,7 +58,9 @@ def margins(cycle: Cycle) -> dict[Margin, float]:
         entry, duration = events[leg - 1], float(parts.durations[leg])
         if event.at_once:
             height = -event.sign * bounds[event.surface][0][leg]
-            found[Margin(Kind.edge, leg, event.surface)] = height / size[event.surface]
+            found[Margin(MarginKind.edge, leg, event.surface)] = (
+                height / size[event.surface]
+            )
             found |= _conditions(cycle, leg)
             continue
         held = joint.holds(entry.before)
@@ -73,22 +75,24 @@ def margins(cycle: Cycle) -> dict[Margin, float]:
                     and turn.is_minimum == (sign > 0)
                     and turn.time > begin
                 ]
-                found[Margin(Kind.touch, leg, int(s))] = (
+                found[Margin(MarginKind.touch, leg, int(s))] = (
                     min(inside, default=np.inf) / size[s]
                 )
                 ends = [] if fresh else [sign * bounds[s][0][leg]]
                 if s != event.surface:
                     ends.append(sign * bounds[s][1][leg])
                 if ends and event.surface != FREE:
-                    found[Margin(Kind.edge, leg, int(s))] = float(min(ends)) / size[s]
+                    found[Margin(MarginKind.edge, leg, int(s))] = (
+                        float(min(ends)) / size[s]
+                    )
         if event.surface == FREE:
             continue
         crossing = parts.crossings[leg]
         # a switch's own surface falls, whatever the sign of the one that is shared
-        found[Margin(Kind.speed, leg, event.surface)] = (
+        found[Margin(MarginKind.speed, leg, event.surface)] = (
             -crossing.speed * cycle.period / size[event.surface]
         )
-        found[Margin(Kind.length, leg, FREE)] = duration / cycle.period
+        found[Margin(MarginKind.length, leg, FREE)] = duration / cycle.period
         found |= _conditions(cycle, leg)
     return found
 
@@ -105,7 +109,9 @@ def _conditions(cycle: Cycle, leg: int) -> dict[Margin, float]:
         if condition is not None:
             if condition.varies:
                 value = cycle.parts.crossings[leg].conditions[number]
-                found[Margin(Kind.condition, leg, number)] = value if chosen else -value
+                found[Margin(MarginKind.condition, leg, number)] = (
+                    value if chosen else -value
+                )
             number += 1
         if chosen:
             break

@@ -23,8 +23,8 @@ from squealpipe.schema import Outcome, flag_table
 from squealpipe.schema.branch_labels import Label
 from squealpipe.systems.cycles.admissible import MARGIN_ROUND_OFF, margins
 from squealpipe.systems.cycles.described import columns, describe_columns, outcome_of
-from squealpipe.systems.cycles.event_map import FREE, EventMap, Section
-from squealpipe.systems.cycles.event_order import Turn, label_of, least_margin
+from squealpipe.systems.cycles.event_map import FREE, EventMap, PhaseCondition
+from squealpipe.systems.cycles.event_order import NewOrder, label_of, least_margin
 from squealpipe.systems.cycles.find import find_cycle
 from squealpipe.systems.cycles.flow import Flow, Vector
 from squealpipe.systems.cycles.line import (
@@ -81,7 +81,7 @@ _CORNERS = {Label.grazing, Label.stick_onset, Label.border_collision}
 
 
 @dataclass(frozen=True)
-class Point:
+class BranchPoint:
     """A cycle on a branch; ``rest`` is where one that has all but shrunk to rest has no size."""
 
     state: ContinuationState
@@ -122,10 +122,10 @@ def _closeness(offset: Vector, parts: int, _: ContinuationState, cycle: Cycle) -
 
 
 @dataclass(frozen=True)
-class Step:
+class BranchStep:
     """What a step has led past, where to, whether that is a point, and whether the branch ends."""
 
-    special: list[Point]
+    special: list[BranchPoint]
     state: ContinuationState
     cycle: Cycle
     shows: bool = True
@@ -137,7 +137,7 @@ class Follower:
 
     def __init__(self, low: float, high: float, most: int) -> None:
         self.low, self.high, self.most = low, high, most
-        self.points: list[Point] = []
+        self.points: list[BranchPoint] = []
         self.shapes: list[Vector] = []
 
     def run(self, state: ContinuationState, cycle: Cycle) -> Outcome:
@@ -159,7 +159,7 @@ class Follower:
     def _run(
         self, state: ContinuationState, cycle: Cycle, show: Callable[[float], None]
     ) -> Outcome:
-        self._add(Point(state, cycle))
+        self._add(BranchPoint(state, cycle))
         while len(self.points) < self.most:
             show(self._share())
             found = self._advance(state, cycle)
@@ -173,7 +173,7 @@ class Follower:
             if found.end is not None:
                 return found.end
             if found.shows:
-                self._add(Point(state, cycle))
+                self._add(BranchPoint(state, cycle))
             if self._is_at_end(self.points[-1].parameter):
                 return Outcome.converged
             if self._has_shrunk(cycle, _GONE):
@@ -197,7 +197,7 @@ class Follower:
             if math.isfinite(edge)
         )
 
-    def _add(self, point: Point) -> None:
+    def _add(self, point: BranchPoint) -> None:
         self.points.append(point)
         self.shapes.append(self._shape(point.cycle, point.state))
 
@@ -224,7 +224,7 @@ class Follower:
             return Outcome.closed
         return Outcome.retraced if (near & (cosine < -0.99)).any() else None
 
-    def _is_met(self, point: Point) -> bool:
+    def _is_met(self, point: BranchPoint) -> bool:
         """Whether a fold is where the branch ends on a cycle of a part of the period."""
         near = (
             min(float(np.linalg.norm(point.cycle.after_part(n))) for n in (2, 3)) < _MET
@@ -273,7 +273,7 @@ class Follower:
         rest = float(barycentric_interpolate(squares, beyond, 0.0))
         return last + rest if abs(rest) < _AT_REST * np.abs(beyond).max() else None
 
-    def _advance(self, state: ContinuationState, cycle: Cycle) -> Step | None:
+    def _advance(self, state: ContinuationState, cycle: Cycle) -> BranchStep | None:
         """The next step that is shown to be on the same branch."""
         step, equations = state.step, cycle.map
         while step >= STEPS.shortest_step:
@@ -327,7 +327,7 @@ class Follower:
         cycle: Cycle,
         following: ContinuationState,
         reached: Cycle,
-    ) -> Step | None:
+    ) -> BranchStep | None:
         """A step with what lies in it; None where that is not clear."""
         line = Line(
             AT,
@@ -349,13 +349,17 @@ class Follower:
             return None
         if share is not None:
             special = [
-                Point(*line.at(at), label) for at, label in found if at < share - _CLOSE
+                BranchPoint(*line.at(at), label)
+                for at, label in found
+                if at < share - _CLOSE
             ]
             there = line.at(share)
-            return Step([*special, Point(*there)], *there, end=Outcome.tongue_end)
-        special = [Point(*line.at(share), label) for share, label in found]
+            return BranchStep(
+                [*special, BranchPoint(*there)], *there, end=Outcome.tongue_end
+            )
+        special = [BranchPoint(*line.at(share), label) for share, label in found]
         following = replace(following, step=self._next_length(state, following))
-        return Step(special, *renewed(following, reached))
+        return BranchStep(special, *renewed(following, reached))
 
     def _smooth(self, line: Line, last: float) -> list[tuple[float, Label]] | None:
         """Shares and labels of what happens in a step, in order; None where one is not found."""
@@ -410,26 +414,28 @@ class Follower:
 
     def _changed(
         self, line: Line, found: list[tuple[float, Label]], last: float
-    ) -> Step | None:
+    ) -> BranchStep | None:
         """A step to where the order of the events changes, and round that; None if unclear."""
         state, there = line.known[0.0][0], line.at(last)
         if self._has_shrunk(there[1]):
-            return Step([Point(*there)], *there, end=Outcome.equilibrium)
+            return BranchStep([BranchPoint(*there)], *there, end=Outcome.equilibrium)
         zero = {k: v for k, v in margins(there[1]).items() if abs(v) < 1e-7}
         label = label_of(there[1], zero)
-        turned = Turn(line, last, there, zero).way_on()
+        turned = NewOrder(line, last, there, zero).way_on()
         if turned is not None and not label and _jumps(line, last, turned[1]):
             label = Label.border_collision
-        special = [Point(*line.at(share), each) for share, each in found]
-        special += [Point(*there, label)] if label or turned is None else []
+        special = [BranchPoint(*line.at(share), each) for share, each in found]
+        special += [BranchPoint(*there, label)] if label or turned is None else []
         if turned is not None:
-            return Step(
+            return BranchStep(
                 special, replace(turned[0], step=state.step), turned[1], shows=not label
             )
         # no change of the events that is understood: nearer, perhaps
         if state.step > 1e3 * STEPS.shortest_step:
             return None
-        return Step(special, *there, end=Outcome.tangency if label else self._reason())
+        return BranchStep(
+            special, *there, end=Outcome.tangency if label else self._reason()
+        )
 
     def _shorter(
         self, line: Line, cycle: Cycle, reached: Cycle
@@ -483,7 +489,7 @@ def renewed(state: ContinuationState, cycle: Cycle) -> tuple[ContinuationState, 
     if equations.section is None:
         return state, cycle
     normal = cycle.heading / np.linalg.norm(cycle.heading)
-    section = Section(cycle.parts.states[0], normal)
+    section = PhaseCondition(cycle.parts.states[0], normal)
     tangent = state.tangent.copy()
     tangent[: len(normal)] -= normal * (normal @ tangent[: len(normal)])
     state = replace(state, tangent=tangent / np.linalg.norm(tangent))
@@ -564,7 +570,7 @@ def first_point(
     return None if state is None else (state, Cycle.at(equations, state.point))
 
 
-def doubled_start(point: Point) -> tuple[ContinuationState, Cycle] | None:
+def doubled_start(point: BranchPoint) -> tuple[ContinuationState, Cycle] | None:
     """The first point of the branch of twice the period that leaves at a period doubling."""
     cycle = point.cycle
     equations, parts, n = cycle.map, cycle.parts, cycle.map.flow.size
@@ -622,7 +628,7 @@ def doubled_start(point: Point) -> tuple[ContinuationState, Cycle] | None:
 
 
 def in_rows(
-    points: list[Point], numbers: Callable[[Cycle], dict[str, Any]]
+    points: list[BranchPoint], numbers: Callable[[Cycle], dict[str, Any]]
 ) -> list[dict[str, Any]]:
     """The numbers of each point of a branch.
 
@@ -643,7 +649,7 @@ def in_rows(
 
 
 def dataset(
-    system: System, points: list[Point], end: int, parameter: str
+    system: System, points: list[BranchPoint], end: int, parameter: str
 ) -> xr.Dataset:
     """A branch as a dataset."""
     rows = in_rows(points, lambda cycle: columns(cycle, system))

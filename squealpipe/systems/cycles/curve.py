@@ -23,15 +23,15 @@ from squealpipe.schema import flag_table
 from squealpipe.schema.branch_labels import Label, Meeting
 from squealpipe.systems.cycles.admissible import (
     MARGIN_ROUND_OFF,
-    Kind,
     Margin,
+    MarginKind,
     is_motion,
     margins,
 )
 from squealpipe.systems.cycles.branch import started
-from squealpipe.systems.cycles.event_map import FREE, EventMap, Section
+from squealpipe.systems.cycles.event_map import FREE, EventMap, PhaseCondition
 from squealpipe.systems.cycles.event_order import label_of, order_of, run_of
-from squealpipe.systems.cycles.flow import Event, Flow, Vector
+from squealpipe.systems.cycles.flow import Flow, LegEnd, Vector
 from squealpipe.systems.cycles.line import PRECISE, STEPS, Line, flip
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.labels import attributes_of, flag, labels
@@ -48,7 +48,7 @@ _JUMP = 1.0
 """Change of the parameters, over a step, beyond which a point is not next to the change."""
 ENDS = ("point_limit", "end_of_range", "curve_lost", "multipliers_are_real")
 """Why a curve ends where the order of the events does not change."""
-_NO_MARGIN = Margin(Kind.length, -1, FREE)
+_NO_MARGIN = Margin(MarginKind.length, -1, FREE)
 RETURNS = {Label.fold: 0.0, Label.period_doubling: np.pi, Label.torus: np.nan}
 """By which angle a disturbance is turned in a period; NaN where it is an unknown."""
 GRAZINGS = {
@@ -110,7 +110,9 @@ class Curve:
         if self.map.section is not None:
             cycle = self.cycle(point)
             normal = cycle.heading / np.linalg.norm(cycle.heading)
-            self.map = replace(self.map, section=Section(cycle.parts.states[0], normal))
+            self.map = replace(
+                self.map, section=PhaseCondition(cycle.parts.states[0], normal)
+            )
         if self.label in RETURNS:
             jacobian = self.map.evaluate(self.known(point))[1]
             left, _, right = np.linalg.svd(self.returning(jacobian, self.factor(point)))
@@ -171,13 +173,13 @@ class Curve:
     def _margin(self, point: Vector) -> tuple[float, Vector]:
         """What a margin is of, as a function of the end of its leg, and its row."""
         equations, leg = self.map, self.own.leg
-        if self.own.kind == Kind.length:
+        if self.own.kind == MarginKind.length:
             at = equations.legs * equations.flow.size + leg
             return float(point[at]), np.eye(len(point))[at]
         parts, event = equations.parts(point), equations.events[leg]
         time = parts.start + float(parts.durations[: leg + 1].sum())
         flow, n = equations.flow, equations.flow.size
-        condition = self.own.which if self.own.kind == Kind.condition else None
+        condition = self.own.which if self.own.kind == MarginKind.condition else None
         value, *slopes = flow.quantity(
             parts.values, event, condition, parts.path.ends[leg], time
         )
@@ -246,13 +248,13 @@ def _curve_of(cycle: Cycle, label: Label) -> tuple[Curve, Vector]:
     near = {
         k: abs(v)
         for k, v in margins(cycle).items()
-        if abs(v) < _NEAR and k.kind != Kind.edge
+        if abs(v) < _NEAR and k.kind != MarginKind.edge
     }
     near = {k: v for k, v in near.items() if label_of(cycle, {k: 0.0}) == label}
     if not near:
         raise ValueError(f"start: no condition of {label.name} just holds there")
     own = min(near, key=lambda k: near[k])
-    if own.kind != Kind.touch:
+    if own.kind != MarginKind.touch:
         return Curve(equations, label, own), cycle.point
     # the leg is cut where it touches: there the switch's event has no speed, if it stays there
     parts, leg, event = cycle.parts, own.leg, equations.events[own.leg]
@@ -271,7 +273,7 @@ def _curve_of(cycle: Cycle, label: Label) -> tuple[Curve, Vector]:
         len(targets) == 1 and joint.entered(event.before, targets[0][0]) == event.before
     )
     kind = targets[0][2] if stays else FREE
-    touch = Event(
+    touch = LegEnd(
         number if stays else FREE,
         own.which,
         1.0 if falls else -1.0,
@@ -283,7 +285,7 @@ def _curve_of(cycle: Cycle, label: Label) -> tuple[Curve, Vector]:
     start, durations = parts.start, parts.durations
     if event.surface == FREE:
         # without events the section is the touch
-        events: tuple[Event, ...] = (touch,)
+        events: tuple[LegEnd, ...] = (touch,)
         start, leg = start + turn.time, 0
     else:
         events = (*equations.events[:leg], touch, *equations.events[leg:])
@@ -291,12 +293,12 @@ def _curve_of(cycle: Cycle, label: Label) -> tuple[Curve, Vector]:
         durations = np.insert(durations, leg, turn.time)
         durations[leg + 1] -= turn.time
     made = replace(equations, events=events, section=None)
-    own = Margin(Kind.speed, leg, own.which)
+    own = Margin(MarginKind.speed, leg, own.which)
     return Curve(made, label, own), made.pack(states, durations, start, cycle.followed)
 
 
 @dataclass(frozen=True)
-class Point:
+class CurvePoint:
     """A point of a curve."""
 
     cycle: Cycle
@@ -337,7 +339,7 @@ class _Way:
         angle = point[-1] if self.curve.label == Label.torus else np.nan
         return float(np.fmin(np.inf, min(angle, np.pi - angle)))
 
-    def points(self, state: ContinuationState) -> Iterator[Point]:
+    def points(self, state: ContinuationState) -> Iterator[CurvePoint]:
         """The points after a first one."""
         while True:
             self.curve.renew(state.point)
@@ -454,7 +456,7 @@ class _Way:
             return Meeting.end, "curve_lost"
         label = label_of(cycle, {key: 0.0})
         met = Meeting.end
-        if key.kind == Kind.length:
+        if key.kind == MarginKind.length:
             met = Meeting.end_of_leg
         elif label == Label.stick_onset:
             met = Meeting.stick_onset
@@ -463,7 +465,7 @@ class _Way:
         system, event = cycle.map.flow.system, cycle.map.events[key.leg]
         watched = (system.joint.falls, system.joint.rises)
         number = event.switch
-        if key.kind in {Kind.touch, Kind.edge}:
+        if key.kind in {MarginKind.touch, MarginKind.edge}:
             number = int(max(of(event.before)[key.which] for of in watched))
         names = [*(each.name for each in system.switches), *system.stops]
         return met, f"order_changes_{key.kind.name}_of_{names[number]}".replace(
@@ -473,8 +475,8 @@ class _Way:
     def _cycle(self, state: ContinuationState) -> Cycle:
         return self.curve.cycle(state.point)
 
-    def _point(self, state: ContinuationState, label: Meeting) -> Point:
-        return Point(self._cycle(state), state.residual, label)
+    def _point(self, state: ContinuationState, label: Meeting) -> CurvePoint:
+        return CurvePoint(self._cycle(state), state.residual, label)
 
 
 LABELS = (*RETURNS, Label.grazing, Label.stick_onset)
@@ -560,7 +562,7 @@ def follow_curve(
     parameters: Sequence[str],
     limits: Mapping[str, tuple[float, float]],
     n_points: int,
-) -> tuple[list[Point], list[str]]:
+) -> tuple[list[CurvePoint], list[str]]:
     """The points of a curve through a cycle, and why it ended at both sides."""
     units = np.array([max(abs(cycle.parts.values[name]), 1e-3) for name in parameters])
     flow = Flow(cycle.map.flow.system, tuple(parameters))
@@ -583,7 +585,7 @@ def follow_curve(
         way.points(replace(first, tangent=sign * first.tangent))
         for way, sign in zip(ways, (-1.0, 1.0), strict=True)
     ]
-    found: list[list[Point]] = [[], []]
+    found: list[list[CurvePoint]] = [[], []]
     open_ways, count = [0, 1], 1
     while open_ways and count < n_points:
         for side in list(open_ways):
@@ -593,14 +595,14 @@ def follow_curve(
                 count += 1
             elif count < n_points:
                 open_ways.remove(side)
-    middle = Point(curve.cycle(first.point), first.residual)
+    middle = CurvePoint(curve.cycle(first.point), first.residual)
     return [*found[0][::-1], middle, *found[1]], [way.end for way in ways]
 
 
 def _dataset(
     system: System,
     label: str,
-    points: list[Point],
+    points: list[CurvePoint],
     parameters: Sequence[str],
     ends: list[str],
 ) -> xr.Dataset:

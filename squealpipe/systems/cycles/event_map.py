@@ -16,7 +16,7 @@ import numpy as np
 from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 
-from squealpipe.systems.cycles.flow import Crossing, Event, Flow, Path, Vector
+from squealpipe.systems.cycles.flow import Crossing, Flow, LegEnd, Path, Vector
 
 _KEPT = 8
 """Points whose legs are kept."""
@@ -27,7 +27,7 @@ FREE = -1
 
 
 @dataclass(frozen=True)
-class Section:
+class PhaseCondition:
     """What fixes the phase of a cycle without events: a plane through a state, or an instant."""
 
     state: Vector
@@ -61,13 +61,13 @@ class EventMap:
     """
 
     flow: Flow
-    events: tuple[Event, ...]
+    events: tuple[LegEnd, ...]
     values: Mapping[str, float]
     scale: Vector
     time: float
     units: Vector
     periods: int = 0
-    section: Section | None = None
+    section: PhaseCondition | None = None
     _latest: dict[bytes, tuple[Parts, Vector, Vector]] = field(
         default_factory=dict, init=False
     )

@@ -13,13 +13,13 @@ from squealpipe.methods.continuation import ContinuationState
 from squealpipe.schema.branch_labels import Label
 from squealpipe.systems.cycles.admissible import (
     MARGIN_ROUND_OFF,
-    Kind,
     Margin,
+    MarginKind,
     is_motion,
     margins,
 )
 from squealpipe.systems.cycles.event_map import EventMap
-from squealpipe.systems.cycles.flow import Event, Vector
+from squealpipe.systems.cycles.flow import LegEnd, Vector
 from squealpipe.systems.cycles.guess import (
     Repeat,
     follow,
@@ -50,10 +50,10 @@ def label_of(cycle: Cycle, zero: dict[Margin, float]) -> Label:
             joint.falls(event.before)[margin.which],
             joint.rises(event.before)[margin.which],
         )
-        own = margin.kind in {Kind.condition, Kind.length}
+        own = margin.kind in {MarginKind.condition, MarginKind.length}
         switch = event.switch if own else int(max(watched))
-        crosses = margin.kind in {Kind.touch, Kind.speed}
-        if (held or crosses or margin.kind == Kind.condition) and _of_hold(
+        crosses = margin.kind in {MarginKind.touch, MarginKind.speed}
+        if (held or crosses or margin.kind == MarginKind.condition) and _of_hold(
             system, switch, event.before
         ):
             return Label.stick_onset
@@ -83,7 +83,7 @@ def least_margin(_: ContinuationState | None, cycle: Cycle) -> float:
 
 
 @dataclass
-class Turn:
+class NewOrder:
     """How a branch goes on from where the order of its events changes."""
 
     line: Line
@@ -129,7 +129,7 @@ class Turn:
         cycle = self.there[1]
         for margin in self.zero:
             event = cycle.map.events[margin.leg]
-            if margin.kind == Kind.speed and event.before == event.after:
+            if margin.kind == MarginKind.speed and event.before == event.after:
                 yield merged(cycle, margin.leg, 1)
         yield from without_brief_legs(cycle)
 
@@ -141,7 +141,7 @@ class Turn:
             return None
         near = margins(Cycle.at(equations, guess))
         known = margins(self.there[1]).items()
-        kinds = {Kind.speed, Kind.length}
+        kinds = {MarginKind.speed, MarginKind.length}
         usual = min((v for k, v in known if k.kind in kinds and v > 1e-6), default=1.0)
         most = _WEAK * min(1.0, usual)
         weak = {k: v for k, v in near.items() if k.kind in kinds and v < most}
@@ -175,7 +175,7 @@ class Turn:
         return state, cycle
 
 
-def order_of(events: tuple[Event, ...]) -> tuple[tuple[int, ...], ...]:
+def order_of(events: tuple[LegEnd, ...]) -> tuple[tuple[int, ...], ...]:
     """The events from the rotation that sorts first."""
     kinds = [(e.switch, e.before, e.after, e.kind) for e in events]
     return min(tuple(kinds[i:] + kinds[:i]) for i in range(len(kinds)))
@@ -200,7 +200,7 @@ def run_of(cycle: Cycle) -> tuple[EventMap, Vector] | None:
 def _gradient(equations: EventMap, point: Vector, margin: Margin) -> Vector:
     """The direction in which a length, or the speed of an event, grows."""
     n, m = equations.flow.size, equations.legs
-    if margin.kind == Kind.length:
+    if margin.kind == MarginKind.length:
         return np.asarray(np.eye(len(point))[m * n + margin.leg])
     parts, leg = equations.parts(point), margin.leg
     event, end = equations.events[leg], parts.path.ends[leg]

@@ -57,7 +57,7 @@ _NODES, _WEIGHTS, _UP_TO = gauss(6)
 _PLACES = np.linspace(0.0, 1.0, 9)
 
 
-class Event(NamedTuple):
+class LegEnd(NamedTuple):
     """How a leg ends.
 
     Attributes:
@@ -371,7 +371,7 @@ class Flow:
     def quantity(
         self,
         values: Mapping[str, float],
-        event: Event,
+        event: LegEnd,
         condition: int | None,
         state: Vector,
         time: float,

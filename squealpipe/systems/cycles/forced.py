@@ -19,7 +19,7 @@ from squealpipe.systems.cycles.settled import (
     distances_in_step,
 )
 from squealpipe.systems.cycles.solution import Cycle, scale_of
-from squealpipe.systems.record import Motion
+from squealpipe.systems.record import RunRecord
 
 SETTLE = 200.0
 """Forcing periods, or units of time, after which a run counts as settled."""
@@ -65,7 +65,7 @@ class Watched:
 
     flow: Flow
     values: Mapping[str, float]
-    motion: Motion
+    motion: RunRecord
     forcing: float
     last: int
     times: Vector

@@ -10,8 +10,8 @@ import numpy as np
 
 from squealpipe.schema import Outcome
 from squealpipe.systems.cycles.described import SETTLED_ON
-from squealpipe.systems.cycles.event_map import Section
-from squealpipe.systems.cycles.flow import Event, Flow, Vector
+from squealpipe.systems.cycles.event_map import PhaseCondition
+from squealpipe.systems.cycles.flow import Flow, LegEnd, Vector
 from squealpipe.systems.cycles.forced import SETTLE
 from squealpipe.systems.cycles.guess import (
     Repeat,
@@ -28,7 +28,7 @@ from squealpipe.systems.cycles.settled import (
     distances_from_orbit,
 )
 from squealpipe.systems.cycles.solution import Cycle, scale_of
-from squealpipe.systems.record import Motion
+from squealpipe.systems.record import RunRecord
 
 SETTLE_STEPS = 100_000
 """Steps after which a run that is to settle is given up."""
@@ -50,7 +50,7 @@ class Stretch:
 
     flow: Flow
     values: Mapping[str, float]
-    motion: Motion
+    motion: RunRecord
     times: Vector
     scale: Vector
 
@@ -189,7 +189,7 @@ def _cycles(stretch: Stretch, far: float, tried: list[float]) -> Iterator[Cycle]
         tried.append(period)
         if not count:
             period = _exact_return(stretch, state, period)
-        repeat = Repeat(period, 0, stretch.scale, count=count)
+        repeat = Repeat(period, 0, stretch.scale, events=count)
         found = guess_of(flow, values, stretch.motion, state, repeat)
         cycle = None if found is None else solved(*found)
         if cycle is not None and abs(cycle.period - period) <= _FAR * period:
@@ -208,14 +208,14 @@ def _rests(path: Vector, sizes: Any) -> bool:
     return bool((np.ptp(path, axis=0) <= _AT_REST * largest).all())
 
 
-def _least(events: tuple[Event, ...]) -> int:
+def _least(events: tuple[LegEnd, ...]) -> int:
     """How often the rarest event of a cycle occurs: its returns to a section."""
     kinds = [(event.switch, event.after) for event in events]
     return min((kinds.count(kind) for kind in kinds), default=1)
 
 
 def _crossings(
-    section: Section, times: Vector, path: Vector
+    section: PhaseCondition, times: Vector, path: Vector
 ) -> Iterator[tuple[float, Vector]]:
     """When and where a sampled motion crosses a section forwards."""
     height = (path - section.state) @ section.normal
@@ -232,7 +232,7 @@ def _exact_return(stretch: Stretch, state: Vector, time: float) -> float:
     """
     flow, values, regime = stretch.flow, stretch.values, int(stretch.motion.regimes[0])
     rate = flow.field(values, regime, state, 0.0)
-    section = Section(state, rate / stretch.scale**2)
+    section = PhaseCondition(state, rate / stretch.scale**2)
     width = float(stretch.times[1])
     for _ in range(3):
         times = np.linspace(max(time - width, 0.0), time + width, 9)
@@ -254,7 +254,7 @@ def _returns(stretch: Stretch, state: Vector) -> Iterator[tuple[int, float, floa
             found.append((count, float(run.times[count] - run.times[0]), distance))
     else:
         rate = stretch.flow.field(stretch.values, int(run.regimes[0]), state, 0.0)
-        section = Section(state, rate / scale**2)
+        section = PhaseCondition(state, rate / scale**2)
         for time, there in _crossings(section, times, run.path):
             distance = float(np.abs((there - state) / scale).max())
             found.append((0, time, distance))

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from squealpipe.systems.cycles.admissible import is_motion
-from squealpipe.systems.cycles.event_map import FREE, EventMap, Section
-from squealpipe.systems.cycles.flow import Event, Flow, Vector
+from squealpipe.systems.cycles.event_map import FREE, EventMap, PhaseCondition
+from squealpipe.systems.cycles.flow import Flow, LegEnd, Vector
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.integrate import RunOptions
-from squealpipe.systems.record import Motion, single_run
+from squealpipe.systems.record import RunRecord, single_run
 
 if TYPE_CHECKING:
     from squealpipe.systems.definition import System
@@ -32,7 +32,7 @@ def follow(
     state: Vector,
     duration: float,
     **options: Any,
-) -> Motion:
+) -> RunRecord:
     """Run a system from a state at t = 0 with all events."""
     system, regime = flow.system, options.pop("regime", None)
     first = None if regime is None else np.array([system.joint.regimes(regime)])
@@ -63,18 +63,18 @@ def sizes_at(
 
 
 def events_of(
-    system: System, motion: Motion, first: int, count: int
-) -> tuple[Event, ...]:
+    system: System, motion: RunRecord, first: int, count: int
+) -> tuple[LegEnd, ...]:
     """Some events of a run, each with its switch."""
     t, joint = system.traced, system.joint
-    found: list[Event] = []
+    found: list[LegEnd] = []
     for i in range(first, first + count):
         before, after, kind, entered = (
             int(v)
             for v in (*motion.regimes[i : i + 2], motion.kinds[i], motion.entered[i])
         )
         fitting = (
-            Event(int(switch), surface, sign, before, after, kind)
+            LegEnd(int(switch), surface, sign, before, after, kind)
             for watched, sign in (
                 (joint.falls(before), 1.0),
                 (joint.rises(before), -1.0),
@@ -93,10 +93,10 @@ def events_of(
 def marked_at_once(
     flow: Flow,
     values: Mapping[str, float],
-    motion: Motion,
-    events: Sequence[Event],
+    motion: RunRecord,
+    events: Sequence[LegEnd],
     first: int,
-) -> tuple[Event, ...]:
+) -> tuple[LegEnd, ...]:
     """Events of a run, with those that fired where their regime was entered marked.
 
     The first of a run has none before it, by which its regime would be entered.
@@ -120,7 +120,7 @@ class Repeat(NamedTuple):
     Attributes:
         period: after which it does, s.
         periods: of the forcing in it; 0 without.
-        first, count: the events of one period; by default all of the run.
+        first, events: the events of one period and their number; by default all of the run.
         origin: instant of the run that is t = 0 of the forcing.
     """
 
@@ -128,14 +128,14 @@ class Repeat(NamedTuple):
     periods: int
     scale: Vector
     first: int = 0
-    count: int | None = None
+    events: int | None = None
     origin: float = 0.0
 
 
 def guess_of(
     flow: Flow,
     values: Mapping[str, float],
-    motion: Motion,
+    motion: RunRecord,
     state: Vector,
     repeat: Repeat,
 ) -> tuple[EventMap, Vector] | None:
@@ -182,8 +182,8 @@ def eventless(
         heading = (
             equations.flow.field(equations.values, regime, state, 0.0) / equations.scale
         )
-        section = Section(state, heading / np.linalg.norm(heading))
-    free = Event(FREE, FREE, 1.0, regime, regime, FREE)
+        section = PhaseCondition(state, heading / np.linalg.norm(heading))
+    free = LegEnd(FREE, FREE, 1.0, regime, regime, FREE)
     made = replace(equations, events=(free,), section=section)
     return made, made.pack(state[None], np.array([period]), 0.0, followed)
 

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 from squealpipe.methods.continuation import (
     ContinuationSettings,
     ContinuationState,
-    Problem,
+    PathEquations,
     PseudoArclength,
 )
 from squealpipe.schema.branch_labels import Label
@@ -136,7 +136,7 @@ class Line:
     def __init__(
         self,
         algorithm: PseudoArclength,
-        equations: Problem,
+        equations: PathEquations,
         first: tuple[ContinuationState, Cycle],
         last: tuple[ContinuationState, Cycle],
         cycle_at: Callable[[Vector], Cycle],

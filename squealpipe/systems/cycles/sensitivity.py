@@ -10,7 +10,7 @@ import numpy as np
 from squealpipe.systems.cycles.flow import Flow, Vector
 from squealpipe.systems.cycles.guess import events_of
 from squealpipe.systems.labels import labels
-from squealpipe.systems.record import Motion
+from squealpipe.systems.record import RunRecord
 from squealpipe.text import suggestion
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ def sensitivities(
     system: System,
     names: Sequence[str],
     values: Mapping[str, float],
-    motion: Motion,
+    motion: RunRecord,
     times: Vector,
     t_start: float = 0.0,
 ) -> dict[str, Any]:

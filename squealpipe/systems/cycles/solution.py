@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squealpipe.systems.cycles.event_map import FREE, EventMap, Parts
-from squealpipe.systems.cycles.flow import Event, Flow, Vector
+from squealpipe.systems.cycles.flow import Flow, LegEnd, Vector
 
 _LEAST = 0.05
 """Least unit of a state over the largest, both over the states' sizes."""
@@ -56,7 +56,7 @@ class Cycle:
         return np.array([self.parts.values[name] for name in self.map.flow.followed])
 
     @property
-    def events(self) -> tuple[Event, ...]:
+    def events(self) -> tuple[LegEnd, ...]:
         """Its events, without the section."""
         return tuple(event for event in self.map.events if event.switch != FREE)
 

@@ -222,12 +222,12 @@ class _Laws:
         if not self.rules.drags:
             q.mu, q.static_mu = -q.mu, -q.static_mu
         if is_table(self.friction_law):
-            q.friction_law = friction_laws.Piece(
+            q.friction_law = friction_laws.FrictionPiece(
                 r.mu_start, (r.mu_c0, r.mu_c1, r.mu_c2, r.mu_c3)
             )
         if is_table(self.contact_law):
             coefficients = (r.press_c0, r.press_c1, r.press_c2, r.press_c3)
-            q.contact_law = contact_laws.Piece(r.press_start, coefficients)
+            q.contact_law = contact_laws.ContactPiece(r.press_start, coefficients)
         return q, Geometry(cos(p.alpha1), sin(p.alpha1), cos(p.alpha2), sin(p.alpha2))
 
     def name(self, kind: str, friction: int, contact: int) -> str:

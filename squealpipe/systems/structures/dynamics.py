@@ -254,7 +254,7 @@ def friction_at(friction: Friction, p: Any, regime: Any = None) -> Any:
         q.static_mu = q.static_mu if static is not None else p.mu * q.static_mu
         if regime is not None:
             coefficients = (regime.mu_c0, regime.mu_c1, regime.mu_c2, regime.mu_c3)
-            q.friction_law = friction_laws.Piece(regime.mu_start, coefficients)
+            q.friction_law = friction_laws.FrictionPiece(regime.mu_start, coefficients)
     return q
 
 

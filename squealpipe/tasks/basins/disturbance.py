@@ -21,7 +21,7 @@ from squealpipe.schema.basins import SMALLEST_DISTURBANCE, LeadsTo
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.solvers.a1.jobs import Model
-from squealpipe.tasks.cycles.scene import Scene
+from squealpipe.tasks.cycles.scene import CycleScene
 from squealpipe.tasks.cycles.sliding import GROWS, steady_sliding
 from squealpipe.tasks.dynamics.motion import linear_time, whirls
 from squealpipe.tasks.linear.maps import stability_map
@@ -86,7 +86,7 @@ def smallest_disturbance(
     horizon = T_END * time if t_end is None else t_end
     goal = LeadsTo[leads_to]
     largest = BOUNDS[goal] if bound is None else bound
-    scene = Scene(params, alpha1, alpha2, model=model)
+    scene = CycleScene(params, alpha1, alpha2, model=model)
     sliding = steady_sliding(scene) if params.belt_speed != 0.0 else None
     numbers = np.unique(
         np.append(2 ** np.arange(3, directions.bit_length()), directions)

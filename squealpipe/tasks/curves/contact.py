@@ -10,7 +10,7 @@ import xarray as xr
 
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import LAWS
-from squealpipe.methods.zero_lines import Grid, Vector, ZeroLines, gathered, inside
+from squealpipe.methods.zero_lines import FirstGrid, Vector, ZeroLines, gathered, inside
 from squealpipe.models.refusals import refuse_unread
 from squealpipe.parameters import HORIZON, Parameters, brief
 from squealpipe.schema import Outcome, build
@@ -144,7 +144,12 @@ def contact_lines(
     """The boundary of kept contact, begun on a grid of at least ``finest`` cells per side."""
     finer = 2 ** max(0, int(np.ceil(np.log2(finest / (coarse - 1)))))
     return ZeroLines(
-        square.reserve, square.touch_time, Grid(coarse, finer), jump=JUMP, **accuracy
+        square.reserve,
+        square.touch_time,
+        FirstGrid(coarse, finer),
+        jump=JUMP,
+        touching=False,
+        **accuracy,
     )
 
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from squealpipe.codes import LinearRegime
-from squealpipe.methods.zero_lines import Grid, Vector, ZeroLines
+from squealpipe.methods.zero_lines import FirstGrid, Vector, ZeroLines
 from squealpipe.models import a3, damped
 from squealpipe.models.contact_system import contact_system, with_drag
 from squealpipe.schema.curves import ChartLine
@@ -47,7 +47,7 @@ class Regimes:
             which: ZeroLines(
                 partial(self._edge, which=which),
                 self._outside,
-                Grid(OFF_CENTRE if self.damped else GRID, 1),
+                FirstGrid(OFF_CENTRE if self.damped else GRID, 1),
                 jump=0.5,
                 touching=self.damped,
             )

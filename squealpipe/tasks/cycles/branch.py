@@ -18,8 +18,8 @@ from squealpipe.schema.cycles import CYCLE_BRANCH, LIMIT_CYCLE
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.jobs import STATE
 from squealpipe.systems.cycles.branch import (
+    BranchPoint,
     Follower,
-    Point,
     doubled_start,
     first_point,
     in_rows,
@@ -27,7 +27,7 @@ from squealpipe.systems.cycles.branch import (
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.tasks.cycles.cycle import cycle_from
 from squealpipe.tasks.cycles.onset import find_onset
-from squealpipe.tasks.cycles.scene import IN_SYSTEM, Scene
+from squealpipe.tasks.cycles.scene import IN_SYSTEM, CycleScene
 from squealpipe.validation import Angle, Number, Whole, state_of
 
 
@@ -92,7 +92,7 @@ def cycle_branch(
         )
     if parameter not in ("alpha1", "alpha2"):
         params.with_(**{parameter: to})
-    scene = Scene(params, alpha1, alpha2, follow=parameter)
+    scene = CycleScene(params, alpha1, alpha2, follow=parameter)
     scale = scene.units[parameter]
     low, high = sorted((begin / scale, to / scale))
     follower = Follower(low, high, n_points)
@@ -143,7 +143,7 @@ def _value(params: Parameters, alpha1: float, alpha2: float, parameter: str) -> 
     return float(values[parameter])
 
 
-def _first_cycle(scene: Scene, start: Any) -> tuple[Cycle | None, Outcome]:
+def _first_cycle(scene: CycleScene, start: Any) -> tuple[Cycle | None, Outcome]:
     if isinstance(start, xr.Dataset):
         if start.attrs.get("schema") != LIMIT_CYCLE.name:
             raise ValueError(
@@ -159,7 +159,7 @@ def _first_cycle(scene: Scene, start: Any) -> tuple[Cycle | None, Outcome]:
     return cycle_from(scene, start)
 
 
-def _dataset(scene: Scene, points: list[Point], end: Outcome) -> xr.Dataset:
+def _dataset(scene: CycleScene, points: list[BranchPoint], end: Outcome) -> xr.Dataset:
     parameter = str(scene.follow)
     rows = in_rows(points, scene.numbers)
     columns: dict[str, Any] = blank(CYCLE_BRANCH, multiplier=4)

@@ -16,7 +16,7 @@ from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.jobs import STATE
 from squealpipe.systems.cycles.curve import ENDS, check, follow_curve, point_of
 from squealpipe.tasks.cycles.cycle import cycle_from
-from squealpipe.tasks.cycles.scene import DASHPOTS, IN_SYSTEM, Scene
+from squealpipe.tasks.cycles.scene import DASHPOTS, IN_SYSTEM, CycleScene
 from squealpipe.validation import Angle, Number, Several
 
 REASONS = dict(
@@ -82,7 +82,7 @@ def cycle_curve(
             own |= at
         else:
             params = params.with_(**at)
-        scene = Scene(
+        scene = CycleScene(
             params,
             own["alpha1"],
             own["alpha2"],

@@ -16,7 +16,7 @@ from squealpipe.solvers.a1.jobs import STATE
 from squealpipe.systems.cycles.event_map import FREE
 from squealpipe.systems.cycles.find import find_cycle
 from squealpipe.systems.cycles.solution import Cycle
-from squealpipe.tasks.cycles.scene import Scene
+from squealpipe.tasks.cycles.scene import CycleScene
 from squealpipe.validation import Angle, Positive, State, one_of
 
 T_SETTLE = 2000.0
@@ -50,7 +50,7 @@ def limit_cycle(
         (the trivial one first), events, and the motion at 401 instants. NaN with the reason in
         ``outcome`` where no cycle is found.
     """
-    scene = Scene(params, alpha1, alpha2)
+    scene = CycleScene(params, alpha1, alpha2)
     cycle, outcome = cycle_from(scene, guess, t_settle)
     found = (
         blank(LIMIT_CYCLE, multiplier=4) if cycle is None else _described(scene, cycle)
@@ -61,7 +61,7 @@ def limit_cycle(
 
 
 def cycle_from(
-    scene: Scene, guess: Any = None, t_settle: float | None = None
+    scene: CycleScene, guess: Any = None, t_settle: float | None = None
 ) -> tuple[Cycle | None, Outcome]:
     """A cycle near a state, or from a run from rest (without a guess), and its outcome."""
     state = (
@@ -82,7 +82,7 @@ def cycle_from(
     return cycle, Outcome.singular_geometry if outcome >= STOPPED else Outcome(outcome)
 
 
-def _described(scene: Scene, cycle: Cycle) -> dict[str, Any]:
+def _described(scene: CycleScene, cycle: Cycle) -> dict[str, Any]:
     """The variables of a cycle."""
     units, clock = scene.state_units, scene.params.time_unit
     start = cycle.start()[0] * units

@@ -9,7 +9,7 @@ from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.guess import eventless
 from squealpipe.systems.cycles.line import ALONG, STEPS
 from squealpipe.systems.cycles.solution import Cycle
-from squealpipe.tasks.cycles.scene import IN_SYSTEM, Scene
+from squealpipe.tasks.cycles.scene import IN_SYSTEM, CycleScene
 from squealpipe.tasks.cycles.sliding import steady_sliding
 
 _SCAN = 201
@@ -18,7 +18,7 @@ _FIRST_AMPLITUDE = 0.02
 
 
 def find_onset(
-    scene: Scene, begin: float, to: float
+    scene: CycleScene, begin: float, to: float
 ) -> tuple[ContinuationState, Cycle] | None:
     """A small cycle on the branch born at the first Hopf point from ``begin`` towards ``to``.
 

@@ -27,7 +27,7 @@ IN_SYSTEM = {of: name for name, of in NUMBERS_OF_A1.items()} | {
 
 
 @dataclass(frozen=True)
-class Scene:
+class CycleScene:
     """Parameters and angles, and the units of what a cycle of them is made of.
 
     Attributes:

@@ -8,7 +8,7 @@ from scipy.optimize import root
 from squealpipe.solvers.a1.jobs import STATE
 from squealpipe.systems.cycles.flow import Flow, Vector
 from squealpipe.systems.trace import TIME
-from squealpipe.tasks.cycles.scene import Scene
+from squealpipe.tasks.cycles.scene import CycleScene
 
 GROWS = 1e-7
 """Growth rate, over the largest |s|, above which steady sliding is unstable; below it is the
@@ -20,7 +20,7 @@ _MOST_PIECES = 20
 
 
 @dataclass(frozen=True)
-class Sliding:
+class SlidingState:
     """The state of steady sliding in contact, in the scene's units.
 
     Attributes:
@@ -34,7 +34,7 @@ class Sliding:
     jacobian: Vector
 
 
-def steady_sliding(scene: Scene, flow: Flow | None = None) -> Sliding | None:
+def steady_sliding(scene: CycleScene, flow: Flow | None = None) -> SlidingState | None:
     """The equilibrium that a Newton method from r = 0 leads to; None where it finds none."""
     flow, values = flow or Flow(scene.system), scene.values
     force = 0.5 * (scene.scaled.k1 + scene.scaled.k2)
@@ -54,11 +54,11 @@ def steady_sliding(scene: Scene, flow: Flow | None = None) -> Sliding | None:
         state, before = np.array([*found.x, 0.0, 0.0]), regime
         regime = _regime(scene, state)
         if regime == before:
-            return Sliding(state, regime, flow.jacobian(values, regime, state))
+            return SlidingState(state, regime, flow.jacobian(values, regime, state))
     return None
 
 
-def _regime(scene: Scene, state: Vector) -> int:
+def _regime(scene: CycleScene, state: Vector) -> int:
     """The regime of the system at a state."""
     given = {name: np.array([value]) for name, value in zip(STATE, state, strict=True)}
     return int(

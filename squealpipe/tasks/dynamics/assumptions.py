@@ -55,7 +55,7 @@ NEEDS = {
 STEPS_PER_TIME_UNIT = 20
 
 
-class Motion(NamedTuple):
+class MotionArrays(NamedTuple):
     """States along a motion; arrays over time."""
 
     x: np.ndarray
@@ -136,7 +136,7 @@ def linear_pull_map(
     )
 
 
-def _motion(params: Parameters, scene: Scene, level: str) -> Motion:
+def _motion(params: Parameters, scene: Scene, level: str) -> MotionArrays:
     """The motion from rest that a level computes; empty where it has none."""
     t_end = scene.t_end * params.time_unit
     if level == "A2":
@@ -148,10 +148,10 @@ def _motion(params: Parameters, scene: Scene, level: str) -> Motion:
     x, y, vx, force = (
         run[name].values[reached] for name in ("x", "y", "vx", "normal_force")
     )
-    return Motion(x, y, vx, force, int(run.outcome))
+    return MotionArrays(x, y, vx, force, int(run.outcome))
 
 
-def _sliding_state(params: Parameters, scene: Scene) -> Motion:
+def _sliding_state(params: Parameters, scene: Scene) -> MotionArrays:
     """A2: one state, at y = 0, with the friction of its reaction force."""
     stiffness = springs.linear_stiffness(
         params, springs.geometry(scene.alpha1, scene.alpha2)
@@ -159,13 +159,15 @@ def _sliding_state(params: Parameters, scene: Scene) -> Motion:
     reaction = float(a2.reaction_force(stiffness, params.drag, a2.actuation(params)))
     if np.isnan(reaction) or stiffness.k11 == 0:
         nothing = np.array([])
-        return Motion(nothing, nothing, nothing, nothing, Outcome.singular_static_state)
+        return MotionArrays(
+            nothing, nothing, nothing, nothing, Outcome.singular_static_state
+        )
     still = np.zeros(1)
     x = np.array([params.drag * reaction / stiffness.k11])
-    return Motion(x, still, still, np.array([reaction]), Outcome.converged)
+    return MotionArrays(x, still, still, np.array([reaction]), Outcome.converged)
 
 
-def _linear_motion(params: Parameters, scene: Scene, t_end: float) -> Motion:
+def _linear_motion(params: Parameters, scene: Scene, t_end: float) -> MotionArrays:
     """A3 in time: Eqs. (6) and (7) from rest; velocities by central differences."""
     stiffness = springs.linear_stiffness(
         params, springs.geometry(scene.alpha1, scene.alpha2)
@@ -173,7 +175,7 @@ def _linear_motion(params: Parameters, scene: Scene, t_end: float) -> Motion:
     step, steps = _steps(params, t_end)
     states = np.array(list(_linear_response(params, stiffness, step, steps)))
     x, y = states[:, 0], states[:, 1]
-    return Motion(
+    return MotionArrays(
         x, y, np.gradient(x, step), contact_force(y, params), Outcome.converged
     )
 
@@ -199,7 +201,7 @@ def _steps(params: Parameters, t_end: float) -> tuple[float, int]:
     return t_end / steps, steps
 
 
-def _measures(params: Parameters, scene: Scene, motion: Motion) -> list[float]:
+def _measures(params: Parameters, scene: Scene, motion: MotionArrays) -> list[float]:
     """The number that decides about each assumption, in the order of ``LIMITS``."""
     g = springs.geometry(scene.alpha1, scene.alpha2)
     x1, y1, x2, y2 = springs.fixed_ends(params, g)

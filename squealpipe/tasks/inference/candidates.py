@@ -18,7 +18,7 @@ from squealpipe.tasks.inference.unstable_cells import Unstable, unstable_cells
 
 
 @dataclass(frozen=True)
-class Margin:
+class StatementMargin:
     """By how much one statement holds, and how the runs behind that ended, both (size,)."""
 
     margin: np.ndarray
@@ -118,7 +118,7 @@ class Candidates:
         return sizes, outcome
 
     @cached_property
-    def contact(self) -> dict[str, Margin]:
+    def contact(self) -> dict[str, StatementMargin]:
         """Lowest N/(k3 l_pre) at the scenes of Fig. 2, negative where contact is lost.
 
         From the variant whose contact spring also pulls: it moves as A1 does until N = 0, and
@@ -130,7 +130,9 @@ class Candidates:
         }
         return {
             # where contact is lost, it does not matter how the run went on
-            name: Margin(lowest, np.where(lowest < 0, Outcome.converged, run.outcome))
+            name: StatementMargin(
+                lowest, np.where(lowest < 0, Outcome.converged, run.outcome)
+            )
             for name, run in runs.items()
             for lowest in [run.lowest_contact_force]
         }

@@ -30,7 +30,7 @@ from squealpipe.schema.inference import (
     Holds,
 )
 from squealpipe.tasks.inference.angle_maps import keeping_share, separating_share
-from squealpipe.tasks.inference.candidates import Candidates, Margin
+from squealpipe.tasks.inference.candidates import Candidates, StatementMargin
 
 
 class Stage(IntEnum):
@@ -55,13 +55,13 @@ class Constraint(NamedTuple):
     name: str
     stage: Stage
     criterion: str
-    check: Callable[[Candidates], Margin]
+    check: Callable[[Candidates], StatementMargin]
 
 
 CONSTRAINTS: list[Constraint] = []
 """What the paper says of its figures, where it constrains the parameters: the functions below."""
 
-Check = Callable[[Candidates], Margin]
+Check = Callable[[Candidates], StatementMargin]
 
 
 def constrains(name: str, stage: Stage, criterion: str) -> Callable[[Check], Check]:
@@ -80,7 +80,7 @@ def constrains(name: str, stage: Stage, criterion: str) -> Callable[[Check], Che
     "A3 stable at (0.4π, 0.6π): undamped, μ sgn V < cot 0.4π and no flutter; margin det/(K11 k3), "
     "or disc/(trace/2)² in flutter; damped, less the growth rate times √(m/k1)",
 )
-def _linearly_stable(candidates: Candidates) -> Margin:
+def _linearly_stable(candidates: Candidates) -> StatementMargin:
     stiffness, _, invariants = candidates.linear(SCENES["F3"])
     fields = candidates.fields
     divergence = (
@@ -107,7 +107,7 @@ def _linearly_stable(candidates: Candidates) -> Margin:
     "K22 + k3, over k1: 1 − κ at the latter; if coupled, −|K12|/k1 or, by unequal dashpots, "
     "−|C12|/√(m k1)",
 )
-def _modes_switched(candidates: Candidates) -> Margin:
+def _modes_switched(candidates: Candidates) -> StatementMargin:
     fields = candidates.fields
     before = candidates.linear(SCENES["F12"]).stiffness
     after = candidates.linear(SCENES["F13"]).stiffness
@@ -136,9 +136,9 @@ for _name in ("F2a", "F2b", "F2c"):
     Stage.contact,
     "contact is lost; margin −lowest N/(k3 l_pre) if the contact spring could pull",
 )
-def _loses_contact(candidates: Candidates) -> Margin:
+def _loses_contact(candidates: Candidates) -> StatementMargin:
     lowest = candidates.contact["F2d"]
-    return Margin(-lowest.margin, lowest.outcome)
+    return StatementMargin(-lowest.margin, lowest.outcome)
 
 
 @constrains(
@@ -146,10 +146,10 @@ def _loses_contact(candidates: Candidates) -> Margin:
     Stage.contact,
     f"lowest N/(k3 l_pre) of F2a to F2c within {LITTLE}; margin {LITTLE} − spread",
 )
-def _alike(candidates: Candidates) -> Margin:
+def _alike(candidates: Candidates) -> StatementMargin:
     runs = [candidates.contact[name] for name in ("F2a", "F2b", "F2c")]
     lowest = np.stack([np.maximum(run.margin, 0.0) for run in runs])
-    return Margin(
+    return StatementMargin(
         LITTLE - np.ptp(lowest, axis=0), np.max([run.outcome for run in runs], axis=0)
     )
 
@@ -171,9 +171,9 @@ def _growth_and_size(
     Stage.growth,
     f"largest |x|: {RULE}; margin ln(least ratio/{GROWS:g}), none where it is undecided",
 )
-def _grows(candidates: Candidates) -> Margin:
+def _grows(candidates: Candidates) -> StatementMargin:
     sizes, outcome = candidates.windows(SCENES["F3"])
-    return Margin(growth_margin(sizes), outcome)
+    return StatementMargin(growth_margin(sizes), outcome)
 
 
 @constrains(
@@ -182,9 +182,11 @@ def _grows(candidates: Candidates) -> Margin:
     f"|x| stays below 2L and its second half below {GROWTH_THRESHOLD:g} times the first; "
     f"margin min(ln(2L/|x|), ln({GROWTH_THRESHOLD:g}/growth))",
 )
-def _stays_bounded(candidates: Candidates) -> Margin:
+def _stays_bounded(candidates: Candidates) -> StatementMargin:
     growth, size, outcome = _growth_and_size(candidates, SCENES["F4"])
-    return Margin(np.minimum(np.log(GROWTH_THRESHOLD) - growth, -size), outcome)
+    return StatementMargin(
+        np.minimum(np.log(GROWTH_THRESHOLD) - growth, -size), outcome
+    )
 
 
 @constrains(
@@ -193,13 +195,13 @@ def _stays_bounded(candidates: Candidates) -> Margin:
     f"peak force and time off the belt at (π, π) and (0, 0) differ by d < {SAME_FORCE}; "
     f"margin ({SAME_FORCE} − d)/({SAME_FORCE} + d)",
 )
-def _same_levels(candidates: Candidates) -> Margin:
+def _same_levels(candidates: Candidates) -> StatementMargin:
     first, second = candidates.level, candidates.run(SCENES["F5b"])
     force = np.abs(first.peak_contact_force - second.peak_contact_force)
     share = np.abs(first.separated_time - second.separated_time) / first.time
     difference = np.maximum(force, share)
     margin = (SAME_FORCE - difference) / (SAME_FORCE + difference)
-    return Margin(margin, np.maximum(first.outcome, second.outcome))
+    return StatementMargin(margin, np.maximum(first.outcome, second.outcome))
 
 
 @constrains(
@@ -207,9 +209,9 @@ def _same_levels(candidates: Candidates) -> Margin:
     Stage.level,
     f"at least {JUMPS} separations at (π, π); margin (separations − {JUMPS - 0.5})/{JUMPS}",
 )
-def _jumps(candidates: Candidates) -> Margin:
+def _jumps(candidates: Candidates) -> StatementMargin:
     run = candidates.level
-    return Margin((run.separations - (JUMPS - 0.5)) / JUMPS, run.outcome)
+    return StatementMargin((run.separations - (JUMPS - 0.5)) / JUMPS, run.outcome)
 
 
 @constrains(
@@ -218,7 +220,7 @@ def _jumps(candidates: Candidates) -> Margin:
     "no unstable cell fulfils Eq. (11) taken literally, μ < K11/K12; margin 1, or −their share of "
     "the unstable cells",
 )
-def _unstable_only_without_sliding(candidates: Candidates) -> Margin:
+def _unstable_only_without_sliding(candidates: Candidates) -> StatementMargin:
     shares = []
     for params, cells in zip(candidates.sets, candidates.unstable, strict=True):
         springs = contact_system(params, cells.alpha1, cells.alpha2).stiffness
@@ -232,7 +234,7 @@ def _unstable_only_without_sliding(candidates: Candidates) -> Margin:
     Stage.maps,
     "A1 separates in more than half of the angle map; margin share/½ − 1",
 )
-def _separates_mostly(candidates: Candidates) -> Margin:
+def _separates_mostly(candidates: Candidates) -> StatementMargin:
     return _closed(separating_share(candidates) / LARGE_REGION - 1.0)
 
 
@@ -242,7 +244,7 @@ def _separates_mostly(candidates: Candidates) -> Margin:
     "A1 keeps contact in an unstable cell of A3, the black region; margin share of such cells "
     "around the disc of flutter, 5 % inside, or −1",
 )
-def _unstable_in_contact(candidates: Candidates) -> Margin:
+def _unstable_in_contact(candidates: Candidates) -> StatementMargin:
     share = keeping_share(candidates)
     return _closed(np.where(share > 0, share, -1.0))
 
@@ -257,13 +259,15 @@ def _coupling_by_dashpots(fields: Mapping[str, np.ndarray]) -> np.ndarray:
     return np.asarray(np.max(np.abs(c12), axis=0) * np.sqrt(p.k1 / p.mass))
 
 
-def _closed(margin: np.ndarray) -> Margin:
-    return Margin(margin, np.full(np.shape(margin), int(Outcome.converged), np.int8))
+def _closed(margin: np.ndarray) -> StatementMargin:
+    return StatementMargin(
+        margin, np.full(np.shape(margin), int(Outcome.converged), np.int8)
+    )
 
 
 def measure(
     candidates: Candidates, stages: Iterable[Stage] = Stage
-) -> dict[str, Margin]:
+) -> dict[str, StatementMargin]:
     """The margin of every statement of some stages, for every candidate."""
     return {
         each.name: each.check(candidates)
@@ -272,7 +276,7 @@ def measure(
     }
 
 
-def verdicts(found: Margin) -> np.ndarray:
+def verdicts(found: StatementMargin) -> np.ndarray:
     """:class:`squealpipe.schema.inference.Holds` of each candidate."""
     decided = (found.outcome == Outcome.converged) & np.isfinite(found.margin)
     return np.where(decided, found.margin > 0, int(Holds.undecided))

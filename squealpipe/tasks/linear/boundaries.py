@@ -7,7 +7,7 @@ from squealpipe.models import a3
 from squealpipe.models.refusals import WHY_CIRCLES, refuse_extensions
 from squealpipe.parameters import Parameters
 from squealpipe.schema import build
-from squealpipe.schema.linear import STABILITY_BOUNDARIES, Boundary
+from squealpipe.schema.linear import STABILITY_BOUNDARIES, BoundaryCurve
 
 
 def stability_boundaries(params: Parameters, *, points: int = 400) -> xr.Dataset:
@@ -23,16 +23,16 @@ def stability_boundaries(params: Parameters, *, points: int = 400) -> xr.Dataset
     refuse_extensions(params, "stability_boundaries", WHY_CIRCLES)
     total = params.k1 + params.k2
     arcs = {
-        Boundary.flutter: a3.circle_arcs(
+        BoundaryCurve.flutter: a3.circle_arcs(
             params, *a3.flutter_circle(params, params.k3), points
         ),
-        Boundary.divergence: a3.circle_arcs(
+        BoundaryCurve.divergence: a3.circle_arcs(
             params, *a3.divergence_circle(params, params.k3), points
         ),
-        Boundary.reaction_changes_sign: a3.line_parts(
+        BoundaryCurve.reaction_changes_sign: a3.line_parts(
             params, 1 - 1j * params.drag, -total, points
         ),
-        Boundary.no_coupling: a3.line_parts(params, 1j, 0.0, points),
+        BoundaryCurve.no_coupling: a3.line_parts(params, 1j, 0.0, points),
     }
     segments = [
         (boundary, *np.unwrap(branch, period=np.pi))
@@ -44,7 +44,7 @@ def stability_boundaries(params: Parameters, *, points: int = 400) -> xr.Dataset
         # Z = 0 all along α1 + α2 = π/2 and 3π/2, where angles_from_plane has no answer.
         along = np.linspace(0.0, np.pi, points)
         segments += [
-            (Boundary.no_coupling, along, turn - along)
+            (BoundaryCurve.no_coupling, along, turn - along)
             for turn in (np.pi / 2, 1.5 * np.pi)
         ]
     alpha1, alpha2 = (

@@ -10,7 +10,11 @@ import xarray as xr
 
 from squealpipe.laws.springs import Geometry, linear_stiffness, pair_determinant
 from squealpipe.models import a2, a3
-from squealpipe.models.a4 import Spectrum, natural_frequencies_squared, spectrum
+from squealpipe.models.a4 import (
+    StiffnessSpectrum,
+    natural_frequencies_squared,
+    spectrum,
+)
 from squealpipe.models.contact_system import contact_system
 from squealpipe.models.damped import damped_system, is_undamped, stability
 from squealpipe.models.refusals import WHY_A4, refuse_extensions, refuse_scales
@@ -182,7 +186,7 @@ def natural_frequencies(
 
 def _spectrum(
     params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray, k3: float
-) -> Spectrum:
+) -> StiffnessSpectrum:
     """Invariants over the map, each to full relative precision for the angles as given.
 
     Next to a boundary the discriminant or the determinant is a small difference of rounded

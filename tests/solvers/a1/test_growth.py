@@ -8,7 +8,7 @@ from squealpipe.laws.friction_laws import LAWS
 from squealpipe.parameters import Parameters
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.solvers.a1.scaling import PHYSICAL
-from squealpipe.tasks.cycles.scene import Scene
+from squealpipe.tasks.cycles.scene import CycleScene
 from squealpipe.tasks.cycles.sliding import steady_sliding
 from tests.former import FORMER
 from tests.oracles.a1_long_double import derivative_along, simulate_reference
@@ -126,7 +126,7 @@ def resting_runs(count, seed):
             friction_speed=np.exp(rng.uniform(-3.0, 1.0)) * length / unit,
         )  # fmt: skip
         angles = rng.uniform(0.0, np.pi, 2)
-        found = steady_sliding(Scene(params, *angles))
+        found = steady_sliding(CycleScene(params, *angles))
         if found is None:
             continue
         scale = np.array([length, length, length / unit, length / unit])
@@ -156,7 +156,7 @@ def test_growth_of_a_motion_that_dies_out_is_that_of_the_linear_system():
 
 def test_growth_of_undamped_steady_sliding():
     place = FORMER.with_(k3=0.75, length1=5.0, length2=5.0), 0.83 * np.pi, 0.83 * np.pi
-    found = steady_sliding(Scene(*place))
+    found = steady_sliding(CycleScene(*place))
     run = run_ensemble(*place, t_end=200.0, initial_state=found.state, tangent=True)
     growth = np.linalg.norm(expm(200.0 * found.jacobian) @ HALVES)
     assert run.log_growth == pytest.approx(np.log(growth), abs=1e-4)

@@ -10,7 +10,7 @@ from squealpipe.laws.springs import geometry, linear_stiffness
 from squealpipe.models.damped import critical_friction
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.tasks.cycles.scene import Scene
+from squealpipe.tasks.cycles.scene import CycleScene
 from squealpipe.tasks.cycles.sliding import steady_sliding
 from squealpipe.tasks.dynamics.motion import linear_time
 from tests.former import FORMER
@@ -183,7 +183,7 @@ def test_steady_sliding_is_found_in_any_units():
             mass=params.mass * 1e4, preload=params.preload * unit,
             length1=1e6 * unit, length2=1e6 * unit, belt_speed=params.belt_speed * unit,
         )  # fmt: skip
-        found = steady_sliding(Scene(params, alpha1, alpha2))
+        found = steady_sliding(CycleScene(params, alpha1, alpha2))
         assert found is not None
         expected = steady_state(params, alpha1, alpha2)
         np.testing.assert_allclose(
@@ -214,7 +214,7 @@ def test_laws_of_the_same_forces_have_the_same_disturbance():
 def test_where_steady_sliding_lies_in_a_later_piece_of_the_contact_law():
     """Its force balances the springs' there; the first piece alone has another equilibrium."""
     soft = FORMER.with_(mu=0.1, contact_law="linear 0.0:0.0 0.5:0.1 1.0:0.6")
-    scene = Scene(soft, 2.0, 1.9)
+    scene = CycleScene(soft, 2.0, 1.9)
     found = steady_sliding(scene)
     start = tuple(found.state * scene.state_units)
     run = simulate(soft, 2.0, 1.9, t_end=20.0, initial_state=start)

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 import squealpipe
-from squealpipe.methods.zero_lines import Grid, ZeroLines, inside
+from squealpipe.methods.zero_lines import FirstGrid, ZeroLines, inside
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 
@@ -127,7 +127,7 @@ def test_a_lens_has_its_area_and_its_corners():
     def mark(place, slope):
         return np.asarray(squares(place).argmax(axis=0))
 
-    lines = ZeroLines(two_discs, mark, Grid(11, 2), jump=0.5)
+    lines = ZeroLines(two_discs, mark, FirstGrid(11, 2), jump=0.5)
     (lens,) = lines.loops(positive=True)
     outer, hole = sorted(lines.loops(positive=False), key=lambda loop: -loop.area)
     exact = 0.18 * np.arccos(1 / 3) - 0.1 * np.sqrt(0.32)

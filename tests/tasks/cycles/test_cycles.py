@@ -14,7 +14,7 @@ from squealpipe.schema.branch_labels import Label
 from squealpipe.systems.cycles.guess import once_round
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.tasks.cycles.cycle import cycle_from
-from squealpipe.tasks.cycles.scene import Scene
+from squealpipe.tasks.cycles.scene import CycleScene
 from squealpipe.tasks.normal_form import exchanged
 from tests.former import FORMER
 from tests.oracles.a1_long_double import derivative_along
@@ -223,7 +223,7 @@ def test_branch_refuses_what_it_cannot_do(change, named):
 @pytest.mark.parametrize("rounds", [2, 3, 6, 25])
 def test_a_return_after_several_rounds_gives_the_least_period(rounds):
     params, angles = oscillator(1e4, 1.25, **BSTAB), ANGLES
-    once, _ = cycle_from(Scene(params, *angles), (1.5, 0.25, 1.25, 0.0))
+    once, _ = cycle_from(CycleScene(params, *angles), (1.5, 0.25, 1.25, 0.0))
     parts = once.parts
     several = replace(once.map, events=once.map.events * rounds)
     states, durations = (

@@ -10,7 +10,7 @@ from squealpipe.parameters import NUMBERS_OF_A1
 from squealpipe.schema.branch_labels import Label
 from squealpipe.systems.cycles.branch import first_point
 from squealpipe.tasks.cycles.cycle import cycle_from
-from squealpipe.tasks.cycles.scene import Scene
+from squealpipe.tasks.cycles.scene import CycleScene
 from tests.former import FORMER
 from tests.oracles.differences import assert_jacobian
 
@@ -127,7 +127,7 @@ def pad():
 
 @pytest.fixture(scope="module")
 def cycle(pad):
-    return cycle_from(Scene(pad, *ANGLES))[0]
+    return cycle_from(CycleScene(pad, *ANGLES))[0]
 
 
 @pytest.mark.parametrize(
@@ -173,7 +173,7 @@ def test_a_scene_elsewhere_is_that_of_the_parameters_there(name):
     params = Parameters(
         mass=2.0, k1=3.0, preload=0.5, belt_speed=0.6, friction_law=TABLE
     )
-    scene = Scene(params, *ANGLES, follow=name)
+    scene = CycleScene(params, *ANGLES, follow=name)
     value = 1.2 * getattr(params, name)
     moved = scene.at(value / scene.units[name])
     assert moved.values[name] == pytest.approx(value / scene.units[name], rel=1e-14)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy.integrate
 
-from squealpipe.schema.linear import Boundary
+from squealpipe.schema.linear import BoundaryCurve
 from squealpipe.tasks.linear.boundaries import stability_boundaries
 from squealpipe.tasks.linear.maps import quasi_static_map, stability_map
 from tests import symbols
@@ -26,10 +26,10 @@ def test_every_point_lies_on_its_curve_which_is_continuous(params):
     k11, k12, k22 = STIFFNESS(params, **angles)
     coupled = k12 + params.mu * params.k3
     functions = {
-        Boundary.flutter: (k11 - k22 - params.k3) ** 2 / 4 + k12 * coupled,
-        Boundary.divergence: k11 * (k22 + params.k3) - k12 * coupled,
-        Boundary.reaction_changes_sign: k11 - params.mu * k12,
-        Boundary.no_coupling: k12,
+        BoundaryCurve.flutter: (k11 - k22 - params.k3) ** 2 / 4 + k12 * coupled,
+        BoundaryCurve.divergence: k11 * (k22 + params.k3) - k12 * coupled,
+        BoundaryCurve.reaction_changes_sign: k11 - params.mu * k12,
+        BoundaryCurve.no_coupling: k12,
     }
     for kind, values in functions.items():
         chosen = curves.boundary.values == kind
@@ -43,7 +43,7 @@ def test_every_point_lies_on_its_curve_which_is_continuous(params):
 
 @pytest.mark.parametrize("params", [BASELINE, UNEQUAL])
 @pytest.mark.parametrize(
-    ("kind", "regime"), [(Boundary.flutter, 1), (Boundary.divergence, 2)]
+    ("kind", "regime"), [(BoundaryCurve.flutter, 1), (BoundaryCurve.divergence, 2)]
 )
 def test_the_regime_changes_across_the_curve(params, kind, regime):
     curves = stability_boundaries(params, points=41)
@@ -60,7 +60,7 @@ def test_the_regime_changes_across_the_curve(params, kind, regime):
 
 def test_no_curve_where_there_is_no_friction():
     curves = stability_boundaries(BASELINE.with_(mu=0.0), points=21)
-    assert not np.isin(curves.boundary, (Boundary.flutter,)).any()
+    assert not np.isin(curves.boundary, (BoundaryCurve.flutter,)).any()
 
 
 @pytest.mark.parametrize("mu", [0.3, 1.0])

@@ -1,14 +1,14 @@
 """Statements of the abstract and of Table 1: levels, hammering, earlier models, coupled modes."""
 
 from squealpipe.codes import Event, LinearRegime
-from squealpipe.schema.claims import Verdict
+from squealpipe.schema.claims import ClaimVerdict
 from squealpipe.schema.linear import ALIKE
 from squealpipe.study.claims.checks.motions import events, scene
-from squealpipe.study.claims.evidence import Finding, Run, finding
+from squealpipe.study.claims.evidence import Evidence, Finding, finding
 from squealpipe.study.claims.maps import share
-from squealpipe.study.claims.statement import Rows
+from squealpipe.study.claims.statement import StatementRows
 
-rows = Rows("abstract", "fig02")
+rows = StatementRows("abstract", "fig02")
 
 LEVELS = ("A1", "A2", "A3", "A4")
 
@@ -24,9 +24,9 @@ IMPULSE = 0.5
     "four model levels, each with its assumptions, which hold along the motions that it computes",
     section="Table 1",
     figure="",
-    recorded=Verdict.fails,
+    recorded=ClaimVerdict.fails,
 )
-def levels_have_assumptions(run: Run) -> Finding:
+def levels_have_assumptions(run: Evidence) -> Finding:
     """Smallest share of scenes, over the levels, in which all of a level's assumptions held."""
     table = run["assumptions"].sel(level=list(LEVELS))
     broken = ((table.needed == 1) & (table.held == 0)).any("assumption")
@@ -48,7 +48,7 @@ def levels_have_assumptions(run: Run) -> Finding:
     "the pad loses contact and excites the disc with impulsive forces (hammering)",
     section="abstract, 3",
 )
-def hammering_occurs(run: Run) -> Finding:
+def hammering_occurs(run: Evidence) -> Finding:
     """Largest contact force after the first return to the belt at (0.83π, 0.83π), over the load
     from which the motion starts.
     """
@@ -78,7 +78,7 @@ def hammering_occurs(run: Run) -> Finding:
     "assumptions of earlier models (permanent contact, fixed spring angles) are not valid",
     section="abstract, 4",
 )
-def earlier_assumptions_fail(run: Run) -> Finding:
+def earlier_assumptions_fail(run: Evidence) -> Finding:
     """Scenes in which A1 breaks each of the two, the smaller number."""
     motion = run["assumptions"].sel(level="A1")
     lost = motion.held.sel(assumption="contact is kept") == 0
@@ -100,7 +100,7 @@ def earlier_assumptions_fail(run: Run) -> Finding:
     section="abstract, 6",
     consequence="S3",
 )
-def modes_couple(run: Run) -> Finding:
+def modes_couple(run: Evidence) -> Finding:
     """Largest modal assurance criterion of the two modes: 1 is one shape, 0 two that are
     perpendicular, as without friction. That some cell flutters is a further condition.
     """

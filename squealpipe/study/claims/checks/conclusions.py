@@ -4,15 +4,15 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.codes import Event
-from squealpipe.schema.claims import Verdict
+from squealpipe.schema.claims import ClaimVerdict
 from squealpipe.study.claims.checks import figures_6_and_7
 from squealpipe.study.claims.checks.figures_10_to_13 import branch
 from squealpipe.study.claims.checks.motions import events, frequency, scene
-from squealpipe.study.claims.evidence import Finding, Run, finding
+from squealpipe.study.claims.evidence import Evidence, Finding, finding
 from squealpipe.study.claims.maps import cell, order_turns_over, share, unstable_cells
-from squealpipe.study.claims.statement import Rows
+from squealpipe.study.claims.statement import StatementRows
 
-rows = Rows("9")
+rows = StatementRows("9")
 
 RESPONSES = ((0.5, 1.0), (1.0, 0.5), (0.75, 0.75), (5 / 6, 5 / 6))
 """Angles over π of the scenes of Figs. 10 to 13."""
@@ -28,9 +28,9 @@ DIFFERENCE = 0.1
     "C1",
     "the modes switch when the surfaces separate",
     figure="fig13",
-    recorded=Verdict.fails,
+    recorded=ClaimVerdict.fails,
 )
-def modes_switch_at_separation(run: Run) -> Finding:
+def modes_switch_at_separation(run: Evidence) -> Finding:
     """Share of the paper's scenes, Figs. 10 to 13, in which the order of the x and y directions
     turns over at separation, K22 < K11 < K22 + k3.
     """
@@ -53,7 +53,7 @@ rows.add(
     "C2",
     "unstable motion occurs only where quasi-static sliding is impossible",
     figure="fig06",
-    recorded=Verdict.holds_only_as_printed,
+    recorded=ClaimVerdict.holds_only_as_printed,
     consequence="F6b",
     physics=figures_6_and_7.no_pressed_cell_is_unstable,
 )(figures_6_and_7.unstable_only_without_sliding)
@@ -65,7 +65,7 @@ rows.add(
     figure="fig10_to_12",
     section="7, 9",
 )
-def time_and_frequency_agree(run: Run) -> Finding:
+def time_and_frequency_agree(run: Evidence) -> Finding:
     """Largest relative difference of the frequency in A1 from ω2 of A4."""
     differences, lines = [], []
     for name, twin in (("F2a", "F10"), ("F2b", "F11"), ("F2c", "F12")):
@@ -89,7 +89,7 @@ def time_and_frequency_agree(run: Run) -> Finding:
     "the contact loss must not be left out (A1 against A1 without separation)",
     figure="fig02",
 )
-def contact_loss_matters(run: Run) -> Finding:
+def contact_loss_matters(run: Evidence) -> Finding:
     """Median relative change of the largest displacement in scenes that lose contact."""
     table = run["assumptions"]
     lost = table.held.sel(level="A1", assumption="contact is kept").values == 0
@@ -109,7 +109,7 @@ def contact_loss_matters(run: Run) -> Finding:
 
 
 @rows.add("C5", "the directions of the constraints decide stability", figure="fig06")
-def directions_decide(run: Run) -> Finding:
+def directions_decide(run: Evidence) -> Finding:
     """Smaller of the shares of cells that are stable and unstable by A3."""
     unstable = share(unstable_cells(run))
     return finding(

@@ -4,10 +4,15 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.schema import Outcome
-from squealpipe.study.claims.evidence import Finding, MissingDataError, Run, finding
-from squealpipe.study.claims.statement import Check, Rows
+from squealpipe.study.claims.evidence import (
+    Evidence,
+    Finding,
+    MissingDataError,
+    finding,
+)
+from squealpipe.study.claims.statement import Check, StatementRows
 
-rows = Rows("7", "fig10_to_12")
+rows = StatementRows("7", "fig10_to_12")
 
 ALONE = 1e-9
 """Amplitude, as a share of the other one's, below which a direction takes no part."""
@@ -26,7 +31,7 @@ USABLE = (
 )
 
 
-def branch(run: Run, scene: str, mode: int) -> xr.Dataset:
+def branch(run: Evidence, scene: str, mode: int) -> xr.Dataset:
     """The points of an exact backbone that are orbits."""
     dataset = run[f"backbone/{scene}_mode{mode}"]
     points = dataset.isel(point=np.isin(dataset.outcome, USABLE))
@@ -36,7 +41,7 @@ def branch(run: Run, scene: str, mode: int) -> xr.Dataset:
 
 
 @rows.add("F10", "(π/2, π): near ω1 one peak, in x alone; near ω2 peaks in x and y")
-def first_mode_is_isolated(run: Run) -> Finding:
+def first_mode_is_isolated(run: Evidence) -> Finding:
     """y amplitude of mode 1, as a share of its x amplitude."""
     alone, both = (_participation(branch(run, "F10", mode)) for mode in (1, 2))
     x, y = (amplitude / run.parameters.preload for amplitude in both)
@@ -53,7 +58,7 @@ def first_mode_is_isolated(run: Run) -> Finding:
 def same_as_first(scene: str) -> Check:
     """F11, F12: frequencies and x amplitudes against those of (π/2, π), at equal y_peak."""
 
-    def check(run: Run) -> Finding:
+    def check(run: Evidence) -> Finding:
         """Largest relative difference of ω from (π/2, π) at equal y."""
         reference, other = branch(run, "F10", 2), branch(run, scene, 2)
         linear = linear_omega(reference)
@@ -82,7 +87,7 @@ for name, angles in (("F11", "(π, π/2)"), ("F12", "(3π/4, 3π/4)")):
 def bends_down(scene: str) -> Check:
     """F10b, F11b, F12b: y passes l_pre and the frequency then falls."""
 
-    def check(run: Run) -> Finding:
+    def check(run: Evidence) -> Finding:
         """Relative drop of ω along the branch."""
         points = branch(run, scene, 2)
         preload = run.parameters.preload
@@ -116,7 +121,7 @@ for name, text in (
     "isolated x motion is the second",
     figure="fig13",
 )
-def modes_are_switched(run: Run) -> Finding:
+def modes_are_switched(run: Evidence) -> Finding:
     """y amplitude of mode 2, as a share of its x amplitude."""
     first, second = branch(run, "F13", 1), branch(run, "F13", 2)
     x_amplitude, y_amplitude = _participation(second)

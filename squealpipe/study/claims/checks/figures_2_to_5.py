@@ -3,7 +3,7 @@
 import numpy as np
 
 from squealpipe.codes import Event
-from squealpipe.schema.claims import Verdict
+from squealpipe.schema.claims import ClaimVerdict
 from squealpipe.schema.dynamics.growth import (
     GROWS,
     WINDOW,
@@ -21,10 +21,10 @@ from squealpipe.study.claims.checks.motions import (
     until,
     windows,
 )
-from squealpipe.study.claims.evidence import Finding, Run, finding
-from squealpipe.study.claims.statement import Check, Rows
+from squealpipe.study.claims.evidence import Evidence, Finding, finding
+from squealpipe.study.claims.statement import Check, StatementRows
 
-rows = Rows("4", "fig02")
+rows = StatementRows("4", "fig02")
 
 REPEATS = 1e-3
 """Change of the state between returns, as a share of its range, up to which a motion repeats."""
@@ -33,7 +33,7 @@ REPEATS = 1e-3
 def contact_is_kept(name: str) -> Check:
     """F2a–F2c: the lowest contact force of the run, and no separation event."""
 
-    def check(run: Run) -> Finding:
+    def check(run: Evidence) -> Finding:
         """Lowest contact force over the run, as a share of the preload."""
         motion = scene(run, name)
         lowest = float(motion.normalized_contact_force.min())
@@ -57,7 +57,7 @@ for name, angles in (
 
 
 @rows.add("F2d", "contact is lost at (0.83π, 0.83π)")
-def contact_is_lost(run: Run) -> Finding:
+def contact_is_lost(run: Evidence) -> Finding:
     """Number of separations."""
     motion = scene(run, "F2d")
     lost = events(motion, Event.separation)
@@ -69,7 +69,7 @@ def contact_is_lost(run: Run) -> Finding:
 
 
 @rows.add("F2e", "the first three responses differ little from one another")
-def responses_differ_little(run: Run) -> Finding:
+def responses_differ_little(run: Evidence) -> Finding:
     """Spread of the extremes of the contact force, as a share of the preload.
 
     The paper gives no number for "a minimal difference". It may mean little against the preload,
@@ -83,14 +83,14 @@ def responses_differ_little(run: Run) -> Finding:
     spread = float(np.ptp(extremes[:3], axis=0).max())
     apart = float(np.abs(extremes[:3] - extremes[3]).max(axis=1).min())
     closer = spread < apart
-    undecided = Verdict.cannot_be_decided
+    undecided = ClaimVerdict.cannot_be_decided
     return finding(
         (spread, "≤", LITTLE),
         f"The lowest forces are {_listed(extremes[:3, 0])} of the preload, the highest "
         f"{_listed(extremes[:3, 1])}: a spread of {spread:.3g}, and at least {apart:.3g} from the "
         f"fourth response. The text has no number for “minimal”; the inference took {LITTLE:g}.",
-        passed=Verdict.holds if closer else undecided,
-        otherwise=undecided if closer else Verdict.fails,
+        passed=ClaimVerdict.holds if closer else undecided,
+        otherwise=undecided if closer else ClaimVerdict.fails,
     )
 
 
@@ -98,9 +98,9 @@ def responses_differ_little(run: Run) -> Finding:
     "F3",
     "at (0.4π, 0.6π) the x oscillation grows without bound",
     figure="fig03",
-    recorded=Verdict.holds_only_as_printed,
+    recorded=ClaimVerdict.holds_only_as_printed,
 )
-def unstable_response_grows(run: Run) -> Finding:
+def unstable_response_grows(run: Evidence) -> Finding:
     """Least growth of the largest |x| from window to window at the end of a long run."""
     shown, longer = scene(run, "F3"), scene(run, "F3_long")
     early, late = halves(shown)
@@ -113,7 +113,7 @@ def unstable_response_grows(run: Run) -> Finding:
         f"{_listed(sizes)} l_pre: it {growth.name.replace('undecided', 'is undecided')}. In the "
         f"time of the paper's figure it reaches {early:.3g} l_pre in the first half of the run to "
         f"{until(run, shown)} and {late:.3g} l_pre in the second.",
-        otherwise=Verdict.cannot_be_decided if undecided else Verdict.fails,
+        otherwise=ClaimVerdict.cannot_be_decided if undecided else ClaimVerdict.fails,
     )
 
 
@@ -121,9 +121,9 @@ def unstable_response_grows(run: Run) -> Finding:
     "F4",
     "at (0.2π, 0.8π) there is a bounded limit cycle",
     figure="fig04",
-    recorded=Verdict.fails,
+    recorded=ClaimVerdict.fails,
 )
-def limit_cycle_is_bounded(run: Run) -> Finding:
+def limit_cycle_is_bounded(run: Evidence) -> Finding:
     """Largest change of the state between returns to the belt in a long run, as a share of its
     range, for the number of returns apart for which it is least; that |x| is bounded is a
     further condition.
@@ -168,7 +168,7 @@ def limit_cycle_is_bounded(run: Run) -> Finding:
 
 
 @rows.add("F5a", "(π, π) and (0, 0) give identical contact forces", figure="fig05")
-def runs_are_identical(run: Run) -> Finding:
+def runs_are_identical(run: Evidence) -> Finding:
     """Largest difference of the contact forces, as a share of the preload."""
     first, second = (
         scene(run, name).normalized_contact_force for name in ("F5a", "F5b")
@@ -185,7 +185,7 @@ def runs_are_identical(run: Run) -> Finding:
     "there the mass jumps again and again, for lack of vertical stiffness",
     figure="fig05",
 )
-def mass_jumps(run: Run) -> Finding:
+def mass_jumps(run: Evidence) -> Finding:
     """Number of flights."""
     motion = scene(run, "F5a")
     flights = events(motion, Event.separation).size

@@ -1,10 +1,10 @@
 """Statements on quasi-static sliding and linear stability (Figs. 6 and 7)."""
 
-from squealpipe.schema.claims import Verdict
+from squealpipe.schema.claims import ClaimVerdict
 from squealpipe.schema.dynamics.growth import WINDOW, Growth, judge_growth
 from squealpipe.schema.inference import LARGE_REGION
 from squealpipe.study.claims.checks.motions import scene, windows
-from squealpipe.study.claims.evidence import Finding, Run, finding
+from squealpipe.study.claims.evidence import Evidence, Finding, finding
 from squealpipe.study.claims.maps import (
     cell,
     on_grid_of,
@@ -13,9 +13,9 @@ from squealpipe.study.claims.maps import (
     unstable_cells,
     unstable_yet_sliding,
 )
-from squealpipe.study.claims.statement import Rows
+from squealpipe.study.claims.statement import StatementRows
 
-rows = Rows("6", "fig06")
+rows = StatementRows("6", "fig06")
 
 SMALLEST_RATE = 1e-9
 """Growth rate, times the unit of time, up to which a linear motion does not grow."""
@@ -28,9 +28,9 @@ ADEQUATE_AGREEMENT = 0.95
     "F6a",
     "Eq. (11) bounds where quasi-static sliding exists",
     section="5",
-    recorded=Verdict.fails,
+    recorded=ClaimVerdict.fails,
 )
-def printed_bound_is_physical(run: Run) -> Finding:
+def printed_bound_is_physical(run: Evidence) -> Finding:
     """Cells in which Eq. (11) as printed and the sign of the reaction force differ."""
     sliding = run["quasi_static_map"]
     differ = sliding.possible_as_printed != sliding.possible
@@ -44,7 +44,7 @@ def printed_bound_is_physical(run: Run) -> Finding:
     )
 
 
-def no_pressed_cell_is_unstable(run: Run) -> Finding:
+def no_pressed_cell_is_unstable(run: Evidence) -> Finding:
     """Unstable cells with a positive reaction force."""
     return _unstable_and_sliding(run, 1)
 
@@ -52,16 +52,16 @@ def no_pressed_cell_is_unstable(run: Run) -> Finding:
 @rows.add(
     "F6b",
     "every linearly unstable cell lies where quasi-static sliding is impossible",
-    recorded=Verdict.holds_only_as_printed,
+    recorded=ClaimVerdict.holds_only_as_printed,
     consequence="F6b",
     physics=no_pressed_cell_is_unstable,
 )
-def unstable_only_without_sliding(run: Run) -> Finding:
+def unstable_only_without_sliding(run: Evidence) -> Finding:
     """Unstable cells that Eq. (11) allows; with one sign, those with a positive reaction force."""
     return _unstable_and_sliding(run, 0)
 
 
-def _unstable_and_sliding(run: Run, which: int) -> Finding:
+def _unstable_and_sliding(run: Evidence, which: int) -> Finding:
     counts = [int(cells.sum()) for cells in unstable_yet_sliding(run)]
     return finding(
         (counts[which], "≤", 0),
@@ -70,7 +70,7 @@ def _unstable_and_sliding(run: Run, which: int) -> Finding:
     )
 
 
-def no_pressed_share_is_unstable(run: Run) -> Finding:
+def no_pressed_share_is_unstable(run: Evidence) -> Finding:
     """Share of cells with a positive reaction force that are unstable."""
     return _unstable_share(run, 1)
 
@@ -78,18 +78,18 @@ def no_pressed_share_is_unstable(run: Run) -> Finding:
 @rows.add(
     "F6c",
     "the system is stable wherever quasi-static sliding persists",
-    recorded=Verdict.holds_only_as_printed,
+    recorded=ClaimVerdict.holds_only_as_printed,
     consequence="F6b",
     physics=no_pressed_share_is_unstable,
 )
-def stable_where_sliding(run: Run) -> Finding:
+def stable_where_sliding(run: Evidence) -> Finding:
     """Share of cells that Eq. (11) allows that are unstable; with one sign, of those with a
     positive reaction force.
     """
     return _unstable_share(run, 0)
 
 
-def _unstable_share(run: Run, which: int) -> Finding:
+def _unstable_share(run: Evidence, which: int) -> Finding:
     sliding = run["quasi_static_map"]
     shares = [
         float(cells.sum() / max(int(allowed.sum()), 1))
@@ -109,9 +109,9 @@ def _unstable_share(run: Run, which: int) -> Finding:
 @rows.add(
     "F6d",
     "(0.4π, 0.6π) is linearly stable although A1 is not",
-    recorded=Verdict.holds_only_as_printed,
+    recorded=ClaimVerdict.holds_only_as_printed,
 )
-def linearly_stable_but_not(run: Run) -> Finding:
+def linearly_stable_but_not(run: Evidence) -> Finding:
     """Growth rate of A3 there, times the time unit."""
     rate = (
         float(cell(run, "stability_map", 0.4, 0.6).growth_rate)
@@ -127,7 +127,7 @@ def linearly_stable_but_not(run: Run) -> Finding:
         f"{early:.3g} l_pre in the first window of {WINDOW:g} √(m/k1) and {late:.3g} l_pre in the "
         "last.",
         also=growth is Growth.grows,
-        otherwise=Verdict.cannot_be_decided if undecided else Verdict.fails,
+        otherwise=ClaimVerdict.cannot_be_decided if undecided else ClaimVerdict.fails,
     )
 
 
@@ -135,7 +135,7 @@ def linearly_stable_but_not(run: Run) -> Finding:
     "F6e",
     "the linear model lets k3 pull as well as push, which the contact cannot: by how much, where",
 )
-def spring_pulls(run: Run) -> Finding:
+def spring_pulls(run: Evidence) -> Finding:
     """Share of cells in which the linear model's k3 pulls."""
     pull = run["linear_pull"]
     stable = on_grid_of(run["stability_map"], pull).regime_linear == 0
@@ -160,7 +160,7 @@ def spring_pulls(run: Run) -> Finding:
     figure="fig07",
     consequence="F7a",
 )
-def invalid_where_separated(run: Run) -> Finding:
+def invalid_where_separated(run: Evidence) -> Finding:
     """Share of the angles at which A1 separates: within curves, or of the cells without them."""
     cells = run["validity_map"].separates == 1
     evidence = (
@@ -182,7 +182,7 @@ def invalid_where_separated(run: Run) -> Finding:
     "the linear analysis cannot be used to decide the stability of this system",
     figure="fig07",
 )
-def linear_analysis_misleads(run: Run) -> Finding:
+def linear_analysis_misleads(run: Evidence) -> Finding:
     """Share of cells in which A3's stability and A1's contact agree."""
     validity = run["validity_map"]
     lost = validity.separates == 1

@@ -4,8 +4,13 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.schema import Outcome
-from squealpipe.schema.claims import Verdict
-from squealpipe.study.claims.evidence import Finding, MissingDataError, Run, finding
+from squealpipe.schema.claims import ClaimVerdict
+from squealpipe.study.claims.evidence import (
+    Evidence,
+    Finding,
+    MissingDataError,
+    finding,
+)
 from squealpipe.study.claims.maps import (
     AT_SCENES,
     angle_sum_over_pi,
@@ -14,9 +19,9 @@ from squealpipe.study.claims.maps import (
     place,
     share,
 )
-from squealpipe.study.claims.statement import Rows
+from squealpipe.study.claims.statement import StatementRows
 
-rows = Rows("7", "fig08")
+rows = StatementRows("7", "fig08")
 
 VANISHING = 1e-6
 """ω1 below this share of its largest value is zero."""
@@ -29,7 +34,7 @@ SMALL, LARGE = 0.1, 0.98
 
 
 @rows.add("F8a", "in contact ω1 → 0 near α1 = α2 = π/2")
-def first_vanishes_in_contact(run: Run) -> Finding:
+def first_vanishes_in_contact(run: Evidence) -> Finding:
     """ω1 at (0.5π, 0.5π), as a share of its largest value."""
     contact = _state(run, "contact")
     first = contact.omega.sel(mode=1)
@@ -47,7 +52,7 @@ def first_vanishes_in_contact(run: Run) -> Finding:
 
 
 @rows.add("F8b", "separated, ω1 = 0 along α1 + α2 = nπ")
-def first_vanishes_on_lines(run: Run) -> Finding:
+def first_vanishes_on_lines(run: Evidence) -> Finding:
     """Largest ω1 on those lines, as a share of its largest value."""
     separated = _state(run, "separated")
     first = separated.omega.sel(mode=1)
@@ -65,10 +70,10 @@ def first_vanishes_on_lines(run: Run) -> Finding:
 @rows.add(
     "F8c",
     "ω1 is largest at α1 + α2 = nπ/2 (n odd)",
-    recorded=Verdict.fails,
+    recorded=ClaimVerdict.fails,
     consequence="F8c",
 )
-def first_is_largest_on_lines(run: Run) -> Finding:
+def first_is_largest_on_lines(run: Evidence) -> Finding:
     """Excess of the largest ω1² over that on the lines, the larger of both contact states."""
     state, unit = (
         run["natural_frequencies"].sel(mode=1),
@@ -99,7 +104,7 @@ def first_is_largest_on_lines(run: Run) -> Finding:
 
 
 @rows.add("F8d", "the region where ω1 vanishes is larger when separated", section="9")
-def vanishing_region_grows(run: Run) -> Finding:
+def vanishing_region_grows(run: Evidence) -> Finding:
     """Ratio of the areas where ω1 is small, separated to contact."""
     first = run["natural_frequencies"].omega.sel(mode=1)
     return _larger_when_separated(
@@ -108,7 +113,7 @@ def vanishing_region_grows(run: Run) -> Finding:
 
 
 @rows.add("F9a", "where ω1 = 0, ω2 is largest", figure="fig09")
-def second_is_largest_where_first_vanishes(run: Run) -> Finding:
+def second_is_largest_where_first_vanishes(run: Evidence) -> Finding:
     """ω2 there, as a share of its largest value."""
     separated, contact = _state(run, "separated"), _state(run, "contact")
     lines = is_multiple(angle_sum_over_pi(separated))
@@ -129,7 +134,7 @@ def second_is_largest_where_first_vanishes(run: Run) -> Finding:
 
 
 @rows.add("F9b", "ω1 and ω2 shift in opposite directions", figure="fig09")
-def shifts_are_opposite(run: Run) -> Finding:
+def shifts_are_opposite(run: Evidence) -> Finding:
     """Share of steps between cells with opposite signs."""
     shares = {}
     unit = run.parameters.k1 / run.parameters.mass
@@ -161,7 +166,7 @@ def shifts_are_opposite(run: Run) -> Finding:
     figure="fig09",
     section="9",
 )
-def largest_region_grows(run: Run) -> Finding:
+def largest_region_grows(run: Evidence) -> Finding:
     """Ratio of the areas where ω2 is near its largest value, separated to contact."""
     second = run["natural_frequencies"].omega.sel(mode=2)
     return _larger_when_separated(
@@ -187,5 +192,5 @@ def _larger_when_separated(cells: xr.DataArray, what: str) -> Finding:
     )
 
 
-def _state(run: Run, name: str) -> xr.Dataset:
+def _state(run: Evidence, name: str) -> xr.Dataset:
     return run["natural_frequencies"].sel(contact_state=name)

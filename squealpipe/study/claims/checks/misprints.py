@@ -4,15 +4,20 @@ import numpy as np
 
 from squealpipe.schema import Outcome
 from squealpipe.schema.backbones import Form
-from squealpipe.schema.claims import Verdict
+from squealpipe.schema.claims import ClaimVerdict
 from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD
 from squealpipe.study.claims.checks import figures_6_and_7, figures_8_and_9
 from squealpipe.study.claims.checks.motions import scene
-from squealpipe.study.claims.evidence import Finding, MissingDataError, Run, finding
+from squealpipe.study.claims.evidence import (
+    Evidence,
+    Finding,
+    MissingDataError,
+    finding,
+)
 from squealpipe.study.claims.maps import cell, coupling_is_negative, share, stiffness
-from squealpipe.study.claims.statement import Rows
+from squealpipe.study.claims.statement import StatementRows
 
-rows = Rows(figure="harmonic_forms", recorded=Verdict.fails)
+rows = StatementRows(figure="harmonic_forms", recorded=ClaimVerdict.fails)
 
 FEW_ULPS = 4.0 * np.finfo(float).eps
 """Stiffnesses below this share of k1 + k2 count as zero."""
@@ -36,7 +41,7 @@ PRINTED = "F2a_printed"
     figure="fig01",
     section="4, Eq. (4)",
 )
-def friction_drags_along(run: Run) -> Finding:
+def friction_drags_along(run: Evidence) -> Finding:
     """Mean x with the printed sign, in the direction of the static state, over l_pre."""
     printed = float(scene(run, PRINTED).x.mean() / run.parameters.preload)
     static = float(
@@ -54,7 +59,7 @@ def friction_drags_along(run: Run) -> Finding:
     "with K11·a + K12·b, Eq. (34) is the residual of Eq. (32)",
     section="7, Eq. (34)",
 )
-def printed_residual_converges_right(run: Run) -> Finding:
+def printed_residual_converges_right(run: Evidence) -> Finding:
     """Largest relative error of ω with the printed residual."""
     forms = run["harmonic_forms"]
     error = abs(forms.omega / forms.omega_exact - 1)
@@ -86,7 +91,7 @@ rows.add(
     figure="fig02",
     section="6, before Eq. (16)",
 )
-def shift_is_added(run: Run) -> Finding:
+def shift_is_added(run: Evidence) -> Finding:
     """Distance of the mean y from −y*, against its distance from y*."""
     preload = run.parameters.preload
     mean = float(scene(run, "F2a").y.mean() / preload)
@@ -99,7 +104,7 @@ def shift_is_added(run: Run) -> Finding:
 
 
 @rows.add("E5", "ω12 is a real frequency", figure="fig06", section="6, Eq. (12b)")
-def coupling_frequency_is_real(run: Run) -> Finding:
+def coupling_frequency_is_real(run: Evidence) -> Finding:
     """Share of cells with K12 < 0."""
     negative = coupling_is_negative(run)
     return finding(
@@ -110,7 +115,7 @@ def coupling_frequency_is_real(run: Run) -> Finding:
 
 
 @rows.add("E6", "N ≥ 2N_h samples are enough for Γ", section="7, Eq. (29)")
-def samples_suffice(run: Run) -> Finding:
+def samples_suffice(run: Evidence) -> Finding:
     """Columns of Γ minus its rank at N = 2N_h."""
     forms = run["harmonic_forms"]
     columns, harmonics = int(forms.fourier_columns), int(forms.n_harmonics)
@@ -136,7 +141,7 @@ def samples_suffice(run: Run) -> Finding:
     "Newton's method of Eq. (35) has a regular Jacobian",
     section="7, Eqs. (31)–(36)",
 )
-def jacobian_is_regular(run: Run) -> Finding:
+def jacobian_is_regular(run: Evidence) -> Finding:
     """Columns of the Jacobian minus its rank."""
     forms = run["harmonic_forms"]
     deficits = forms.rank_deficit.sel(form=Form.mended)
@@ -165,7 +170,7 @@ rows.add(
     figure="parameter_inference",
     section="all",
 )
-def parameters_are_printed(run: Run) -> Finding:
+def parameters_are_printed(run: Evidence) -> Finding:
     """How many of the four dimensionless groups the paper prints, read by hand."""
     evidence = (
         "Read by hand in the paper, not computed: of "
@@ -189,10 +194,10 @@ def parameters_are_printed(run: Run) -> Finding:
     "Fig. 7 has a region of unstable motion without separation (black)",
     figure="fig07",
     section="6, Fig. 7",
-    recorded=Verdict.holds_only_as_printed,
+    recorded=ClaimVerdict.holds_only_as_printed,
     consequence="F7_black",
 )
-def black_region_is_there(run: Run) -> Finding:
+def black_region_is_there(run: Evidence) -> Finding:
     """Cells that keep contact in A1 and are unstable in A3."""
     validity = run["validity_map"]
     unstable, kept = validity.regime_linear > 0, validity.separates == 0
@@ -216,7 +221,7 @@ def black_region_is_there(run: Run) -> Finding:
     figure="fig06",
     section="5 and 6",
 )
-def reaction_is_that_of_equilibrium(run: Run) -> Finding:
+def reaction_is_that_of_equilibrium(run: Evidence) -> Finding:
     """Cells in which A2's R_n and the equilibrium's N* differ in sign."""
     sliding = run["quasi_static_map"]
     pushes = sliding.contact_force_static > 1e-12 * sliding.contact_force_static.max()
@@ -242,7 +247,7 @@ def reaction_is_that_of_equilibrium(run: Run) -> Finding:
     figure="fig06",
     section="6, Eq. (12g)",
 )
-def nondimensional_time_exists(run: Run) -> Finding:
+def nondimensional_time_exists(run: Evidence) -> Finding:
     """K11 at (0.5π, 0.5π), as a share of k1 + k2."""
     largest = run.parameters.k1 + run.parameters.k2
     k11 = float(cell(run, "quasi_static_map", 0.5, 0.5).stiffness_x) / largest

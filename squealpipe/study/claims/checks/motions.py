@@ -6,13 +6,13 @@ from scipy.interpolate import CubicHermiteSpline
 
 from squealpipe.codes import Event
 from squealpipe.schema.dynamics.growth import HORIZON, WINDOW, WINDOWS
-from squealpipe.study.claims.evidence import MissingDataError, Run
+from squealpipe.study.claims.evidence import Evidence, MissingDataError
 
 FEWEST_RETURNS = 8
 """Returns to the belt without which nothing can be said of repetition."""
 
 
-def scene(run: Run, name: str) -> xr.Dataset:
+def scene(run: Evidence, name: str) -> xr.Dataset:
     """The A1 motion of a scene of the paper."""
     return run[f"simulate/{name}"]
 
@@ -22,7 +22,7 @@ def events(motion: xr.Dataset, kind: Event) -> np.ndarray:
     return np.asarray(motion.event_time.values[motion.event_kind.values == kind])
 
 
-def until(run: Run, motion: xr.Dataset) -> str:
+def until(run: Evidence, motion: xr.Dataset) -> str:
     """Where a run ends, for sentences: ``t = 50 √(m/k1)``."""
     return f"t = {float(motion.time[-1]) / run.parameters.time_unit:g} √(m/k1)"
 
@@ -36,7 +36,7 @@ def halves(motion: xr.Dataset) -> tuple[float, float]:
     return float(size[:half].max()), float(size[half:].max())
 
 
-def windows(run: Run, motion: xr.Dataset) -> np.ndarray:
+def windows(run: Evidence, motion: xr.Dataset) -> np.ndarray:
     """Largest |x| in each window of a long run, in units of l_pre."""
     end = float(motion.time[-1]) / run.parameters.time_unit
     if end < HORIZON * (1.0 - 1e-9):

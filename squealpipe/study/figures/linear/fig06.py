@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from squealpipe.parameters import direction_of
 from squealpipe.plotting import style
 from squealpipe.plotting.origin import parameter
-from squealpipe.schema.linear import Boundary
+from squealpipe.schema.linear import BoundaryCurve
 from squealpipe.study.figures.linear.linear_overlay import draw_boundaries, mark_scene
 
 READS = ("stability_map", "quasi_static_map", "stability_boundaries")
@@ -41,7 +41,11 @@ def draw(
     """The paper's three tones in both readings of Eq. (11)."""
     figure, axes = style.new_figure(style.PAGE, 3.95, ncols=2)
     readings = (
-        ("Eq. (11) as printed", quasi_static.possible_as_printed, Boundary.no_coupling),
+        (
+            "Eq. (11) as printed",
+            quasi_static.possible_as_printed,
+            BoundaryCurve.no_coupling,
+        ),
         ("reaction force positive", quasi_static.possible, None),
     )
     for panel, letter, (title, possible, extra) in zip(
@@ -50,7 +54,11 @@ def draw(
         tones = np.where(possible.values, 0, 1)
         tones[stability.regime_linear.values > 0] = 2
         style.draw_map(panel, stability, tones, **style.category_colours([*TONES]))
-        curves = [Boundary.flutter, Boundary.divergence, Boundary.reaction_changes_sign]
+        curves = [
+            BoundaryCurve.flutter,
+            BoundaryCurve.divergence,
+            BoundaryCurve.reaction_changes_sign,
+        ]
         draw_boundaries(
             panel, boundaries, curves if extra is None else [*curves, extra]
         )
