@@ -202,6 +202,7 @@ class Lanes:
         every = np.arange(self.z.shape[1])
         self.see(every)
         self.at_once(every)
+        self.see(every)
         while (self.t < T_END).any():
             rows = np.flatnonzero((self.t < T_END) & ~self.trapped)
             if not rows.size:

@@ -68,6 +68,32 @@ def test_a_reset_that_leads_beyond_a_surface_is_followed_by_its_switch():
     np.testing.assert_allclose(run.event_time, [1.0, 1.0], rtol=1e-14)
 
 
+def test_a_latch_that_catches_more_than_it_holds_lets_go_at_once():
+    """The spring pulls with 1.57 times the limit where the mass is caught."""
+    latch = System(
+        "latch",
+        states={"x": "1", "v": "1"},
+        parameters={"stiffness": 1.57, "limit": 1.0},
+        regimes={"free": {"free": 1.0}, "held": {"free": 0.0}},
+        field=lambda t, s, p, r: {"x": r.free * s.v, "v": -r.free * p.stiffness * s.x},
+        switches=[
+            Switch("caught", "free", lambda t, s, p, r: 1.0 - s.x, "held",
+                   reset=lambda t, s, p, r: {"v": 0.0}),
+            Switch("lets_go", "held",
+                   lambda t, s, p, r: p.limit - p.stiffness * s.x, "free"),
+        ],
+        start={"x": 0.0, "v": 2.0, "regime": "free"},
+    )  # fmt: skip
+    omega = np.sqrt(1.57)
+    caught = np.arcsin(0.5 * omega) / omega
+    run = latch.simulate(caught + 0.75 * np.pi / omega)
+    names = run.event_kind.attrs["flag_meanings"].split()
+    assert [names[k] for k in run.event_kind.values] == ["caught", "lets_go"]
+    np.testing.assert_allclose(run.event_time, [caught, caught], rtol=1e-14)
+    # released at rest at x = 1, it swings as a cosine does
+    assert float(run.x[-1]) == pytest.approx(-np.sqrt(0.5), rel=1e-12)
+
+
 def test_two_regimes_beyond_each_others_surface_end_with_a_reason():
     trap = System(
         "trap",

@@ -128,6 +128,21 @@ def test_surfaces_composed_with_monotone_functions_fire_when_dop853_says():
         np.testing.assert_allclose(run.event_time, [exact], atol=1e-10)
 
 
+def test_a_mass_that_falls_from_two_metres_meets_the_tanh_of_its_height():
+    """The motion is a parabola: no order of it shows what tanh does."""
+    fall = System(
+        "fall",
+        states={"x": "m", "v": "m/s"},
+        parameters={},
+        regimes={"falls": {}, "landed": {}},
+        field=lambda t, s, p, r: {"x": s.v, "v": -9.8},
+        switches=[Switch("lands", "falls", lambda t, s, p, r: tanh(s.x), "landed")],
+        start={"x": 2.0, "v": 0.0, "regime": "falls"},
+    )
+    times = fall.simulate(1.0).event_time
+    np.testing.assert_allclose(times, [np.sqrt(4.0 / 9.8)], rtol=1e-14)
+
+
 def crossing(when):
     """An oscillator that passes x = 0 after a quarter of its period of 2π."""
     return System(
