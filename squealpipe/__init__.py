@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from squealpipe.store.tables import convert
     from squealpipe.systems.components import Component, Switch
     from squealpipe.systems.structures.contact import Contact
+    from squealpipe.systems.structures.squeal.ladder import squeal_ladder
     from squealpipe.systems.structures.squeal.squealing_modes import squealing_modes
     from squealpipe.systems.structures.structure import Structure
     from squealpipe.systems.system import System
@@ -95,6 +96,7 @@ __all__ = [
     "simulate",
     "smallest_disturbance",
     "spectrum",
+    "squeal_ladder",
     "squealing_modes",
     "stability_map",
     "summarize",

@@ -30,7 +30,7 @@ from squealpipe.cli.models import choose, infer
 from squealpipe.cli.motions import backbone, branch, cycle, simulate
 from squealpipe.cli.project import init
 from squealpipe.cli.project import run as run_study
-from squealpipe.cli.structures import modes, squeal
+from squealpipe.cli.structures import ladder, modes, squeal
 from squealpipe.cli.study import archive, compare, explain, verify
 from squealpipe.cli.sweep import sweep
 from squealpipe.execution.supervised import StoppedError, stops_raise
@@ -55,6 +55,7 @@ COMMANDS: dict[str, Callable[..., int]] = {
     "disturbance": disturbance,
     "modes": modes,
     "squeal": squeal,
+    "ladder": ladder,
     "choose": choose,
     "infer": infer,
     "refine": refine,

@@ -1,4 +1,4 @@
-"""``squealpipe modes`` and ``squeal``: complex modes of a structure, and which of them squeal."""
+"""``squealpipe modes``, ``squeal``, ``ladder``: modes of a structure, and which of them squeal."""
 
 from __future__ import annotations
 
@@ -24,6 +24,7 @@ from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer, say, working
 from squealpipe.cli.output import check_output, check_picture, draw_beside, write
 from squealpipe.cli.signatures import options_of
 from squealpipe.config.ranges import parse_range
+from squealpipe.schema.comparison import Reliability
 
 LISTED = 20
 """Unstable modes that are printed."""
@@ -168,3 +169,56 @@ def squeal(
     answer(*lines(dataset))
     say(f"wrote {output} and {drawn}")
     return DONE if int(dataset.verdict) == 0 else ANSWER_IS_NO
+
+
+@options_of("squeal_ladder")
+def ladder(
+    file: Path,
+    /,
+    *,
+    pushes: Whole,
+    t_end: Time | None,
+    frequency_max: Frequency,
+    tol: Tolerance,
+    repeats: Whole,
+    output: Output = Path("ladder.nc"),
+    picture: Picture = None,
+    look: Look = LOOK,
+    force: Force = False,
+) -> int:
+    """Ask several methods which unstable modes of a structure squeal; chart accuracy and cost.
+
+    Complex modes of the whole and the reduced structure, runs with every event located and runs
+    with friction and contact smoothed are held against the finest run. Exit code 0: all agree with
+    it; 1: some do not. It takes minutes.
+
+    Example: `squealpipe ladder pad.yaml -o ladder.nc`
+
+    Args:
+        file: structure, a YAML file that names its matrices and contacts (see the gallery).
+        pushes: unstable modes along which is pushed, the fastest first.
+        t_end: time of each run, s; by default until the slowest of these has grown, and 200 of
+            its periods.
+        frequency_max: unstable modes up to there count, Hz; needed beyond 1000 degrees of freedom.
+        repeats: of what is quick, for the median of its CPU time.
+    """
+    check_output(output, force=force)
+    drawn = check_picture(picture, output, force=force)
+
+    from squealpipe import Structure, squeal_ladder
+    from squealpipe.study.report.squeal_ladder import lines
+
+    structure = Structure.read(file)
+    asked = {"t_end": t_end, "frequency_max": frequency_max}
+    options: dict[str, Any] = {"pushes": pushes, "tol": tol, "repeats": repeats}
+    options |= {name: value for name, value in asked.items() if value is not None}
+    with working("ladder"):
+        dataset = write(
+            lambda: squeal_ladder(structure, **options),
+            output,
+            config={"parameters": structure.as_dict(), **options},
+        )
+    draw_beside(dataset, output, drawn, look)
+    answer(*lines(dataset))
+    say(f"wrote {output} and {drawn}")
+    return DONE if (dataset.verdict == Reliability.right).all() else ANSWER_IS_NO

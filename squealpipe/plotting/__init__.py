@@ -19,6 +19,8 @@ from squealpipe.plotting.propensity import figure as propensity_figure
 from squealpipe.plotting.quantities import draw_quantity, mark_changed, shown
 from squealpipe.plotting.run import draw_force, draw_spectrum, draw_spectrum_in_hertz
 from squealpipe.plotting.run import figure as run_figure
+from squealpipe.plotting.squeal_ladder import draw_level
+from squealpipe.plotting.squeal_ladder import figure as squeal_ladder_figure
 from squealpipe.plotting.squealing import draw_poles
 from squealpipe.plotting.squealing import figure as squealing_figure
 from squealpipe.plotting.style import COLUMN, SETTINGS, new_figure
@@ -43,6 +45,7 @@ DRAWN: dict[str, Callable[[Axes, xr.Dataset], None]] = {
     "stability_boundaries": draw_curves,
     "propensity": draw_shares,
     "squealing_modes": draw_poles,
+    "squeal_ladder": draw_level,
     "contact_points": draw_onsets,
     COMPLEX_MODES: draw_modes,
     SYSTEM + "simulate": draw_states,
@@ -58,6 +61,7 @@ FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
     "simulation": run_figure,
     "propensity": propensity_figure,
     "squealing_modes": squealing_figure,
+    "squeal_ladder": squeal_ladder_figure,
     COMPLEX_MODES: modes_figure,
 }
 """Schema → its picture of several panels."""

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from squealpipe.plotting import work_precision
 from squealpipe.schema import build
 from squealpipe.schema.comparison import BENCHMARK, FAILURE_ATLAS, Reliability, Role
 from squealpipe.schema.ladder import MODEL_LADDER, QUESTIONS, Level
@@ -13,7 +14,6 @@ from squealpipe.study.figures.comparison import (
     where_methods_fail,
     work_precision_benchmark,
 )
-from squealpipe.study.figures.panels import work_precision
 
 
 def written(figure):

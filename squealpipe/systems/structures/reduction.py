@@ -84,7 +84,7 @@ def reduce(
         )
     truth = _unstable(structure, frequency_max)
     if n_modes is not None:
-        kept = _Kept(structure, int(n_modes))
+        kept = Kept(structure, int(n_modes))
         return kept.structure(
             int(n_modes), _errors(truth, kept.values(int(n_modes))), truth
         )
@@ -95,11 +95,11 @@ def _smallest(
     structure: Structure, truth: np.ndarray, fewest: int, tol: float
 ) -> Structure:
     most = structure.size
-    kept = _Kept(structure, min(max(FIRST, fewest + AND_LARGER), most))
+    kept = Kept(structure, min(max(FIRST, fewest + AND_LARGER), most))
     met: list[tuple[int, Errors]] = []
     for number in range(fewest, most + 1):
         if number > kept.number:
-            kept = _Kept(structure, min(2 * kept.number, most))
+            kept = Kept(structure, min(2 * kept.number, most))
         errors = _errors(truth, kept.values(number))
         met = [*met, (number, errors)] if max(errors) <= tol else []
         report(lambda number=number: number / most)  # type: ignore[misc]
@@ -111,7 +111,7 @@ def _smallest(
     )
 
 
-class _Kept:
+class Kept:
     """The lowest modes, and what becomes of matrices and contacts in their coordinates."""
 
     def __init__(self, structure: Structure, number: int) -> None:

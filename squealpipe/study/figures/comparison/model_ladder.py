@@ -4,8 +4,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
+from squealpipe.plotting.work_precision import foot
 from squealpipe.schema.ladder import Level
-from squealpipe.study.figures.panels.work_precision import foot
 
 READS = ("model_ladder",)
 MAPS = (

@@ -4,12 +4,12 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from squealpipe.plotting.style import PAGE, new_figure, panel_letter
+from squealpipe.plotting.work_precision import draw_methods
 from squealpipe.study.figures.comparison.work_precision_benchmark import (
     COSTS,
     knowable,
     medians,
 )
-from squealpipe.study.figures.panels.work_precision import draw_methods
 
 READS = ("benchmark",)
 OF_A1 = "A1: "

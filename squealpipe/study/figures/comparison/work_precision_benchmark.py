@@ -7,8 +7,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from squealpipe.plotting.style import PAGE, new_figure, panel_letter
+from squealpipe.plotting.work_precision import draw_methods, foot
 from squealpipe.schema.comparison import Role
-from squealpipe.study.figures.panels.work_precision import draw_methods, foot
 
 READS = ("benchmark",)
 SHOWN = (

@@ -4,8 +4,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from squealpipe.plotting.style import PAGE, new_figure
+from squealpipe.plotting.work_precision import draw_methods, foot
 from squealpipe.schema.comparison import Reliability
-from squealpipe.study.figures.panels.work_precision import draw_methods, foot
 
 READS = ("work_precision_frequencies",)
 CAPTION = (

@@ -12,14 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from squealpipe.methods.recurrence import repeats_after
-from squealpipe.methods.spectrum import amplitude_spectrum, strongest_lines
+from squealpipe.methods.spectrum import amplitude_spectrum
 from squealpipe.schema import Outcome
 from squealpipe.schema.squealing import Kind
 from squealpipe.systems.cycles.find import find_cycle
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.structures.squeal.plant import Plant
 from squealpipe.systems.structures.squeal.settling import Settled
-from squealpipe.systems.structures.squeal.windows import run
+from squealpipe.systems.structures.squeal.windows import run, strongest_line
 
 BESIDE, OFF = 7, 1e-8
 """Runs beside the motion, and how far off they start, over its extent."""
@@ -33,7 +33,6 @@ LINEAR = 30.0
 """Growth of the distance up to which it may be one of phases, as on a torus."""
 REPEATED, NEARLY = 1e-5, 1e-3
 """Largest difference of intervals, over their mean, of what repeats, and of what may do so."""
-LINES = 3
 
 
 @dataclass(frozen=True)
@@ -88,13 +87,7 @@ def described(
     modal = plant.modal_velocities(samples)
     omega, amplitude = amplitude_spectrum(np.moveaxis(modal, -1, 1), step)
     power = np.sqrt((amplitude**2).sum(axis=1).mean(axis=0))
-    padded_omega, padded = amplitude_spectrum(
-        np.moveaxis(modal[:1], -1, 1), step, padding=4
-    )
-    strongest, _ = strongest_lines(
-        padded_omega, np.sqrt((padded[0] ** 2).sum(axis=0)), LINES, 2.0 * np.pi / length
-    )
-    frequency = float(strongest[0] / (2 * np.pi)) if strongest.size else np.nan
+    frequency = strongest_line(modal[0], step)
     grown, exponent = _apart(plant, samples, times, extent)
     kind, cycle = Kind.undetermined, None
     if grown >= APART:

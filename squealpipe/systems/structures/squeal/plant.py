@@ -84,6 +84,13 @@ class Plant:
         """ω (n,) and Φ (n, n) of the modes at rest, ΦᵀMΦ = 1."""
         return modes_at_rest(self.structure)
 
+    @property
+    def pressed(self) -> np.ndarray:
+        """Preload of each contact, or where it has none its force in steady sliding, N."""
+        given = self.structure.preloads
+        force = np.where(given > 0, given, self.spectrum.state.force)
+        return np.where(force > 0, force, np.nan)
+
     @cached_property
     def energy(self) -> float:
         """What the preloads store in the contact springs, J."""

@@ -8,6 +8,7 @@ settled when its statistics in two windows agree and none of its modes still gro
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -153,18 +154,37 @@ def _judged(
     if not now.events and (now.regimes == at_rest).all() and plant.decays:
         # nothing switched in a whole window: the motion is linear about steady sliding, and decays
         return Settled(True, True, now, 0.0, 0.0)
-    if before is None:
+    if before is None or not stays(before, now):
         return None
-    change = difference(before, now)
+    return Settled(False, True, now, difference(before, now), 0.0)
+
+
+class Statistics(Protocol):
+    """What windows are compared by; see :class:`Rows`."""
+
+    @property
+    def modal(self) -> np.ndarray: ...  # noqa: D102
+
+    @property
+    def total(self) -> Any: ...  # noqa: D102
+
+    @property
+    def separated(self) -> np.ndarray: ...  # noqa: D102
+
+    @property
+    def stuck(self) -> np.ndarray: ...  # noqa: D102
+
+
+def stays(before: Statistics, now: Statistics) -> bool:
+    """Whether two windows in succession agree and no mode still grows."""
     with np.errstate(divide="ignore"):
         grown = np.log(now.modal) - np.log(before.modal)
     seen = before.modal > SMALLEST * now.total
-    if change > AGREE or (grown[seen] > STILL_GROWS).any():
-        return None
-    return Settled(False, True, now, change, 0.0)
+    still = bool((grown[seen] > STILL_GROWS).any())
+    return difference(before, now) <= AGREE and not still
 
 
-def difference(one: Rows, other: Rows) -> float:
+def difference(one: Statistics, other: Statistics) -> float:
     """The largest difference of statistics: of velocities over the total, and of shares."""
     total = max(float(one.total), float(other.total), np.finfo(float).tiny)
     return float(

@@ -176,7 +176,7 @@ def _of_attractors(
         for runs in members
     ]  # fmt: skip
     frequency = np.array([each.frequency for each in found])
-    near = [_nearest(plant, each) for each in frequency]
+    near = [nearest(plant, each) for each in frequency]
     multipliers = np.full((count, 2 * plant.size), np.nan, complex)
     largest = np.full(count, np.nan)
     for place, each in enumerate(found):
@@ -185,12 +185,13 @@ def _of_attractors(
             multipliers[place] = values
             trivial = np.abs(values - 1.0).argmin()
             largest[place] = np.abs(np.delete(values, trivial)).max()
-    pressed = plant.structure.preloads
-    force = np.where(pressed > 0, pressed, plant.spectrum.state.force)
     with np.errstate(invalid="ignore", divide="ignore"):
-        peak = np.array(
-            [np.max([run.last.force for run in runs], axis=0) for runs in members]
-        ).reshape(shape) / np.where(force > 0, force, np.nan)
+        peak = (
+            np.array(
+                [np.max([run.last.force for run in runs], axis=0) for runs in members]
+            ).reshape(shape)
+            / plant.pressed
+        )
     landings = np.array(
         [
             np.mean([run.last.landings / run.last.length for run in runs], axis=0)
@@ -258,7 +259,7 @@ def _table(rows: list[dict[str, Any]], name: str, shape: tuple[int, int]) -> np.
     return np.array([row[name] for row in rows], float).reshape(shape)
 
 
-def _nearest(plant: Plant, frequency: float) -> int:
+def nearest(plant: Plant, frequency: float) -> int:
     """Place of the mode nearest to a frequency; an unstable one where one is close to it."""
     away = np.abs(plant.frequencies - np.nan_to_num(frequency))
     unstable = plant.unstable

@@ -11,12 +11,15 @@ from typing import Any
 
 import numpy as np
 
+from squealpipe.methods.spectrum import amplitude_spectrum, strongest_lines
 from squealpipe.schema import Outcome
 from squealpipe.systems.integrate import LARGEST, RunOptions, integrate
 from squealpipe.systems.structures.squeal.plant import Plant
 
 SAMPLES = 2048
 """Instants of a window."""
+PADDING = 4
+"""Lines of a spectrum beside those of its samples."""
 BLOCKS = 64
 """Parts of a window whose kinetic energy is kept."""
 
@@ -34,6 +37,7 @@ class Rows:
         landings: returns to contact, of each.
         force: largest force of each, N.
         events: all of them.
+        steps: of the integrator.
         kinetic: mean kinetic energy of each block, J.
         block_ends: of each block from the window's begin, s.
         finished: whether the run reached the end of its window.
@@ -50,6 +54,7 @@ class Rows:
     landings: np.ndarray
     force: np.ndarray
     events: np.ndarray
+    steps: np.ndarray
     kinetic: np.ndarray
     block_ends: np.ndarray
     finished: np.ndarray
@@ -134,7 +139,7 @@ def run_window(
         size = len(states)
         return Rows(
             final=raw["final"],
-            regimes=raw["sample_regimes"][:, -1],
+            regimes=raw["sample_regimes"][:, -1].copy(),  # as a start of the next
             modal=np.sqrt((modal**2).mean(1)),
             speed=np.sqrt((speed**2).mean(1)),
             peak_speed=speed.max(axis=(1, 2)),
@@ -143,6 +148,7 @@ def run_window(
             landings=landings,
             force=raw["extremes"][..., 1],
             events=raw["counts"].sum(1),
+            steps=raw["steps"],
             kinetic=kinetic.reshape(size, BLOCKS, -1).mean(-1),
             block_ends=np.tile(length * np.arange(1, BLOCKS + 1) / BLOCKS, (size, 1)),
             finished=raw["outcome"] == Outcome.converged,
@@ -163,3 +169,11 @@ def _regimes(plant: Plant, word: str) -> list[list[int]]:
         ]
         for place, contact in enumerate(plant.contacts)
     ]
+
+
+def strongest_line(modal: np.ndarray, step: float) -> float:
+    """The strongest line of the kinetic energy by modal velocities (instants, n), Hz, or NaN."""
+    omega, amplitude = amplitude_spectrum(modal.T, step, padding=PADDING)
+    power = np.sqrt((amplitude**2).sum(axis=0))
+    places, _ = strongest_lines(omega, power, 1, 2.0 * np.pi / (step * len(modal)))
+    return float(places[0] / (2.0 * np.pi)) if places.size else np.nan

@@ -38,7 +38,12 @@ _SMALLEST = 1e-17
 
 
 def draw_methods(
-    axes: Axes, rows: xr.Dataset, cost: str, scale: float, methods: Sequence[str]
+    axes: Axes,
+    rows: xr.Dataset,
+    cost: str,
+    scale: float,
+    methods: Sequence[str],
+    ring: str = "our setting",
 ) -> None:
     """Error against cost, one line for each method, with the Pareto front and our own setting.
 
@@ -49,6 +54,7 @@ def draw_methods(
         rows: ``method``, ``role``, ``error``, the cost, and ``worth`` (``Reliability``; without it
             all are right).
         scale: factor from its unit to the axis'.
+        ring: what the red rings are, which mark the role of our setting.
     """
     error = np.maximum(rows.error.values, _SMALLEST)
     values = rows[cost].values * scale
@@ -89,7 +95,7 @@ def draw_methods(
                 "mfc": "none",
                 "mew": 1.0,
                 "color": style.RED,
-                "label": "our setting",
+                "label": ring,
             },
         ),
     ]
@@ -124,4 +130,6 @@ def foot(figure: Figure, dataset: xr.Dataset) -> None:
     libraries = json.loads(dataset.attrs.get("libraries", "{}"))
     versions = ", ".join(f"{name} {libraries[name]}" for name in sorted(libraries))
     platform = dataset.attrs.get("platform", "platform unknown")
+    if processor := dataset.attrs.get("processor", ""):
+        platform = f"{processor}, {platform}"
     figure.supxlabel(f"{platform}\n{versions}", fontsize=5.5, color=style.GREY)

@@ -1,0 +1,68 @@
+"""The answer of a dataset ``squeal_ladder`` in words: the finest run, then each method."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.schema.comparison import Role
+from squealpipe.schema.outcomes import Outcome
+from squealpipe.schema.squeal_ladder import Answer
+from squealpipe.text import number
+from squealpipe.units import engineering
+
+WORDS = {
+    Answer.right: "rightly",
+    Answer.other_mode: "which is another mode",
+    Answer.quiet_instead: "which is wrong",
+    Answer.rings_instead: "which is wrong",
+    Answer.not_settled: "and has not settled",
+    Answer.no_such_mode: "for it has no such mode",
+    Answer.not_known: "of which the finest run says nothing",
+}
+
+
+def lines(ladder: xr.Dataset) -> list[str]:
+    """What the finest run says, what each method says beside it, and their cost."""
+    finest = int(np.flatnonzero(ladder.role.values == Role.our_setting)[0])
+    truth = ladder.isel(run=finest)
+    told = [f"Finest: exact events in {truth.setting.item()}."]
+    told += [f"A push along {line}." for line in _pushes(truth)]
+    for place in range(ladder.sizes["run"]):
+        if place != finest:
+            told.append(method_line(ladder.isel(run=place)))
+    return told
+
+
+def _pushes(one: xr.Dataset) -> Iterator[str]:
+    for place in range(one.sizes["mode"]):
+        end = one.isel(mode=place)
+        said = f"mode {int(end.mode)} {rings(end)}"
+        if int(end.outcome) != Outcome.converged:
+            said += ", and has not settled"
+        yield said
+
+
+def rings(end: xr.Dataset) -> str:
+    """What rings after a push, in words."""
+    if np.isnan(end.frequency):
+        return "dies out"
+    return f"rings at {engineering(float(end.frequency), 'Hz', 4)}"
+
+
+def method_line(one: xr.Dataset) -> str:
+    """What a method says of each push, how far off it is, and what it costs."""
+    parts = []
+    for place in range(one.sizes["mode"]):
+        end = one.isel(mode=place)
+        parts.append(
+            f"mode {int(end.mode)} {rings(end)}, {WORDS[Answer(int(end.answer))]}"
+        )
+    level = float(one.velocity_error)
+    off = "" if np.isnan(level) else f"; level off by {number(100 * level, 2)} %"
+    return (
+        f"{one.method.item()}, {one.setting.item()}: {'; '.join(parts)}{off}; "
+        f"{number(float(one.cpu_time), 2)} s"
+    )

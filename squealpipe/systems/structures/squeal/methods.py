@@ -1,0 +1,410 @@
+"""Methods that can be asked what becomes of a push along an unstable mode, and their cost.
+
+All push along their own mode nearest to the one that is asked for, run for the same time, and look
+at the last window; complex modes say that each unstable mode rings.
+"""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from squealpipe.methods.taylor.lanes import taylor_terms
+from squealpipe.schema import Outcome
+from squealpipe.schema.comparison import Role
+from squealpipe.systems.structures.definition import Structure
+from squealpipe.systems.structures.reduction import Kept
+from squealpipe.systems.structures.spectrum import Limits, Solver
+from squealpipe.systems.structures.squeal.plant import Plant
+from squealpipe.systems.structures.squeal.settling import WIDE, stays
+from squealpipe.systems.structures.squeal.smoothed import Samples, Smoothed
+from squealpipe.systems.structures.squeal.windows import (
+    Rows,
+    run,
+    run_window,
+    strongest_line,
+)
+
+PUSH, APART = 0.01, 0.05
+"""Push along a mode over the preload's deformation; by how much the next of several is larger."""
+STARTS = 4
+"""Runs with exact events from pushes that differ a little: their scatter is an error."""
+NEAR = 0.1
+"""Distance of frequencies within which a mode of another reduction is the same one's."""
+DIED_OUT = 0.5
+"""Velocity, over that of the push, below which a motion that does not grow has died out."""
+FINEST = 12.0
+"""Samples in a period of the fastest mode."""
+FEWEST_SAMPLES, MOST_SAMPLES = 2**14, 2**16
+"""In each window."""
+GROWS = 1e-9
+"""Growth rate over the modulus above which it is no round-off."""
+LONG = 4.0
+"""CPU time beyond which a run is not repeated, s: it scatters little."""
+
+
+@dataclass(frozen=True)
+class Horizon:
+    """Time for growth, and the length of each of two windows behind it, s."""
+
+    growing: float
+    window: float
+
+    @property
+    def end(self) -> float:
+        """Of all runs, s."""
+        return self.growing + 2.0 * self.window
+
+
+@dataclass(frozen=True, kw_only=True)
+class End:
+    """What a push has ended in, as a method says.
+
+    Attributes:
+        frequency: of the strongest line, Hz; NaN where nothing rings.
+        speed: rms of all contacts, m/s; NaN where a method does not say.
+        separated, stuck, creep, force: of each contact, as in the schema; NaN likewise.
+        quiet: whether it has died out.
+        has_mode: whether the method has a mode near the one that was asked for.
+        scatter: largest differences among starts of relative frequency, relative speed and shares
+            without contact; NaN of one start.
+    """
+
+    outcome: Outcome
+    frequency: float = np.nan
+    speed: float = np.nan
+    separated: np.ndarray
+    stuck: np.ndarray
+    creep: np.ndarray
+    force: np.ndarray
+    quiet: bool = False
+    has_mode: bool = True
+    scatter: tuple[float, float, float] = (np.nan, np.nan, np.nan)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Told:
+    """What one method says at one setting, and what that costs.
+
+    Attributes:
+        ends: of the push along each mode that was asked for.
+    """
+
+    method: str
+    setting: str
+    role: Role
+    n_modes: int
+    ends: list[End]
+    cpu_time: float
+    compile_time: float = 0.0
+    evaluations: int = 0
+    widths: tuple[float, float] = (np.nan, np.nan)
+
+
+def complex_modes_told(
+    structure: Structure,
+    number: int | None,
+    frequencies: np.ndarray,
+    frequency_max: float | None,
+    repeats: int,
+) -> Told:
+    """Of the whole structure, or of its lowest modes.
+
+    Args:
+        number: modes; None: all.
+        frequencies: of the modes that are asked for, Hz.
+    """
+
+    def ask() -> np.ndarray:
+        if number is not None:
+            return Kept(structure, number).values(number)
+        solver = Solver(structure, Limits(frequency_max), structure.belt_speed)
+        return solver.at(structure.mu).values
+
+    values, spent = _timed(ask, repeats)
+    at, grows = values.imag / (2.0 * np.pi), values.real > GROWS * np.abs(values)
+    nothing = _nothing(structure)
+    ends = []
+    for frequency in frequencies:
+        place = _same(at, grows, frequency)
+        rings = place is not None and bool(grows[place])
+        ends.append(
+            End(
+                outcome=Outcome.converged,
+                frequency=float(at[place]) if rings else np.nan,
+                quiet=not rings,
+                has_mode=place is not None,
+                **nothing,
+            )
+        )
+    count = structure.size if number is None else number
+    return Told(
+        method="complex modes",
+        setting=f"all {count}" if number is None else str(number),
+        role=Role.public,
+        n_modes=count,
+        ends=ends,
+        cpu_time=spent,
+    )
+
+
+def exact_told(
+    plant: Plant, frequencies: np.ndarray, horizon: Horizon, tol: float, repeats: int
+) -> Told:
+    """Runs with every event located, several at once from pushes that differ a little."""
+    pushes = _pushes(plant, frequencies)
+    known = [place for place in pushes if place is not None]
+    count = max(STARTS, -(-WIDE // max(len(known), 1)))
+    starts = np.array(
+        [
+            plant.pushed(place, PUSH * (1.0 + APART * turn))
+            for place in known
+            for turn in range(count)
+        ]
+    )
+
+    def go(span: float, states: np.ndarray, regimes: Any, seed: int) -> Rows:
+        return run_window(
+            plant, states, span, regimes=regimes, tol=tol, seed=seed, workers=1
+        )
+
+    def ask() -> list[Rows]:
+        rows = [go(horizon.growing, starts, None, 0)]
+        for seed in (1, 2):
+            rows.append(go(horizon.window, rows[-1].final, rows[-1].regimes, seed))
+        return rows
+
+    ends, spent, compiled, evaluations = [], 0.0, 0.0, 0
+    if known:
+        short = 1e-3 / plant.fastest
+        _, first = _timed(lambda: go(short, starts, None, 0), 1)
+        _, again = _timed(lambda: go(short, starts, None, 0), 1)
+        compiled = max(first - again, 0.0)
+        rows, spent = _timed(ask, repeats)
+        evaluations = int(sum(row.steps.sum() for row in rows)) * taylor_terms(tol)
+        found = _exact_ends(plant, rows[1], rows[2], count, tol)
+    for place in pushes:
+        if place is None:
+            nothing = _nothing(plant.structure)
+            ends.append(End(outcome=Outcome.converged, has_mode=False, **nothing))
+        else:
+            ends.append(found[known.index(place)])
+    return Told(
+        method="exact events",
+        setting=f"{plant.size} modes",
+        role=Role.ours,
+        n_modes=plant.size,
+        ends=ends,
+        cpu_time=spent / count,
+        compile_time=compiled,
+        evaluations=evaluations // count,
+        widths=(0.0, 0.0),
+    )
+
+
+def smoothed_told(
+    plant: Plant,
+    frequencies: np.ndarray,
+    horizon: Horizon,
+    widths: tuple[float, float],
+    tol: float,
+) -> Told:
+    """One run after the other without events.
+
+    Args:
+        widths: of friction over the belt's speed, and of contact over the preload.
+    """
+    structure = plant.structure
+    belt = np.abs(structure.speeds * structure.belt_speed)
+    model = Smoothed(
+        plant,
+        widths[0] * abs(structure.belt_speed),
+        widths[1] * np.nan_to_num(plant.pressed),
+    )
+    step, times = _instants(plant, horizon)
+    ends, spent, evaluations = [], 0.0, 0
+    for place in _pushes(plant, frequencies):
+        if place is None:
+            nothing = _nothing(structure)
+            ends.append(End(outcome=Outcome.converged, has_mode=False, **nothing))
+            continue
+        start = plant.pushed(place, PUSH)
+        samples, once = _timed(lambda start=start: model.run(start, times, tol), 1)  # type: ignore[misc]
+        spent, evaluations = spent + once, evaluations + samples.evaluations
+        ends.append(_smoothed_end(plant, samples, model.friction_width, belt, step))
+    both = widths[1] > 0
+    return Told(
+        method="friction and contact smoothed" if both else "friction smoothed",
+        setting=f"{widths[0]:g}, {widths[1]:g}" if both else f"{widths[0]:g}",
+        role=Role.public,
+        n_modes=plant.size,
+        ends=ends,
+        cpu_time=spent,
+        evaluations=evaluations,
+        widths=widths,
+    )
+
+
+def _timed(ask: Callable[[], Any], repeats: int) -> tuple[Any, float]:
+    """The result of a call and the median of its CPU times, s; a long one is called once."""
+    spent: list[float] = []
+    while len(spent) < repeats:
+        started = time.process_time()
+        result = ask()
+        spent.append(time.process_time() - started)
+        if spent[0] > LONG:
+            break
+    return result, statistics.median(spent)
+
+
+def _same(frequencies: np.ndarray, grows: np.ndarray, frequency: float) -> int | None:
+    """Place of the mode that is another model's at this frequency, Hz: one that grows first."""
+    away = np.abs(frequencies - frequency) / frequency
+    for which in (grows, np.ones(len(away), bool)):
+        if which.any():
+            place = int(np.where(which, away, np.inf).argmin())
+            if away[place] <= NEAR:
+                return place
+    return None
+
+
+def _pushes(plant: Plant, frequencies: np.ndarray) -> list[int | None]:
+    grows = np.isin(np.arange(len(plant.frequencies)), plant.unstable)
+    return [_same(plant.frequencies, grows, float(each)) for each in frequencies]
+
+
+def _nothing(structure: Structure) -> dict[str, np.ndarray]:
+    names = ("separated", "stuck", "creep", "force")
+    return {name: np.full(len(structure.contacts), np.nan) for name in names}
+
+
+def _instants(plant: Plant, horizon: Horizon) -> tuple[float, np.ndarray]:
+    """Step and instants, s: 0, and both windows in equal steps."""
+    count = int(np.ceil(horizon.window * FINEST * plant.fastest))
+    count = min(max(count, FEWEST_SAMPLES), MOST_SAMPLES)
+    step = horizon.window / count
+    late = horizon.growing + step * np.arange(1, 2 * count + 1)
+    return step, np.concatenate([[0.0], late])
+
+
+def _died_out(plant: Plant, before: float, now: float) -> bool:
+    """By the velocities of all modes in two windows."""
+    return now < DIED_OUT * PUSH * np.sqrt(plant.energy) and now <= before
+
+
+def _exact_ends(
+    plant: Plant, before: Rows, now: Rows, count: int, tol: float
+) -> list[End]:
+    """Of each push, over the starts that belong to it; the frequency from a run behind."""
+    step = 1.0 / (FINEST * plant.fastest)
+    length = int(min(np.ceil(float(now.length[0]) / step), MOST_SAMPLES))
+    raw = run(
+        plant,
+        now.final,
+        step * np.arange(1, length + 1),
+        tol,
+        workers=1,
+        regime=now.regimes,
+    )
+    lines = [
+        strongest_line(plant.modal_velocities(each), step) for each in raw["samples"]
+    ]
+    ends = []
+    for first in range(0, len(lines), count):
+        mine = slice(first, first + count)
+        rows, earlier = now.at(mine), before.at(mine)
+        finished = rows.finished.all() and earlier.finished.all()
+        calm = [
+            _died_out(plant, float(a), float(b)) and events == 0
+            for a, b, events in zip(earlier.total, rows.total, rows.events, strict=True)
+        ]
+        steady = all(stays(earlier.at(place), rows.at(place)) for place in range(count))
+        speeds = np.sqrt((rows.speed**2).mean(axis=1))
+        ringing = np.array(lines[mine])
+        scatter = (
+            float(np.ptp(ringing) / ringing.mean()),
+            float(np.ptp(speeds) / speeds.mean()),
+            float(np.ptp(rows.separated, axis=0).max()),
+        )
+        quiet = all(calm)
+        # starts that end apart have not settled to one motion
+        together = quiet or (scatter[0] < NEAR and not any(calm))
+        outcome = Outcome.no_convergence
+        if finished:
+            outcome = Outcome.unresolved
+            if (quiet or steady) and together:
+                outcome = Outcome.converged
+        ends.append(
+            End(
+                outcome=outcome,
+                frequency=np.nan if quiet else float(ringing.mean()),
+                speed=0.0 if quiet else float(np.sqrt((speeds**2).mean())),
+                separated=rows.separated.mean(axis=0),
+                stuck=rows.stuck.mean(axis=0),
+                creep=np.where(rows.stuck.any(axis=0), 0.0, np.nan),
+                force=rows.force.max(axis=0) / plant.pressed,
+                quiet=quiet,
+                scatter=(0.0, 0.0, 0.0) if quiet else scatter,
+            )
+        )
+    return ends
+
+
+@dataclass(frozen=True)
+class Window:
+    """Statistics of one window of one smoothed run, as :class:`Rows` has them of exact ones."""
+
+    modal: np.ndarray
+    separated: np.ndarray
+    stuck: np.ndarray
+    total: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "total", float(np.sqrt((self.modal**2).sum())))
+
+
+def _smoothed_end(
+    plant: Plant, samples: Samples, width: float, belt: np.ndarray, step: float
+) -> End:
+    if not samples.finished:
+        return End(outcome=Outcome.no_convergence, **_nothing(plant.structure))
+    modal = plant.modal_velocities(samples.states)
+    closed = samples.pressing > 0
+    slow = closed & (np.abs(samples.sliding) < width)
+    half = len(modal) // 2
+    before, now = (
+        Window(
+            np.sqrt((modal[part] ** 2).mean(axis=0)),
+            1.0 - closed[part].mean(axis=0),
+            slow[part].mean(axis=0),
+        )
+        for part in (slice(half), slice(half, None))
+    )
+    late = slice(half, None)
+    quiet = _died_out(plant, before.total, now.total)
+    speed = plant.contact_speeds(samples.states[late])
+    count = slow[late].sum(axis=0)
+    crept = (np.abs(samples.sliding[late]) * slow[late]).sum(axis=0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        creep = np.where(count > 0, crept / count / belt, np.nan)
+    settled = quiet or stays(before, now)
+    return End(
+        outcome=Outcome.converged if settled else Outcome.unresolved,
+        frequency=np.nan if quiet else strongest_line(modal[late], step),
+        speed=0.0 if quiet else float(np.sqrt((speed**2).mean())),
+        separated=now.separated,
+        stuck=now.stuck,
+        creep=creep,
+        force=samples.forces[late].max(axis=0) / plant.pressed,
+        quiet=quiet,
+    )
+
+
+def distinct(numbers: Sequence[int], fewest: int, most: int) -> list[int]:
+    """Numbers of modes that a structure can have, ascending."""
+    return sorted({int(n) for n in numbers if fewest <= n <= most})
