@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import platform
-from collections.abc import Iterable
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -114,7 +114,7 @@ def squeal_ladder(
     return _dataset(structure, finest, places, told, reference, span, tol, smoothed_tol)
 
 
-def _sizes(structure: Structure, n_modes: Iterable[int]) -> list[int]:
+def _sizes(structure: Structure, n_modes: Sequence[int]) -> list[int]:
     fewest = max(len(structure.contacts), 2)
     sizes = distinct(n_modes, fewest, min(structure.size, MOST_MODES))
     if structure.size <= MOST_MODES:
@@ -130,8 +130,8 @@ def _sizes(structure: Structure, n_modes: Iterable[int]) -> list[int]:
 def _plant(structure: Structure, size: int, frequency_max: float | None) -> Plant:
     if size == structure.size:
         return Plant(structure)
-    limit = {} if structure.size <= DENSE else {"frequency_max": frequency_max}
-    return Plant(reduce(structure, n_modes=size, **limit))
+    limit = None if structure.size <= DENSE else frequency_max
+    return Plant(reduce(structure, n_modes=size, frequency_max=limit))
 
 
 def _horizon(plant: Plant, places: np.ndarray, t_end: float | None) -> Horizon:

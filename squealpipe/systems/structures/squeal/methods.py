@@ -278,7 +278,7 @@ def _pushes(plant: Plant, frequencies: np.ndarray) -> list[int | None]:
     return [_same(plant.frequencies, grows, float(each)) for each in frequencies]
 
 
-def _nothing(structure: Structure) -> dict[str, np.ndarray]:
+def _nothing(structure: Structure) -> dict[str, Any]:
     names = ("separated", "stuck", "creep", "force")
     return {name: np.full(len(structure.contacts), np.nan) for name in names}
 

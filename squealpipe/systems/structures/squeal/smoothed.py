@@ -74,7 +74,7 @@ class Smoothed:
     def forces(self, pressing: np.ndarray) -> np.ndarray:
         """Normal forces, N."""
         if not self.contact_width.any():
-            return np.maximum(pressing, 0.0)
+            return np.asarray(np.maximum(pressing, 0.0))
         return np.asarray(0.5 * (pressing + np.hypot(pressing, self.contact_width)))
 
     def rates(self, _: float, state: np.ndarray) -> np.ndarray:
