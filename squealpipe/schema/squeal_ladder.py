@@ -10,7 +10,7 @@ NO_MODE = -1
 RUN, PUSHED, AT = ("run",), ("run", "mode"), ("run", "mode", "contact")
 
 
-class Answer(IntEnum):
+class PushAnswer(IntEnum):
     """What a method says becomes of a push along an unstable mode, beside the finest run."""
 
     right = 0
@@ -63,7 +63,7 @@ SQUEAL_LADDER = DatasetSchema(
             "force over which loss of contact is smoothed, over the preload; 0: exact; NaN: no run",
             dims=RUN,
         ),
-        "answer": Variable("what becomes of a push", dims=PUSHED, flags=Answer),
+        "answer": Variable("what becomes of a push", dims=PUSHED, flags=PushAnswer),
         "verdict": Variable(
             "right: the same modes ring after all pushes; flagged: a motion has not settled; "
             "silently wrong: another mode rings, or none does",

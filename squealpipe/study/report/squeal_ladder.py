@@ -9,18 +9,18 @@ import xarray as xr
 
 from squealpipe.schema.comparison import Role
 from squealpipe.schema.outcomes import Outcome
-from squealpipe.schema.squeal_ladder import Answer
+from squealpipe.schema.squeal_ladder import PushAnswer
 from squealpipe.text import number
 from squealpipe.units import engineering
 
 WORDS = {
-    Answer.right: "rightly",
-    Answer.other_mode: "which is another mode",
-    Answer.quiet_instead: "which is wrong",
-    Answer.rings_instead: "which is wrong",
-    Answer.not_settled: "and has not settled",
-    Answer.no_such_mode: "for it has no such mode",
-    Answer.not_known: "of which the finest run says nothing",
+    PushAnswer.right: "rightly",
+    PushAnswer.other_mode: "which is another mode",
+    PushAnswer.quiet_instead: "which is wrong",
+    PushAnswer.rings_instead: "which is wrong",
+    PushAnswer.not_settled: "and has not settled",
+    PushAnswer.no_such_mode: "for it has no such mode",
+    PushAnswer.not_known: "of which the finest run says nothing",
 }
 
 
@@ -58,7 +58,7 @@ def method_line(one: xr.Dataset) -> str:
     for place in range(one.sizes["mode"]):
         end = one.isel(mode=place)
         parts.append(
-            f"mode {int(end.mode)} {rings(end)}, {WORDS[Answer(int(end.answer))]}"
+            f"mode {int(end.mode)} {rings(end)}, {WORDS[PushAnswer(int(end.answer))]}"
         )
     level = float(one.velocity_error)
     off = "" if np.isnan(level) else f"; level off by {number(100 * level, 2)} %"

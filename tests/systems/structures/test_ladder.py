@@ -8,7 +8,7 @@ from squealpipe import load, plot, save, squeal_ladder
 from squealpipe.cli import run
 from squealpipe.plotting import picture
 from squealpipe.schema.comparison import Reliability, Role
-from squealpipe.schema.squeal_ladder import NO_MODE, Answer
+from squealpipe.schema.squeal_ladder import NO_MODE, PushAnswer
 from squealpipe.structures import elastic_pad
 from squealpipe.study.report.squeal_ladder import lines
 from squealpipe.systems.structures.spectrum import Limits, Solver
@@ -51,7 +51,7 @@ def test_the_finest_run_is_that_of_an_integrator_apart(ladder):
     assert float(finest.velocity_rms) == pytest.approx(
         np.sqrt((along**2).mean()), rel=0.03
     )
-    assert int(finest.answer) == Answer.right
+    assert int(finest.answer) == PushAnswer.right
     assert float(finest.cpu_time) > 0
 
 
@@ -59,7 +59,7 @@ def test_smoothing_that_takes_away_the_friction_says_quiet_without_a_word(ladder
     """At a width of twice the belt's speed friction is μ tanh(½), below the onset of flutter."""
     wide = row(ladder, "friction smoothed", "2")
     assert np.tanh(0.5) < 0.75  # Hoffmann's onset
-    assert int(wide.answer) == Answer.quiet_instead
+    assert int(wide.answer) == PushAnswer.quiet_instead
     assert int(wide.verdict) == Reliability.silently_wrong
     assert int(wide.rings_near) == NO_MODE
     assert float(wide.velocity_error) == float(wide.frequency_error) == 1.0
@@ -72,7 +72,7 @@ def test_smoothing_that_takes_away_the_friction_says_quiet_without_a_word(ladder
 def test_errors_of_smoothing_vanish_with_its_width(ladder):
     method = "friction and contact smoothed"
     wide, narrow = row(ladder, method, "0.3, 0.3"), row(ladder, method, "0.03, 0.03")
-    assert int(narrow.answer) == Answer.right
+    assert int(narrow.answer) == PushAnswer.right
     for name in ("velocity", "separation"):
         floor = 2.0 * float(ladder[f"{name}_uncertainty"])
         wrong, less = float(wide[f"{name}_error"]), float(narrow[f"{name}_error"])
@@ -87,7 +87,7 @@ def test_complex_modes_name_the_mode_but_neither_level_nor_contact_loss(ladder):
     known = Solver(structure, Limits(), structure.belt_speed).at(structure.mu)
     grows = known.values[known.values.real.argmax()]
     assert float(modes.frequency) == pytest.approx(grows.imag / (2 * np.pi), rel=1e-12)
-    assert int(modes.answer) == Answer.right
+    assert int(modes.answer) == PushAnswer.right
     assert np.isnan(modes.velocity_error)
     assert np.isnan(modes.separated_fraction).all()
     finest = row(ladder, "exact events")
@@ -113,7 +113,7 @@ def test_between_its_corners_the_smoothed_structure_is_the_exact_one():
 
 def test_where_nothing_grows_all_methods_say_quiet():
     calm = squeal_ladder(two_modes(0.3), widths=((0.1, 0.1),), repeats=1, t_end=0.02)
-    assert (calm.answer == Answer.right).all()
+    assert (calm.answer == PushAnswer.right).all()
     assert (calm.verdict == Reliability.right).all()
     assert calm.frequency.isnull().all()
     assert all("dies out, rightly" in line for line in lines(calm)[2:])

@@ -15,13 +15,13 @@ from squealpipe.schema import build
 from squealpipe.schema.comparison import Reliability, Role
 from squealpipe.schema.origin import versions
 from squealpipe.schema.outcomes import Outcome
-from squealpipe.schema.squeal_ladder import NO_MODE, SQUEAL_LADDER, Answer
+from squealpipe.schema.squeal_ladder import NO_MODE, SQUEAL_LADDER, PushAnswer
 from squealpipe.systems.structures.definition import Structure
 from squealpipe.systems.structures.pencil import DENSE
 from squealpipe.systems.structures.reduction import reduce
 from squealpipe.systems.structures.squeal.methods import (
-    End,
     Horizon,
+    PushEnd,
     Told,
     complex_modes_told,
     distinct,
@@ -147,33 +147,33 @@ def _horizon(plant: Plant, places: np.ndarray, t_end: float | None) -> Horizon:
     return Horizon(growing, min(first, 0.25 * most))
 
 
-def _judged(plant: Plant, end: End, truth: End) -> Answer:
+def _judged(plant: Plant, end: PushEnd, truth: PushEnd) -> PushAnswer:
     """What one method says of one push, beside what the finest run says."""
     if truth.outcome != Outcome.converged:
-        return Answer.not_known
+        return PushAnswer.not_known
     if not end.has_mode:
-        return Answer.right if truth.quiet else Answer.no_such_mode
+        return PushAnswer.right if truth.quiet else PushAnswer.no_such_mode
     if end.outcome != Outcome.converged:
-        return Answer.not_settled
+        return PushAnswer.not_settled
     if end.quiet or truth.quiet:
         if end.quiet == truth.quiet:
-            return Answer.right
-        return Answer.quiet_instead if end.quiet else Answer.rings_instead
+            return PushAnswer.right
+        return PushAnswer.quiet_instead if end.quiet else PushAnswer.rings_instead
     same = nearest(plant, end.frequency) == nearest(plant, truth.frequency)
-    return Answer.right if same else Answer.other_mode
+    return PushAnswer.right if same else PushAnswer.other_mode
 
 
-def _verdict(answers: list[Answer]) -> Reliability:
-    if Answer.not_known in answers:
+def _verdict(answers: list[PushAnswer]) -> Reliability:
+    if PushAnswer.not_known in answers:
         return Reliability.not_applicable
-    if all(answer is Answer.right for answer in answers):
+    if all(answer is PushAnswer.right for answer in answers):
         return Reliability.right
-    if all(answer in (Answer.right, Answer.not_settled) for answer in answers):
+    if all(answer in (PushAnswer.right, PushAnswer.not_settled) for answer in answers):
         return Reliability.flagged
     return Reliability.silently_wrong
 
 
-def _errors(end: End, truth: End) -> tuple[float, float, float]:
+def _errors(end: PushEnd, truth: PushEnd) -> tuple[float, float, float]:
     """Of frequency, speed and shares of time without contact; NaN: not said."""
     if end.quiet and truth.quiet:
         return 0.0, 0.0, 0.0

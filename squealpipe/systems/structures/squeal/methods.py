@@ -62,7 +62,7 @@ class Horizon:
 
 
 @dataclass(frozen=True, kw_only=True)
-class End:
+class PushEnd:
     """What a push has ended in, as a method says.
 
     Attributes:
@@ -99,7 +99,7 @@ class Told:
     setting: str
     role: Role
     n_modes: int
-    ends: list[End]
+    ends: list[PushEnd]
     cpu_time: float
     compile_time: float = 0.0
     evaluations: int = 0
@@ -134,7 +134,7 @@ def complex_modes_told(
         place = _same(at, grows, frequency)
         rings = place is not None and bool(grows[place])
         ends.append(
-            End(
+            PushEnd(
                 outcome=Outcome.converged,
                 frequency=float(at[place]) if rings else np.nan,
                 quiet=not rings,
@@ -191,7 +191,7 @@ def exact_told(
     for place in pushes:
         if place is None:
             nothing = _nothing(plant.structure)
-            ends.append(End(outcome=Outcome.converged, has_mode=False, **nothing))
+            ends.append(PushEnd(outcome=Outcome.converged, has_mode=False, **nothing))
         else:
             ends.append(found[known.index(place)])
     return Told(
@@ -231,7 +231,7 @@ def smoothed_told(
     for place in _pushes(plant, frequencies):
         if place is None:
             nothing = _nothing(structure)
-            ends.append(End(outcome=Outcome.converged, has_mode=False, **nothing))
+            ends.append(PushEnd(outcome=Outcome.converged, has_mode=False, **nothing))
             continue
         start = plant.pushed(place, PUSH)
         samples, once = _timed(lambda start=start: model.run(start, times, tol), 1)  # type: ignore[misc]
@@ -299,7 +299,7 @@ def _died_out(plant: Plant, before: float, now: float) -> bool:
 
 def _exact_ends(
     plant: Plant, before: Rows, now: Rows, count: int, tol: float
-) -> list[End]:
+) -> list[PushEnd]:
     """Of each push, over the starts that belong to it; the frequency from a run behind."""
     step = 1.0 / (FINEST * plant.fastest)
     length = int(min(np.ceil(float(now.length[0]) / step), MOST_SAMPLES))
@@ -340,7 +340,7 @@ def _exact_ends(
             if (quiet or steady) and together:
                 outcome = Outcome.converged
         ends.append(
-            End(
+            PushEnd(
                 outcome=outcome,
                 frequency=np.nan if quiet else float(ringing.mean()),
                 speed=0.0 if quiet else float(np.sqrt((speeds**2).mean())),
@@ -370,9 +370,9 @@ class Window:
 
 def _smoothed_end(
     plant: Plant, samples: Samples, width: float, belt: np.ndarray, step: float
-) -> End:
+) -> PushEnd:
     if not samples.finished:
-        return End(outcome=Outcome.no_convergence, **_nothing(plant.structure))
+        return PushEnd(outcome=Outcome.no_convergence, **_nothing(plant.structure))
     modal = plant.modal_velocities(samples.states)
     closed = samples.pressing > 0
     slow = closed & (np.abs(samples.sliding) < width)
@@ -393,7 +393,7 @@ def _smoothed_end(
     with np.errstate(invalid="ignore", divide="ignore"):
         creep = np.where(count > 0, crept / count / belt, np.nan)
     settled = quiet or stays(before, now)
-    return End(
+    return PushEnd(
         outcome=Outcome.converged if settled else Outcome.unresolved,
         frequency=np.nan if quiet else strongest_line(modal[late], step),
         speed=0.0 if quiet else float(np.sqrt((speed**2).mean())),
