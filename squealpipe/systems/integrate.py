@@ -396,5 +396,7 @@ def _time_units(
 
 def _table(size: int, *columns: Any) -> np.ndarray:
     """Columns side by side, each a number or an array (size,)."""
-    rows = [np.broadcast_to(column, size) for column in columns]
-    return np.array(rows, float).T.copy()
+    table = np.empty((size, len(columns)))
+    for place, column in enumerate(columns):
+        table[:, place] = column
+    return table

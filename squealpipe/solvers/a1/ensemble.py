@@ -161,20 +161,26 @@ class Ensemble:
     def outcome(self) -> np.ndarray:
         """``schema.Outcome`` of each run."""
         codes = self._raw["outcome"]
-        # a state that is lost next to a pivot is so by its doing, and so is the sight of it
-        away = self._raw["final"][:, None, :2] - self._raw["points"]
-        lengths = np.stack(
-            [self.jobs.values[name] for name in ("length1", "length2")], axis=-1
-        )
-        near = (np.linalg.norm(away, axis=-1) < NEAR_PIVOT * lengths).any(axis=1)
-        unknown = np.isin(codes, (Outcome.not_finite, Outcome.hidden_event))
-        lost = (codes >= STOPPED) | (unknown & near)
+        lost = codes >= STOPPED
+        unknown = (codes == Outcome.not_finite) | (codes == Outcome.hidden_event)
+        if unknown.any():
+            # a state that is lost next to a pivot is so by its doing, and so is the sight of it
+            lost |= unknown & self._next_to_pivot()
         found = np.where(lost, Outcome.singular_geometry, codes)
         found[codes == BY_EVENT] = Outcome.separated
         found[codes == BY_TURNS] = Outcome.amplitude_reached
         if self.jobs.stop_at_first_separation:
             found[self._raw["starts_apart"]] = Outcome.separated
         return self._shaped(found.astype(np.int8))
+
+    def _next_to_pivot(self) -> np.ndarray:
+        """Whether each run ended next to the fixed end of a spring."""
+        away = self._raw["final"][:, None, :2] - self._raw["points"]
+        lengths = np.stack(
+            [self.jobs.values[name] for name in ("length1", "length2")], axis=-1
+        )
+        near = np.linalg.norm(away, axis=-1) < NEAR_PIVOT * lengths
+        return np.asarray(near.any(axis=1))
 
     @cached_property
     def first_separation_time(self) -> np.ndarray:
