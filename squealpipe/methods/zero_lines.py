@@ -226,11 +226,9 @@ class ZeroLines:
             kinked = self._jumps(chords) | (error > self._bent(chords))
             self.marks(np.concatenate([chords[kinked].ravel(), middle[kinked]]))
             chords, error = _split(chords, middle), np.repeat(0.5 * error, 2)
-            length, jumps, bent = (
-                self._length(chords),
-                self._jumps(chords),
-                self._bent(chords),
-            )
+            length = self._length(chords)
+            jumps = self._jumps(chords)
+            bent = self._bent(chords)
             error = np.where(jumps, error, np.minimum(error, bent))
             # by chance the middle of a chord may be right where the rest is not
             going = ((np.maximum(error, 0.5 * bent) > self.off * length) | jumps) & (
@@ -347,10 +345,8 @@ class ZeroLines:
         Returns:
             The share of its way from end to end, 0.5 where there is none, and the place, NaN there.
         """
-        chord, (first, last) = (
-            np.diff(self.place[chords], axis=1)[:, 0],
-            self._tangents(chords),
-        )
+        chord = np.diff(self.place[chords], axis=1)[:, 0]
+        first, last = self._tangents(chords)
         with np.errstate(all="ignore"):
             along = _cross(chord, last) / _cross(first, last)
             back = _cross(first, chord) / _cross(first, last)
@@ -390,15 +386,11 @@ class ZeroLines:
         side = np.sign((axis * left).sum(axis=1))
         tongue = steep & (long > 0.3 * length) & (long < LONGEST * length)
         axis = np.where(tongue[:, None], side[:, None] * axis, left)
-        height, reach = (
-            np.where(tongue, 0.7 * side, height),
-            np.where(tongue, 1.0, reach),
-        )
+        height = np.where(tongue, 0.7 * side, height)
+        reach = np.where(tongue, 1.0, reach)
         doubt[steep] = length[steep] * np.fmax(length, long)[steep]
-        start, way = (
-            foot + (height + reach)[:, None] * axis,
-            -2.0 * reach[:, None] * axis,
-        )
+        start = foot + (height + reach)[:, None] * axis
+        way = -2.0 * reach[:, None] * axis
         rates = (self.slope[chords] * way[:, None]).sum(axis=2)
         rate = np.where(kinked, np.where(nearer, *rates.T), rates.mean(axis=1))
         share, *there = self._roots(start, way, np.full(len(at), 0.5), rate)
@@ -443,11 +435,9 @@ class ZeroLines:
         """
         low, high, now = np.zeros(len(start)), np.ones(len(start)), share.copy()
         found, last, slope = np.full((3, len(start)), np.nan)
-        old, before, left = (
-            now.copy(),
-            np.full(len(start), np.nan),
-            np.arange(len(start)),
-        )
+        old = now.copy()
+        before = np.full(len(start), np.nan)
+        left = np.arange(len(start))
         size, rate = np.linalg.norm(way, axis=1), rate.copy()
         for iteration in range(60):
             if not left.size:
@@ -498,10 +488,8 @@ class ZeroLines:
             between[start, end], between[end, start] = inner, inner[::-1]
         chords = self.chords if positive else self.chords[:, ::-1]
         place = np.concatenate([self.place, CORNERS])
-        sign, number = (
-            (-1.0 if positive else 1.0),
-            {(i, j): k for k, (i, j) in enumerate(chords)},
-        )
+        sign = -1.0 if positive else 1.0
+        number = {(i, j): k for k, (i, j) in enumerate(chords)}
         found = []
         for chain in _chains(np.concatenate([chords, self._border(positive)])):
             pairs = list(pairwise(chain))
@@ -574,10 +562,8 @@ def inside(loops: Sequence[Vector], x: Vector, y: Vector) -> np.ndarray:
     odd = np.zeros((len(x), len(y)), bool)
     for line in loops:
         after = np.roll(line, -1, axis=0)
-        low, high = (
-            np.minimum(line[:, 0], after[:, 0]),
-            np.maximum(line[:, 0], after[:, 0]),
-        )
+        low = np.minimum(line[:, 0], after[:, 0])
+        high = np.maximum(line[:, 0], after[:, 0])
         first, last = np.searchsorted(x, low), np.searchsorted(x, high)
         which = np.repeat(np.arange(len(line)), last - first)
         column = np.arange(which.size) - np.repeat(

@@ -57,11 +57,9 @@ def draw_cycle(axes: Axes, cycle: xr.Dataset) -> None:
     axes.set(xlabel="x (m)", ylabel="y (m)")
     if say_why_empty(axes, cycle):
         return
-    x, y, preload = (
-        cycle.x_path.values,
-        cycle.y_path.values,
-        parameter(cycle, "preload"),
-    )
+    x = cycle.x_path.values
+    y = cycle.y_path.values
+    preload = parameter(cycle, "preload")
     if "regime_path" in cycle:
         draw_regimes(axes, x, y, cycle.regime_path)
     else:

@@ -43,10 +43,8 @@ WHITE, LIGHT, BLACK = "#FFFFFF", "#BDBDBD", "#1A1A1A"
 HALO = [withStroke(linewidth=2, foreground="white")]
 """Around words and marks on a map."""
 HATCH = "//////"
-GREEK, SUBSCRIPTS = (
-    {"alpha": "α", "mu": "μ", "sigma": "σ"},
-    str.maketrans("0123s", "₀₁₂₃ₛ"),
-)
+GREEK = {"alpha": "α", "mu": "μ", "sigma": "σ"}
+SUBSCRIPTS = str.maketrans("0123s", "₀₁₂₃ₛ")
 
 ANGLES = ("alpha1", "alpha2")
 REGIME_COLOURS = {

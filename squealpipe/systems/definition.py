@@ -161,10 +161,8 @@ class System:
         self.composition = Composition.of(
             _components(regimes, switches, starts_in, components)
         )
-        self.regimes, self.switches = (
-            self.composition.regimes,
-            self.composition.switches,
-        )
+        self.regimes = self.composition.regimes
+        self.switches = self.composition.switches
         self.period, self.time_scale = period, time_scale
         self.outputs, self.stops = dict(outputs or {}), dict(stops or {})
         self._check_names()

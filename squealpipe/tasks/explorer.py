@@ -75,10 +75,8 @@ def explorer_data(
                 for place, mode in enumerate(modes):
                     _branch(arrays, (cell, place), params, scene, mode)
 
-    history, branch = (
-        (count * count, samples),
-        (count * count, len(modes), branch_points),
-    )
+    history = (count * count, samples)
+    branch = (count * count, len(modes), branch_points)
     found = run_shared(
         fill,
         {

@@ -167,10 +167,8 @@ class SampledContact:
         table, weights = self._tables
         distance = self.threshold - table @ cosine
         if self.sigma is None:
-            compression, slope = (
-                np.maximum(distance, 0.0),
-                (distance > 0.0).astype(float),
-            )
+            compression = np.maximum(distance, 0.0)
+            slope = (distance > 0.0).astype(float)
         else:
             compression = smoothed_compression(distance, self.sigma)
             slope = smoothed_compression_slope(distance, self.sigma)

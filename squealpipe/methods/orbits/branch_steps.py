@@ -161,10 +161,8 @@ def time_in_flight(point: Any, segments: Any, switches: Any, legs: int) -> float
 @compiled
 def measure(rows: Any, point: Any, pace: Any) -> None:
     """Note time in flight and extent of the orbit at the start of a trace."""
-    segments, switches = (
-        np.empty((shooting.MAX_SEGMENTS, 9)),
-        np.empty(shooting.MAX_SEGMENTS),
-    )
+    segments = np.empty((shooting.MAX_SEGMENTS, 9))
+    switches = np.empty(shooting.MAX_SEGMENTS)
     final = np.empty(4)
     legs = shooting.shoot(rows, point[0], point[1], point[2], segments, switches, final)
     pace[FLIGHT] = time_in_flight(point, segments, switches, legs)

@@ -178,10 +178,8 @@ def _on_step(
     """The branch's point on the plane across a step at a distance; 0 where none is found."""
     for index in range(3):
         point[index] = before[0, index] + distance * before[1, index]
-    segments, switches = (
-        np.empty((shooting.MAX_SEGMENTS, 9)),
-        np.empty(shooting.MAX_SEGMENTS),
-    )
+    segments = np.empty((shooting.MAX_SEGMENTS, 9))
+    switches = np.empty(shooting.MAX_SEGMENTS)
     legs, _, _ = shooting.solve_constrained(
         rows,
         point,
@@ -250,11 +248,9 @@ def orbit_at(rows: Any, point: Any, out: Any, switches: Any) -> bool:
 @compiled
 def _orbit_across(rows: Any, point: Any, normal: Any, out: Any, switches: Any) -> bool:
     """As :func:`orbit_at`, on the plane through ``point`` across ``normal``."""
-    segments, final, tangent = (
-        np.empty((shooting.MAX_SEGMENTS, 9)),
-        np.empty(4),
-        np.empty(3),
-    )
+    segments = np.empty((shooting.MAX_SEGMENTS, 9))
+    final = np.empty(4)
+    tangent = np.empty(3)
     count, _, residual = shooting.solve_constrained(
         rows, point, normal, 0.0, segments, switches, final, tangent
     )

@@ -46,17 +46,13 @@ def modal_coefficients(omega1: Any, omega2: Any, time: Any) -> Any:
     """
     mean, half = 0.5 * (omega1 + omega2), 0.5 * (omega2 - omega1)
     angle1, angle2 = 0.5 * time * omega1, 0.5 * time * omega2
-    sin1, cos1, sin2, cos2 = (
-        np.sin(angle1),
-        np.cos(angle1),
-        np.sin(angle2),
-        np.cos(angle2),
-    )
+    sin1 = np.sin(angle1)
+    cos1 = np.cos(angle1)
+    sin2 = np.sin(angle2)
+    cos2 = np.cos(angle2)
     sine_mean = _over(sin1 * cos2 + cos1 * sin2, mean, time)
-    sine1_half, sine2_half = (
-        _over(sin1, omega1, 0.5 * time),
-        _over(sin2, omega2, 0.5 * time),
-    )
+    sine1_half = _over(sin1, omega1, 0.5 * time)
+    sine2_half = _over(sin2, omega2, 0.5 * time)
     sine1, sine2 = 2.0 * sine1_half * cos1, 2.0 * sine2_half * cos2
     rise1, rise2 = 2.0 * sine1_half * sine1_half, 2.0 * sine2_half * sine2_half
 

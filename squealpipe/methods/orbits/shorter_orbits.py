@@ -80,11 +80,9 @@ def about_to_meet(
 @compiled
 def times_run_through(rows: Any, point: Any) -> int:
     """As :func:`shorter_orbit`, for a point alone; 0 where the shot fails."""
-    segments, switches, final = (
-        np.empty((MAX_SEGMENTS, 9)),
-        np.empty(MAX_SEGMENTS),
-        np.empty(4),
-    )
+    segments = np.empty((MAX_SEGMENTS, 9))
+    switches = np.empty(MAX_SEGMENTS)
+    final = np.empty(4)
     legs = shoot(rows, point[0], point[1], point[2], segments, switches, final)
     return (
         0

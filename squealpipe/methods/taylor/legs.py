@@ -64,11 +64,9 @@ def _begin(t: Any, m: Any, lane: int, leg: int, unit: float) -> None:
 def _keep(t: Any, m: Any, lane: int, unit: float) -> bool:
     """Keep a lane's step and go to its end; returns whether that is the end of its leg."""
     leg = m.lanes[lane]
-    step, left, place = (
-        m.rows[0, lane],
-        m.durations[leg] - m.clocks[lane],
-        m.counts[leg],
-    )
+    step = m.rows[0, lane]
+    left = m.durations[leg] - m.clocks[lane]
+    place = m.counts[leg]
     ends = not abs(left) > step
     step = left if ends else math.copysign(step, left)
     m.counts[leg] = place + 1
@@ -195,10 +193,8 @@ def transfer(
         found: (legs, columns, columns), identities at first; the last rows keep parameters.
     """
     n, columns, nodes, steps = slopes.shape
-    rates, states = (
-        np.zeros((nodes, n, columns, steps)),
-        np.empty((nodes, n, columns, steps)),
-    )
+    rates = np.zeros((nodes, n, columns, steps))
+    states = np.empty((nodes, n, columns, steps))
     for _ in range(_SWEEPS):
         _integrate(rates, up_to, states)
         _multiply(slopes, lengths, states, rates)

@@ -134,10 +134,8 @@ def _start(
     ):
         rows[row, lane] = 0.0
     rows[layout.LONGEST, lane] = math.inf
-    rows[layout.T_END, lane], rows[layout.T_LATE, lane] = (
-        m.limits[job, 0],
-        m.limits[job, 1],
-    )
+    rows[layout.T_END, lane] = m.limits[job, 0]
+    rows[layout.T_LATE, lane] = m.limits[job, 1]
     rows[layout.MOST_STEPS, lane] = m.limits[job, 2]
     rows[layout.ORIGIN, lane] = m.limits[job, 6]
     if m.limits[job, 1] <= 0.0:
@@ -159,10 +157,8 @@ def _start(
     rows[row : row + t.n_regimes, lane] = 0.0
     for point in range(t.n_points):
         row = first + 2 * t.n_tracked + t.n_regimes + 3 * point
-        rows[row, lane], rows[row + 1, lane] = (
-            m.points[job, point, 0],
-            m.points[job, point, 1],
-        )
+        rows[row, lane] = m.points[job, point, 0]
+        rows[row + 1, lane] = m.points[job, point, 1]
         rows[row + 2, lane] = 0.0
     m.summary[job, 0], m.summary[job, 1] = 0.0, math.nan
     _limit_growth(m, lane)

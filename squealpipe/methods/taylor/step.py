@@ -93,11 +93,9 @@ def converged_steps(series: int, terms: int, step: Any) -> Any:
     states; the highest may be left out. Where the state rests, what depends on the time alone
     still needs short steps.
     """
-    height, slope, bend = (
-        magnitude(load(series)),
-        magnitude(load(series + ROW)),
-        magnitude(load(series + 2 * ROW)),
-    )
+    height = magnitude(load(series))
+    slope = magnitude(load(series + ROW))
+    bend = magnitude(load(series + 2 * ROW))
     last = magnitude(load(series + (terms - 3) * ROW))
     later = magnitude(load(series + (terms - 2) * ROW))
     tiny, shorter = splat(1e-300), step

@@ -101,11 +101,9 @@ class Ensemble:
     """Results of an ensemble; arrays have the broadcast shape of its inputs, SI units."""
 
     separations, contacts = _count(Event.separation), _count(Event.contact)
-    sticks, slips, reversals = (
-        _count(Event.stick),
-        _count(Event.slip),
-        _count(Event.reversal),
-    )
+    sticks = _count(Event.stick)
+    slips = _count(Event.slip)
+    reversals = _count(Event.reversal)
     separated_time, stick_time = _spent(Regime.separated), _spent(Regime.stick)
     early_max_x = _largest("x", "early_")
     """Before ``t_late``; those that are late from there on."""
@@ -115,10 +113,8 @@ class Ensemble:
     sample_contacts = _count(Event.contact, "sample_counts")
     sample_separated_time = _spent(Regime.separated, "sample_durations")
     sample_stick_time = _spent(Regime.stick, "sample_durations")
-    sample_turns, sample_log_growth = (
-        _turns("sample_half_turns"),
-        _column("sample_growth", 0),
-    )
+    sample_turns = _turns("sample_half_turns")
+    sample_log_growth = _column("sample_growth", 0)
     """The growth is that at the end of the step before."""
     turns, log_growth = _turns("half_turns"), _column("log_growth")
     """Counterclockwise positive; ln of the growth of a perturbation, 0 without ``tangent``."""
@@ -129,10 +125,8 @@ class Ensemble:
     steps, final_state = _column("steps"), _states("final")
     samples = _states("samples")
     """At ``times``; NaN past ``time``."""
-    event_times, event_states = (
-        _column("event_times", time=True),
-        _states("event_states"),
-    )
+    event_times = _column("event_times", time=True)
+    event_states = _states("event_states")
     """The first ``log_events`` events, s, and the states after them; NaN after the last one."""
 
     def __init__(

@@ -258,10 +258,8 @@ def _curve_of(cycle: Cycle, label: Label) -> tuple[Curve, Vector]:
         return Curve(equations, label, own), cycle.point
     # the leg is cut where it touches: there the switch's event has no speed, if it stays there
     parts, leg, event = cycle.parts, own.leg, equations.events[own.leg]
-    first, traced = (
-        len(equations.flow.system.traced.variables),
-        equations.flow.system.traced,
-    )
+    first = len(equations.flow.system.traced.variables)
+    traced = equations.flow.system.traced
     inside = [turn for turn in parts.path.turns[first + own.which] if turn.leg == leg]
     turn = min(inside, key=lambda each: abs(each.value))
     joint = equations.flow.system.joint
@@ -400,10 +398,8 @@ class _Way:
                 continue
             self.curve = replace(old, map=found[0])
             angle = state.point[len(old.known(state.point)) :]
-            guess, normal = (
-                np.append(found[1], angle),
-                np.zeros(len(found[1]) + len(angle)),
-            )
+            guess = np.append(found[1], angle)
+            normal = np.zeros(len(found[1]) + len(angle))
             size = found[0].size
             normal[size : size + 2] = state.tangent[old.map.size : old.map.size + 2]
             self.curve.renew(guess)
@@ -430,11 +426,9 @@ class _Way:
         ends, point = [], line.known[1.0][0].point
         if self.inside(point) <= 0.0:
             share = line.root(partial(_at_point, self.inside))
-            share, met, why = (
-                1.0 if share is None else share,
-                Meeting.end,
-                "end_of_range",
-            )
+            share = 1.0 if share is None else share
+            met = Meeting.end
+            why = "end_of_range"
             if self._turns(point) <= 0.0:
                 met = (
                     Meeting.resonance_1_1 if point[-1] < 1.0 else Meeting.resonance_1_2
@@ -611,10 +605,8 @@ def _dataset(
     for name in parameters:
         values = [cycle.parts.values[name] for cycle in cycles]
         found[name] = ("point", values, labels(f"{name} along the curve", "1"))
-    periods, events = (
-        [cycle.period for cycle in cycles],
-        [len(cycle.events) for cycle in cycles],
-    )
+    periods = [cycle.period for cycle in cycles]
+    events = [len(cycle.events) for cycle in cycles]
     found["period"] = ("point", periods, labels("period", "s"))
     found["events"] = ("point", events, labels("events of the cycle", "1"))
     text = "largest residual of the equations, without units"

@@ -349,10 +349,8 @@ class Flow:
         flat = self._at(self._functions[key], values, regimes[0], state, time)
         n, width = self.size, 1 + self.size + self.timed + len(self.by)
         # values, and slopes by states, the time and parameters: of the surface and what comes after
-        rows, rest = (
-            flat[: (n + 1) * width].reshape(n + 1, width),
-            flat[(n + 1) * width :],
-        )
+        rows = flat[: (n + 1) * width].reshape(n + 1, width)
+        rest = flat[(n + 1) * width :]
         after, last = rows[1:, 0], n + 1 + self.timed
         return Crossing(
             height=float(rows[0, 0]),

@@ -230,10 +230,8 @@ def merged(cycle: Cycle, leg: int, count: int) -> tuple[EventMap, Vector]:
     equations, parts = cycle.map, cycle.parts
     if count >= equations.legs:
         state, _ = cycle.start()
-        made, regime = (
-            replace(equations, values=parts.values),
-            equations.events[leg].before,
-        )
+        made = replace(equations, values=parts.values)
+        regime = equations.events[leg].before
         return eventless(made, state, regime, cycle.period, cycle.followed)
     absorbed = [(leg + k) % equations.legs for k in range(1, count + 1)]
     keep = [i for i in range(equations.legs) if i not in absorbed]

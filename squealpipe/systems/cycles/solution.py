@@ -251,17 +251,15 @@ class Cycle:
     def followed_in(self, flow: Flow, units: Vector) -> tuple[EventMap, Vector]:
         """Its equations with other followed parameters, scaled by it, and its unknowns there."""
         flow.most_steps = max(flow.most_steps, self.map.flow.most_steps)
-        made, parts = (
-            replace(
-                self.map,
-                flow=flow,
-                values=self.parts.values,
-                units=units,
-                time=self.period,
-                scale=self.extent,
-            ),
-            self.parts,
+        made = replace(
+            self.map,
+            flow=flow,
+            values=self.parts.values,
+            units=units,
+            time=self.period,
+            scale=self.extent,
         )
+        parts = self.parts
         followed = np.array([parts.values[name] for name in flow.followed])
         return made, made.pack(parts.states, parts.durations, parts.start, followed)
 

@@ -50,10 +50,8 @@ def a1_beside_a4(
     shape = len(branches), len(length_ratios)
     histories = np.full((*shape, int(kept.sum())), np.nan)
     spectra = np.full((*shape, len(orders)), np.nan)
-    dominant, outcome = (
-        np.full(shape, np.nan),
-        np.full(shape, Outcome.converged, dtype=int),
-    )
+    dominant = np.full(shape, np.nan)
+    outcome = np.full(shape, Outcome.converged, dtype=int)
     omegas, references = [], []
 
     def spectrum(history: Vector) -> Vector:

@@ -207,11 +207,9 @@ def _harmonic_dataset(
     x = np.array([entry[0] for entry in series]).reshape(-1, len(order)) * scene.length
     y = np.array([entry[1] for entry in series]).reshape(-1, len(order)) * scene.length
     omega = np.array([entry[2] for entry in series]) * scene.frequency
-    x_wave, y_wave, x_speed = (
-        series_extremes(x),
-        series_extremes(y),
-        series_speed(x) * omega,
-    )
+    x_wave = series_extremes(x)
+    y_wave = series_extremes(y)
+    x_speed = series_speed(x) * omega
     return build(
         BACKBONE,
         {

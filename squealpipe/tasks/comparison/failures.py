@@ -30,11 +30,9 @@ from squealpipe.tasks.linear.maps import quasi_static_map
 BASE = Parameters(k3=0.75, mu=0.3, belt_speed=100.0, length1=5.0, length2=5.0)
 """Parameters at which the scenes are hard, whatever the study's are."""
 EXACT, BALANCE = "closed form, exact orbit", "closed-form balance"
-COLD, ARC, TANH = (
-    "cold Newton, sampled",
-    "arc length, unchecked",
-    "tanh balance, sampled",
-)
+COLD = "cold Newton, sampled"
+ARC = "arc length, unchecked"
+TANH = "tanh balance, sampled"
 HILL, NUMERIC = "Hill's method, sampled", "numpy.linalg"
 METHODS = (EXACT, BALANCE, COLD, ARC, TANH, CORRECTED, PRINTED, HILL, NUMERIC)
 """The columns; the first two are ours."""
@@ -123,11 +121,9 @@ def judge_balances() -> xr.Dataset:
         _period_doubling(),
     ]
     shape = len(scenes), len(METHODS)
-    verdict, error, message = (
-        np.zeros(shape),
-        np.full(shape, np.nan),
-        np.full(shape, "", "U64"),
-    )
+    verdict = np.zeros(shape)
+    error = np.full(shape, np.nan)
+    message = np.full(shape, "", "U64")
     for row, scene in enumerate(scenes):
         for name, ask in scene.answers.items():
             cell, answer = (row, METHODS.index(name)), ask()

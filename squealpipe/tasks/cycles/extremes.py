@@ -52,10 +52,8 @@ def settled_extremes(
     direction = generator.uniform(0.0, 2.0 * np.pi, starts)
     distance[0] = 0.0
     state = np.zeros((starts, 4))
-    state[:, 0], state[:, 1] = (
-        distance * np.cos(direction),
-        distance * np.sin(direction),
-    )
+    state[:, 0] = distance * np.cos(direction)
+    state[:, 1] = distance * np.sin(direction)
     angles = np.array(list(scenes.values()))
     run = run_ensemble(
         {**params.as_dict(), "mu": mu[None, :, None]},

@@ -79,10 +79,8 @@ def infer_parameters(
         "speed_ratio": speed_ratio,
     }
     groups = _sample(samples, seed, ranges)
-    sets, own = (
-        sets_of(groups, tol=tol, workers=workers),
-        Candidates.of(params, tol=tol),
-    )
+    sets = sets_of(groups, tol=tol, workers=workers)
+    own = Candidates.of(params, tol=tol)
     found = [_over_samples(sets.read(name)) for name in READINGS]
     joined: dict[str, Any] = {
         name: np.stack([each[name] for each in found]) for name in found[0]

@@ -75,10 +75,8 @@ def first_vanishes_on_lines(run: Evidence) -> Finding:
 )
 def first_is_largest_on_lines(run: Evidence) -> Finding:
     """Excess of the largest ω1² over that on the lines, the larger of both contact states."""
-    state, unit = (
-        run["natural_frequencies"].sel(mode=1),
-        run.parameters.k1 / run.parameters.mass,
-    )
+    state = run["natural_frequencies"].sel(mode=1)
+    unit = run.parameters.k1 / run.parameters.mass
     # a grid with an even number of angles has no cell on the lines, the paper's scenes have
     scenes = run[f"{AT_SCENES}natural_frequencies"].sel(mode=1)
     square, of_scenes = _omega_squared(state), _omega_squared(scenes)

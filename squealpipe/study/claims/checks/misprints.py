@@ -228,10 +228,8 @@ def reaction_is_that_of_equilibrium(run: Evidence) -> Finding:
     known = sliding.outcome == 0
     refused = int((known & (sliding.possible == 0) & pushes).sum())
     allowed = int((known & (sliding.possible == 1) & ~pushes).sum())
-    scene, load = (
-        cell(run, "quasi_static_map", 0.4, 0.6),
-        run.parameters.k3 * run.parameters.preload,
-    )
+    scene = cell(run, "quasi_static_map", 0.4, 0.6)
+    load = run.parameters.k3 * run.parameters.preload
     return finding(
         (refused + allowed, "≤", 0),
         f"{refused} cells are not possible by A2 though the equilibrium of Eq. (15) presses on "

@@ -50,10 +50,8 @@ def _draw(panel: Axes, part: xr.Dataset, axis: str) -> None:
     for ratio, (colour, dash) in zip(
         part.length_ratio.values, cycle(LOOKS), strict=False
     ):
-        one, label = (
-            part.sel(length_ratio=ratio),
-            f"A1, L = {ratio:g} $l_\\mathrm{{pre}}$",
-        )
+        one = part.sel(length_ratio=ratio)
+        label = f"A1, L = {ratio:g} $l_\\mathrm{{pre}}$"
         panel.plot(
             one[axis], one[f"{kind}_a1"], dash, color=colour, lw=0.9, label=label
         )

@@ -24,10 +24,8 @@ def draw(run: xr.Dataset) -> Figure:
     panel = axes[0, 0]
     x, y = run.x.values, run.y.values
     points = np.stack([x, y], axis=-1)
-    pieces, time = (
-        list(np.stack([points[:-1], points[1:]], axis=1)),
-        run.time.values[:-1],
-    )
+    pieces = list(np.stack([points[:-1], points[1:]], axis=1))
+    time = run.time.values[:-1]
     orbit = LineCollection(
         pieces, cmap="viridis", array=time, linewidths=0.5, rasterized=True
     )

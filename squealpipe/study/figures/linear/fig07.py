@@ -56,10 +56,8 @@ def caption(found: Mapping[str, xr.Dataset]) -> str:
 def _inside(found: Mapping[str, xr.Dataset], kind: str) -> str:
     """What the boundary encloses, and how far the scene is from it."""
     boundary, scene = found[f"{kind}{LINES}"], found[f"{kind}{DISTANCE}"]
-    share, error = (
-        100.0 * float(boundary.kept_share),
-        100.0 * float(boundary.kept_share_error),
-    )
+    share = 100.0 * float(boundary.kept_share)
+    error = 100.0 * float(boundary.kept_share_error)
     return f"{share:.2f} ± {error:.1g} % and {np.degrees(float(scene.distance)):.2g}°"
 
 

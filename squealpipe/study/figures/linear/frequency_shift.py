@@ -29,10 +29,8 @@ def draw(frequencies: xr.Dataset) -> Figure:
     )
     for panel, letter, mode in zip(axes[0], "ab", (1, 2), strict=True):
         values = shift.sel(mode=mode).values
-        low, high = (
-            min(float(values.min()), -NO_SHIFT),
-            max(float(values.max()), NO_SHIFT),
-        )
+        low = min(float(values.min()), -NO_SHIFT)
+        high = max(float(values.max()), NO_SHIFT)
         scale = TwoSlopeNorm(0.0, low, high)
         mesh = draw_map(panel, frequencies, values, cmap="RdBu_r", norm=scale)
         isoline(panel, frequencies, values, NO_SHIFT, "black")

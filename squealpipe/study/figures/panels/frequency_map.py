@@ -113,10 +113,8 @@ def isoline(
     width: float = 0.7,
 ) -> Any:
     """Lines on which values (alpha1, alpha2) are those of ``levels``."""
-    angles, levels = (
-        (dataset.alpha1.values, dataset.alpha2.values),
-        np.atleast_1d(levels),
-    )
+    angles = (dataset.alpha1.values, dataset.alpha2.values)
+    levels = np.atleast_1d(levels)
     return axes.contour(
         *angles, values.T, levels=levels, colors=colour, linewidths=width
     )
