@@ -69,18 +69,34 @@ class Row:
             raise ValueError(
                 f"{name} = {brief(value)}: unknown; {near}, {self.laws.FILES}"
             )
-        try:
-            read = number_of(value, self.units, KEYS_THAT_TAKE)
-        except ValueError as error:
-            raise ValueError(f"{name} = {brief(value)}: {error}") from error
-        if not is_finite_number(read):
-            raise ValueError(f"{name} = {brief(value)}: a finite number is needed")
-        number = float(read)
+        number = finite_number(name, value, self.units, KEYS_THAT_TAKE)
         if self.allowed == "positive" and not number > 0:
             raise ValueError(f"{name} = {value!r}: must be greater than 0")
         if self.allowed == "not negative" and not number >= 0:
             raise ValueError(f"{name} = {value!r}: must be 0 or greater")
         return number
+
+
+def finite_number(
+    name: str, value: object, units: str, keys: Mapping[str, str] | None = None
+) -> float:
+    """A number in SI from a finite number, a text with a unit or a quantity of pint.
+
+    Args:
+        name: of the argument, for messages.
+        units: CF unit of the result.
+        keys: names and CF units of other inputs, to say which takes what was written.
+
+    Raises:
+        ValueError: it is none of these; names argument and value.
+    """
+    try:
+        number = number_of(value, units, keys)
+    except ValueError as error:
+        raise ValueError(f"{name} = {brief(value)}: {error}") from error
+    if not is_finite_number(number):
+        raise ValueError(f"{name} = {brief(value)}: a finite number is needed")
+    return float(number)
 
 
 def direction_of(belt_speed: Any) -> Any:

@@ -106,7 +106,8 @@ def _modes(dims: tuple[str, ...]) -> DatasetSchema:
                 flags=Onset,
             ),
             "merges_with": Variable(
-                "mode whose frequency meets this one's there, 0: none",
+                "mode that this one meets by frequency where one of both turns unstable, the first "
+                "of several; 0: none",
                 dims=(*along, "mode"),
                 dtype="i4",
             ),

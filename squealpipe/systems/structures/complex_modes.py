@@ -55,7 +55,9 @@ def complex_modes(
         ``growth_rate`` (1/s), ``frequency`` (Hz), ``damping_ratio``, ``unstable`` (growth above its
         error), ``residual``, ``outcome``. By mode ``critical_mu``: the smallest friction in the
         range given (from 0 to ``mu`` for one) at which growth leaves zero, NaN with the reason in
-        ``onset``, and ``merges_with``. A mode is a pair of eigenvalues, or one real eigenvalue; it
+        ``onset``, and ``merges_with``: the mode whose frequency it meets or, with damping, comes
+        near where one of both turns unstable; of several the first, so that a third mode may name
+        one of two that name each other. A mode is a pair of eigenvalues, or one real eigenvalue; it
         keeps its number along ``mu``, and from one value of a factor to the next, by its shape.
         ``normal_force`` by contact is 0 where one is open; open contacts are left out.
 
@@ -171,10 +173,10 @@ def _tables(ways: list[Way], frictions: list[float]) -> dict[str, list[np.ndarra
             for name, values in _of_modes(step.spectrum).items():
                 table[name][row, at] = values[chosen]
             table["outcome"][row, at] = Outcome.converged
-        located = [way.critical(number) for number in numbers]
-        table["critical_mu"] = np.array([each[0] for each in located], float)
-        table["onset"] = np.array([each[1] for each in located], np.int8)
-        partners = [place_of.get(each[2], -1) for each in located]  # type: ignore[arg-type]
+        located = way.criticals(numbers)
+        table["critical_mu"] = np.array([each.mu for each in located], float)
+        table["onset"] = np.array([each.onset for each in located], np.int8)
+        partners = [place_of.get(each.partner, -1) for each in located]  # type: ignore[arg-type]
         table["merges_with"] = np.array(partners, np.int32) + 1
         for name, values in table.items():
             tables.setdefault(name, []).append(values)

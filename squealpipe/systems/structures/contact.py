@@ -8,8 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.parameters import brief, is_finite_number, is_whole_number
-from squealpipe.units import number_of
+from squealpipe.parameters import (
+    brief,
+    finite_number,
+    is_finite_number,
+    is_whole_number,
+)
 
 DEPENDENT = 1e-9
 """Smallest singular value of unit directions that are independent."""
@@ -48,13 +52,9 @@ class Contact:
                 f"contact {brief(self.name)}: letters, digits and _ are needed for a name"
             )
         for key, units in (("stiffness", "N m-1"), ("preload", "N"), ("speed", "1")):
-            try:
-                value = number_of(getattr(self, key), units)
-            except ValueError as error:
-                raise self._refusal(key, getattr(self, key), str(error)) from None
-            if not is_finite_number(value):
-                raise self._refusal(key, value, "a finite number is needed")
-            object.__setattr__(self, key, float(value))
+            name = f"contact {self.name}: {key}"
+            value = finite_number(name, getattr(self, key), units)
+            object.__setattr__(self, key, value)
         if not self.stiffness > 0:
             raise self._refusal("stiffness", self.stiffness, "must be greater than 0")
         if self.speed == 0:

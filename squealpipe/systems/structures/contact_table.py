@@ -13,11 +13,11 @@ import numpy as np
 
 from squealpipe.laws.rows import text_rows
 from squealpipe.laws.sheets import sheet
-from squealpipe.parameters import brief
+from squealpipe.parameters import brief, finite_number
 from squealpipe.systems.structures.contact import Contact
 from squealpipe.systems.structures.units import Scales
 from squealpipe.text import suggestion
-from squealpipe.units import has_unit, in_si
+from squealpipe.units import has_unit
 
 CONTACT_COLUMNS = ("name", "normal", "tangential", "stiffness", "preload")
 KNOWN = (*CONTACT_COLUMNS, "speed")
@@ -48,8 +48,13 @@ def read_contacts(
             raise ValueError(
                 f"{where} has {len(cells)} cells, but the header {len(header)} columns"
             )
+        # a cell has a unit of its own, or is a number in the units of the file
         numbers = {
-            name: _in_si(row[name], f"{where}: {name}", units, factor)
+            name: (
+                finite_number(f"{where}: {name}", row[name], units)
+                if has_unit(row[name])
+                else _number(row[name], f"{where}: {name}") * factor
+            )
             for name, units, factor in (
                 ("stiffness", "N m-1", scales.stiffness),
                 ("preload", "N", scales.force),
@@ -131,16 +136,6 @@ def _direction(text: str, labels: list[str] | None, size: int) -> dict[int, floa
                 )
         direction[number] = direction.get(number, 0.0) + _number(coefficient, place)
     return direction
-
-
-def _in_si(text: Any, what: str, units: str, factor: float) -> float:
-    """A cell with a unit of its own, or a number in the units of the file."""
-    if not has_unit(text):
-        return _number(text, what) * factor
-    try:
-        return in_si(text, units)
-    except ValueError as error:
-        raise ValueError(f"{what} = {brief(text)}: {error}") from None
 
 
 def _number(text: Any, what: str) -> float:

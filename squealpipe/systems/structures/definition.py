@@ -9,11 +9,10 @@ from typing import Any, Self
 import numpy as np
 import scipy.sparse as sp
 
-from squealpipe.parameters import brief, is_finite_number
+from squealpipe.parameters import brief, finite_number
 from squealpipe.systems.structures.contact import Contact, directions
 from squealpipe.systems.structures.friction import Friction, default_mu
 from squealpipe.systems.structures.matrices import checked_mass, real_square
-from squealpipe.units import number_of
 
 
 class Structure:
@@ -65,7 +64,7 @@ class Structure:
             nothing if damping is None else real_square("damping", damping, self.size)
         )
         self.modal_damping = _ratios(modal_damping, self.size)
-        belt_speed = _in_si("belt_speed", belt_speed, "m s-1")
+        self.belt_speed = finite_number("belt_speed", belt_speed, "m s-1")
         self.contacts = tuple(contacts)
         for contact in self.contacts:
             if not isinstance(contact, Contact):
@@ -73,15 +72,14 @@ class Structure:
         self.normals, self.tangentials = directions(self.contacts, self.size)
         self.friction = Friction(
             friction_law=friction_law,
-            mu=default_mu(friction_law) if mu is None else _in_si("mu", mu, "1"),
-            mu_static=_in_si("mu_static", mu_static, "1"),
-            friction_speed=_in_si("friction_speed", friction_speed, "m s-1"),
+            mu=default_mu(friction_law) if mu is None else finite_number("mu", mu, "1"),
+            mu_static=(
+                None
+                if mu_static is None
+                else finite_number("mu_static", mu_static, "1")
+            ),
+            friction_speed=finite_number("friction_speed", friction_speed, "m s-1"),
         )
-        if not is_finite_number(belt_speed):
-            raise ValueError(
-                f"belt_speed = {brief(belt_speed)}: a finite number is needed"
-            )
-        self.belt_speed = float(belt_speed)
         self.given_load = load
         self.load = self._load(load)
         self.modes: np.ndarray | None = None
@@ -191,28 +189,14 @@ class Structure:
         }
 
 
-def _in_si(name: str, value: Any, units: str) -> Any:
-    """A number in SI from a text with a unit; else the value as it is."""
-    try:
-        return number_of(value, units)
-    except ValueError as error:
-        raise ValueError(f"{name} = {brief(value)}: {error}") from None
-
-
 def _ratios(given: Any, size: int) -> np.ndarray:
     """Damping ratios, one number or one for each of the lowest modes."""
-    ratio = _in_si("modal_damping", given, "1")
-    try:
-        ratios = np.asarray(ratio, dtype=float)
-    except (TypeError, ValueError):
-        raise ValueError(
-            f"modal_damping = {brief(given)}: numbers are needed"
-        ) from None
-    if (
-        ratios.ndim > 1
-        or ratios.size > size
-        or not (np.isfinite(ratios).all() and (ratios >= 0).all())
-    ):
+    several = given.tolist() if isinstance(given, np.ndarray) else given
+    if isinstance(several, Sequence) and not isinstance(several, str):
+        ratios = np.array([finite_number("modal_damping", one, "1") for one in several])
+    else:
+        ratios = np.array(finite_number("modal_damping", several, "1"))
+    if ratios.size > size or not (ratios >= 0).all():
         raise ValueError(
             f"modal_damping = {brief(given)}: a ratio of 0 or greater is needed, or at most {size} "
             "of them"

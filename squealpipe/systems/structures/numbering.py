@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,6 +16,8 @@ from squealpipe.systems.structures.refinement import Eigenpair
 from squealpipe.systems.structures.sliding import NoSlidingError, changes
 from squealpipe.systems.structures.spectrum import Solver, Spectrum
 
+HALVINGS = 4
+"""How often a step in friction is halved on which a mode that turns unstable is lost."""
 MERGED = 0.5
 """Two modes merge where their frequencies come nearer than this share of their first distance."""
 
@@ -40,6 +44,20 @@ class Step:
         return None if place is None else self.spectrum.pairs[place]
 
 
+class Critical(NamedTuple):
+    """Where a mode turns unstable.
+
+    Attributes:
+        mu: friction, NaN if there is none.
+        onset: why.
+        partner: the mode that it meets by frequency, if there is one.
+    """
+
+    mu: float
+    onset: Onset
+    partner: int | None = None
+
+
 @dataclass
 class Way:
     """Modes along friction at one belt speed.
@@ -54,6 +72,7 @@ class Way:
     top: int = 0
     steps: dict[float, Step] = field(default_factory=dict)
     reasons: list[str] = field(default_factory=list)
+    _onsets: dict[tuple[int, float, float], float | None] = field(default_factory=dict)
 
     def follow(self, frictions: list[float], after: Way | None) -> None:
         """Number the modes at these frictions, ascending; the first as those of another way."""
@@ -91,12 +110,62 @@ class Way:
                 self._go_smoothly(low, station)
                 low = station
 
-    def _go_smoothly(self, low: float, high: float) -> None:
-        start = self.steps[low]
+    def _go_smoothly(self, low: float, high: float, halvings: int = HALVINGS) -> None:
+        start, top = self.steps[low], self.top
+        passed = {low: start}
         for mu, places in followed(self.solver.at, low, high, self.solver.selected):
             spectrum = self.solver.at(mu)
             numbers = self._carried(start.numbers, places, len(spectrum.pairs))
-            self.steps[mu] = Step(spectrum, numbers)
+            passed[mu] = Step(spectrum, numbers)
+        middle = 0.5 * (low + high)
+        if halvings and self._loses_one(passed) and self._slides(middle):
+            # modes took each other's numbers, or were stable for less than this step
+            self.top = top
+            self._go_smoothly(low, middle, halvings - 1)
+            self._go_smoothly(middle, high, halvings - 1)
+            return
+        self.steps.update(passed)
+
+    def _slides(self, mu: float) -> bool:
+        try:
+            self.solver.at(mu)
+        except NoSlidingError:
+            return False
+        return True
+
+    def _loses_one(self, passed: dict[float, Step]) -> bool:
+        """Whether a mode within the limits cannot be followed to where it turns unstable."""
+        for (low, before), (high, after) in pairwise(passed.items()):
+            within = after.numbers[self.solver.selected(after.spectrum)]
+            for number in map(int, within):
+                pair = before.pair(number)
+                if pair is None or self._grown(before, number) is not None:
+                    continue
+                grown = self._grown(after, number)
+                if grown is None:
+                    continue
+                if self._onset(number, (low, pair), (high, grown)) is None:
+                    return True
+        return False
+
+    def _onset(
+        self,
+        number: int,
+        stable: tuple[float, Eigenpair],
+        grown: tuple[float, Eigenpair],
+    ) -> float | None:
+        """Where a mode turns unstable between two frictions; None where it cannot be followed."""
+        key = number, stable[0], grown[0]
+        if key not in self._onsets:
+            self._onsets[key] = onset(self.solver.pencil, stable, grown)
+        return self._onsets[key]
+
+    def _grown(self, step: Step, number: int) -> Eigenpair | None:
+        """The mode if it grows, or the one that it has merged with; None if neither does."""
+        pair, twin = step.pair(number), self._twin(step, number)
+        if pair is None or not (pair.value.real > pair.error or twin is not None):
+            return None
+        return pair if twin is None or pair.value.real > 0 else step.pair(twin)
 
     def _carried(
         self, numbers: np.ndarray, places: np.ndarray, size: int
@@ -110,28 +179,38 @@ class Way:
         self.top += int(new.sum())
         return carried
 
-    def critical(self, number: int) -> tuple[float, Onset, int | None]:
-        """The friction at which growth of a mode leaves zero, why, and the mode it merges with."""
+    def criticals(self, numbers: list[int]) -> list[Critical]:
+        """Where growth of each of these modes leaves zero, and with which other it meets."""
+        criticals = {number: self._critical(number) for number in numbers}
+        # where damping lets one of two that meet grow alone, the other has met it all the same
+        meeting = [
+            number for number in numbers if criticals[number].partner is not None
+        ]
+        for number in sorted(meeting, key=lambda each: criticals[each].mu):
+            partner = criticals[number].partner
+            if partner in criticals and criticals[partner].partner is None:
+                criticals[partner] = criticals[partner]._replace(partner=number)
+        return list(criticals.values())
+
+    def _critical(self, number: int) -> Critical:
         last: tuple[float, Eigenpair] | None = None
         for mu, step in self.steps.items():
             pair = step.pair(number)
             if pair is None:
                 continue
-            twin = self._twin(step, number)
-            grows = pair.value.real > pair.error or twin is not None
-            if not grows:
+            grown = self._grown(step, number)
+            if grown is None:
                 last = mu, pair
                 continue
             if last is None:
-                return np.nan, Onset.unstable_throughout, None
-            grown = pair if pair.value.real > 0 else step.pair(twin)  # type: ignore[arg-type]
-            assert grown is not None  # noqa: S101 (a twin is there)
-            located = onset(self.solver.pencil, last, (mu, grown))
+                return Critical(np.nan, Onset.unstable_throughout)
+            located = self._onset(number, last, (mu, grown))
             if located is None:
-                return np.nan, Onset.not_followed, None
+                return Critical(np.nan, Onset.not_followed)
+            twin = self._twin(step, number)
             partner = self._nearest(step, number) if twin is None else twin
-            return located, Onset.located, partner
-        return np.nan, Onset.stable, None
+            return Critical(located, Onset.located, partner)
+        return Critical(np.nan, Onset.stable)
 
     def _twin(self, step: Step, number: int) -> int | None:
         """The mode with the opposite growth and the same frequency, without damping."""

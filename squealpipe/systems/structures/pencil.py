@@ -40,18 +40,37 @@ class LowRank:
 
 
 @dataclass(frozen=True)
+class Uncertain:
+    """Σ (a s + b) x yᵀ: parts of Q(s) that contact forces and friction, being rounded, leave open.
+
+    Unlike entries that are rounded one by one, all entries of such a part are wrong together.
+
+    Attributes:
+        left, right: x and y, (n, k).
+        damping, stiffness: a and b, (k,), each no smaller than 0.
+    """
+
+    left: np.ndarray
+    right: np.ndarray
+    damping: np.ndarray
+    stiffness: np.ndarray
+
+
+@dataclass(frozen=True)
 class Pencil:
     """M s² + (C + U diag(d) Uᵀ) s + K.
 
     Attributes:
         mass, damping, stiffness: (n, n), real and sparse by rows.
         modal: the part of damping that belongs to single modes.
+        uncertain: what the matrices may be wrong by.
     """
 
     mass: Any
     damping: Any
     stiffness: Any
     modal: LowRank | None = None
+    uncertain: Uncertain | None = None
 
     @property
     def size(self) -> int:
@@ -137,6 +156,14 @@ class Pencil:
             for power, squares in zip((2, 1, 0), self._squares, strict=True)
         )
         return float(np.finfo(float).eps / 2 * np.sqrt(total))
+
+    def left_open(self, s: complex, left: np.ndarray, right: np.ndarray) -> float:
+        """Largest |wᴴ δQ v| of what is uncertain."""
+        part = self.uncertain
+        if part is None:
+            return 0.0
+        sizes = np.abs(left.conj() @ part.left) * np.abs(right @ part.right)
+        return float(sizes @ (abs(s) * part.damping + part.stiffness))
 
     def factorized(self, s: complex) -> Factors:
         """Factors of Q(s)."""

@@ -12,9 +12,10 @@ from squealpipe.parameters import brief, is_finite_number, is_whole_number
 from squealpipe.systems.structures.contact import Contact
 from squealpipe.systems.structures.definition import Structure
 from squealpipe.systems.structures.dense import all_modes
+from squealpipe.systems.structures.linearized import pencil_about
 from squealpipe.systems.structures.modes import modes_at_rest
 from squealpipe.systems.structures.pencil import DENSE
-from squealpipe.systems.structures.sliding import pencil_about, steady_sliding
+from squealpipe.systems.structures.sliding import steady_sliding
 from squealpipe.systems.structures.spectrum import Limits, Solver, check_frequency
 
 AND_LARGER = 3

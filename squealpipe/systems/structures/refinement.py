@@ -77,6 +77,22 @@ def error_of_rounding(
 ) -> float:
     """By how much rounded entries of the matrices can have moved an eigenvalue, rad/s."""
     moved = SURE * pencil.rounded(value, left, right)
+    return _shift(pencil, moved, right, left, rate)
+
+
+def error_of_forces(pencil: Pencil, pair: Eigenpair) -> float:
+    """By how much contact forces and friction, being rounded, can have moved it, rad/s."""
+    moved = pencil.left_open(pair.value, pair.left, pair.right)
+    if not moved:
+        return 0.0
+    rate = complex(np.vdot(pair.left, pencil.rate(pair.value, pair.right)))
+    return _shift(pencil, moved, pair.right, pair.left, rate)
+
+
+def _shift(
+    pencil: Pencil, moved: float, right: np.ndarray, left: np.ndarray, rate: complex
+) -> float:
+    """Of an eigenvalue where wᴴ Q v changes by so much."""
     # next to a double eigenvalue the shift is that of a square root instead
     mass = abs(np.vdot(left, pencil.mass @ right)) or np.inf
     curved = np.sqrt(moved / mass)

@@ -1,8 +1,7 @@
-"""Steady sliding of a structure, and the linear motion about it.
+"""Steady sliding of a structure.
 
 With σᵢ = sgn(speedᵢ V) and μᵢ = μ(|speedᵢ V|) the state is that of
-K q = f + Σ (nᵢ + σᵢ μᵢ tᵢ) Nᵢ, Nᵢ = max(preloadᵢ − kᵢ nᵢᵀq, 0), and small motions about it have the
-pencil M s² + (C + Σ Nᵢ μᵢ′ tᵢtᵢᵀ) s + K + Σ kᵢ (nᵢ + σᵢ μᵢ tᵢ) nᵢᵀ, both sums over closed contacts.
+K q = f + Σ (nᵢ + σᵢ μᵢ tᵢ) Nᵢ, Nᵢ = max(preloadᵢ − kᵢ nᵢᵀq, 0).
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from scipy.sparse.linalg import splu
 
 from squealpipe.systems.structures.definition import Structure
 from squealpipe.systems.structures.friction import with_mu
-from squealpipe.systems.structures.pencil import Extended, LowRank, Pencil
+from squealpipe.systems.structures.pencil import Extended
 
 SINGULAR = 1e-13
 """Residual of the steady state, over the forces in it, beyond which the stiffness is singular."""
@@ -26,6 +25,8 @@ REFINEMENTS = 2
 """Corrections of the steady state by its residual."""
 UNSETTLED = 1e-4
 """Share by which the last correction changes contact forces that round-off alone makes."""
+OF_FRICTION = 8.0
+"""Units of rounding in a coefficient of friction and its slope."""
 LOCATED = 1e-12
 """Tolerance of a friction that is located."""
 MOST_CHANGES = 32
@@ -48,6 +49,7 @@ class Sliding:
         closed: which contacts are closed.
         drag: σ μ of each.
         slope: μ′ of each, s/m.
+        force_error: by how much rounding can have changed the force of each, N.
     """
 
     displacement: np.ndarray
@@ -55,6 +57,7 @@ class Sliding:
     closed: np.ndarray
     drag: np.ndarray
     slope: np.ndarray
+    force_error: np.ndarray
 
 
 def steady_sliding(structure: Structure, mu: float, belt_speed: float) -> Sliding:
@@ -78,14 +81,14 @@ def steady_sliding(structure: Structure, mu: float, belt_speed: float) -> Slidin
     # contacts change one at a time, the first in order: such pivoting ends or comes back
     while closed is not None and closed.tobytes() not in seen:
         seen.add(closed.tobytes())
-        displacement = _balance(structure, closed, drag)
+        displacement, force_error = _balance(structure, closed, drag)
         reach = structure.preloads - structure.stiffnesses * (
             structure.normals.T @ displacement
         )
         wrong = np.flatnonzero(closed != (reach > 0))
         if not wrong.size:
             force = np.where(closed, reach, 0.0)
-            return Sliding(displacement, force, closed, drag, slope)
+            return Sliding(displacement, force, closed, drag, slope, force_error)
         closed[wrong[0]] = ~closed[wrong[0]]
         # with much friction pivoting may pass the state by
         if closed.tobytes() in seen:
@@ -113,13 +116,13 @@ def _sought(structure: Structure, drag: np.ndarray) -> np.ndarray | None:
         return None
     normals, stiffnesses = structure.normals, structure.stiffnesses
     all_closed = np.ones(number, bool)
-    held = structure.stiffness + _contact_stiffness(structure, all_closed, normals)
+    held = structure.stiffness + contact_stiffness(structure, all_closed, normals)
     try:
         factors = splu(sp.csc_array(held))
     except RuntimeError:  # exactly singular
         return None
     by_load = normals.T @ factors.solve(structure.load)
-    by_force = normals.T @ factors.solve(_acting(structure, all_closed, drag))
+    by_force = normals.T @ factors.solve(acting_directions(structure, all_closed, drag))
     by_springs = np.eye(number) - normals.T @ factors.solve(normals * stiffnesses)
     combinations = (np.arange(2**number)[:, None] >> np.arange(number)) % 2 == 1
     # most of them closed first
@@ -167,13 +170,19 @@ def changes(
     return passed
 
 
-def _balance(structure: Structure, closed: np.ndarray, drag: np.ndarray) -> np.ndarray:
-    """q of K q + Σ k (n + σ μ t) nᵀ q = f + Σ (n + σ μ t) preload over closed contacts."""
-    acting = _acting(structure, closed, drag)
-    matrix = structure.stiffness + _contact_stiffness(structure, closed, acting)
+def _balance(
+    structure: Structure, closed: np.ndarray, drag: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """q of K q + Σ k (n + σ μ t) nᵀ q = f + Σ (n + σ μ t) preload over closed contacts.
+
+    Returns:
+        q, and by how much rounding can have changed the force of each contact.
+    """
+    acting = acting_directions(structure, closed, drag)
+    matrix = structure.stiffness + contact_stiffness(structure, closed, acting)
     force = structure.load + acting @ (structure.preloads * closed)
     if not force.any():
-        return np.zeros(structure.size)
+        return np.zeros(structure.size), np.zeros(len(closed))
     try:
         factors = splu(sp.csc_array(matrix))
         solution = factors.solve(force)
@@ -201,7 +210,16 @@ def _balance(structure: Structure, closed: np.ndarray, drag: np.ndarray) -> np.n
             "nothing holds the structure against its load: the stiffness is singular with "
             f"{'all' if closed.all() else 'some'} contacts closed; add supports"
         )
-    return np.asarray(solution)
+    rounding = np.finfo(float).eps
+    springs = structure.stiffnesses
+    carried = springs * (np.abs(structure.normals).T @ np.abs(solution))
+    left_over = springs * np.abs(structure.normals.T @ change)
+    # friction that is rounded moves the state
+    drawn = factors.solve(structure.tangentials * closed)
+    reach = np.abs(structure.preloads) + carried
+    by_drag = springs[:, None] * np.abs(structure.normals.T @ drawn)
+    pulled = OF_FRICTION * rounding * np.abs(drag) * reach
+    return solution, rounding * reach + left_over + by_drag @ pulled
 
 
 def _unbalanced(
@@ -230,35 +248,16 @@ def _unbalanced(
     return unbalanced
 
 
-def _acting(structure: Structure, closed: np.ndarray, drag: np.ndarray) -> Any:
+def acting_directions(
+    structure: Structure, closed: np.ndarray, drag: np.ndarray
+) -> Any:
     """n + σ μ t of closed contacts, 0 of open ones, (n, contacts)."""
     return (structure.normals + structure.tangentials * drag) * closed
 
 
-def _contact_stiffness(
+def contact_stiffness(
     structure: Structure, closed: np.ndarray, acting: np.ndarray
 ) -> Any:
     """Σ k (n + σ μ t) nᵀ, sparse."""
     normals = sp.csr_array(structure.normals * (structure.stiffnesses * closed))
     return sp.csr_array(acting) @ normals.T
-
-
-def pencil_about(structure: Structure, state: Sliding, modal: LowRank | None) -> Pencil:
-    """The pencil of small motions about steady sliding, with the damping of single modes."""
-    acting = _acting(structure, state.closed, state.drag)
-    falling = state.force * state.slope
-    damping = sp.csr_array(structure.damping)
-    if falling.any():
-        tangential = sp.csr_array(structure.tangentials * falling)
-        damping = damping + tangential @ sp.csr_array(structure.tangentials).T
-    stiffness = structure.stiffness + _contact_stiffness(
-        structure, state.closed, acting
-    )
-    return Pencil(_tidy(structure.mass), _tidy(damping), _tidy(stiffness), modal)
-
-
-def _tidy(matrix: Any) -> sp.csr_array:
-    tidy = sp.csr_array(matrix, copy=True)
-    tidy.sum_duplicates()
-    tidy.eliminate_zeros()
-    return tidy

@@ -12,10 +12,11 @@ import numpy as np
 from squealpipe.parameters import brief, is_finite_number
 from squealpipe.systems.structures import band, dense
 from squealpipe.systems.structures.definition import Structure
+from squealpipe.systems.structures.linearized import pencil_about
 from squealpipe.systems.structures.modes import modal_damping_of, modes_at_rest
 from squealpipe.systems.structures.pencil import DENSE, LowRank, Pencil
-from squealpipe.systems.structures.refinement import Eigenpair
-from squealpipe.systems.structures.sliding import Sliding, pencil_about, steady_sliding
+from squealpipe.systems.structures.refinement import Eigenpair, error_of_forces
+from squealpipe.systems.structures.sliding import Sliding, steady_sliding
 
 BEYOND = 1.05
 """The band of so many modes ends so far beyond the frequency that they reach without friction."""
@@ -142,7 +143,11 @@ class Solver:
             pencil = pencil_about(self.structure, state, self.modal)
             find: Callable[[Pencil], list[Eigenpair]]
             find = dense.all_modes if self.is_dense else self._within
-            self._known[mu] = Spectrum(mu, state, pencil, find(pencil))
+            pairs = [
+                pair._replace(error=pair.error + error_of_forces(pencil, pair))
+                for pair in find(pencil)
+            ]
+            self._known[mu] = Spectrum(mu, state, pencil, pairs)
         return self._known[mu]
 
     def _within(self, pencil: Pencil) -> list[Eigenpair]:

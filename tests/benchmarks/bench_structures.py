@@ -1,0 +1,104 @@
+"""Cost of structures: runs of a settled pad beside scipy, complex modes beside sparse factors.
+
+Prints CPU times and ratios; the ratios are what to compare between machines. The public brake is
+measured where its matrices are (``SQUEALPIPE_BRAKE_MATRICES``), a finer pad elsewhere.
+"""
+
+import time
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+
+from squealpipe import Structure
+from squealpipe.structures import elastic_pad
+from squealpipe.systems.structures.pencil import Pencil
+from tests.oracles.structure_events import Reference
+from tests.systems.structures.test_motion import names, twelve_modes
+from tests.systems.structures.test_truth import BRAKE, brake
+
+SHORT = 0.1e-3
+"""Time of a run by scipy, s: a two-hundredth of ours."""
+
+
+def cpu_time(work):
+    """What work returns, and its CPU time, s."""
+    started = time.process_time()
+    result = work()
+    return result, time.process_time() - started
+
+
+def runs():
+    """An ensemble of the pad of twelve modes from a settled state, and DOP853 from there."""
+    pad, t_end = twelve_modes(), 20e-3
+    system = pad.system()
+    settled = system.simulate(t_end, times=[0.0, t_end])
+    state = np.array([settled[name].values[-1] for name in names(12)])
+    start = dict(zip(names(12), state, strict=True))
+    speeds = pad.belt_speed + 1e-9 * np.arange(8)
+    system.ensemble(1e-4, start=start, belt_speed=speeds, workers=1)  # compiled
+    ensemble, seconds = cpu_time(
+        lambda: system.ensemble(t_end, start=start, belt_speed=speeds, workers=1)
+    )
+    each = seconds / len(speeds)
+    counts = [name for name in ensemble if str(name).startswith("count_")]
+    events = sum(int(ensemble[name].sum()) for name in counts) / len(speeds)
+    (happened, _), public = cpu_time(
+        lambda: Reference(pad, pad.mu).run(SHORT, state, rtol=1e-11, atol=1e-14)
+    )
+    public *= t_end / SHORT
+    print("\n20 ms of the settled pad of 12 modes and 4 contacts, 1e-12, one core")
+    print(f"  a run of an ensemble  {1e3 * each:8.1f} ms, {events:.0f} events")
+    print(
+        f"  scipy DOP853 1e-11    {public:8.1f} s by {len(happened)} events of {1e3 * SHORT:g} ms, "
+        f"{public / each:.0f} times as much"
+    )
+
+
+def modes():
+    """Complex modes in a band at one friction, beside one complex sparse factorization."""
+    if (BRAKE / "BMLL00.mat").is_file():
+        mass, damping, stiffness = brake(4 * np.pi)
+        structure, top = Structure(mass, stiffness, damping), 42000 / (2 * np.pi)
+    else:
+        structure, top = elastic_pad(elements=(96, 24)).with_(mu=0.5), 60e3
+    factorizations = []
+    factorized = Pencil.factorized
+
+    def counted(pencil, s):
+        factorizations.append(s)
+        return factorized(pencil, s)
+
+    Pencil.factorized = counted
+    try:
+        found, seconds = cpu_time(
+            lambda: structure.complex_modes(
+                mu=[structure.mu] if structure.contacts else None, frequency_max=top
+            )
+        )
+    finally:
+        Pencil.factorized = factorized
+    shifted = sp.csc_array(
+        structure.mass * (1j * top) ** 2
+        + structure.damping * (1j * top)
+        + structure.stiffness,
+        dtype=complex,
+    )
+    _, single = cpu_time(lambda: splu(shifted, permc_spec="MMD_AT_PLUS_A"))
+    print(
+        f"\nComplex modes of {structure.size} degrees of freedom up to {top:.0f} Hz, one core"
+    )
+    print(
+        f"  {found.sizes['mode']} modes {seconds:8.1f} s, {len(factorizations)} factorizations, "
+        f"{seconds / single:.0f} times one"
+    )
+
+
+def main():
+    """Print both."""
+    runs()
+    modes()
+
+
+if __name__ == "__main__":
+    main()
