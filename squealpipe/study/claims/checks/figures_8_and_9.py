@@ -94,7 +94,8 @@ def first_is_largest_on_lines(run: Evidence) -> Finding:
     return finding(
         (max(separated, contact), "≤", SAME_OMEGA),
         f"Separated, the largest ω1² exceeds that on α1 + α2 = π/2 and 3π/2 by {separated:.1g} of "
-        f"it. In contact it is {float(largest.sel(contact_state='contact')) / unit:.4g} k1/m at "
+        "it. In contact, flutter aside, it is "
+        f"{float(largest.sel(contact_state='contact')) / unit:.4g} k1/m at "
         f"({first:.3g}π, {second:.3g}π), against "
         f"{float(line.sel(contact_state='contact')) / unit:.4g} k1/m on those lines. For even n "
         "ω1 = 0 there when separated.",

@@ -25,6 +25,11 @@ FEW_ULPS = 4.0 * np.finfo(float).eps
 WRONG_FREQUENCY = 1e-3
 """Relative error of ω that truncation and smoothing do not explain."""
 
+_READING_IN_WORDS = {
+    "as_printed": "as printed",
+    "along_plus_x": "along +x",
+    "along_minus_x": "along −x",
+}
 GROUPS = ("k3/k", "μ", "L/l_pre", "V/(l_pre √(k/m))")
 """The dimensionless groups on which all results depend."""
 READ_IN_THE_PAPER: tuple[str, ...] = ()
@@ -179,7 +184,7 @@ def parameters_are_printed(run: Evidence) -> Finding:
     if "parameter_inference" in run:
         inference = run["parameter_inference"]
         counts = ", ".join(
-            f"{int(each)} {str(each.reading.item()).replace('_', ' ')}"
+            f"{int(each)} {_READING_IN_WORDS[str(each.reading.item())]}"
             for each in inference.feasible_count
         )
         evidence += (
