@@ -10,6 +10,8 @@ from squealpipe import System
 from squealpipe.functions import cos
 from squealpipe.schema import Outcome, meanings
 from squealpipe.schema.branch_labels import Label
+from squealpipe.systems.cycles.find import find_cycle, labelled
+from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.motion import MotionKind
 from tests.systems.smooth_systems import (
     ball_on_a_table,
@@ -292,3 +294,32 @@ def test_relaxation_oscillations_settle(mu, period):
     assert outcome(cycle) == "converged"
     assert float(cycle.period) == pytest.approx(period, rel=1e-9)
     assert float(cycle.x_max) == pytest.approx(2.0, abs=0.02)
+
+
+def test_a_cycle_far_longer_than_the_time_scale_is_met():
+    slow = System(
+        "van der Pol in fiftieths",
+        states={"x": "1", "v": "1"},
+        parameters={"mu": 20.0},
+        regimes={"all": {}},
+        field=lambda t, s, p, r: {"x": s.v, "v": p.mu * (1.0 - s.x**2) * s.v - s.x},
+        start={"x": 2.0, "v": 0.0},
+        time_scale=0.02,
+    )
+    cycle = slow.limit_cycle()
+    assert outcome(cycle) == "converged"
+    period = float(van_der_pol.limit_cycle(mu=20.0).period)
+    assert float(cycle.period) == pytest.approx(period, rel=1e-9)
+
+
+def test_multipliers_that_round_off_has_taken_are_not_told():
+    """A cycle maps its own direction onto itself; a derivative that does not is none."""
+    values = {"mu": 1.0}
+    cycle, how = find_cycle(van_der_pol, values, np.array([2.0, 0.0]), guess=False)
+    assert how == Outcome.converged
+    assert cycle.keeps_its_direction
+    lost = Cycle.at(cycle.map, cycle.point)
+    lost.__dict__["monodromy"] = 1e29 * np.ones((2, 2))
+    assert labelled(lost, how) == (lost, Outcome.unresolved)
+    assert np.isnan(lost.multipliers).all()
+    assert not lost.is_stable

@@ -50,7 +50,7 @@ def find_cycle(
             if forced
             else settled_free(flow, values, state, periods, t_settle, unit)
         )
-        return _labelled(*found)
+        return labelled(*found)
 
     def near(at: Mapping[str, float]) -> tuple[Cycle | None, int]:
         if forced:
@@ -64,11 +64,13 @@ def find_cycle(
         back = (_brought(each, values) for each in besides if each is not None)
         cycle = next((each for each in back if each is not None), None)
         outcome = outcome if cycle is None else Outcome.converged
-    return _labelled(cycle, outcome)
+    return labelled(cycle, outcome)
 
 
-def _labelled(cycle: Cycle | None, outcome: int) -> tuple[Cycle | None, int]:
-    """The outcome of a member of a family says so."""
+def labelled(cycle: Cycle | None, outcome: int) -> tuple[Cycle | None, int]:
+    """The outcome of a member of a family says so, and of one whose stability is not known."""
+    if cycle is not None and not cycle.keeps_its_direction:
+        return cycle, Outcome.unresolved
     member = cycle is not None and cycle.is_family_member
     return cycle, Outcome.family_member if member else outcome
 

@@ -35,7 +35,7 @@ SETTLE_STEPS = 100_000
 _WINDOWS = (40.0, 160.0, 640.0)
 """Times, in units, within which a return is looked for."""
 _LONGER = 2560.0
-"""The next one, of a run that comes nearer to a cycle but is far from it still."""
+"""The next one, of a run that comes nearer to a cycle but is far from it, or has not come back."""
 _NEAR, _FAR = 0.05, 0.3
 """A return this close, over the motion's extent, ends the search; one this far is none."""
 _ASTRAY = 0.5
@@ -59,6 +59,10 @@ class Stretch:
         late = self.motion.path[len(self.motion.path) // 2 :]
         first = self.motion.path[0], int(self.motion.regimes[0])
         return _rests(late, sizes_at(self.flow, self.values, *first))
+
+    def comes_back(self) -> bool:
+        """Whether it returns at all, near or far; a slow cycle may be longer than the stretch."""
+        return next(_returns(self, self.motion.path[0]), None) is not None
 
     def comes_to_rest(self) -> bool:
         """Whether a motion in one regime shrinks towards a stable state of rest.
@@ -132,7 +136,7 @@ def settled_free(
                 return (
                     (None, SETTLED_ON + number) if many else (cycle, Outcome.converged)
                 )
-        if window >= _WINDOWS[-1] and not nears:
+        if window >= _WINDOWS[-1] and not nears and stretch.comes_back():
             break
         run = stretch.motion
     return None, Outcome.equilibrium if at_rest else Outcome.unsettled

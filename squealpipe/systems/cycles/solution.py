@@ -19,6 +19,8 @@ _ASIDE = 0.02
 """Step, over the cycle's extent, after which another member is looked for."""
 _NEUTRAL = 1e-9
 """Distance of a multiplier from 1 that is round-off."""
+_TURNED = 1e-2
+"""By how much a cycle's derivative may map its own direction elsewhere, over its length."""
 _SAMPLES, _INSIDE = 400, 4
 """Samples of a cycle, evenly, and in each step of the integrator."""
 
@@ -90,7 +92,7 @@ class Cycle:
         conditioned where they meet 1, as at a fold.
         """
         matrix, trivial = self.monodromy, np.empty(0)
-        if not np.isfinite(matrix).all():
+        if not (np.isfinite(matrix).all() and self.keeps_its_direction):
             return np.full(len(matrix), np.nan + 0.0j)
         if not self.map.periods:
             ahead = self.heading
@@ -101,6 +103,17 @@ class Cycle:
         # conjugates: positive imaginary part first
         order = np.lexsort((-rest.imag, -np.abs(rest).round(9)))
         return np.concatenate([trivial.astype(np.complex128), rest[order]])
+
+    @cached_property
+    def keeps_its_direction(self) -> bool:
+        """Whether a free motion's own direction is mapped onto itself, as it has to be.
+
+        Of very stiff cycles round-off takes it, and all multipliers with it.
+        """
+        if self.map.periods or not np.isfinite(self.monodromy).all():
+            return True
+        off = self.monodromy @ self.heading - self.heading
+        return bool(np.linalg.norm(off) <= _TURNED * np.linalg.norm(self.heading))
 
     @property
     def heading(self) -> Vector:
@@ -123,7 +136,8 @@ class Cycle:
         Next to it a multiplier is 1, as at a fold or a pitchfork. There Newton's method leads back
         from a step along the direction that returns; in a family it stays.
         """
-        if np.abs(self.nontrivial - 1.0).min(initial=1.0) >= _FAMILY:
+        off = np.abs(self.nontrivial - 1.0).min(initial=1.0)
+        if off >= _FAMILY or not self.keeps_its_direction:
             return False
         jacobian = self.map.evaluate(self.point)[1][:, : self.map.size]
         direction = np.linalg.svd(jacobian)[2][-1]
