@@ -24,7 +24,6 @@ from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer, say, working
 from squealpipe.cli.output import check_output, check_picture, draw_beside, write
 from squealpipe.cli.signatures import options_of
 from squealpipe.config.ranges import parse_range
-from squealpipe.schema.comparison import Reliability
 
 LISTED = 20
 """Unstable modes that are printed."""
@@ -206,6 +205,7 @@ def ladder(
     drawn = check_picture(picture, output, force=force)
 
     from squealpipe import Structure, squeal_ladder
+    from squealpipe.schema.comparison import Reliability
     from squealpipe.study.report.squeal_ladder import lines
 
     structure = Structure.read(file)
