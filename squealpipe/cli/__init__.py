@@ -25,8 +25,8 @@ from squealpipe.cli.console import (
 )
 from squealpipe.cli.files import convert, plot, spectrum
 from squealpipe.cli.inputs import read_brake
-from squealpipe.cli.maps import basin, disturbance, map_angles, propensity, refine
-from squealpipe.cli.models import choose, infer
+from squealpipe.cli.maps import basin, disturbance, map_angles, refine
+from squealpipe.cli.models import choose, infer, propensity
 from squealpipe.cli.motions import backbone, branch, cycle, simulate
 from squealpipe.cli.project import init
 from squealpipe.cli.project import run as run_study

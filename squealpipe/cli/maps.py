@@ -1,11 +1,9 @@
-"""``map``, ``refine``, ``basin``, ``disturbance``, ``propensity``: many runs in one picture."""
+"""``map``, ``refine``, ``basin``, ``disturbance``: many runs in one picture."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
-
-from cyclopts import Parameter
+from typing import TYPE_CHECKING, Any, Literal
 
 from squealpipe.cli.arguments import (
     DRAWN,
@@ -23,11 +21,10 @@ from squealpipe.cli.arguments import (
     Whole,
     Workers,
 )
-from squealpipe.cli.console import ANSWER_IS_NO, DONE, SESSION, answer
+from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer
 from squealpipe.cli.motions import Model
 from squealpipe.cli.output import compute, ending
 from squealpipe.cli.signatures import options_of
-from squealpipe.inputs import parse_number, reader
 from squealpipe.parameters import HORIZON
 
 if TYPE_CHECKING:
@@ -43,9 +40,6 @@ Kind = Literal[
 ]
 TIMED = ("validity", "hammering")
 """Maps that take a horizon."""
-DISTRIBUTIONS = (
-    "write for instance mu=uniform:0.1:0.9, k1=normal:1:0.05 or k3=lognormal:0.65:0.1"
-)
 
 
 @options_of("validity_map")
@@ -232,76 +226,3 @@ def disturbance(
         f"the start at rest: {float(found.rest_distance):.6g}",
     )
     return DONE
-
-
-@options_of("propensity")
-def propensity(
-    alpha1: Angle1,
-    alpha2: Angle2,
-    /,
-    *,
-    distribution: Annotated[
-        list[str], Parameter(metavar="NAME=KIND:LOW:HIGH", negative="")
-    ],
-    samples: Whole = 1024,
-    t_end: Time | None = None,
-    spring_correlation: Share,
-    seed: Whole,
-    output: Output = Path("propensity.nc"),
-    brake: Drawn = DRAWN,
-) -> int:
-    """Shares of flutter, contact loss, irregular hammering and whirl over uncertain parameters.
-
-    Example: `squealpipe propensity 0.07pi 0.305pi --distribution mu=uniform:0.1:0.9
-    --distribution k1=normal:1:0.05 -o propensity.nc`
-
-    Args:
-        distribution: of a parameter or angle: uniform:low:high, normal:mean:std or
-            lognormal:median:log_std; repeat for more.
-        samples: size of the sample, a power of 2.
-        t_end: end of each run, s; 200 √(mass/k1) by default.
-        spring_correlation: of k1 and k2; no Sobol indices are given with it.
-        seed: of the sample.
-    """
-    distributions = dict(map(_distribution, distribution))
-    if len(distributions) < len(distribution):
-        raise ValueError("--distribution: a duplicate name; keep one")
-    for name in sorted(set(distributions) & SESSION.typed):
-        raise ValueError(f"{name} is both fixed and distributed; keep one")
-    t_end = HORIZON * brake.params.time_unit if t_end is None else t_end
-    found = compute(
-        "propensity",
-        brake,
-        alpha1,
-        alpha2,
-        output=output,
-        distributions=distributions,
-        samples=samples,
-        t_end=t_end,
-        spring_correlation=spring_correlation,
-        seed=seed,
-    )
-    for name in found.quantity.values:
-        one = found.sel(quantity=name)
-        share, low, high = (float(one[f"share{end}"]) for end in ("", "_low", "_high"))
-        answer(
-            f"{name.replace('_', ' '):<20} {share:8.2%}  (95 %: {low:.2%} to {high:.2%})"
-        )
-    return DONE
-
-
-def _distribution(text: str) -> tuple[str, dict[str, str | float]]:
-    """Name and distribution of NAME=KIND:A:B."""
-    from squealpipe.tasks.propensity.distributions import KINDS
-
-    name, _, words = text.partition("=")
-    name, parts = name.strip().replace("-", "_"), words.split(":")
-    if len(parts) != 3 or parts[0] not in KINDS:
-        raise ValueError(
-            f"--distribution {text!r} is not a distribution; {DISTRIBUTIONS}"
-        )
-    numbers = {
-        key: (parse_number if key == "log_std" else reader(name))(text)
-        for key, text in zip(KINDS[parts[0]], parts[1:], strict=True)
-    }
-    return name, {"distribution": parts[0], **numbers}
