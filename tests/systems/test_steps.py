@@ -58,6 +58,7 @@ def test_a_flight_at_constant_speed_lands_on_a_wavy_floor(number):
         (lambda t, s, p, r: 1.0 / (1.0 + s.x**2), 1.0 / 290.0, 1.0),
         (lambda t, s, p, r: tanh(3.0 * s.x), -np.tanh(9.0), 1.0),
         (lambda t, s, p, r: exp(-50.0 * s.x**2), 0.0, 1.0),
+        (lambda t, s, p, r: exp(-5e4 * s.x**2), 0.0, 1.0),
     ],
 )
 def test_outputs_that_are_no_polynomials_keep_their_range(output, low, high):

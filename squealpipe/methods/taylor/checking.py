@@ -27,6 +27,8 @@ RATES = 1e-14
 """Round-off of a rate, relative to it."""
 TERMS = 1e-13
 """Round-off of a surface or output, relative to its terms."""
+TINY = 1e-300
+"""Of a surface or output below this too few digits are left to compare."""
 HELPLESS = 1e5
 """A difference below this many tolerances that a halved step does not halve is round-off."""
 FINEST = 2.0**-52
@@ -99,7 +101,7 @@ def _event_gap(t: Any, m: Any, c: Any, lane: int, event: int) -> float:
     index, terms = t.n_variables + event, m.scratch[2, 3 * event + 1]
     exact = m.exact[t.n_states + event, lane]
     size = max(abs(c[index, 0, lane]), abs(exact))
-    limit = max(m.share[0] * size, TERMS * terms)
+    limit = max(m.share[0] * size, TERMS * terms, TINY)
     if event < t.n_surfaces and m.fresh[event] & (1 << lane):
         limit += max(SLACK, m.share[1]) * terms
     gap = abs(evaluate(c, index, lane, m.rows[layout.STEP, lane]) - exact)
