@@ -184,13 +184,14 @@ def ensemble(
     for i, name in enumerate(units):
         for j, which in enumerate(("_min", "_max")):
             label = f"{('smallest', 'largest')[j]} {name}"
-            found[name + which] = field(label, units[name], raw["extremes"][:, i, j])
-            late_one = raw["late_extremes"][:, i, j]
-            reached = np.where(
-                np.isfinite(late_one), late_one, np.nan
-            )  # the outcome says why
+            # infinite where there was none: not reached, or an output that never was a number
+            whole, late_one = (
+                np.where(np.isfinite(extreme), extreme, np.nan)
+                for extreme in (raw["extremes"][:, i, j], raw["late_extremes"][:, i, j])
+            )
+            found[name + which] = field(label, units[name], whole)
             found[f"late_{name}{which}"] = field(
-                f"{label} from t_late on", units[name], reached
+                f"{label} from t_late on", units[name], late_one
             )
     for i, name in enumerate(system.traced.kinds):
         found[f"count_{name}"] = field(

@@ -66,6 +66,14 @@ def test_outputs_that_are_no_polynomials_keep_their_range(output, low, high):
     np.testing.assert_allclose([run.f_min, run.f_max], [low, high], atol=1e-12)
 
 
+def test_an_output_that_is_never_a_number_has_no_extremes():
+    root = ("1", lambda t, s, p, r: (s.x - 50.0) ** 0.5)
+    run = flight(1.0, -3.0, outputs={"f": root}).ensemble(20.0)
+    assert run.outcome == Outcome.converged
+    assert np.isnan([run.f_min, run.f_max, run.late_f_min, run.late_f_max]).all()
+    np.testing.assert_allclose([run.x_min, run.x_max], [-3.0, 17.0], rtol=1e-14)
+
+
 def test_an_exponential_law_acts_where_the_speed_is_nearly_the_belts():
     """First event by DOP853 from the equations of motion, from far outside its layer."""
     speed = 1e-4 * np.sqrt(2e7)
