@@ -214,16 +214,19 @@ class Motion:
         ]
 
     def holding(self, place: int) -> Any:
-        """The friction that would keep a slipping contact on the belt, others staying as they are.
+        """The friction that would keep a contact on the belt, others staying as they are.
 
-        What its slip friction lacks to it is the acceleration that is left, over the mobility
-        with the contacts held that stick.
+        What slip friction lacks to it is the acceleration that is left, over the mobility with the
+        contacts held that stick. In stick it is the friction there is.
         """
         row = self.numbers.mobility[place]
         held = [total(row, [each[j] for each in self._held]) for j in range(len(row))]
-        mobility = float(row[place]) - total(row, held)
+        # held itself it has no mobility, and nothing is left to accelerate it
+        free = float(row[place]) * (1.0 + self.regimes[place].stick)
+        mobility = free - total(row, held)
         acceleration = self.pulls[place] - total(held, self.pulls)
-        return self.slip_friction[place] - acceleration * mobility**-1.0
+        friction = self.slip_friction[place] + self.stick_friction[place]
+        return friction - acceleration * mobility**-1.0
 
 
 def law_in_use(friction: Friction) -> str:

@@ -53,6 +53,27 @@ def test_one_contact_on_two_springs_is_a1_with_linear_springs(case, kinds):
         assert run[name].values == pytest.approx(truth[same].values, abs=1e-12)
 
 
+# friction can hold the first; the second is drawn beyond its limit at once
+@pytest.mark.parametrize("x", [0.0, 0.9])
+def test_a_start_at_the_speed_of_the_belt_is_in_the_regime_of_a1(x):
+    p = Parameters(
+        mass=2.0, k1=3.0, k2=1.5, k3=0.8, mu=0.5, preload=1.0, belt_speed=0.4
+    )
+    run = (
+        on_two_springs(p, 0.5, 1.2)
+        .system()
+        .simulate(3.0, start={"q1": x, "v1": p.belt_speed}, times=[0.0, 3.0])
+    )
+    truth = simulate(
+        p, 0.5, 1.2, t_end=3.0, model="A1-linear-springs", times=[0.0, 3.0],
+        initial_state=(x, 0.0, p.belt_speed, 0.0),
+    )  # fmt: skip
+    first = str(labels(run.regime).values[0]).removeprefix("c ")
+    assert first == str(labels(truth.regime).values[0])
+    assert (first == "stick") == (x == 0.0)
+    assert run.event_time.values == pytest.approx(truth.event_time.values, abs=2e-12)
+
+
 REGIMES = {
     "separated": OPEN, "stick": STICK, "slip slower": SLOWER, "slip faster": FASTER
 }  # fmt: skip
