@@ -45,7 +45,6 @@ def results_as_json(datasets: Iterable[xr.Dataset]) -> str:
             solvers[name] = {
                 "package": packages.get(name, "unknown"),
                 "processor": dataset.attrs.get("processor", "unknown"),
-                "platform": dataset.attrs.get("platform", "unknown"),
             }
             lines += [_entry(dataset, problem, name) for problem in dataset.problem]
     head = {

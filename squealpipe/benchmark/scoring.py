@@ -82,9 +82,9 @@ def score(
             kinds are None where a method reports no events.
 
     Raises:
-        ValueError: the answer has fewer parts, or kinds and times differ in number.
+        ValueError: the answer has other parts, or kinds and times differ in number.
     """
-    times, kinds, state, evaluations, *more = answer
+    times, kinds, state, evaluations, *more = _parts(answer)
     evaluations = int(evaluations)
     flag = str(more[0] or "") if more else ""
     slope = more[1] if more[1:] else None
@@ -118,6 +118,7 @@ def score(
         judged = allowed <= reference["margin"]
         known = judged | (allowed * growth <= APART * spacing(truth))
         errors = np.abs(mine[j] - truth[i]) / np.maximum(1.0, truth[i])
+        errors[np.abs(mine[j]) == NEVER] = np.inf
         time_error = errors.max(initial=0.0)
         error = (errors / growth[i]).max(initial=error, where=known[i])
         order = out_of_order(
@@ -136,6 +137,12 @@ def score(
     return Score(
         verdict, missed, spurious, swapped, time_error, error, message, evaluations
     )
+
+
+def _parts(answer: Sequence[Any]) -> Sequence[Any]:
+    if isinstance(answer, str) or not 4 <= len(answer) <= 6:
+        raise ValueError("times, kinds, state and evaluations are needed")
+    return answer
 
 
 def largest(found: Sequence[float], truth: Sequence[float], growth: float) -> float:

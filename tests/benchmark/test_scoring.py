@@ -169,14 +169,20 @@ def test_exception_and_endless_solver_are_flagged():
 def test_event_time_that_is_no_number_is_an_error(time):
     times, kinds, *rest = _truth("two gates")
     found = measure(DATA["two gates"], lambda *_: ([times[0], time], kinds, *rest), TOL)
-    assert found.words.startswith("silently wrong (")
-    assert "NaN or infinite" in found.words
+    assert found.words == "silently wrong (NaN or infinite)"
 
 
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (lambda times, kinds, state, n: (times, kinds, state), "flagged (ValueError"),
+        (
+            lambda times, kinds, state, n: (times, kinds, state),
+            "flagged (ValueError: times, kinds, state and evaluations are needed",
+        ),
+        (
+            lambda times, kinds, state, n: "all right",
+            "flagged (ValueError: times, kinds, state and evaluations are needed",
+        ),
         (
             lambda times, kinds, state, n: (times, kinds[:1], state, n),
             "flagged (ValueError: 2 tim",

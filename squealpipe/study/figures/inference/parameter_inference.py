@@ -11,14 +11,6 @@ from squealpipe.schema.inference import in_order, in_words, of_study
 from squealpipe.text import number
 
 READS = ("parameter_inference",)
-CAPTION = (
-    "Parameters inferred from the paper's own statements. (a)–(c) Samples in which all statements "
-    "hold, in each reading of the sign of friction, over the sampled ranges; star: this study, by "
-    "its spring 1; above the dashed line in (a), μ = cot 0.4π, the linear models dragged along "
-    "+x are unstable at the angles of Fig. 3. (d) Share of the samples that each statement alone "
-    "excludes, by reading. (e) Margins of the study's own parameters in its reading: positive "
-    "where the statement holds, cut at −1."
-)
 ALT = "Three scatter plots of feasible parameters and two bar charts over the paper's statements."
 PANELS = (
     ("friction, stiffness", "kappa", "mu", "κ = k₃/k", "μ"),
@@ -44,6 +36,25 @@ LOOKS = (
     ("along −x", style.ORANGE, "^"),
 )
 """Label, colour and marker of each reading."""
+
+
+def caption(inference: xr.Dataset) -> str:
+    """What the marks mean, and which readings have none."""
+    counts = in_order(inference).feasible_count.values
+    pairs = zip(LOOKS, counts, strict=True)
+    empty = " or ".join(label for (label, *_), count in pairs if not count)
+    return (
+        "Parameters inferred from the paper's own statements. (a)–(c) Samples in which all "
+        "statements hold, in each reading of the sign of friction, over the sampled ranges"
+        f"{f' (none {empty})' if empty else ''}; star: this study, by its spring 1; above the "
+        "dashed line in (a), μ = cot 0.4π, the linear models dragged along +x are unstable at the "
+        "angles of Fig. 3. (d) Share of the samples that each statement alone excludes, by "
+        "reading. (e) Margins of the study's own parameters in its reading: positive where the "
+        "statement holds, cut at −1."
+    )
+
+
+CAPTION = caption
 
 
 def draw(inference: xr.Dataset) -> Figure:
@@ -94,6 +105,8 @@ def _scatter(
     for row, (label, colour, marker) in enumerate(LOOKS):
         one = inference.isel(reading=row)
         chosen = one.feasible.values == 1
+        if not chosen.any():
+            continue
         panel.plot(
             one[x].values[chosen],
             one[y].values[chosen],
