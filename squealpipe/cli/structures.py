@@ -15,6 +15,7 @@ from squealpipe.cli.arguments import (
     Picture,
     Ranges,
     Speeds,
+    Switch,
     Time,
     Tolerance,
     Whole,
@@ -119,6 +120,7 @@ def squeal(
     tol: Tolerance,
     n_modes: Whole | None = None,
     frequency_max: Frequency = None,
+    onset: Switch = False,
     output: Output = Path("squeal.nc"),
     picture: Picture = None,
     look: Look = LOOK,
@@ -142,6 +144,8 @@ def squeal(
             and no reduction up to 32 degrees of freedom.
         frequency_max: reduce to the modes that the unstable ones up to this frequency need, Hz;
             needed beyond 1000 degrees of freedom.
+        onset: also follow what squeals down in friction until it dies: whether squeal lasts below
+            the critical friction, and how far; about as dear as the rest.
     """
     check_output(output, force=force)
     drawn = check_picture(picture, output, force=force)
@@ -157,6 +161,8 @@ def squeal(
     options: dict[str, Any] = {"samples": samples, "seed": seed, "tol": tol}
     if t_end is not None:
         options["t_end"] = t_end
+    if onset:
+        options["onset"] = True
     with working("squeal"):
         reduced = structure.reduce(**limits) if limits else structure
         dataset = write(

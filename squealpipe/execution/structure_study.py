@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from squealpipe.systems.structures.pencil import DENSE
+from squealpipe.systems.structures.squeal.onset import most_friction
 from squealpipe.systems.structures.squeal.plant import MOST_MODES
 from squealpipe.systems.structures.squeal.squealing_modes import squealing_modes
 from squealpipe.systems.structures.structure import Structure
@@ -46,17 +45,8 @@ def modes_over_friction(structure: Structure, section: Mapping[str, Any]) -> xr.
     """Complex modes of the whole structure, from no friction to twice its own."""
     points = next((n for size, n in POINTS if structure.size <= size), FEWEST)
     frictions = np.linspace(0.0, BEYOND * structure.mu or 1.0, points)
-    allowed = frictions[frictions <= _most_friction(structure)]
+    allowed = frictions[frictions <= most_friction(structure)]
     return structure.complex_modes(mu=allowed, frequency_max=section["frequency_max"])
-
-
-def _most_friction(structure: Structure) -> float:
-    """Friction of sliding that the limit of stick allows, where one is given; else infinite."""
-    friction = structure.friction
-    if friction.mu_static is None or not friction.mu:
-        return math.inf
-    onset = replace(friction, mu_static=None).static_mu
-    return friction.mu * friction.mu_static / onset if onset else math.inf
 
 
 def squealing(
@@ -73,5 +63,6 @@ def squealing(
     return squealing_modes(
         structure if whole or not limits else structure.reduce(**limits),
         **{name: section[name] for name in ("samples", "seed", "t_end")},
+        onset=True,
         workers=workers,
     )

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from squealpipe.plotting import style
+from squealpipe.plotting.hysteresis import draw_hysteresis, has_tracks
 from squealpipe.plotting.modes import GROWTH, frequency_unit, show_what_grows
 from squealpipe.schema import meanings
 from squealpipe.text import number
@@ -22,13 +23,23 @@ HEIGHT = 0.8
 """Of the bars of one attractor together."""
 
 
+BELOW = 2.2
+"""Height of the panel over friction, inches."""
+
+
 def figure(answer: xr.Dataset) -> Figure:
-    """Growth over frequency; then share, level and contact loss of each attractor."""
+    """Growth over frequency; then share, level and contact loss of each attractor.
+
+    Below, where they were followed, motions over friction.
+    """
     shown = answer.isel(attractor=slice(MOST))
     count = max(shown.sizes["attractor"], 1)
     height = 2.6 + 0.12 * count * shown.sizes["contact"] * (count > 1)
+    height, ratios = min(height, 6.0), [1.7, 1.0, 1.0, 1.2]
+    followed = has_tracks(answer)
+    layout = {"nrows": 2, "height_ratios": [height, BELOW]} if followed else {}
     made, axes = style.new_figure(
-        style.PAGE, min(height, 6.0), ncols=4, width_ratios=[1.7, 1.0, 1.0, 1.2]
+        style.PAGE, height + BELOW * followed, ncols=4, width_ratios=ratios, **layout
     )
     made.get_layout_engine().set(w_pad=0.08)  # type: ignore[union-attr, call-arg]
     poles, shares, levels, losses = axes[0]
@@ -47,6 +58,13 @@ def figure(answer: xr.Dataset) -> Figure:
     titles = ("what grows", "ends in", "how loud", "contact loss")
     for letter, panel, title in zip("abcd", axes[0], titles, strict=True):
         style.panel_letter(panel, letter, title)
+    if followed:
+        grid = axes[1, 0].get_gridspec()
+        for panel in axes[1]:
+            panel.remove()
+        over = made.add_subplot(grid[1, :])
+        draw_hysteresis(over, answer)
+        style.panel_letter(over, "e", "as friction falls")
     return made
 
 

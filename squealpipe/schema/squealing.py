@@ -1,6 +1,7 @@
 """Which unstable modes of a structure squeal: modes, attractors, and random starts."""
 
 from enum import IntEnum
+from typing import Any
 
 from squealpipe.schema import DatasetSchema, Outcome, Variable, or_nan, outcome, text
 from squealpipe.schema.agreement import Listing
@@ -9,6 +10,12 @@ from squealpipe.schema.assess import Verdict
 NO_ATTRACTOR = -1
 MOST_DAMPING = 0.2
 """Largest ratio of damping that is tried as a remedy."""
+ABOVE = 1.01
+"""Friction at which motions just above the onset are, over that of the onset."""
+NARROW = 2e-3
+"""Distance of frictions between which a motion is known to die, over that of the onset."""
+JUST_ABOVE = -1
+"""Track of what a push just above the onset ends in; others are of an attractor."""
 
 
 class Kind(IntEnum):
@@ -21,8 +28,23 @@ class Kind(IntEnum):
     irregular = 4
 
 
+class OnsetKind(IntEnum):
+    """What becomes, below the onset of instability, of the motion that squeals just above."""
+
+    undetermined = 0
+    supercritical = 1
+    """it dies there"""
+    subcritical = 2
+    """it lasts below"""
+
+
 _MODE, _ATTRACTOR, _SAMPLE, _POLE = ("mode",), ("attractor",), ("sample",), ("pole",)
 _AT = ("attractor", "contact")
+
+
+def _of_onset(long_name: str, units: str = "1", *dims: str, **other: Any) -> Variable:
+    """One that is there if the onset was asked for."""
+    return or_nan(long_name, units, dims, optional=True, **other)
 
 
 def _level(long_name: str, units: str = "1", *, rtol: float = 0.05) -> Variable:
@@ -199,6 +221,88 @@ SQUEALING = DatasetSchema(
         "added_damping": or_nan(
             "smallest ratio of damping, added to every mode, from which none grows",
             rtol=1e-5,
+        ),
+        "onset_mu": _of_onset(
+            "critical friction of steady sliding: the smallest of all modes", rtol=1e-8
+        ),
+        "onset_frequency": _of_onset(
+            f"frequency of the mode that grows at {ABOVE:g} of it", "Hz", rtol=1e-6
+        ),
+        "onset_kind": Variable(
+            f"whether what a small push ends in at {ABOVE:g} of it dies at the onset "
+            "(supercritical) or lasts below (subcritical)",
+            flags=OnsetKind,
+            optional=True,
+        ),
+        "squeals_below_critical": Variable(
+            "whether a motion that was followed lasts below the critical friction",
+            dtype="bool",
+            optional=True,
+        ),
+        "hysteresis": _of_onset(
+            "critical friction less the smallest at which a motion that was followed dies",
+            rtol=0.05,
+            atol=1e-3,
+        ),
+        "onset_outcome": Variable(
+            "why the kind of onset is what it is", flags=Outcome, optional=True
+        ),
+        "track_attractor": Variable(
+            f"attractor that is followed as friction falls, {JUST_ABOVE}: what a small push "
+            f"ends in at {ABOVE:g} of the critical friction",
+            dims=("track",),
+            dtype="i4",
+            optional=True,
+        ),
+        "mu_dies": _of_onset(
+            "friction at which it dies as friction falls: of the fold where that is located",
+            "1",
+            "track",
+            rtol=5e-3,
+        ),
+        "mu_dies_is_fold": Variable(
+            "whether it is where the exact map has its cycle meet an unstable one",
+            dims=("track",),
+            dtype="bool",
+            optional=True,
+        ),
+        "mu_dies_low": _of_onset(
+            "largest friction at which it was seen to die", "1", "track", rtol=5e-3
+        ),
+        "mu_dies_high": _of_onset(
+            "smallest friction at which it was seen to last, at most the critical one",
+            "1",
+            "track",
+            rtol=5e-3,
+        ),
+        **{
+            f"track_{name}": or_nan(
+                long_name, units, ("track", "step"), optional=True, volatile=True
+            )
+            for name, long_name, units in (
+                ("mu", "friction at which the motion lasts, from above", "1"),
+                ("velocity_rms", "rms speed of vibration there, all contacts", "m s-1"),
+                ("frequency", "of the mode at rest that moves most", "Hz"),
+            )
+        },
+        **{
+            f"unstable_{name}": or_nan(
+                long_name, units, ("track", "turn"), optional=True, volatile=True
+            )
+            for name, long_name, units in (
+                ("mu", "friction of the unstable cycle, from the fold on", "1"),
+                (
+                    "velocity_rms",
+                    "its rms speed of vibration: smaller ones like it die out",
+                    "m s-1",
+                ),
+            )
+        },
+        "track_outcome": Variable(
+            "whether the motion was followed to where it dies",
+            dims=("track",),
+            flags=Outcome,
+            optional=True,
         ),
         "n_modes": Variable("modes in which the structure was run", dtype="i4"),
         "frequency_error": or_nan(

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 
 import numpy as np
 import xarray as xr
 
+from squealpipe.schema import Outcome
 from squealpipe.schema.assess import Verdict
-from squealpipe.schema.squealing import NO_ATTRACTOR, Kind
+from squealpipe.schema.squealing import JUST_ABOVE, NO_ATTRACTOR, Kind, OnsetKind
 from squealpipe.text import number
 from squealpipe.units import engineering
 
@@ -18,7 +20,7 @@ LISTED = 8
 
 def lines(answer: xr.Dataset) -> list[str]:
     """The verdict, the modes, and what they end in."""
-    return [headline(answer), *modes(answer), *attractors(answer)]
+    return [headline(answer), *modes(answer), *attractors(answer), *onset(answer)]
 
 
 def headline(answer: xr.Dataset) -> str:
@@ -168,6 +170,65 @@ def attractors(answer: xr.Dataset) -> Iterator[str]:
             f"{_percent(float(answer.share_undetermined))} of random starts did not settle; "
             "give a longer t_end."
         )
+
+
+def onset(answer: xr.Dataset) -> Iterator[str]:
+    """Where squeal begins and where it dies as friction falls, if it was followed."""
+    if "onset_kind" not in answer:
+        return
+    critical, outcome = float(answer.onset_mu), Outcome(int(answer.onset_outcome))
+    if outcome is Outcome.already_unstable:
+        yield (
+            "Steady sliding is unstable down to no friction, or small motions do not die out "
+            "below: squeal was not followed in friction."
+        )
+    if outcome is Outcome.not_reached:
+        yield "Up to twice this friction no mode turns unstable, or where is not located."
+    if np.isfinite(critical):
+        yield f"{_begins(answer, critical)} {_kind(answer)}"
+    for place in range(answer.sizes["track"]):
+        one = answer.isel(track=place)
+        if int(one.track_attractor) != JUST_ABOVE:
+            motion = answer.isel(attractor=int(one.track_attractor))
+            at = engineering(float(motion.dominant_frequency), "Hz")
+            yield f"As friction falls, the motion at {at} {_end_of(one, critical)}."
+    if bool(answer.squeals_below_critical) and not answer.sizes["mode"]:
+        own = json.loads(answer.attrs["parameters"])["mu"]
+        if np.nanmin(answer.track_mu.values) <= own:
+            yield f"At mu = {number(own)}, too, squeal that has begun lasts."
+
+
+def _begins(answer: xr.Dataset, critical: float) -> str:
+    at = engineering(float(answer.onset_frequency), "Hz")
+    return f"Steady sliding turns unstable at mu = {number(critical, 4)} ({at})."
+
+
+def _kind(answer: xr.Dataset) -> str:
+    """What becomes of the motion that begins there."""
+    match OnsetKind(int(answer.onset_kind)):
+        case OnsetKind.supercritical:
+            return "What squeals just above dies there (supercritical)."
+        case OnsetKind.subcritical:
+            one = answer.isel(track=answer.track_attractor.values == JUST_ABOVE)
+            end = _end_of(one.isel(track=0), float(answer.onset_mu))
+            return f"What squeals just above {end} (subcritical)."
+    return "Whether what squeals just above lasts below is undetermined."
+
+
+def _end_of(one: xr.Dataset, critical: float) -> str:
+    """Where a motion that was followed dies."""
+    dies = float(one.mu_dies)
+    if not np.isfinite(dies):
+        lowest = number(float(np.nanmin(one.track_mu.values)), 3)
+        return f"was followed to mu = {lowest}, and its end was not reached"
+    if dies >= critical:
+        return "dies at the critical friction"
+    below = ""
+    if np.isfinite(critical):
+        below = (
+            f", {number(100 * (1 - dies / critical), 2)} % below the critical friction"
+        )
+    return f"lasts down to mu = {number(dies, 4)}{below}"
 
 
 def _of_contacts(one: xr.Dataset) -> str:

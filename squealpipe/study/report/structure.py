@@ -24,6 +24,10 @@ LASTING = (
     "Whether a vibration that lasts dies out as well where small motions do: less friction and "
     "more damping are judged by small motions."
 )
+DAMPED = (
+    "Whether a vibration that lasts dies out as well where small motions do: more damping is "
+    "judged by small motions."
+)
 
 
 def gather_structure(
@@ -34,7 +38,12 @@ def gather_structure(
     modes, answer = run["structure/modes"], run["structure/squeal"]
     verdict = Verdict(int(answer.verdict))
     own = json.loads(modes.attrs["parameters"])
-    told = (cause(modes, answer), squealing.level(answer), squealing.beside(answer))
+    told = (
+        cause(modes, answer),
+        squealing.level(answer),
+        squealing.beside(answer),
+        *squealing.onset(answer),
+    )
     return {
         "title": "Which mode squeals? Report of a structure",
         "set": f"mu = {number(own['mu'])}, belt speed {engineering(own['belt_speed'], 'm s-1')}",
@@ -129,6 +138,12 @@ def stops(modes: xr.Dataset, answer: xr.Dataset) -> list[str]:
             f"Less friction: below mu = {number(critical)} ({_change(critical, own)}) no mode "
             "grows."
         )
+        if "onset_kind" in answer and bool(answer.squeals_below_critical):
+            dies = critical - float(answer.hysteresis)
+            friction += (
+                f" Squeal that has begun lasts down to mu = {number(dies)} "
+                f"({_change(dies, own)})."
+            )
     elif np.isnan(critical):
         friction = "Friction: where growth begins was not located."
     else:
@@ -254,7 +269,7 @@ def not_examined(answer: xr.Dataset) -> list[str]:
     rest = [
         "Wear, heat, the sound that is radiated, and parameters that scatter.",
         "Starts of more energy than the preload stores in the contacts.",
-        LASTING,
+        LASTING if "onset_kind" not in answer else DAMPED,
     ]
     if max(errors) > 0:
         rest.insert(

@@ -10,14 +10,16 @@ CAPTION = (
     "(a) Growth rate over frequency of the complex modes, as eigenvalue codes draw it; dashed: "
     "the strongest line of each settled motion. (b) Share of the random starts that end in it, "
     "with its 95 % interval. (c) Rms speed of vibration at the contacts. (d) Share of the time "
-    "without contact, a bar for each contact."
+    "without contact, a bar for each contact. (e) Level of each motion as friction falls, down to "
+    "where it dies (cross); dashed: the unstable cycle that it meets there; smaller vibrations "
+    "like that one die out."
 )
 ALT = (
     "Growth over frequency, and bars for each settled motion: share of starts, speed, contact "
-    "loss."
+    "loss; below, speed over friction."
 )
 
 
 def draw(answer: xr.Dataset) -> Figure:
-    """Four panels from the dataset ``structure/squeal``."""
+    """Panels from the dataset ``structure/squeal``."""
     return squealing.figure(answer)

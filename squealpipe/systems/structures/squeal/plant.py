@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 MOST_MODES = 32
 """Degrees of freedom that a system can carry."""
+PUSH = 0.01
+"""Push along a mode, over the deformation whose energy is that of the preload."""
 
 
 class Plant:

@@ -99,7 +99,7 @@ def settle(
     instants: list[list[np.ndarray]] = [[] for _ in range(count)]
     states = states.copy()
     regimes: np.ndarray | None = None
-    at_rest = plant.system.first_regimes(_named(plant), 1)[0]
+    at_rest = at_rest_regimes(plant)
     elapsed, span, turn = 0.0, growing, 0
     with alone() as show:
         while rows := [row for row in range(count) if row not in settled]:
@@ -137,12 +137,13 @@ def settle(
     return [settled[row] for row in range(count)]
 
 
-def _named(plant: Plant) -> dict[str, np.ndarray]:
-    """Steady sliding as the system's states, parameters and time."""
+def at_rest_regimes(plant: Plant) -> np.ndarray:
+    """The regime of each component in steady sliding."""
     system = plant.system
     values = dict(zip(system.states, plant.sliding[:, None], strict=True))
     parameters = {name: np.full(1, value) for name, value in system.parameters.items()}
-    return {**values, **parameters, TIME: np.zeros(1)}
+    named = {**values, **parameters, TIME: np.zeros(1)}
+    return np.asarray(system.first_regimes(named, 1)[0])
 
 
 def _judged(

@@ -14,14 +14,13 @@ from squealpipe.schema.inference import wilson_interval
 from squealpipe.schema.origin import versions
 from squealpipe.schema.squealing import NO_ATTRACTOR, SQUEALING, Kind
 from squealpipe.systems.structures.squeal.attractors import grouped
+from squealpipe.systems.structures.squeal.hysteresis import hysteresis
 from squealpipe.systems.structures.squeal.kinds import Described, described
-from squealpipe.systems.structures.squeal.plant import Plant
+from squealpipe.systems.structures.squeal.plant import PUSH, Plant
 from squealpipe.systems.structures.squeal.remedies import added_damping
 from squealpipe.systems.structures.squeal.settling import Settled, settle
 from squealpipe.validation import Natural, Positive, Seed, Tolerance, Workers, checked
 
-PUSH = 0.01
-"""Push along a mode, over the deformation whose energy is that of the preload."""
 LINES = 1024
 """Lines of the spectra that are kept."""
 CLOSE = 0.02
@@ -37,6 +36,7 @@ def squealing_modes(
     samples: Natural = 64,
     t_end: Positive | None = None,
     seed: Seed = 0,
+    onset: bool = False,
     tol: Tolerance = 1e-12,
     workers: Workers = None,
 ) -> xr.Dataset:
@@ -56,13 +56,18 @@ def squealing_modes(
         t_end: longest time of a run, s; by default 8000 periods of the slowest unstable mode,
             beyond the time in which it grows.
         seed: of the random starts.
+        onset: also follow what squeals down in friction until it dies, at its own friction and
+            just above the onset of instability; about as dear as the rest.
         tol: tolerance of the Taylor integrator.
         workers: processes; None takes all cores.
 
     Returns:
         Dataset ``squealing_modes``: over ``mode`` the unstable modes, and which attractor they end
         in; over ``attractor`` kind, frequency, level, and by contact the shares of time separated
-        and in stick; ``share`` of the random starts with its interval; ``verdict``.
+        and in stick; ``share`` of the random starts with its interval; ``verdict``. With
+        ``onset`` also ``onset_kind`` (supercritical, or subcritical: squeal lasts below the
+        critical friction), ``mu_dies`` of each motion that was followed, over ``track``,
+        ``squeals_below_critical`` and ``hysteresis``.
 
     Raises:
         ValueError: there is no steady sliding; no contact; or a structure that is too large.
@@ -97,6 +102,11 @@ def squealing_modes(
     decided = plant.unstable.size or plant.decays  # a push lasts where nothing damps it
     if decided and first != NO_ATTRACTOR and found[first].kind is not Kind.undetermined:
         verdict = Verdict(int(of_attractor["motion"][first]))
+    below = {}
+    if onset:
+        below = hysteresis(
+            plant, [runs[0] for runs in members], tol=tol, seed=seed, workers=workers
+        )
     loud = [place for place, each in enumerate(found) if not members[place][0].quiet]
     drawn_in = set(numbers[len(pushes) :].tolist())
     record = plant.structure.record
@@ -106,6 +116,7 @@ def squealing_modes(
             **of_mode,
             **of_attractor,
             **shares,
+            **below,
             "verdict": verdict,
             "quiet_unless_struck": verdict is Verdict.quiet
             and bool(drawn_in & set(loud)),
@@ -132,7 +143,9 @@ def squealing_modes(
             "method": "Taylor series with located events; cycles by the exact map",
             "tolerance": tol,
             "parameters": json.dumps(structure.as_dict()),
-            "arguments": json.dumps({"samples": samples, "t_end": t_end, "seed": seed}),
+            "arguments": json.dumps(
+                {"samples": samples, "t_end": t_end, "seed": seed, "onset": onset}
+            ),
             **versions(),
         },
     )

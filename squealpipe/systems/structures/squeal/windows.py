@@ -76,17 +76,21 @@ def run(
     times: np.ndarray,
     tol: float,
     workers: int | None = None,
+    frictions: np.ndarray | None = None,
     **options: Any,
 ) -> dict[str, np.ndarray]:
     """Raw results from some states, sampled at instants whose last one ends the run.
 
     Args:
         times: (instants,) or (runs, instants), s.
+        frictions: of each run; None: that of the structure.
         options: of :class:`squealpipe.systems.integrate.RunOptions`.
     """
     system, size = plant.system, len(states)
     values = {name: states[:, i] for i, name in enumerate(system.states)}
     values |= {name: np.full(size, value) for name, value in system.parameters.items()}
+    if frictions is not None:
+        values["mu"] = frictions
     ends = np.broadcast_to(np.atleast_2d(times)[:, -1], (size,)).copy()
     return integrate(
         system,
@@ -111,17 +115,21 @@ def run_window(
     tol: float,
     seed: int,
     workers: int | None,
+    frictions: np.ndarray | None = None,
 ) -> Rows:
     """Run for a length of time, s.
 
     Args:
+        frictions: of each run; None: that of the structure.
         regimes: of each component in which each run starts; None: what fits.
     """
     part = np.random.default_rng(seed).random(SAMPLES)
     times = length * (np.arange(SAMPLES) + part) / SAMPLES
     times = np.append(times, length)
     options = {} if regimes is None else {"regime": regimes}
-    raw = run(plant, states, times, tol, workers=workers, **options)
+    raw = run(
+        plant, states, times, tol, workers=workers, frictions=frictions, **options
+    )
     samples = raw["samples"][:, :-1]
     modal = plant.modal_velocities(samples)
     speed = plant.contact_speeds(samples)

@@ -1,0 +1,76 @@
+"""Squeal over friction: where it begins, and where it dies as friction falls."""
+
+import json
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+
+from squealpipe.plotting import style
+from squealpipe.schema.squealing import JUST_ABOVE
+from squealpipe.text import number
+from squealpipe.units import engineering
+
+COLOURS = (style.BLUE, style.ORANGE, style.PURPLE)
+"""Of the attractors that were followed."""
+
+
+def has_tracks(answer: xr.Dataset) -> bool:
+    """Whether motions were followed in friction."""
+    return "track_mu" in answer and bool(answer.sizes["track"])
+
+
+def draw_hysteresis(axes: Axes, answer: xr.Dataset) -> None:
+    """Level of each motion that was followed, over friction; dashed: the unstable cycle."""
+    own = json.loads(answer.attrs["parameters"])["mu"]
+    for friction, line, words in (
+        (float(answer.onset_mu), ":", "critical"),
+        (own, "-.", "its own"),
+    ):
+        if np.isfinite(friction):
+            label = f"{words}, μ = {number(friction, 3)}"
+            axes.axvline(
+                friction, color=style.BLACK, linewidth=0.8, linestyle=line, label=label
+            )
+    colours = iter(COLOURS)
+    for place in range(answer.sizes["track"]):
+        one = answer.isel(track=place)
+        above = int(one.track_attractor) == JUST_ABOVE
+        colour = style.LIGHT if above else next(colours)
+        label = "from just above the onset" if above else _named(answer, one)
+        frictions, speeds = one.track_mu.values, one.track_velocity_rms.values
+        # what begins at the onset is often what squeals above: it stays visible below
+        wide: dict[str, Any] = {"linewidth": 3.0, "zorder": 1.5} if above else {}
+        axes.plot(frictions, speeds, ".-", ms=4, color=colour, label=label, **wide)
+        if "turn" in one.sizes and np.isfinite(one.unstable_mu).any():
+            first = place == 0
+            axes.plot(
+                one.unstable_mu,
+                one.unstable_velocity_rms,
+                "--",
+                color=style.RED,
+                label="unstable cycle" if first else None,
+            )
+        dies = float(one.mu_dies)
+        if np.isfinite(dies):
+            lowest = _level_at_end(one)
+            axes.plot(dies, lowest, "x", color=style.BLACK, ms=5)
+            axes.plot([dies, dies], [0.0, lowest], color=style.GREY, linewidth=0.8)
+    axes.set(xlabel="friction μ", ylabel="rms speed (m/s)")
+    axes.set_ylim(bottom=0.0)
+    axes.margins(x=0.04)
+    axes.legend(loc="best")
+
+
+def _level_at_end(one: xr.Dataset) -> float:
+    """Level where a motion dies: of the fold, or the last that lasts."""
+    if bool(one.mu_dies_is_fold):
+        return float(one.unstable_velocity_rms[0])
+    speeds = one.track_velocity_rms.values
+    return float(speeds[np.isfinite(speeds)][-1])
+
+
+def _named(answer: xr.Dataset, one: xr.Dataset) -> str:
+    motion = answer.isel(attractor=int(one.track_attractor))
+    return f"motion at {engineering(float(motion.dominant_frequency), 'Hz', 4)}"

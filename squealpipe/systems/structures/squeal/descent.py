@@ -1,0 +1,234 @@
+"""A motion that lasts, followed as friction falls, until it dies.
+
+From the motion at one friction runs go on at lower ones, side by side. Down to where the first of
+them dies they have shown motions that last; from the lowest of these runs go on between both. So
+the steps in friction shrink until what dies has started next to what lasts: no jump in friction,
+but the end of the motion itself, is what is found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from squealpipe.schema.squealing import ABOVE, NARROW
+from squealpipe.systems.structures.squeal.onset import FirstOnset
+from squealpipe.systems.structures.squeal.plant import PUSH, Plant
+from squealpipe.systems.structures.squeal.settling import (
+    AGREE,
+    FIRST,
+    GROWTH,
+    LONGEST_GROWTH,
+    WIDE,
+    at_rest_regimes,
+    difference,
+)
+from squealpipe.systems.structures.squeal.windows import Rows, run_window
+
+SIDE_BY_SIDE = 8
+"""Frictions of one turn, run together."""
+TURNS = 12
+"""Turns after which the end is what it is."""
+DOUBLINGS = 6
+"""Windows of growing length after which a motion that still moves is taken to last."""
+
+
+@dataclass(frozen=True)
+class State:
+    """A motion that lasts, at one friction."""
+
+    mu: float
+    state: np.ndarray
+    regimes: np.ndarray
+    speed: float
+    frequency: float
+
+
+class Curve(NamedTuple):
+    """Cycles over friction: friction and rms speed of vibration, (points,)."""
+
+    mu: np.ndarray
+    speed: np.ndarray
+
+
+NO_CURVE = Curve(np.empty(0), np.empty(0))
+
+
+@dataclass
+class Track:
+    """A motion as friction falls.
+
+    Attributes:
+        states: where it lasts, in the order in which they were run.
+        dies: the largest friction at which it was seen to die; NaN if it was not.
+        narrow: whether the end is as narrow as it was to be.
+        fold: where its cycle meets an unstable one; NaN if that is not located.
+        unstable: that one, from the fold on.
+    """
+
+    states: list[State]
+    dies: float = np.nan
+    narrow: bool = False
+    fold: float = np.nan
+    unstable: Curve = NO_CURVE
+
+    @property
+    def lasts(self) -> State:
+        """Where friction is smallest."""
+        return min(self.states, key=lambda each: each.mu)
+
+    @property
+    def ordered(self) -> list[State]:
+        """From the largest friction down."""
+        return sorted(self.states, key=lambda each: -each.mu)
+
+
+def followed_down(
+    plant: Plant,
+    start: State,
+    onset: float,
+    *,
+    tol: float,
+    seed: int,
+    workers: int | None,
+) -> Track:
+    """Follow a motion down from a friction, to where it dies below the onset of steady sliding.
+
+    Args:
+        plant: whose system is run, at any friction.
+        onset: friction below which small motions die out.
+        tol: tolerance of the Taylor integrator.
+    """
+    track = Track([start])
+    # down to just below the onset first: there most motions die
+    for turn, frictions in enumerate(_turns(track, onset)):
+        rows = _run_on(
+            plant, track.lasts, frictions, onset, tol=tol, seed=seed + turn, workers=workers
+        )  # fmt: skip
+        for mu, row in zip(frictions.tolist(), rows, strict=True):
+            if row is None:
+                track.dies = mu
+                break
+            track.states.append(state_of(plant, mu, row))
+        else:
+            track.dies = np.nan
+    return track
+
+
+def width_of(track: Track, onset: float) -> float:
+    """How narrow its end is to be."""
+    return NARROW * min(onset, track.states[0].mu)
+
+
+def _turns(track: Track, onset: float) -> Iterator[np.ndarray]:
+    """Frictions of the next turn, falling, until the end is narrow."""
+    width = width_of(track, onset)
+    floor = max(onset - width, 0.0) if onset < track.lasts.mu else 0.0
+    for _ in range(TURNS):
+        top = track.lasts.mu
+        yield np.linspace(top, floor, SIDE_BY_SIDE + 1)[1:]
+        low, high = track.dies, track.lasts.mu
+        if np.isnan(low):
+            if (
+                high <= 0.0
+            ):  # at no friction: nothing feeds it, but nothing ends it either
+                return
+            floor = 0.0  # what died from far away lasts from nearby
+            continue
+        floor = low
+        # what dies has started from next to it
+        near = top - low <= SIDE_BY_SIDE * width
+        if near and min(high, onset) - low <= 1.0001 * width:
+            track.narrow = True
+            return
+
+
+def _run_on(
+    plant: Plant,
+    start: State,
+    frictions: np.ndarray,
+    onset: float,
+    *,
+    tol: float,
+    seed: int,
+    workers: int | None,
+) -> list[Rows | None]:
+    """What a motion becomes at other frictions; None where it dies out."""
+    count = len(frictions)
+    states = np.tile(start.state, (count, 1))
+    regimes = np.tile(start.regimes, (count, 1))
+    at_rest = at_rest_regimes(plant)
+    ended: dict[int, Rows | None] = {}
+    before: list[Rows | None] = [None] * count
+    for doubling in range(DOUBLINGS):
+        rows = [row for row in range(count) if row not in ended]
+        if not rows:
+            break
+        wide = np.array([*rows, *rows * WIDE])[: max(len(rows), WIDE)]
+        window = run_window(
+            plant,
+            states[wide],
+            FIRST * 2.0**doubling / plant.slowest,
+            regimes=regimes[wide],
+            tol=tol,
+            seed=seed + doubling,
+            workers=workers,
+            frictions=frictions[wide],
+        )
+        for place, row in enumerate(rows):
+            now, earlier = window.at(place), before[row]
+            # nothing switches below the onset: a linear motion that decays
+            slides = not now.events and (now.regimes == at_rest).all()
+            if slides and frictions[row] < onset:
+                ended[row] = None
+                continue
+            last = doubling + 1 == DOUBLINGS or not now.finished
+            if last or (earlier is not None and difference(earlier, now) <= AGREE):
+                ended[row] = now
+            before[row] = now
+            states[row], regimes[row] = now.final, now.regimes
+    return [ended[row] for row in range(count)]
+
+
+def just_above(
+    onset: FirstOnset, plant: Plant, *, tol: float, seed: int, workers: int | None
+) -> State | None:
+    """What a small push ends in just above the onset; None where it is not at its end in time."""
+    above = onset.above
+    place = int(above.unstable[0])
+    period = 1.0 / onset.frequency
+    rate = float(above.spectrum.values[place].real)
+    frictions = np.full(WIDE, ABOVE * onset.mu)
+    window = run_window(
+        plant,
+        np.tile(above.pushed(place, PUSH), (WIDE, 1)),
+        min(GROWTH / rate, LONGEST_GROWTH * period),
+        regimes=None,
+        tol=tol,
+        seed=seed,
+        workers=workers,
+        frictions=frictions,
+    ).at(0)
+    if not window.finished:
+        return None
+    begun = State(ABOVE * onset.mu, window.final, window.regimes, 0.0, 0.0)
+    row = _run_on(
+        plant, begun, frictions[:1], onset.mu, tol=tol, seed=seed, workers=workers
+    )[0]
+    # where nothing switches it still grows
+    return state_of(plant, begun.mu, row) if row is not None and row.events else None
+
+
+def state_of(plant: Plant, mu: float, row: Rows) -> State:
+    """A settled motion at a friction."""
+    strongest = int(np.argmax(row.modal))
+    return State(
+        mu,
+        row.final,
+        row.regimes,
+        float(np.sqrt((row.speed**2).mean())),
+        float(plant.rest[0][strongest] / (2.0 * np.pi)),
+    )

@@ -1,0 +1,73 @@
+"""The fold at which a cycle that squeals meets an unstable one, and that one, by the exact map.
+
+The unstable cycle is the smallest vibration that is still drawn to squeal at its friction.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from squealpipe.schema import Outcome
+from squealpipe.schema.branch_labels import Label
+from squealpipe.systems.cycles.branch import Follower, Point, first_point
+from squealpipe.systems.cycles.find import find_cycle
+from squealpipe.systems.cycles.solution import Cycle
+from squealpipe.systems.structures.squeal.descent import Curve, Track
+from squealpipe.systems.structures.squeal.plant import Plant
+
+MOST_POINTS = 32
+"""Of the branch."""
+BEFORE = 1.0 - 1e-9
+"""Friction over that of the onset up to which the unstable cycle is followed."""
+SAMPLES = 512
+"""Instants of a cycle whose speeds are averaged."""
+TURNS_AT = {Label.fold, Label.border_collision}
+"""What ends a stable cycle as friction falls: smooth, and where events change."""
+
+
+def add_fold(plant: Plant, track: Track, onset: float, width: float) -> None:
+    """Locate where a track dies by the cycle that it lasts in, if it is one that folds there."""
+    cycle = _cycle(plant, track)
+    first = first_point(cycle, "mu", 0.0) if cycle is not None else None
+    if first is None:
+        return
+    follower = Follower(0.0, BEFORE * onset, MOST_POINTS)
+    follower.run(*first)
+    points = follower.points
+    frictions = np.array([point.parameter for point in points])
+    place = int(frictions.argmin())
+    fold = float(frictions[place])
+    is_fold = points[place].label in TURNS_AT and place + 1 < len(points)
+    if not is_fold or not track.dies - width <= fold <= track.lasts.mu:
+        return
+    track.fold = fold
+    track.unstable = Curve(
+        frictions[place:], np.array([_speed(plant, each) for each in points[place:]])
+    )
+
+
+def _cycle(plant: Plant, track: Track) -> Cycle | None:
+    """The stable cycle that a track lasts in."""
+    last, system = track.lasts, plant.system
+    values: dict[str, Any] = {**system.parameters, "mu": last.mu}
+    cycle, outcome = find_cycle(
+        system,
+        values,
+        last.state,
+        guess=True,
+        regime=system.joint.number(last.regimes.tolist()),
+        unit=1.0 / last.frequency,
+    )
+    if cycle is None or outcome != Outcome.converged:
+        return None
+    return cycle if cycle.is_stable and cycle.events else None
+
+
+def _speed(plant: Plant, point: Point) -> float:
+    """rms speed of vibration of all contacts."""
+    cycle = point.cycle
+    times = cycle.period * np.arange(SAMPLES) / SAMPLES
+    states, _ = cycle.states_at(times)
+    return float(np.sqrt((plant.contact_speeds(states) ** 2).mean()))
