@@ -9,7 +9,7 @@ from squealpipe.schema import Outcome
 from squealpipe.schema.assess import Verdict
 from squealpipe.schema.squealing import JUST_ABOVE, NARROW, OnsetKind
 from squealpipe.study.report.squealing import lines
-from tests.oracles.exponentials import SLOWER, Exponentials
+from tests.oracles.exponentials import FASTER, Exponentials
 
 UNITS = 1e4
 """rad/s of a mode."""
@@ -79,8 +79,8 @@ def squealing(answer, mu, start, end):
 
 
 def at_sliding(mu):
-    """Steady sliding, from the equations of a leg alone."""
-    a, b, *_ = Exponentials(soft(mu)).affine(np.array([SLOWER]))
+    """Steady sliding, from the equations of a leg alone; the belt runs backwards."""
+    a, b, *_ = Exponentials(soft(mu)).affine(np.array([FASTER]))
     return np.linalg.solve(a, -b)
 
 
@@ -104,7 +104,7 @@ def test_squeal_lasts_below_the_critical_friction_down_to_the_fold(answer):
 def test_the_unstable_cycle_ends_where_the_contact_is_just_touched(answer):
     """At the critical friction small motions keep their size until contact is lost."""
     critical = float(answer.onset_mu)
-    a, *_ = Exponentials(soft(critical)).affine(np.array([SLOWER]))
+    a, *_ = Exponentials(soft(critical)).affine(np.array([FASTER]))
     values, vectors = np.linalg.eig(a)
     place = int(np.argmax(values.real + 1e-3 * values.imag))
     shape = vectors[:, place]

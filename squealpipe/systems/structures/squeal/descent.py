@@ -37,7 +37,7 @@ DOUBLINGS = 6
 
 
 @dataclass(frozen=True)
-class State:
+class TrackState:
     """A motion that lasts, at one friction."""
 
     mu: float
@@ -47,14 +47,14 @@ class State:
     frequency: float
 
 
-class Curve(NamedTuple):
+class UnstableCycles(NamedTuple):
     """Cycles over friction: friction and rms speed of vibration, (points,)."""
 
     mu: np.ndarray
     speed: np.ndarray
 
 
-NO_CURVE = Curve(np.empty(0), np.empty(0))
+NONE_UNSTABLE = UnstableCycles(np.empty(0), np.empty(0))
 
 
 @dataclass
@@ -69,26 +69,26 @@ class Track:
         unstable: that one, from the fold on.
     """
 
-    states: list[State]
+    states: list[TrackState]
     dies: float = np.nan
     narrow: bool = False
     fold: float = np.nan
-    unstable: Curve = NO_CURVE
+    unstable: UnstableCycles = NONE_UNSTABLE
 
     @property
-    def lasts(self) -> State:
+    def lasts(self) -> TrackState:
         """Where friction is smallest."""
         return min(self.states, key=lambda each: each.mu)
 
     @property
-    def ordered(self) -> list[State]:
+    def ordered(self) -> list[TrackState]:
         """From the largest friction down."""
         return sorted(self.states, key=lambda each: -each.mu)
 
 
 def followed_down(
     plant: Plant,
-    start: State,
+    start: TrackState,
     onset: float,
     *,
     tol: float,
@@ -148,7 +148,7 @@ def _turns(track: Track, onset: float) -> Iterator[np.ndarray]:
 
 def _run_on(
     plant: Plant,
-    start: State,
+    start: TrackState,
     frictions: np.ndarray,
     onset: float,
     *,
@@ -195,7 +195,7 @@ def _run_on(
 
 def just_above(
     onset: FirstOnset, plant: Plant, *, tol: float, seed: int, workers: int | None
-) -> State | None:
+) -> TrackState | None:
     """What a small push ends in just above the onset; None where it is not at its end in time."""
     above = onset.above
     place = int(above.unstable[0])
@@ -214,7 +214,7 @@ def just_above(
     ).at(0)
     if not window.finished:
         return None
-    begun = State(ABOVE * onset.mu, window.final, window.regimes, 0.0, 0.0)
+    begun = TrackState(ABOVE * onset.mu, window.final, window.regimes, 0.0, 0.0)
     row = _run_on(
         plant, begun, frictions[:1], onset.mu, tol=tol, seed=seed, workers=workers
     )[0]
@@ -222,10 +222,10 @@ def just_above(
     return state_of(plant, begun.mu, row) if row is not None and row.events else None
 
 
-def state_of(plant: Plant, mu: float, row: Rows) -> State:
+def state_of(plant: Plant, mu: float, row: Rows) -> TrackState:
     """A settled motion at a friction."""
     strongest = int(np.argmax(row.modal))
-    return State(
+    return TrackState(
         mu,
         row.final,
         row.regimes,

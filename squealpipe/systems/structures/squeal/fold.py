@@ -11,10 +11,10 @@ import numpy as np
 
 from squealpipe.schema import Outcome
 from squealpipe.schema.branch_labels import Label
-from squealpipe.systems.cycles.branch import Follower, Point, first_point
+from squealpipe.systems.cycles.branch import BranchPoint, Follower, first_point
 from squealpipe.systems.cycles.find import find_cycle
 from squealpipe.systems.cycles.solution import Cycle
-from squealpipe.systems.structures.squeal.descent import Curve, Track
+from squealpipe.systems.structures.squeal.descent import Track, UnstableCycles
 from squealpipe.systems.structures.squeal.plant import Plant
 
 MOST_POINTS = 32
@@ -43,7 +43,7 @@ def add_fold(plant: Plant, track: Track, onset: float, width: float) -> None:
     if not is_fold or not track.dies - width <= fold <= track.lasts.mu:
         return
     track.fold = fold
-    track.unstable = Curve(
+    track.unstable = UnstableCycles(
         frictions[place:], np.array([_speed(plant, each) for each in points[place:]])
     )
 
@@ -65,7 +65,7 @@ def _cycle(plant: Plant, track: Track) -> Cycle | None:
     return cycle if cycle.is_stable and cycle.events else None
 
 
-def _speed(plant: Plant, point: Point) -> float:
+def _speed(plant: Plant, point: BranchPoint) -> float:
     """rms speed of vibration of all contacts."""
     cycle = point.cycle
     times = cycle.period * np.arange(SAMPLES) / SAMPLES
