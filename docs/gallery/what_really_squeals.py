@@ -20,7 +20,8 @@ for place in range(answer.sizes["mode"]):
 
 # %% [markdown]
 # All of them end in one motion, a cycle at the frequency of the upper mode, in which three of the
-# four contact points hammer. The exact map closes it: its largest multiplier is below 1.
+# four contact points hammer. The exact map closes it: its largest multiplier is below 1. More modes change
+# the fate of the lower one: see the page on accuracy against cost.
 
 # %%
 settled = answer.isel(attractor=0)

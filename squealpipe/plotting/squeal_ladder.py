@@ -50,11 +50,14 @@ def draw_error(axes: Axes, ladder: xr.Dataset, quantity: str) -> None:
     axes.set_xlim(left / room, right * room)
     axes.axvspan(left / room, known, color=style.LIGHT, alpha=0.35, zorder=0, lw=0)
     for place in np.flatnonzero(np.isfinite(shown.values)):
+        # methods of nearly equal cost write to different sides
+        left_side = names.index(str(ladder.method.values[place])) % 2 == 0
         axes.annotate(
             str(ladder.setting.values[place]).removesuffix(" modes"),
             (shown.values[place], ladder.cpu_time.values[place]),
-            (3, 3),
+            (-4 if left_side else 4, 3),
             textcoords="offset points",
+            ha="right" if left_side else "left",
             fontsize=5.5,
         )
     axes.set(xlabel=ERRORS[quantity][1], ylabel="CPU time (s)")

@@ -1,5 +1,7 @@
 """What methods say of squeal, against an integrator apart and what is known without one."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from scipy.io import mmwrite
@@ -17,6 +19,7 @@ from squealpipe.systems.structures.squeal.smoothed import Smoothed
 from tests.oracles.exponentials import Exponentials
 from tests.systems.structures.test_squealing import two_modes
 
+GALLERY = Path(__file__).parents[3] / "docs/gallery"
 WIDTHS = ((2.0, 0.0), (0.3, 0.3), (0.03, 0.03))
 
 
@@ -25,11 +28,15 @@ def ladder():
     return squeal_ladder(two_modes(1.0), widths=WIDTHS, repeats=1, t_end=0.05)
 
 
-def row(ladder, method, setting=None):
+def row_of(ladder, method, setting=None):
     fits = ladder.method.values == method
     if setting is not None:
         fits &= ladder.setting.values == setting
-    return ladder.isel(run=int(np.flatnonzero(fits)[0]), mode=0)
+    return ladder.isel(run=int(np.flatnonzero(fits)[0]))
+
+
+def row(ladder, method, setting=None):
+    return row_of(ladder, method, setting).isel(mode=0)
 
 
 def test_the_finest_run_is_that_of_an_integrator_apart(ladder):
@@ -156,3 +163,31 @@ def test_the_command_tells_each_method(tmp_path, monkeypatch, capsys):
     assert "mode 1 rings at 2.081 kHz" in said
     assert (tmp_path / "ladder.png").exists()
     assert load("ladder.nc").attrs["schema"] == "squeal_ladder"
+
+
+def test_the_page_of_the_gallery_says_what_its_file_holds():
+    """Numbers of its text, against the recorded ladder of the pad."""
+    ladder = load(GALLERY / "squeal_ladder/pad_1.nc")
+    text = (GALLERY / "what_a_verdict_on_squeal_costs.py").read_text("utf-8")
+    text = " ".join(text.replace("# ", "").split())
+    modes = row_of(ladder, "complex modes", "12")
+    assert f"{float(modes.cpu_time):.2f} s" in text
+    assert (modes.answer == PushAnswer.right).all()
+    fine = row_of(ladder, "exact events", "20 modes")
+    finest = row_of(ladder, "exact events", "32 modes")
+    assert int(finest.role) == Role.our_setting
+    smoothed = row_of(ladder, "friction smoothed", "0.1")
+    level = f"within {100 * float(fine.velocity_error):.0f} %"
+    assert f"{level} in {float(fine.cpu_time):.1f} s" in text
+    assert 50 < float(smoothed.cpu_time / fine.cpu_time) < 500, (
+        "a hundred times as long"
+    )
+    assert f"still {100 * float(smoothed.velocity_error):.0f} % too quiet" in text
+    assert smoothed.velocity_rms[1] < finest.velocity_rms[1]
+    assert smoothed.stick_fraction.max() > 3 * finest.stick_fraction.max()
+    twelve = row_of(ladder, "exact events", "12 modes")
+    upper = int(ladder.mode[1])
+    assert twelve.rings_near.values.tolist() == [upper, upper]
+    both = row_of(ladder, "friction and contact smoothed", "0.3, 0.3")
+    assert both.rings_near.values.tolist() == [upper, upper]
+    assert finest.rings_near.values.tolist() == ladder.mode.values.tolist()
