@@ -19,7 +19,6 @@ WORDS = {
     PushAnswer.quiet_instead: "which is wrong",
     PushAnswer.rings_instead: "which is wrong",
     PushAnswer.not_settled: "and has not settled",
-    PushAnswer.no_such_mode: "for it has no such mode",
     PushAnswer.not_known: "of which the finest run says nothing",
 }
 
@@ -57,9 +56,11 @@ def method_line(one: xr.Dataset) -> str:
     parts = []
     for place in range(one.sizes["mode"]):
         end = one.isel(mode=place)
-        parts.append(
-            f"mode {int(end.mode)} {rings(end)}, {WORDS[PushAnswer(int(end.answer))]}"
-        )
+        answer = PushAnswer(int(end.answer))
+        said = f"mode {int(end.mode)} {rings(end)}, {WORDS.get(answer)}"
+        if answer is PushAnswer.no_such_mode:
+            said = f"it has no mode {int(end.mode)}"
+        parts.append(said)
     level = float(one.velocity_error)
     off = "" if np.isnan(level) else f"; level off by {number(100 * level, 2)} %"
     return (
