@@ -4,10 +4,9 @@ import pytest
 import yaml
 
 from squealpipe import load
+from squealpipe.laws import contact_laws, friction_laws
 from squealpipe.study.report import answer
 from tests.conftest import ROOT, run_snakemake, text_of_page
-
-pytestmark = [pytest.mark.release, pytest.mark.timeout(1800)]
 
 PAD = {
     "mass": 0.45, "k1": 1e7, "k2": 1e7, "k3": 7e6, "preload": 5.714e-4, "mu": 0.4,
@@ -29,6 +28,10 @@ TABLE_LAW = {"friction_law": {"table": "friction.csv"}, "mu": None}
 CUBIC_LAW = {"friction_law": {"table": "friction.csv", "between": "cubic"}, "mu": None}
 PYTHON_LAW = {"friction_law": {"python": "friction.py"}, "mu": None}
 CONTACT_TABLE = {"contact_law": {"table": "contact.csv"}, "k3": None}
+CUBIC_CONTACT = {
+    "contact_law": {"table": "contact.csv", "between": "cubic"},
+    "k3": None,
+}
 CONTACT_DASHPOT = {"contact_law": "dashpot", "damping3": 20.0}
 UNDAMPED = {"damping1": 0.0, "damping2": 0.0}
 SCALED = {
@@ -36,10 +39,11 @@ SCALED = {
     "length2": 175.0, "belt_speed": 0.75, "damping1": 0.02, "damping2": 0.02,
 }  # fmt: skip
 STUDIES = {
-    "static limit, contact table, belt at rest": {
-        **CONTACT_TABLE,
+    "Coulomb, belt at rest": {"belt_speed": 0.0},
+    "static limit, cubic contact table, the other way": {
+        **CUBIC_CONTACT,
         "mu_static": 0.6,
-        "belt_speed": 0.0,
+        "belt_speed": -2.0,
     },
     "exponential, contact dashpot": {
         "friction_law": "exponential",
@@ -61,8 +65,35 @@ STUDIES = {
     },
     "Python, scaled units": {**PYTHON_LAW, **SCALED},
 }
-"""Each law of friction and of contact, dashpots or none, both ways of the belt and none, SI and
-scaled units: in pairs, for a whole study takes half a minute."""
+"""Options in pairs, for a whole study takes half a minute."""
+
+
+def options_of(study):
+    """The options that a study has, by name."""
+    given = PAD | {"friction_law": "coulomb", "contact_law": "linear"} | study
+    found = set()
+    for law in ("friction_law", "contact_law"):
+        name = given[law]
+        if isinstance(name, dict):
+            name = (
+                "Python"
+                if "python" in name
+                else f"{name.get('between', 'linear')} table"
+            )
+        found.add(f"{law} {name}")
+    speed, damped = given["belt_speed"], given["damping1"] > 0.0
+    found.add("belt at rest" if speed == 0.0 else f"belt {'+' if speed > 0 else '-'}x")
+    found.add("dashpots" if damped else "no dashpots")
+    found.add("SI" if given["length1"] < 1.0 else "scaled units")
+    return found
+
+
+WITH_A_STUDY = set().union(*map(options_of, STUDIES.values()))
+for name, law in friction_laws.LAWS.items():  # one that is added has a study of its own
+    if f"friction_law {name}" not in WITH_A_STUDY:
+        read = {key: value for key, value in FALLING.items() if key in law.PARAMETERS}
+        STUDIES[name] = {"friction_law": name, **read}
+
 COARSE = {
     "paper": False, "results": "results/mine",
     "scenes": {"mine": {"alpha1": "22deg", "alpha2": "46deg", "start": {"vx": 1e-3}}},
@@ -70,6 +101,19 @@ COARSE = {
 }  # fmt: skip
 
 
+def test_each_option_has_a_study():
+    tables = ("linear table", "cubic table")
+    expected = {
+        *(f"friction_law {law}" for law in (*friction_laws.LAWS, *tables, "Python")),
+        *(f"contact_law {law}" for law in (*contact_laws.LAWS, *tables)),
+        *("dashpots", "no dashpots", "belt +x", "belt -x", "belt at rest"),
+        *("SI", "scaled units"),
+    }
+    assert set().union(*map(options_of, STUDIES.values())) == expected
+
+
+@pytest.mark.release
+@pytest.mark.timeout(1800)
 @pytest.mark.parametrize("name", STUDIES)
 def test_the_report_has_the_answer(name, tmp_path):
     (tmp_path / "friction.csv").write_text(TABLE)
