@@ -5,6 +5,7 @@ over a tiny step is the exact derivative (Squire and Trapp, SIAM Review 40 (1998
 every law and without a compiled system, so that thousands of designs cost a second.
 """
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple, Self
@@ -20,11 +21,9 @@ from squealpipe.schema.assess import Mechanism
 from squealpipe.tasks.cycles.sliding import GROWS
 
 MOST_STEPS = 40
-"""Newton steps from rest."""
-FEW_STEPS = 7
-"""Newton steps from a place nearby."""
-FIRST_SHARE, LEAST_SHARE = 0.125, 1e-3
-"""Steps in which friction is raised, over the whole."""
+"""Newton steps."""
+RAISED, PACE = 64, 20.0
+"""Steps in which friction is raised, and the time of each over 1/rate."""
 BALANCE = 1e-11
 """Force left over at an equilibrium, over that of the preload."""
 STEP = 1e-30
@@ -134,52 +133,45 @@ class Sliding:
         return np.asarray(np.linalg.eigvals(self.jacobian))
 
 
-def _balanced(
-    design: Design, start: np.ndarray | None = None, steps: int = MOST_STEPS
-) -> np.ndarray | None:
-    """Where the mass slides steadily, m, by Newton's method from a place, at first r = 0."""
-    params, acceleration = design.params, _acceleration(design)
-    place = np.zeros(2) if start is None else start
+def _balanced(design: Design) -> np.ndarray | None:
+    """Where the mass slides steadily, m, by Newton's method from r = 0."""
+    return _approach(design, [(1.0, math.inf)] * MOST_STEPS)
+
+
+def _followed(design: Design) -> np.ndarray | None:
+    """Where an overdamped mass comes to rest, m, while friction is raised slowly from none.
+
+    Pseudo-transient continuation (Kelley and Keyes, SIAM Journal on Numerical Analysis 35 (1998)):
+    implicit Euler steps that end as Newton's.
+    """
+    raised = [((step + 1) / RAISED, PACE) for step in range(RAISED)]
+    ends = [(1.0, PACE * 2.0**step) for step in range(MOST_STEPS)]
+    return _approach(design, raised + ends)
+
+
+def _approach(design: Design, steps: list[tuple[float, float]]) -> np.ndarray | None:
+    """A place in balance after steps with a share of friction and a time over 1/rate each."""
+    params, stiffness = design.params, np.eye(2) * design.rate**2
     balance = params.k3 * params.preload / params.mass
-    for _ in range(steps):
+    place, acceleration, last = np.zeros(2), _acceleration(design), 1.0
+    for share, time in steps:
+        if share != last:
+            acceleration, last = _acceleration(_level(design, share)), share
         try:
             force, slopes = _linearized(acceleration, place, design, count=2)
         except (OverflowError, ZeroDivisionError):
             return None
         if not np.isfinite(force).all():
             return None
-        if np.abs(force).max() < BALANCE * balance:
+        if share == 1.0 and np.abs(force).max() < BALANCE * balance:
             return place
         try:
-            place = place - np.linalg.solve(slopes, force)
+            place = place + np.linalg.solve(stiffness / time - slopes, force)
         except np.linalg.LinAlgError:
             return None
         if not np.abs(place).max() < 1e3 * (params.length1 + params.length2):
             return None
     return None
-
-
-def _followed(design: Design) -> np.ndarray | None:
-    """Where the mass slides steadily, followed from no friction to the whole; None: it ends."""
-    share, step = 0.0, FIRST_SHARE
-    place = _balanced(_level(design, 0.0))
-    while place is not None and share < 1.0:
-        more = min(share + step, 1.0)
-        level = _level(design, more)
-        there = _balanced(level, place, FEW_STEPS)
-        if there is not None and _is_static(level, there):
-            place, share = there, more
-        elif step > LEAST_SHARE:
-            step *= 0.5
-        else:
-            return None
-    return place
-
-
-def _is_static(design: Design, place: np.ndarray) -> bool:
-    """Whether a place is held against slow displacements; at a fold of the branch it is not."""
-    _, slopes = _linearized(_acceleration(design), place, design, count=2)
-    return bool(np.linalg.det(slopes) > 0.0)
 
 
 def _level(design: Design, share: float = 1.0) -> Design:
