@@ -48,8 +48,8 @@ def test_what_is_missing_is_said():
     ):
         declared.arguments("fig02", dict.fromkeys(NAMES[:3]))
     with pytest.raises(ValueError, match="has no READS"):
-        declared.reads("work_precision")
+        declared.reads("backbone_panels")
     with pytest.raises(ValueError, match="has no CAPTION"):
-        declared.texts("work_precision", {})
+        declared.texts("backbone_panels", {})
     with pytest.raises(ValueError, match="0 modules"):
         declared.topic("unknown")
