@@ -30,6 +30,8 @@ PANELS = (
     ),
 )
 LOGARITHMIC = ("length_ratio", "speed_ratio")
+LEAST = 1e-3
+"""Where the bars of shares begin, per cent: below one sample of 20,480."""
 LOOKS = (
     ("as printed", style.GREEN, "s"),
     ("along +x", style.BLUE, "o"),
@@ -49,8 +51,8 @@ def caption(inference: xr.Dataset) -> str:
         f"{f' (none {empty})' if empty else ''}; star: this study, by its spring 1; above the "
         "dashed line in (a), μ = cot 0.4π, the linear models dragged along +x are unstable at the "
         "angles of Fig. 3. (d) Share of the samples that each statement alone excludes, by "
-        "reading. (e) Margins of the study's own parameters in its reading: positive where the "
-        "statement holds, cut at −1."
+        "reading; no bar: none. (e) Margins of the study's own parameters in its reading: "
+        "positive where the statement holds, cut at −1."
     )
 
 
@@ -83,7 +85,9 @@ def draw(inference: xr.Dataset) -> Figure:
         )
     shares.set_yticks(places, map(in_words, inference.statement.values))
     shares.invert_yaxis()
-    shares.set(xlabel="share of the samples, %")
+    # readings differ by powers of ten, and one without any would look like one with few
+    shares.set(xlabel="share of the samples, %", xscale="log", xlim=(LEAST, 100.0))
+    shares.xaxis.set_major_formatter("{x:g}")
     lower.legend(
         *shares.get_legend_handles_labels(), loc="outside lower center", ncols=3
     )
