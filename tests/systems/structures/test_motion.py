@@ -339,6 +339,17 @@ def test_energy_is_balanced_over_ten_thousand_events():
     assert energy[-1] - energy[0] == pytest.approx(work, abs=1e-11 * energy.max())
 
 
+def test_a_settled_millisecond_of_the_pad_takes_few_steps():
+    """Cost that no clock tells; tests/benchmarks/bench_structures.py has times beside scipy's."""
+    system, t_end = twelve_modes().system(), 20e-3
+    settled = system.simulate(t_end, times=[0.0, t_end])
+    start = {name: float(settled[name][-1]) for name in names(12)}
+    run = system.simulate(4e-3, start=start)
+    steps = run.sizes["time"] / 4  # instants of a run are four a step
+    assert run.sizes["event"] > 1400
+    assert steps < 1.6 * run.sizes["event"]
+
+
 def test_a_small_start_grows_at_the_rate_of_the_complex_mode():
     pad = twelve_modes()
     modes = pad.complex_modes()
