@@ -19,7 +19,10 @@ ERRORS = {
     "separation": ("contact loss", "error of the share of time"),
 }
 """Quantity → title of its panel, and label of its axis."""
-LEAST, MOST = 1e-7, 1.0
+LEAST = 1e-7
+"""Smallest error that is drawn."""
+BESIDE = [(-4, 3, "right"), (4, 3, "left"), (0, 5, "center"), (0, -9, "center")]
+"""Where each method writes its settings beside its points: x, y in points, and the side."""
 
 
 def draw_level(axes: Axes, ladder: xr.Dataset) -> None:
@@ -50,14 +53,14 @@ def draw_error(axes: Axes, ladder: xr.Dataset, quantity: str) -> None:
     axes.set_xlim(left / room, right * room)
     axes.axvspan(left / room, known, color=style.LIGHT, alpha=0.35, zorder=0, lw=0)
     for place in np.flatnonzero(np.isfinite(shown.values)):
-        # methods of nearly equal cost write to different sides
-        left_side = names.index(str(ladder.method.values[place])) % 2 == 0
+        x, y, side = BESIDE[names.index(str(ladder.method.values[place])) % len(BESIDE)]
+        words = str(ladder.setting.values[place]).removesuffix(" modes").split(", ")
         axes.annotate(
-            str(ladder.setting.values[place]).removesuffix(" modes"),
+            ", ".join(dict.fromkeys(words)),  # equal widths once
             (shown.values[place], ladder.cpu_time.values[place]),
-            (-4 if left_side else 4, 3),
+            (x, y),
             textcoords="offset points",
-            ha="right" if left_side else "left",
+            ha=side,
             fontsize=5.5,
         )
     axes.set(xlabel=ERRORS[quantity][1], ylabel="CPU time (s)")
