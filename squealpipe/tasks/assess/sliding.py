@@ -23,7 +23,7 @@ from squealpipe.tasks.cycles.sliding import GROWS
 MOST_STEPS = 40
 """Newton steps."""
 RAISED, PACE = 64, 20.0
-"""Steps in which friction is raised, and the time of each over 1/rate."""
+"""Steps in which friction is raised, and as many under the whole; time of each over 1/rate."""
 BALANCE = 1e-11
 """Force left over at an equilibrium, over that of the preload."""
 STEP = 1e-30
@@ -145,8 +145,9 @@ def _followed(design: Design) -> np.ndarray | None:
     implicit Euler steps that end as Newton's.
     """
     raised = [((step + 1) / RAISED, PACE) for step in range(RAISED)]
+    settles = [(1.0, PACE)] * RAISED
     ends = [(1.0, PACE * 2.0**step) for step in range(MOST_STEPS)]
-    return _approach(design, raised + ends)
+    return _approach(design, raised + settles + ends)
 
 
 def _approach(design: Design, steps: list[tuple[float, float]]) -> np.ndarray | None:
