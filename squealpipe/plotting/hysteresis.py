@@ -34,6 +34,7 @@ def draw_hysteresis(axes: Axes, answer: xr.Dataset) -> None:
                 friction, color=style.BLACK, linewidth=0.8, linestyle=line, label=label
             )
     colours = iter(COLOURS)
+    unstable: str | None = "unstable cycle"
     for place in range(answer.sizes["track"]):
         one = answer.isel(track=place)
         above = int(one.track_attractor) == JUST_ABOVE
@@ -44,14 +45,14 @@ def draw_hysteresis(axes: Axes, answer: xr.Dataset) -> None:
         wide: dict[str, Any] = {"linewidth": 3.0, "zorder": 1.5} if above else {}
         axes.plot(frictions, speeds, ".-", ms=4, color=colour, label=label, **wide)
         if "turn" in one.sizes and np.isfinite(one.unstable_mu).any():
-            first = place == 0
             axes.plot(
                 one.unstable_mu,
                 one.unstable_velocity_rms,
                 "--",
                 color=style.RED,
-                label="unstable cycle" if first else None,
+                label=unstable,
             )
+            unstable = None
         dies = float(one.mu_dies)
         if np.isfinite(dies):
             lowest = _level_at_end(one)
@@ -60,7 +61,8 @@ def draw_hysteresis(axes: Axes, answer: xr.Dataset) -> None:
     axes.set(xlabel="friction μ", ylabel="rms speed (m/s)")
     axes.set_ylim(bottom=0.0)
     axes.margins(x=0.04)
-    axes.legend(loc="best")
+    # on white: lines at frictions may pass behind it
+    axes.legend(loc="best", frameon=True, framealpha=0.9, edgecolor="none")
 
 
 def _level_at_end(one: xr.Dataset) -> float:
