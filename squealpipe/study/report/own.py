@@ -117,7 +117,7 @@ def _numbers(told: xr.Dataset) -> list[dict[str, str]]:
         ("peak_contact_force_over_preload", "1", "The same over the preload force"),
         ("separated_fraction", "%", "Time without contact"),
         ("stick_fraction", "%", "Time sticking to the belt"),
-        ("impact_rate", "s-1", "Impacts per second"),
+        ("impact_rate", "s-1", "Rate of impacts"),
         ("impact_speed", "m s-1", "Fastest impact"),
         ("settled_by", "s", "Settled by"),
     ):
