@@ -120,7 +120,7 @@ def squeal(
     tol: Tolerance,
     n_modes: Whole | None = None,
     frequency_max: Frequency = None,
-    onset: Switch = False,
+    onset: Switch,
     output: Output = Path("squeal.nc"),
     picture: Picture = None,
     look: Look = LOOK,
