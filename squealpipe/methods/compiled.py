@@ -3,7 +3,8 @@
 A function is compiled by who calls it:
 
 - :func:`compiled`: Python calls it;
-- :func:`compiled_entry`: its address is called: a whole loop, or source text made at run time;
+- :func:`compiled_entry`: its address is called: a whole loop (source text made at run time is
+  compiled in :mod:`squealpipe.methods.taylor.machine`);
 - ``part``: other compiled code calls it, so there are no wrappers to compile, and no counts of
   references to arrays (an eighth of the time), so it makes none and returns none;
 - ``inline``: likewise in every step, where passing a dozen arrays costs as much as the work;
@@ -55,12 +56,12 @@ def kernel_sources() -> list[Path]:
 @cache
 def _store() -> str:
     """Directory of the kernels that Python calls, by a digest of them all."""
-    return _folder(
+    return store_folder(
         "kernels", b"".join(source.read_bytes() for source in kernel_sources())
     )
 
 
-def _folder(kind: str, content: bytes) -> str:
+def store_folder(kind: str, content: bytes) -> str:
     """NUMBA_CACHE_DIR or the user's cache folder, and in it one for this content."""
     user = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")  # noqa: PTH111
     root = _settings.CACHE_DIR or f"{user}/squealpipe"
@@ -105,4 +106,4 @@ def compiled_entry(function: Callable[..., Any], signature: Any, content: bytes)
     Compiling takes seconds. Where nothing can be written it is done in each process.
     """
     compile_ = partial(_numba.cfunc, signature, error_model="numpy")
-    return _kept(compile_, function, _folder("lanes", content))
+    return _kept(compile_, function, store_folder("lanes", content))

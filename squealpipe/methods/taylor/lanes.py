@@ -48,14 +48,14 @@ INVERSES = 1.0 / np.maximum(1.0, np.arange(MOST_TERMS))
 
 @dataclass(frozen=True, eq=False)
 class CompiledSystem:
-    """The compiled functions of a system by name, and the number of series that it keeps."""
+    """Addresses of a system's functions by name, and the number of series that it keeps."""
 
-    code: dict[str, Any]
+    code: dict[str, int]
     n_series: int
 
     def address(self, name: str) -> int:
         """Of a function; 0 of one that is left out."""
-        return self.code[name].address if name in self.code else 0
+        return self.code.get(name, 0)
 
 
 def compile_system(

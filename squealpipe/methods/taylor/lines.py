@@ -50,7 +50,9 @@ class Writer:
     def value(self, root: Symbol) -> str:
         """Lines for a value; returns its name."""
         for node in self.sums.written(in_order([root])):
-            if id(node) not in self.names:
+            if node.kind == "number":
+                self.names[id(node)] = repr(node.arguments[0])
+            elif id(node) not in self.names:
                 name = self.names[id(node)] = f"{self.prefix}{len(self.names)}"
                 if id(node) in self.sums.of:
                     self._add_up(name, node, self.names, 0)
@@ -86,8 +88,6 @@ class Writer:
         ]
 
     def _code(self, node: Symbol) -> str:
-        if node.kind == "number":
-            return repr(node.arguments[0])
         if node.kind in {"variable", "parameter"}:
             return self.load(node)
         given = [
@@ -113,6 +113,9 @@ class Writer:
         self.value(root)
         sizes = self.sizes
         for node in self._without_size(root):
+            if node.kind == "number":
+                sizes[id(node)] = repr(abs(node.arguments[0]))
+                continue
             name = sizes[id(node)] = f"{self.prefix}z{len(self.lines)}"
             if id(node) in self.sums.of:
                 self._add_up(name, node, sizes, 1)

@@ -1,21 +1,19 @@
 """Compiled functions from source text, written as LLVM's code at once.
 
 The text is Python over addresses, numbers and rows of them: assignments, calls, branches, loops.
-numba would compile it too, but takes ten times as long to find the types of its hundreds of lines;
-here it compiles a call of what is written.
+numba would compile it too, but takes ten times as long to find the types of its hundreds of lines.
 """
 
 import ast
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 from llvmlite import ir
-from numba import types
 from numba.core import cgutils
-from numba.extending import intrinsic
 
-from squealpipe.methods.compiled import compiled_entry
 from squealpipe.methods.taylor import simd
+from squealpipe.methods.taylor.machine import address_of
 
 _cgutils: Any = cgutils
 _WORD, _DOUBLE = ir.IntType(64), ir.DoubleType()
@@ -31,35 +29,27 @@ _DOUBLES = {ast.Add: "fadd", ast.Sub: "fsub", ast.Mult: "fmul", ast.Div: "fdiv"}
 _TESTS = {ast.Eq: "==", ast.NotEq: "!=", ast.GtE: ">="}
 
 
-def compile_source(source: str, width: int = simd.LANES) -> Any:
-    """A C function of addresses and sizes from its text, stored under a digest of it.
+def compile_source(source: str, width: int = simd.LANES) -> int:
+    """The address of a function of addresses and sizes from its text, stored under a digest of it.
 
     Args:
         width: lanes of the rows that it computes.
     """
     definition: Any = ast.parse(source).body[0]
     names = [each.arg for each in definition.args.args]
-    listed, words = ", ".join(names), [types.intp] * len(names)
 
-    def typing(context: Any, *given: Any) -> Any:  # noqa: ARG001
-        def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:  # noqa: ARG001
-            arguments = dict(zip(names, values, strict=True))
-            writer = _Writer(builder, width, arguments, definition.body)
-            writer.finish(definition.body)
-            return context.get_dummy_value()
+    def write(builder: Any, values: Any) -> None:
+        arguments = dict(zip(names, values, strict=True))
+        _Writer(builder, width, arguments, definition.body).finish(definition.body)
 
-        return types.void(*words), code
+    content = f"{source}{width}".encode()
+    return address_of(write, len(names), _own_sources() + content)
 
-    scope: dict[str, Any] = {"typing": typing, "__name__": __name__}
-    exec(f"def body(context, {listed}): return typing(context, {listed})", scope)  # noqa: S102
-    scope["body"] = intrinsic(scope["body"])
-    call = f"def {definition.name}({listed}): body({listed})"
-    exec(compile(call, __file__, "exec"), scope)  # noqa: S102
-    content = b"".join(
-        Path(path or "").read_bytes() for path in (simd.__file__, __file__)
-    )
-    content += f"{source}{width}".encode()
-    return compiled_entry(scope[definition.name], types.void(*words), content)
+
+@cache
+def _own_sources() -> bytes:
+    """What decides how text becomes LLVM's code."""
+    return b"".join(Path(path or "").read_bytes() for path in (simd.__file__, __file__))
 
 
 def _assigned_once(statements: list[Any]) -> set[str]:
