@@ -33,6 +33,11 @@ def headline(answer: xr.Dataset) -> str:
                 "Quiet unless struck: small motions die out, but a vibration that lasts exists "
                 f"beside steady sliding; {_percent(lasting)} of random starts end in it."
             )
+        if _lasts(answer):
+            return (
+                "Quiet unless struck: every start that settled came back to steady sliding, but "
+                "squeal that has begun at more friction lasts at this one."
+            )
         return "Quiet: steady sliding is stable, and every start that settled came back to it."
     if verdict is Verdict.undetermined:
         largest = float(answer.pole_growth_rate.max())
@@ -192,10 +197,19 @@ def onset(answer: xr.Dataset) -> Iterator[str]:
             motion = answer.isel(attractor=int(one.track_attractor))
             at = engineering(float(motion.dominant_frequency), "Hz")
             yield f"As friction falls, the motion at {at} {_end_of(one, critical)}."
-    if bool(answer.squeals_below_critical) and not answer.sizes["mode"]:
+    if _lasts(answer):
         own = json.loads(answer.attrs["parameters"])["mu"]
-        if np.nanmin(answer.track_mu.values) <= own:
-            yield f"At mu = {number(own)}, too, squeal that has begun lasts."
+        yield f"At mu = {number(own)}, too, squeal that has begun lasts."
+
+
+def _lasts(answer: xr.Dataset) -> bool:
+    """Whether squeal that began at more friction lasts where no mode is unstable."""
+    if "onset_kind" not in answer or answer.sizes["mode"]:
+        return False
+    if not bool(answer.squeals_below_critical):
+        return False
+    own = json.loads(answer.attrs["parameters"])["mu"]
+    return bool(np.nanmin(answer.track_mu.values) <= own)
 
 
 def _begins(answer: xr.Dataset, critical: float) -> str:
