@@ -62,6 +62,12 @@ CONTACT_POINTS = DatasetSchema(
         "share": or_nan(
             "share of the random starts that end in it", "1", _PAD, atol=0.5
         ),
+        "common_frequency": or_nan(
+            "strongest line of what most random starts end in",
+            "Hz",
+            _PAD,
+            volatile=True,
+        ),
         "position": _of_point("place over the pad's length"),
         "separated_fraction": _of_point("share of the time without contact"),
         "stick_fraction": _of_point("share of the time in stick"),

@@ -1,5 +1,6 @@
 """Numbers of the shipped study that its narrative inserts, read off the datasets."""
 
+import json
 from typing import Any
 
 import numpy as np
@@ -153,11 +154,15 @@ def _contact_points(run: Evidence) -> dict[str, Any]:
         loud |= {
             f"points{count}_onset": pad.critical_mu,
             f"points{count}_kilohertz": pad.dominant_frequency / 1e3,
+            f"points{count}_share": 100 * pad.share,
+            f"points{count}_common": pad.common_frequency / 1e3,
+            f"points{count}_lag": pad.lag[int(count) - 1],
             f"points{count}_least": 100 * pad.separated_fraction.min(),
             f"points{count}_most": 100 * pad.separated_fraction.max(),
         }
     return {
         **loud,
+        "points_samples": json.loads(pads.attrs["arguments"])["samples"],
         "points_modes": pads.n_modes.max(),
         "points_growth_error": 100 * pads.growth_rate_error.max(),
     }

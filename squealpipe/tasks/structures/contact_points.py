@@ -107,6 +107,7 @@ def _pad(
         pad, samples=how.samples, t_end=how.t_end, tol=how.tol, workers=workers
     )
     growing = answer.sizes["mode"]
+    ends = answer.dominant_frequency.values
     values: dict[str, Any] = {
         "contacts": count,
         "young": young,
@@ -118,6 +119,9 @@ def _pad(
         "frequency": float(answer.frequency[0]) if growing else np.nan,
         "growth_rate": float(answer.growth_rate[0]) if growing else np.nan,
         "verdict": int(answer.verdict),
+        "common_frequency": ends[answer["count"].values.argmax()]
+        if ends.size
+        else np.nan,
         "outcome": Outcome.unresolved
         if Verdict(int(answer.verdict)) is Verdict.undetermined
         else Outcome.converged,
