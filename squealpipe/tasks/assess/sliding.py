@@ -24,6 +24,10 @@ MOST_STEPS = 40
 """Newton steps."""
 RAISED, PACE = 64, 20.0
 """Steps in which friction is raised, and as many under the whole; time of each over 1/rate."""
+MOST_DOUBLED = 400
+"""Steps after those at most, the first :data:`MOST_STEPS` of them of doubled time."""
+LONGEST = 0.1
+"""Longest step, over the shorter spring."""
 BALANCE = 1e-11
 """Force left over at an equilibrium, over that of the preload."""
 STEP = 1e-30
@@ -142,11 +146,12 @@ def _followed(design: Design) -> np.ndarray | None:
     """Where an overdamped mass comes to rest, m, while friction is raised slowly from none.
 
     Pseudo-transient continuation (Kelley and Keyes, SIAM Journal on Numerical Analysis 35 (1998)):
-    implicit Euler steps that end as Newton's.
+    implicit Euler steps that end as Newton's. Just beyond a fold the mass lingers, then goes far.
     """
     raised = [((step + 1) / RAISED, PACE) for step in range(RAISED)]
     settles = [(1.0, PACE)] * RAISED
-    ends = [(1.0, PACE * 2.0**step) for step in range(MOST_STEPS)]
+    doubled = [min(step, MOST_STEPS) for step in range(MOST_DOUBLED)]
+    ends = [(1.0, PACE * 2.0**step) for step in doubled]
     return _approach(design, raised + settles + ends)
 
 
@@ -154,6 +159,7 @@ def _approach(design: Design, steps: list[tuple[float, float]]) -> np.ndarray | 
     """A place in balance after steps with a share of friction and a time over 1/rate each."""
     params, stiffness = design.params, np.eye(2) * design.rate**2
     balance = params.k3 * params.preload / params.mass
+    longest = LONGEST * min(params.length1, params.length2)
     place, acceleration, last = np.zeros(2), _acceleration(design), 1.0
     for share, time in steps:
         if share != last:
@@ -167,12 +173,31 @@ def _approach(design: Design, steps: list[tuple[float, float]]) -> np.ndarray | 
         if share == 1.0 and np.abs(force).max() < BALANCE * balance:
             return place
         try:
-            place = place + np.linalg.solve(stiffness / time - slopes, force)
+            place = place + _step(force, slopes, stiffness, time, longest)
         except np.linalg.LinAlgError:
             return None
         if not np.abs(place).max() < 1e3 * (params.length1 + params.length2):
             return None
     return None
+
+
+def _step(
+    force: np.ndarray,
+    slopes: np.ndarray,
+    stiffness: np.ndarray,
+    time: float,
+    longest: float,
+) -> np.ndarray:
+    """An implicit Euler step, of less time where it would go far or against the force.
+
+    Against the force it goes where the time is too long for a place the mass is driven away from.
+    """
+    while True:
+        step = np.asarray(np.linalg.solve(stiffness / time - slopes, force))
+        too_long = np.abs(step).max() > longest or step @ force < 0.0
+        if math.isinf(time) or not too_long:
+            return step
+        time *= 0.5
 
 
 def _level(design: Design, share: float = 1.0) -> Design:
