@@ -33,7 +33,10 @@ def results_as_json(datasets: Iterable[xr.Dataset]) -> str:
         for each in datasets
     }
     if len(said) != 1:
-        raise ValueError("results of one benchmark_version and one list of tolerances")
+        raise ValueError(
+            "results of one benchmark_version and one list of tolerances are needed, not of "
+            f"{sorted(said)}"
+        )
     ((benchmark_version, tolerances),) = said
     solvers: dict[str, dict[str, str]] = {}
     lines = []

@@ -130,7 +130,7 @@ def results(
     from squealpipe.store.whole_files import whole_file
 
     check_output(output, force=force, kinds=(".json",))
-    text = results_as_json(map(_loaded, files))
+    text = results_as_json(map(_dataset, files))
     with whole_file(output) as temporary:
         temporary.write_text(text, encoding="utf-8")
     print(f"wrote {output}")
@@ -139,10 +139,15 @@ def results(
 
 def _loaded(path: Path) -> xr.Dataset:
     from squealpipe.benchmark.results import SHIPPED, read_results
-    from squealpipe.store import load
 
     if path.suffix == ".json" or str(path) == SHIPPED:
         return read_results(path)
+    return _dataset(path)
+
+
+def _dataset(path: Path) -> xr.Dataset:
+    from squealpipe.store import load
+
     dataset = load(path)
     if dataset.attrs["schema"] != "benchmark":
         raise ValueError(

@@ -145,7 +145,7 @@ def squeal(
         frequency_max: reduce to the modes that the unstable ones up to this frequency need, Hz;
             needed beyond 1000 degrees of freedom.
         onset: also follow what squeals down in friction until it dies: whether squeal lasts below
-            the critical friction, and how far; about as dear as the rest.
+            the critical friction, and how far; costs about as much as the rest.
     """
     check_output(output, force=force)
     drawn = check_picture(picture, output, force=force)

@@ -106,6 +106,8 @@ def test_results_as_json_say_what_the_dataset_says(tmp_path, capsys):
     assert run(["benchmark", "results", one, one, "-o", text, "--force"]) == 2
     assert "two results of 'DOP853'" in capsys.readouterr().err
     assert run(["benchmark", "compare", one, str(tmp_path / "mine.json")]) == 2
+    assert run(["benchmark", "results", text, "-o", str(tmp_path / "more.json")]) == 2
+    assert "Traceback" not in capsys.readouterr().err
 
 
 def test_shipped_results_name_what_made_them(tmp_path, capsys):

@@ -46,6 +46,8 @@ def _pushes(one: xr.Dataset) -> Iterator[str]:
 
 def rings(end: xr.Dataset) -> str:
     """What rings after a push, in words."""
+    if int(end.outcome) == Outcome.no_convergence:
+        return "is not followed to the end"
     if np.isnan(end.frequency):
         return "dies out"
     return f"rings at {engineering(float(end.frequency), 'Hz', 4)}"

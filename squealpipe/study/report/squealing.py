@@ -188,7 +188,9 @@ def onset(answer: xr.Dataset) -> Iterator[str]:
             "below: squeal was not followed in friction."
         )
     if outcome is Outcome.not_reached:
-        yield "Up to twice this friction no mode turns unstable, or where is not located."
+        yield (
+            "No mode turns unstable up to twice this friction, or its onset could not be located."
+        )
     if np.isfinite(critical):
         yield f"{_begins(answer, critical)} {_kind(answer)}"
     for place in range(answer.sizes["track"]):

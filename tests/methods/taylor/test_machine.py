@@ -1,6 +1,7 @@
 """Machine code of written functions, and the store that keeps it."""
 
 import ctypes
+import errno
 from functools import cache
 
 import numpy as np
@@ -56,6 +57,15 @@ def test_a_damaged_file_of_the_store_is_written_anew(compiled, tmp_path, kept):
     path.write_bytes(whole[:kept])
     assert compiled() == 0.75
     assert files(tmp_path) == {path: whole}
+
+
+def test_what_cannot_be_kept_leaves_no_file_behind(compiled, tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(errno.ENOSPC, "no space left")
+
+    monkeypatch.setattr(machine.Path, "replace", full)
+    assert compiled() == 0.75
+    assert not files(tmp_path)
 
 
 def test_without_a_place_to_write_it_is_compiled_in_memory(compiled, tmp_path):

@@ -132,9 +132,8 @@ def _turns(track: Track, onset: float) -> Iterator[np.ndarray]:
         yield np.linspace(top, floor, SIDE_BY_SIDE + 1)[1:]
         low, high = track.dies, track.lasts.mu
         if np.isnan(low):
-            if (
-                high <= 0.0
-            ):  # at no friction: nothing feeds it, but nothing ends it either
+            # at no friction nothing feeds it, but nothing ends it either
+            if high <= 0.0:
                 return
             floor = 0.0  # what died from far away lasts from nearby
             continue
@@ -199,7 +198,7 @@ def just_above(
     """What a small push ends in just above the onset; None where it is not at its end in time."""
     above = onset.above
     place = int(above.unstable[0])
-    period = 1.0 / onset.frequency
+    period = 1.0 / above.slowest
     rate = float(above.spectrum.values[place].real)
     frictions = np.full(WIDE, ABOVE * onset.mu)
     window = run_window(

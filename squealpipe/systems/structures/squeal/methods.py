@@ -20,7 +20,7 @@ from squealpipe.schema.comparison import Role
 from squealpipe.systems.structures.definition import Structure
 from squealpipe.systems.structures.reduction import Kept
 from squealpipe.systems.structures.spectrum import Limits, Solver
-from squealpipe.systems.structures.squeal.plant import Plant
+from squealpipe.systems.structures.squeal.plant import PUSH, Plant
 from squealpipe.systems.structures.squeal.settling import WIDE, stays
 from squealpipe.systems.structures.squeal.smoothed import Samples, Smoothed
 from squealpipe.systems.structures.squeal.windows import (
@@ -30,8 +30,8 @@ from squealpipe.systems.structures.squeal.windows import (
     strongest_line,
 )
 
-PUSH, APART = 0.01, 0.05
-"""Push along a mode over the preload's deformation; by how much the next of several is larger."""
+APART = 0.05
+"""By how much the next of several pushes is larger, over the first."""
 STARTS = 4
 """Runs with exact events from pushes that differ a little: their scatter is an error."""
 NEAR = 0.1
@@ -264,11 +264,11 @@ def _timed(ask: Callable[[], Any], repeats: int) -> tuple[Any, float]:
 
 def _same(frequencies: np.ndarray, grows: np.ndarray, frequency: float) -> int | None:
     """Place of the mode that is another model's at this frequency, Hz: one that grows first."""
-    away = np.abs(frequencies - frequency) / frequency
+    away = np.abs(frequencies - frequency)
     for which in (grows, np.ones(len(away), bool)):
         if which.any():
             place = int(np.where(which, away, np.inf).argmin())
-            if away[place] <= NEAR:
+            if away[place] <= NEAR * frequency:
                 return place
     return None
 

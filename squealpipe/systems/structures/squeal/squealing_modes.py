@@ -57,7 +57,7 @@ def squealing_modes(
             beyond the time in which it grows.
         seed: of the random starts.
         onset: also follow what squeals down in friction until it dies, at its own friction and
-            just above the onset of instability; about as dear as the rest.
+            just above the onset of instability; costs about as much as the rest.
         tol: tolerance of the Taylor integrator.
         workers: processes; None takes all cores.
 
