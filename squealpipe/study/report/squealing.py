@@ -189,7 +189,7 @@ def onset(answer: xr.Dataset) -> Iterator[str]:
         )
     if outcome is Outcome.not_reached:
         yield (
-            "No mode turns unstable up to twice this friction, or its onset could not be located."
+            "Up to twice this friction no mode turns unstable, or its onset could not be located."
         )
     if np.isfinite(critical):
         yield f"{_begins(answer, critical)} {_kind(answer)}"

@@ -139,11 +139,7 @@ def stops(modes: xr.Dataset, answer: xr.Dataset) -> list[str]:
             "grows."
         )
         if "onset_kind" in answer and bool(answer.squeals_below_critical):
-            dies = critical - float(answer.hysteresis)
-            friction += (
-                f" Squeal that has begun lasts down to mu = {number(dies)} "
-                f"({_change(dies, own)})."
-            )
+            friction += f" {squeal_below(answer, own)}"
     elif np.isnan(critical):
         friction = "Friction: where growth begins was not located."
     else:
@@ -159,6 +155,16 @@ def stops(modes: xr.Dataset, answer: xr.Dataset) -> list[str]:
             "suffice."
         )
     return [friction, damper]
+
+
+def squeal_below(answer: xr.Dataset, own: float) -> str:
+    """How far below the critical friction squeal lasts, beside a structure's own friction."""
+    dies = float(answer.onset_mu - answer.hysteresis)
+    lasts = float(np.nanmin(answer.track_mu.values))
+    if dies <= lasts:
+        return f"Squeal that has begun lasts down to mu = {number(dies)} ({_change(dies, own)})."
+    # the end of what lasts longest was not reached
+    return f"Squeal that has begun still lasts at mu = {number(lasts)} ({_change(lasts, own)})."
 
 
 def _change(value: float, now: float) -> str:
