@@ -22,10 +22,12 @@ print(*lines(ladder), sep="\n")
 # of time in which a contact is slower than the width of its friction; exact, it sticks.
 #
 # Complex modes name both modes in 0.04 s, but neither level nor contact loss; exact events in 20 modes
-# tell those within 6 % in 0.2 s; smoothed friction takes a hundred times as long and is still 6 % too
-# quiet at a tenth of the belt's speed, for contacts creep where they should stick. Twelve modes, enough
-# for frequencies within 1 %, are not enough for the verdict: there the push along the lower mode ends at
-# the upper one, and so it does with friction and contact smoothed over 0.3.
+# tell those within 6 % in 0.2 s. In 32 modes they take 0.3 s and smoothed friction a hundred times as
+# long, and at a tenth of the belt's speed it is still 6 % too quiet: one contact is slower than that, with
+# too little friction, for 8 % of the time; exact, it sticks for 2 %. Twelve modes, enough for the
+# frequencies of complex modes within 1 %, are not enough for the verdict: by the end of such a run the
+# push along the lower mode rings at the upper one, and so it does with friction and contact smoothed over
+# 0.3. Neither motion had settled then.
 
 # %%
 picture(ladder)

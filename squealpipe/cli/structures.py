@@ -202,8 +202,8 @@ def ladder(
     Args:
         file: structure, a YAML file that names its matrices and contacts (see the gallery).
         pushes: unstable modes along which is pushed, the fastest first.
-        t_end: time of each run, s; by default until the slowest of these has grown, and 200 of
-            its periods.
+        t_end: time of each run, s; by default until the last of these has grown, and 200 periods of
+            the unstable mode of lowest frequency.
         frequency_max: unstable modes up to there count, Hz; needed beyond 1000 degrees of freedom.
         repeats: of what is quick, for the median of its CPU time.
     """

@@ -74,8 +74,9 @@ def squeal_ladder(
         widths: pairs of the sliding speed over which friction is smoothed, over the belt's, and of
             the force over which loss of contact is, over the preload; 0 keeps the corner.
         pushes: unstable modes, the fastest first.
-        t_end: time that is run, s; by default the time in which the slowest of them grows from
-            1e-4, and 200 of its periods. The last two parts of a third of it at most are compared.
+        t_end: time that is run, s; by default the time in which the last of them to grow does so
+            from 1e-4, and 200 periods of the unstable mode of lowest frequency. Two windows at its
+            end, of a third of it at most, are compared.
         frequency_max: unstable modes up to there count, Hz; needed beyond 1000 degrees of freedom.
         tol: of the Taylor integrator.
         smoothed_tol: of LSODA.
