@@ -35,7 +35,7 @@ def headline(answer: xr.Dataset) -> str:
             )
         if _lasts(answer):
             return (
-                "Quiet unless struck: every start that settled came back to steady sliding, but "
+                "Quiet from rest: every start that settled came back to steady sliding, but "
                 "squeal that has begun at more friction lasts at this one."
             )
         return "Quiet: steady sliding is stable, and every start that settled came back to it."

@@ -139,7 +139,7 @@ def test_words_and_picture_show_the_fold(answer, tmp_path):
     below = squealing_modes(soft(0.36), samples=4, onset=True, workers=1)
     assert Verdict(int(below.verdict)) is Verdict.quiet
     first, *_, last = lines(below)
-    assert first.startswith("Quiet unless struck: ")
+    assert first.startswith("Quiet from rest: ")
     assert last == "At mu = 0.36, too, squeal that has begun lasts."
 
 
