@@ -371,7 +371,7 @@ class ContactPointsSection(Section):
     stiff_points: Annotated[int, Field(ge=1, le=16), WHOLE] = 4
     mu: NotNegative = 0.5
     modal_damping: Annotated[float, Field(ge=0, lt=1)] = 0.01
-    n_modes: Annotated[int, Field(ge=2, le=32), WHOLE] = 12
+    n_modes: Annotated[int, Field(ge=2, le=32), WHOLE] = 20
     samples: Annotated[int, Field(ge=1, le=10_000), WHOLE] = 4
     t_end: Annotated[Positive, In("s")] = 0.06
 

@@ -156,7 +156,7 @@ def _contact_points(run: Evidence) -> dict[str, Any]:
             f"points{count}_kilohertz": pad.dominant_frequency / 1e3,
             f"points{count}_share": 100 * pad.share,
             f"points{count}_common": pad.common_frequency / 1e3,
-            f"points{count}_lag": pad.lag[int(count) - 1],
+            f"points{count}_lag": pad.lag[int(pad.contacts) - 1],
             f"points{count}_least": 100 * pad.separated_fraction.min(),
             f"points{count}_most": 100 * pad.separated_fraction.max(),
         }

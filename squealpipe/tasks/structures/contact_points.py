@@ -47,7 +47,7 @@ class Run:
 
     mu: float = 0.5
     modal_damping: float = 0.01
-    n_modes: int = 12
+    n_modes: int = 20
     samples: int = 4
     t_end: float = 0.06
     tol: float = 1e-10
