@@ -235,6 +235,21 @@ def text(long_name: str, *dims: str, volatile: bool = False) -> Variable:
     return Variable(long_name, dims=dims, dtype="U", volatile=volatile)
 
 
+def flag(long_name: str, flags: Any, *dims: str, **further: Any) -> Variable:
+    """A variable of flags over some dimensions: value → meaning, or an IntEnum."""
+    return Variable(long_name, dims=dims, flags=flags, **further)
+
+
+def whether(long_name: str, *dims: str, **further: Any) -> Variable:
+    """A variable of truth values over some dimensions."""
+    return Variable(long_name, dims=dims, dtype="bool", **further)
+
+
+def count(long_name: str, *dims: str, dtype: str = "i4", **further: Any) -> Variable:
+    """A variable of whole numbers over some dimensions."""
+    return Variable(long_name, dims=dims, dtype=dtype, **further)
+
+
 def build(
     schema: DatasetSchema,
     data: Mapping[str, Any],

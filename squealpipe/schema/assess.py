@@ -2,8 +2,18 @@
 
 from enum import IntEnum
 
-from squealpipe.codes import Regime
-from squealpipe.schema import DatasetSchema, Outcome, Variable, or_nan, outcome, text
+from squealpipe.schema import (
+    DatasetSchema,
+    Outcome,
+    Variable,
+    count,
+    flag,
+    or_nan,
+    outcome,
+    text,
+    whether,
+)
+from squealpipe.schema.dynamics.runs import REGIMES
 from squealpipe.schema.linear import ANGLES, MAP, MODES, ONE_PAIR
 
 SAMPLES = 800
@@ -55,10 +65,8 @@ def _of_motion(prefix: str, start: str) -> dict[str, Variable]:
         return or_nan(f"{long_name}, from {start}", units, rtol=rtol, atol=1e-6)
 
     scalars = {
-        "verdict": Variable(f"what becomes of {start}", flags=Verdict),
-        "periodic": Variable(
-            f"whether the settled motion repeats, from {start}", dtype="bool"
-        ),
+        "verdict": flag(f"what becomes of {start}", Verdict),
+        "periodic": whether(f"whether the settled motion repeats, from {start}"),
         "frequency": real("strongest line of the velocity", "Hz", 1e-2),
         "velocity_rms_along": real("rms velocity along the belt", "m s-1"),
         "velocity_rms_across": real("rms velocity across the belt", "m s-1"),
@@ -83,19 +91,13 @@ def _path(long_name: str, units: str) -> Variable:
 ASSESS = DatasetSchema(
     name="assess",
     title="Whether a brake squeals or hammers, why, how loud, and what stops it",
-    coordinates={
-        "cure": text("what is changed, by ascending change", "cure"),
-        **MODES,
-    },
+    coordinates={"cure": text("what is changed, by ascending change", "cure"), **MODES},
     variables={
         **_of_motion("", STARTS[""]),
         **_of_motion("sudden_", STARTS["sudden_"]),
-        "mechanism": Variable(
-            "why steady sliding is unstable", flags=Mechanism
-        ),
-        "quiet_unless_struck": Variable(
-            "quiet from steady sliding, but another motion exists beside it",
-            dtype="bool",
+        "mechanism": flag("why steady sliding is unstable", Mechanism),
+        "quiet_unless_struck": whether(
+            "quiet from steady sliding, but another motion exists beside it"
         ),
         "growth_rate": or_nan("growth rate of small motions by model A3", "s-1"),
         "mode_frequency": or_nan("frequencies of model A3", "Hz", ("mode",)),
@@ -114,10 +116,16 @@ ASSESS = DatasetSchema(
         ),
         "line_frequency": or_nan("frequency of the spectrum", "Hz", ("line",)),
         "velocity_spectrum_along": or_nan(
-            "amplitude of the velocity along the belt", "m s-1", ("line",), volatile=True
+            "amplitude of the velocity along the belt",
+            "m s-1",
+            ("line",),
+            volatile=True,
         ),
         "velocity_spectrum_across": or_nan(
-            "amplitude of the velocity across the belt", "m s-1", ("line",), volatile=True
+            "amplitude of the velocity across the belt",
+            "m s-1",
+            ("line",),
+            volatile=True,
         ),
         "force_spectrum": or_nan(
             "amplitude of the contact force over preload", "1", ("line",), volatile=True
@@ -126,11 +134,8 @@ ASSESS = DatasetSchema(
         "path_x": _path("displacement along the belt", "m"),
         "path_y": _path("displacement across the belt", "m"),
         "path_force": _path("contact force over preload", "1"),
-        "path_regime": Variable(
-            "regime of the settled motion",
-            dims=("sample",),
-            flags={**{int(r): r.name for r in Regime}, -1: "not_reached"},
-            volatile=True,
+        "path_regime": flag(
+            "regime of the settled motion", REGIMES, "sample", volatile=True
         ),
         "value": or_nan("present value", dims=("cure",)),
         "unit": text("unit of the values", "cure"),
@@ -150,13 +155,19 @@ ASSESS = DatasetSchema(
             rtol=2e-2,
         ),
         "change_any_start": or_nan(
-            "change from the present value to quiet_from_any_start", dims=("cure",), rtol=5e-2
+            "change from the present value to quiet_from_any_start",
+            dims=("cure",),
+            rtol=5e-2,
         ),
         "quiet_alpha1": or_nan(
-            "alpha1 of the nearest quiet pair of angles that was found", "rad", rtol=1e-2
+            "alpha1 of the nearest quiet pair of angles that was found",
+            "rad",
+            rtol=1e-2,
         ),
         "quiet_alpha2": or_nan("alpha2 of that pair", "rad", rtol=1e-2),
-        "lowest_tried": or_nan("lower end of the range that was searched", dims=("cure",)),
+        "lowest_tried": or_nan(
+            "lower end of the range that was searched", dims=("cure",)
+        ),
         "highest_tried": or_nan("upper end of that range", dims=("cure",)),
         **ONE_PAIR,
         "preload": Variable("precompression l_pre of the contact spring", "m"),
@@ -164,19 +175,15 @@ ASSESS = DatasetSchema(
             among=(Outcome.converged, Outcome.unresolved, Outcome.no_sliding_state)
         ),
     },
-)  # fmt: skip
+)
 
 VERDICT_MAP = DatasetSchema(
     name="verdict_map",
     title="Whether a brake squeals or hammers, over both spring angles",
     coordinates=ANGLES,
     variables={
-        "verdict": Variable(
-            "what becomes of steady sliding, pushed", dims=MAP, flags=Verdict
-        ),
-        "mechanism": Variable(
-            "why steady sliding is unstable", dims=MAP, flags=Mechanism
-        ),
+        "verdict": flag("what becomes of steady sliding, pushed", Verdict, *MAP),
+        "mechanism": flag("why steady sliding is unstable", Mechanism, *MAP),
         "sliding_growth_rate": or_nan(
             "growth rate of small motions of A1 about its steady sliding", "s-1", MAP
         ),
@@ -194,10 +201,12 @@ VERDICT_SHARES = DatasetSchema(
     variables={
         "share": Variable("share of the sample", dims=("kind",), rtol=2e-2, atol=1e-2),
         **{
-            f"share_{end}": Variable(f"{end} end of its 95 % interval", dims=("kind",), rtol=5e-2)
+            f"share_{end}": Variable(
+                f"{end} end of its 95 % interval", dims=("kind",), rtol=5e-2
+            )
             for end in ("low", "high")
         },
-        "samples": Variable("brakes in the sample", dtype="i8"),
+        "samples": count("brakes in the sample", dtype="i8"),
         **ONE_PAIR,
     },
-)  # fmt: skip
+)

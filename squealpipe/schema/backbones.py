@@ -9,6 +9,8 @@ from squealpipe.schema import (
     DatasetSchema,
     Outcome,
     Variable,
+    count,
+    flag,
     or_nan,
     outcome,
     text,
@@ -37,8 +39,8 @@ def _orbit_variables(*dims: str) -> dict[str, Variable]:
         "largest_speed": real(
             "m s-1", "largest speed of the mass along the belt, |x'|"
         ),
-        "sliding_assumption": Variable(
-            "whether x' stays below belt speed", dims=dims, flags=Assumption
+        "sliding_assumption": flag(
+            "whether x' stays below belt speed", Assumption, *dims
         ),
         "stability_index": real(
             "1", "trace of the monodromy matrix minus 2", atol=1e-7
@@ -51,13 +53,11 @@ PERIODIC_ORBIT = DatasetSchema(
     name="periodic_orbit",
     title="An exact symmetric periodic motion of model A4",
     lists={"switch": Listing()},
-    coordinates={
-        "switch": Variable("switch of contact, in order", dims=("switch",), dtype="i4")
-    },
+    coordinates={"switch": count("switch of contact, in order", "switch")},
     variables={
         **_orbit_variables(),
         "y_peak": Variable("y at the symmetric instant", "m"),
-        "mode": Variable("mode, by ascending frequency in contact", dtype="i4"),
+        "mode": count("mode, by ascending frequency in contact"),
         "switching_times": Variable(
             "times in the half period after the peak at which contact begins or ends",
             "s",
@@ -87,22 +87,16 @@ BACKBONE = DatasetSchema(
         "special": Listing(kinds=("special_kind",), position="special_y_peak"),
     },
     coordinates={
-        "point": Variable("point along the branch", dims=("point",), dtype="i4"),
-        "special": Variable(
-            "located special point (exact branches)", dims=("special",), dtype="i4"
-        ),
-        "harmonic": Variable(
-            "harmonic of the motion", dims=("harmonic",), dtype="i4", optional=True
-        ),
+        "point": count("point along the branch", "point"),
+        "special": count("located special point (exact branches)", "special"),
+        "harmonic": count("harmonic of the motion", "harmonic", optional=True),
     },
     variables={
         **_orbit_variables("point"),
         "y_peak": Variable(
             "y at the symmetric instant with the larger y", "m", ("point",)
         ),
-        "switches": Variable(
-            "switches of contact in half a period", dims=("point",), dtype="i4"
-        ),
+        "switches": count("switches of contact in half a period", "point"),
         "residual": or_nan(
             "residual of the method's equations, scaled", "1", ("point",), atol=1e-9
         ),
@@ -133,16 +127,14 @@ BACKBONE = DatasetSchema(
             optional=True,
             rtol=1e-4,
         ),
-        "special_kind": Variable(
-            "kind of special point", dims=("special",), flags=SpecialPoint
-        ),
+        "special_kind": flag("kind of special point", SpecialPoint, "special"),
         "special_y_peak": Variable(
             "y_peak at which it lies", "m", ("special",), rtol=1e-8
         ),
         "special_omega": Variable(
             "angular frequency there", "rad s-1", ("special",), rtol=1e-8
         ),
-        "end": Variable("why the branch ends", flags=outcome(among=ORBIT_ENDS).flags),
+        "end": flag("why the branch ends", outcome(among=ORBIT_ENDS).flags),
     },
 )
 
@@ -156,9 +148,9 @@ DOUBLED_BRANCH = DatasetSchema(
             for name, entry in BACKBONE.variables.items()
             if not entry.optional
         },
-        "end": Variable(
+        "end": flag(
             "why the branch ends",
-            flags=outcome(among=(*ORBIT_ENDS, Outcome.no_doubling)).flags,
+            outcome(among=(*ORBIT_ENDS, Outcome.no_doubling)).flags,
         ),
         "y_largest": Variable("largest y over a period", "m", ("point",)),
         "first_integral": Variable(
@@ -190,22 +182,20 @@ HARMONIC_FORMS = DatasetSchema(
     coordinates={
         **SCENE,
         "form": Variable("Eq. (34)", dims=("form",), dtype="i4", flags=Form),
-        "samples": Variable("samples N a period", dims=("samples",), dtype="i4"),
+        "samples": count("samples N a period", "samples"),
     },
     variables={
         "omega": _error("scene", "form", long_name="angular frequency that was found"),
         "omega_exact": Variable(
             "angular frequency of the exact orbit", "rad s-1", ("scene",)
         ),
-        "rank_deficit": Variable(
-            "columns minus rank of the Jacobian", dims=("scene", "form"), dtype="i4"
-        ),
+        "rank_deficit": count("columns minus rank of the Jacobian", "scene", "form"),
         "outcome": outcome(
             "scene", "form", among=(Outcome.converged, Outcome.no_convergence)
         ),
-        "n_harmonics": Variable("harmonics N_h", dtype="i4"),
-        "fourier_columns": Variable("columns of Gamma, 2 N_h + 1", dtype="i4"),
-        "fourier_rank": Variable("rank of Gamma", dims=("samples",), dtype="i4"),
+        "n_harmonics": count("harmonics N_h"),
+        "fourier_columns": count("columns of Gamma, 2 N_h + 1"),
+        "fourier_rank": count("rank of Gamma", "samples"),
         "phase_spread_y": _error(
             "samples",
             units="m",

@@ -9,8 +9,11 @@ from squealpipe.schema import (
     DatasetSchema,
     Outcome,
     Variable,
+    count,
+    flag,
     or_nan,
     outcome,
+    whether,
 )
 from squealpipe.schema.dynamics.runs import IN_MAP, STATE, MotionFlag
 from squealpipe.schema.linear import ONE_PAIR
@@ -32,19 +35,17 @@ def basin_schema(swept: tuple[str, ...]) -> DatasetSchema:
         title="Kind of motion of model A1 over its starts",
         coordinates={name: replace(STARTS[name], dims=(name,)) for name in swept},
         variables={
-            "motion": Variable(
+            "motion": flag(
                 "kind of motion in the second half of the run; unsettled: its quarters disagree",
-                dims=swept,
-                flags=MotionFlag,
+                MotionFlag,
+                *swept,
                 **IN_MAP,
             ),
             "late_max_x": real("m", "largest |x| from t_late on"),
             "late_max_vx": real(
                 "m s-1", "largest velocity along the belt, |x'|, from t_late on"
             ),
-            "separates": Variable(
-                "whether contact is lost before t_end", dims=swept, dtype="bool"
-            ),
+            "separates": whether("whether contact is lost before t_end", *swept),
             "first_separation_time": real(
                 "s", "first loss of contact (NaN: none before t_end)"
             ),
@@ -88,19 +89,15 @@ SMALLEST_DISTURBANCE = DatasetSchema(
     name="smallest_disturbance",
     title="Smallest disturbance of steady sliding that leads to contact loss, or to the whirl",
     coordinates={
-        "directions": Variable(
-            "number of random directions", dims=("directions",), dtype="i4"
-        ),
-        "improved": Variable(
-            "rank of the direction that was improved", dims=("improved",), dtype="i4"
-        ),
+        "directions": count("number of random directions", "directions"),
+        "improved": count("rank of the direction that was improved", "improved"),
     },
     variables={
-        "leads_to": Variable("what it leads to", flags=LeadsTo),
+        "leads_to": flag("what it leads to", LeadsTo),
         "x_rest": or_nan("x of steady sliding", "m"),
         "y_rest": or_nan("y of steady sliding", "m"),
         "growth_rate": or_nan("largest real part of small motions about it", "s-1"),
-        "regime_linear": Variable("stability regime of model A3", flags=LinearRegime),
+        "regime_linear": flag("stability regime of model A3", LinearRegime),
         "rest_distance": or_nan("norm of the start at rest at r = 0"),
         "linear_distance": or_nan(
             "smallest norm with which the linear motion loses contact"
@@ -124,12 +121,10 @@ SMALLEST_DISTURBANCE = DatasetSchema(
         "share_below": or_nan(
             "most of all directions that can have a smaller norm than those tried, 95 %"
         ),
-        "reached": Variable(
-            "number of directions along which it happens within the bound", dtype="i4"
+        "reached": count(
+            "number of directions along which it happens within the bound"
         ),
-        "unfinished": Variable(
-            "number of runs that did not reach their end", dtype="i4"
-        ),
+        "unfinished": count("number of runs that did not reach their end"),
         "outcome": outcome(
             among=(
                 Outcome.converged,

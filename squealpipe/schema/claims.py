@@ -2,7 +2,7 @@
 
 from enum import IntEnum
 
-from squealpipe.schema import DatasetSchema, Variable, or_nan, text
+from squealpipe.schema import DatasetSchema, Variable, count, flag, or_nan, text
 
 
 class ClaimVerdict(IntEnum):
@@ -41,7 +41,7 @@ def _number(meaning: str) -> Variable:
 
 
 def _flag(meaning: str, flags: type[IntEnum]) -> Variable:
-    return Variable(meaning, dims=("claim",), flags=flags)
+    return flag(meaning, flags, "claim")
 
 
 CLAIMS = DatasetSchema(
@@ -79,10 +79,9 @@ CLAIMS = DatasetSchema(
             "share of the inferred feasible parameters in which the statement holds; NaN where it "
             "was fitted and where the inference does not judge it"
         ),
-        "feasible_count": Variable(
+        "feasible_count": count(
             "feasible parameter sets behind feasible_share; 0 where there is none",
-            dims=("claim",),
-            dtype="i4",
+            "claim",
         ),
         "basis": _flag(
             "whether the statement was fitted by the inference or is predicted", Basis

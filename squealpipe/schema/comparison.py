@@ -2,7 +2,15 @@
 
 from enum import IntEnum
 
-from squealpipe.schema import DatasetSchema, Outcome, Variable, outcome, text
+from squealpipe.schema import (
+    DatasetSchema,
+    Outcome,
+    Variable,
+    count,
+    flag,
+    outcome,
+    text,
+)
 from squealpipe.schema.agreement import ComparedAs, Listing, RoundOff
 
 RUN = ("run",)
@@ -20,11 +28,11 @@ WORK_PRECISION = DatasetSchema(
     name="work_precision",
     title="Error of a method against its cost, one run a row",
     lists={"run": Listing(kinds=("method", "setting"))},
-    coordinates={"run": Variable("one method at one setting", dims=RUN, dtype="i4")},
+    coordinates={"run": count("one method at one setting", *RUN)},
     variables={
         "method": text("method", *RUN),
         "setting": text("its setting", *RUN),
-        "role": Variable("public method, ours, or our default", dims=RUN, flags=Role),
+        "role": flag("public method, ours, or our default", Role, *RUN),
         "error": Variable(
             "relative error of ω against the exact orbit, median over peaks",
             dims=RUN,
@@ -64,9 +72,7 @@ FAILURE_ATLAS = DatasetSchema(
         "solver": text("method (the name xarray keeps for itself)", "solver"),
     },
     variables={
-        "verdict": Variable(
-            "verdict on the answer", dims=SCENE_SOLVER, flags=Reliability
-        ),
+        "verdict": flag("verdict on the answer", Reliability, *SCENE_SOLVER),
         "error": Variable(
             "largest error of the answer; infinite where there is none",
             dims=SCENE_SOLVER,
@@ -80,7 +86,7 @@ FAILURE_ATLAS = DatasetSchema(
         ),
         "message": text("what the method said", *SCENE_SOLVER),
         "tolerance": Variable("largest error that counts as right", dims=("scene",)),
-        "role": Variable("whose method it is", dims=("solver",), flags=Role),
+        "role": flag("whose method it is", Role, "solver"),
     },
 )
 
@@ -107,25 +113,18 @@ BENCHMARK = DatasetSchema(
     },
     variables={
         "group": text("class of the problem", "problem"),
-        "role": Variable("whose solver it is", dims=("solver",), flags=Role),
-        "verdict": Variable(
+        "role": flag("whose solver it is", Role, "solver"),
+        "verdict": flag(
             "right; flagged: wrong or without an answer, and said so; silently wrong: another list "
             "of events, or an error over growth above 100 tolerances",
-            dims=_CELL,
-            flags=Reliability,
+            Reliability,
+            *_CELL,
             round_off=_NEAR,
         ),
-        "missed": Variable(
-            f"events missed{_COUNT}", dims=_CELL, dtype="i4", round_off=_NEAR
-        ),
-        "spurious": Variable(
-            f"events too many{_COUNT}", dims=_CELL, dtype="i4", round_off=_NEAR
-        ),
-        "out_of_order": Variable(
-            f"events found before one that they follow{_COUNT}",
-            dims=_CELL,
-            dtype="i4",
-            round_off=_NEAR,
+        "missed": count(f"events missed{_COUNT}", *_CELL, round_off=_NEAR),
+        "spurious": count(f"events too many{_COUNT}", *_CELL, round_off=_NEAR),
+        "out_of_order": count(
+            f"events found before one that they follow{_COUNT}", *_CELL, round_off=_NEAR
         ),
         "time_error": Variable(
             "largest error of an event's time",
@@ -139,10 +138,10 @@ BENCHMARK = DatasetSchema(
             nan_allowed=True,
             round_off=_STEPS,
         ),
-        "evaluations": Variable(
+        "evaluations": count(
             "calls of the field, counted by the harness; a solver that makes its own functions "
             "tells them, a Taylor step of order p as p + 1",
-            dims=_CELL,
+            *_CELL,
             dtype="i8",
             rtol=0.5,
             round_off=_NEAR,

@@ -1,6 +1,15 @@
 """An elastic pad on one, two and more contact points of equal total stiffness and preload."""
 
-from squealpipe.schema import DatasetSchema, Outcome, Variable, or_nan, outcome, text
+from squealpipe.schema import (
+    DatasetSchema,
+    Outcome,
+    Variable,
+    count,
+    flag,
+    or_nan,
+    outcome,
+    text,
+)
 from squealpipe.schema.assess import Verdict
 
 MOST_FRICTION = 1.0
@@ -19,15 +28,13 @@ CONTACT_POINTS = DatasetSchema(
     title="An elastic pad on one, two and more contact points, and a stiff one",
     coordinates={
         "design": text("the pad's contact points, and whether it is stiff", "design"),
-        "point": Variable(
-            "contact point, from the leading edge", dims=("point",), dtype="i4"
-        ),
+        "point": count("contact point, from the leading edge", "point"),
         "instant": Variable("time in periods of the strongest line", dims=("instant",)),
     },
     variables={
-        "contacts": Variable("contact points", dims=_PAD, dtype="i4"),
+        "contacts": count("contact points", *_PAD),
         "young": Variable("modulus of elasticity", "Pa", _PAD),
-        "n_modes": Variable("modes in which it was run", dims=_PAD, dtype="i4"),
+        "n_modes": count("modes in which it was run", *_PAD),
         "frequency_error": Variable(
             "largest relative error of an unstable frequency, from the reduction",
             dims=_PAD,
@@ -45,13 +52,13 @@ CONTACT_POINTS = DatasetSchema(
             _PAD,
             rtol=1e-6,
         ),
-        "unstable": Variable("unstable modes", dims=_PAD, dtype="i4"),
+        "unstable": count("unstable modes", *_PAD),
         "frequency": or_nan("frequency of the fastest of them", "Hz", _PAD, rtol=1e-6),
         "growth_rate": or_nan("its growth rate", "s-1", _PAD, rtol=1e-5),
-        "verdict": Variable(
+        "verdict": flag(
             "what steady sliding ends in after a push of 1 % along its least stable mode",
-            dims=_PAD,
-            flags=Verdict,
+            Verdict,
+            *_PAD,
         ),
         "dominant_frequency": or_nan(
             "strongest line of that motion", "Hz", _PAD, rtol=0.01

@@ -4,7 +4,15 @@ from enum import IntEnum
 
 from squealpipe.codes import LinearRegime
 from squealpipe.parameters import TABLE
-from squealpipe.schema import DatasetSchema, Variable, outcome, text
+from squealpipe.schema import (
+    DatasetSchema,
+    Variable,
+    count,
+    flag,
+    outcome,
+    text,
+    whether,
+)
 from squealpipe.schema.agreement import Listing
 from squealpipe.schema.outcomes import Outcome
 
@@ -52,25 +60,22 @@ CONTACT_BOUNDARY = DatasetSchema(
     name="contact_boundary",
     title="Where model A1, from rest, just keeps contact: arcs and corners over two parameters",
     coordinates={
-        "point": Variable("point", dims=("point",), dtype="i4"),
+        "point": count("point", "point"),
         **PARAMETER,
         "row": Variable("given values of the first parameter", dims=("row",)),
         "column": Variable("given values of the second parameter", dims=("column",)),
     },
     variables={
         **VARIED,
-        "kept": Variable(
-            "whether contact is kept, by the side of the curves",
-            dims=("row", "column"),
-            dtype="bool",
+        "kept": whether(
+            "whether contact is kept, by the side of the curves", "row", "column"
         ),
-        "curve": Variable(
+        "curve": count(
             "connected curve, contact kept on its left (of one that is closed, the first point "
             "comes again)",
-            dims=("point",),
-            dtype="i4",
+            "point",
         ),
-        "arc": Variable("arc: one maximum of y touches", dims=("point",), dtype="i4"),
+        "arc": count("arc: one maximum of y touches", "point"),
         "touch_time": Variable(
             "time at which contact is just lost", "s", ("point",), rtol=1e-6
         ),
@@ -80,13 +85,9 @@ CONTACT_BOUNDARY = DatasetSchema(
             rtol=1.0,
             atol=1e-8,
         ),
-        "corner": Variable(
-            "whether two maxima touch at once", dims=("point",), dtype="bool"
-        ),
-        "kind": Variable("what the point is", dims=("point",), flags=PointKind),
-        "region_kept": Variable(
-            "whether contact is kept there", dims=("region",), dtype="bool"
-        ),
+        "corner": whether("whether two maxima touch at once", "point"),
+        "kind": flag("what the point is", PointKind, "point"),
+        "region_kept": whether("whether contact is kept there", "region"),
         "region_area": Variable(
             "area, in the units of both parameters", "1", _REGION, rtol=1e-5
         ),
@@ -100,12 +101,10 @@ CONTACT_BOUNDARY = DatasetSchema(
             "values of both parameters",
             dims=("vertex", "parameter"),
         ),
-        "outline_loop": Variable(
-            "line that a vertex belongs to", dims=("vertex",), dtype="i4"
-        ),
+        "outline_loop": count("line that a vertex belongs to", "vertex"),
         "range": Variable("lowest and highest value", dims=("parameter", "end")),
         "t_end": Variable("end of each run", "s"),
-        "runs": Variable("runs", dtype="i8", volatile=True),
+        "runs": count("runs", dtype="i8", volatile=True),
         "smallest_island": Variable(
             "area of a disc that the map cannot miss: a region that no other curve leads to is "
             "found for sure from this size on"
@@ -120,7 +119,7 @@ BOUNDARY_DISTANCE = DatasetSchema(
     coordinates=PARAMETER,
     variables={
         "design": Variable("value of the design", dims=("parameter",)),
-        "kept": Variable("whether contact is kept there", dtype="bool"),
+        "kept": whether("whether contact is kept there"),
         "distance": Variable(
             "distance of the nearest point, in the units of both parameters"
         ),
@@ -140,37 +139,26 @@ REGIME_CHART = DatasetSchema(
         )
     },
     coordinates={
-        "point": Variable("point", dims=("point",), dtype="i4"),
+        "point": count("point", "point"),
         **PARAMETER,
         "boundary": text("what changes", "boundary"),
     },
     variables={
         **VARIED,
-        "line": Variable(
-            "what changes across the line", dims=("point",), flags=ChartLine
-        ),
-        "curve": Variable("connected line", dims=("point",), dtype="i4"),
+        "line": flag("what changes across the line", ChartLine, "point"),
+        "curve": count("connected line", "point"),
         "residual": Variable(
             "of the function that is zero on the line",
             dims=("point",),
             rtol=1.0,
             atol=1e-8,
         ),
-        "cell_regime": Variable(
-            "what A3 does in cells of equal size",
-            dims=("row", "column"),
-            dtype="i1",
-            flags=LinearRegime,
+        "cell_regime": flag(
+            "what A3 does in cells of equal size", LinearRegime, "row", "column"
         ),
-        "cell_kept": Variable(
-            "whether contact is kept", dims=("row", "column"), dtype="bool"
-        ),
-        "region_regime": Variable(
-            "what A3 does there", dims=_REGION, flags=LinearRegime
-        ),
-        "region_kept": Variable(
-            "whether contact is kept there", dims=_REGION, dtype="bool"
-        ),
+        "cell_kept": whether("whether contact is kept", "row", "column"),
+        "region_regime": flag("what A3 does there", LinearRegime, *_REGION),
+        "region_kept": whether("whether contact is kept there", *_REGION),
         "region_place": Variable("a place well inside", dims=("region", "parameter")),
         "region_share": Variable("share of the chart", dims=_REGION),
         "design": Variable(
@@ -184,7 +172,7 @@ REGIME_CHART = DatasetSchema(
         ),
         "range": Variable("lowest and highest value", dims=("parameter", "end")),
         "t_end": Variable("end of each run", "s"),
-        "runs": Variable("runs", dtype="i8", volatile=True),
+        "runs": count("runs", dtype="i8", volatile=True),
         "outcome": outcome("boundary", among=(Outcome.converged, Outcome.unresolved)),
     },
 )

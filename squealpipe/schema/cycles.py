@@ -4,7 +4,16 @@ from enum import IntEnum
 
 from squealpipe.codes import Event
 from squealpipe.parameters import Parameters
-from squealpipe.schema import DatasetSchema, Outcome, Variable, or_nan, outcome, text
+from squealpipe.schema import (
+    DatasetSchema,
+    Outcome,
+    Variable,
+    count,
+    flag,
+    or_nan,
+    outcome,
+    text,
+)
 from squealpipe.schema.agreement import ComparedAs, Listing, RoundOff
 from squealpipe.schema.branch_labels import Label, Meeting
 from squealpipe.schema.dynamics.runs import REGIMES, STATE
@@ -43,10 +52,10 @@ def _cycle_variables(*dims: str) -> dict[str, Variable]:
         "least_contact_force": real(
             "N", "smallest contact force; 0 where contact is lost"
         ),
-        "stable": Variable(
+        "stable": flag(
             "whether small disturbances decay; no for a member of a family",
-            dims=dims,
-            flags=Stability,
+            Stability,
+            *dims,
         ),
         "multiplier_real": multiplier("real"),
         "multiplier_imag": multiplier("imaginary"),
@@ -60,9 +69,7 @@ _PHASE = RoundOff(
     "where on a cycle its description starts follows from the way on which it was found",
 )
 
-MULTIPLIER = Variable(
-    dims=("multiplier",), dtype="i4", long_name="number of the multiplier"
-)
+MULTIPLIER = count("number of the multiplier", "multiplier")
 
 LIMIT_CYCLE = DatasetSchema(
     name="limit_cycle",
@@ -73,7 +80,7 @@ LIMIT_CYCLE = DatasetSchema(
         "event_time": Variable(
             dims=("event",), units="s", long_name="instant of an event"
         ),
-        "event_kind": Variable("kind of the event", dims=("event",), flags=Event),
+        "event_kind": flag("kind of the event", Event, "event"),
         **{
             f"event_{name}": Variable(f"{words} at the event", units, ("event",))
             for name, (units, words) in STATE.items()
@@ -87,9 +94,7 @@ LIMIT_CYCLE = DatasetSchema(
             f"{name}_path": Variable(f"{words} along the cycle", units, ("sample",))
             for name, (units, words) in STATE.items()
         },
-        "regime_path": Variable(
-            "regime along the cycle", dims=("sample",), flags=REGIMES
-        ),
+        "regime_path": flag("regime along the cycle", REGIMES, "sample"),
         **ONE_PAIR,
     },
 )
@@ -116,19 +121,14 @@ CYCLE_BRANCH = DatasetSchema(
     },
     coordinates={
         "multiplier": MULTIPLIER,
-        "point": Variable(
-            dims=("point",), dtype="i4", long_name="point along the branch"
-        ),
+        "point": count("point along the branch", "point"),
     },
     variables={
         **_cycle_variables("point"),
-        "label": Variable(
-            "what is special about the point", dims=("point",), flags=Label
-        ),
-        "events": Variable(
+        "label": flag("what is special about the point", Label, "point"),
+        "events": count(
             "events per period",
-            dims=("point",),
-            dtype="i4",
+            "point",
             round_off=RoundOff(
                 ComparedAs.most,
                 "where a contact is just touched, round-off decides",
@@ -150,9 +150,7 @@ CYCLE_CURVE = DatasetSchema(
     name="cycle_curve",
     title="A curve of special periodic motions of model A1 in two parameters",
     coordinates={
-        "point": Variable(
-            dims=("point",), dtype="i4", long_name="point along the curve"
-        ),
+        "point": count("point along the curve", "point"),
         "parameter": text("parameter that varies", "parameter"),
     },
     variables={
@@ -164,10 +162,8 @@ CYCLE_CURVE = DatasetSchema(
             rtol=1.0,
             atol=1e-8,
         ),
-        "label": Variable(
-            "what else happens at the point", dims=("point",), flags=Meeting
-        ),
-        "events": Variable("events per period", dims=("point",), dtype="i4"),
+        "label": flag("what else happens at the point", Meeting, "point"),
+        "events": count("events per period", "point"),
         "outcome": outcome(
             "side",
             among=(
@@ -190,7 +186,7 @@ SETTLED_EXTREMES = DatasetSchema(
     coordinates={
         "scene": text("scene", "scene"),
         "mu": Variable(dims=("mu",), long_name="friction coefficient"),
-        "start": Variable(dims=("start",), dtype="i4", long_name="number of the start"),
+        "start": count("number of the start", "start"),
     },
     variables={
         "late_max_x": or_nan(

@@ -7,7 +7,17 @@ from enum import IntEnum
 import xarray as xr
 
 from squealpipe.reading import READINGS
-from squealpipe.schema import DatasetSchema, Outcome, Variable, or_nan, outcome, text
+from squealpipe.schema import (
+    DatasetSchema,
+    Outcome,
+    Variable,
+    count,
+    flag,
+    or_nan,
+    outcome,
+    text,
+    whether,
+)
 
 CONFIDENCE = 0.95
 """Confidence of every interval that is given for a share."""
@@ -99,7 +109,7 @@ PARAMETER_INFERENCE = DatasetSchema(
     name="parameter_inference",
     title="Which parameters agree with the paper's statements, in which reading of its friction",
     coordinates={
-        "sample": Variable("number of the sample", dims=SAMPLE, dtype="i4"),
+        "sample": count("number of the sample", *SAMPLE),
         "reading": text("reading of the sign of friction", *READING),
         "statement": text("id of the statement", *STATEMENT),
         "consequence": text(
@@ -111,18 +121,17 @@ PARAMETER_INFERENCE = DatasetSchema(
         "mu": Variable("friction coefficient", dims=SAMPLE),
         "length_ratio": Variable("free length of the springs over l_pre", dims=SAMPLE),
         "speed_ratio": Variable("belt speed over l_pre √(k/m)", dims=SAMPLE),
-        "holds": Variable(
+        "holds": flag(
             "whether the statement holds; not judged where other statements had failed",
-            dims=(*JUDGED, *STATEMENT),
-            flags=Holds,
+            Holds,
+            *JUDGED,
+            *STATEMENT,
         ),
-        "feasible": Variable("all statements hold", dims=JUDGED, dtype="bool"),
+        "feasible": whether("all statements hold", *JUDGED),
         "outcome": outcome(
             *JUDGED, among=(Outcome.converged, Outcome.unresolved, Outcome.infeasible)
         ),
-        "feasible_count": Variable(
-            "number of feasible samples", dims=READING, dtype="i4"
-        ),
+        "feasible_count": count("number of feasible samples", *READING),
         "share": Variable("share of the samples that are feasible", dims=READING),
         "share_low": _limit("lower", "share", READING),
         "share_high": _limit("upper", "share", READING),
@@ -134,9 +143,7 @@ PARAMETER_INFERENCE = DatasetSchema(
         "baseline_mu": Variable("friction coefficient of the study"),
         "baseline_length_ratio": Variable("L1/l_pre of the study"),
         "baseline_speed_ratio": Variable("V/(l_pre √(k1/m)) of the study, signed"),
-        "baseline_reading": Variable(
-            "the study's reading", flags=dict(enumerate(READINGS))
-        ),
+        "baseline_reading": flag("the study's reading", dict(enumerate(READINGS))),
         "baseline_margin": Variable(
             "margin at the parameters of the study",
             dims=BY_READING,

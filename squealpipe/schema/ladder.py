@@ -3,7 +3,16 @@
 from enum import IntEnum
 from typing import Self
 
-from squealpipe.schema import DatasetSchema, Outcome, Variable, or_nan, outcome, text
+from squealpipe.schema import (
+    DatasetSchema,
+    Outcome,
+    Variable,
+    flag,
+    or_nan,
+    outcome,
+    text,
+    whether,
+)
 from squealpipe.schema.linear import ANGLES, MAP
 
 
@@ -110,17 +119,13 @@ MODEL_LADDER = DatasetSchema(
             rtol=1e-3,
             atol=1e-9,
         ),
-        "cheapest": Variable(
+        "cheapest": flag(
             "cheapest level within the tolerance that drops something that mattered",
-            dims=_CELL,
-            flags=Level,
+            Level,
+            *_CELL,
         ),
-        "chosen": Variable(
-            "level that choose_model takes for contact lost", dims=MAP, flags=Level
-        ),
-        "chosen_wrong": Variable(
-            "whether its answer is not A1's", dims=MAP, dtype="bool"
-        ),
+        "chosen": flag("level that choose_model takes for contact lost", Level, *MAP),
+        "chosen_wrong": whether("whether its answer is not A1's", *MAP),
         "always_cpu_time": Variable(
             "CPU time of A1 over the whole map, up to the first loss of contact",
             "s",
@@ -129,10 +134,8 @@ MODEL_LADDER = DatasetSchema(
         "chosen_cpu_time": Variable(
             "CPU time of choose_model over the whole map", "s", volatile=True
         ),
-        "belt_reached": Variable(
-            "whether the mass of A1 reaches belt speed in contact",
-            dims=MAP,
-            dtype="bool",
+        "belt_reached": whether(
+            "whether the mass of A1 reaches belt speed in contact", *MAP
         ),
         "tolerance": Variable("error that is allowed"),
         "outcome": outcome(*MAP, among=(Outcome.converged,)),

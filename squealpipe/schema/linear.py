@@ -8,9 +8,12 @@ from squealpipe.schema import (
     LINEAR_ENDS,
     DatasetSchema,
     Variable,
+    count,
+    flag,
     or_nan,
     outcome,
     text,
+    whether,
 )
 from squealpipe.schema.agreement import Listing
 
@@ -22,14 +25,14 @@ ANGLES = {
 }
 ONE_PAIR = {name: replace(entry, dims=()) for name, entry in ANGLES.items()}
 """The angles of a dataset that is of one pair."""
-MODES = {"mode": Variable("mode, by ascending frequency", dims=("mode",), dtype="i4")}
+MODES = {"mode": count("mode, by ascending frequency", "mode")}
 
 
 ALIKE = 0.5
 """Modal assurance criterion from which two shapes are nearer to one than to perpendicular ones."""
 
 
-REGIME_LINEAR = Variable("stability regime of model A3", dims=MAP, flags=LinearRegime)
+REGIME_LINEAR = flag("stability regime of model A3", LinearRegime, *MAP)
 
 STABILITY_MAP = DatasetSchema(
     name="stability_map",
@@ -63,9 +66,7 @@ CRITICAL_FRICTION_MAP = DatasetSchema(
         "critical_mu": _critical(""),
         "critical_mu_undamped": _critical(" without dashpots"),
         "critical_mu_vanishing": _critical(" as both dashpots vanish at their ratio"),
-        "destabilized": Variable(
-            "dashpots lower the critical friction", dims=MAP, dtype="bool"
-        ),
+        "destabilized": whether("dashpots lower the critical friction", *MAP),
     },
 )
 
@@ -81,10 +82,8 @@ CRITICAL_DAMPING_MAP = DatasetSchema(
     variables={
         "critical_mu": Variable("critical friction", dims=("damping1", "damping2")),
         "critical_mu_undamped": Variable("critical friction without dashpots"),
-        "destabilized": Variable(
-            "dashpots lower the critical friction",
-            dims=("damping1", "damping2"),
-            dtype="bool",
+        "destabilized": whether(
+            "dashpots lower the critical friction", "damping1", "damping2"
         ),
         **ONE_PAIR,
     },
@@ -100,12 +99,8 @@ QUASI_STATIC_MAP = DatasetSchema(
     title="Quasi-static sliding (model A2) and the linear static state over both spring angles",
     coordinates=ANGLES,
     variables={
-        "possible_as_printed": Variable(
-            "Eq. (11) as printed holds", dims=MAP, dtype="bool"
-        ),
-        "possible": Variable(
-            "reaction force of model A2 is positive", dims=MAP, dtype="bool"
-        ),
+        "possible_as_printed": whether("Eq. (11) as printed holds", *MAP),
+        "possible": whether("reaction force of model A2 is positive", *MAP),
         "reaction_force": or_nan("reaction force of model A2, y = 0", "N", MAP),
         "x_static": or_nan("x of the static state of Eq. (15)", "m", MAP),
         "y_static": or_nan("y of the static state of Eq. (15)", "m", MAP),
@@ -151,7 +146,7 @@ STABILITY_BOUNDARIES = DatasetSchema(
     name="stability_boundaries",
     title="Exact boundaries of flutter, divergence and quasi-static sliding",
     lists={"point": Listing(kinds=("boundary", "segment"))},
-    coordinates={"point": Variable("number of the point", dims=("point",), dtype="i4")},
+    coordinates={"point": count("number of the point", "point")},
     variables={
         **{
             f"alpha{i}": Variable(
@@ -162,9 +157,7 @@ STABILITY_BOUNDARIES = DatasetSchema(
             )
             for i in (1, 2)
         },
-        "boundary": Variable("which boundary", dims=("point",), flags=BoundaryCurve),
-        "segment": Variable(
-            "points of one number are joined by a line", dims=("point",), dtype="i4"
-        ),
+        "boundary": flag("which boundary", BoundaryCurve, "point"),
+        "segment": count("points of one number are joined by a line", "point"),
     },
 )

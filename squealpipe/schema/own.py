@@ -5,7 +5,7 @@ Studies of 1.0.0 hold it; ``assess`` answers in its place, and it is still read.
 
 from dataclasses import replace
 
-from squealpipe.schema import RUN_ENDS, DatasetSchema, Variable, outcome, text
+from squealpipe.schema import RUN_ENDS, DatasetSchema, Variable, count, outcome, text
 from squealpipe.schema.dynamics.runs import IMPACT_SPEED, RETURN_FORCE
 from squealpipe.schema.linear import ONE_PAIR
 
@@ -34,7 +34,7 @@ OWN_SCENES = DatasetSchema(
         "scene": text("name of the scene", "scene"),
         "variant": text("what is changed", "variant"),
         "question": text("question asked of a scene", "question"),
-        "peak": Variable("peak of the spectrum, by height", dims=("peak",), dtype="i4"),
+        "peak": count("peak of the spectrum, by height", "peak"),
     },
     variables={
         "motion": text("kind of motion", *_RUN),

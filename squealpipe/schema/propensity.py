@@ -1,6 +1,14 @@
 """Datasets on how far verdicts carry and how parameters spread into results."""
 
-from squealpipe.schema import DatasetSchema, Outcome, Variable, or_nan, outcome, text
+from squealpipe.schema import (
+    DatasetSchema,
+    Outcome,
+    Variable,
+    count,
+    or_nan,
+    outcome,
+    text,
+)
 from squealpipe.schema.linear import ONE_PAIR
 
 WIDEST = 0.05
@@ -24,7 +32,7 @@ VERDICT_ROBUSTNESS = DatasetSchema(
         ),
         "share_low": or_nan("lower end of its 95 % interval", dims=_CELL),
         "share_high": or_nan("upper end of its 95 % interval", dims=_CELL),
-        "judged": Variable(dims=_CELL, dtype="i4", long_name="number of runs judged"),
+        "judged": count("number of runs judged", *_CELL),
         "outcome": outcome(
             *_CELL, among=(Outcome.converged, Outcome.unresolved, Outcome.not_computed)
         ),
@@ -39,9 +47,7 @@ PROPENSITY = DatasetSchema(
     coordinates={
         "quantity": text("what happens", *_QUANTITY),
         "input": text("uncertain parameter", "input"),
-        "size": Variable(
-            dims=("size",), dtype="i4", long_name="size of a part of the sample"
-        ),
+        "size": count("size of a part of the sample", "size"),
     },
     variables={
         "share": Variable(
@@ -74,13 +80,10 @@ PROPENSITY = DatasetSchema(
             optional=True,
             rtol=1e-6,
         ),
-        "index_samples": Variable(
-            "base sample of the indices",
-            dims=("quantity", "size"),
-            dtype="i4",
-            optional=True,
+        "index_samples": count(
+            "base sample of the indices", "quantity", "size", optional=True
         ),
-        "judged": Variable(dtype="i4", long_name="number of parameter sets"),
+        "judged": count("number of parameter sets"),
         "outcome": outcome(*_QUANTITY, among=(Outcome.converged, Outcome.unresolved)),
         **ONE_PAIR,
         "t_end": Variable(units="s", long_name="end of each run"),

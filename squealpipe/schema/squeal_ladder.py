@@ -2,7 +2,16 @@
 
 from enum import IntEnum
 
-from squealpipe.schema import DatasetSchema, Outcome, Variable, or_nan, outcome, text
+from squealpipe.schema import (
+    DatasetSchema,
+    Outcome,
+    Variable,
+    count,
+    flag,
+    or_nan,
+    outcome,
+    text,
+)
 from squealpipe.schema.agreement import Listing
 from squealpipe.schema.comparison import Reliability, Role
 
@@ -42,19 +51,18 @@ SQUEAL_LADDER = DatasetSchema(
     name="squeal_ladder",
     title="What methods say of a structure's squeal, against the finest run, and their cost",
     coordinates={
-        "run": Variable("one method at one setting", dims=RUN, dtype="i4"),
-        "mode": Variable(
+        "run": count("one method at one setting", *RUN),
+        "mode": count(
             "mode of the finest structure along which is pushed, numbered as by complex_modes",
-            dims=("mode",),
-            dtype="i4",
+            "mode",
         ),
         "contact": text("name of the contact", "contact"),
     },
     variables={
         "method": text("method", *RUN),
         "setting": text("its setting", *RUN),
-        "role": Variable("whose method it is", dims=RUN, flags=Role),
-        "n_modes": Variable("modes of the structure", dims=RUN, dtype="i4"),
+        "role": flag("whose method it is", Role, *RUN),
+        "n_modes": count("modes of the structure", *RUN),
         "friction_width": or_nan(
             "sliding speed over which friction is smoothed, over the belt's; 0: exact; NaN: no run",
             dims=RUN,
@@ -63,23 +71,26 @@ SQUEAL_LADDER = DatasetSchema(
             "force over which loss of contact is smoothed, over the preload; 0: exact; NaN: no run",
             dims=RUN,
         ),
-        "answer": Variable("what becomes of a push", dims=PUSHED, flags=PushAnswer),
-        "verdict": Variable(
+        "answer": flag("what becomes of a push", PushAnswer, *PUSHED),
+        "verdict": flag(
             "right: the same modes ring after all pushes; flagged: a motion has not settled; "
             "silently wrong: another mode rings, or none does",
-            dims=RUN,
-            flags=Reliability,
+            Reliability,
+            *RUN,
         ),
-        "rings_near": Variable(
+        "rings_near": count(
             "mode of the finest structure nearest to the strongest line, -1: none rings",
-            dims=PUSHED,
-            dtype="i4",
+            *PUSHED,
         ),
         "frequency": or_nan(
             "strongest line of the kinetic energy", "Hz", PUSHED, rtol=1e-2
         ),
         "velocity_rms": or_nan(
-            "rms speed of vibration, all contacts", "m s-1", PUSHED, rtol=0.05, atol=1e-3
+            "rms speed of vibration, all contacts",
+            "m s-1",
+            PUSHED,
+            rtol=0.05,
+            atol=1e-3,
         ),
         "separated_fraction": or_nan(
             "share of the time without contact", dims=AT, rtol=0.05, atol=0.01
@@ -99,7 +110,9 @@ SQUEAL_LADDER = DatasetSchema(
         "peak_force": or_nan(
             "largest normal force over the preload", dims=AT, rtol=0.05, atol=0.01
         ),
-        "frequency_error": _error("relative error of the frequency, 1 where none rings"),
+        "frequency_error": _error(
+            "relative error of the frequency, 1 where none rings"
+        ),
         "velocity_error": _error("relative error of the rms speed"),
         "separation_error": _error("largest error of a share of time without contact"),
         "frequency_uncertainty": _uncertainty("relative error of the frequency"),
@@ -117,9 +130,9 @@ SQUEAL_LADDER = DatasetSchema(
             RUN,
             volatile=True,
         ),
-        "evaluations": Variable(
+        "evaluations": count(
             "calls of the field for all pushes, a Taylor step of order p as p + 1; 0: none",
-            dims=RUN,
+            *RUN,
             dtype="i8",
             rtol=0.2,
         ),
@@ -130,4 +143,4 @@ SQUEAL_LADDER = DatasetSchema(
         ),
     },
     lists={"run": Listing(kinds=("method", "setting"))},
-)  # fmt: skip
+)

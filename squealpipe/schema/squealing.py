@@ -3,7 +3,17 @@
 from enum import IntEnum
 from typing import Any
 
-from squealpipe.schema import DatasetSchema, Outcome, Variable, or_nan, outcome, text
+from squealpipe.schema import (
+    DatasetSchema,
+    Outcome,
+    Variable,
+    count,
+    flag,
+    or_nan,
+    outcome,
+    text,
+    whether,
+)
 from squealpipe.schema.agreement import Listing
 from squealpipe.schema.assess import Verdict
 
@@ -59,45 +69,35 @@ SQUEALING = DatasetSchema(
     name="squealing_modes",
     title="Which unstable modes of a structure squeal, how loud, and with how much contact loss",
     coordinates={
-        "mode": Variable(
-            "unstable mode of steady sliding, numbered as by complex_modes",
-            dims=_MODE,
-            dtype="i4",
+        "mode": count(
+            "unstable mode of steady sliding, numbered as by complex_modes", *_MODE
         ),
-        "attractor": Variable(
-            "what starts settle to, by share of random starts",
-            dims=_ATTRACTOR,
-            dtype="i4",
+        "attractor": count(
+            "what starts settle to, by share of random starts", *_ATTRACTOR
         ),
         "contact": text("name of the contact", "contact"),
-        "sample": Variable("number of the random start", dims=_SAMPLE, dtype="i4"),
-        "pole": Variable(
-            "mode of steady sliding, by frequency", dims=_POLE, dtype="i4"
-        ),
+        "sample": count("number of the random start", *_SAMPLE),
+        "pole": count("mode of steady sliding, by frequency", *_POLE),
     },
     variables={
-        "verdict": Variable(
+        "verdict": flag(
             "what steady sliding ends in after a push of 1 % along its least stable mode",
-            flags=Verdict,
+            Verdict,
         ),
-        "quiet_unless_struck": Variable(
-            "quiet from steady sliding, but some random starts end elsewhere",
-            dtype="bool",
+        "quiet_unless_struck": whether(
+            "quiet from steady sliding, but some random starts end elsewhere"
         ),
         "growth_rate": Variable("growth rate", "s-1", _MODE, rtol=1e-6),
         "frequency": Variable("frequency", "Hz", _MODE, rtol=1e-8),
         "critical_mu": or_nan(
             "smallest friction at which growth leaves zero", "1", _MODE, rtol=1e-8
         ),
-        "ends_in": Variable(
-            "attractor of a start of 1 % along this mode, -1: undetermined",
-            dims=_MODE,
-            dtype="i4",
+        "ends_in": count(
+            "attractor of a start of 1 % along this mode, -1: undetermined", *_MODE
         ),
-        "squeals": Variable(
+        "squeals": whether(
             "whether, of the unstable modes, this one is nearest in frequency to that motion",
-            dims=_MODE,
-            dtype="bool",
+            *_MODE,
         ),
         "time_to_squeal": or_nan(
             "time from there until the kinetic energy first reaches half its settled value",
@@ -105,11 +105,11 @@ SQUEALING = DatasetSchema(
             _MODE,
             rtol=0.2,
         ),
-        "kind": Variable("kind of motion", dims=_ATTRACTOR, flags=Kind),
-        "motion": Variable(
+        "kind": flag("kind of motion", Kind, *_ATTRACTOR),
+        "motion": flag(
             "what is heard: it squeals if contact is kept, hammers if it is lost repeatedly",
-            dims=_ATTRACTOR,
-            flags=Verdict,
+            Verdict,
+            *_ATTRACTOR,
         ),
         "dominant_frequency": _level(
             "strongest line of the kinetic energy", "Hz", rtol=1e-2
@@ -117,10 +117,9 @@ SQUEALING = DatasetSchema(
         "frequency_resolution": or_nan(
             "resolution of the spectrum", "Hz", _ATTRACTOR, volatile=True
         ),
-        "nearest_mode": Variable(
+        "nearest_mode": count(
             "mode nearest to that line, an unstable one where one is within 2 % of either",
-            dims=_ATTRACTOR,
-            dtype="i4",
+            *_ATTRACTOR,
         ),
         "frequency_shift": _level(
             "dominant frequency less that of the nearest mode", "Hz", rtol=0.1
@@ -128,9 +127,7 @@ SQUEALING = DatasetSchema(
         "period": or_nan(
             "period of the cycle, closed by the exact map", "s", _ATTRACTOR, rtol=1e-6
         ),
-        "events_per_period": Variable(
-            "events in it, 0 where it is no cycle", dims=_ATTRACTOR, dtype="i4"
-        ),
+        "events_per_period": count("events in it, 0 where it is no cycle", *_ATTRACTOR),
         "largest_multiplier": or_nan(
             "largest modulus of its multipliers, the trivial one left out",
             "1",
@@ -163,9 +160,7 @@ SQUEALING = DatasetSchema(
         "impacts_per_period": _of_contact(
             "returns to contact in a period of the dominant frequency"
         ),
-        "count": Variable(
-            "random starts that end here", dims=_ATTRACTOR, dtype="i4", rtol=0.3
-        ),
+        "count": count("random starts that end here", *_ATTRACTOR, rtol=0.3),
         "share": Variable(
             "share of the random starts that end here",
             dims=_ATTRACTOR,
@@ -184,9 +179,7 @@ SQUEALING = DatasetSchema(
         "share_undetermined": Variable(
             "share of random starts that did not settle within the horizon", atol=0.1
         ),
-        "ends_at": Variable(
-            "attractor of the random start, -1: undetermined", dims=_SAMPLE, dtype="i4"
-        ),
+        "ends_at": count("attractor of the random start, -1: undetermined", *_SAMPLE),
         "start_energy": Variable(
             "energy of the random start over that of the preload", dims=_SAMPLE
         ),
@@ -228,15 +221,14 @@ SQUEALING = DatasetSchema(
         "onset_frequency": _of_onset(
             f"frequency of the mode that grows at {ABOVE:g} of it", "Hz", rtol=1e-6
         ),
-        "onset_kind": Variable(
+        "onset_kind": flag(
             f"whether what a small push ends in at {ABOVE:g} of it dies at the onset "
             "(supercritical) or lasts below (subcritical)",
-            flags=OnsetKind,
+            OnsetKind,
             optional=True,
         ),
-        "squeals_below_critical": Variable(
+        "squeals_below_critical": whether(
             "whether a motion that was followed lasts below the critical friction",
-            dtype="bool",
             optional=True,
         ),
         "hysteresis": _of_onset(
@@ -244,14 +236,13 @@ SQUEALING = DatasetSchema(
             rtol=0.05,
             atol=1e-3,
         ),
-        "onset_outcome": Variable(
-            "why the kind of onset is what it is", flags=Outcome, optional=True
+        "onset_outcome": flag(
+            "why the kind of onset is what it is", Outcome, optional=True
         ),
-        "track_attractor": Variable(
+        "track_attractor": count(
             f"attractor that is followed as friction falls, {JUST_ABOVE}: what a small push "
             f"ends in at {ABOVE:g} of the critical friction",
-            dims=("track",),
-            dtype="i4",
+            "track",
             optional=True,
         ),
         "mu_dies": _of_onset(
@@ -260,10 +251,9 @@ SQUEALING = DatasetSchema(
             "track",
             rtol=5e-3,
         ),
-        "mu_dies_is_fold": Variable(
+        "mu_dies_is_fold": whether(
             "whether it is where the exact map has its cycle meet an unstable one",
-            dims=("track",),
-            dtype="bool",
+            "track",
             optional=True,
         ),
         "mu_dies_low": _of_onset(
@@ -298,13 +288,13 @@ SQUEALING = DatasetSchema(
                 ),
             )
         },
-        "track_outcome": Variable(
+        "track_outcome": flag(
             "whether the motion was followed to where it dies",
-            dims=("track",),
-            flags=Outcome,
+            Outcome,
+            "track",
             optional=True,
         ),
-        "n_modes": Variable("modes in which the structure was run", dtype="i4"),
+        "n_modes": count("modes in which the structure was run"),
         "frequency_error": or_nan(
             "largest relative error of an unstable frequency, from the reduction"
         ),

@@ -3,7 +3,16 @@
 import re
 from enum import IntEnum
 
-from squealpipe.schema import DatasetSchema, Outcome, Variable, or_nan, outcome
+from squealpipe.schema import (
+    DatasetSchema,
+    Outcome,
+    Variable,
+    count,
+    flag,
+    or_nan,
+    outcome,
+    whether,
+)
 
 NAME = "complex_modes"
 FACTORS = {
@@ -53,11 +62,7 @@ def _modes(dims: tuple[str, ...]) -> DatasetSchema:
         name=name_over(dims),
         title="Complex modes of a structure about steady sliding",
         coordinates={
-            "mode": Variable(
-                "mode, by ascending frequency at the first friction",
-                dims=("mode",),
-                dtype="i4",
-            ),
+            "mode": count("mode, by ascending frequency at the first friction", "mode"),
             **{
                 key: Variable(words, unit, (key,) if key in dims else ())
                 for key, (words, unit) in FACTORS.items()
@@ -82,9 +87,7 @@ def _modes(dims: tuple[str, ...]) -> DatasetSchema:
             "damping_ratio": or_nan(
                 "damping ratio, negative growth rate over |s|", "1", mode, rtol=1e-6
             ),
-            "unstable": Variable(
-                "grows by more than the error", dims=mode, dtype="bool"
-            ),
+            "unstable": whether("grows by more than the error", *mode),
             "residual": or_nan("relative residual", "1", mode, volatile=True),
             "outcome": outcome(
                 *mode,
@@ -100,16 +103,14 @@ def _modes(dims: tuple[str, ...]) -> DatasetSchema:
                 (*along, "mode"),
                 rtol=1e-8,
             ),
-            "onset": Variable(
-                "why the critical friction is what it is",
-                dims=(*along, "mode"),
-                flags=Onset,
+            "onset": flag(
+                "why the critical friction is what it is", Onset, *along, "mode"
             ),
-            "merges_with": Variable(
+            "merges_with": count(
                 "mode that this one meets by frequency where one of both turns unstable, the first "
                 "of several; 0: none",
-                dims=(*along, "mode"),
-                dtype="i4",
+                *along,
+                "mode",
             ),
             "normal_force": or_nan(
                 "normal force in steady sliding, 0 where open",

@@ -17,6 +17,7 @@ from squealpipe.schema import (
     DatasetSchema,
     SchemaError,
     Variable,
+    count,
     find,
     flag_table,
 )
@@ -61,9 +62,7 @@ def derived(name: str) -> DatasetSchema | None:
     base = find(match["task"])
     kept = {key: entry for key, entry in base.coordinates.items() if key not in names}
     sizes = {
-        f"{dim}_count": Variable(
-            f"entries that this run has along {dim}", dims=tuple(names), dtype="i4"
-        )
+        f"{dim}_count": count(f"entries that this run has along {dim}", *tuple(names))
         for dim in ragged_dims(base)
     }
     return DatasetSchema(

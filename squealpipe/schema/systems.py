@@ -18,6 +18,7 @@ from squealpipe.schema import (
     DatasetSchema,
     SchemaError,
     Variable,
+    count,
     faults_of_values,
     meanings,
     or_nan,
@@ -45,7 +46,7 @@ def _flag(long_name: str, *dims: str) -> Variable:
 
 
 def _count(long_name: str, *dims: str) -> Variable:
-    return Variable(long_name, dims=dims, dtype="i8")
+    return count(long_name, *dims, dtype="i8")
 
 
 SIMULATE = DatasetSchema(

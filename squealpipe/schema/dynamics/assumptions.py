@@ -5,6 +5,7 @@ from squealpipe.schema import (
     DatasetSchema,
     Outcome,
     Variable,
+    flag,
     or_nan,
     outcome,
     text,
@@ -28,19 +29,18 @@ ASSUMPTIONS = DatasetSchema(
         "assumption": text("assumption", "assumption"),
     },
     variables={
-        "needed": Variable(
-            "whether the level makes the assumption",
-            dims=("level", "assumption"),
-            flags=YES_NO,
+        "needed": flag(
+            "whether the level makes the assumption", YES_NO, "level", "assumption"
         ),
         "measure": or_nan(
             "the number that decides", dims=(*TABLE, "assumption"), rtol=1e-6
         ),
         "limit": Variable("limit of the measure", dims=("assumption",)),
-        "held": Variable(
+        "held": flag(
             "whether the assumption held along the whole motion",
-            dims=(*TABLE, "assumption"),
-            flags=YES_NO,
+            YES_NO,
+            *TABLE,
+            "assumption",
         ),
         "largest_x": _largest("m", "largest |x|"),
         "largest_y": _largest("m", "largest y"),

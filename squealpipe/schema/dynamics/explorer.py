@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Any
 
-from squealpipe.schema import RUN_ENDS, DatasetSchema, Variable, outcome
+from squealpipe.schema import RUN_ENDS, DatasetSchema, Variable, count, outcome
 from squealpipe.schema.backbones import BACKBONE
 from squealpipe.schema.dynamics.runs import FREQUENCY, SIMULATION, TIME
 from squealpipe.schema.linear import ANGLES, MAP, MODES
@@ -25,9 +25,7 @@ EXPLORER = DatasetSchema(
         **{name: replace(entry, optional=True) for name, entry in MODES.items()},
         "time": TIME,
         "frequency": FREQUENCY,
-        "point": Variable(
-            "point along the branch", dims=("point",), dtype="i4", optional=True
-        ),
+        "point": count("point along the branch", "point", optional=True),
     },
     variables={
         **{

@@ -7,8 +7,10 @@ from squealpipe.schema import (
     DatasetSchema,
     Outcome,
     Variable,
+    count,
     or_nan,
     outcome,
+    whether,
 )
 from squealpipe.schema.agreement import ComparedAs, RoundOff
 from squealpipe.schema.dynamics.runs import MOTION, MOTION_CHANGED
@@ -40,9 +42,7 @@ WHIRL = DatasetSchema(
         "motion_changed": replace(
             MOTION_CHANGED, dims=("belt_speed",), round_off=_LONG_SAMPLE
         ),
-        "fitted": Variable(
-            "whether the speed is in the fit", dims=("belt_speed",), dtype="bool"
-        ),
+        "fitted": whether("whether the speed is in the fit", "belt_speed"),
         "slope": or_nan(
             "fitted growth of the amplitude with |V| (NaN: too few whirl)", "s"
         ),
@@ -69,9 +69,7 @@ _CHAOTIC = RoundOff(ComparedAs.sample, _WHY_CHAOTIC, sample="sample")
 TRANSIENT = DatasetSchema(
     name="transient",
     title="How long the bounded motion at (0.2 pi, 0.8 pi) lasts",
-    coordinates={
-        "sample": Variable("number of the perturbation", dims=("sample",), dtype="i4")
-    },
+    coordinates={"sample": count("number of the perturbation", "sample")},
     variables={
         "lifetime": or_nan(
             "time of the tenth net turn around both fixed ends (NaN: not before t_end)",

@@ -10,8 +10,11 @@ from squealpipe.schema import (
     DatasetSchema,
     Outcome,
     Variable,
+    count,
+    flag,
     or_nan,
     outcome,
+    whether,
 )
 from squealpipe.schema.agreement import ComparedAs, Listing, RoundOff
 from squealpipe.schema.linear import ANGLES, MAP, ONE_PAIR, REGIME_LINEAR
@@ -56,10 +59,8 @@ STATE = {
     "vy": ("m s-1", "velocity away from the belt"),
 }
 """Unit of each state and words for it."""
-MOTION = Variable("kind of motion in the second half of the run", flags=MotionFlag)
-MOTION_CHANGED = Variable(
-    "whether the quarters of that half have other labels", dtype="bool"
-)
+MOTION = flag("kind of motion in the second half of the run", MotionFlag)
+MOTION_CHANGED = whether("whether the quarters of that half have other labels")
 RETURN_FORCE = or_nan(
     "largest contact force after the first return to the belt, over k3 l_pre (NaN: no return)"
 )
@@ -87,17 +88,17 @@ SIMULATION = DatasetSchema(
         "vy": _series("m s-1", "velocity away from the belt"),
         "normal_force": _series("N", "contact force"),
         "normalized_contact_force": _series("1", "contact force over k3 l_pre"),
-        "regime": Variable("regime", dims=("time",), flags=REGIMES),
+        "regime": flag("regime", REGIMES, "time"),
         "event_time": Variable(
             "instant of a regime change", "s", ("event",), round_off=_GROWN
         ),
-        "event_kind": Variable("kind of regime change", dims=("event",), flags=Event),
+        "event_kind": flag("kind of regime change", Event, "event"),
         **ONE_PAIR,
         "preload": Variable("precompression l_pre of the contact spring", "m"),
         "length1": Variable("free length L1 of spring 1", "m"),
         "length2": Variable("free length L2 of spring 2", "m"),
         "time_reached": Variable("time at which the run ended", "s"),
-        "n_steps": Variable("Taylor steps of the run", dtype="i8"),
+        "n_steps": count("Taylor steps of the run", dtype="i8"),
         "return_peak_contact_force": replace(RETURN_FORCE, round_off=_GROWN),
         "impact_speed": replace(IMPACT_SPEED, round_off=_GROWN),
         "growth": or_nan(
@@ -118,7 +119,7 @@ RUN_SUMMARY = DatasetSchema(
     lists={"peak": Listing()},
     coordinates={
         "frequency": FREQUENCY,
-        "peak": Variable("peak of the spectrum, by height", dims=("peak",), dtype="i4"),
+        "peak": count("peak of the spectrum, by height", "peak"),
     },
     variables={
         "first_separation_time": or_nan("time of the first loss of contact", "s"),
@@ -147,9 +148,7 @@ SPECTRUM = DatasetSchema(
     lists={"peak": Listing()},
     coordinates={
         "frequency": Variable("frequency", "Hz", ("frequency",)),
-        "peak": Variable(
-            "line of the contact force, by height", dims=("peak",), dtype="i4"
-        ),
+        "peak": count("line of the contact force, by height", "peak"),
     },
     variables={
         "velocity_along": Variable(
@@ -185,9 +184,7 @@ VALIDITY_MAP = DatasetSchema(
         "first_separation_time": or_nan(
             "first loss of contact from rest (NaN: none before t_end)", "s", MAP
         ),
-        "separates": Variable(
-            "whether contact is lost before t_end", dims=MAP, dtype="bool"
-        ),
+        "separates": whether("whether contact is lost before t_end", *MAP),
         "regime_linear": REGIME_LINEAR,
         "response_growth": or_nan(
             "largest |x| of the second half of a run over that of the first (NaN: separated)",
@@ -243,21 +240,17 @@ REFINED_VALIDITY_MAP = DatasetSchema(
     title="Where model A1 keeps contact, computed only where the answer changes",
     coordinates=ANGLES,
     variables={
-        "separates": Variable(
-            "whether contact is lost before t_end", dims=MAP, dtype="bool"
-        ),
+        "separates": whether("whether contact is lost before t_end", *MAP),
         "first_separation_time": or_nan(
             "first loss of contact from rest (NaN: none before t_end, or not computed)",
             "s",
             MAP,
         ),
-        "computed": Variable(
-            "whether the cell was run, not inherited", dims=MAP, dtype="bool"
-        ),
-        "inherited_checked": Variable(
+        "computed": whether("whether the cell was run, not inherited", *MAP),
+        "inherited_checked": count(
             "inherited cells of a random sample that were run", dtype="i8"
         ),
-        "inherited_wrong": Variable(
+        "inherited_wrong": count(
             "of these, cells that were wrong (put right since)", dtype="i8"
         ),
         "inherited_error_interval": or_nan(
