@@ -4,8 +4,6 @@ Everything public is loaded on first use, so importing one part never costs, nor
 workflow depend on, the others.
 """
 
-from __future__ import annotations
-
 import ast
 import importlib
 from pathlib import Path

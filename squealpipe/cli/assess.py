@@ -1,7 +1,5 @@
 """``squealpipe assess``: the answer for one brake."""
 
-from __future__ import annotations
-
 from squealpipe.cli.arguments import (
     DRAWN,
     Angle1,

@@ -1,7 +1,5 @@
 """What a command says, and how much of it; the exit codes of every command."""
 
-from __future__ import annotations
-
 import os
 import re
 import sys

@@ -1,7 +1,5 @@
 """The files of ``squealpipe init --structure``: two brake pads on a disc, joined by a caliper."""
 
-from __future__ import annotations
-
 STUDY = """\
 # A structure of your own: which of its unstable modes squeal, how loud, why, and what stops it?
 # Put your matrices and contacts in place of those in {folder}, then

@@ -1,7 +1,5 @@
 """``squealpipe modes``, ``squeal``, ``ladder``: modes of a structure, and which of them squeal."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -4,8 +4,6 @@ Keys that count in units of the study, like times in √(m/k1), take plain numbe
 text with a unit, which is turned into them by the study's own parameters.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

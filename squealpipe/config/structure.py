@@ -1,7 +1,5 @@
 """The section ``structure`` of a study: a structure in a file, and how it is run."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path

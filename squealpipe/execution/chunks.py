@@ -1,7 +1,5 @@
 """Finished runs of a sweep on disk, so that the same command goes on where it was."""
 
-from __future__ import annotations
-
 import hashlib
 import io
 import shutil

@@ -1,7 +1,5 @@
 """What a study of a structure computes: complex modes over friction, and which of them squeal."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A sweep of the complex modes of a structure in a file: ``FILE.yaml:complex_modes``."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Self

@@ -1,7 +1,5 @@
 """Snakemake as a child that never outlives the command that started it."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

@@ -1,7 +1,5 @@
 """Any task over ranges of parameters, angles and options, as one labelled dataset."""
 
-from __future__ import annotations
-
 import inspect
 import itertools
 import time

@@ -1,7 +1,5 @@
 """A sweep of a system of the user's own: ``FILE.py:NAME``, over its starts and parameters."""
 
-from __future__ import annotations
-
 import inspect
 import math
 import runpy

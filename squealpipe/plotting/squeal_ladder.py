@@ -1,7 +1,5 @@
 """What methods say of a structure's squeal: accuracy against cost, and how much they creep."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -85,9 +83,15 @@ def draw_creep(axes: Axes, ladder: xr.Dataset) -> None:
     finest = float(slow[(ladder.role == Role.our_setting).values].item())
     axes.axhline(finest, color=style.RED, lw=0.8, ls="--")
     axes.annotate(
-        "finest: stick", (1.0, finest), (-2, 2), xycoords=("axes fraction", "data"),
-        textcoords="offset points", ha="right", fontsize=6.5, color=style.RED,
-    )  # fmt: skip
+        "finest: stick",
+        (1.0, finest),
+        (-2, 2),
+        xycoords=("axes fraction", "data"),
+        textcoords="offset points",
+        ha="right",
+        fontsize=6.5,
+        color=style.RED,
+    )
     if (width > 0).any():
         axes.set_xscale("log")
     axes.set(xlabel="smoothing of friction / belt speed", ylabel="share of time")

@@ -1,7 +1,5 @@
 """Which source files a script depends on, from the imports that they state, and their code."""
 
-from __future__ import annotations
-
 import ast
 import hashlib
 from collections.abc import Iterator, Sequence

@@ -1,7 +1,5 @@
 """Files of other programs: NetCDF and CSV that are drawn and converted as far as they can be."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 from typing import Any

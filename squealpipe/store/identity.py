@@ -1,7 +1,5 @@
 """What a dataset is: the id of its values, and the digest that ties a key to its content."""
 
-from __future__ import annotations
-
 import hashlib
 import warnings
 from collections.abc import Mapping

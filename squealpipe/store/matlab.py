@@ -1,7 +1,5 @@
 """Datasets as MATLAB files, whose names are short and of ASCII letters."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """NetCDF files that are either whole and valid or absent."""
 
-from __future__ import annotations
-
 import datetime
 import hashlib
 import os

@@ -1,7 +1,5 @@
 """A whole run as one tree of datasets."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping
 from pathlib import Path

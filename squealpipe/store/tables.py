@@ -1,7 +1,5 @@
 """Datasets as tables for other programs: CSV, MATLAB, Excel, Parquet."""
 
-from __future__ import annotations
-
 import io
 import re
 from importlib.util import find_spec

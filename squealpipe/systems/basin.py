@@ -1,7 +1,5 @@
 """The kind of motion of a system from each of many starts."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

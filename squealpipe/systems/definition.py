@@ -1,7 +1,5 @@
 """What a piecewise-smooth system is: its definition, checked and traced; it knows no verbs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """What a call gives: single values, or an outer product of starts and parameters."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

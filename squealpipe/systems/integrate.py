@@ -1,7 +1,5 @@
 """Raw results of many runs of a system: what the compiled loop is given, and what it gives back."""
 
-from __future__ import annotations
-
 import math
 import weakref
 from collections.abc import Mapping, Sequence

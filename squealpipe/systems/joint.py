@@ -1,7 +1,5 @@
 """The regimes of all components at once, numbered as motions meet them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

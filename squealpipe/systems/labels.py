@@ -1,7 +1,5 @@
 """What the datasets of systems have in common: labels, flags and what they record of a system."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from typing import Any

@@ -4,8 +4,6 @@ A cycle is shown by returns of the whole state: the extremes of a torus repeat t
 of one part of a system do not know of the beat of another.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import IntEnum

@@ -1,7 +1,5 @@
 """The record of one run with all its events."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 

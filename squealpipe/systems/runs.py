@@ -1,7 +1,5 @@
 """Single runs and ensembles of a system, as labelled datasets."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

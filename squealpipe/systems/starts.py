@@ -1,7 +1,5 @@
 """In which regimes runs start."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from copy import copy
 from typing import Any, NamedTuple, Self

@@ -1,7 +1,5 @@
 """A traced system as text: what its datasets record of it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 

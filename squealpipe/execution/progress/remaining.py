@@ -1,7 +1,5 @@
 """How long the jobs of a study still take, from what they took when they last ran."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field

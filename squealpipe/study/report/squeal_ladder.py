@@ -1,7 +1,5 @@
 """The answer of a dataset ``squeal_ladder`` in words: the finest run, then each method."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The answer of a dataset ``squealing_modes`` in the words of a brake's report."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator
 

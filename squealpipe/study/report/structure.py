@@ -1,7 +1,5 @@
 """What the report of a structure shows, as plain data: the answer first."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from typing import Any

@@ -6,8 +6,6 @@ other points, from other random starts, by left ones. An eigenvalue that one sea
 stand alone in the other: then the band is searched again, with more eigenvalues to a disc.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Complex modes of a structure as a dataset: growth, frequency and critical friction by mode."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

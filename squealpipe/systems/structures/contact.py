@@ -1,7 +1,5 @@
 """A contact of a structure with the belt: where it acts, how stiff it is and what presses it on."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any

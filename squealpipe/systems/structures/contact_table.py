@@ -3,8 +3,6 @@
 Text in any encoding, with commas, semicolons or tabs between its cells, or an Excel sheet.
 """
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Any

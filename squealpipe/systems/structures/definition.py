@@ -1,7 +1,5 @@
 """What a structure is: matrices of mass, damping and stiffness with contacts on a moving belt."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Sequence
 from typing import Any, Self

@@ -5,8 +5,6 @@ rate the pair is polished (:mod:`.refinement`). Without damping s² is computed,
 of modes that do not grow have no growth at all.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

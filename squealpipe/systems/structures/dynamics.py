@@ -6,13 +6,11 @@ slip, else 0) and ``stick`` (1 or 0). Sticking contacts S share the linear syste
 full size, whose inverse holds constants alone and so is computed when a regime is entered.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 import numpy as np
 import scipy.linalg as la
@@ -21,10 +19,8 @@ from squealpipe.laws import friction_laws
 from squealpipe.laws.friction import slip_force, stick_limit
 from squealpipe.laws.tables import is_table
 from squealpipe.systems.structures.definition import Structure
+from squealpipe.systems.structures.friction import Friction
 from squealpipe.systems.structures.modes import modal_damping_of
-
-if TYPE_CHECKING:
-    from squealpipe.systems.structures.friction import Friction
 
 ROUND_OFF = 1e-15
 """Couplings below this share of what they couple are left out."""

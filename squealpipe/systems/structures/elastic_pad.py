@@ -1,7 +1,5 @@
 """An elastic pad in plane strain on a belt, hung by springs along its upper edge."""
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any
 

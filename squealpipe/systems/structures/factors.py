@@ -1,7 +1,5 @@
 """What modes can be computed over besides friction and belt speed, and the structure with it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any

@@ -1,7 +1,5 @@
 """A structure in a file: ``pad.yaml`` names matrices, contacts and numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path

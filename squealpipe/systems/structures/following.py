@@ -1,7 +1,5 @@
 """Modes that keep their number from one friction to the next, by their shapes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The friction of all contacts of a structure, by the laws of :mod:`squealpipe.laws`."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

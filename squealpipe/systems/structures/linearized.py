@@ -4,8 +4,6 @@ Their pencil is M s² + (C + Σ Nᵢ μᵢ′ tᵢtᵢᵀ) s + K + Σ kᵢ (nᵢ
 contacts, with Nᵢ, σᵢ and μᵢ of the state (:mod:`.sliding`).
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Matrices of a structure as they are kept: square, real, finite, sparse by rows."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

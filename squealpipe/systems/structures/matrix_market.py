@@ -5,8 +5,6 @@ what stands behind an entry; and of a file that says ``symmetric`` but holds bot
 up both.
 """
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Any

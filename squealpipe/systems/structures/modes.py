@@ -1,7 +1,5 @@
 """Real modes of a structure with closed contacts and without friction, (M, K + Σ kᵢ nᵢnᵢᵀ)."""
 
-from __future__ import annotations
-
 import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp

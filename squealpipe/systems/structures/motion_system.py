@@ -1,10 +1,8 @@
 """A structure as a system: one component for each contact, with the regimes of A1."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
@@ -168,7 +166,7 @@ class _Scale(NamedTuple):
     force: float
 
     @classmethod
-    def of(cls, structure: Structure) -> _Scale:
+    def of(cls, structure: Structure) -> Self:
         """By the preloads, or where there are none by load, or by the belt."""
         omega, modes = modes_at_rest(structure)
         elastic = omega[omega > 1e-6 * omega.max()]
@@ -227,10 +225,13 @@ class _Contact:
         first = self.pieces[0]
         found = {
             self._name(slip, i): {
-                "contact": 1.0, "direction": SLIP[slip], "stick": 0.0, **self.pieces[i]
+                "contact": 1.0,
+                "direction": SLIP[slip],
+                "stick": 0.0,
+                **self.pieces[i],
             }
             for slip, i in self._slips()
-        }  # fmt: skip
+        }
         found["stick"] = {"contact": 1.0, "direction": 0.0, "stick": 1.0, **first}
         found["separated"] = {"contact": 0.0, "direction": 0.0, "stick": 0.0, **first}
         return found

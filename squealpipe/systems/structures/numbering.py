@@ -1,10 +1,8 @@
 """The modes of a structure along friction, each with a number that it keeps."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -74,7 +72,7 @@ class Way:
     reasons: list[str] = field(default_factory=list)
     _onsets: dict[tuple[int, float, float], float | None] = field(default_factory=dict)
 
-    def follow(self, frictions: list[float], after: Way | None) -> None:
+    def follow(self, frictions: list[float], after: Self | None) -> None:
         """Number the modes at these frictions, ascending; the first as those of another way."""
         last: float | None = None
         for mu in with_progress(frictions):
@@ -89,7 +87,7 @@ class Way:
                 self._go(last, mu)
             last = mu
 
-    def _first_numbers(self, spectrum: Spectrum, after: Way | None) -> np.ndarray:
+    def _first_numbers(self, spectrum: Spectrum, after: Self | None) -> np.ndarray:
         if after is None or not after.steps:
             nowhere = np.full(0, -1)
             return self._carried(nowhere, nowhere, len(spectrum.pairs))

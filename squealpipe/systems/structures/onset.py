@@ -6,8 +6,6 @@ passes through zero. With damping the growth of one mode itself passes through z
 opens or closes the matrices jump, and a mode may turn unstable there.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, NamedTuple
 

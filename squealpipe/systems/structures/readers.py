@@ -4,8 +4,6 @@ Matrix Market, ``.npz`` of scipy.sparse, MATLAB ``.mat`` (5 and 7.3), Abaqus ``*
 ``*SUBSTRUCTURE MATRIX OUTPUT``, CalculiX ``.sti``, ``.mas`` and ``.dof``.
 """
 
-from __future__ import annotations
-
 import re
 import zipfile
 import zlib

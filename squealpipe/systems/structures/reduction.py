@@ -1,7 +1,5 @@
 """A structure of no more modes than its unstable complex modes need."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -7,8 +7,6 @@ three numbers are summed in extended precision: in double, rounding hides growth
 of squeal.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 

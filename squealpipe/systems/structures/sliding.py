@@ -4,8 +4,6 @@ With σᵢ = sgn(speedᵢ V) and μᵢ = μ(|speedᵢ V|) the state is that of
 K q = f + Σ (nᵢ + σᵢ μᵢ tᵢ) Nᵢ, Nᵢ = max(preloadᵢ − kᵢ nᵢᵀq, 0).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Complex modes about one state of steady sliding, within limits of frequency or number."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property

@@ -1,7 +1,5 @@
 """Units of length, mass and time of a file, and what makes its numbers SI's."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from squealpipe.parameters import brief

@@ -4,8 +4,6 @@ The paper prints no numbers. Equal springs are assumed (Fig. 5 and the isolated 
 need them); κ, μ, λ and v are left.
 """
 
-from __future__ import annotations
-
 from typing import Annotated, Any
 
 import numpy as np

@@ -6,8 +6,6 @@ A1 is the cheapest level whose answer is certain. The rule is not proved; its ma
 no cell of a random sample (:data:`SAMPLE`) needed.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Annotated, Any
 

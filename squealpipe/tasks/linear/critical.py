@@ -1,7 +1,5 @@
 """The friction at which steady sliding turns unstable, over the angles and over both dashpots."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import xarray as xr

@@ -1,7 +1,5 @@
 """Linear maps over both spring angles: quasi-static sliding, stability, natural frequencies."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import mpmath

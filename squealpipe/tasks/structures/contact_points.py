@@ -1,7 +1,5 @@
 """Beyond the point contact: an elastic pad on one, two and more contact points."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -3,8 +3,6 @@
 Snakemake finds this package by its name, in a folder that `squealpipe run` adds to its path.
 """
 
-from __future__ import annotations
-
 import sys
 import time
 from collections import Counter

@@ -1,7 +1,5 @@
 """An elastic pad on one, two and more contact points: critical friction, contact loss, timing."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes

@@ -1,7 +1,5 @@
 """Fig. 7: where the linear stability analysis (A3) is valid, and what it misses."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

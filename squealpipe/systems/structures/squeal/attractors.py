@@ -1,7 +1,5 @@
 """Settled motions told apart by their statistics."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 

@@ -6,8 +6,6 @@ the steps in friction shrink until what dies has started next to what lasts: no 
 but the end of the motion itself, is what is found.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -106,8 +104,14 @@ def followed_down(
     # down to just below the onset first: there most motions die
     for turn, frictions in enumerate(_turns(track, onset)):
         rows = _run_on(
-            plant, track.lasts, frictions, onset, tol=tol, seed=seed + turn, workers=workers
-        )  # fmt: skip
+            plant,
+            track.lasts,
+            frictions,
+            onset,
+            tol=tol,
+            seed=seed + turn,
+            workers=workers,
+        )
         for mu, row in zip(frictions.tolist(), rows, strict=True):
             if row is None:
                 track.dies = mu

@@ -3,8 +3,6 @@
 The unstable cycle is the smallest vibration that is still drawn to squeal at its friction.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Where squeal begins and where it dies as friction changes: what eigenvalues cannot see."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

@@ -5,8 +5,6 @@ run away from it exponentially it is irregular. Where they do not, and it repeat
 closes it to a cycle, whose multipliers decide. What neither repeats nor runs away is a torus.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

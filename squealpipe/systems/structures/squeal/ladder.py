@@ -1,7 +1,5 @@
 """What each method says of a structure's squeal, against the finest run, and what it costs."""
 
-from __future__ import annotations
-
 import json
 import platform
 from collections.abc import Sequence

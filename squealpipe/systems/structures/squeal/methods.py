@@ -4,8 +4,6 @@ All push along their own mode nearest to the one that is asked for, run for the 
 at the last window; complex modes say that each unstable mode rings.
 """
 
-from __future__ import annotations
-
 import statistics
 import time
 from collections.abc import Callable, Sequence

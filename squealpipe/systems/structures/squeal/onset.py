@@ -1,7 +1,5 @@
 """Where steady sliding turns unstable as friction grows."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

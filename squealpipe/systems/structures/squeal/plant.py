@@ -1,9 +1,7 @@
 """A structure as it is run: its system, its steady sliding, its modes, and a measure of states."""
 
-from __future__ import annotations
-
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import scipy.linalg as la
@@ -15,9 +13,7 @@ from squealpipe.systems.structures.modes import modes_at_rest
 from squealpipe.systems.structures.motion_system import system
 from squealpipe.systems.structures.reduction import reduce
 from squealpipe.systems.structures.spectrum import Limits, Solver, Spectrum
-
-if TYPE_CHECKING:
-    from squealpipe.systems.system import System
+from squealpipe.systems.system import System
 
 MOST_MODES = 32
 """Degrees of freedom that a system can carry."""

@@ -1,7 +1,5 @@
 """How much more damping stops what grows."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.optimize import brentq
 

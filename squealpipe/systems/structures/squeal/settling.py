@@ -5,8 +5,6 @@ so that none of it enters a number. The others grow to twice their length each t
 settled when its statistics in two windows agree and none of its modes still grows.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 

@@ -5,8 +5,6 @@ Friction is μ(|w|) tanh(w/ε) N, and the corner of N = max(p, 0), p = preload �
 wholly: at p = 0 the force is ½ s.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Which unstable modes of a structure squeal, as a dataset."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 
@@ -184,10 +182,12 @@ def _of_attractors(
     count = len(members)
     shape = count, len(plant.contacts)  # also where no start has settled
     rows = [
-        {name: np.mean([getattr(run.last, name) for run in runs], axis=0)
-         for name in ("modal", "speed", "separated", "stuck")}
+        {
+            name: np.mean([getattr(run.last, name) for run in runs], axis=0)
+            for name in ("modal", "speed", "separated", "stuck")
+        }
         for runs in members
-    ]  # fmt: skip
+    ]
     frequency = np.array([each.frequency for each in found])
     near = [nearest(plant, each) for each in frequency]
     multipliers = np.full((count, 2 * plant.size), np.nan, complex)

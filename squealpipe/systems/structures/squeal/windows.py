@@ -4,10 +4,8 @@ Instants at which a motion is looked at are drawn at random, one in each of many
 window, so that none of its statistics depends on a step that is in time with its period.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -60,9 +58,9 @@ class Rows:
     finished: np.ndarray
     length: np.ndarray
 
-    def at(self, rows: Any) -> Rows:
+    def at(self, rows: Any) -> Self:
         """Some of the runs, or one."""
-        return Rows(**{name: value[rows] for name, value in vars(self).items()})
+        return type(self)(**{name: value[rows] for name, value in vars(self).items()})
 
     @property
     def total(self) -> np.ndarray:
