@@ -2,11 +2,12 @@
 
 import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from squealpipe.schema.comparison import Reliability
@@ -83,20 +84,31 @@ def read_results(path: Path | str) -> xr.Dataset:
     Raises:
         ValueError: the file is none.
     """
-    table = shipped() if str(path) == SHIPPED else _table(Path(path))
-    entries = table["results"]
-    coordinates = {
-        "problem": list(dict.fromkeys(entry["problem"] for entry in entries)),
-        "solver": list(dict.fromkeys(entry["solver"] for entry in entries)),
-        "tol": table["tolerances"],
-    }
-    verdict = xr.DataArray(
-        int(Reliability.not_applicable), coordinates, list(coordinates)
-    )
-    for entry in entries:
-        place = {"problem": entry["problem"], "solver": entry["solver"]}
-        verdict.loc[place] = [Reliability[name] for name in entry["verdict"]]
-    return verdict.to_dataset(name="verdict")
+    try:
+        table = (
+            shipped()
+            if str(path) == SHIPPED
+            else json.loads(Path(path).read_text("utf-8"))
+        )
+        verdicts = {
+            (str(entry["problem"]), str(entry["solver"])): [
+                int(Reliability[name]) for name in entry["verdict"]
+            ]
+            for entry in table["results"]
+        }
+        problems, solvers = (
+            list(dict.fromkeys(names)) for names in zip(*verdicts, strict=True)
+        )
+        tolerances = [float(tolerance) for tolerance in table["tolerances"]]
+        none = [int(Reliability.not_applicable)] * len(tolerances)
+        cells = [[verdicts.get((p, s), none) for s in solvers] for p in problems]
+        coordinates = {"problem": problems, "solver": solvers, "tol": tolerances}
+        verdict = xr.DataArray(np.array(cells), coordinates, [*coordinates])
+        version = int(table["benchmark_version"])
+    except (ValueError, TypeError, KeyError) as error:
+        what = f"{type(error).__name__}: {error}"
+        raise ValueError(f"{path} is no JSON of results ({what})") from None
+    return verdict.to_dataset(name="verdict").assign_attrs(benchmark_version=version)
 
 
 def shipped() -> dict[str, Any]:
@@ -104,13 +116,3 @@ def shipped() -> dict[str, Any]:
     text = (files("squealpipe.benchmark") / "results.json").read_text("utf-8")
     found: dict[str, Any] = json.loads(text)
     return found
-
-
-def _table(path: Path) -> Mapping[str, Any]:
-    try:
-        table: Mapping[str, Any] = json.loads(path.read_text("utf-8"))
-        if {"tolerances", "results"} <= set(table):
-            return table
-    except (ValueError, TypeError) as error:
-        raise ValueError(f"{path} is no JSON of results: {error}") from None
-    raise ValueError(f"{path} is no JSON of results: 'tolerances' or 'results' lacks")

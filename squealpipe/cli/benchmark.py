@@ -170,7 +170,14 @@ def compare(one: Path, other: Path, /) -> int:
 
     from squealpipe.benchmark.scoring import verdicts
 
-    found, others = xr.align(_loaded(one), _loaded(other), exclude="solver")
+    pair = _loaded(one), _loaded(other)
+    versions = [each.attrs["benchmark_version"] for each in pair]
+    if versions[0] != versions[1]:
+        raise ValueError(
+            f"{one} was judged by version {versions[0]} of the benchmark, {other} by "
+            f"{versions[1]}; run the older one again"
+        )
+    found, others = xr.align(*pair, exclude="solver")
     if not found.verdict.size:
         raise ValueError(f"{one} and {other} have no problem at the same tolerance")
     print("tolerances: " + ", ".join(f"{tol:g}" for tol in found.tol.values))

@@ -7,7 +7,6 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.systems.structures.pencil import DENSE
-from squealpipe.systems.structures.squeal.onset import most_friction
 from squealpipe.systems.structures.squeal.plant import MOST_MODES
 from squealpipe.systems.structures.squeal.squealing_modes import squealing_modes
 from squealpipe.systems.structures.structure import Structure
@@ -43,7 +42,7 @@ def modes_over_friction(structure: Structure, section: Mapping[str, Any]) -> xr.
     """Complex modes of the whole structure, from no friction to twice its own."""
     points = next((n for size, n in POINTS if structure.size <= size), FEWEST)
     frictions = np.linspace(0.0, BEYOND * structure.mu or 1.0, points)
-    allowed = frictions[frictions <= most_friction(structure)]
+    allowed = frictions[frictions <= structure.friction.largest_mu]
     return structure.complex_modes(mu=allowed, frequency_max=section["frequency_max"])
 
 

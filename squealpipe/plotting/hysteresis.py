@@ -1,6 +1,7 @@
 """Squeal over friction: where it begins, and where it dies as friction falls."""
 
 import json
+from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from squealpipe.text import number
 from squealpipe.units import engineering
 
 COLOURS = (style.BLUE, style.ORANGE, style.PURPLE)
-"""Of the attractors that were followed."""
+"""Of the attractors that were followed, in turn."""
 
 
 def has_tracks(answer: xr.Dataset) -> bool:
@@ -33,7 +34,7 @@ def draw_hysteresis(axes: Axes, answer: xr.Dataset) -> None:
             axes.axvline(
                 friction, color=style.BLACK, linewidth=0.8, linestyle=line, label=label
             )
-    colours = iter(COLOURS)
+    colours = cycle(COLOURS)
     unstable: str | None = "unstable cycle"
     for place in range(answer.sizes["track"]):
         one = answer.isel(track=place)

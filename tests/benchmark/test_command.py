@@ -107,6 +107,16 @@ def test_results_as_json_say_what_the_dataset_says(tmp_path, capsys):
     assert "two results of 'DOP853'" in capsys.readouterr().err
     assert run(["benchmark", "compare", one, str(tmp_path / "mine.json")]) == 2
     assert run(["benchmark", "results", text, "-o", str(tmp_path / "more.json")]) == 2
+    other = tmp_path / "other.json"
+    for change, said in (
+        ({"benchmark_version": 1}, "by version 1 of the benchmark"),
+        ({"tolerances": table["tolerances"][:1]}, "no JSON of results"),
+        ({"results": [{**table["results"][0], "verdict": ["fine"]}]}, "'fine'"),
+        ({"results": []}, "no JSON of results"),
+    ):
+        other.write_text(json.dumps(table | change))
+        assert run(["benchmark", "compare", str(other), text]) == 2
+        assert said in capsys.readouterr().err
     assert "Traceback" not in capsys.readouterr().err
 
 

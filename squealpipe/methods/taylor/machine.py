@@ -6,7 +6,6 @@ more to vectorize or to unroll takes three quarters of the time in vain.
 
 import hashlib
 import os
-import tempfile
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import cache
@@ -28,6 +27,8 @@ _only_one_thread: Any = global_compiler_lock
 _cpu_target: Any = cpu_target
 LEVEL = 2
 """Of LLVM's optimization."""
+MOST = 2**28
+"""Bytes of code that the store keeps."""
 Write = Callable[[Any, Sequence[Any]], None]
 
 
@@ -128,13 +129,18 @@ def _kept(path: Path) -> bytes | None:
 
 
 def _keep(path: Path, code: bytes) -> None:
-    """Code into the store, where it can be written."""
+    """Code into the store, where it can be written; beyond its size what was written first goes."""
+    part = path.with_suffix(f".{os.getpid()}")
     with suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent)
         try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(hashlib.sha256(code).digest() + code)
-            Path(name).replace(path)
+            part.write_bytes(hashlib.sha256(code).digest() + code)
+            part.replace(path)
         finally:  # a full disk, say, leaves no part of a file behind
-            Path(name).unlink(missing_ok=True)
+            part.unlink(missing_ok=True)
+        held = 0
+        files = path.parent.glob("*.o")
+        for old in sorted(files, key=lambda file: -file.stat().st_mtime_ns):
+            held += old.stat().st_size
+            if held > MOST:
+                old.unlink(missing_ok=True)

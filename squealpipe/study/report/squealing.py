@@ -181,15 +181,15 @@ def onset(answer: xr.Dataset) -> Iterator[str]:
         return
     critical, outcome = float(answer.onset_mu), Outcome(int(answer.onset_outcome))
     if outcome is Outcome.already_unstable:
+        yield "Steady sliding is unstable even without friction."
+    elif outcome is Outcome.not_reached:
         yield (
-            "Steady sliding is unstable down to no friction, or small motions do not die out "
-            "below: squeal was not followed in friction."
+            "Up to twice this friction, as far as the limit of stick allows it, no mode turns "
+            "unstable."
         )
-    if outcome is Outcome.not_reached:
-        yield (
-            "Up to twice this friction no mode turns unstable, or its onset could not be located."
-        )
-    if np.isfinite(critical):
+    elif np.isnan(critical):
+        yield "Where steady sliding turns unstable could not be located."
+    else:
         yield f"{_begins(answer, critical)} {_kind(answer)}"
     for place in range(answer.sizes["track"]):
         one = answer.isel(track=place)

@@ -1,11 +1,12 @@
 """The friction of all contacts of a structure, by the laws of :mod:`squealpipe.laws`."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
 from squealpipe.laws.friction_laws import LAWS, coefficient, slope
 from squealpipe.laws.tables import is_table
-from squealpipe.parameters import TABLE, is_finite_number
+from squealpipe.parameters import TABLE
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,16 +27,11 @@ class Friction:
         for name in ("mu", "friction_law", "mu_static", "friction_speed"):
             value = TABLE[name].check(name, getattr(self, name))
             object.__setattr__(self, name, value)
-        if self.mu_static is not None:
-            if self.friction_law in LAWS:
-                onset = self.mu
-            else:
-                onset = self.factor * float(coefficient(0.0, self))
-            if self.mu_static < onset:
-                raise ValueError(
-                    f"mu_static = {self.mu_static!r}: it must be {onset!r}, the coefficient at "
-                    "speed 0, or greater"
-                )
+        if self.mu_static is not None and self.mu_static < self.onset:
+            raise ValueError(
+                f"mu_static = {self.mu_static!r}: it must be {self.onset!r}, the coefficient at "
+                "speed 0, or greater"
+            )
 
     @property
     def factor(self) -> float:
@@ -43,13 +39,23 @@ class Friction:
         return self.mu if is_table(self.friction_law) else 1.0
 
     @property
-    def static_mu(self) -> float:
-        """Largest friction in stick over the normal force."""
-        if self.mu_static is not None:
-            return self.mu_static
+    def onset(self) -> float:
+        """The coefficient at speed 0 without a limit of stick."""
         if self.friction_law in LAWS:
             return self.mu
         return self.factor * float(coefficient(0.0, self))
+
+    @property
+    def static_mu(self) -> float:
+        """Largest friction in stick over the normal force."""
+        return self.onset if self.mu_static is None else self.mu_static
+
+    @property
+    def largest_mu(self) -> float:
+        """The largest ``mu`` that the limit of stick allows, where one is given; else infinite."""
+        if self.mu_static is None or not self.onset:
+            return math.inf
+        return self.mu * self.mu_static / self.onset
 
     def coefficient(self, speed: Any) -> Any:
         """μ(w) at sliding speeds w ≥ 0, m/s."""
@@ -64,11 +70,3 @@ def default_mu(friction_law: object) -> float:
     """``mu`` where none is given: 1, a factor, with a table."""
     law = TABLE["friction_law"].check("friction_law", friction_law)
     return 1.0 if is_table(law) else 0.5
-
-
-def with_mu(friction: Friction, mu: object) -> Friction:
-    """The same law with another μ."""
-    if not is_finite_number(mu):
-        raise ValueError(f"mu = {mu!r}: a finite number is needed")
-    values = {key: getattr(friction, key) for key in friction.__dataclass_fields__}
-    return Friction(**{**values, "mu": mu})

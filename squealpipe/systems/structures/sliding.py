@@ -5,7 +5,7 @@ K q = f + Σ (nᵢ + σᵢ μᵢ tᵢ) Nᵢ, Nᵢ = max(preloadᵢ − kᵢ nᵢ
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,6 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from squealpipe.systems.structures.definition import Structure
-from squealpipe.systems.structures.friction import with_mu
 from squealpipe.systems.structures.pencil import Extended
 
 SINGULAR = 1e-13
@@ -65,7 +64,7 @@ def steady_sliding(structure: Structure, mu: float, belt_speed: float) -> Slidin
         NoSlidingError: a belt at rest; a structure that nothing holds; or contacts of which none
             can be open or closed (as where friction jams).
     """
-    friction = with_mu(structure.friction, mu)
+    friction = replace(structure.friction, mu=mu)
     speeds = structure.speeds * belt_speed
     if belt_speed == 0 and structure.contacts:
         raise NoSlidingError(

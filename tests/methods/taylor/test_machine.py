@@ -2,6 +2,7 @@
 
 import ctypes
 import errno
+import os
 from functools import cache
 
 import numpy as np
@@ -55,6 +56,22 @@ def test_a_damaged_file_of_the_store_is_written_anew(compiled, tmp_path, kept):
     assert compiled() == 0.75
     ((path, whole),) = files(tmp_path).items()
     path.write_bytes(whole[:kept])
+    assert compiled() == 0.75
+    assert files(tmp_path) == {path: whole}
+
+
+def test_the_store_is_readable_as_others_are_and_forgets_what_it_kept_first(
+    compiled, tmp_path, monkeypatch
+):
+    (tmp_path / "another").write_text("")
+    assert compiled() == 0.75
+    ((path, whole),) = files(tmp_path).items()
+    assert path.stat().st_mode == (tmp_path / "another").stat().st_mode
+    old = path.with_name("old.o")
+    old.write_bytes(whole)
+    os.utime(old, (0, 0))
+    path.unlink()
+    monkeypatch.setattr(machine, "MOST", len(whole))
     assert compiled() == 0.75
     assert files(tmp_path) == {path: whole}
 

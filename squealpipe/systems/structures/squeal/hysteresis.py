@@ -35,7 +35,8 @@ def hysteresis(
         settled: one run of each attractor.
     """
     options: dict[str, Any] = {"tol": tol, "seed": seed, "workers": workers}
-    onset, mu = first_onset(plant), plant.structure.mu
+    found, mu = first_onset(plant), plant.structure.mu
+    onset = found if isinstance(found, FirstOnset) else None
     tracks: dict[int, Track] = {}
     decays = onset.damped if onset else plant.decays
     limit = onset.mu if onset else math.inf
@@ -51,7 +52,7 @@ def hysteresis(
             track = tracks[JUST_ABOVE] = followed_down(plant, begun, limit, **options)
             kind = _kind_of(track, limit)
     _locate_folds(plant, list(tracks.values()), limit)
-    return {**_onset(onset, kind, decays), **_tracks(tracks, limit)}
+    return {**_onset(found, kind), **_tracks(tracks, limit)}
 
 
 def _locate_folds(plant: Plant, tracks: list[Track], onset: float) -> None:
@@ -86,15 +87,16 @@ def _lasts_below(track: Track, onset: float) -> bool:
     return track.lasts.mu < onset
 
 
-def _onset(onset: FirstOnset | None, kind: OnsetKind, decays: bool) -> dict[str, Any]:
-    outcome = Outcome.converged
-    if onset is None:
-        outcome = Outcome.not_reached if decays else Outcome.already_unstable
-    elif kind is OnsetKind.undetermined:
-        outcome = Outcome.unresolved
+def _onset(found: FirstOnset | Outcome, kind: OnsetKind) -> dict[str, Any]:
+    mu, frequency = np.nan, np.nan
+    outcome = found
+    if isinstance(found, FirstOnset):
+        mu, frequency = found.mu, found.frequency
+        unknown = kind is OnsetKind.undetermined
+        outcome = Outcome.unresolved if unknown else Outcome.converged
     return {
-        "onset_mu": onset.mu if onset else np.nan,
-        "onset_frequency": onset.frequency if onset else np.nan,
+        "onset_mu": mu,
+        "onset_frequency": frequency,
         "onset_kind": kind,
         "onset_outcome": outcome,
     }

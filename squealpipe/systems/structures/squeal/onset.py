@@ -1,14 +1,14 @@
 """Where steady sliding turns unstable as friction grows."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
+from squealpipe.schema import Outcome
 from squealpipe.schema.squealing import ABOVE
 from squealpipe.schema.structures import Onset
 from squealpipe.systems.structures.complex_modes import complex_modes
-from squealpipe.systems.structures.definition import Structure
 from squealpipe.systems.structures.squeal.plant import Plant
 
 BEYOND, POINTS = 2.0, 24
@@ -34,34 +34,30 @@ class FirstOnset:
     damped: bool
 
 
-def first_onset(plant: Plant) -> FirstOnset | None:
-    """None if there is none up to twice the structure's friction, or none that is located."""
+def first_onset(plant: Plant) -> FirstOnset | Outcome:
+    """Where it is; or why it is not known.
+
+    Already unstable: without friction. Not reached: up to twice the structure's friction, or to
+    what its limit of stick allows, no mode turns unstable. Unresolved: it could not be located.
+    """
     structure, modes = plant.structure, plant.modes
+    most = structure.friction.largest_mu
     if (modes.onset == Onset.unstable_throughout).any():
-        return None
+        return Outcome.already_unstable
     if not plant.unstable.size:
         frictions = np.linspace(1.0, BEYOND, POINTS) * structure.mu
-        frictions = frictions[frictions <= most_friction(structure)]
+        frictions = frictions[frictions <= most]
         if len(frictions) < 2 or not structure.mu:
-            return None
+            return Outcome.not_reached
         modes = complex_modes(structure, mu=frictions)
-    critical = modes.critical_mu.values
-    mu = float(np.nanmin(critical, initial=math.inf))
-    if ABOVE * mu > most_friction(structure) or not math.isfinite(mu):
-        return None
+    mu = float(np.nanmin(modes.critical_mu.values, initial=math.inf))
+    if ABOVE * mu > most or not math.isfinite(mu):
+        lost = (modes.onset == Onset.not_followed).any()
+        return Outcome.unresolved if lost else Outcome.not_reached
     above = Plant(structure.with_(mu=ABOVE * mu))
     if not above.unstable.size:
-        return None
+        return Outcome.unresolved
     frequency = float(above.frequencies[above.unstable[0]])
     return FirstOnset(
         mu, frequency, above, Plant(structure.with_(mu=BELOW * mu)).decays
     )
-
-
-def most_friction(structure: Structure) -> float:
-    """Friction of sliding that the limit of stick allows, where one is given; else infinite."""
-    friction = structure.friction
-    if friction.mu_static is None or not friction.mu:
-        return math.inf
-    onset = replace(friction, mu_static=None).static_mu
-    return friction.mu * friction.mu_static / onset if onset else math.inf
