@@ -50,7 +50,7 @@ def test_every_kernel_file_is_part_of_the_digest():
     """A kernel in a file that is not listed would be used stale after an edit."""
     files = (PACKAGE / "methods").rglob("*.py")
     using = {path.name for path in files if "\n@compiled\n" in path.read_text("utf-8")}
-    assert len(using) > 4
+    assert len(using) > 2
     assert using <= {path.name for path in compiled.kernel_sources()}
 
 

@@ -1,18 +1,10 @@
 """Branches of doubled period that leave a branch of A4 at a period doubling, in scaled units."""
 
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import NDArray
 
-from squealpipe.methods.orbits.orbits import (
-    Orbit,
-    TraceEnd,
-    TraceSettings,
-    orbit_across,
-    rest_jacobian,
-    trace_branch,
-)
+from squealpipe.methods.orbits.orbits import Orbit, OrbitEquations, orbit_across
+from squealpipe.methods.orbits.tracing import TraceEnd, TraceSettings, trace_branch
 from squealpipe.solvers.a4.system import ScaledSystem
 
 OFFSETS = (1e-4, 3e-4, 1e-3, 3e-3)
@@ -31,9 +23,9 @@ def doubled_start(
     Both are of (x, y, T), with the half of the doubled period.
     """
     candidates = []
-    for rest in (orbit.point[:2], orbit.other_rest(scene.system)):
+    for rest in (orbit.point[:2], orbit.rest):
         start = np.array([*rest, 2.0 * orbit.point[2]])
-        jacobian = rest_jacobian(scene.system, start)[:, :2]
+        jacobian = OrbitEquations(scene.system).evaluate(start)[1][:, :2]
         _, values, vectors = np.linalg.svd(jacobian)
         direction = vectors[-1] * (1.0 if vectors[-1][1] >= 0.0 else -1.0)
         candidates.append((values[-1] / values[0], start, np.append(direction, 0.0)))
@@ -51,16 +43,18 @@ def doubled_branch_from(
     start, direction = doubled_start(scene, orbit)
     size = 1.0 + float(np.linalg.norm(start))
     index = orbit.stability_index**2 - 2.0
-    orbits = [Orbit(start, np.empty(2 * len(orbit.switches)), index, orbit.residual)]
+    orbits = [
+        Orbit(
+            start, start[:2], np.empty(2 * len(orbit.switches)), index, orbit.residual
+        )
+    ]
     for offset in OFFSETS:
         found = orbit_across(scene.system, start + offset * size * direction, direction)
         if found is None:
             return orbits, TraceEnd.branch_lost
         orbits.append(found)
     away = orbits[-1].point - start
-    settings = replace(
-        TraceSettings(), first_step=OFFSETS[-1], linear_x=abs(float(start[0]))
-    )
+    settings = TraceSettings(first_step=OFFSETS[-1], linear_x=abs(float(start[0])))
     beyond, end = trace_branch(
         scene.system, orbits[-1].point, away, y_max, settings, _SPACING
     )

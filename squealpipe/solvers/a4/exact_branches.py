@@ -4,12 +4,8 @@ import math
 
 import numpy as np
 
-from squealpipe.methods.orbits.orbits import (
-    Orbit,
-    decoupled_half_period,
-    solve_orbit,
-    trace_branch,
-)
+from squealpipe.methods.orbits.orbits import Orbit, decoupled_half_period, solve_orbit
+from squealpipe.methods.orbits.tracing import trace_branch
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a4.orbits import check_peak, grazing_start, linear_orbit
 from squealpipe.solvers.a4.system import ScaledSystem
@@ -80,9 +76,13 @@ def isolated_orbits(scene: ScaledSystem, mode: int, x_max: float) -> list[Orbit]
     x_rest, y_rest = scene.rest
     return [
         Orbit(
-            np.array([x_rest + float(a), y_rest, half_period]), np.empty(0), index, 0.0
+            np.array([x_rest + a, y_rest, half_period]),
+            np.array([x_rest - a, y_rest]),
+            np.empty(0),
+            index,
+            0.0,
         )
-        for a in np.linspace(0.0, x_max, _ISOLATED_POINTS + 1)[1:]
+        for a in np.linspace(0.0, x_max, _ISOLATED_POINTS + 1)[1:].tolist()
     ]
 
 

@@ -10,14 +10,12 @@ from numpy.typing import NDArray
 from squealpipe.laws.friction import slides
 from squealpipe.methods.orbits.orbits import (
     Orbit,
-    TraceEnd,
-    TraceSettings,
     decoupled_half_period,
-    is_primitive,
-    orbit_on_branch,
     shape,
     solve_orbit,
 )
+from squealpipe.methods.orbits.shorter_orbits import is_primitive
+from squealpipe.methods.orbits.tracing import TraceEnd, TraceSettings, orbit_on_branch
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.schema.backbones import Assumption
@@ -90,7 +88,8 @@ def linear_orbit(scene: ScaledSystem, mode: int, y_peak: float) -> Orbit:
     half_period = math.pi / scene.omega(mode)
     x0 = scene.rest[0] + scene.slope(mode) * (y_peak - scene.rest[1])
     index = 2.0 * math.cos(2.0 * half_period * scene.omega(3 - mode))
-    return Orbit(np.array([x0, y_peak, half_period]), np.empty(0), index, 0.0)
+    point = np.array([x0, y_peak, half_period])
+    return Orbit(point, 2.0 * scene.rest - point[:2], np.empty(0), index, 0.0)
 
 
 @dataclass(frozen=True)

@@ -11,10 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from squealpipe.methods.branch_line import ZERO_ROUND_OFF
 from squealpipe.systems.cycles.event_map import FREE
 from squealpipe.systems.cycles.solution import Cycle
 
-MARGIN_ROUND_OFF = 1e-9
+MARGIN_ROUND_OFF = ZERO_ROUND_OFF
 """Margin below zero that is round-off."""
 _LATE = 1e-6
 """Share of a leg after which a surface that it starts from is watched."""

@@ -17,6 +17,7 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import barycentric_interpolate
 
+from squealpipe.methods.branch_line import Line
 from squealpipe.methods.continuation import ContinuationState
 from squealpipe.methods.progress import alone
 from squealpipe.schema import Outcome, flag_table
@@ -32,7 +33,6 @@ from squealpipe.systems.cycles.line import (
     AT,
     STEPS,
     TESTS,
-    Line,
     Test,
     branching_label,
     explains,
@@ -104,7 +104,7 @@ def _changes_sign(
     return bool(np.isfinite(product) and product < 0.0)
 
 
-def _jumps(line: Line, share: float, beyond: Cycle) -> bool:
+def _jumps(line: Line[Cycle], share: float, beyond: Cycle) -> bool:
     """Whether the stability is another one beyond a change of the events."""
     if share <= _BEFORE:
         return False
@@ -361,7 +361,9 @@ class Follower:
         following = replace(following, step=self._next_length(state, following))
         return BranchStep(special, *renewed(following, reached))
 
-    def _smooth(self, line: Line, last: float) -> list[tuple[float, Label]] | None:
+    def _smooth(
+        self, line: Line[Cycle], last: float
+    ) -> list[tuple[float, Label]] | None:
         """Shares and labels of what happens in a step, in order; None where one is not found."""
         first, reached, found = line.known[0.0], line.known[1.0], []
         if self._has_shrunk(reached[1]):
@@ -389,7 +391,7 @@ class Follower:
                 found.append((share, label))
         return sorted(found) if self._explains(line, before, found) else None
 
-    def _is_new(self, label: Label, line: Line, end: float) -> bool:
+    def _is_new(self, label: Label, line: Line[Cycle], end: float) -> bool:
         """Whether a sign change is not that of a fold, or the noise of a family of cycles."""
         if label != Label.pitchfork:
             return True
@@ -398,7 +400,7 @@ class Follower:
         return not (folds or any(cycle.is_family_member for _, cycle in ends))
 
     def _explains(
-        self, line: Line, end: float, found: list[tuple[float, Label]]
+        self, line: Line[Cycle], end: float, found: list[tuple[float, Label]]
     ) -> bool:
         """Whether the labels are why the number of unstable multipliers changes."""
         (state, cycle), (_, reached) = line.known[0.0], line.known[1.0]
@@ -413,7 +415,7 @@ class Follower:
         return explains(change, [label for _, label in found])
 
     def _changed(
-        self, line: Line, found: list[tuple[float, Label]], last: float
+        self, line: Line[Cycle], found: list[tuple[float, Label]], last: float
     ) -> BranchStep | None:
         """A step to where the order of the events changes, and round that; None if unclear."""
         state, there = line.known[0.0][0], line.at(last)
@@ -438,7 +440,7 @@ class Follower:
         )
 
     def _shorter(
-        self, line: Line, cycle: Cycle, reached: Cycle
+        self, line: Line[Cycle], cycle: Cycle, reached: Cycle
     ) -> tuple[bool, float | None]:
         """Whether a cycle of a part of the period may lie in a step, and where it is met."""
         for parts in (2, 3):

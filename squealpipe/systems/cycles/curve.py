@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from squealpipe.methods.branch_line import Line
 from squealpipe.methods.continuation import ContinuationState, PseudoArclength
 from squealpipe.schema import flag_table
 from squealpipe.schema.branch_labels import Label, Meeting
@@ -32,7 +33,7 @@ from squealpipe.systems.cycles.branch import started
 from squealpipe.systems.cycles.event_map import FREE, EventMap, PhaseCondition
 from squealpipe.systems.cycles.event_order import label_of, order_of, run_of
 from squealpipe.systems.cycles.flow import Flow, LegEnd, Vector
-from squealpipe.systems.cycles.line import PRECISE, STEPS, Line, flip
+from squealpipe.systems.cycles.line import PRECISE, STEPS, flip
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.labels import attributes_of, flag, labels
 from squealpipe.text import suggestion
@@ -371,7 +372,7 @@ class _Way:
             yield self._point(following, Meeting.regular)
             state = following
 
-    def _met(self, line: Line) -> dict[float, Meeting]:
+    def _met(self, line: Line[Cycle]) -> dict[float, Meeting]:
         """Shares of a step at which something else happens."""
         found: dict[float, Meeting] = {}
         first, last = (line.known[share][0].point for share in (0.0, 1.0))
@@ -385,7 +386,7 @@ class _Way:
                     found[share] = label
         return found
 
-    def _goes_on(self, line: Line, share: float) -> ContinuationState | None:
+    def _goes_on(self, line: Line[Cycle], share: float) -> ContinuationState | None:
         """The curve's next point with the events that motions have beyond where these change."""
         here, old = line.at(share), self.curve
         for beyond in (1e-6, 1e-4, 1e-2) if old.label in RETURNS else ():
@@ -421,7 +422,7 @@ class _Way:
     def _is_cycle(self, state: ContinuationState) -> bool:
         return self._cycle(state).period > 0.0
 
-    def _end(self, line: Line) -> tuple[float, Meeting, str] | None:
+    def _end(self, line: Line[Cycle]) -> tuple[float, Meeting, str] | None:
         """(share of the step, label, reason) where the curve ends."""
         ends, point = [], line.known[1.0][0].point
         if self.inside(point) <= 0.0:

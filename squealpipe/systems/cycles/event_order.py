@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squealpipe.methods.branch_line import Line
 from squealpipe.methods.continuation import ContinuationState
 from squealpipe.schema.branch_labels import Label
 from squealpipe.systems.cycles.admissible import (
@@ -27,7 +28,7 @@ from squealpipe.systems.cycles.guess import (
     merged,
     without_brief_legs,
 )
-from squealpipe.systems.cycles.line import ALONG, STEPS, Line
+from squealpipe.systems.cycles.line import ALONG, STEPS
 from squealpipe.systems.cycles.solution import Cycle
 
 if TYPE_CHECKING:
@@ -86,7 +87,7 @@ def least_margin(_: ContinuationState | None, cycle: Cycle) -> float:
 class NewOrder:
     """How a branch goes on from where the order of its events changes."""
 
-    line: Line
+    line: Line[Cycle]
     share: float
     there: tuple[ContinuationState, Cycle]
     zero: dict[Margin, float]

@@ -1,20 +1,16 @@
-"""A branch between two of its points, and the functions that vanish where it has a special one."""
+"""Steps along a branch of cycles, and the functions that vanish where it has a special point."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import brentq
 
 from squealpipe.methods.continuation import (
     ContinuationSettings,
     ContinuationState,
-    PathEquations,
     PseudoArclength,
 )
 from squealpipe.schema.branch_labels import Label
-from squealpipe.systems.cycles.admissible import MARGIN_ROUND_OFF
-from squealpipe.systems.cycles.flow import Vector
 from squealpipe.systems.cycles.solution import Cycle
 
 # Round-off in the closing error is eps times the longest length over the cycle's: 3e-9 for
@@ -32,7 +28,6 @@ ALONG, AT = (
     for steps in (STEPS, PRECISE)
 )
 """Along a branch, and at a special point, which is located to round-off."""
-_ZERO = 1e-12
 _NEUTRAL = 1e-6
 """Distance of a multiplier from the unit circle on which it counts as on it."""
 _ASIDE = 1e-4
@@ -128,60 +123,3 @@ def multiplier_change(one: Cycle, other: Cycle) -> float:
     first, second = one.multipliers, other.multipliers
     distance = np.abs(first[:, None] - second) / (1.0 + np.abs(first[:, None]))
     return float(max(distance.min(axis=0).max(), distance.min(axis=1).max()))
-
-
-class Line:
-    """A branch, or a curve, of one event map between two points of it, and a little beyond."""
-
-    def __init__(
-        self,
-        algorithm: PseudoArclength,
-        equations: PathEquations,
-        first: tuple[ContinuationState, Cycle],
-        last: tuple[ContinuationState, Cycle],
-        cycle_at: Callable[[Vector], Cycle],
-    ) -> None:
-        self.algorithm, self.equations, self.cycle_at = algorithm, equations, cycle_at
-        self.known = {0.0: first, 1.0: last}
-        self.normal = first[0].tangent
-        self.reach = float(self.normal @ (last[0].point - first[0].point))
-
-    def at(self, share: float) -> tuple[ContinuationState, Cycle]:
-        """The point over a share of the step; an ArithmeticError where there is none."""
-        if share not in self.known:
-            shares = sorted(self.known)
-            high = next((s for s in shares if s > share), shares[-1])
-            low = shares[shares.index(high) - 1]
-            (one, _), (other, _) = self.known[low], self.known[high]
-            width, part = high - low, (share - low) / (high - low)
-            step = other.point - one.point
-            slopes = [
-                s.tangent * (width * self.reach / float(self.normal @ s.tangent)) - step
-                for s in (one, other)
-            ]
-            bend = (1.0 - part) * slopes[0] - part * slopes[1]
-            if not np.linalg.norm(bend) < np.linalg.norm(step):
-                bend = np.zeros_like(step)
-            guess = one.point + part * step + part * (1.0 - part) * bend
-            state = self.algorithm.solve(
-                self.equations, guess, self.normal, self.known[0.0][0].step
-            )
-            if state is None:
-                raise ArithmeticError
-            self.known[share] = state, self.cycle_at(state.point)
-        return self.known[share]
-
-    def root(self, test: Test, end: float = 1.0) -> float | None:
-        """Where a test is zero before a share of the step; None where it is not found."""
-
-        def value(share: float) -> float:
-            found = test(*self.at(share))
-            return 1.0 if found == np.inf else found
-
-        try:
-            first = value(0.0)
-            if first <= 0.0 and value(end) < 0.0:
-                return 0.0 if first > -MARGIN_ROUND_OFF else None
-            return float(brentq(value, 0.0, end, xtol=_ZERO, rtol=_ZERO, maxiter=60))
-        except (ArithmeticError, ValueError, RuntimeError):
-            return None

@@ -17,7 +17,8 @@ from squealpipe.methods.balance.harmonic_balance import (
     series_extremes,
     series_speed,
 )
-from squealpipe.methods.orbits.orbits import Orbit, special_points
+from squealpipe.methods.orbits.orbits import Orbit
+from squealpipe.methods.orbits.special_points import special_points
 from squealpipe.parameters import SCENES, Parameters, brief
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.backbones import BACKBONE

@@ -7,7 +7,8 @@ import xarray as xr
 
 from squealpipe.codes import SpecialPoint
 from squealpipe.laws.springs import geometry, linear_stiffness
-from squealpipe.methods.orbits.orbits import Orbit, special_points
+from squealpipe.methods.orbits.orbits import Orbit
+from squealpipe.methods.orbits.special_points import special_points
 from squealpipe.models.a4 import first_integral_value
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build

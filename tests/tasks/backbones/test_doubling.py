@@ -7,7 +7,8 @@ import pytest
 
 from squealpipe.laws.springs import geometry, linear_stiffness
 from squealpipe.methods.orbits.orbit_shape import sample
-from squealpipe.methods.orbits.orbits import is_primitive, solve_orbit
+from squealpipe.methods.orbits.orbits import solve_orbit
+from squealpipe.methods.orbits.shorter_orbits import is_primitive
 from squealpipe.models.a4 import first_integral_value
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a4.system import scaled_system

@@ -10,12 +10,9 @@ import pytest
 
 from squealpipe.laws.springs import geometry, linear_stiffness
 from squealpipe.methods.orbits.orbit_shape import sample
-from squealpipe.methods.orbits.orbits import (
-    TraceEnd,
-    is_primitive,
-    orbit_on_branch,
-    solve_orbit,
-)
+from squealpipe.methods.orbits.orbits import solve_orbit
+from squealpipe.methods.orbits.shorter_orbits import is_primitive
+from squealpipe.methods.orbits.tracing import TraceEnd, orbit_on_branch
 from squealpipe.models.a4 import first_integral_value
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a4.orbits import grazing_start
