@@ -17,7 +17,7 @@ from squealpipe.systems.structures.elastic_pad import YOUNG, elastic_pad
 from squealpipe.systems.structures.squeal.plant import Plant
 from squealpipe.systems.structures.squeal.settling import WIDE
 from squealpipe.systems.structures.squeal.squealing_modes import squealing_modes
-from squealpipe.systems.structures.squeal.windows import run
+from squealpipe.systems.structures.squeal.windows import Running, run
 
 STIFFER = 100.0
 """Modulus of the stiff pad, over that of friction material."""
@@ -181,7 +181,9 @@ def _forces(pad: Any, motion: xr.Dataset, tol: float) -> np.ndarray:
     start = np.concatenate([motion.displacement.values, motion.velocity.values])
     times = np.arange(LONG * EACH) / (EACH * float(motion.dominant_frequency))
     # several at once run in code that is compiled already
-    samples = run(plant, np.tile(start, (WIDE, 1)), times[1:], tol)["samples"][0]
+    samples = run(plant, np.tile(start, (WIDE, 1)), times[1:], Running(tol))["samples"][
+        0
+    ]
     states = np.concatenate([start[None], samples])[:, : pad.size]
     pressed = pad.preloads - states @ pad.normals * pad.stiffnesses
     return np.asarray(np.maximum(pressed, 0.0).T / pad.preloads[:, None])

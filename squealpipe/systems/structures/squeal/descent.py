@@ -24,7 +24,7 @@ from squealpipe.systems.structures.squeal.settling import (
     at_rest_regimes,
     difference,
 )
-from squealpipe.systems.structures.squeal.windows import Rows, run_window
+from squealpipe.systems.structures.squeal.windows import Rows, Running, run_window
 
 SIDE_BY_SIDE = 8
 """Frictions of one turn, run together."""
@@ -84,34 +84,17 @@ class Track:
         return sorted(self.states, key=lambda each: -each.mu)
 
 
-def followed_down(
-    plant: Plant,
-    start: TrackState,
-    onset: float,
-    *,
-    tol: float,
-    seed: int,
-    workers: int | None,
-) -> Track:
+def followed_down(plant: Plant, start: TrackState, onset: float, how: Running) -> Track:
     """Follow a motion down from a friction, to where it dies below the onset of steady sliding.
 
     Args:
         plant: whose system is run, at any friction.
         onset: friction below which small motions die out.
-        tol: tolerance of the Taylor integrator.
     """
     track = Track([start])
     # down to just below the onset first: there most motions die
     for turn, frictions in enumerate(_turns(track, onset)):
-        rows = _run_on(
-            plant,
-            track.lasts,
-            frictions,
-            onset,
-            tol=tol,
-            seed=seed + turn,
-            workers=workers,
-        )
+        rows = _run_on(plant, track.lasts, frictions, onset, how.turn(turn))
         for mu, row in zip(frictions.tolist(), rows, strict=True):
             if row is None:
                 track.dies = mu
@@ -150,14 +133,7 @@ def _turns(track: Track, onset: float) -> Iterator[np.ndarray]:
 
 
 def _run_on(
-    plant: Plant,
-    start: TrackState,
-    frictions: np.ndarray,
-    onset: float,
-    *,
-    tol: float,
-    seed: int,
-    workers: int | None,
+    plant: Plant, start: TrackState, frictions: np.ndarray, onset: float, how: Running
 ) -> list[Rows | None]:
     """What a motion becomes at other frictions; None where it dies out."""
     count = len(frictions)
@@ -175,11 +151,9 @@ def _run_on(
             plant,
             states[wide],
             FIRST * 2.0**doubling / plant.slowest,
-            regimes=regimes[wide],
-            tol=tol,
-            seed=seed + doubling,
-            workers=workers,
-            frictions=frictions[wide],
+            how.turn(doubling),
+            regimes[wide],
+            frictions[wide],
         )
         for place, row in enumerate(rows):
             now, earlier = window.at(place), before[row]
@@ -196,9 +170,7 @@ def _run_on(
     return [ended[row] for row in range(count)]
 
 
-def just_above(
-    onset: FirstOnset, plant: Plant, *, tol: float, seed: int, workers: int | None
-) -> TrackState | None:
+def just_above(onset: FirstOnset, plant: Plant, how: Running) -> TrackState | None:
     """What a small push ends in just above the onset; None where it is not at its end in time."""
     above = onset.above
     place = int(above.unstable[0])
@@ -209,18 +181,13 @@ def just_above(
         plant,
         np.tile(above.pushed(place, PUSH), (WIDE, 1)),
         min(GROWTH / rate, LONGEST_GROWTH * period),
-        regimes=None,
-        tol=tol,
-        seed=seed,
-        workers=workers,
+        how,
         frictions=frictions,
     ).at(0)
     if not window.finished:
         return None
     begun = TrackState(ABOVE * onset.mu, window.final, window.regimes, 0.0, 0.0)
-    row = _run_on(
-        plant, begun, frictions[:1], onset.mu, tol=tol, seed=seed, workers=workers
-    )[0]
+    (row,) = _run_on(plant, begun, frictions[:1], onset.mu, how)
     # where nothing switches it still grows
     return state_of(plant, begun.mu, row) if row is not None and row.events else None
 

@@ -19,6 +19,7 @@ from squealpipe.systems.structures.squeal.fold import add_fold
 from squealpipe.systems.structures.squeal.onset import FirstOnset, first_onset
 from squealpipe.systems.structures.squeal.plant import Plant
 from squealpipe.systems.structures.squeal.settling import Settled
+from squealpipe.systems.structures.squeal.windows import Running
 
 FOLLOWED = 3
 """Attractors that are followed at most, those of most random starts."""
@@ -26,15 +27,12 @@ ALIKE = 0.05
 """Largest difference of levels at which two tracks that end at one friction are one motion."""
 
 
-def hysteresis(
-    plant: Plant, settled: list[Settled], *, tol: float, seed: int, workers: int | None
-) -> dict[str, Any]:
+def hysteresis(plant: Plant, settled: list[Settled], how: Running) -> dict[str, Any]:
     """Variables of the onset and of tracks: motions followed down in friction until they die.
 
     Args:
         settled: one run of each attractor.
     """
-    options: dict[str, Any] = {"tol": tol, "seed": seed, "workers": workers}
     found, mu = first_onset(plant), plant.structure.mu
     onset = found if isinstance(found, FirstOnset) else None
     tracks: dict[int, Track] = {}
@@ -44,12 +42,12 @@ def hysteresis(
         moving = [place for place, each in enumerate(settled) if not each.quiet]
         for place in moving[:FOLLOWED]:
             start = state_of(plant, mu, settled[place].last)
-            tracks[place] = followed_down(plant, start, limit, **options)
+            tracks[place] = followed_down(plant, start, limit, how)
     kind = OnsetKind.undetermined
     if onset and decays:
-        begun = just_above(onset, plant, **options)
+        begun = just_above(onset, plant, how)
         if begun:
-            track = tracks[JUST_ABOVE] = followed_down(plant, begun, limit, **options)
+            track = tracks[JUST_ABOVE] = followed_down(plant, begun, limit, how)
             kind = _kind_of(track, limit)
     _locate_folds(plant, list(tracks.values()), limit)
     return {**_onset(found, kind), **_tracks(tracks, limit)}

@@ -17,7 +17,7 @@ from squealpipe.systems.cycles.find import find_cycle
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.structures.squeal.plant import Plant
 from squealpipe.systems.structures.squeal.settling import Settled
-from squealpipe.systems.structures.squeal.windows import run, strongest_line
+from squealpipe.systems.structures.squeal.windows import Running, run, strongest_line
 
 BESIDE, OFF = 7, 1e-8
 """Runs beside the motion, and how far off they start, over its extent."""
@@ -55,9 +55,7 @@ class Described:
     amplitudes: np.ndarray
 
 
-def described(
-    plant: Plant, settled: Settled, *, tol: float, seed: int, workers: int | None
-) -> Described:
+def described(plant: Plant, settled: Settled, how: Running) -> Described:
     """Run on from where a start has settled."""
     nothing = np.empty(0)
     if settled.quiet:
@@ -69,7 +67,7 @@ def described(
     count = int(min(np.ceil(length / step), MOST_SAMPLES))
     length = count * step
     times = step * np.arange(1, count + 1)
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(how.seed)
     base = settled.last.final
     extent = float(plant.sizes(base - plant.sliding))
     directions = rng.standard_normal((BESIDE, base.size)) * np.abs(base - plant.sliding)
@@ -78,9 +76,7 @@ def described(
     # all start in the regimes of the motion, but for a contact that is just at a switch
     regimes = np.tile(settled.last.regimes, (len(states), 1))
     room = int(2.0 * length * settled.last.events / settled.last.length) + 64
-    raw = run(
-        plant, states, times, tol, regime=regimes, workers=workers, log_events=room
-    )
+    raw = run(plant, states, times, how, regime=regimes, log_events=room)
     samples = raw["samples"]
     modal = plant.modal_velocities(samples)
     omega, amplitude = amplitude_spectrum(np.moveaxis(modal, -1, 1), step)

@@ -23,6 +23,7 @@ from squealpipe.systems.structures.squeal.settling import WIDE, stays
 from squealpipe.systems.structures.squeal.smoothed import Samples, Smoothed
 from squealpipe.systems.structures.squeal.windows import (
     Rows,
+    Running,
     run,
     run_window,
     strongest_line,
@@ -167,9 +168,7 @@ def exact_told(
     )
 
     def go(span: float, states: np.ndarray, regimes: Any, seed: int) -> Rows:
-        return run_window(
-            plant, states, span, regimes=regimes, tol=tol, seed=seed, workers=1
-        )
+        return run_window(plant, states, span, Running(tol, seed, 1), regimes)
 
     def ask() -> list[Rows]:
         rows = [go(horizon.growing, starts, None, 0)]
@@ -301,14 +300,9 @@ def _exact_ends(
     """Of each push, over the starts that belong to it; the frequency from a run behind."""
     step = 1.0 / (FINEST * plant.fastest)
     length = int(min(np.ceil(float(now.length[0]) / step), MOST_SAMPLES))
-    raw = run(
-        plant,
-        now.final,
-        step * np.arange(1, length + 1),
-        tol,
-        workers=1,
-        regime=now.regimes,
-    )
+    times = step * np.arange(1, length + 1)
+    how = Running(tol, workers=1)
+    raw = run(plant, now.final, times, how, regime=now.regimes)
     lines = [
         strongest_line(plant.modal_velocities(each), step) for each in raw["samples"]
     ]

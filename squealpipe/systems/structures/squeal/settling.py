@@ -12,7 +12,12 @@ import numpy as np
 
 from squealpipe.methods.progress import alone
 from squealpipe.systems.structures.squeal.plant import Plant
-from squealpipe.systems.structures.squeal.windows import BLOCKS, Rows, run_window
+from squealpipe.systems.structures.squeal.windows import (
+    BLOCKS,
+    Rows,
+    Running,
+    run_window,
+)
 from squealpipe.systems.trace import TIME
 
 GROWTH = np.log(1e4)
@@ -80,13 +85,7 @@ def horizon(plant: Plant, t_end: float | None) -> tuple[float, float, float]:
 
 
 def settle(
-    plant: Plant,
-    states: np.ndarray,
-    *,
-    t_end: float | None,
-    tol: float,
-    seed: int,
-    workers: int | None,
+    plant: Plant, states: np.ndarray, t_end: float | None, how: Running
 ) -> list[Settled]:
     """Run all starts until each has settled, or the time has passed."""
     growing, length, most = horizon(plant, t_end)
@@ -103,15 +102,8 @@ def settle(
         while rows := [row for row in range(count) if row not in settled]:
             show(1.0 - len(rows) / count * (1.0 - elapsed / most))
             wide = np.array([*rows, *rows * WIDE])[: max(len(rows), WIDE)]
-            window = run_window(
-                plant,
-                states[wide],
-                span,
-                regimes=None if regimes is None else regimes[wide],
-                tol=tol,
-                seed=seed + turn,
-                workers=workers,
-            )
+            started_in = None if regimes is None else regimes[wide]
+            window = run_window(plant, states[wide], span, how.turn(turn), started_in)
             if regimes is None:
                 regimes = np.zeros((count, window.regimes.shape[1]), np.int64)
             for place, row in enumerate(rows):

@@ -17,6 +17,7 @@ from squealpipe.systems.structures.squeal.kinds import Described, described
 from squealpipe.systems.structures.squeal.plant import PUSH, Plant
 from squealpipe.systems.structures.squeal.remedies import added_damping
 from squealpipe.systems.structures.squeal.settling import Settled, settle
+from squealpipe.systems.structures.squeal.windows import Running
 from squealpipe.validation import Natural, Positive, Seed, Tolerance, Workers, checked
 
 LINES = 1024
@@ -75,23 +76,14 @@ def squealing_modes(
     if not pushes:  # nothing grows: a push along the mode that decays slowest
         pushes = [plant.pushed(int(plant.spectrum.values.real.argmax()), PUSH)]
     drawn = plant.random_states(samples, seed)
-    settled = settle(
-        plant,
-        np.concatenate([pushes, drawn]),
-        t_end=t_end,
-        tol=tol,
-        seed=seed,
-        workers=workers,
-    )
+    how = Running(tol, seed, workers)
+    settled = settle(plant, np.concatenate([pushes, drawn]), t_end, how)
     numbers = grouped(settled, len(pushes))
     members = [
         [run for run, at in zip(settled, numbers, strict=True) if at == number]
         for number in range(numbers.max(initial=NO_ATTRACTOR) + 1)
     ]
-    found = [
-        described(plant, runs[0], tol=tol, seed=seed, workers=workers)
-        for runs in members
-    ]
+    found = [described(plant, runs[0], how) for runs in members]
     of_mode = _of_modes(plant, settled, numbers, found)
     of_attractor = _of_attractors(plant, members, found)
     shares = _shares(numbers[len(pushes) :], len(members))
@@ -102,9 +94,7 @@ def squealing_modes(
         verdict = Verdict(int(of_attractor["motion"][first]))
     below = {}
     if onset:
-        below = hysteresis(
-            plant, [runs[0] for runs in members], tol=tol, seed=seed, workers=workers
-        )
+        below = hysteresis(plant, [runs[0] for runs in members], how)
     loud = [place for place, each in enumerate(found) if not members[place][0].quiet]
     drawn_in = set(numbers[len(pushes) :].tolist())
     record = plant.structure.record

@@ -4,7 +4,7 @@ Instants at which a motion is looked at are drawn at random, one in each of many
 window, so that none of its statistics depends on a step that is in time with its period.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Self
 
 import numpy as np
@@ -20,6 +20,25 @@ PADDING = 4
 """Lines of a spectrum beside those of its samples."""
 BLOCKS = 64
 """Parts of a window whose kinetic energy is kept."""
+
+
+@dataclass(frozen=True)
+class Running:
+    """How windows are run.
+
+    Attributes:
+        tol: tolerance of the Taylor integrator.
+        seed: that the instants at which a motion is looked at follow from.
+        workers: processes; None takes all cores.
+    """
+
+    tol: float
+    seed: int = 0
+    workers: int | None = None
+
+    def turn(self, number: int) -> Self:
+        """Likewise, with instants of their own."""
+        return replace(self, seed=self.seed + number)
 
 
 @dataclass(frozen=True)
@@ -72,8 +91,7 @@ def run(
     plant: Plant,
     states: np.ndarray,
     times: np.ndarray,
-    tol: float,
-    workers: int | None = None,
+    how: Running,
     frictions: np.ndarray | None = None,
     **options: Any,
 ) -> dict[str, np.ndarray]:
@@ -99,8 +117,8 @@ def run(
             tracked=[f"{LARGEST}{name}_normal_force" for name in plant.contacts],
             **options,
         ),
-        tol=tol,
-        workers=workers,
+        tol=how.tol,
+        workers=how.workers,
     )
 
 
@@ -108,26 +126,21 @@ def run_window(
     plant: Plant,
     states: np.ndarray,
     length: float,
-    *,
-    regimes: np.ndarray | None,
-    tol: float,
-    seed: int,
-    workers: int | None,
+    how: Running,
+    regimes: np.ndarray | None = None,
     frictions: np.ndarray | None = None,
 ) -> Rows:
     """Run for a length of time, s.
 
     Args:
-        frictions: of each run; None: that of the structure.
         regimes: of each component in which each run starts; None: what fits.
+        frictions: of each run; None: that of the structure.
     """
-    part = np.random.default_rng(seed).random(SAMPLES)
+    part = np.random.default_rng(how.seed).random(SAMPLES)
     times = length * (np.arange(SAMPLES) + part) / SAMPLES
     times = np.append(times, length)
     options = {} if regimes is None else {"regime": regimes}
-    raw = run(
-        plant, states, times, tol, workers=workers, frictions=frictions, **options
-    )
+    raw = run(plant, states, times, how, frictions, **options)
     samples = raw["samples"][:, :-1]
     modal = plant.modal_velocities(samples)
     speed = plant.contact_speeds(samples)
