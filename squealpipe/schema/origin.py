@@ -73,6 +73,8 @@ def origin(name: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
     for key, value in list(given.items()):
         if isinstance(value, Parameters):
             stated["parameters"] = _as_json(given.pop(key))
+        elif hasattr(value, "as_dict"):  # a structure
+            stated["parameters"] = json.dumps(given.pop(key).as_dict())
         elif isinstance(value, xr.Dataset):
             stated = {k: value.attrs[k] for k in INHERITED if k in value.attrs} | stated
             del given[key]

@@ -1,6 +1,5 @@
 """What each method says of a structure's squeal, against the finest run, and what it costs."""
 
-import json
 import platform
 from collections.abc import Sequence
 from typing import Any
@@ -11,7 +10,7 @@ import xarray as xr
 from squealpipe.methods.progress import alone
 from squealpipe.schema import build
 from squealpipe.schema.comparison import Reliability, Role
-from squealpipe.schema.origin import versions
+from squealpipe.schema.origin import recorded
 from squealpipe.schema.outcomes import Outcome
 from squealpipe.schema.squeal_ladder import NO_MODE, SQUEAL_LADDER, PushAnswer
 from squealpipe.systems.structures.definition import Structure
@@ -29,7 +28,7 @@ from squealpipe.systems.structures.squeal.methods import (
 from squealpipe.systems.structures.squeal.plant import MOST_MODES, Plant
 from squealpipe.systems.structures.squeal.settling import FEWEST, FIRST, horizon
 from squealpipe.systems.structures.squeal.squealing_modes import nearest
-from squealpipe.validation import Natural, NotNegative, Positive, Tolerance, checked
+from squealpipe.validation import Natural, NotNegative, Positive, Tolerance
 
 WIDTHS = (
     (1.0, 0.0),
@@ -43,7 +42,10 @@ WIDTHS = (
 """Of friction over the belt's speed, and of contact over the preload."""
 
 
-@checked
+@recorded(
+    model="structure with exact contact and friction, or both smoothed",
+    method="complex modes; Taylor series with located events; LSODA",
+)
 def squeal_ladder(
     structure: Any,
     *,
@@ -110,7 +112,7 @@ def squeal_ladder(
         for pair in widths:
             show(len(told) / asked)
             told.append(smoothed_told(finest, frequencies, span, pair, smoothed_tol))
-    return _dataset(structure, finest, places, told, reference, span, tol, smoothed_tol)
+    return _dataset(finest, places, told, reference, span)
 
 
 def _sizes(structure: Structure, n_modes: Sequence[int]) -> list[int]:
@@ -203,48 +205,24 @@ def _uncertainties(
 
 
 def _dataset(
-    structure: Structure,
-    finest: Plant,
-    places: np.ndarray,
-    told: list[Told],
-    reference: int,
-    span: Horizon,
-    tol: float,
-    smoothed_tol: float,
+    finest: Plant, places: np.ndarray, told: list[Told], reference: int, span: Horizon
 ) -> xr.Dataset:
     truth = told[reference].ends
-    answers = [
-        [_judged(finest, end, true) for end, true in zip(each.ends, truth, strict=True)]
-        for each in told
-    ]
+    pairs = [list(zip(each.ends, truth, strict=True)) for each in told]
+    answers = [[_judged(finest, *pair) for pair in row] for row in pairs]
     verdicts = [_verdict(row) for row in answers]
-    errors = np.array(
-        [
-            np.max(
-                [
-                    _errors(end, true)
-                    for end, true in zip(each.ends, truth, strict=True)
-                ],
-                axis=0,
-            )
-            for each in told
-        ]
-    )
+    errors = np.array([np.max([_errors(*p) for p in row], axis=0) for row in pairs])
     names = ("frequency", "velocity", "separation")
     uncertainty = _uncertainties(told, errors, verdicts, reference)
 
     def ends(name: str) -> np.ndarray:
         return np.array([[getattr(end, name) for end in each.ends] for each in told])
 
-    near = [
-        [
-            int(finest.numbers[nearest(finest, end.frequency)])
-            if np.isfinite(end.frequency)
-            else NO_MODE
-            for end in each.ends
-        ]
-        for each in told
-    ]
+    def rings_near(end: PushEnd) -> int:
+        if not np.isfinite(end.frequency):
+            return NO_MODE
+        return int(finest.numbers[nearest(finest, end.frequency)])
+
     roles = [each.role for each in told]
     roles[reference] = Role.our_setting
     return build(
@@ -258,7 +236,7 @@ def _dataset(
             "contact_width": [each.widths[1] for each in told],
             "answer": answers,
             "verdict": verdicts,
-            "rings_near": near,
+            "rings_near": [[rings_near(end) for end in each.ends] for each in told],
             "frequency": ends("frequency"),
             "velocity_rms": ends("speed"),
             "separated_fraction": ends("separated"),
@@ -278,14 +256,5 @@ def _dataset(
             "mode": finest.numbers[places],
             "contact": finest.contacts,
         },
-        {
-            "made_by": "squealpipe.squeal_ladder",
-            "model": "structure with exact contact and friction, or both smoothed",
-            "method": "complex modes; Taylor series with located events; LSODA",
-            "tolerance": tol,
-            "platform": platform.platform(),
-            "parameters": json.dumps(structure.as_dict()),
-            "arguments": json.dumps({"smoothed_tol": smoothed_tol, "t_end": span.end}),
-            **versions(),
-        },
+        {"platform": platform.platform()},
     )

@@ -1,6 +1,5 @@
 """Which unstable modes of a structure squeal, as a dataset."""
 
-import json
 from typing import Any
 
 import numpy as np
@@ -9,7 +8,7 @@ import xarray as xr
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.assess import Verdict
 from squealpipe.schema.inference import wilson_interval
-from squealpipe.schema.origin import versions
+from squealpipe.schema.origin import recorded
 from squealpipe.schema.squealing import NO_ATTRACTOR, SQUEALING, Kind
 from squealpipe.systems.structures.squeal.attractors import grouped
 from squealpipe.systems.structures.squeal.hysteresis import hysteresis
@@ -18,7 +17,7 @@ from squealpipe.systems.structures.squeal.plant import PUSH, Plant
 from squealpipe.systems.structures.squeal.remedies import added_damping
 from squealpipe.systems.structures.squeal.settling import Settled, settle
 from squealpipe.systems.structures.squeal.windows import Running
-from squealpipe.validation import Natural, Positive, Seed, Tolerance, Workers, checked
+from squealpipe.validation import Natural, Positive, Seed, Tolerance, Workers
 
 LINES = 1024
 """Lines of the spectra that are kept."""
@@ -28,7 +27,10 @@ AGAIN = 2
 """Returns to contact from which contact is lost again and again."""
 
 
-@checked
+@recorded(
+    model="structure with exact contact and friction",
+    method="Taylor series with located events; cycles by the exact map",
+)
 def squealing_modes(
     structure: Any,
     *,
@@ -124,17 +126,6 @@ def squealing_modes(
             "contact": plant.contacts,
             "sample": np.arange(samples),
             "pole": plant.numbers,
-        },
-        {
-            "made_by": "squealpipe.squealing_modes",
-            "model": "structure with exact contact and friction",
-            "method": "Taylor series with located events; cycles by the exact map",
-            "tolerance": tol,
-            "parameters": json.dumps(structure.as_dict()),
-            "arguments": json.dumps(
-                {"samples": samples, "t_end": t_end, "seed": seed, "onset": onset}
-            ),
-            **versions(),
         },
     )
 
