@@ -241,7 +241,16 @@ class Drawn(Look, Written):
     picture: Picture = None
 
 
-BRAKE, WRITTEN, DRAWN, LOOK = Brake(), Written(), Drawn(), Look()
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Files(Look):
+    """What a command on a file writes beside its dataset."""
+
+    picture: Picture = None
+    force: Force = False
+
+
+BRAKE, WRITTEN, DRAWN, LOOK, FILES = Brake(), Written(), Drawn(), Look(), Files()
 FULL_RANGE = parse_range("0:pi:61", parse_angle)
 """Both spring angles from 0 to π."""
 

@@ -1,16 +1,16 @@
 """``squealpipe modes``, ``squeal``, ``ladder``: modes of a structure, and which of them squeal."""
 
+from __future__ import annotations
+
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from squealpipe.cli.arguments import (
-    LOOK,
-    Force,
+    FILES,
+    Files,
     Frequency,
-    Look,
     Numbers,
     Output,
-    Picture,
     Ranges,
     Speeds,
     Switch,
@@ -23,6 +23,9 @@ from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer, say, working
 from squealpipe.cli.output import check_output, check_picture, draw_beside, write
 from squealpipe.cli.signatures import options_of
 from squealpipe.config.ranges import parse_range
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 LISTED = 20
 """Unstable modes that are printed."""
@@ -38,9 +41,7 @@ def modes(
     n_modes: Whole | None = None,
     vary: Ranges | None = None,
     output: Output = Path("modes.nc"),
-    picture: Picture = None,
-    look: Look = LOOK,
-    force: Force = False,
+    files: Files = FILES,
 ) -> int:
     """Compute complex modes of a structure; write a dataset and a picture.
 
@@ -57,12 +58,6 @@ def modes(
             those of a contact p1, mass, damping and stiffness the matrices; modal_damping,
             mu_static and friction_speed replace those of the file.
     """
-    check_output(output, force=force)
-    drawn = check_picture(picture, output, force=force)
-
-    from squealpipe import Structure
-
-    structure = Structure.read(file)
     asked: dict[str, Any] = {
         "mu": _one_or_more(mu),
         "belt_speed": _one_or_more(belt_speed),
@@ -74,21 +69,39 @@ def modes(
             option = name.replace("_", "-")
             raise ValueError(f"--vary {name}: write --{option} {text} instead")
         asked[name] = _one_or_more(parse_range(text))
-    options = {name: value for name, value in asked.items() if value is not None}
-    with working("complex modes"):
-        dataset = write(
-            lambda: structure.complex_modes(**options),
-            output,
-            config={"parameters": structure.as_dict(), **options},
-        )
-    draw_beside(dataset, output, drawn, look)
+
+    from squealpipe.systems.structures.complex_modes import complex_modes
+
+    dataset = _compute(complex_modes, file, asked, output, files)
     unstable = dataset.unstable
     ever = unstable.any([dim for dim in unstable.dims if dim != "mode"])
     answer(f"{int(ever.sum())} of {ever.size} modes are unstable somewhere")
     for number in dataset.mode.values[ever.values][:LISTED]:
         answer(_line(dataset.sel(mode=number)))
-    say(f"wrote {output} and {drawn}")
     return DONE
+
+
+def _compute(
+    task: Any, file: Path, options: dict[str, Any], output: Path, files: Files
+) -> xr.Dataset:
+    """What a task makes of the structure in a file; its dataset and its picture are written.
+
+    Args:
+        options: of the task; those that are None are left to their defaults.
+    """
+    check_output(output, force=files.force)
+    drawn = check_picture(files.picture, output, force=files.force)
+
+    from squealpipe import Structure
+
+    structure = Structure.read(file)
+    given = {name: value for name, value in options.items() if value is not None}
+    config = {"parameters": structure.as_dict(), **given}
+    with working(task.__name__.replace("_", " ")):
+        dataset = write(lambda: task(structure, **given), output, config=config)
+    draw_beside(dataset, output, drawn, files)
+    say(f"wrote {output} and {drawn}")
+    return dataset
 
 
 def _one_or_more(values: list[float] | None) -> Any:
@@ -120,9 +133,7 @@ def squeal(
     frequency_max: Frequency = None,
     onset: Switch,
     output: Output = Path("squeal.nc"),
-    picture: Picture = None,
-    look: Look = LOOK,
-    force: Force = False,
+    files: Files = FILES,
 ) -> int:
     """Say which unstable modes of a structure squeal, how loud, and with how much contact loss.
 
@@ -145,32 +156,20 @@ def squeal(
         onset: also follow what squeals down in friction until it dies: whether squeal lasts below
             the critical friction, and how far; costs about as much as the rest.
     """
-    check_output(output, force=force)
-    drawn = check_picture(picture, output, force=force)
-
-    from squealpipe import Structure, squealing_modes
+    from squealpipe import squealing_modes
     from squealpipe.study.report.squealing import lines
 
-    structure = Structure.read(file)
-    chosen = {"n_modes": n_modes, "frequency_max": frequency_max}
-    limits: dict[str, Any] = {
-        name: value for name, value in chosen.items() if value is not None
-    }
-    options: dict[str, Any] = {"samples": samples, "seed": seed, "tol": tol}
-    if t_end is not None:
-        options["t_end"] = t_end
-    if onset:
-        options["onset"] = True
-    with working("squeal"):
+    def squeal(structure: Any, **options: Any) -> xr.Dataset:
+        limits = {
+            k: options.pop(k) for k in ("n_modes", "frequency_max") if k in options
+        }
         reduced = structure.reduce(**limits) if limits else structure
-        dataset = write(
-            lambda: squealing_modes(reduced, **options),
-            output,
-            config={"parameters": structure.as_dict(), **limits, **options},
-        )
-    draw_beside(dataset, output, drawn, look)
+        return squealing_modes(reduced, **options)
+
+    asked = {"n_modes": n_modes, "frequency_max": frequency_max}
+    asked |= {"samples": samples, "seed": seed, "tol": tol, "t_end": t_end}
+    dataset = _compute(squeal, file, asked | {"onset": onset or None}, output, files)
     answer(*lines(dataset))
-    say(f"wrote {output} and {drawn}")
     return DONE if int(dataset.verdict) == 0 else ANSWER_IS_NO
 
 
@@ -185,9 +184,7 @@ def ladder(
     tol: Tolerance,
     repeats: Whole,
     output: Output = Path("ladder.nc"),
-    picture: Picture = None,
-    look: Look = LOOK,
-    force: Force = False,
+    files: Files = FILES,
 ) -> int:
     """Ask several methods which unstable modes of a structure squeal; chart accuracy and cost.
 
@@ -205,24 +202,12 @@ def ladder(
         frequency_max: unstable modes up to there count, Hz; needed beyond 1000 degrees of freedom.
         repeats: of what is quick, for the median of its CPU time.
     """
-    check_output(output, force=force)
-    drawn = check_picture(picture, output, force=force)
-
-    from squealpipe import Structure, squeal_ladder
+    from squealpipe import squeal_ladder
     from squealpipe.schema.comparison import Reliability
     from squealpipe.study.report.squeal_ladder import lines
 
-    structure = Structure.read(file)
-    asked = {"t_end": t_end, "frequency_max": frequency_max}
-    options: dict[str, Any] = {"pushes": pushes, "tol": tol, "repeats": repeats}
-    options |= {name: value for name, value in asked.items() if value is not None}
-    with working("ladder"):
-        dataset = write(
-            lambda: squeal_ladder(structure, **options),
-            output,
-            config={"parameters": structure.as_dict(), **options},
-        )
-    draw_beside(dataset, output, drawn, look)
+    asked = {"pushes": pushes, "t_end": t_end, "frequency_max": frequency_max}
+    asked |= {"tol": tol, "repeats": repeats}
+    dataset = _compute(squeal_ladder, file, asked, output, files)
     answer(*lines(dataset))
-    say(f"wrote {output} and {drawn}")
     return DONE if (dataset.verdict == Reliability.right).all() else ANSWER_IS_NO
