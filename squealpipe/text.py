@@ -54,6 +54,11 @@ def number(value: float, digits: int = 3) -> str:
     return as_people_write(f"{value:.0f}" if written_out else f"{value:.{digits}g}")
 
 
+def percent(share: float, digits: int = 2) -> str:
+    """A share in per cent."""
+    return f"{number(100.0 * share, digits)} %"
+
+
 def as_people_write(text: str) -> str:
     """A text with its numbers as people write them: 4.42e+03 becomes 4420, and -2 −2."""
 

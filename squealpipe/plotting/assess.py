@@ -20,20 +20,16 @@ def figure(answer: xr.Dataset) -> Figure:
     """Three panels."""
     drawn, axes = style.new_figure(style.PAGE, 2.3, ncols=3)
     draw_row(axes[0], answer)
+    titles = ("settled orbit", "contact force", "velocity spectrum")
+    style.panel_letters(axes[0], titles)
     return drawn
 
 
 def draw_row(panels: np.ndarray, answer: xr.Dataset) -> None:
     """Orbit, force and spectrum of one answer into three panels."""
-    for letter, panel, draw, title in zip(
-        "abc",
-        panels,
-        (draw_settled_orbit, draw_settled_force, draw_settled_spectrum),
-        ("settled orbit", "contact force", "velocity spectrum"),
-        strict=True,
-    ):
-        draw(panel, answer)
-        style.panel_letter(panel, letter, title)
+    draw_settled_orbit(panels[0], answer)
+    draw_settled_force(panels[1], answer)
+    draw_settled_spectrum(panels[2], answer)
 
 
 def draw_settled_orbit(axes: Axes, answer: xr.Dataset) -> None:

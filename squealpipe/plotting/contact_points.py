@@ -1,12 +1,11 @@
 """Critical friction of a pad on several contact points."""
 
-import json
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
 from squealpipe.plotting import style
+from squealpipe.plotting.origin import parameter
 from squealpipe.schema.contact_points import MOST_FRICTION
 
 
@@ -19,7 +18,7 @@ def draw_onsets(axes: Axes, pads: xr.Dataset) -> None:
     axes.plot(
         places[~known], np.full((~known).sum(), MOST_FRICTION), "^", color=style.BLUE
     )
-    axes.axhline(_friction(pads), color=style.GREY, linestyle="--", linewidth=0.8)
+    axes.axhline(parameter(pads, "mu"), color=style.GREY, linestyle="--", linewidth=0.8)
     names = [str(name).replace(", ", "\n") for name in pads.design.values]
     axes.set_xticks(places, names)
     axes.set(
@@ -28,7 +27,3 @@ def draw_onsets(axes: Axes, pads: xr.Dataset) -> None:
         ylim=(0.0, 1.08 * MOST_FRICTION),
         xlim=(-0.5, len(places) - 0.5),
     )
-
-
-def _friction(pads: xr.Dataset) -> float:
-    return float(json.loads(pads.attrs["parameters"])["mu"])

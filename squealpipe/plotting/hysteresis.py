@@ -1,6 +1,5 @@
 """Squeal over friction: where it begins, and where it dies as friction falls."""
 
-import json
 from itertools import cycle
 from typing import Any
 
@@ -9,6 +8,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from squealpipe.plotting import style
+from squealpipe.plotting.origin import parameter
 from squealpipe.schema.squealing import JUST_ABOVE
 from squealpipe.text import number
 from squealpipe.units import engineering
@@ -24,7 +24,7 @@ def has_tracks(answer: xr.Dataset) -> bool:
 
 def draw_hysteresis(axes: Axes, answer: xr.Dataset) -> None:
     """Level of each motion that was followed, over friction; dashed: the unstable cycle."""
-    own = json.loads(answer.attrs["parameters"])["mu"]
+    own = parameter(answer, "mu")
     for friction, line, words in (
         (float(answer.onset_mu), ":", "critical"),
         (own, "-.", "its own"),

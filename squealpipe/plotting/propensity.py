@@ -68,14 +68,8 @@ def figure(spread: xr.Dataset) -> Figure:
     else:
         known = np.isfinite(spread.half_width_by_size)
         _ends(widths, spread.index_samples.where(known).values)
-    titles = (
-        "propensity",
-        "convergence of shares",
-        "sensitivity",
-        "convergence of indices",
-    )
-    for letter, panel, title in zip("abcd", axes.ravel(), titles, strict=True):
-        style.panel_letter(panel, letter, title)
+    titles = ("propensity", "convergence of shares")
+    style.panel_letters(axes.flat, (*titles, "sensitivity", "convergence of indices"))
     return drawn
 
 

@@ -54,9 +54,9 @@ def figure(run: xr.Dataset) -> Figure:
         panels[3:3] = [(partial(draw_displacements, window=end), last)]
     rows = len(panels) // 2
     drawn, axes = style.new_figure(style.PAGE, 2.4 * rows, nrows=rows, ncols=2)
-    for letter, panel, (draw, title) in zip("abcdef", axes.flat, panels, strict=False):
+    for panel, (draw, _) in zip(axes.flat, panels, strict=False):
         draw(panel, run)
-        style.panel_letter(panel, letter, title)
+    style.panel_letters(axes.flat, [title for _, title in panels])
     drawn.suptitle(
         ", ".join(style.angle_in_words(name, float(run[name])) for name in style.ANGLES)
         + f", model {run.attrs.get('model', 'A1')}",

@@ -101,12 +101,11 @@ def draw_creep(axes: Axes, ladder: xr.Dataset) -> None:
 def figure(ladder: xr.Dataset) -> Figure:
     """Three errors against CPU time, and the share of time that is creep."""
     made, axes = style.new_figure(style.PAGE, 5.2, nrows=2, ncols=2)
-    panels = axes.flat
-    for panel, letter, quantity in zip(panels, "abc", ERRORS, strict=False):
+    for panel, quantity in zip(axes.flat, ERRORS, strict=False):
         draw_error(panel, ladder, quantity)
-        style.panel_letter(panel, letter, ERRORS[quantity][0])
     draw_creep(axes[1, 1], ladder)
-    style.panel_letter(axes[1, 1], "d", "stick, or creep")
+    titles = [title for title, _ in ERRORS.values()]
+    style.panel_letters(axes.flat, [*titles, "stick, or creep"])
     made.legend(
         *axes[0, 0].get_legend_handles_labels(),
         loc="outside upper center",

@@ -56,8 +56,7 @@ def figure(answer: xr.Dataset) -> Figure:
             axes_.xaxis.set_major_locator(MaxNLocator(3, steps=[1, 2, 5, 10]))
             axes_.xaxis.set_major_formatter(FuncFormatter(lambda x, _: number(x, 3)))
     titles = ("what grows", "ends in", "how loud", "contact loss")
-    for letter, panel, title in zip("abcd", axes[0], titles, strict=True):
-        style.panel_letter(panel, letter, title)
+    style.panel_letters(axes[0], titles)
     if followed:
         grid = axes[1, 0].get_gridspec()
         for panel in axes[1]:

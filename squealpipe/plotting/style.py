@@ -5,6 +5,7 @@ import math
 import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from string import ascii_lowercase
 from typing import Any
 
 import matplotlib as mpl
@@ -209,11 +210,20 @@ def panel_letter(axes: Axes, letter: str, text: str = "") -> None:
     axes.set_title(f"({letter}) {text}".rstrip(), loc="left")
 
 
+def panel_letters(panels: Iterable[Axes], titles: Iterable[str]) -> None:
+    """(a), (b), … and the title of each panel; panels without a title have none."""
+    for letter, panel, title in zip(ascii_lowercase, panels, titles, strict=False):
+        panel_letter(panel, letter, title)
+
+
+def write(axes: Axes, x: float, y: float, text: str, **look: Any) -> None:
+    """A text with its middle at a place."""
+    axes.text(x, y, text, ha="center", va="center", **look)
+
+
 def say_instead(axes: Axes, text: str) -> None:
     """Write into a panel why it would be empty."""
-    axes.text(
-        0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", wrap=True
-    )
+    write(axes, 0.5, 0.5, text, transform=axes.transAxes, wrap=True)
     axes.set(xticks=[], yticks=[])
 
 

@@ -13,22 +13,14 @@ from matplotlib.ticker import FormatStrFormatter, LogLocator
 from squealpipe.plotting import style
 from squealpipe.schema.comparison import Reliability, Role
 
+_COLOURS = (
+    *(style.BLACK, style.BLUE, style.GREEN, style.ORANGE),
+    *(style.RED, style.PURPLE, style.GREY),
+)
 MARKS = [
     (colour, marker, dash)
     for markers, dash in (("os^vDP*", "-"), ("x+<>dhp", ":"))
-    for colour, marker in zip(
-        (
-            style.BLACK,
-            style.BLUE,
-            style.GREEN,
-            style.ORANGE,
-            style.RED,
-            style.PURPLE,
-            style.GREY,
-        ),
-        markers,
-        strict=True,
-    )
+    for colour, marker in zip(_COLOURS, markers, strict=True)
 ]
 """How each method is drawn."""
 _FEW_DECADES = 100.0
@@ -76,31 +68,11 @@ def draw_methods(
         axes.plot(error[right], values[right], **look)
         axes.plot([], [], **look | {"ls": dash}, label=style.symbols(method))
     wrong = fine & (worth == Reliability.silently_wrong)
-    rings: list[tuple[np.ndarray, dict[str, Any]]] = [
-        (
-            wrong,
-            {
-                "marker": "x",
-                "ms": 5.5,
-                "mew": 1.1,
-                "color": style.BLACK,
-                "label": "silently wrong",
-            },
-        ),
-        (
-            fine & (rows.role.values == Role.our_setting),
-            {
-                "marker": "o",
-                "ms": 9,
-                "mfc": "none",
-                "mew": 1.0,
-                "color": style.RED,
-                "label": ring,
-            },
-        ),
-    ]
-    for marks, look in rings:
-        axes.plot(error[marks], values[marks], ls="none", zorder=3, **look)
+    ours = fine & (rows.role.values == Role.our_setting)
+    cross: dict[str, Any] = {"color": style.BLACK, "ms": 5.5, "mew": 1.1, "zorder": 3}
+    axes.plot(error[wrong], values[wrong], "x", label="silently wrong", **cross)
+    circle = cross | {"color": style.RED, "ms": 9, "mfc": "none", "mew": 1.0}
+    axes.plot(error[ours], values[ours], "o", label=ring, **circle)
     axes.set(xscale="log", yscale="log")
     axes.minorticks_off()
     if values[fine].max() < _FEW_DECADES * values[fine].min():
@@ -123,6 +95,18 @@ def _pareto(error: np.ndarray, cost: np.ndarray) -> np.ndarray:
     order = np.lexsort((cost, error))
     least = np.minimum.accumulate(cost[order])
     return order[np.diff(least, prepend=np.inf) < 0]
+
+
+def rule_table(axes: Axes, solvers: xr.Dataset, columns: int, **lines: Any) -> None:
+    """Names of solvers beside the rows of a table, ours in bold, and lines between its cells."""
+    names = list(map(style.symbols, solvers.solver.values.tolist()))
+    axes.set_yticks(range(len(names)), names)
+    for label, role in zip(axes.get_yticklabels(), solvers.role.values, strict=True):
+        label.set_fontweight("bold" if role != Role.public else "normal")
+    axes.set_xticks(np.arange(columns + 1) - 0.5, minor=True)
+    axes.set_yticks(np.arange(len(names) + 1) - 0.5, minor=True)
+    axes.grid(visible=True, which="minor", **lines)
+    axes.tick_params(which="both", length=0)
 
 
 def foot(figure: Figure, dataset: xr.Dataset) -> None:

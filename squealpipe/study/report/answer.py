@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.schema.assess import Mechanism, Verdict
-from squealpipe.text import number
+from squealpipe.text import number, percent
 from squealpipe.units import engineering
 
 NAMES = {
@@ -68,7 +68,7 @@ def headline(answer: xr.Dataset, prefix: str = "") -> str:
         return "Quiet: the vibration dies out."
     at = engineering(value("frequency"), "Hz")
     force = number(value("peak_contact_force_over_preload"), 2)
-    lost = _share(value("separated_fraction"))
+    lost = percent(value("separated_fraction"))
     if verdict is Verdict.hammers:
         return (
             f"Hammers at {at}: contact is lost {lost} of the time, the peak force is {force} "
@@ -77,7 +77,7 @@ def headline(answer: xr.Dataset, prefix: str = "") -> str:
     if verdict is Verdict.squeals:
         stuck = value("stick_fraction")
         how = (
-            f"in stick–slip, sticking to the belt {_share(stuck)} of the time"
+            f"in stick–slip, sticking to the belt {percent(stuck)} of the time"
             if stuck > 0
             else "without sticking"
         )
@@ -154,7 +154,7 @@ def impacts(answer: xr.Dataset) -> str:
             f"{number(float(answer.impact_rate))} impacts per second at up to "
             f"{engineering(float(answer.impact_speed), 'm s-1')}"
         )
-    parts.append(f"sticking {_share(float(answer.stick_fraction))} of the time")
+    parts.append(f"sticking {percent(float(answer.stick_fraction))} of the time")
     parts.append("it repeats" if bool(answer.periodic) else "it does not repeat")
     resolution = engineering(float(answer.frequency_resolution), "Hz", 2)
     parts.append(f"frequencies are resolved to {resolution}")
@@ -259,7 +259,7 @@ def _value(name: str, value: float, unit: str) -> str:
     if name.startswith("alpha"):
         return f"{number(float(np.degrees(value)))}°"
     if name == "damping":
-        return f"{number(100.0 * value)} %"
+        return percent(value, 3)
     return engineering(value if abs(value) > 1e-8 or unit != "1" else 0.0, unit)
 
 
@@ -269,10 +269,6 @@ def _change(name: str, change: float, value: float) -> str:
     if value == 0.0 and name == "damping":  # of nothing there are no per cent
         unit = " points"
     return f"{sign}{number(abs(change), 2)}{unit}"
-
-
-def _share(share: float) -> str:
-    return f"{number(100.0 * share, 2)} %"
 
 
 def _force(answer: xr.Dataset) -> str:

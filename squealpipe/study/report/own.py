@@ -21,7 +21,7 @@ from squealpipe.study.report.content import (
     pictures,
 )
 from squealpipe.study.report.sections import OWN
-from squealpipe.text import number
+from squealpipe.text import number, percent
 from squealpipe.units import engineering
 
 
@@ -136,7 +136,7 @@ def _written(value: float, unit: str) -> str:
     if not math.isfinite(value):
         return "–"
     if unit == "%":
-        return f"{number(100.0 * value)} %"
+        return percent(value, 3)
     return engineering(value, unit)
 
 
@@ -163,11 +163,12 @@ def _scatter(run: Evidence) -> dict[str, Any] | None:
         "shares": [
             {
                 "what": str(kind),
-                "share": _percent(shares.share.sel(kind=kind)),
-                "interval": f"{_percent(shares.share_low.sel(kind=kind))} to "
-                f"{_percent(shares.share_high.sel(kind=kind))}",
+                "share": percent(float(of_kind.share)),
+                "interval": f"{percent(float(of_kind.share_low))} to "
+                f"{percent(float(of_kind.share_high))}",
             }
             for kind in shares.kind.values
+            for of_kind in [shares.sel(kind=kind)]
         ],
     }
 
@@ -179,7 +180,3 @@ def _distribution(given: Mapping[str, Any]) -> str:
         if key != "distribution"
     ]
     return ", ".join([str(given["distribution"]), *numbers])
-
-
-def _percent(share: xr.DataArray) -> str:
-    return f"{number(100.0 * float(share), 2)} %"

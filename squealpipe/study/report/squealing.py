@@ -1,11 +1,11 @@
 """The answer of a dataset ``squealing_modes`` in the words of a brake's report."""
 
-import json
 from collections.abc import Iterator
 
 import numpy as np
 import xarray as xr
 
+from squealpipe.plotting.origin import parameter
 from squealpipe.schema import Outcome
 from squealpipe.schema.assess import Verdict
 from squealpipe.schema.squealing import JUST_ABOVE, NO_ATTRACTOR, Kind, OnsetKind
@@ -190,7 +190,9 @@ def onset(answer: xr.Dataset) -> Iterator[str]:
     elif np.isnan(critical):
         yield "Where steady sliding turns unstable could not be located."
     else:
-        yield f"{_begins(answer, critical)} {_kind(answer)}"
+        at = engineering(float(answer.onset_frequency), "Hz")
+        begins = f"Steady sliding turns unstable at mu = {number(critical, 4)} ({at})."
+        yield f"{begins} {_kind(answer)}"
     for place in range(answer.sizes["track"]):
         one = answer.isel(track=place)
         if int(one.track_attractor) != JUST_ABOVE:
@@ -198,7 +200,7 @@ def onset(answer: xr.Dataset) -> Iterator[str]:
             at = engineering(float(motion.dominant_frequency), "Hz")
             yield f"As friction falls, the motion at {at} {_end_of(one, critical)}."
     if _lasts(answer):
-        own = json.loads(answer.attrs["parameters"])["mu"]
+        own = parameter(answer, "mu")
         yield f"At mu = {number(own)}, too, squeal that has begun lasts."
 
 
@@ -208,13 +210,8 @@ def _lasts(answer: xr.Dataset) -> bool:
         return False
     if not bool(answer.squeals_below_critical):
         return False
-    own = json.loads(answer.attrs["parameters"])["mu"]
+    own = parameter(answer, "mu")
     return bool(np.nanmin(answer.track_mu.values) <= own)
-
-
-def _begins(answer: xr.Dataset, critical: float) -> str:
-    at = engineering(float(answer.onset_frequency), "Hz")
-    return f"Steady sliding turns unstable at mu = {number(critical, 4)} ({at})."
 
 
 def _kind(answer: xr.Dataset) -> str:
@@ -247,13 +244,8 @@ def _end_of(one: xr.Dataset, critical: float) -> str:
 
 def _of_contacts(one: xr.Dataset) -> str:
     """Share of time open, by contact."""
-    parts = [
-        f"{name} {_percent(float(value))}"
-        for name, value in zip(
-            one.contact.values, one.separated_fraction.values, strict=True
-        )
-    ]
-    return ", ".join(parts)
+    pairs = zip(one.contact.values, one.separated_fraction.values, strict=True)
+    return ", ".join(f"{name} {_percent(float(value))}" for name, value in pairs)
 
 
 def _percent(share: float) -> str:

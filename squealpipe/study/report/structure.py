@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from squealpipe.plotting.origin import parameter
 from squealpipe.schema import meanings
 from squealpipe.schema.assess import Verdict
 from squealpipe.schema.squealing import MOST_DAMPING, NO_ATTRACTOR
@@ -15,7 +16,7 @@ from squealpipe.store import load
 from squealpipe.study.report import squealing
 from squealpipe.study.report.content import Made, pictures
 from squealpipe.study.report.sections import STRUCTURE
-from squealpipe.text import number
+from squealpipe.text import number, percent
 from squealpipe.units import engineering
 
 LASTING = (
@@ -69,8 +70,7 @@ def _unstable(modes: xr.Dataset) -> list[xr.Dataset]:
 
 
 def _own_friction(modes: xr.Dataset) -> int:
-    own = json.loads(modes.attrs["parameters"])["mu"]
-    return int(np.abs(modes.mu.values - own).argmin())
+    return int(np.abs(modes.mu.values - parameter(modes, "mu")).argmin())
 
 
 def _critical(modes: xr.Dataset) -> float:
@@ -215,8 +215,8 @@ def contacts(answer: xr.Dataset) -> list[dict[str, Any]]:
         rows = [
             {
                 "name": str(contact),
-                "open": _percent(float(at.separated_fraction)),
-                "stick": _percent(float(at.stick_fraction)),
+                "open": percent(float(at.separated_fraction)),
+                "stick": percent(float(at.stick_fraction)),
                 "force": number(float(at.peak_force)),
                 "impacts": number(float(at.impacts_per_period)),
                 "speed": engineering(float(at.contact_velocity_rms), "m s-1"),
@@ -279,7 +279,7 @@ def not_examined(answer: xr.Dataset) -> list[str]:
         rest.insert(
             1,
             f"What the {int(answer.n_modes)} modes leave out: of the unstable ones frequencies "
-            f"are within {_percent(errors[0])}, growth rates within {_percent(errors[1])} of "
+            f"are within {percent(errors[0])}, growth rates within {percent(errors[1])} of "
             "the larger of themselves and 1 % of the angular frequency.",
         )
     if float(answer.share_undetermined) > 0:
@@ -287,7 +287,3 @@ def not_examined(answer: xr.Dataset) -> list[str]:
     if (answer.ends_in == NO_ATTRACTOR).any():
         rest.append("What pushes along some modes end in: they had not settled.")
     return rest
-
-
-def _percent(share: float) -> str:
-    return f"{number(100 * share, 2)} %"

@@ -26,9 +26,8 @@ def draw(forms: xr.Dataset) -> Figure:
     figure, axes = style.new_figure(style.PAGE, 3.2, ncols=2, width_ratios=[1.3, 1])
     _frequencies(axes[0, 0], forms)
     _spread(axes[0, 1], forms)
-    style.panel_letter(axes[0, 0], "a", "frequency found")
     title = style.symbols(f"phase dependence, N_h = {int(forms.n_harmonics)}")
-    style.panel_letter(axes[0, 1], "b", title)
+    style.panel_letters(axes[0], ("frequency found", title))
     return figure
 
 

@@ -1,12 +1,15 @@
 """The failure atlas: verdicts of every method on every hard scene."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
-from squealpipe.schema.comparison import Reliability, Role
+from squealpipe.plotting.work_precision import rule_table
+from squealpipe.schema.comparison import Reliability
 from squealpipe.text import number
 
 READS = ("benchmark", "failure_atlas")
@@ -28,6 +31,7 @@ _SIGNS = {
     Reliability.silently_wrong: "✗ silently wrong",
 }
 """Each verdict's sign, and what it means."""
+_SMALL: dict[str, Any] = {"fontsize": 5, "color": style.BLACK}
 _ROW, _HEADS = 0.2, 1.2
 """Heights of a row, and of the names of the columns, inches."""
 
@@ -40,8 +44,8 @@ def draw(benchmark: xr.Dataset, atlas: xr.Dataset) -> Figure:
     )
     _draw_benchmark(axes[0, 0], benchmark.transpose("solver", "problem", "tol"))
     _draw_atlas(axes[1, 0], atlas.transpose("solver", "scene"))
-    style.panel_letter(axes[0, 0], "a", "integrators with events")
-    style.panel_letter(axes[1, 0], "b", "frequencies and stability")
+    titles = ("integrators with events", "frequencies and stability")
+    style.panel_letters(axes.flat, titles)
     tones = ((_COLOURS[verdict], words) for verdict, words in _SIGNS.items())
     keys = style.patches(tones, edgecolor="none")
     figure.legend(handles=keys, loc="outside upper right", ncols=3)
@@ -56,15 +60,8 @@ def _draw_benchmark(axes: Axes, found: xr.Dataset) -> None:
     for name, sign, shift in (("missed", "−", -0.22), ("spurious", "+", 0.22)):
         worst = found[name].where(wrong, 0).max("tol").values
         for row, column in np.argwhere(worst > 0):
-            axes.text(
-                column,
-                row + shift,
-                f"{sign}{worst[row, column]}",
-                ha="center",
-                va="center",
-                fontsize=5,
-                color=style.BLACK,
-            )
+            number_ = f"{sign}{worst[row, column]}"
+            style.write(axes, column, row + shift, number_, **_SMALL)
     silent = (
         (found.verdict == Reliability.silently_wrong).sum(["problem", "tol"]).values
     )
@@ -79,9 +76,7 @@ def _draw_atlas(axes: Axes, found: xr.Dataset) -> None:
         if 0 < error[row, column] < np.inf:
             words.append(number(error[row, column], 1))
         text = "\N{THIN SPACE}".join(words)
-        axes.text(
-            column, row, text, ha="center", va="center", fontsize=5, color=style.BLACK
-        )
+        style.write(axes, column, row, text, **_SMALL)
     silent = (verdict == Reliability.silently_wrong).sum(axis=1)
     _label(axes, found, found.scene.values.tolist(), silent)
 
@@ -97,9 +92,9 @@ def _paint(axes: Axes, verdict: np.ndarray, columns: int) -> None:
 
 
 def _label(axes: Axes, found: xr.Dataset, names: list[str], silent: np.ndarray) -> None:
-    columns, rows = len(names), len(silent)
+    columns = len(names)
     for row, count in enumerate(silent):
-        axes.text(columns, row, str(count), ha="center", va="center", fontsize=6)
+        style.write(axes, columns, row, str(count), fontsize=6)
     axes.axvline(columns - 0.5, color=style.GREY, lw=0.8)
     texts = [*map(style.symbols, names), "silently wrong"]
     axes.set_xticks(
@@ -110,13 +105,5 @@ def _label(axes: Axes, found: xr.Dataset, names: list[str], silent: np.ndarray) 
         rotation_mode="anchor",
         fontsize=5.5,
     )
-    axes.set_yticks(
-        range(rows), [style.symbols(each) for each in found.solver.values.tolist()]
-    )
-    for label, role in zip(axes.get_yticklabels(), found.role.values, strict=True):
-        label.set_fontweight("bold" if role != Role.public else "normal")
     axes.set_xlim(-0.5, columns + 0.5)
-    axes.set_xticks(np.arange(columns + 1) - 0.5, minor=True)
-    axes.set_yticks(np.arange(rows + 1) - 0.5, minor=True)
-    axes.grid(visible=True, which="minor", color=style.WHITE, lw=1.0)
-    axes.tick_params(which="both", length=0)
+    rule_table(axes, found, columns, color=style.WHITE, lw=1.0)

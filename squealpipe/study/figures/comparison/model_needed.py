@@ -63,14 +63,9 @@ def draw(ladder: xr.Dataset) -> Figure:
             panel.barh(row, 100 * share, left=left, color=colour, ec="white", lw=0.8)
             if share >= _LABELLED:
                 dark = np.dot(to_rgb(colour), (0.299, 0.587, 0.114)) < 0.5
-                panel.text(
-                    left + 50 * share,
-                    row,
-                    f"{100 * share:.0f}",
-                    ha="center",
-                    va="center",
-                    color=style.WHITE if dark else style.BLACK,
-                )
+                colour = style.WHITE if dark else style.BLACK
+                middle, words = left + 50 * share, f"{100 * share:.0f}"
+                style.write(panel, middle, row, words, color=colour)
             left += 100 * share
     panel.set_yticks(range(len(bars)), list(bars))
     panel.invert_yaxis()

@@ -5,7 +5,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
-from squealpipe.schema.comparison import Reliability, Role
+from squealpipe.plotting.work_precision import rule_table
+from squealpipe.schema.comparison import Reliability
 from squealpipe.study.figures.comparison.work_precision_benchmark import knowable
 
 READS = ("benchmark",)
@@ -54,7 +55,7 @@ def draw(benchmark: xr.Dataset) -> Figure:
     for row, column in np.ndindex(rows, columns):
         number = f"{silent[row, column]}/{asked[row, column]}"
         words = number if silent[row, column] else "" if asked[row, column] else "–"
-        panel.text(column, row, words, ha="center", va="center", fontsize=6.5)
+        style.write(panel, column, row, words, fontsize=6.5)
     panel.set_xticks(
         range(columns),
         table.group.values.tolist(),
@@ -63,11 +64,5 @@ def draw(benchmark: xr.Dataset) -> Figure:
         rotation_mode="anchor",
     )
     panel.xaxis.tick_top()
-    panel.set_yticks(range(rows), [style.symbols(n) for n in table.solver.values])
-    for label, role in zip(panel.get_yticklabels(), benchmark.role.values, strict=True):
-        label.set_fontweight("bold" if role != Role.public else "normal")
-    panel.set_xticks(np.arange(columns + 1) - 0.5, minor=True)
-    panel.set_yticks(np.arange(rows + 1) - 0.5, minor=True)
-    panel.grid(visible=True, which="minor", color=style.LIGHT, lw=0.6)
-    panel.tick_params(which="both", length=0)
+    rule_table(panel, benchmark, columns, color=style.LIGHT, lw=0.6)
     return figure

@@ -53,8 +53,7 @@ def draw(pads: xr.Dataset) -> Figure:
     for panel, place in zip(axes[0, 2:], shown, strict=False):
         _draw_timing(panel, pads.isel(design=int(place)))
     titles = ["first onset", "contact loss", *_titles(pads, shown)]
-    for letter, panel, title in zip("abcd", axes[0], titles, strict=False):
-        style.panel_letter(panel, letter, title)
+    style.panel_letters(axes[0], titles)
     return figure
 
 

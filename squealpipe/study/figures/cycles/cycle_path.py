@@ -39,6 +39,5 @@ def draw(cycle: xr.Dataset) -> Figure:
         figure.legend(handles, words, loc="outside lower center", ncols=len(words))
     path.set(xlabel="x (m)", ylabel="y (m)")
     rate.set(xlabel="t (s)", ylabel="velocity along the belt (m/s)")
-    style.panel_letter(path, "a", "path")
-    style.panel_letter(rate, "b", "velocity")
+    style.panel_letters((path, rate), ("path", "velocity"))
     return figure

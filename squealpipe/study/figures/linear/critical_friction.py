@@ -70,9 +70,7 @@ def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:
     )
     plane.set(xlabel="dashpot c₁ (N s/m)", ylabel="dashpot c₂ (N s/m)", box_aspect=1)
     _draw_plane(figure, plane, dashpots)
-    style.panel_letter(without, "a", "no dashpots")
-    style.panel_letter(change, "b", "change")
-    style.panel_letter(plane, "c", "over dashpots")
+    style.panel_letters(axes[0], ("no dashpots", "change", "over dashpots"))
     return figure
 
 

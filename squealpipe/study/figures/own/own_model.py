@@ -1,7 +1,6 @@
 """The model of each scene at its true angles and lengths, with its numbers."""
 
 from collections.abc import Mapping
-from string import ascii_lowercase
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,7 @@ from matplotlib.patches import Arc, Circle
 from squealpipe.parameters import direction_of, law_in_words
 from squealpipe.plotting.mechanism import SPRING_COLOURS, arrow, displaced_springs
 from squealpipe.plotting.origin import parameter
-from squealpipe.plotting.style import GREY, PAGE, RED, new_figure, panel_letter
+from squealpipe.plotting.style import GREY, PAGE, RED, new_figure, panel_letters, write
 from squealpipe.text import number
 from squealpipe.units import engineering
 
@@ -34,11 +33,9 @@ def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
     figure, axes = new_figure(PAGE, 2.6 * rows, nrows=rows, ncols=columns)
     for panel in axes.flat:
         panel.set_axis_off()
-    for letter, panel, (name, run) in zip(
-        ascii_lowercase, axes.flat, runs.items(), strict=False
-    ):
+    for panel, run in zip(axes.flat, runs.values(), strict=False):
         _draw(panel, run)
-        panel_letter(panel, letter, name.removeprefix("own/"))
+    panel_letters(axes.flat, [name.removeprefix("own/") for name in runs])
     return figure
 
 
@@ -103,12 +100,5 @@ def _mark_angles(panel: Axes, angles: tuple[float, float], scale: float) -> None
             )
         )
         middle = np.radians(0.5 * (ends[0] + ends[1]))
-        panel.text(
-            0.44 * scale * np.cos(middle),
-            0.44 * scale * np.sin(middle),
-            f"$α_{index}$",
-            color=colour,
-            fontsize=7,
-            ha="center",
-            va="center",
-        )
+        x, y = (0.44 * scale * part for part in (np.cos(middle), np.sin(middle)))
+        write(panel, x, y, f"$α_{index}$", color=colour, fontsize=7)

@@ -6,11 +6,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
-from squealpipe.plotting.assess import (
-    draw_settled_force,
-    draw_settled_orbit,
-    draw_settled_spectrum,
-)
+from squealpipe.plotting.assess import draw_row
 
 READS = ("assess/*",)
 CAPTION = (
@@ -28,8 +24,6 @@ def draw(answers: Mapping[str, xr.Dataset]) -> Figure:
         style.PAGE, 0.2 + 2.1 * len(answers), nrows=len(answers), ncols=3
     )
     for row, (name, answer) in zip(axes, answers.items(), strict=True):
-        draw_settled_orbit(row[0], answer)
-        draw_settled_force(row[1], answer)
-        draw_settled_spectrum(row[2], answer)
+        draw_row(row, answer)
         row[0].set_title(name.removeprefix("assess/"), loc="left", fontweight="bold")
     return figure

@@ -5,7 +5,7 @@ import xarray as xr
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
-from squealpipe.plotting.style import BLACK, BLUE, PAGE, RED, new_figure
+from squealpipe.plotting.style import BLACK, BLUE, PAGE, RED, new_figure, write
 from squealpipe.schema.inference import DAMPED_GRID, in_order, in_words
 
 READS = ("verdict_robustness",)
@@ -39,16 +39,8 @@ def draw(reach: xr.Dataset) -> Figure:
         if not single:
             text += f"\n±{half[row, column]:.2f}"
         dark = abs(value - 0.5) > 0.3
-        panel.text(
-            column + 0.5,
-            row + 0.5,
-            text,
-            ha="center",
-            va="center",
-            linespacing=0.9,
-            fontsize=7 if single else 5,
-            color="white" if dark else BLACK,
-        )
+        look = {"fontsize": 7 if single else 5, "color": "white" if dark else BLACK}
+        write(panel, column + 0.5, row + 0.5, text, linespacing=0.9, **look)
     names = list(map(in_words, reach.statement.values.tolist()))
     rows = [
         name.replace("l_pre", r"$l_\mathrm{pre}$")
