@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any, Self
 
 import numpy as np
@@ -117,15 +118,22 @@ class Traced:
                 what steps read is looked through: a condition of a switch is computed at that
                 switch, not at all of them.
         """
-        roots = [*self.rates, *self.surfaces, *self.outputs]
-        for switch in self.switches if skipped else ():
-            roots += [switch.surface, *switch.after]
-            roots += [c for _, c, _ in switch.targets if c is not None]
-        parts = constant_parts(roots, skipped)
-        made = {id(n): parameter(f"{prefix}{i}") for i, n in enumerate(parts)}
+        steps = [*self.rates, *self.surfaces, *self.outputs]
+        at_switches = [
+            each
+            for switch in self.switches
+            for each in (
+                switch.surface,
+                *switch.after,
+                *(c for _, c, _ in switch.targets if c is not None),
+            )
+        ]
+        parts = constant_parts(steps + at_switches if skipped else steps, skipped)
+        given = {id(n): parameter(f"{prefix}{i}") for i, n in enumerate(parts)}
+        made = substituted(steps + at_switches, given)
 
         def of(root: Any) -> Any:
-            return None if root is None else substituted(root, made)
+            return None if root is None else made[id(root)]
 
         switches = tuple(
             SwitchSymbols(
@@ -138,14 +146,14 @@ class Traced:
             )
             for each in self.switches
         )
-        made_here = replace(
+        replaced = replace(
             self,
             rates=tuple(map(of, self.rates)),
             surfaces=tuple(map(of, self.surfaces)),
             outputs=tuple(map(of, self.outputs)),
             switches=switches,
         )
-        return made_here, tuple(parts)
+        return replaced, tuple(parts)
 
     @property
     def all_constants(self) -> tuple[str, ...]:
@@ -184,6 +192,8 @@ class Tracer:
             for component, names in zip(composition.names, self._names, strict=True)
         ]
         self.r = self._constants(self._symbols)
+        # functions that keep what they found at these objects find it again
+        self.numbers = cache(self._numbers)
 
     def _constants_of(self, component: int) -> list[str]:
         """Names of a component's constants; each of its regimes has all."""
@@ -235,7 +245,7 @@ class Tracer:
             for name, value in found.items()
         }
 
-    def numbers(self, regime: str) -> Names:
+    def _numbers(self, regime: str) -> Names:
         """``r`` with the constants of one regime as numbers."""
         place = self.composition.component_of[self.regimes.index(regime)]
         values: list[Any] = list(self._symbols)

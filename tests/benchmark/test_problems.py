@@ -32,7 +32,9 @@ def traced(data, system):
     unit = {id(parameter(TIME_UNIT)): symbol(1.0)}
 
     def text(root):
-        return None if root is None else expression(substituted(root, unit))
+        if root is None:
+            return None
+        return expression(substituted([root], unit)[id(root)])
 
     switches = []
     for switch, symbols in zip(system.switches, system.traced.switches, strict=True):

@@ -4,7 +4,8 @@ Arguments are addresses: ``z`` of the state (with the time last, if it is explic
 lane's parameters, which the constants of its regimes follow, ``out`` of the results.
 """
 
-from collections.abc import Mapping, Sequence
+import operator
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -231,10 +232,29 @@ def _function(head: str, lines: Sequence[str]) -> str:
 
 
 def evaluate(roots: Sequence[Symbol], values: Mapping[str, Any]) -> tuple[Any, ...]:
-    """Symbols as floats or arrays, from those of variables and parameters by name."""
-    function, names = numpy_function(roots)
-    found: tuple[Any, ...] = function(*(values[name] for name in names))
-    return found
+    """Symbols as floats or arrays, from those of variables and parameters by name.
+
+    Node by node: code for so many as a structure has takes longer to compile than to run once.
+    """
+    found: dict[int, Any] = {}
+    with np.errstate(invalid="ignore", divide="ignore"):
+        for node in in_order(roots):
+            given = [
+                found[id(a)] if isinstance(a, Symbol) else a for a in node.arguments
+            ]
+            found[id(node)] = _value(node.kind, given, values)
+    return tuple(found[id(root)] for root in roots)
+
+
+def _value(kind: str, given: Sequence[Any], values: Mapping[str, Any]) -> Any:
+    """One operation on the values of its arguments."""
+    if kind == "number":
+        return given[0]
+    if kind in {"variable", "parameter"}:
+        return values[given[0]]
+    if kind in _OPERATIONS:
+        return _OPERATIONS[kind](*given)
+    return getattr(np, kind)(*given)
 
 
 def python_function(
@@ -261,6 +281,19 @@ def _only(mark: Any, value: Any) -> Any:
     if isinstance(mark, float) and isinstance(value, float):
         return value if mark > 0.0 else 0.0
     return np.where(np.asarray(mark) > 0.0, value, 0.0)
+
+
+def _joined(c1: Any, a1: Any, b1: Any, c2: Any, a2: Any, b2: Any) -> Any:
+    return c1 * (a1 * b1) + c2 * (a2 * b2)
+
+
+_OPERATIONS: dict[str, Callable[..., Any]] = {
+    "+": operator.add,
+    "*": operator.mul,
+    "**": operator.pow,
+    "only": _only,
+    "joined": _joined,
+}
 
 
 def numpy_function(roots: Sequence[Symbol]) -> tuple[Any, list[str]]:

@@ -308,16 +308,16 @@ def in_order(roots: Sequence[Symbol]) -> list[Symbol]:
     return list(found.values())
 
 
-def substituted(root: Symbol, given: dict[int, Symbol]) -> Symbol:
-    """An expression with some of its nodes, by ``id``, replaced."""
+def substituted(roots: Sequence[Symbol], given: dict[int, Symbol]) -> dict[int, Symbol]:
+    """What stands for each node below the roots, by ``id``, where some nodes are replaced."""
     made = dict(given)
-    for node in in_order([root]):
+    for node in in_order(roots):
         if id(node) not in made:
             inner = [
                 made[id(a)] if isinstance(a, Symbol) else a for a in node.arguments
             ]
             made[id(node)] = Symbol(node.kind, *inner)
-    return made[id(root)]
+    return made
 
 
 def constant_parts(roots: Sequence[Symbol], skipped: str | None) -> list[Symbol]:

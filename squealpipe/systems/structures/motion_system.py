@@ -100,8 +100,8 @@ class Equations:
 
     def __init__(self, structure: Structure) -> None:
         self.structure, self.numbers = structure, Numbers.of(structure)
-        # functions of one system are called with the same few objects again and again
-        self.at = lru_cache(maxsize=4)(self._at)
+        # functions of one contact are called with the constants of its regimes again and again
+        self.at = lru_cache(maxsize=8)(self._at)
 
     def _at(self, s: Any, p: Any, r: Any) -> Motion:
         return Motion(self.structure, self.numbers, s, p, r)
