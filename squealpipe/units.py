@@ -30,7 +30,7 @@ QUANTITIES = {
     "Hz": ("a frequency", "2 kHz"),
     "1": ("a number without a unit, or in %", "30 %"),
 }
-"""CF unit → what it measures, and an example of how people write it."""
+"""CF unit → what it measures, and an example of how people write it; others are read, too."""
 SHOWN_IN: dict[str, tuple[tuple[float, str, float], ...]] = {
     "m": ((1.0, "m", 0.1), (1e3, "mm", 1e-4), (1e6, "µm", 0.0)),
     "s": ((1.0, "s", 1.0), (1e3, "ms", 0.0)),
@@ -101,13 +101,13 @@ def in_si(text: str, units: str, keys: Mapping[str, str] | None = None) -> float
     """The number of a text with a unit, in SI.
 
     Args:
-        units: CF unit of the result, a key of :data:`QUANTITIES`.
+        units: CF unit of the result.
         keys: names and CF units of other inputs, to say which takes what was written.
 
     Raises:
         UnitError: it is no number with a unit, or one of another kind.
     """
-    what, example = QUANTITIES[units]
+    what, example = kind_and_example(units)
     tidy = _tidy(text)
     if match := _COMMA.fullmatch(tidy):
         raise UnitError(_without_comma(*match.groups("")))
@@ -188,6 +188,12 @@ def plain_unit(units: str) -> str:
         if power.startswith("-")
     ]
     return "/".join([above or "1", *below])
+
+
+def kind_and_example(units: str) -> tuple[str, str]:
+    """What a CF unit measures, and an example of how people write it."""
+    plain = plain_unit(units)
+    return QUANTITIES.get(units, (f"a value in {plain}", f"1 {plain}"))
 
 
 def with_unit(value: float, units: str, digits: int = 4) -> str:
@@ -293,5 +299,5 @@ def _wrong_kind(unit: Any, units: str, keys: Mapping[str, str] | None) -> str:
         if kind and takers
         else ""
     )
-    what, example = QUANTITIES[units]
+    what, example = kind_and_example(units)
     return f"{is_kind}; {what} is needed, like {example}{elsewhere}"

@@ -23,7 +23,7 @@ from squealpipe.config.settings import (
 )
 from squealpipe.config.yaml_files import flat
 from squealpipe.parameters import TABLE, Parameters, parameters_of
-from squealpipe.units import QUANTITIES
+from squealpipe.units import kind_and_example
 
 ROOT = Path(__file__).resolve().parents[1]
 PAPER = ROOT / "workflow/config/paper.yaml"
@@ -360,7 +360,10 @@ def test_every_key_refuses_another_kind_and_says_which_key_takes_it():
         if mark.units == "rad":
             assert "write 0.4pi, 2pi/5, 72deg or radians" in message
         else:
-            assert f"that is a mass; {QUANTITIES[mark.units][0]} is needed" in message
+            assert (
+                f"that is a mass; {kind_and_example(mark.units)[0]} is needed"
+                in message
+            )
             assert "a mass goes to mass" in message
         checked += 1
     assert checked > 35

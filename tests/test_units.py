@@ -47,6 +47,7 @@ ROUNDED_ONCE = {
     (".5 µm", "m"): 5e-7,
     ("12 1/mm", "m-1"): 12e3,
     ("20ms", "s"): 0.02,
+    ("981 cm/s²", "m s-2"): 9.81,
 }
 
 
@@ -80,6 +81,10 @@ REFUSED = {
     ("0,57 mm", "m"): "write a decimal point: 0.57 mm",
     ("1,500 N", "N"): "write 1.500 N or 1500 N",
     ("1.500,5 N", "N"): "a force is needed, like 4 kN",
+    (
+        "4 kN",
+        "s m-1",
+    ): "that is a force; a value in s/m is needed, like 1 s/m; a force goes to",
 }
 
 
