@@ -37,6 +37,7 @@ def test_the_page_on_systems_runs(capsys):
     assert "19 impacts, the first at 6.57" in printed
     assert "fold at amplitude 2.073204825806" in printed
     assert scope["found"].outcome.dims == ("x0", "omega")
+    assert (scope["found"].rattle > 0).sum("omega").values.tolist() == [3, 3, 3, 4, 4]
 
 
 def times_of(run, kind):
