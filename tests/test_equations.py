@@ -66,6 +66,16 @@ def table():
     return found
 
 
+def test_what_the_architecture_says_to_look_for_is_there():
+    page = (ROOT / "docs/architecture.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| .* \| `(squealpipe/\S+)`(.*) \|$", page, re.MULTILINE)
+    assert len(rows) > 10
+    for path, names in rows:
+        source = (ROOT / path).read_text(encoding="utf-8")
+        for name in re.findall(r"`(\w+)`", names):
+            assert re.search(rf"\b(?:def|class) {name}\b", source), (path, name)
+
+
 def test_every_equation_has_exactly_one_home():
     found = homes()
     assert set(found) <= PAPER, f"no such equation: {sorted(set(found) - PAPER)}"

@@ -7,7 +7,7 @@ regime     contact direction holds while
 ========== ======= ========= =====================================================
 slip −     1       +1        ẋ < V, y < l_pre
 slip +     1       −1        ẋ > V, y < l_pre
-stick      1       0         ẋ = V, |elastic x-force| ≤ μN, y < l_pre
+stick      1       0         ẋ = V, |suspension's fx| ≤ μs N, y < l_pre
 separated  0       any       y > l_pre
 ========== ======= ========= =====================================================
 

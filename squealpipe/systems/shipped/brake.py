@@ -135,6 +135,7 @@ def brake(  # noqa: C901 (one short function for each force and surface)
         return {"x": s.vx, "y": s.vy, "vx": ax, "vy": ay}
 
     def holds(t: Any, s: Any, p: Any, r: Any) -> Any:
+        """The condition of stick: |elastic x-force and dashpots| ≤ μs N, within round-off."""
         slack = ROUND_OFF * p.k1 * p.preload
         return limit(s, p, r) ** 2 + slack**2 - pull(s, p, r) ** 2
 
