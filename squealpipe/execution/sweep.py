@@ -1,5 +1,7 @@
 """Any task over ranges of parameters, angles and options, as one labelled dataset."""
 
+from __future__ import annotations  # help shows Angle, not its checks
+
 import inspect
 import itertools
 import time

@@ -1,5 +1,7 @@
 """NetCDF files that are either whole and valid or absent."""
 
+from __future__ import annotations  # help shows Angle, not its checks
+
 import datetime
 import hashlib
 import os

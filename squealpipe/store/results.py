@@ -1,5 +1,7 @@
 """A whole run as one tree of datasets."""
 
+from __future__ import annotations  # help shows Angle, not its checks
+
 import os
 from collections.abc import Mapping
 from pathlib import Path

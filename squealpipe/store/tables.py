@@ -1,5 +1,7 @@
 """Datasets as tables for other programs: CSV, MATLAB, Excel, Parquet."""
 
+from __future__ import annotations  # help shows Angle, not its checks
+
 import io
 import re
 from importlib.util import find_spec

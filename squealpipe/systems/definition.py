@@ -1,5 +1,7 @@
 """What a piecewise-smooth system is: its definition, checked and traced; it knows no verbs."""
 
+from __future__ import annotations  # help shows Angle, not its checks
+
 from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import replace

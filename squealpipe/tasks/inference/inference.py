@@ -4,6 +4,8 @@ The paper prints no numbers. Equal springs are assumed (Fig. 5 and the isolated 
 need them); κ, μ, λ and v are left.
 """
 
+from __future__ import annotations  # help shows Angle, not its checks
+
 from typing import Annotated, Any
 
 import numpy as np

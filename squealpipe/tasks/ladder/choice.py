@@ -6,6 +6,8 @@ A1 is the cheapest level whose answer is certain. The rule is not proved; its ma
 no cell of a random sample (:data:`SAMPLE`) needed.
 """
 
+from __future__ import annotations  # help shows Angle, not its checks
+
 from dataclasses import dataclass
 from typing import Annotated, Any
 

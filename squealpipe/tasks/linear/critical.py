@@ -1,5 +1,7 @@
 """The friction at which steady sliding turns unstable, over the angles and over both dashpots."""
 
+from __future__ import annotations  # help shows Angle, not its checks
+
 from types import SimpleNamespace
 
 import xarray as xr

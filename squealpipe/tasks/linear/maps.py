@@ -1,5 +1,7 @@
 """Linear maps over both spring angles: quasi-static sliding, stability, natural frequencies."""
 
+from __future__ import annotations  # help shows Angle, not its checks
+
 from types import SimpleNamespace
 
 import mpmath

@@ -1,5 +1,7 @@
 """What each method says of a structure's squeal, against the finest run, and what it costs."""
 
+from __future__ import annotations  # help shows Angle, not its checks
+
 import platform
 from collections.abc import Sequence
 from typing import Any

@@ -1,5 +1,7 @@
 """Which unstable modes of a structure squeal, as a dataset."""
 
+from __future__ import annotations  # help shows Angle, not its checks
+
 from typing import Any
 
 import numpy as np
