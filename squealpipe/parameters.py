@@ -20,12 +20,14 @@ from squealpipe.substitutes import (
     stands_for,
     stood_for,
 )
-from squealpipe.text import number, suggestion
-from squealpipe.units import number_of
+from squealpipe.text import suggestion
+from squealpipe.units import engineering, number_of
 
 FULL_TURN = 2 * math.pi * (1 + 1e-9)
 """Largest angle, rad; beyond it one meant degrees, or slipped."""
 BEYOND_A_TURN = "more than a full turn; angles are in rad, from −2π to 2π"
+MOST_KNOTS = 24
+"""Knots of a table that are told in words; of a longer one the first and last of these."""
 HORIZON = 200.0
 """Default horizon of maps and questions, in units of √(m/k1)."""
 
@@ -126,14 +128,21 @@ def brief(value: object) -> str:
     return reprlib.repr(value)
 
 
-def law_in_words(law: str) -> str:
-    """The name of a law, the values of its table, or that it is a Python file."""
+def law_in_words(law: str, units: tuple[str, str] = ("1", "1")) -> str:
+    """The name of a law, the values of its table, or that it is a Python file.
+
+    Args:
+        units: CF units of the knots and values of a table, which are told in readable ones.
+    """
     if is_table(law):
-        knots = zip(*knots_of(law), strict=True)
-        values = ", ".join(
-            f"{number(value)} at {number(knot)}" for knot, value in knots
-        )
-        return f"table, {law.split(maxsplit=1)[0]}: {values}"
+        pairs = [
+            f"{engineering(value, units[1], 4)} at {engineering(knot, units[0], 4)}"
+            for knot, value in zip(*knots_of(law), strict=True)
+        ]
+        left_out = len(pairs) - MOST_KNOTS
+        if left_out > 0:
+            pairs[MOST_KNOTS // 2 : -(MOST_KNOTS // 2)] = [f"… {left_out} more …"]
+        return f"table, {law.split(maxsplit=1)[0]}: {', '.join(pairs)}"
     return law if law.isidentifier() else "Python file"
 
 

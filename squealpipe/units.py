@@ -165,7 +165,7 @@ def number_of(value: Any, units: str, keys: Mapping[str, str] | None = None) -> 
 
 def shown_in(largest: float, units: str) -> tuple[float, str]:
     """Factor and unit in which people write values of a CF unit up to a largest one."""
-    choices = SHOWN_IN.get(units, ())
+    choices = SHOWN_IN.get(units, ()) if largest else ()  # 0 m/s, not 0 mm/s
     for factor, name, least in choices:
         if abs(largest) >= least:
             return factor, name

@@ -21,6 +21,8 @@ SAMPLES = 800
 LINES = 3200
 """Lines of its spectrum."""
 HARMONICS = 5
+KICKS = ((0.0, 1.0), (-1.0, -0.5), (1.0, 2.0))
+"""Velocities of strikes along and across the belt, over l_pre √((k1 + k2)/2m)."""
 
 
 class Verdict(IntEnum):

@@ -184,8 +184,11 @@ def test_a_table_of_friction_stands_for_the_coefficient(tmp_path):
     pad = replace(PAD, mu=Parameters().mu, friction_law="linear 0.0:0.48 1.0:0.36")
     rows = {row["meaning"]: row for row in parameter_table(pad, of_a1=True)}
     assert "sliding friction coefficient" not in rows
-    assert rows["friction law"]["value"] == "table, linear: 0.48 at 0, 0.36 at 1"
-    assert rows["friction law"]["unit"] == "at m s⁻¹"
+    assert (
+        rows["friction law"]["value"] == "table, linear: 0.48 at 0 m/s, 0.36 at 1 m/s"
+    )
+    assert rows["stiffness of spring 1"]["value"] == pytest.approx(10.0)
+    assert rows["stiffness of spring 1"]["unit"] == "kN/mm"
     figure = draw(
         "own_model", {"own/mine": simulate(pad, 0.5, 2.4, t_end=20 * pad.time_unit)}
     )

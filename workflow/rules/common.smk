@@ -75,21 +75,20 @@ _given = parameters_of(STUDY.slice("parameters"))
 PAPERS_FRICTION = not extensions(_given)
 """Whether the levels that carry neither dashpots nor other laws of friction can be part of it."""
 
-LEFT_OUT = [] if PAPERS_FRICTION else ["backbones in the explorer", "models that are cheaper than A1"]
+LEFT_OUT = [] if PAPERS_FRICTION else ["free periodic motions (backbones) in the explorer"]
 """What the report of a study of one's own names as left out."""
 
 if not PAPERS_FRICTION and workflow.is_main_process:
-    beyond = {k: v for k, v in _given.as_dict().items() if k not in Parameters(mu=_given.mu).as_dict()}
+    beyond = [name for name in _given.as_dict() if name not in Parameters(mu=_given.mu).as_dict()]
     left_out = (
         "model A4 and harmonic balance (backbones, orbits, natural frequencies, the explorer), the "
         "model ladder, time stepping, exact boundaries of A3, and the inference from the paper's "
         "statements"
         if STUDY.paper
-        else "backbones in the explorer, and models that are cheaper than A1"
+        else "free periodic motions (backbones) in the explorer"
     )
     print(
         "Left out, for they carry neither dashpots nor any laws but Coulomb's with one μ and a "
-        f"linear contact: {left_out}. Without {', '.join(f'{k} = {v!r}' for k, v in beyond.items())} they are part "
-        "of the study.",
+        f"linear contact: {left_out}. Without {' and '.join(beyond)} they are part of the study.",
         file=sys.stderr,
     )

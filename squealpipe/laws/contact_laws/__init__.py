@@ -20,7 +20,7 @@ from squealpipe.laws.tables import (
 
 COLUMNS = ("compression", "force")
 """Of a table of contact: δ, m, and N, N."""
-TABLE_UNITS = "N at m"
+TABLE_UNITS = ("m", "N")
 FILES = "or a table (FILE.csv)"
 REFUSED = {
     "hertz": "d^1.5 has no Taylor series at d = 0, where contact begins and ends, so its order "

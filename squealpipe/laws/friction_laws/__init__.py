@@ -16,7 +16,7 @@ from squealpipe.laws.tables import Pieces, functions_of, is_table, pieces_of, po
 
 COLUMNS = ("speed", "coefficient")
 """Of a table of friction: the sliding speed, m/s, and μ."""
-TABLE_UNITS = "at m s⁻¹"
+TABLE_UNITS = ("m s-1", "1")
 FILES = "or a table (FILE.csv), or a law in Python (FILE.py)"
 REFUSED: dict[str, str] = {}
 """Laws that cannot be carried, with the reason."""

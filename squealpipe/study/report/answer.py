@@ -12,7 +12,7 @@ from squealpipe.text import number, percent
 from squealpipe.units import engineering
 
 NAMES = {
-    "mu": "friction",
+    "mu": "friction coefficient",
     "k3": "contact stiffness k3",
     "k1": "stiffness of spring 1",
     "k2": "stiffness of spring 2",
@@ -57,9 +57,10 @@ def headline(answer: xr.Dataset, prefix: str = "") -> str:
     verdict = verdict_of(answer, prefix)
     if verdict is Verdict.quiet:
         if not prefix and bool(answer.quiet_unless_struck):
+            also = verdict_of(answer, "sudden_") is not Verdict.quiet
             return (
-                "Quiet unless struck: small motions die out, but a hard enough blow or a sudden "
-                "start leaves a vibration that lasts."
+                "Quiet unless struck: small motions die out, but a hard enough blow"
+                f"{' or a sudden start' * also} leaves a vibration that lasts."
             )
         if _is_neutral(answer):
             return (
@@ -67,7 +68,7 @@ def headline(answer: xr.Dataset, prefix: str = "") -> str:
             )
         return "Quiet: the vibration dies out."
     at = engineering(value("frequency"), "Hz")
-    force = number(value("peak_contact_force_over_preload"), 2)
+    force = number(value("peak_contact_force_over_preload"))
     lost = percent(value("separated_fraction"))
     if verdict is Verdict.hammers:
         return (
@@ -123,9 +124,10 @@ def cause(answer: xr.Dataset) -> str:
             else f"small motions halve every {time}"
         )
         return f"Steady sliding is stable: {fades}; the modes are at {frequencies}."
+    push = "hard" if verdict_of(answer) is Verdict.quiet else "small"
     return (
-        "Steady sliding is stable, but another motion exists beside it, which a hard push reaches; "
-        f"the modes are at {frequencies}."
+        f"Steady sliding is stable, but another motion exists beside it, which a {push} push "
+        f"reaches; the modes are at {frequencies}."
     )
 
 

@@ -21,7 +21,7 @@ from squealpipe.study.figures import declared
 from squealpipe.study.figures.dynamics import regime_charts
 from squealpipe.study.report import edited, sections
 from squealpipe.study.report.numbers import numbers
-from squealpipe.text import RAISED
+from squealpipe.units import shown_in
 
 TITLE = "Hammering and brake squeal: a paper computed again, statement by statement"
 PAPER = {
@@ -167,23 +167,22 @@ def parameter_table(
 
     A parameter for which the file of a law stands has no row.
     """
-    return [
-        {
-            "symbol": TABLE[name].symbol,
-            "meaning": TABLE[name].meaning.partition(":")[0]
-            if law
-            else TABLE[name].meaning,
-            "value": law_in_words(value) if law else value,
-            "unit": law.TABLE_UNITS * law_in_words(value).startswith("table")
-            if law
-            else re.sub(
-                r"-\d", lambda found: found[0].translate(RAISED), TABLE[name].units
-            ),
-        }
-        for name, value in parameters.as_dict().items()
-        for law in [TABLE[name].laws]
-        if (TABLE[name].enters_a1 or not of_a1) and name not in parameters.in_laws
-    ]
+    rows = []
+    for name, value in parameters.as_dict().items():
+        row = TABLE[name]
+        if name in parameters.in_laws or (of_a1 and not row.enters_a1):
+            continue
+        shown, unit = value, ""
+        if row.laws:
+            shown = law_in_words(value, row.laws.TABLE_UNITS)
+        elif value is not None:
+            factor, unit = shown_in(value, row.units)
+            shown = value * factor
+        meaning = row.meaning.partition(":")[0] if row.laws else row.meaning
+        rows.append(
+            {"symbol": row.symbol, "meaning": meaning, "value": shown, "unit": unit}
+        )
+    return rows
 
 
 TABLE_1 = {

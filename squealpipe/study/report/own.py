@@ -10,7 +10,7 @@ import xarray as xr
 
 from squealpipe.codes import Regime
 from squealpipe.parameters import Parameters
-from squealpipe.schema.assess import Verdict
+from squealpipe.schema.assess import KICKS, Verdict
 from squealpipe.schema.dynamics.intervals import intervals
 from squealpipe.study.claims.evidence import Evidence
 from squealpipe.study.report import answer
@@ -54,6 +54,7 @@ def gather_own(
         "scenes": [
             scene(name, run[f"assess/{name}"], run[f"own/{name}"]) for name in names
         ],
+        "strikes": _strikes(parameters),
         "scatter": _scatter(run),
     }
 
@@ -72,6 +73,7 @@ def scene(name: str, told: xr.Dataset, started: xr.Dataset) -> dict[str, Any]:
         "angles": [number(float(np.degrees(told[f"alpha{i}"]))) for i in (1, 2)],
         "verdict": answer.verdict_of(told).name,
         "quiet": quiet,
+        "struck": bool(told.quiet_unless_struck),
         "headline": answer.headline(told),
         "cause": answer.cause(told),
         "level": answer.level(told),
@@ -97,12 +99,19 @@ def _nearest(told: xr.Dataset) -> str | None:
         return None
     moves = [b - a for a, b in zip(now, there, strict=True)]
     away = number(math.hypot(*moves), 2)
-    how = " and ".join(
-        f"alpha{i} {'+' if move > 0 else '−'}{number(abs(move), 2)}°"
-        for i, move in enumerate(moves, start=1)
-        if abs(move) > 1e-3 * math.hypot(*moves)
+    how = ", ".join(
+        f"alpha{i} {number(angle)}° ({'+' if move > 0 else '−'}{number(abs(move), 2)}°)"
+        for i, (angle, move) in enumerate(zip(there, moves, strict=True), start=1)
     )
-    return f"{away}° away, at {number(there[0])}°, {number(there[1])}° ({how})"
+    return f"{how}: {away}° away"
+
+
+def _strikes(parameters: Parameters) -> str:
+    """The speeds that strikes give the pad, in words."""
+    rate = math.sqrt((parameters.k1 + parameters.k2) / (2.0 * parameters.mass))
+    speeds = [parameters.preload * rate * math.hypot(*kick) for kick in KICKS]
+    least, most = (engineering(end(speeds), "m s-1", 2) for end in (min, max))
+    return f"{least} to {most}"
 
 
 def _numbers(told: xr.Dataset) -> list[dict[str, str]]:
@@ -119,7 +128,7 @@ def _numbers(told: xr.Dataset) -> list[dict[str, str]]:
         ("stick_fraction", "%", "Time sticking to the belt"),
         ("impact_rate", "s-1", "Rate of impacts"),
         ("impact_speed", "m s-1", "Fastest impact"),
-        ("settled_by", "s", "Settled by"),
+        ("settled_by", "s", "Had settled after"),
     ):
         values = [float(told[f"{prefix}{name}"]) for prefix in ("", "sudden_")]
         rows.append(

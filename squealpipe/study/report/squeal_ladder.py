@@ -16,7 +16,6 @@ WORDS = {
     PushAnswer.other_mode: "which is another mode",
     PushAnswer.quiet_instead: "which is wrong",
     PushAnswer.rings_instead: "which is wrong",
-    PushAnswer.not_settled: "and has not settled",
     PushAnswer.not_known: "of which the finest run says nothing",
 }
 
@@ -36,19 +35,19 @@ def lines(ladder: xr.Dataset) -> list[str]:
 def _pushes(one: xr.Dataset) -> Iterator[str]:
     for place in range(one.sizes["mode"]):
         end = one.isel(mode=place)
-        said = f"mode {int(end.mode)} {rings(end)}"
-        if int(end.outcome) != Outcome.converged:
-            said += ", and has not settled"
-        yield said
+        yield f"mode {int(end.mode)} {rings(end)}"
 
 
 def rings(end: xr.Dataset) -> str:
     """What rings after a push, in words."""
     if int(end.outcome) == Outcome.no_convergence:
         return "is not followed to the end"
-    if np.isnan(end.frequency):
-        return "dies out"
-    return f"rings at {engineering(float(end.frequency), 'Hz', 4)}"
+    is_quiet = bool(np.isnan(end.frequency))
+    at = "" if is_quiet else f" at {engineering(float(end.frequency), 'Hz', 4)}"
+    if int(end.outcome) != Outcome.converged:
+        loudest = at and f", where it is loudest{at}"
+        return f"has not settled by the end of its run{loudest}"
+    return "dies out" if is_quiet else f"rings{at}"
 
 
 def method_line(one: xr.Dataset) -> str:
@@ -57,8 +56,10 @@ def method_line(one: xr.Dataset) -> str:
     for place in range(one.sizes["mode"]):
         end = one.isel(mode=place)
         answer = PushAnswer(int(end.answer))
-        said = f"mode {int(end.mode)} {rings(end)}, {WORDS.get(answer)}"
-        if answer is PushAnswer.no_such_mode:
+        said = f"mode {int(end.mode)} {rings(end)}"
+        if answer in WORDS:
+            said += f", {WORDS[answer]}"
+        elif answer is PushAnswer.no_such_mode:
             said = f"it has no mode {int(end.mode)}"
         parts.append(said)
     level = float(one.velocity_error)

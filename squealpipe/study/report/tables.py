@@ -120,4 +120,5 @@ def _cures(answers: Mapping[str, xr.Dataset]) -> Iterable[list[Any]]:
 
 
 def _plain(name: str, value: Any) -> Any:
-    return law_in_words(value) if TABLE[name].laws else value
+    laws = TABLE[name].laws
+    return law_in_words(value, laws.TABLE_UNITS) if laws else value

@@ -8,6 +8,7 @@ from typing import Self
 
 import numpy as np
 
+from squealpipe.schema.assess import KICKS
 from squealpipe.tasks.assess.designs import Cure
 from squealpipe.tasks.assess.search import Side, Test, bisect, nearer, thinned
 from squealpipe.tasks.assess.settling import MOST, Start, settle, start_at
@@ -25,9 +26,6 @@ FADES = 6.0
 
 MOST_MOTIONS = 2
 """Motions of a side that are followed at most."""
-
-KICKS = ((0.0, 1.0), (-1.0, -0.5), (1.0, 2.0))
-"""Velocities of strikes along and across the belt, over l_pre √((k1 + k2)/2m)."""
 
 
 def any_start(

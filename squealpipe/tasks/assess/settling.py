@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from squealpipe.methods.progress import alone
 from squealpipe.models.damped import is_undamped
 from squealpipe.schema.assess import Verdict
 from squealpipe.tasks.assess.sliding import Design, Sliding
@@ -123,7 +124,10 @@ def settle(starts: Sequence[Start], *, tol: float, most: float = MOST) -> list[S
     while rows := [row for row in range(len(starts)) if row not in found]:
         seconds = length[rows] * period[rows]
         designs = [starts[row].design for row in rows]
-        windows = run_windows(designs, states[rows], seconds, tol=tol)
+        with (
+            alone()
+        ):  # how many windows follow is not known: their share would tell nothing
+            windows = run_windows(designs, states[rows], seconds, tol=tol)
         elapsed[rows] += length[rows]
         for at, row in enumerate(rows):
             now, start = windows.row(at), starts[row]

@@ -25,7 +25,7 @@ MOST_STEPS = 40
 RAISED, PACE = 64, 20.0
 """Steps in which friction is raised, and as many under the whole; time of each over 1/rate."""
 MOST_DOUBLED = 400
-"""Steps after those at most, the first :data:`MOST_STEPS` of them of doubled time."""
+"""Most steps after those; over the first :data:`MOST_STEPS` of them the time doubles each step."""
 LONGEST = 0.1
 """Longest step, over the shorter spring."""
 BALANCE = 1e-11

@@ -23,7 +23,7 @@ def figure(name):
 
 for topic in dict.fromkeys(map(declared.topic, READ_BY)):
     figures = [name for name in READ_BY if declared.topic(name) == topic]
-    datasets = sorted({read for name in figures for read in READ_BY[name]})
+    datasets = list(dict.fromkeys(read for name in figures for read in READ_BY[name]))  # scenes as given
 
     rule:
         name:

@@ -16,11 +16,12 @@ from squealpipe.study.report.tables import write_tables
 params, out = snakemake.params, snakemake.output
 refuse_misfits(params.expected)
 datasets, figures = made_files(params.made), made_files(params.drawn)
+made_how = provenance(datasets, figures)
 content = gather_own(
     datasets,
     figures,
     parameters_of(params.settings),
-    params.changed,
+    [row for row in params.changed if row[0] in made_how["configuration"]],
     params.left_out,
     params.became,
 )
@@ -36,8 +37,6 @@ write_tables(
     Path(out.tables),
 )
 with whole_file(Path(out.provenance)) as temporary:
-    temporary.write_text(
-        json.dumps(provenance(datasets, figures), indent=1), encoding="utf-8"
-    )
+    temporary.write_text(json.dumps(made_how, indent=1), encoding="utf-8")
 for path in out:
     state_key(path, params.key)

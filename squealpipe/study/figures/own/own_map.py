@@ -26,7 +26,7 @@ CAPTION = (
     "What becomes of steady sliding after a small push, over both spring angles (in degrees; "
     "alpha1 is counted from +x, the way the belt runs, alpha2 from −x). Crosses: the scenes whose "
     "angles lie in the map; arrows lead from each to the nearest angles at which its verdict "
-    "changes between quiet and noise."
+    "changes between quiet and noise. Undetermined: not settled in 1,600 periods."
 )
 ALT = "A map over both spring angles in white, orange, red and grey with crosses and arrows."
 TONES = {
@@ -75,7 +75,10 @@ def draw(verdicts: xr.Dataset, answers: Mapping[str, xr.Dataset]) -> Figure:
                 "shrinkA": 0,
                 "shrinkB": 0,
             }
-            panel.annotate("", to, at, arrowprops=look, zorder=5)
+            arrow = panel.annotate(
+                "", to, at, arrowprops=look, zorder=5, annotation_clip=False
+            )
+            arrow.arrow_patch.set_clip_path(panel.patch)  # it may lead out of the map
         panel.plot(*at, "x", color="white", markersize=8, markeredgewidth=3)
         panel.plot(*at, "x", color=BLUE, markersize=6, markeredgewidth=1.5)
         panel.annotate(

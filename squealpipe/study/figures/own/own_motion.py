@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
+from squealpipe.plotting.axis_units import in_units
 from squealpipe.plotting.run import draw_force, draw_orbit
 
 READS = ("own/*",)
@@ -26,16 +27,13 @@ EVENTS = 8
 def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
     """Two panels for each scene, from datasets ``own/<scene>``."""
     figure, axes = style.new_figure(
-        0.75 * style.PAGE, 0.3 + 1.8 * len(runs), nrows=len(runs), ncols=2
+        0.75 * style.PAGE, 0.2 + 2.0 * len(runs), nrows=len(runs), ncols=2
     )
     for (history, path), (name, run) in zip(axes, runs.items(), strict=True):
         shown = [SHOWN * float(run.time[-1]), *run.event_time.values[:EVENTS]]
         draw_force(history, run.sel(time=slice(0.0, float(np.max(shown)))))
         draw_orbit(path, run)
-        for panel in (history, path):
-            panel.ticklabel_format(scilimits=(-3, 4), useMathText=True)
         history.set_title(name.removeprefix("own/"), loc="left", fontweight="bold")
         history.set_ylabel("contact force over preload")
-    for panel in axes[:-1].flat:
-        panel.set_xlabel("")
+    in_units(figure, (), run)
     return figure
