@@ -1,4 +1,4 @@
-"""Lines over the unit square on which a function is zero, and the regions that they bound.
+"""Lines over the unit square on which a function is zero.
 
 The function may have kinks, as the largest of many maxima has. Where its sign changes on an
 adaptive grid, its zero on each edge of the grid is found, and neighbours are joined. Each chord
@@ -7,35 +7,26 @@ zero beside it. It is divided where the tangents meet: in the middle of a smooth
 kink, which is so enclosed in a few steps.
 """
 
-from collections.abc import Callable, Sequence
-from itertools import pairwise
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from squealpipe.methods.adaptive_grid import refine_grid
+from squealpipe.methods.chords import Chords, Indices, Mark, Vector, cubic, split
 
-Vector = NDArray[np.float64]
-Indices = NDArray[np.int64]
 Function = Callable[[Vector], Vector]
 """Places, (places, 2) → values."""
-Mark = Callable[[Vector, Vector], Vector]
-"""Places and slopes there → what jumps from one branch of a function to another."""
 
 SHORTEST = 50.0
 """Chord beside a kink, over off, below which the tangents meet in it."""
-BENT, SKEW, ROUGH = 0.6, 0.08, 1e-6
-"""Area beside a chord of one arc that is doubted, over its length squared and its turn cubed; what
-a curvature that changes along it, and the error of the tangents, add to that."""
 MOST_DIVISIONS, MOST_POINTS = 30, 25_000
 """Where motions last long a line may have corners without end: its error then says what is left."""
 CLOSED = 1e-12
 """Share of a line that encloses a zero."""
 STEP, SECANT = 1e-8, (1e-9, 1e-5)
 """Of the differences that give tangents; of those that a zero's last secant gives."""
-FLAT = 1e-6
-"""Distance of a polygon from a line."""
 LONGEST = 30.0
 """Tongue beyond a chord, over it, that is looked for."""
 RUNGS = np.array(
@@ -45,24 +36,10 @@ RUNGS = np.array(
 SHORT_OF, BESIDE_TANGENT = 0.6, 0.06
 """Share of the way to where tangents meet that is gone along them; how far beside them, over that
 way, a line is looked for."""
+FLATTISH = 0.5
+"""Slope over a chord up to which a line is taken for a cubic."""
 SHARP = 0.5
 """Cosine of the turn at a corner that is enclosed along both tangents."""
-FLATTISH, STEEPEST = 0.5, 3.0
-"""Slope over a chord up to which a line is taken for a cubic; largest in the area beside it."""
-CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
-
-
-class Loop(NamedTuple):
-    """A closed line around a region, counter-clockwise, or around a hole of it, clockwise.
-
-    Attributes:
-        outline: a polygon next to it.
-        area: enclosed, negative for a hole; with its error.
-    """
-
-    outline: Vector
-    area: float
-    error: float
 
 
 class FirstGrid(NamedTuple):
@@ -77,7 +54,7 @@ class FirstGrid(NamedTuple):
     finer: int
 
 
-class ZeroLines:
+class ZeroLines(Chords):
     """The lines on which a function is zero.
 
     Args:
@@ -90,10 +67,7 @@ class ZeroLines:
             tangents then, which takes more places.
 
     Attributes:
-        place: (points, 2).
-        slope: derivatives of the function, (points, 2); NaN at a corner, where two branches meet.
         residual: of the points.
-        mark: of the points where it was asked for, else NaN.
         chords: indices of first and last points, (chords, 2), the positive side on their left.
         error: of the area beside each chord.
         positive: whether the function is so at the square's origin.
@@ -111,10 +85,9 @@ class ZeroLines:
         residual: float = 1e-11,
         touching: bool = False,
     ) -> None:
-        self.value, self._mark, self._touching = value, mark, touching
-        self.jump, self.off, self.most = jump, off, residual
-        self.place, self.slope = np.empty((0, 2)), np.empty((0, 2))
-        self.residual, self.mark = np.empty(0), np.empty(0)
+        super().__init__(mark, jump)
+        self.value, self._touching = value, touching
+        self.off, self.most, self.residual = off, residual, np.empty(0)
         self.chords, self.error = np.empty((0, 2), int), np.empty(0)
         self.unresolved = 0.0
         self._trace(self._on_grid((grid.coarse - 1) * grid.finer + 1, grid.coarse))
@@ -205,7 +178,7 @@ class ZeroLines:
 
     def _trace(self, chords: Indices) -> None:
         """Divide chords until their areas are known."""
-        error = self._length(chords) ** 2
+        error = self.length(chords) ** 2
         self.marks(chords)
         for _ in range(MOST_DIVISIONS):
             if not len(chords) or len(self.place) > MOST_POINTS:
@@ -220,15 +193,15 @@ class ZeroLines:
                 cut[~lost] = self._astray(chords[~lost], middle[~lost])
             shorter, cut[cut] = self._cut(chords[cut])
             ended, divided = lost & ~cut, ~lost & ~cut
-            self._keep(chords[ended], self._length(chords[ended]) ** 2)
+            self._keep(chords[ended], self.length(chords[ended]) ** 2)
             self._not_divided(chords[ended])
             chords, middle, error = chords[divided], middle[divided], error[divided]
-            kinked = self._jumps(chords) | (error > self._bent(chords))
+            kinked = self.jumps(chords) | (error > self.bent(chords))
             self.marks(np.concatenate([chords[kinked].ravel(), middle[kinked]]))
-            chords, error = _split(chords, middle), np.repeat(0.5 * error, 2)
-            length = self._length(chords)
-            jumps = self._jumps(chords)
-            bent = self._bent(chords)
+            chords, error = split(chords, middle), np.repeat(0.5 * error, 2)
+            length = self.length(chords)
+            jumps = self.jumps(chords)
+            bent = self.bent(chords)
             error = np.where(jumps, error, np.minimum(error, bent))
             # by chance the middle of a chord may be right where the rest is not
             going = ((np.maximum(error, 0.5 * bent) > self.off * length) | jumps) & (
@@ -236,21 +209,19 @@ class ZeroLines:
             )
             self._keep(chords[~going & ~jumps], error[~going & ~jumps])
             around = chords[~going & jumps]
-            place, none = self._meeting(around)[1], np.full((len(around), 2), np.nan)
+            place, none = self.meeting(around)[1], np.full((len(around), 2), np.nan)
             place = np.where(np.isnan(place), self.place[around].mean(axis=1), place)
             corner = self._append(
                 place, none, self.value(place), self.mark[around[:, 0]]
             )
-            self._keep(
-                _split(around, corner), np.repeat(0.5 * error[~going & jumps], 2)
-            )
+            self._keep(split(around, corner), np.repeat(0.5 * error[~going & jumps], 2))
             chords = np.concatenate([chords[going], shorter])
         self._not_divided(chords)
-        self._keep(chords, self._length(chords) ** 2)
+        self._keep(chords, self.length(chords) ** 2)
 
     def _not_divided(self, chords: Indices) -> None:
         """Take account of chords that should be shorter; the shortest ones need not."""
-        length = self._length(chords)
+        length = self.length(chords)
         long = length > SHORTEST * self.off
         self.unresolved = max([self.unresolved, *length[long]])
 
@@ -260,16 +231,16 @@ class ZeroLines:
         Where two regions touch, a zero beside such a chord may be that of a line that leads
         elsewhere. The line through such a middle runs back, or does not meet the branch of one end.
         """
-        kinked = self._jumps(chords)
+        kinked = self.jumps(chords)
         self.marks(middle[kinked])
-        first, last = self._tangents(chords)
+        first, last = self.tangents(chords)
         astray = (first * last).sum(axis=-1) < SHARP
-        for parts in _split(chords, middle).reshape(-1, 2, 2).swapaxes(0, 1):
+        for parts in split(chords, middle).reshape(-1, 2, 2).swapaxes(0, 1):
             chord = np.diff(self.place[parts], axis=1)
             forward = self.slope[parts][..., ::-1] * [1.0, -1.0]
             astray |= ((chord * forward).sum(axis=-1) < 0.0).any(axis=1)
-            apart = np.isnan(self._meeting(parts)[1][:, 0])
-            astray |= self._jumps(parts) & apart
+            apart = np.isnan(self.meeting(parts)[1][:, 0])
+            astray |= self.jumps(parts) & apart
         return astray & kinked
 
     def _cut(self, chords: Indices) -> tuple[Indices, Any]:
@@ -280,9 +251,9 @@ class ZeroLines:
         their tangents, most of the way to where these meet.
         """
         ends = self.place[chords]
-        ahead = self._meeting(chords)[1][:, None] - ends
+        ahead = self.meeting(chords)[1][:, None] - ends
         far = np.linalg.norm(ahead, axis=-1)
-        longest = LONGEST * self._length(chords)[:, None]
+        longest = LONGEST * self.length(chords)[:, None]
         cut = ((far > 0.0) & (far < longest)).all(axis=1)
         slope = self.slope[chords[cut]]
         normal = slope / np.linalg.norm(slope, axis=-1)[..., None]
@@ -301,81 +272,24 @@ class ZeroLines:
         self.marks(pieces)
         return pieces, cut
 
-    def _jumps(self, chords: Indices) -> Any:
-        """Whether chords join two branches, as far as the marks of their ends are known."""
-        return np.abs(np.diff(self.mark[chords], axis=1)[:, 0]) > self.jump
-
-    def _bent(self, chords: Indices) -> Vector:
-        """What a cubic leaves beside a chord of one branch: the third power of its turn."""
-        slopes = self._slopes(chords)[2]
-        turn = np.abs(slopes).max(axis=1)
-        skew = SKEW * slopes.sum(axis=1) ** 2 / np.maximum(turn, ROUGH)
-        return np.asarray(BENT * self._length(chords) ** 2 * (turn**3 + skew + ROUGH))
-
-    def marks(self, points: Indices) -> Vector:
-        """What tells branches apart, at some points."""
-        new = np.unique(points[np.isnan(self.mark[points])])
-        self.mark[new] = self._mark(self.place[new], self.slope[new])
-        return np.asarray(self.mark[points])
-
     def _keep(self, chords: Indices, error: Vector) -> None:
         self.chords = np.concatenate([self.chords, chords])
         self.error = np.concatenate([self.error, error])
-
-    def _length(self, chords: Indices) -> Vector:
-        return np.asarray(
-            np.linalg.norm(np.diff(self.place[chords], axis=1)[:, 0], axis=1)
-        )
-
-    def _slopes(self, chords: Indices) -> tuple[Vector, Vector, Vector]:
-        """Chords as vectors, those to their left, and slopes of the lines at both ends."""
-        chord = np.diff(self.place[chords], axis=1)
-        left = np.stack([-chord[..., 1], chord[..., 0]], axis=-1)
-        # the line goes where the slope is turned to, clockwise
-        forward, aside = (
-            (self.slope[chords] * way).sum(axis=-1) for way in (left, -chord)
-        )
-        with np.errstate(all="ignore"):
-            slopes = np.clip(aside / np.maximum(forward, 0.0), -STEEPEST, STEEPEST)
-        return chord[:, 0], left[:, 0], np.nan_to_num(slopes)
-
-    def _meeting(self, chords: Indices) -> tuple[Vector, Vector]:
-        """Where the tangent at the first end, forwards, meets that at the last, backwards.
-
-        Returns:
-            The share of its way from end to end, 0.5 where there is none, and the place, NaN there.
-        """
-        chord = np.diff(self.place[chords], axis=1)[:, 0]
-        first, last = self._tangents(chords)
-        with np.errstate(all="ignore"):
-            along = _cross(chord, last) / _cross(first, last)
-            back = _cross(first, chord) / _cross(first, last)
-            share = np.where(
-                (along > 0.0) & (back > 0.0), along / (along + back), np.nan
-            )
-        meeting = np.where(np.isnan(share), np.nan, along)[:, None] * first
-        return np.nan_to_num(share, nan=0.5), self.place[chords[:, 0]] + meeting
-
-    def _tangents(self, chords: Indices) -> Vector:
-        """Unit vectors along the lines at both ends, (2, chords, 2)."""
-        slope = np.moveaxis(self.slope[chords], 1, 0)
-        slope = slope / np.linalg.norm(slope, axis=-1)[..., None]
-        return np.stack([slope[..., 1], -slope[..., 0]], axis=-1)
 
     def _divided(self, chords: Indices) -> tuple[Vector, ...]:
         """How far the areas beside chords are to be doubted, and zeros there; NaN: none.
 
         With each zero the way on which it was found, and the function and its rate there.
         """
-        chord, left, slopes = self._slopes(chords)
-        length = self._length(chords)
-        share, meeting = self._meeting(chords)
+        chord, left, slopes = self.slopes(chords)
+        length = self.length(chords)
+        share, meeting = self.meeting(chords)
         at = 0.05 + 0.9 * share
         foot = self.place[chords[:, 0]] + at[:, None] * chord
-        height, doubt = _cubic(at, slopes), length**2 / 8.0
+        height, doubt = cubic(at, slopes), length**2 / 8.0
         steep = (np.abs(slopes) > FLATTISH).any(axis=1)
         ahead, back = at * slopes[:, 0], (at - 1.0) * slopes[:, 1]
-        kinked = self._jumps(chords)
+        kinked = self.jumps(chords)
         nearer = np.abs(ahead) < np.abs(back)
         lower = np.where(ahead * back > 0.0, np.where(nearer, ahead, back), 0.0)
         height = np.where(steep | kinked, lower, height)
@@ -466,136 +380,3 @@ class ZeroLines:
             slope[left[good]] = secant[good]
             left = left[~zero & ~closed]
         return found, last, slope
-
-    def chains(self) -> list[list[int]]:
-        """Points of each line in order; of a closed one the first comes again."""
-        return _chains(self.chords)
-
-    def loops(self, *, positive: bool, flat: float = FLAT) -> list[Loop]:
-        """Closed lines around the regions in which the function is positive, or around others."""
-        chord, left, slopes = self._slopes(self.chords)
-        length = np.linalg.norm(chord, axis=1)
-        bulge = length**2 * (slopes[:, 0] - slopes[:, 1]) / 12.0
-        count = np.ceil(np.sqrt(length * np.abs(slopes).sum(axis=1) / (8.0 * flat)))
-        between = {}
-        for k in np.flatnonzero(count > 1):
-            t = np.arange(1, count[k]) / count[k]
-            height = _cubic(t, slopes[k : k + 1])
-            start, end = self.chords[k]
-            inner = (
-                self.place[start] + t[:, None] * chord[k] + height[:, None] * left[k]
-            )
-            between[start, end], between[end, start] = inner, inner[::-1]
-        chords = self.chords if positive else self.chords[:, ::-1]
-        place = np.concatenate([self.place, CORNERS])
-        sign = -1.0 if positive else 1.0
-        number = {(i, j): k for k, (i, j) in enumerate(chords)}
-        found = []
-        for chain in _chains(np.concatenate([chords, self._border(positive)])):
-            pairs = list(pairwise(chain))
-            on = [number[pair] for pair in pairs if pair in number]
-            none = np.empty((0, 2))
-            line = [
-                each
-                for i, j in pairs
-                for each in (place[[i]], between.get((i, j), none))
-            ]
-            x, y = place[chain].T
-            area = (
-                0.5 * np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]) + sign * bulge[on].sum()
-            )
-            found.append(
-                Loop(np.concatenate(line), float(area), float(self.error[on].sum()))
-            )
-        return found
-
-    def holds(self, x: Vector, y: Vector) -> np.ndarray:
-        """Whether the function is positive at the points of a grid, (x, y)."""
-        return inside([loop.outline for loop in self.loops(positive=True)], x, y)
-
-    def _border(self, positive: bool) -> Indices:
-        """Pieces of the square's border with one sign, counter-clockwise, as pairs of points."""
-        place = np.concatenate([self.place, CORNERS])
-        on = np.flatnonzero(np.isin(place, (0.0, 1.0)).any(axis=1))
-        on = on[(on >= len(self.place)) | np.isin(on, self.chords)]
-        x, y = place[on].T
-        around = np.select(
-            [y == 0.0, x == 1.0, y == 1.0], [x, 1.0 + y, 3.0 - x], 4.0 - y
-        )
-        on = on[
-            np.lexsort(
-                (on < len(self.place), np.where(on == len(self.place), 0.0, around))
-            )
-        ]
-        has = np.cumsum(on < len(self.place)) % 2 == (self.positive != positive)
-        return np.asarray(np.stack([on, np.roll(on, -1)], axis=1)[has])
-
-
-def _split(chords: Indices, middle: Indices) -> Indices:
-    return np.stack([chords[:, 0], middle, middle, chords[:, 1]], axis=1).reshape(-1, 2)
-
-
-def _cross(a: Vector, b: Vector) -> Vector:
-    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
-
-
-def _cubic(at: Vector, slopes: Vector) -> Vector:
-    """Height over a chord, in its lengths, of the cubic with some slopes at its ends."""
-    return np.asarray(at * (1.0 - at) * ((1.0 - at) * slopes[:, 0] - at * slopes[:, 1]))
-
-
-def _chains(pairs: Indices) -> list[list[int]]:
-    """Pairs (before, after) as lines; of a closed one the first point comes again."""
-    after = dict(pairs.tolist())
-    found = []
-    for first in [*(set(after) - set(after.values())), *after]:
-        if first in after:
-            chain = [first]
-            while chain[-1] in after:
-                chain.append(after.pop(chain[-1]))
-            found.append(chain)
-    return found
-
-
-def inside(loops: Sequence[Vector], x: Vector, y: Vector) -> np.ndarray:
-    """Whether the points of a grid lie inside closed lines, (x, y): an odd number around them."""
-    odd = np.zeros((len(x), len(y)), bool)
-    for line in loops:
-        after = np.roll(line, -1, axis=0)
-        low = np.minimum(line[:, 0], after[:, 0])
-        high = np.maximum(line[:, 0], after[:, 0])
-        first, last = np.searchsorted(x, low), np.searchsorted(x, high)
-        which = np.repeat(np.arange(len(line)), last - first)
-        column = np.arange(which.size) - np.repeat(
-            np.cumsum(last - first) - (last - first), last - first
-        )
-        column += first[which]
-        share = (x[column] - line[which, 0]) / (after[which, 0] - line[which, 0])
-        height = line[which, 1] + share * (after[which, 1] - line[which, 1])
-        flips = np.zeros((len(x), len(y) + 1), int)
-        np.add.at(flips, (column, np.searchsorted(y, height)), 1)
-        odd ^= flips.cumsum(axis=1)[:, :-1] % 2 == 1
-    return odd
-
-
-def gathered(loops: Sequence[Loop]) -> list[list[int]]:
-    """Indices of loops by region: the one around it, and those of its holes."""
-    outer = [
-        i for i in np.argsort([loop.area for loop in loops]) if loops[i].area > 0.0
-    ]
-    low = np.array([loops[o].outline.min(axis=0) for o in outer]).reshape(-1, 2)
-    high = np.array([loops[o].outline.max(axis=0) for o in outer]).reshape(-1, 2)
-    regions = {i: [i] for i in outer}
-    for i, loop in enumerate(loops):
-        if loop.area > 0.0:
-            continue
-        place = loop.outline[:2].mean(axis=0)
-        for k in np.flatnonzero(((low < place) & (place < high)).all(axis=1)):
-            around = loops[outer[k]]
-            if (
-                around.area > -loop.area
-                and inside([around.outline], *place[:, None])[0, 0]
-            ):
-                regions[outer[k]].append(i)
-                break
-    return list(regions.values())

@@ -9,7 +9,7 @@ from squealpipe import Switch, System, labels
 from squealpipe.functions import cos
 from squealpipe.schema import Outcome, meanings
 from squealpipe.schema.branch_labels import Label
-from squealpipe.systems.cycles import branch as branch_module
+from squealpipe.systems.cycles import following
 from squealpipe.systems.shipped.belt_friction import (
     exponential_oscillator,
     leine_oscillator,
@@ -298,7 +298,7 @@ def test_no_label_of_a_random_branch_is_lost_between_dense_samples(seed, monkeyp
     to = 1.2 * values["drive"]
     coarse = system.cycle_branch("drive", to, start=start)
     monkeypatch.setattr(
-        branch_module, "STEPS", replace(branch_module.STEPS, longest_step=0.005)
+        following, "STEPS", replace(following.STEPS, longest_step=0.005)
     )
     dense = system.cycle_branch("drive", to, start=start, n_points=2000)
     for label in (

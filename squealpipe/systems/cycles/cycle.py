@@ -10,7 +10,7 @@ import xarray as xr
 
 from squealpipe.systems.cycles.described import dataset
 from squealpipe.systems.cycles.find import find_cycle
-from squealpipe.systems.cycles.flow import Vector
+from squealpipe.systems.cycles.legs import Vector
 from squealpipe.systems.grid import call_values, scalar
 from squealpipe.validation import Natural, Positive, Values, checked
 

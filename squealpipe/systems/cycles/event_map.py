@@ -16,7 +16,10 @@ import numpy as np
 from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 
-from squealpipe.systems.cycles.flow import Crossing, Flow, LegEnd, Path, Vector
+from squealpipe.systems.cycles.crossing import Crossing
+from squealpipe.systems.cycles.flow import Flow
+from squealpipe.systems.cycles.legs import LegEnd, Path, Vector
+from squealpipe.systems.cycles.variational import leg_derivatives
 
 _KEPT = 8
 """Points whose legs are kept."""
@@ -127,7 +130,7 @@ class EventMap:
         starts = start + np.cumsum(durations) - durations
         regimes = [event.before for event in self.events]
         path = self.flow.run(values, states, regimes, starts, durations)
-        slopes = self.flow.derivatives(values, path)
+        slopes = leg_derivatives(self.flow, values, path)
         crossings = tuple(
             self.flow.crossing(
                 values,

@@ -20,7 +20,6 @@ from squealpipe.systems.cycles.admissible import (
     margins,
 )
 from squealpipe.systems.cycles.event_map import EventMap
-from squealpipe.systems.cycles.flow import LegEnd, Vector
 from squealpipe.systems.cycles.guess import (
     Repeat,
     follow,
@@ -28,6 +27,7 @@ from squealpipe.systems.cycles.guess import (
     merged,
     without_brief_legs,
 )
+from squealpipe.systems.cycles.legs import LegEnd, Vector
 from squealpipe.systems.cycles.line import ALONG, STEPS
 from squealpipe.systems.cycles.solution import Cycle
 

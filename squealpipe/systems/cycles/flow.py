@@ -1,21 +1,16 @@
-"""Motion along legs of one regime each, with exact derivatives by states and parameters.
+"""Motion along legs of one regime each: a system's switches and fields as functions.
 
-The legs' Taylor series are the integrator's. Along them the variational equations
-δż = A δz + b are collocated in Gauss's points of each step, all steps at once: a step is a small
-part of the distance to the next singularity, so that order twelve leaves no more than round-off.
+The legs' Taylor series are the integrator's.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from itertools import chain
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from squealpipe.methods.taylor.lanes import (
     INVERSES,
@@ -24,21 +19,19 @@ from squealpipe.methods.taylor.lanes import (
     drive,
     taylor_terms,
 )
-from squealpipe.methods.taylor.legs import ARRAYS, SIZES, TABLE, run_legs, transfer
+from squealpipe.methods.taylor.legs import ARRAYS, SIZES, TABLE, run_legs
 from squealpipe.methods.taylor.scalar import python_function
-from squealpipe.methods.taylor.series import gauss
 from squealpipe.methods.taylor.simd import FEW, LANES
 from squealpipe.methods.taylor.symbols import derivative, parameter, symbol
-from squealpipe.methods.zeros import bracketed
-from squealpipe.systems.cycles.affine import derivatives as affine_derivatives
 from squealpipe.systems.cycles.affine import is_affine
+from squealpipe.systems.cycles.crossing import Crossing
+from squealpipe.systems.cycles.legs import LegEnd, Path, Vector
 from squealpipe.systems.integrate import compiled, symbolic
 from squealpipe.systems.trace import TIME_UNIT, Names
 
 if TYPE_CHECKING:
     from squealpipe.systems.definition import System
 
-Vector = NDArray[np.float64]
 TOLERANCE = 1e-16
 ROOM = 48
 """Steps of a leg kept at first; one that has more is run again with room for all."""
@@ -47,170 +40,6 @@ MOST_STEPS = 3000
 
 A stiff motion may need more: the run that its cycle is guessed from says how many.
 """
-MOST_PIECES, FINEST = 200_000, 64
-"""Pieces of all steps, and of one step, that the variational equations are solved on."""
-LONGEST = 1.0
-"""Longest step of the variational equations times a bound of its rate."""
-
-
-_NODES, _WEIGHTS, _UP_TO = gauss(6)
-_PLACES = np.linspace(0.0, 1.0, 9)
-
-
-class LegEnd(NamedTuple):
-    """How a leg ends.
-
-    Attributes:
-        switch: its number, or :data:`squealpipe.systems.cycles.event_map.FREE`.
-        surface: number of the surface, or likewise for the section of a cycle without
-            events.
-        sign: of the surface before the event.
-        before, after: regimes.
-        kind: number of the event's name.
-        at_once: whether its regime is entered beyond the surface, by the event before.
-    """
-
-    switch: int
-    surface: int
-    sign: float
-    before: int
-    after: int
-    kind: int
-    at_once: bool = False
-
-
-class Turn(NamedTuple):
-    """An extremum of a series inside a leg: the leg, the time since its start, the value."""
-
-    leg: int
-    time: float
-    value: float
-    is_minimum: bool
-
-
-@dataclass(frozen=True)
-class Path:
-    """Legs as they were run.
-
-    Attributes:
-        leg: (steps,) to which leg each step belongs.
-        steps: (steps,) lengths, in units of ``unit``.
-        offsets: (steps,) time from the start of the leg, likewise.
-        series: (steps, series, order): states, the time, surfaces, outputs.
-        regimes, starts, durations: of the legs.
-        ends: (legs, states).
-        unit: of time, s.
-    """
-
-    leg: NDArray[np.int64]
-    steps: Vector
-    offsets: Vector
-    series: Vector
-    regimes: NDArray[np.int64]
-    starts: Vector
-    durations: Vector
-    ends: Vector
-    unit: float
-
-    @cached_property
-    def scaled(self) -> Vector:
-        """The series over the share of each step, from 0 to 1."""
-        orders = np.arange(self.series.shape[2])
-        return self.series * self.steps[:, None, None] ** orders
-
-    def ends_of(self, which: int) -> tuple[Vector, Vector]:
-        """A series at the start and the end of each leg."""
-        first = np.searchsorted(self.leg, np.arange(len(self.regimes)))
-        last = np.append(first[1:], len(self.leg)) - 1
-        return self.series[first, which, 0], self.scaled[last, which].sum(axis=-1)
-
-    @cached_property
-    def turns(self) -> list[list[Turn]]:
-        """Extrema of each series inside the legs."""
-        scaled = self.scaled
-        orders = np.arange(1, scaled.shape[2])
-        rates = scaled[..., 1:] * orders
-        values = rates @ _PLACES ** (orders[:, None] - 1)
-        found: list[list[Turn]] = [[] for _ in range(scaled.shape[1])]
-        hits = np.nonzero(values[..., :-1] * values[..., 1:] < 0.0)
-        if not len(hits[0]):
-            return found
-        step, series, left = hits
-        first, last = values[hits], values[step, series, left + 1]
-        slopes = rates[step, series]
-        bends = slopes[:, 1:] * orders[:-1]
-
-        def rate_at(place: Vector) -> tuple[Vector, Vector]:
-            powers = np.vander(place, len(orders), increasing=True)
-            return (slopes * powers).sum(axis=1), (bends * powers[:, :-1]).sum(axis=1)
-
-        ends = (_PLACES[left], _PLACES[left + 1])
-        place = bracketed(
-            rate_at, ends, (first, last), 1e-6
-        )  # the height is quadratic in it
-        powers = np.vander(place, scaled.shape[2], increasing=True)
-        height = (scaled[step, series] * powers).sum(axis=1)
-        time = (self.offsets[step] + place * self.steps[step]) * self.unit
-        each = (series, self.leg[step], time, height, first < 0)
-        for number, *turn in zip(*(values.tolist() for values in each), strict=True):
-            found[number].append(Turn(*turn))
-        return found
-
-
-BEYOND = 1e-11
-"""Of a surface's terms, below which round-off hides that a state is beyond it."""
-
-
-@dataclass(frozen=True)
-class Crossing:
-    """A switch at the end of a leg, in numbers; n states, p directions.
-
-    Attributes:
-        height: of the surface; ``height_by_state`` (n,), ``height_by_time``, ``height_by`` (p,).
-        after: the state after the reset; ``after_by_state`` (n, n), ``after_by_time`` (n,),
-            ``after_by`` (n, p).
-        rate, rate_after: of the state, before and after.
-        conditions: of the switch's targets, in order.
-    """
-
-    height: float
-    height_by_state: Vector
-    height_by_time: float
-    height_by: Vector
-    after: Vector
-    after_by_state: Vector
-    after_by_time: Vector
-    after_by: Vector
-    rate: Vector
-    rate_after: Vector
-    conditions: Vector
-
-    @property
-    def speed(self) -> float:
-        """How fast the surface changes along the motion, before the event."""
-        return float(self.height_by_state @ self.rate) + self.height_by_time
-
-    def is_beyond(self, state: Vector, sizes: Vector) -> bool:
-        """Whether a state lay beyond the surface, so that the switch fired at once."""
-        size = np.maximum(np.abs(state), sizes)
-        return bool(abs(self.height) > BEYOND * (np.abs(self.height_by_state) @ size))
-
-    @property
-    def delay(self) -> Vector:
-        """The derivative of the event's time by the state before it."""
-        return np.asarray(-self.height_by_state / self.speed)
-
-    @property
-    def saltation(self) -> Vector:
-        """The derivative of a motion's later state by its earlier one, both at one time."""
-        return np.asarray(self.after_by_state + np.outer(self.jump, self.delay))
-
-    @property
-    def jump(self) -> Vector:
-        """Of a motion's later state by the time of the event."""
-        return np.asarray(
-            self.after_by_state @ self.rate + self.after_by_time - self.rate_after
-        )
 
 
 class Flow:
@@ -228,9 +57,9 @@ class Flow:
         self._room, self._legs = ROOM, 0
         self.most_steps = MOST_STEPS
         directions = [*t.variables[: t.size], *self.by, *([self.time] * self.timed)]
-        self._directions, self._columns = directions, len(directions)
-        self._is_affine = not self.timed and is_affine(t.rates[: t.size])
-        self._field = python_function(t.rates[: t.size], self.arguments, np)
+        self._directions, self.columns = directions, len(directions)
+        self.is_affine = not self.timed and is_affine(t.rates[: t.size])
+        self.rates = python_function(t.rates[: t.size], self.arguments, np)
         names = [*system.parameters, TIME_UNIT]
         self._derived = python_function(
             system.integrated.derived, [parameter(name) for name in names], np
@@ -238,7 +67,7 @@ class Flow:
         self._known: tuple[Any, Vector] | None = None
 
     @cached_property
-    def _entries(self) -> list[tuple[int, int, Any]]:
+    def entries(self) -> list[tuple[int, int, Any]]:
         """∂f/∂(states, followed parameters, time) that are not zero: row, column, symbol."""
         entries = [
             (i, j, symbol(derivative(rate, by)))
@@ -250,11 +79,12 @@ class Flow:
         ]
 
     @cached_property
-    def _slopes(self) -> Any:
-        return python_function([e[2] for e in self._entries], self.arguments, np)
+    def slopes(self) -> Any:
+        """The function that gives :attr:`entries`."""
+        return python_function([e[2] for e in self.entries], self.arguments, np)
 
     @cached_property
-    def _by(self) -> Any:
+    def rates_by(self) -> Any:
         """∂f/∂(followed parameters), those of a state side by side."""
         rates = self.system.traced.rates[: self.size]
         roots = [symbol(derivative(rate, by)) for rate in rates for by in self.by]
@@ -289,7 +119,7 @@ class Flow:
         self, values: Mapping[str, float], regime: int, state: Vector, time: float
     ) -> Vector:
         """Rates of the states."""
-        return self._at(self._field, values, regime, state, time)
+        return self._at(self.rates, values, regime, state, time)
 
     def _at(
         self,
@@ -307,9 +137,9 @@ class Flow:
         self, values: Mapping[str, float], regime: int, state: Vector, time: float = 0.0
     ) -> Vector:
         """∂f/∂(states, followed parameters, time), (n, n + p)."""
-        found = np.zeros((self.size, self._columns))
-        entries = self._at(self._slopes, values, regime, state, time)
-        for (i, j, _), value in zip(self._entries, entries, strict=True):
+        found = np.zeros((self.size, self.columns))
+        entries = self._at(self.slopes, values, regime, state, time)
+        for (i, j, _), value in zip(self.entries, entries, strict=True):
             found[i, j] = value
         return found
 
@@ -509,78 +339,3 @@ class Flow:
         known |= dict(zip(t.constants, constants, strict=True))
         function, names = self.system.at_switches
         return np.array([*constants, *function(*(known[name] for name in names))])
-
-    def derivatives(self, values: Mapping[str, float], path: Path) -> Vector:
-        """Of each leg's end by its start, followed parameters and the time: (legs, n, n + p)."""
-        if self._is_affine:
-            return self._affine_derivatives(values, path)
-        pieces, most = 1, max(1, min(FINEST, MOST_PIECES // len(path.steps)))
-        while True:
-            slopes = self._slopes_along(values, path, pieces)
-            middle = np.abs(slopes[:, : self.size, len(_NODES) // 2]).transpose(2, 0, 1)
-            power = np.linalg.matrix_power(middle, 4).sum(axis=2).max(axis=1) ** 0.25
-            lengths = np.repeat(path.steps, pieces) * path.unit / pieces
-            with np.errstate(invalid="ignore"):
-                needed = (
-                    pieces
-                    * float(np.nanmax(np.abs(lengths) * power, initial=0.0))
-                    / LONGEST
-                )
-            if needed <= pieces or pieces >= most or not math.isfinite(needed):
-                break
-            pieces = min(most, math.ceil(needed))
-        found = np.zeros((len(path.regimes), self._columns, self._columns))
-        found[:] = np.eye(self._columns)
-        transfer(slopes, lengths, np.repeat(path.leg, pieces), _UP_TO, _WEIGHTS, found)
-        return found[:, : self.size]
-
-    def _affine_derivatives(self, values: Mapping[str, float], path: Path) -> Vector:
-        """The same where all rates are affine in the states."""
-        first = np.searchsorted(path.leg, np.arange(len(path.regimes)))
-        starts = path.series[first, : self.size, 0]
-        followed = np.array([values[name] for name in self.followed])
-        units = np.where(followed == 0.0, 1.0, np.abs(followed))
-        found = np.empty((len(starts), self.size, self._columns))
-        for leg, regime in enumerate(path.regimes.tolist()):
-            numbers = self.numbers(values, regime)
-
-            def many(function: Any, places: Vector, numbers: Any = numbers) -> Vector:
-                rows = function(*places, *numbers)
-                return np.array([np.broadcast_to(row, len(places.T)) for row in rows])
-
-            found[leg] = affine_derivatives(
-                partial(many, self._field),
-                partial(many, self._by),
-                self.system.sizes,
-                units,
-                starts[leg],
-                float(path.durations[leg]),
-            )
-        return found
-
-    def _slopes_along(
-        self, values: Mapping[str, float], path: Path, pieces: int
-    ) -> Vector:
-        """∂f/∂(states, parameters, time) at the nodes of each piece of each step.
-
-        (states, columns, nodes, pieces)
-        """
-        count, steps = len(_NODES), len(path.steps)
-        nodes = (np.arange(pieces) + _NODES[:, None]).ravel() / pieces
-        variables = len(self.system.traced.variables)
-        powers = nodes ** np.arange(path.series.shape[2])[:, None]
-        states = (path.scaled[:, :variables] @ powers).reshape(
-            steps, variables, count, pieces
-        )
-        flat = states.transpose(1, 2, 0, 3).reshape(variables, count, -1)
-        joint = self.system.joint
-        of_legs = np.array([joint.constants(regime) for regime in path.regimes])
-        constants = np.repeat(of_legs[path.leg], pieces, axis=0).T
-        numbers = self.numbers(values, 0)[: len(self.system.traced.parameters)]
-        found = np.zeros((self.size, self._columns, *flat.shape[1:]))
-        with np.errstate(all="ignore"):
-            for (i, j, _), value in zip(
-                self._entries, self._slopes(*flat, *numbers, *constants), strict=True
-            ):
-                found[i, j] = value
-        return found

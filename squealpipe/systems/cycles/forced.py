@@ -10,8 +10,9 @@ import numpy as np
 
 from squealpipe.schema import Outcome
 from squealpipe.systems.cycles.described import SETTLED_ON
-from squealpipe.systems.cycles.flow import Flow, Vector
+from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.guess import Repeat, as_motion, follow, guess_of
+from squealpipe.systems.cycles.legs import Vector
 from squealpipe.systems.cycles.settled import (
     QUARTERS,
     Approach,

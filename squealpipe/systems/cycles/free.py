@@ -11,7 +11,7 @@ import numpy as np
 from squealpipe.schema import Outcome
 from squealpipe.systems.cycles.described import SETTLED_ON
 from squealpipe.systems.cycles.event_map import PhaseCondition
-from squealpipe.systems.cycles.flow import Flow, LegEnd, Vector
+from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.forced import SETTLE
 from squealpipe.systems.cycles.guess import (
     Repeat,
@@ -21,6 +21,7 @@ from squealpipe.systems.cycles.guess import (
     sizes_at,
     solved,
 )
+from squealpipe.systems.cycles.legs import LegEnd, Vector
 from squealpipe.systems.cycles.settled import (
     QUARTERS,
     Approach,

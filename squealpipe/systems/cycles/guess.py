@@ -11,7 +11,8 @@ import numpy as np
 
 from squealpipe.systems.cycles.admissible import is_motion
 from squealpipe.systems.cycles.event_map import FREE, EventMap, PhaseCondition
-from squealpipe.systems.cycles.flow import Flow, LegEnd, Vector
+from squealpipe.systems.cycles.flow import Flow
+from squealpipe.systems.cycles.legs import LegEnd, Vector
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.integrate import RunOptions
 from squealpipe.systems.record import RunRecord, single_run

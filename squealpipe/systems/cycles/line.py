@@ -1,5 +1,6 @@
 """Steps along a branch of cycles, and the functions that vanish where it has a special point."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
@@ -11,6 +12,7 @@ from squealpipe.methods.continuation import (
     PseudoArclength,
 )
 from squealpipe.schema.branch_labels import Label
+from squealpipe.systems.cycles.event_map import EventMap
 from squealpipe.systems.cycles.solution import Cycle
 
 # Round-off in the closing error is eps times the longest length over the cycle's: 3e-9 for
@@ -34,6 +36,11 @@ _ASIDE = 1e-4
 """Step over which the equations' curvature is taken, without units."""
 _EVEN = 1e-3
 """Share of the curvature that is none, at a pitchfork."""
+
+_EASY, _GROWTH = 3, 3.0
+"""With no more than so many iterations the next step may grow, by no more than this factor."""
+_TURN = 0.7
+"""Turn of the branch over the largest one that the next step is meant for."""
 
 Test = Callable[[ContinuationState, Cycle], float]
 
@@ -123,3 +130,34 @@ def multiplier_change(one: Cycle, other: Cycle) -> float:
     first, second = one.multipliers, other.multipliers
     distance = np.abs(first[:, None] - second) / (1.0 + np.abs(first[:, None]))
     return float(max(distance.min(axis=0).max(), distance.min(axis=1).max()))
+
+
+def next_length(state: ContinuationState, following: ContinuationState) -> float:
+    """The step after this one: longer, but not so that the branch turns by too much in it."""
+    most = np.arccos(STEPS.least_cosine)
+    turn = float(np.linalg.norm(following.tangent - state.tangent))
+    growth = _GROWTH if following.iterations <= _EASY else 1.0
+    length = state.step * float(np.clip(_TURN * most / max(turn, 1e-300), 0.5, growth))
+    return min(length, STEPS.longest_step)
+
+
+def at_edge(
+    equations: EventMap, state: ContinuationState, low: float, high: float
+) -> ContinuationState | None:
+    """The point at the end of the parameter's range, if the next step would leave it."""
+    unit = float(equations.units[-1])
+    length = state.step * (1.0 + float(np.linalg.norm(state.point)))
+    ahead = float(state.point[-1] + length * state.tangent[-1]) * unit
+    if low < ahead < high:
+        return None
+    edge = low if ahead <= low else high
+    share = (edge / unit - state.point[-1]) / state.tangent[-1]
+    if share <= 0.0:
+        return None
+    guess = state.point + share * state.tangent
+    guess[-1] = edge / unit
+    normal = math.copysign(1.0, state.tangent[-1]) * np.eye(len(guess))[-1]
+    found = ALONG.solve(equations, guess, normal, state.step)
+    if found is None or float(np.linalg.norm(found.point - guess)) > 0.3 * length:
+        return None
+    return found

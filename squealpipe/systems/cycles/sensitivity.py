@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealpipe.systems.cycles.flow import Flow, Vector
+from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.guess import events_of
+from squealpipe.systems.cycles.legs import Vector
+from squealpipe.systems.cycles.variational import leg_derivatives
 from squealpipe.systems.labels import labels
 from squealpipe.systems.record import RunRecord
 from squealpipe.text import suggestion
@@ -76,7 +78,7 @@ def sensitivities(
             begins,
             lengths,
         )
-        slopes = flow.derivatives(values, path)
+        slopes = leg_derivatives(flow, values, path)
         for leg, (time, sampled, i) in enumerate(stops[first : first + _TOGETHER]):
             total = slopes[leg][:, :n] @ total
             total[:, columns] += slopes[leg][:, n : n + len(columns)]

@@ -12,7 +12,7 @@ from enum import IntEnum
 
 import numpy as np
 
-from squealpipe.systems.cycles.flow import Vector
+from squealpipe.systems.cycles.legs import Vector
 from squealpipe.systems.cycles.solution import Cycle
 
 QUARTERS = 4

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squealpipe.systems.cycles.event_map import FREE, EventMap, Parts
-from squealpipe.systems.cycles.flow import Flow, LegEnd, Vector
+from squealpipe.systems.cycles.flow import Flow
+from squealpipe.systems.cycles.legs import LegEnd, Vector
 
 _LEAST = 0.05
 """Least unit of a state over the largest, both over the states' sizes."""

@@ -11,7 +11,8 @@ import xarray as xr
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import distance_transform_edt, label
 
-from squealpipe.methods.zero_lines import Vector
+from squealpipe.methods.chords import Vector
+from squealpipe.methods.regions import chains_of, holds, loops_of
 from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.curves import REGIME_CHART, ChartLine
@@ -88,7 +89,7 @@ def regime_chart(
         each(cells).reshape(GRID, GRID) for each in (regimes.at, regimes.beside)
     )
     middles = (np.arange(GRID) + 0.5) / GRID
-    kept = contact.holds(middles, middles)
+    kept = holds(contact, middles, middles)
     regions = [
         (code, state, places[k - 1], size)
         for code in np.unique(beside)
@@ -115,7 +116,7 @@ def regime_chart(
         loops = {
             which: [
                 square.values(loop.outline)
-                for loop in each.loops(positive=True, flat=FLAT)
+                for loop in loops_of(each, positive=True, flat=FLAT)
             ]
             for which, each in lines.items()
         } | {which: [] for which in asked}
@@ -129,7 +130,7 @@ def regime_chart(
     chains = [
         (which, square.values(each.place[chain]), each.residual[chain])
         for which, each in lines.items()
-        for chain in each.chains()
+        for chain in chains_of(each.chords)
     ] + [(which, line, curve.residual.values) for which, line, curve in cycles]
     places = np.concatenate([np.empty((0, 2)), *(line for _, line, _ in chains)])
     lengths = [len(line) for _, line, _ in chains]

@@ -10,7 +10,9 @@ import xarray as xr
 
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import LAWS
-from squealpipe.methods.zero_lines import FirstGrid, Vector, ZeroLines, gathered, inside
+from squealpipe.methods.chords import Vector
+from squealpipe.methods.regions import chains_of, gathered, holds, inside, loops_of
+from squealpipe.methods.zero_lines import FirstGrid, ZeroLines
 from squealpipe.models.refusals import refuse_unread
 from squealpipe.parameters import HORIZON, Parameters, brief
 from squealpipe.schema import Outcome, build
@@ -270,7 +272,7 @@ def boundary_distance(boundary: xr.Dataset, design: Mapping[str, Number]) -> xr.
 def _dataset(
     square: Square, lines: ZeroLines, axes: Mapping[str, Vector]
 ) -> xr.Dataset:
-    chains, coarse = lines.chains(), max(each.size for each in axes.values())
+    chains, coarse = chains_of(lines.chords), max(each.size for each in axes.values())
     # on the border itself either side would do
     shares = [
         np.clip((a - a[0]) / (a[-1] - a[0]), BESIDE, 1.0 - BESIDE)
@@ -284,7 +286,7 @@ def _dataset(
     begins[1:] = corner[1:] | (curve[1:] != curve[:-1])
     regions, outlines = [], []
     for kept in (True, False):
-        loops = lines.loops(positive=kept)
+        loops = loops_of(lines, positive=kept)
         outlines += [square.values(loop.outline) for loop in loops] if kept else []
         for group in gathered(loops):
             area, error = (sum(loops[i][k] for i in group) for k in (1, 2))
@@ -297,7 +299,7 @@ def _dataset(
         CONTACT_BOUNDARY,
         {
             **dict(zip(square.names, square.values(lines.place[at]).T, strict=True)),
-            "kept": lines.holds(*shares),
+            "kept": holds(lines, *shares),
             "curve": curve,
             "arc": np.cumsum(begins) - 1,
             "touch_time": lines.marks(at) * square.params.time_unit,

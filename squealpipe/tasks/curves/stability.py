@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from squealpipe.codes import LinearRegime
-from squealpipe.methods.zero_lines import FirstGrid, Vector, ZeroLines
+from squealpipe.methods.chords import Vector
+from squealpipe.methods.zero_lines import FirstGrid, ZeroLines
 from squealpipe.models import a3, damped
 from squealpipe.models.contact_system import contact_system, with_drag
 from squealpipe.schema.curves import ChartLine

@@ -17,14 +17,11 @@ from squealpipe.schema.branch_labels import Label
 from squealpipe.schema.cycles import CYCLE_BRANCH, LIMIT_CYCLE
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.jobs import STATE
-from squealpipe.systems.cycles.branch import (
-    BranchPoint,
-    Follower,
-    doubled_start,
-    first_point,
-    in_rows,
-)
+from squealpipe.systems.cycles.branch import first_point, in_rows
+from squealpipe.systems.cycles.doubling import doubled_start
+from squealpipe.systems.cycles.following import Follower
 from squealpipe.systems.cycles.solution import Cycle
+from squealpipe.systems.cycles.trail import BranchPoint
 from squealpipe.tasks.cycles.cycle import cycle_from
 from squealpipe.tasks.cycles.onset import find_onset
 from squealpipe.tasks.cycles.scene import IN_SYSTEM, CycleScene

@@ -14,7 +14,8 @@ from squealpipe.schema.branch_labels import Label
 from squealpipe.schema.cycles import CYCLE_CURVE
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.jobs import STATE
-from squealpipe.systems.cycles.curve import ENDS, check, follow_curve, point_of
+from squealpipe.systems.cycles.curve import check, point_of
+from squealpipe.systems.cycles.curve_following import ENDS, follow_curve
 from squealpipe.tasks.cycles.cycle import cycle_from
 from squealpipe.tasks.cycles.scene import DASHPOTS, IN_SYSTEM, CycleScene
 from squealpipe.validation import Angle, Number, Several

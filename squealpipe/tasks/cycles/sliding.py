@@ -6,7 +6,8 @@ import numpy as np
 from scipy.optimize import root
 
 from squealpipe.solvers.a1.jobs import STATE
-from squealpipe.systems.cycles.flow import Flow, Vector
+from squealpipe.systems.cycles.flow import Flow
+from squealpipe.systems.cycles.legs import Vector
 from squealpipe.systems.trace import TIME
 from squealpipe.tasks.cycles.scene import CycleScene
 

@@ -5,7 +5,8 @@ import pytest
 import xarray as xr
 
 import squealpipe
-from squealpipe.methods.zero_lines import FirstGrid, ZeroLines, inside
+from squealpipe.methods.regions import inside, loops_of
+from squealpipe.methods.zero_lines import FirstGrid, ZeroLines
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 
@@ -128,8 +129,8 @@ def test_a_lens_has_its_area_and_its_corners():
         return np.asarray(squares(place).argmax(axis=0))
 
     lines = ZeroLines(two_discs, mark, FirstGrid(11, 2), jump=0.5)
-    (lens,) = lines.loops(positive=True)
-    outer, hole = sorted(lines.loops(positive=False), key=lambda loop: -loop.area)
+    (lens,) = loops_of(lines, positive=True)
+    outer, hole = sorted(loops_of(lines, positive=False), key=lambda loop: -loop.area)
     exact = 0.18 * np.arccos(1 / 3) - 0.1 * np.sqrt(0.32)
     assert abs(lens.area - exact) < lens.error < 1e-8
     assert outer.area + hole.area == pytest.approx(1.0 - lens.area, abs=1e-12)
@@ -141,7 +142,7 @@ def test_a_lens_has_its_area_and_its_corners():
     # a corner may fall on the point before it
     before, corner = lines.chords[np.isnan(lines.slope[lines.chords[:, 1], 0])][0]
     lines.place[corner] = lines.place[before]
-    assert lines.loops(positive=True)[0].area == pytest.approx(exact, abs=1e-6)
+    assert loops_of(lines, positive=True)[0].area == pytest.approx(exact, abs=1e-6)
 
 
 def test_what_cannot_vary_is_refused():

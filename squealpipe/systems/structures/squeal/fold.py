@@ -9,9 +9,11 @@ import numpy as np
 
 from squealpipe.schema import Outcome
 from squealpipe.schema.branch_labels import Label
-from squealpipe.systems.cycles.branch import BranchPoint, Follower, first_point
+from squealpipe.systems.cycles.branch import first_point
 from squealpipe.systems.cycles.find import find_cycle
+from squealpipe.systems.cycles.following import Follower
 from squealpipe.systems.cycles.solution import Cycle
+from squealpipe.systems.cycles.trail import BranchPoint
 from squealpipe.systems.structures.squeal.descent import Track, UnstableCycles
 from squealpipe.systems.structures.squeal.plant import Plant
 

@@ -1,0 +1,345 @@
+"""A branch of cycles as it is followed: steps that are sure to stay on it, and what lies in them.
+
+Pseudo-arclength continuation of an event map. A step is accepted only if the branch does not turn
+round in it and multipliers change by little; a solution that is not a motion of the system ends the
+smooth piece where the first margin is zero, and the branch goes on with other events from there.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from squealpipe.methods.branch_line import Line
+from squealpipe.methods.continuation import ContinuationState
+from squealpipe.methods.progress import alone
+from squealpipe.schema import Outcome
+from squealpipe.schema.branch_labels import Label
+from squealpipe.systems.cycles.admissible import MARGIN_ROUND_OFF, margins
+from squealpipe.systems.cycles.event_map import PhaseCondition
+from squealpipe.systems.cycles.event_order import NewOrder, label_of, least_margin
+from squealpipe.systems.cycles.legs import Vector
+from squealpipe.systems.cycles.line import (
+    ALONG,
+    AT,
+    STEPS,
+    TESTS,
+    Test,
+    at_edge,
+    branching_label,
+    explains,
+    hides_folds,
+    is_torus,
+    multiplier_change,
+    next_length,
+    unstable,
+)
+from squealpipe.systems.cycles.solution import Cycle
+from squealpipe.systems.cycles.trail import GONE, BranchPoint, Trail
+
+_CHANGE = 1.0
+"""Largest change of a multiplier between neighbouring points."""
+_COARSE = 1e-6
+"""Step below which a branch is taken as it is."""
+_CLOSE = 1e-5
+"""Share of a step before a change of the events in which a fold is that change."""
+_BEFORE = 1e-9
+"""Share before it up to which multipliers are followed."""
+
+
+def _changes_sign(
+    test: Test,
+    first: tuple[ContinuationState, Cycle],
+    last: tuple[ContinuationState, Cycle],
+) -> bool:
+    product = test(*first) * test(*last)
+    return bool(np.isfinite(product) and product < 0.0)
+
+
+def _jumps(line: Line[Cycle], share: float, beyond: Cycle) -> bool:
+    """Whether the stability is another one beyond a change of the events."""
+    if share <= _BEFORE:
+        return False
+    return line.at(share - _BEFORE)[1].is_stable != beyond.is_stable
+
+
+def _closeness(offset: Vector, parts: int, _: ContinuationState, cycle: Cycle) -> float:
+    return float(offset @ cycle.after_part(parts))
+
+
+@dataclass(frozen=True)
+class BranchStep:
+    """What a step has led past, where to, whether that is a point, and whether the branch ends."""
+
+    special: list[BranchPoint]
+    state: ContinuationState
+    cycle: Cycle
+    shows: bool = True
+    end: Outcome | None = None
+
+
+class Follower:
+    """A branch as it is followed."""
+
+    def __init__(self, low: float, high: float, most: int) -> None:
+        self.low, self.high, self.most = low, high, most
+        self.trail = Trail()
+
+    @property
+    def points(self) -> list[BranchPoint]:
+        """The points so far."""
+        return self.trail.points
+
+    def run(self, state: ContinuationState, cycle: Cycle) -> Outcome:
+        """Follow the branch to its end, and label it."""
+        with alone() as show:
+            end = self._run(state, cycle, show)
+        if end == Outcome.equilibrium:
+            self.points[-1] = replace(self.points[-1], rest=self.trail.rest())
+        if end == Outcome.tongue_end:
+            # at a cycle of a part of the period the parameter turns back, which is not a fold
+            self.points[-2:] = [
+                replace(point, label=Label.regular)
+                if self.trail.is_met(point)
+                else point
+                for point in self.points[-2:]
+            ]
+        if not self.points[-1].label:
+            self.points[-1] = replace(self.points[-1], label=Label.end)
+        return end
+
+    def _run(
+        self, state: ContinuationState, cycle: Cycle, show: Callable[[float], None]
+    ) -> Outcome:
+        self.trail.add(BranchPoint(state, cycle))
+        while len(self.points) < self.most:
+            show(self._share())
+            found = self._advance(state, cycle)
+            if found is None:
+                return self.trail.reason()
+            for point in found.special[: self.most - len(self.points)]:
+                self.trail.add(point)
+            state, cycle = found.state, found.cycle
+            if len(self.points) >= self.most:
+                break
+            if found.end is not None:
+                return found.end
+            if found.shows:
+                self.trail.add(BranchPoint(state, cycle))
+            if self._is_at_end(self.points[-1].parameter):
+                return Outcome.converged
+            if self.trail.has_shrunk(cycle, GONE):
+                return Outcome.equilibrium
+            met = self.trail.meets()
+            if met is not None:
+                return met
+        return Outcome.point_limit
+
+    def _share(self) -> float:
+        """How much of the way to the end of the range is gone, or of the points."""
+        first, here = (self.points[i].parameter for i in (0, -1))
+        rooms = (self.high - first, first - self.low)
+        way = max(abs(here - first) / room for room in rooms if room > 0)
+        return max(min(way, 1.0), len(self.points) / self.most)
+
+    def _is_at_end(self, parameter: float) -> bool:
+        return any(
+            abs(parameter - edge) <= 1e-12 * max(abs(edge), 1e-300)
+            for edge in (self.low, self.high)
+            if math.isfinite(edge)
+        )
+
+    def _advance(self, state: ContinuationState, cycle: Cycle) -> BranchStep | None:
+        """The next step that is shown to be on the same branch."""
+        step, equations = state.step, cycle.map
+        while step >= STEPS.shortest_step:
+            trial = replace(state, step=step)
+            following = at_edge(equations, trial, self.low, self.high)
+            if following is None:
+                following = ALONG.attempt(equations, trial)
+            if following is not None:
+                reached = Cycle.at(equations, following.point)
+                if not self._strays(trial, cycle, following, reached):
+                    found = self._examined(trial, cycle, following, reached)
+                    if found is not None:
+                        return found
+            step *= 0.5
+        return None
+
+    def _strays(
+        self,
+        state: ContinuationState,
+        cycle: Cycle,
+        following: ContinuationState,
+        reached: Cycle,
+    ) -> bool:
+        """Whether a step is too long to be sure of what lies in it."""
+        if (
+            reached.period <= 0.0
+            or float(following.tangent @ state.tangent) < STEPS.least_cosine
+        ):
+            return True
+        section = cycle.map.section
+        if section is not None and float(section.normal @ reached.heading) <= 0.0:
+            return True  # beyond a state of rest
+        if (
+            not self.low - MARGIN_ROUND_OFF
+            <= reached.followed[-1]
+            <= self.high + MARGIN_ROUND_OFF
+        ):
+            return True
+        if state.step < _COARSE:
+            return False
+        if hides_folds(state, following):
+            return True
+        one, other = cycle.multipliers, reached.multipliers
+        finite = np.isfinite(one).all() and np.isfinite(other).all()
+        small = finite and max(np.abs(one).max(), np.abs(other).max()) < 100.0
+        return bool(small and multiplier_change(cycle, reached) > _CHANGE)
+
+    def _examined(
+        self,
+        state: ContinuationState,
+        cycle: Cycle,
+        following: ContinuationState,
+        reached: Cycle,
+    ) -> BranchStep | None:
+        """A step with what lies in it; None where that is not clear."""
+        line = Line(
+            AT,
+            cycle.map,
+            (state, cycle),
+            (following, reached),
+            partial(Cycle.at, cycle.map),
+        )
+        before, after = (least_margin(None, each) for each in (cycle, reached))
+        last = 1.0 if after >= -MARGIN_ROUND_OFF else line.root(least_margin)
+        found = None if last is None else self._smooth(line, last)
+        if found is None or last is None:
+            return None
+        # a step that ends at the change to round-off may not lead past it
+        if last < 1.0 or after < MARGIN_ROUND_OFF < 0.5 * before:
+            return self._changed(line, found, last)
+        near, share = self._shorter(line, cycle, reached)
+        if near and share is None and state.step > _COARSE:
+            return None
+        if share is not None:
+            special = [
+                BranchPoint(*line.at(at), label)
+                for at, label in found
+                if at < share - _CLOSE
+            ]
+            there = line.at(share)
+            return BranchStep(
+                [*special, BranchPoint(*there)], *there, end=Outcome.tongue_end
+            )
+        special = [BranchPoint(*line.at(share), label) for share, label in found]
+        following = replace(following, step=next_length(state, following))
+        return BranchStep(special, *renewed(following, reached))
+
+    def _smooth(
+        self, line: Line[Cycle], last: float
+    ) -> list[tuple[float, Label]] | None:
+        """Shares and labels of what happens in a step, in order; None where one is not found."""
+        first, reached, found = line.known[0.0], line.known[1.0], []
+        if self.trail.has_shrunk(reached[1]):
+            return []
+        # a grazing takes multipliers through infinity: they are followed up to it alone
+        before = 1.0 if last >= 1.0 else last - _BEFORE
+        for label, test in TESTS:
+            end = 1.0 if label == Label.fold else before
+            if end <= 0.0:
+                continue
+            try:
+                crosses = _changes_sign(test, first, line.at(end))
+            except ArithmeticError:
+                return None
+            if not crosses or not self._is_new(label, line, end):
+                continue
+            share = line.root(test, end)
+            if share is None:
+                return None
+            if label == Label.torus and not is_torus(line.at(share)[1]):
+                continue
+            if label == Label.pitchfork:
+                label = branching_label(line.at(share)[1])
+            if share < last - _CLOSE * (label == Label.fold and last < 1.0):
+                found.append((share, label))
+        return sorted(found) if self._explains(line, before, found) else None
+
+    def _is_new(self, label: Label, line: Line[Cycle], end: float) -> bool:
+        """Whether a sign change is not that of a fold, or the noise of a family of cycles."""
+        if label != Label.pitchfork:
+            return True
+        ends = line.known[0.0], line.at(end)
+        folds = ends[0][0].tangent[-1] * ends[1][0].tangent[-1] < 0.0
+        return not (folds or any(cycle.is_family_member for _, cycle in ends))
+
+    def _explains(
+        self, line: Line[Cycle], end: float, found: list[tuple[float, Label]]
+    ) -> bool:
+        """Whether the labels are why the number of unstable multipliers changes."""
+        (state, cycle), (_, reached) = line.known[0.0], line.known[1.0]
+        if end <= 0.0 or state.step < _COARSE:
+            return True
+        if end < 1.0:
+            reached = line.at(end)[1]
+        multipliers = np.append(cycle.multipliers, reached.multipliers)
+        if not np.isfinite(multipliers).all():
+            return True
+        change = unstable(reached) - unstable(cycle)
+        return explains(change, [label for _, label in found])
+
+    def _changed(
+        self, line: Line[Cycle], found: list[tuple[float, Label]], last: float
+    ) -> BranchStep | None:
+        """A step to where the order of the events changes, and round that; None if unclear."""
+        state, there = line.known[0.0][0], line.at(last)
+        if self.trail.has_shrunk(there[1]):
+            return BranchStep([BranchPoint(*there)], *there, end=Outcome.equilibrium)
+        zero = {k: v for k, v in margins(there[1]).items() if abs(v) < 1e-7}
+        label = label_of(there[1], zero)
+        turned = NewOrder(line, last, there, zero).way_on()
+        if turned is not None and not label and _jumps(line, last, turned[1]):
+            label = Label.border_collision
+        special = [BranchPoint(*line.at(share), each) for share, each in found]
+        special += [BranchPoint(*there, label)] if label or turned is None else []
+        if turned is not None:
+            return BranchStep(
+                special, replace(turned[0], step=state.step), turned[1], shows=not label
+            )
+        # no change of the events that is understood: nearer, perhaps
+        if state.step > 1e3 * STEPS.shortest_step:
+            return None
+        return BranchStep(
+            special, *there, end=Outcome.tangency if label else self.trail.reason()
+        )
+
+    def _shorter(
+        self, line: Line[Cycle], cycle: Cycle, reached: Cycle
+    ) -> tuple[bool, float | None]:
+        """Whether a cycle of a part of the period may lie in a step, and where it is met."""
+        for parts in (2, 3):
+            offset, later = cycle.after_part(parts), reached.after_part(parts)
+            if offset @ later < -0.2 * float(offset @ offset):
+                return True, line.root(partial(_closeness, offset, parts))
+            if np.linalg.norm(later - offset) > 0.7 * np.linalg.norm(offset):
+                return True, None
+        return False, None
+
+
+def renewed(state: ContinuationState, cycle: Cycle) -> tuple[ContinuationState, Cycle]:
+    """The same point of a branch without events, with a section of its own."""
+    equations = cycle.map
+    if equations.section is None:
+        return state, cycle
+    normal = cycle.heading / np.linalg.norm(cycle.heading)
+    section = PhaseCondition(cycle.parts.states[0], normal)
+    tangent = state.tangent.copy()
+    tangent[: len(normal)] -= normal * (normal @ tangent[: len(normal)])
+    state = replace(state, tangent=tangent / np.linalg.norm(tangent))
+    return state, replace(cycle, map=replace(equations, section=section))

@@ -1,0 +1,115 @@
+"""Legs as they were run: how each ends, its series, and their extrema."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from squealpipe.methods.zeros import bracketed
+
+Vector = NDArray[np.float64]
+_PLACES = np.linspace(0.0, 1.0, 9)
+
+
+class LegEnd(NamedTuple):
+    """How a leg ends.
+
+    Attributes:
+        switch: its number, or :data:`squealpipe.systems.cycles.event_map.FREE`.
+        surface: number of the surface, or likewise for the section of a cycle without
+            events.
+        sign: of the surface before the event.
+        before, after: regimes.
+        kind: number of the event's name.
+        at_once: whether its regime is entered beyond the surface, by the event before.
+    """
+
+    switch: int
+    surface: int
+    sign: float
+    before: int
+    after: int
+    kind: int
+    at_once: bool = False
+
+
+class Turn(NamedTuple):
+    """An extremum of a series inside a leg: the leg, the time since its start, the value."""
+
+    leg: int
+    time: float
+    value: float
+    is_minimum: bool
+
+
+@dataclass(frozen=True)
+class Path:
+    """Legs as they were run.
+
+    Attributes:
+        leg: (steps,) to which leg each step belongs.
+        steps: (steps,) lengths, in units of ``unit``.
+        offsets: (steps,) time from the start of the leg, likewise.
+        series: (steps, series, order): states, the time, surfaces, outputs.
+        regimes, starts, durations: of the legs.
+        ends: (legs, states).
+        unit: of time, s.
+    """
+
+    leg: NDArray[np.int64]
+    steps: Vector
+    offsets: Vector
+    series: Vector
+    regimes: NDArray[np.int64]
+    starts: Vector
+    durations: Vector
+    ends: Vector
+    unit: float
+
+    @cached_property
+    def scaled(self) -> Vector:
+        """The series over the share of each step, from 0 to 1."""
+        orders = np.arange(self.series.shape[2])
+        return self.series * self.steps[:, None, None] ** orders
+
+    def ends_of(self, which: int) -> tuple[Vector, Vector]:
+        """A series at the start and the end of each leg."""
+        first = np.searchsorted(self.leg, np.arange(len(self.regimes)))
+        last = np.append(first[1:], len(self.leg)) - 1
+        return self.series[first, which, 0], self.scaled[last, which].sum(axis=-1)
+
+    @cached_property
+    def turns(self) -> list[list[Turn]]:
+        """Extrema of each series inside the legs."""
+        scaled = self.scaled
+        orders = np.arange(1, scaled.shape[2])
+        rates = scaled[..., 1:] * orders
+        values = rates @ _PLACES ** (orders[:, None] - 1)
+        found: list[list[Turn]] = [[] for _ in range(scaled.shape[1])]
+        hits = np.nonzero(values[..., :-1] * values[..., 1:] < 0.0)
+        if not len(hits[0]):
+            return found
+        step, series, left = hits
+        first, last = values[hits], values[step, series, left + 1]
+        slopes = rates[step, series]
+        bends = slopes[:, 1:] * orders[:-1]
+
+        def rate_at(place: Vector) -> tuple[Vector, Vector]:
+            powers = np.vander(place, len(orders), increasing=True)
+            return (slopes * powers).sum(axis=1), (bends * powers[:, :-1]).sum(axis=1)
+
+        ends = (_PLACES[left], _PLACES[left + 1])
+        place = bracketed(
+            rate_at, ends, (first, last), 1e-6
+        )  # the height is quadratic in it
+        powers = np.vander(place, scaled.shape[2], increasing=True)
+        height = (scaled[step, series] * powers).sum(axis=1)
+        time = (self.offsets[step] + place * self.steps[step]) * self.unit
+        each = (series, self.leg[step], time, height, first < 0)
+        for number, *turn in zip(*(values.tolist() for values in each), strict=True):
+            found[number].append(Turn(*turn))
+        return found

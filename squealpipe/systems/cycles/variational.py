@@ -1,0 +1,107 @@
+"""Exact derivatives along legs, by states, followed parameters and the time.
+
+Along the legs' Taylor series the variational equations δż = A δz + b are collocated in Gauss's
+points of each step, all steps at once: a step is a small part of the distance to the next
+singularity, so that order twelve leaves no more than round-off.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from squealpipe.methods.taylor.legs import transfer
+from squealpipe.methods.taylor.series import gauss
+from squealpipe.systems.cycles.affine import derivatives as affine_derivatives
+from squealpipe.systems.cycles.flow import Flow
+from squealpipe.systems.cycles.legs import Path, Vector
+
+MOST_PIECES, FINEST = 200_000, 64
+"""Pieces of all steps, and of one step, that the variational equations are solved on."""
+
+LONGEST = 1.0
+"""Longest step of the variational equations times a bound of its rate."""
+
+_NODES, _WEIGHTS, _UP_TO = gauss(6)
+
+
+def leg_derivatives(flow: Flow, values: Mapping[str, float], path: Path) -> Vector:
+    """Of each leg's end by its start, followed parameters and the time: (legs, n, n + p)."""
+    if flow.is_affine:
+        return _affine(flow, values, path)
+    pieces, most = 1, max(1, min(FINEST, MOST_PIECES // len(path.steps)))
+    while True:
+        slopes = _slopes_along(flow, values, path, pieces)
+        middle = np.abs(slopes[:, : flow.size, len(_NODES) // 2]).transpose(2, 0, 1)
+        power = np.linalg.matrix_power(middle, 4).sum(axis=2).max(axis=1) ** 0.25
+        lengths = np.repeat(path.steps, pieces) * path.unit / pieces
+        with np.errstate(invalid="ignore"):
+            needed = (
+                pieces
+                * float(np.nanmax(np.abs(lengths) * power, initial=0.0))
+                / LONGEST
+            )
+        if needed <= pieces or pieces >= most or not math.isfinite(needed):
+            break
+        pieces = min(most, math.ceil(needed))
+    found = np.zeros((len(path.regimes), flow.columns, flow.columns))
+    found[:] = np.eye(flow.columns)
+    transfer(slopes, lengths, np.repeat(path.leg, pieces), _UP_TO, _WEIGHTS, found)
+    return found[:, : flow.size]
+
+
+def _affine(flow: Flow, values: Mapping[str, float], path: Path) -> Vector:
+    """The same where all rates are affine in the states."""
+    first = np.searchsorted(path.leg, np.arange(len(path.regimes)))
+    starts = path.series[first, : flow.size, 0]
+    followed = np.array([values[name] for name in flow.followed])
+    units = np.where(followed == 0.0, 1.0, np.abs(followed))
+    found = np.empty((len(starts), flow.size, flow.columns))
+    for leg, regime in enumerate(path.regimes.tolist()):
+        numbers = flow.numbers(values, regime)
+
+        def many(function: Any, places: Vector, numbers: Any = numbers) -> Vector:
+            rows = function(*places, *numbers)
+            return np.array([np.broadcast_to(row, len(places.T)) for row in rows])
+
+        found[leg] = affine_derivatives(
+            partial(many, flow.rates),
+            partial(many, flow.rates_by),
+            flow.system.sizes,
+            units,
+            starts[leg],
+            float(path.durations[leg]),
+        )
+    return found
+
+
+def _slopes_along(
+    flow: Flow, values: Mapping[str, float], path: Path, pieces: int
+) -> Vector:
+    """∂f/∂(states, parameters, time) at the nodes of each piece of each step.
+
+    (states, columns, nodes, pieces)
+    """
+    count, steps = len(_NODES), len(path.steps)
+    nodes = (np.arange(pieces) + _NODES[:, None]).ravel() / pieces
+    variables = len(flow.system.traced.variables)
+    powers = nodes ** np.arange(path.series.shape[2])[:, None]
+    states = (path.scaled[:, :variables] @ powers).reshape(
+        steps, variables, count, pieces
+    )
+    flat = states.transpose(1, 2, 0, 3).reshape(variables, count, -1)
+    joint = flow.system.joint
+    of_legs = np.array([joint.constants(regime) for regime in path.regimes])
+    constants = np.repeat(of_legs[path.leg], pieces, axis=0).T
+    numbers = flow.numbers(values, 0)[: len(flow.system.traced.parameters)]
+    found = np.zeros((flow.size, flow.columns, *flat.shape[1:]))
+    with np.errstate(all="ignore"):
+        for (i, j, _), value in zip(
+            flow.entries, flow.slopes(*flat, *numbers, *constants), strict=True
+        ):
+            found[i, j] = value
+    return found
