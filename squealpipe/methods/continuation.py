@@ -1,12 +1,12 @@
 """Pseudo-arclength continuation of F(z) = 0 with one unknown more than equations.
 
-Settings, algorithm, state and result are separate; a :class:`Continuation` is iterated and
+Settings, algorithm and state are separate; a :class:`Continuation` is iterated and
 yields one state after the other, so the caller decides when to stop.
 """
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from enum import IntEnum
+from itertools import islice
 from typing import Protocol
 
 import numpy as np
@@ -82,22 +82,6 @@ class ContinuationState:
     step: float
     iterations: int
     residual: float
-
-
-class ContinuationEnd(IntEnum):
-    """Why a continuation ended."""
-
-    stopped = 0
-    branch_lost = 1
-    point_limit = 2
-
-
-@dataclass(frozen=True)
-class ContinuationResult:
-    """States of a branch and why it ended; the state that stopped it is the last one."""
-
-    states: tuple[ContinuationState, ...]
-    end: ContinuationEnd
 
 
 @dataclass(frozen=True)
@@ -230,13 +214,14 @@ class Continuation:
             state = self.adapt(following)
             yield state
 
-    def run(self, stop: Callable[[ContinuationState], bool]) -> ContinuationResult:
-        """States up to and including the first that ``stop`` accepts."""
+    def run(self, stop: Callable[[ContinuationState], bool]) -> list[ContinuationState]:
+        """States up to and including the first that ``stop`` accepts, or ``max_points`` of them.
+
+        Fewer that end otherwise are all that could be followed.
+        """
         states: list[ContinuationState] = []
-        for state in self:
+        for state in islice(self, self.settings.max_points):
             states.append(state)
             if stop(state):
-                return ContinuationResult(tuple(states), ContinuationEnd.stopped)
-            if len(states) >= self.settings.max_points:
-                return ContinuationResult(tuple(states), ContinuationEnd.point_limit)
-        return ContinuationResult(tuple(states), ContinuationEnd.branch_lost)
+                break
+        return states

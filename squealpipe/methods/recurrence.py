@@ -48,6 +48,21 @@ def repeats_after(
     return 0
 
 
+def crossings(
+    times: np.ndarray, path: np.ndarray, state: np.ndarray, normal: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """When and where a sampled motion crosses a plane through a state forwards, by straight lines.
+
+    Args:
+        path: states at the times, (times, n).
+    """
+    height = (path - state) @ normal
+    at = np.flatnonzero((height[:-1] < 0.0) & (height[1:] >= 0.0))
+    share = -height[at] / (height[at + 1] - height[at])
+    there = path[at] + share[:, None] * (path[at + 1] - path[at])
+    return times[at] + share * (times[at + 1] - times[at]), there
+
+
 def in_blocks(rows: np.ndarray, events: np.ndarray) -> Iterator[np.ndarray]:
     """Rows, so many at a time that their logs fit; the busiest first, so that few are wide."""
     rows = rows[np.argsort(-events[rows], kind="stable")]

@@ -12,7 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.methods.recurrence import LEAST_REPEATS, in_blocks, repeats_after
+from squealpipe.methods.recurrence import (
+    LEAST_REPEATS,
+    crossings,
+    in_blocks,
+    repeats_after,
+)
 from squealpipe.schema import Outcome
 from squealpipe.systems.integrate import RunOptions, integrate
 
@@ -221,13 +226,9 @@ def _near_returns(
     times: np.ndarray, path: np.ndarray, normal: np.ndarray
 ) -> list[float]:
     """Instants at which a sampled motion crosses a plane through its first state near to it."""
-    offset = path - path[0]
-    height = offset @ normal
-    at = np.flatnonzero((height[:-1] < 0.0) & (height[1:] >= 0.0))
-    share = -height[at] / (height[at + 1] - height[at])
-    there = offset[at] + share[:, None] * (offset[at + 1] - offset[at])
-    near = np.abs(there).max(axis=1, initial=0.0) < _NEAR
-    return list((times[at] + share * (times[at + 1] - times[at]))[near][:_TRIES])
+    instants, there = crossings(times, path, path[0], normal)
+    near = np.abs(there - path[0]).max(axis=1, initial=0.0) < _NEAR
+    return list(instants[near][:_TRIES])
 
 
 def _zeros(places: np.ndarray, heights: np.ndarray, other: np.ndarray) -> np.ndarray:

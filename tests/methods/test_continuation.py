@@ -5,11 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from squealpipe.methods.continuation import (
-    Continuation,
-    ContinuationEnd,
-    ContinuationSettings,
-)
+from squealpipe.methods.continuation import Continuation, ContinuationSettings
 
 
 class Circle:
@@ -31,27 +27,24 @@ class Ended:
 
 def test_a_circle_is_followed_through_its_folds():
     branch = Continuation(Circle(), np.array([1.0, 0.0]), np.array([0.0, 1.0]))
-    result = branch.run(lambda state: state.point[0] > 0.0 > state.point[1])
-    points = np.array([state.point for state in result.states])
+    states = branch.run(lambda state: state.point[0] > 0.0 > state.point[1])
+    points = np.array([state.point for state in states])
     np.testing.assert_allclose(np.hypot(*points.T), 1.0, atol=1e-11)
-    assert result.end == ContinuationEnd.stopped
-    for state in result.states[
-        1:
-    ]:  # whose tangents are those of the last Newton step but one
+    assert points[-1, 0] > 0.0 > points[-1, 1]
+    for state in states[1:]:  # whose tangents are those of the last Newton step but one
         assert np.linalg.norm(state.tangent) == pytest.approx(1.0, abs=1e-14)
         assert abs(state.tangent @ state.point) < 1e-3
     assert points[:, 0].min() < -0.99
     assert np.all(np.diff(np.unwrap(np.arctan2(points[:, 1], points[:, 0]))) > 0)
 
 
-def test_the_end_of_a_curve_and_the_number_of_points_are_reported():
-    result = Continuation(Ended(), np.array([0.0, 1.0]), np.array([1.0, -0.5])).run(
-        lambda _: False
+def test_a_branch_ends_with_its_curve_or_the_number_of_points():
+    ended = Continuation(Ended(), np.array([0.0, 1.0]), np.array([1.0, -0.5]))
+    states = ended.run(lambda _: False)
+    assert 0 < len(states) < ended.settings.max_points
+    assert 0.99 < states[-1].point[0] <= 1.0
+    settings = ContinuationSettings(max_points=7)
+    circle = Continuation(
+        Circle(), np.array([1.0, 0.0]), np.array([0.0, 1.0]), settings
     )
-    assert result.end == ContinuationEnd.branch_lost
-    settings, start = (
-        ContinuationSettings(max_points=7),
-        (np.array([1.0, 0.0]), np.array([0.0, 1.0])),
-    )
-    result = Continuation(Circle(), *start, settings).run(lambda _: False)
-    assert (result.end, len(result.states)) == (ContinuationEnd.point_limit, 7)
+    assert len(circle.run(lambda _: False)) == 7

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from squealpipe.methods.balance.harmonic_balance import CosineBalance, contact_of
 from squealpipe.methods.continuation import (
     Continuation,
-    ContinuationEnd,
     ContinuationSettings,
     ContinuationState,
 )
@@ -138,12 +137,11 @@ def _coupled_branch(
             ended = Outcome.retraced
         return ended != Outcome.converged
 
-    result = Continuation(balance, start, direction, control, from_higher_end).run(stop)
-    found = [state.point for state in result.states]
-    if result.end == ContinuationEnd.branch_lost:
-        return found, Outcome.branch_lost
-    if result.end == ContinuationEnd.point_limit:
-        return found, Outcome.step_limit
+    branch = Continuation(balance, start, direction, control, from_higher_end)
+    found = [state.point for state in branch.run(stop)]
+    if ended == Outcome.converged:
+        lost = len(found) < control.max_points
+        return found, Outcome.branch_lost if lost else Outcome.step_limit
     if ended == Outcome.amplitude_reached:
         last = balance.solve(found[-1], balance.peak_row, y_max)
         found = found[:-1] + ([last[0]] if last else [])

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from squealpipe.methods.recurrence import crossings
 from squealpipe.schema import Outcome
 from squealpipe.systems.cycles.described import SETTLED_ON
 from squealpipe.systems.cycles.event_map import PhaseCondition
@@ -219,17 +220,6 @@ def _least(events: tuple[LegEnd, ...]) -> int:
     return min((kinds.count(kind) for kind in kinds), default=1)
 
 
-def _crossings(
-    section: PhaseCondition, times: Vector, path: Vector
-) -> Iterator[tuple[float, Vector]]:
-    """When and where a sampled motion crosses a section forwards."""
-    height = (path - section.state) @ section.normal
-    for at in np.flatnonzero((height[:-1] < 0.0) & (height[1:] >= 0.0)):
-        share = -height[at] / (height[at + 1] - height[at])
-        there = path[at] + share * (path[at + 1] - path[at])
-        yield float(times[at] + share * (times[at + 1] - times[at])), there
-
-
 def _exact_return(stretch: Stretch, state: Vector, time: float) -> float:
     """The instant next to one at which a motion without events is back on its section.
 
@@ -242,8 +232,8 @@ def _exact_return(stretch: Stretch, state: Vector, time: float) -> float:
     for _ in range(3):
         times = np.linspace(max(time - width, 0.0), time + width, 9)
         run = follow(flow, values, state, times[-1], regime=regime, times=times)
-        crossings = [found for found, _ in _crossings(section, times, run.path)]
-        time = min(crossings, key=lambda at: abs(at - time), default=time)
+        found, _ = crossings(times, run.path, section.state, section.normal)
+        time = min(found.tolist(), key=lambda at: abs(at - time), default=time)
         width /= 200.0
     return time
 
@@ -260,9 +250,12 @@ def _returns(stretch: Stretch, state: Vector) -> Iterator[tuple[int, float, floa
     else:
         rate = stretch.flow.field(stretch.values, int(run.regimes[0]), state, 0.0)
         section = PhaseCondition(state, rate / scale**2)
-        for time, there in _crossings(section, times, run.path):
-            distance = float(np.abs((there - state) / scale).max())
-            found.append((0, time, distance))
+        instants, there = crossings(times, run.path, state, section.normal)
+        distances = np.abs((there - state) / scale).max(axis=1, initial=0.0)
+        found += [
+            (0, *each)
+            for each in zip(instants.tolist(), distances.tolist(), strict=True)
+        ]
     nearest = 3.0 * min((each[2] for each in found), default=0.0) + 1e-4
     found.sort(
         key=lambda each: (each[2] >= nearest, each[1] if each[2] < nearest else each[2])

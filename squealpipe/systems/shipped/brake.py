@@ -23,16 +23,14 @@ from squealpipe.laws.tables import is_table, pieces_of
 from squealpipe.models import a1
 from squealpipe.models.variants import VARIANT_RULES, Rules
 from squealpipe.parameters import NUMBERS_OF_A1, Parameters
+from squealpipe.systems.belt_contact import FIRST, BeltContact, Surface, knots, negative
 from squealpipe.systems.components import Switch
 from squealpipe.systems.system import System
 
-SLIP = {"slip_slower": 1.0, "slip_faster": -1.0}
 PIVOT_REACH2 = 1e-14
 """Squared distance from a pivot, in free lengths, below which the force's direction is lost."""
 ROUND_OFF = 1e-14
 """Over k1 l_pre: a mass that friction lacks no more than this to hold sticks."""
-FIRST = 1e150
-"""Weight of what decides before anything else is asked."""
 
 
 def brake_of(params: Parameters, model: str = "A1") -> System:
@@ -104,7 +102,7 @@ def brake(  # noqa: C901 (one short function for each force and surface)
     parameters = {**defaults, "alpha1": 1.0, "alpha2": 1.0}
     traced = (laws.form, damped, model, one_mu, long_springs)
     if traced in _FORMS:
-        return _FORMS[traced].with_numbers(laws.regimes(), parameters)
+        return _FORMS[traced].with_numbers(laws.belt.regimes(), parameters)
     form = a1.Suspension(rules.linear_springs, long_springs, damped)
 
     def suspension(s: Any, p: Any, r: Any) -> tuple[Any, Any]:
@@ -152,24 +150,21 @@ def brake(  # noqa: C901 (one short function for each force and surface)
     def free(t: Any, s: Any, p: Any, r: Any) -> Any:
         return s.y - p.preload
 
-    def on_belt(t: Any, s: Any, p: Any, r: Any) -> Any:
-        return p.belt_speed - s.vx
-
     states = {"x": "m", "y": "m", "vx": "m/s", "vy": "m/s"}
     reach = ("m2", lambda t, s, p, r: s.x * s.x + s.y * s.y)
     made = System(
         "brake",
         states=states,
         parameters=parameters,
-        regimes=laws.regimes(),
+        regimes=laws.belt.regimes(),
         field=field,
         switches=[
-            *laws.contact_switches(free, on_belt, holds),
-            *laws.belt_switches(on_belt, holds, limit, pull),
+            *laws.contact_switches(free, holds),
+            *laws.belt_switches(holds, limit, pull),
             *laws.knots(),
         ],
         start=dict.fromkeys(states, 0.0),
-        starts_in=laws.starts(free, rises, on_belt, limit, pull),
+        starts_in=laws.starts(free, rises, limit, pull),
         outputs={"contact_force": ("N", force), "reach": reach},
         stops={} if rules.linear_springs else {"pivot1": pivot(0), "pivot2": pivot(1)},
         time_scale=lambda p: (p.mass / p.k1) ** 0.5,
@@ -181,6 +176,11 @@ def brake(  # noqa: C901 (one short function for each force and surface)
 _FORMS: dict[tuple[Any, ...], System] = {}
 """Systems by what of them is traced: tables whose values alone differ share one trace, which takes
 a second or more."""
+
+
+def on_belt(t: Any, s: Any, p: Any, r: Any) -> Any:
+    """Speed of sliding, positive where the mass is slower than the belt."""
+    return p.belt_speed - s.vx
 
 
 class _Laws:
@@ -201,6 +201,14 @@ class _Laws:
             self.frictions = pieces_of(friction_law).constants("mu")
         if is_table(contact_law):
             self.contacts = pieces_of(contact_law, goes_on=True).constants("press")
+        self.belt = BeltContact(
+            frictions=self.frictions,
+            presses=self.contacts,
+            sticks=rules.sticks,
+            apart=self.apart,
+            speed=on_belt,
+            unit=lambda p: p.friction_speed,
+        )
 
     @property
     def form(self) -> tuple[Any, ...]:
@@ -231,37 +239,6 @@ class _Laws:
             q.contact_law = contact_laws.ContactPiece(r.press_start, coefficients)
         return q, Geometry(cos(p.alpha1), sin(p.alpha1), cos(p.alpha2), sin(p.alpha2))
 
-    def name(self, kind: str, friction: int, contact: int) -> str:
-        """The name of a regime, with the numbers of its pieces where there are several."""
-        if len(self.frictions) > 1 and kind in SLIP:
-            kind += f"_{friction + 1}"
-        return f"{kind}_press_{contact + 1}" if len(self.contacts) > 1 else kind
-
-    def in_contact(self) -> Iterator[tuple[str, int, int]]:
-        """Kind and pieces of each regime in contact."""
-        for j in range(len(self.contacts)):
-            yield from (
-                (kind, i, j) for i in range(len(self.frictions)) for kind in SLIP
-            )
-            if self.rules.sticks:
-                yield "stick", 0, j
-
-    def regimes(self) -> dict[str, dict[str, float]]:
-        """Regimes and their constants."""
-        found = {}
-        for kind, i, j in self.in_contact():
-            terms = {"direction": SLIP.get(kind, 0.0), "stick": float(kind == "stick")}
-            found[self.name(kind, i, j)] = {
-                "contact": 1.0,
-                **terms,
-                **self.frictions[i],
-                **self.contacts[j],
-            }
-        terms = {"contact": 0.0, "direction": 0.0, "stick": 0.0}
-        for name in self.apart:
-            found[name] = {**terms, **self.frictions[0], **self.contacts[0]}
-        return found
-
     @property
     def apart(self) -> list[str]:
         """Regimes without contact; with a dashpot also within the spring's free length."""
@@ -269,37 +246,27 @@ class _Laws:
             return []
         return ["separated", *(["released"] * (self.contact_law == "dashpot"))]
 
-    def landing(self, kind: str, on_belt: Any, holds: Any) -> list[Any]:
+    def landing(self, kind: str, holds: Any) -> list[Any]:
         """Where a contact that begins leads, by the sliding speed: targets of a switch."""
+
+        def speed(t: Any, s: Any, p: Any, r: Any) -> Any:
+            return p.belt_speed - s.vx * self.rules.reverses
 
         def stays(t: Any, s: Any, p: Any, r: Any) -> Any:
             return holds(t, s, p, r) - (FIRST * on_belt(t, s, p, r)) ** 2
 
-        def beyond(name: str, i: int) -> Any:
-            def condition(t: Any, s: Any, p: Any, r: Any) -> Any:
-                lag = SLIP[name] * (p.belt_speed - s.vx * self.rules.reverses)
-                return (
-                    lag - self.frictions[i]["mu_start"] * p.friction_speed if i else lag
-                )
+        return self.belt.landing(kind, speed, stays)
 
-            return condition
-
-        order = [
-            (name, i) for name in SLIP for i in reversed(range(len(self.frictions)))
-        ]
-        found = [(self.name(name, i, 0), beyond(name, i), kind) for name, i in order]
-        sticks = [(self.name("stick", 0, 0), stays, kind)] * self.rules.sticks
-        return [*sticks, *found[:-1], (found[-1][0], None, kind)]
-
-    def contact_switches(self, free: Any, on_belt: Any, holds: Any) -> list[Switch]:
+    def contact_switches(self, free: Any, holds: Any) -> list[Switch]:
         """Where contact is lost and found."""
         if not self.rules.separates:
             return []
-        first = [self.name(*each) for each in self.in_contact() if each[2] == 0]
-        landing = self.landing("contact", on_belt, holds)
+        belt = self.belt
+        first = [belt.name(*each) for each in belt.in_contact() if each[2] == 0]
+        landing = self.landing("contact", holds)
         if self.contact_law != "dashpot":
             return [
-                Switch("separation", first, _negative(free), "separated"),
+                Switch("separation", first, negative(free), "separated"),
                 Switch("contact", "separated", free, landing),
             ]
 
@@ -309,86 +276,48 @@ class _Laws:
         return [
             Switch("separation", first, force, "released"),
             Switch("contact", "separated", free, landing),
-            Switch("pressing", "released", _negative(force), landing),
-            Switch("clearance", "released", _negative(free), "separated"),
+            Switch("pressing", "released", negative(force), landing),
+            Switch("clearance", "released", negative(free), "separated"),
         ]
 
-    def belt_switches(
-        self, on_belt: Any, holds: Any, limit: Any, pull: Any
-    ) -> Iterator[Switch]:
+    def belt_switches(self, holds: Any, limit: Any, pull: Any) -> Iterator[Switch]:
         """Where the mass reaches belt speed, and where stick ends."""
         if not self.rules.reverses:
             return
-        several = len(self.contacts) > 1
         for j in range(len(self.contacts)):
-            slower, faster, stick = (
-                self.name(kind, 0, j)
-                for kind in ("slip_slower", "slip_faster", "stick")
-            )
-            tail = f"_{j + 1}" * several
-            yield Switch(
-                f"reversal{tail}",
-                leaves=(slower, faster),
-                when=lambda t, s, p, r: r.direction * on_belt(t, s, p, r),
-                to=[
-                    *[(stick, holds, "stick")] * self.rules.sticks,
-                    (faster, lambda t, s, p, r: r.direction, "reversal"),
-                    (slower, None, "reversal"),
-                ],
-                reset=lambda t, s, p, r: {"vx": p.belt_speed},
-            )
-            if not self.rules.sticks:
-                continue
-            yield Switch(
-                f"slip{tail}",
-                stick,
-                lambda t, s, p, r: limit(s, p, r) - pull(s, p, r),
-                [(faster, None, "slip")],
-            )
-            yield Switch(
-                f"slip_back{tail}",
-                stick,
-                lambda t, s, p, r: limit(s, p, r) + pull(s, p, r),
-                [(slower, None, "slip")],
+            yield from self.belt.belt_switches(
+                holds,
+                {
+                    "slip": (
+                        lambda t, s, p, r: limit(s, p, r) - pull(s, p, r),
+                        "slip_faster",
+                    ),
+                    "slip_back": (
+                        lambda t, s, p, r: limit(s, p, r) + pull(s, p, r),
+                        "slip_slower",
+                    ),
+                },
+                lambda t, s, p, r: {"vx": p.belt_speed},
+                j,
             )
 
     def knots(self) -> Iterator[Switch]:
         """Where a law goes over from one of its pieces to the next."""
 
-        def slides(end: str) -> Any:
-            def past(t: Any, s: Any, p: Any, r: Any) -> Any:
-                knot = getattr(r, f"mu_{end}") * p.friction_speed
-                return r.direction * (p.belt_speed - s.vx) - knot
-
-            return past
-
-        def presses(end: str) -> Any:
+        def presses(end: str) -> Surface:
             return lambda t, s, p, r: (
                 p.preload - s.y - getattr(r, f"press_{end}") * p.preload
             )
 
-        for kind, i, j in self.in_contact():
-            here = self.name(kind, i, j)
-            after = [(self.name(kind, i + 1, j), slides)] * (
-                kind in SLIP and i + 1 < len(self.frictions)
-            )
-            after += [(self.name(kind, i, j + 1), presses)] * (
-                j + 1 < len(self.contacts)
-            )
-            for there, past in after:
-                yield Switch(
-                    f"{here} to {there}",
-                    here,
-                    _negative(past("end")),
-                    [(there, None, "knot")],
-                )
-                yield Switch(
-                    f"{there} to {here}", there, past("start"), [(here, None, "knot")]
+        belt = self.belt
+        yield from belt.friction_knots()
+        for kind, i, j in belt.in_contact():
+            if j + 1 < len(self.contacts):
+                yield from knots(
+                    belt.name(kind, i, j), belt.name(kind, i, j + 1), presses
                 )
 
-    def starts(
-        self, free: Any, rises: Any, on_belt: Any, limit: Any, pull: Any
-    ) -> list[Any]:
+    def starts(self, free: Any, rises: Any, limit: Any, pull: Any) -> list[Any]:
         """In which regime a run starts: the first whose surfaces are all ≥ 0.
 
         Where the contact spring is just free the velocity decides, then the force. At belt speed it
@@ -408,7 +337,7 @@ class _Laws:
                 ("slip_slower", lambda t, s, p, r: p.belt_speed),
                 "slip_faster",
             ]
-        regimes = [self.name(*each) for each in self.in_contact()]
+        regimes = [self.belt.name(*each) for each in self.belt.in_contact()]
         sticks = [name for name in regimes if name.startswith("stick")]
         slips = [name for name in regimes if name not in sticks]
         several = len(self.contacts) > 1
@@ -417,13 +346,9 @@ class _Laws:
             return -pull(s, p, r) - (FIRST * limit(s, p, r) if sticks else 0.0)
 
         if not several:
-            found.append((self.name("slip_slower", 0, 0), falls_back, on_belt))
+            found.append((self.belt.name("slip_slower"), falls_back, on_belt))
         found += [(name, None, on_belt) for name in sticks]
         if not several:
-            faster = self.name("slip_faster", 0, 0)
+            faster = self.belt.name("slip_faster")
             found.append((faster, lambda t, s, p, r: pull(s, p, r), on_belt))
         return [*found, *((name, None) for name in slips[:-1]), slips[-1]]
-
-
-def _negative(surface: Any) -> Any:
-    return lambda t, s, p, r: -surface(t, s, p, r)

@@ -1,6 +1,6 @@
 """A structure as a system: one component for each contact, with the regimes of A1."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import Any, NamedTuple, Self
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from squealpipe.laws.tables import is_table, pieces_of
 from squealpipe.parameters import brief, is_finite_number, is_whole_number
+from squealpipe.systems.belt_contact import FIRST, SLIP, BeltContact, Surface, negative
 from squealpipe.systems.components import MOST_COMPONENTS, Component, Switch
 from squealpipe.systems.definition import MOST_STATES
 from squealpipe.systems.structures.definition import Structure
@@ -15,13 +16,8 @@ from squealpipe.systems.structures.dynamics import Motion, Numbers, reads_speed,
 from squealpipe.systems.structures.modes import modes_at_rest
 from squealpipe.systems.system import System
 
-SLIP = {"slip_slower": 1.0, "slip_faster": -1.0}
-"""Regimes of slip by the sign of the sliding speed."""
 HIDDEN = 1e-14
 """Over a typical force: a contact that friction lacks no more than this to hold sticks."""
-FIRST = 1e150
-"""Weight of what decides before anything else is asked."""
-Surface = Callable[[Any, Any, Any, Any], Any]
 
 
 def system(
@@ -197,44 +193,28 @@ class _Contact:
 
     def __init__(self, equations: Equations, place: int, force: float) -> None:
         self.equations, self.place, self.force = equations, place, force
-        friction = equations.structure.friction
-        self.speed_unit = friction.friction_speed
-        self.pieces: list[dict[str, float]] = [{}]
+        structure = equations.structure
+        friction, name = structure.friction, structure.contacts[place].name
+        pieces: list[dict[str, float]] = [{}]
         if is_table(friction.friction_law):
-            self.pieces = pieces_of(friction.friction_law).constants("mu")
+            pieces = pieces_of(friction.friction_law).constants("mu")
         self.pressing = equations.of_contact("pressing", place)
         self.speed = equations.of_contact("sliding_speeds", place)
         self.limit = equations.of_contact("limits", place)
+        self.belt = BeltContact(
+            frictions=pieces,
+            speed=self.speed,
+            unit=lambda p: friction.friction_speed,
+            own=lambda r: getattr(r, name),
+        )
 
     def component(self) -> Component:
         """The contact as a component of a system."""
         return Component(
-            regimes=self._regimes(),
-            switches=[*self._switches(), *self._knots()],
+            regimes=self.belt.regimes(),
+            switches=[*self._switches(), *self.belt.friction_knots()],
             starts_in=self._starts(),
         )
-
-    def _name(self, slip: str, piece: int) -> str:
-        return f"{slip}_{piece + 1}" if len(self.pieces) > 1 else slip
-
-    def _slips(self) -> list[tuple[str, int]]:
-        """Regimes of slip, the pieces of higher speeds first."""
-        return [(slip, i) for slip in SLIP for i in reversed(range(len(self.pieces)))]
-
-    def _regimes(self) -> dict[str, dict[str, float]]:
-        first = self.pieces[0]
-        found = {
-            self._name(slip, i): {
-                "contact": 1.0,
-                "direction": SLIP[slip],
-                "stick": 0.0,
-                **self.pieces[i],
-            }
-            for slip, i in self._slips()
-        }
-        found["stick"] = {"contact": 1.0, "direction": 0.0, "stick": 1.0, **first}
-        found["separated"] = {"contact": 0.0, "direction": 0.0, "stick": 0.0, **first}
-        return found
 
     def _holding(self, t: Any, s: Any, p: Any, r: Any) -> Any:  # noqa: ARG002
         """The friction that would keep the contact on the belt."""
@@ -250,11 +230,6 @@ class _Contact:
         friction = self.equations.of_contact("stick_friction", self.place)
         return lambda t, s, p, r: self.limit(t, s, p, r) - sign * friction(t, s, p, r)
 
-    def _beyond(self, slip: str, piece: int) -> Surface:
-        """Whether it slips to this side, at a speed of this piece or a higher one."""
-        start = self.pieces[piece].get("mu_start", 0.0) * self.speed_unit
-        return lambda t, s, p, r: SLIP[slip] * self.speed(t, s, p, r) - start
-
     def _to_belt(self, t: Any, s: Any, p: Any, r: Any) -> dict[str, Any]:
         """Velocities with the contact on the belt, by an impulse of friction."""
         numbers = self.equations.numbers
@@ -266,52 +241,17 @@ class _Contact:
             if part
         }
 
-    def _landing(self) -> list[Any]:
-        """Where contact begins, friction is 0 and holds nothing: the contact slips."""
-        targets = [
-            (self._name(slip, i), self._beyond(slip, i), "contact")
-            for slip, i in self._slips()
-        ]
-        return [*targets[:-1], (targets[-1][0], None, "contact")]
-
     def _switches(self) -> Iterator[Switch]:
-        closed = [name for name in self._regimes() if name != "separated"]
-        slower, faster = (self._name(slip, 0) for slip in SLIP)
+        closed = [self.belt.name(*each) for each in self.belt.in_contact()]
         yield Switch("separation", closed, self.pressing, "separated")
-        yield Switch("contact", "separated", _negative(self.pressing), self._landing())
-        yield Switch(
-            "reversal",
-            (slower, faster),
-            lambda t, s, p, r: self._of(r).direction * self.speed(t, s, p, r),
-            [
-                ("stick", self._holds, "stick"),
-                (faster, lambda t, s, p, r: self._of(r).direction, "reversal"),
-                (slower, None, "reversal"),
-            ],
-            reset=self._to_belt,
-        )
-        yield Switch("slip", "stick", self._margin(1.0), [(slower, None, "slip")])
-        yield Switch("slip_back", "stick", self._margin(-1.0), [(faster, None, "slip")])
-
-    def _of(self, r: Any) -> Any:
-        return getattr(r, self.equations.structure.contacts[self.place].name)
-
-    def _knots(self) -> Iterator[Switch]:
-        """Where a table of friction goes over from one of its pieces to the next."""
-
-        def past(end: str) -> Surface:
-            def surface(t: Any, s: Any, p: Any, r: Any) -> Any:
-                knot = getattr(self._of(r), f"mu_{end}") * self.speed_unit
-                return self._of(r).direction * self.speed(t, s, p, r) - knot
-
-            return surface
-
-        for slip in SLIP:
-            for i in range(len(self.pieces) - 1):
-                here, there = self._name(slip, i), self._name(slip, i + 1)
-                up, down = [(there, None, "knot")], [(here, None, "knot")]
-                yield Switch(f"{here} to {there}", here, _negative(past("end")), up)
-                yield Switch(f"{there} to {here}", there, past("start"), down)
+        # friction is 0 where contact begins and holds nothing: the contact slips
+        landing = self.belt.landing("contact", self.speed)
+        yield Switch("contact", "separated", negative(self.pressing), landing)
+        ends = {
+            "slip": (self._margin(1.0), "slip_slower"),
+            "slip_back": (self._margin(-1.0), "slip_faster"),
+        }
+        yield from self.belt.belt_switches(self._holds, ends, self._to_belt)
 
     def _starts(self) -> list[Any]:
         """In which regime a run starts: the first that fits.
@@ -319,7 +259,7 @@ class _Contact:
         Where the contact is just closed, its velocity decides; on the belt the friction that
         would hold it.
         """
-        slower, faster = (self._name(slip, 0) for slip in SLIP)
+        slower, faster = map(self.belt.name, SLIP)
         normal = self.equations.numbers.normals[:, self.place]
         along = self.equations.numbers.tangentials[:, self.place]
 
@@ -334,7 +274,7 @@ class _Contact:
         def above(t: Any, s: Any, p: Any, r: Any) -> Any:
             return -FIRST * self.pressing(t, s, p, r) - self.force
 
-        slips = [(self._name(*each), self._beyond(*each)) for each in self._slips()]
+        slips = self.belt.slips(self.speed)
         return [
             ("separated", rises, self.pressing),
             ("separated", above),
@@ -344,7 +284,3 @@ class _Contact:
             *slips[:-1],
             slips[-1][0],
         ]
-
-
-def _negative(surface: Surface) -> Surface:
-    return lambda t, s, p, r: -surface(t, s, p, r)

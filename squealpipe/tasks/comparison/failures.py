@@ -267,10 +267,11 @@ def _arc_length(
         return bool(balance.peak_row @ state.point >= case.y_peak)
 
     with np.errstate(all="ignore"):
-        result = Continuation(balance, start, direction, settings).run(reached)
-    if not (result.states and reached(result.states[-1])):
-        return Answer(math.nan, result.end.name)
-    return _newton(scene, case, balance, result.states[-1].point)
+        states = Continuation(balance, start, direction, settings).run(reached)
+    if not (states and reached(states[-1])):
+        lost = len(states) < settings.max_points
+        return Answer(math.nan, "branch_lost" if lost else "point_limit")
+    return _newton(scene, case, balance, states[-1].point)
 
 
 def _flag(outcome: Any) -> str:
