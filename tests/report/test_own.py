@@ -180,6 +180,18 @@ def test_a_cure_of_nothing_is_told_in_points_and_no_friction_by_its_name(answers
     assert words["mu"].quiet_from == "practically no friction"
 
 
+def test_sliding_far_from_rest_is_told_with_its_distance(answers):
+    told = answers["mine"].copy(deep=True)
+    near = answer.cause(told)
+    assert "times the preload" not in near
+    for name, preloads in (("x_sliding", -60.0), ("y_sliding", -11.0)):
+        told[name] = preloads * told.preload
+    far = answer.cause(told)
+    assert far.startswith(near)
+    assert "61 times the preload" in far
+    assert far in answer.lines(told)
+
+
 def test_a_table_of_friction_stands_for_the_coefficient(tmp_path):
     pad = replace(PAD, mu=Parameters().mu, friction_law="linear 0.0:0.48 1.0:0.36")
     rows = {row["meaning"]: row for row in parameter_table(pad, of_a1=True)}

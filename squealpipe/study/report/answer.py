@@ -27,6 +27,8 @@ NO_FRICTION = 1e-3
 """Friction over the present one below which none is left; an undamped flutter needs that."""
 ROUND_OFF = 1e-7
 """Growth rate over the highest frequency, rad/s, that is the round-off of an undamped motion."""
+FAR = 10.0
+"""Distance of steady sliding from rest, over the preload, from which it is told."""
 CHEAPEST = 3
 """Cures that an answer names."""
 
@@ -90,7 +92,11 @@ def headline(answer: xr.Dataset, prefix: str = "") -> str:
 
 
 def cause(answer: xr.Dataset) -> str:
-    """Why, in one sentence."""
+    """Why, in one sentence, and where the mass slides if that is far away."""
+    return " ".join(filter(None, (_cause(answer), _far(answer))))
+
+
+def _cause(answer: xr.Dataset) -> str:
     twofold = math.log(2.0) / max(abs(float(answer.sliding_growth_rate)), 1e-300)
     time = engineering(twofold, "s")
     modes = [float(f) for f in answer.mode_frequency.values if f > 0]
@@ -128,6 +134,18 @@ def cause(answer: xr.Dataset) -> str:
     return (
         f"Steady sliding is stable, but another motion exists beside it, which a {push} push "
         f"reaches; the modes are at {frequencies}."
+    )
+
+
+def _far(answer: xr.Dataset) -> str:
+    away = math.hypot(float(answer.x_sliding), float(answer.y_sliding))
+    preloads = away / float(answer.preload)
+    if not preloads > FAR:
+        return ""
+    return (
+        f"Friction carries the mass {engineering(away, 'm')} from where its springs are unloaded, "
+        f"{number(preloads)} times the preload, before it slides steadily: make sure that they are "
+        "linear that far."
     )
 
 

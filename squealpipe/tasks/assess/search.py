@@ -187,7 +187,7 @@ def _margin(side: Side, value: float) -> float:
     sliding = Sliding.of(design)
     if sliding is None:
         return design.rate
-    return sliding.growth_rate - sliding.marginal
+    return sliding.margin
 
 
 def _is_stable(side: Side, value: float) -> bool:

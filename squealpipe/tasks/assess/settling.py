@@ -56,11 +56,12 @@ class Start:
 
     @property
     def rate(self) -> float:
-        """Growth rate of small motions, 1/s; 0 where round-off decides, or there is no sliding."""
+        """Growth rate of small motions, 1/s; 0 for no growth or a decay that no run shows."""
         if self.sliding is None:
             return 0.0
         rate = self.sliding.growth_rate
-        return rate if abs(rate) > self.sliding.marginal else 0.0
+        fades = rate < -self.sliding.marginal
+        return rate if fades or self.sliding.is_unstable else 0.0
 
     def size(self, state: np.ndarray) -> float:
         """How far a state is from steady sliding, m/s."""

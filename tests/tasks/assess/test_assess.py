@@ -8,8 +8,10 @@ from scipy.integrate import solve_ivp
 
 from squealpipe import Parameters, Sweep, assess, load, run_sweep, save, stability_map
 from squealpipe.schema.assess import CURES, Mechanism, Verdict
+from squealpipe.substitutes import critical_damping
 from squealpipe.tasks.assess.designs import cures_of
 from squealpipe.tasks.assess.levels import levels
+from squealpipe.tasks.assess.search import LOCATED, search, sides_of
 from squealpipe.tasks.assess.settling import _judge, pushed, settle, start_at
 from squealpipe.tasks.assess.sliding import Design, Sliding
 from squealpipe.tasks.assess.windows import run_windows
@@ -151,6 +153,24 @@ def test_without_friction_it_is_quiet_and_the_margin_is_where_it_starts():
     for mu, sign in ((onset * 1.02, 1.0), (onset * 0.98, -1.0)):
         growth = stability_map(damped.with_(mu=mu), HAMMER[:1], HAMMER[1:]).growth_rate
         assert growth.item() * sign > 0.0
+
+
+@pytest.mark.parametrize("speed", [10.0, 12.0, 14.0])
+def test_damping_that_outweighs_a_slight_fall_of_friction_has_a_closed_form(speed):
+    """At K12 = 0 the dashpots along the belt and N dμ/dw cancel, though growth is 1e-7 or less."""
+    fall = {"mu": 0.37, "mu_static": 0.55, "friction_speed": 1.0, "belt_speed": speed}
+    long = {"length1": 1e3, "length2": 1e3, "damping1": 0.0, "damping2": 0.0}
+    pad = PAD.with_(**fall, **long)
+    force = pad.k3 * pad.preload * pad.k1 / (pad.k1 + pad.k3)
+    truth = force * (0.55 - 0.37) * math.exp(-speed) / critical_damping(pad.k1, pad.mass)
+    damping = cures_of(Design(pad, math.pi / 4, math.pi / 4))["damping"]
+
+    def is_quiet(sides, values):
+        return [True] * len(sides)
+
+    sides = sides_of({"damping": damping})
+    (side,) = search(sides, False, is_quiet, LOCATED)
+    assert side.answer == pytest.approx(truth, rel=1e-3)
 
 
 def test_growth_of_small_motions_is_that_of_a_run():
