@@ -162,7 +162,9 @@ def test_damping_that_outweighs_a_slight_fall_of_friction_has_a_closed_form(spee
     long = {"length1": 1e3, "length2": 1e3, "damping1": 0.0, "damping2": 0.0}
     pad = PAD.with_(**fall, **long)
     force = pad.k3 * pad.preload * pad.k1 / (pad.k1 + pad.k3)
-    truth = force * (0.55 - 0.37) * math.exp(-speed) / critical_damping(pad.k1, pad.mass)
+    truth = (
+        force * (0.55 - 0.37) * math.exp(-speed) / critical_damping(pad.k1, pad.mass)
+    )
     damping = cures_of(Design(pad, math.pi / 4, math.pi / 4))["damping"]
 
     def is_quiet(sides, values):
