@@ -24,8 +24,8 @@ GROWS = 1e-7
 round-off of an undamped pair."""
 ROUND_OFF = 1e-13
 """The same where a force depends on velocity."""
-MOST_STEPS = 40
-"""Newton steps."""
+FIRST_STEPS, MOST_STEPS = 4, 40
+"""Newton steps while friction is raised, and under the whole."""
 RAISED, PACE = 64, 20.0
 """Steps in which friction is raised, and as many under the whole; time of each over 1/rate."""
 MOST_DOUBLED = 400
@@ -74,9 +74,10 @@ class Sliding:
 
     @classmethod
     def of(cls, design: Design) -> Self | None:
-        """The one that Newton's method leads to from r = 0; None where there is none.
+        """The one that slowly raised friction leads to from r = 0; None where there is none.
 
-        Where that fails, or leads out of contact, friction is raised from none step by step.
+        Newton's method finds it in a few steps; where that fails, or leads out of contact, an
+        overdamped mass is followed.
         """
         if design.params.belt_speed == 0.0:
             return None
@@ -146,8 +147,12 @@ class Sliding:
 
 
 def _balanced(design: Design) -> np.ndarray | None:
-    """Where the mass slides steadily, m, by Newton's method from r = 0."""
-    return _approach(design, [(1.0, math.inf)] * MOST_STEPS)
+    """Where the mass slides steadily, m, by Newton's method from r = 0.
+
+    At the whole friction at once it would jump to another branch where springs are soft.
+    """
+    raised = [((step + 1) / FIRST_STEPS, math.inf) for step in range(FIRST_STEPS)]
+    return _approach(design, raised + [(1.0, math.inf)] * MOST_STEPS)
 
 
 def _followed(design: Design) -> np.ndarray | None:

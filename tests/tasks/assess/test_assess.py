@@ -223,31 +223,39 @@ def test_growth_about_a_knot_at_belt_speed_is_that_of_a_run():
     assert float(linear.growth_rate[0, 0]) == pytest.approx(rate, rel=0.1)
 
 
+SOFT = NUMBERS | {
+    "mass": 0.147, "k1": 2.99e6, "k2": 1.55e7, "k3": 2.48e6, "preload": 1.73e-3, "mu_static": None,
+    "friction_law": "coulomb", "length1": 0.127, "length2": 0.0802,
+}  # fmt: skip
+PAPER = SOFT | {
+    "mass": 1.0, "k1": 1.0, "k2": 1.0, "k3": 0.65, "preload": 1.0, "mu": 0.3, "belt_speed": 100.0,
+    "length1": 15.0, "length2": 15.0, "damping1": 0.0, "damping2": 0.0,
+}  # fmt: skip
+
+
 @pytest.mark.parametrize(
-    ("mu", "alpha2"),
+    ("pad", "alpha1", "alpha2"),
     [
-        (0.87, 96.7),
-        (0.97, 96.7),
-        (1.05, 96.7),
-        (1.2, 96.7),
-        (0.582, 113.4),
-        (0.582, 120.5),
+        (SOFT | {"mu": 0.87}, 64.2, 96.7),
+        (SOFT | {"mu": 0.97}, 64.2, 96.7),
+        (SOFT | {"mu": 1.05}, 64.2, 96.7),
+        (SOFT | {"mu": 1.2}, 64.2, 96.7),
+        (SOFT | {"mu": 0.582}, 64.2, 113.4),
+        (SOFT | {"mu": 0.582}, 64.2, 120.5),
+        (PAPER, 72.0, 100.0),
     ],
 )
-def test_steady_sliding_is_where_slowly_raised_friction_leads(mu, alpha2):
+def test_steady_sliding_is_where_slowly_raised_friction_leads(pad, alpha1, alpha2):
     """Against an overdamped descent; from rest, Newton's method leaves contact but at the first.
 
-    The last is just beyond a fold, where the mass lingers before it goes far.
+    The last but one is just beyond a fold, where the mass lingers before it goes far; at the last
+    Newton's method under the whole friction jumps to another branch.
     """
-    pad = NUMBERS | {
-        "mass": 0.147, "k1": 2.99e6, "k2": 1.55e7, "k3": 2.48e6, "preload": 1.73e-3, "mu": mu,
-        "mu_static": None, "friction_law": "coulomb", "length1": 0.127, "length2": 0.0802,
-    }  # fmt: skip
-    angles = np.radians((64.2, alpha2))
+    angles = np.radians((alpha1, alpha2))
     truth, rate = Pad(pad, *angles), (pad["k1"] + pad["k2"]) / (2.0 * pad["mass"])
 
     def descent(time, place):
-        truth.p.mu = truth.p.mu_static = mu * min(time / 500.0, 1.0)
+        truth.p.mu = truth.p.mu_static = pad["mu"] * min(time / 500.0, 1.0)
         return np.array(truth.field("slower")(0.0, (*place, 0.0, 0.0))[2:]) / rate
 
     run = solve_ivp(
