@@ -21,8 +21,9 @@ from squealpipe.schema.basins import SMALLEST_DISTURBANCE, LeadsTo
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.solvers.a1.jobs import Model
+from squealpipe.tasks.assess.sliding import GROWS
 from squealpipe.tasks.cycles.scene import CycleScene
-from squealpipe.tasks.cycles.sliding import GROWS, steady_sliding
+from squealpipe.tasks.cycles.sliding import steady_sliding
 from squealpipe.tasks.dynamics.motion import linear_time, whirls
 from squealpipe.tasks.linear.maps import stability_map
 from squealpipe.validation import (

@@ -5,15 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import root
 
+from squealpipe.models.variants import VARIANT_RULES
 from squealpipe.solvers.a1.jobs import STATE
 from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.legs import Vector
 from squealpipe.systems.trace import TIME
+from squealpipe.tasks.assess.sliding import Design, Sliding
 from squealpipe.tasks.cycles.scene import CycleScene
 
-GROWS = 1e-7
-"""Growth rate, over the largest |s|, above which steady sliding is unstable; below it is the
-round-off of an undamped pair."""
 _BALANCE = 1e-8
 """Largest force left over at an equilibrium, over the preload's."""
 _MOST_PIECES = 20
@@ -36,10 +35,19 @@ class SlidingState:
 
 
 def steady_sliding(scene: CycleScene, flow: Flow | None = None) -> SlidingState | None:
-    """The equilibrium that a Newton method from r = 0 leads to; None where it finds none."""
+    """The equilibrium that slowly raised friction leads to from r = 0; None where there is none.
+
+    Where that loses contact it is the one that Newton's method leads to, if any.
+    """
+    state, rules = np.zeros(4), VARIANT_RULES[scene.model]
+    if rules.drags and not rules.linear_springs:
+        # springs that turn have several, and Newton's method alone may end on a saddle
+        sliding = Sliding.of(Design(scene.params, scene.alpha1, scene.alpha2))
+        if sliding is not None:
+            state = sliding.state / scene.state_units
     flow, values = flow or Flow(scene.system), scene.values
     force = 0.5 * (scene.scaled.k1 + scene.scaled.k2)
-    state, regime = np.zeros(4), _regime(scene, np.zeros(4))
+    regime = _regime(scene, state)
     for _ in range(_MOST_PIECES):
 
         def pull(place: Vector, regime: int = regime) -> Vector:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from squealpipe import simulate, smallest_disturbance
+from squealpipe import Parameters, simulate, smallest_disturbance
 from squealpipe.laws.springs import geometry, linear_stiffness
 from squealpipe.models.damped import critical_friction
 from squealpipe.schema import Outcome
@@ -191,6 +191,17 @@ def test_steady_sliding_is_found_in_any_units():
             expected,
             atol=1e-3 * np.abs(expected).max(),
         )
+
+
+@pytest.mark.parametrize(
+    ("alpha2", "there"),
+    [(100.0, (-1.6338058, 0.6388910)), (104.0, (-2.4095261, 0.9428566))],
+)
+def test_steady_sliding_is_no_saddle_beside_where_raised_friction_leads(alpha2, there):
+    """Where an overdamped mass comes to rest by a Runge–Kutta method of its own."""
+    found = steady_sliding(CycleScene(Parameters(), *np.radians((72.0, alpha2))))
+    np.testing.assert_allclose(found.state[:2], there, atol=1e-7)
+    assert np.linalg.det(found.jacobian) > 0.0
 
 
 def test_laws_of_the_same_forces_have_the_same_disturbance():
