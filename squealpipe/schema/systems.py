@@ -6,7 +6,7 @@ parameters that a call gives as arrays, the unit ``<unit>`` for that which the s
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from functools import cache
 from typing import Any
@@ -287,6 +287,25 @@ def entry_of(table: str, name: str) -> Variable | None:
         return exact
     fits = (entry for pattern, entry in _patterns(table) if pattern.fullmatch(name))
     return next(fits, None)
+
+
+def names_in_results(own: Mapping[str, Iterable[str]]) -> set[str]:
+    """Dimensions and variables of all results of a system.
+
+    Args:
+        own: the word between brackets → the system's names that it stands for.
+    """
+    found: set[str] = set()
+    for table in TABLES.values():
+        for name, entry in {**table.variables, **table.coordinates}.items():
+            found.update(entry.dims)
+            before, bracket, rest = name.partition("<")
+            word, _, after = rest.partition(">")
+            if not bracket:
+                found.add(name)
+            elif before or after:  # else it is one of the system's own
+                found.update(f"{before}{each}{after}" for each in own.get(word, ()))
+    return found
 
 
 @cache

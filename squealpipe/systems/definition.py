@@ -19,6 +19,7 @@ from squealpipe.methods.taylor.scalar import (
 from squealpipe.methods.taylor.symbols import Symbol, in_order, only, parameter, symbol
 from squealpipe.parameters import is_finite_number
 from squealpipe.schema import Outcome
+from squealpipe.schema.systems import names_in_results
 from squealpipe.systems.components import (
     Begins,
     Component,
@@ -49,54 +50,14 @@ Field = Annotated[
     Function | Mapping[str, Function], needed("a function, or one for each regime, is")
 ]
 MOST_STATES, MOST_SURFACES, MOST_REGIMES = 64, 64, 256
-RESERVED = frozenset(
+ARGUMENTS = frozenset(
     (
-        *(
-            "t_end",
-            "t_start",
-            "times",
-            "start",
-            "tol",
-            "sensitivity",
-            "t_late",
-            "horizon",
-            "workers",
-            "guess",
-        ),
-        *("periods", "t_settle", "to", "n_points", "parameter", "parameters", "label"),
-        *(
-            "time",
-            "event",
-            "point",
-            "run",
-            "multiplier",
-            "outcome",
-            "regime",
-            "period",
-            "stable",
-        ),
-        *("residual", "event_time", "event_kind", "event_regime", "end_time"),
-        *(
-            "lyapunov_exponent",
-            "predictability_horizon",
-            "motion",
-            "attractor",
-            "self",
-            "system",
-        ),
-        *(
-            "events",
-            "end",
-            "start_regime",
-            "multiplier_real",
-            "multiplier_imag",
-            "sample",
-            "side",
-            "component",
-        ),
+        *("t_end", "t_start", "times", "start", "tol", "sensitivity", "t_late"),
+        *("horizon", "workers", "guess", "periods", "t_settle", "to", "n_points"),
+        *("parameter", "parameters", "label", "run", "regime", "self", "system"),
     )
 )
-"""Arguments of the methods, dimensions and variables of what they return."""
+"""Of the methods: no name of a system is one of these."""
 
 
 class System:
@@ -198,7 +159,14 @@ class System:
         ):
             if not 1 <= number <= most:
                 raise ValueError(f"{number} {what}; 1 to {most} can be carried")
-        taken = RESERVED | self._results()
+        own = {
+            "state": self.units,
+            "name": (*self.units, *self.outputs),
+            "regime": self.regimes,
+            "event": [each.name for each in self.switches],
+        }
+        starts = self.start_names.values()
+        taken = ARGUMENTS | names_in_results(own) | {*starts}
         self._check_free("state", self.units, taken)
         self._check_free("parameter", self.parameters, {*self.units, *taken})
         self._check_free(
@@ -217,22 +185,6 @@ class System:
         names = [each.name for each in self.switches]
         if len(set(names)) < len(names):
             raise ValueError(f"two switches share a name: {', '.join(names)}")
-
-    def _results(self) -> set[str]:
-        """Names of variables and dimensions that results form from the system's names."""
-        ends = ("_min", "_max")
-        found = {
-            f"{name}{end}" for name in (*self.units, *self.outputs) for end in ends
-        }
-        found |= {f"late_{name}" for name in found}
-        found |= {f"{name}{end}" for name in self.units for end in ("_start", "_path")}
-        found |= set(self.start_names.values())
-        found |= {f"event_{name}" for name in self.units}
-        found |= {f"time_in_{name}" for name in self.regimes}
-        names = [each.name for each in self.switches]
-        return found | {
-            f"{which}_{name}" for name in names for which in ("count", "first")
-        }
 
     def check_regime(self, start: Mapping[str, Any]) -> None:
         """Refuse a start in a regime that there is not."""
