@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.systems.definition import System
 from squealpipe.systems.labels import labels
+from squealpipe.systems.tracing import TracedSystem as System
 from squealpipe.text import suggestion
 from squealpipe.validation import real_array
 

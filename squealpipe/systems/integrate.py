@@ -14,8 +14,8 @@ from squealpipe.methods.taylor.loop import loop
 from squealpipe.methods.taylor.scalar import ScalarSource
 from squealpipe.methods.taylor.series import HybridSystem
 from squealpipe.methods.taylor.simd import FEW, LANES
-from squealpipe.systems.definition import System
 from squealpipe.systems.trace import TIME, TIME_UNIT, Names
+from squealpipe.systems.tracing import TracedSystem as System
 
 LARGEST = "largest "
 

@@ -9,7 +9,7 @@ import numpy as np
 from squealpipe.methods.taylor import layout
 from squealpipe.schema import SYSTEM, Outcome, flag_table, in_words
 from squealpipe.schema.origin import versions
-from squealpipe.systems.definition import System
+from squealpipe.systems.tracing import TracedSystem as System
 
 
 def labels(long_name: str, units: str) -> dict[str, str]:

@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from squealpipe.systems.definition import System
 from squealpipe.systems.integrate import RunOptions, integrate
 from squealpipe.systems.trace import TIME
+from squealpipe.systems.tracing import TracedSystem as System
 
 FIRST_LOG = 256
 """Events kept at first; a run that has more is made again with room for all."""

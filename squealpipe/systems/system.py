@@ -6,16 +6,17 @@ from typing import Any
 import xarray as xr
 
 from squealpipe.schema.systems import check
-from squealpipe.systems import definition
 from squealpipe.systems.basin import basin
 from squealpipe.systems.components import Switch
+from squealpipe.systems.definition import Definition
 from squealpipe.systems.runs import ensemble, simulate
+from squealpipe.systems.tracing import TracedSystem
 
 __all__ = ["Switch", "System"]
 
 
-class System(definition.System):  # noqa: D101 (that of the definition)
-    __doc__ = definition.System.__doc__
+class System(TracedSystem):  # noqa: D101 (that of the definition)
+    __doc__ = Definition.__doc__
 
     simulate, ensemble, basin = simulate, ensemble, basin
 

@@ -34,7 +34,7 @@ from squealpipe.systems.labels import (
 from squealpipe.validation import Number, Several, checked
 
 if TYPE_CHECKING:
-    from squealpipe.systems.definition import System
+    from squealpipe.systems.tracing import TracedSystem as System
 
 
 _CORNERS = {Label.grazing, Label.stick_onset, Label.border_collision}

@@ -26,7 +26,7 @@ from squealpipe.text import suggestion
 from squealpipe.validation import Number, Several, checked
 
 if TYPE_CHECKING:
-    from squealpipe.systems.definition import System
+    from squealpipe.systems.tracing import TracedSystem as System
 
 
 LABELS = (*RETURNS, Label.grazing, Label.stick_onset)

@@ -15,7 +15,7 @@ from squealpipe.systems.grid import call_values, scalar
 from squealpipe.validation import Natural, Positive, Values, checked
 
 if TYPE_CHECKING:
-    from squealpipe.systems.definition import System
+    from squealpipe.systems.tracing import TracedSystem as System
 
 
 @checked

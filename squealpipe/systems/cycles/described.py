@@ -22,7 +22,7 @@ from squealpipe.systems.labels import (
 )
 
 if TYPE_CHECKING:
-    from squealpipe.systems.definition import System
+    from squealpipe.systems.tracing import TracedSystem as System
 
 SETTLED_ON = 200
 """Outcome of a settled motion of k periods, less k."""

@@ -32,7 +32,7 @@ from squealpipe.systems.cycles.line import ALONG, STEPS
 from squealpipe.systems.cycles.solution import Cycle
 
 if TYPE_CHECKING:
-    from squealpipe.systems.definition import System
+    from squealpipe.systems.tracing import TracedSystem as System
 
 _WEAK = 0.1
 """Speed or length of an event, over the least of the others, at which it has only just begun."""

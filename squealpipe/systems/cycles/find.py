@@ -17,7 +17,7 @@ from squealpipe.systems.cycles.legs import Vector
 from squealpipe.systems.cycles.solution import Cycle
 
 if TYPE_CHECKING:
-    from squealpipe.systems.definition import System
+    from squealpipe.systems.tracing import TracedSystem as System
 
 _BESIDE = 1e-9
 """Relative change of the parameters next to a change of the events."""

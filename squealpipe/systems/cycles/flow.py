@@ -30,7 +30,7 @@ from squealpipe.systems.integrate import compiled, symbolic
 from squealpipe.systems.trace import TIME_UNIT, Names
 
 if TYPE_CHECKING:
-    from squealpipe.systems.definition import System
+    from squealpipe.systems.tracing import TracedSystem as System
 
 TOLERANCE = 1e-16
 ROOM = 48

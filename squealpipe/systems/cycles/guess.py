@@ -18,7 +18,7 @@ from squealpipe.systems.integrate import RunOptions
 from squealpipe.systems.record import RunRecord, single_run
 
 if TYPE_CHECKING:
-    from squealpipe.systems.definition import System
+    from squealpipe.systems.tracing import TracedSystem as System
 
 _BRIEF = 1e-3
 """Share of the period below which a leg may have vanished."""

@@ -16,7 +16,7 @@ from squealpipe.systems.record import RunRecord
 from squealpipe.text import suggestion
 
 if TYPE_CHECKING:
-    from squealpipe.systems.definition import System
+    from squealpipe.systems.tracing import TracedSystem as System
 
 _TOGETHER = 64
 """Legs that are run at once."""
