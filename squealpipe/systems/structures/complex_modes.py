@@ -12,7 +12,7 @@ from squealpipe.schema import Outcome, build, find
 from squealpipe.schema.origin import versions
 from squealpipe.schema.structures import name_over
 from squealpipe.systems.structures.band import COMPLETE
-from squealpipe.systems.structures.definition import Structure
+from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.factors import Asked, asked_of, with_factors
 from squealpipe.systems.structures.numbering import Way
 from squealpipe.systems.structures.pencil import DENSE
@@ -26,7 +26,7 @@ FLOATS = ("growth_rate", "growth_rate_error", "frequency", "damping_ratio", "res
 
 @takes_units
 def complex_modes(
-    structure: Structure,
+    structure: ContactStructure,
     *,
     mu: Any = None,
     belt_speed: Any = None,
@@ -116,7 +116,7 @@ def complex_modes(
     return build(find(name_over(dims)), modes, coords, attrs)
 
 
-def _ways(structure: Structure, asked: Asked) -> np.ndarray:
+def _ways(structure: ContactStructure, asked: Asked) -> np.ndarray:
     """Modes along friction at each combination of factors, (belt speed, further ones)."""
     frictions = np.atleast_1d(asked.mu)
     if not asked.mu.ndim and structure.contacts and asked.mu > 0:

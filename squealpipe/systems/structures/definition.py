@@ -13,7 +13,7 @@ from squealpipe.systems.structures.friction import Friction, default_mu
 from squealpipe.systems.structures.matrices import checked_mass, real_square
 
 
-class Structure:
+class ContactStructure:
     """M q̈ + C q̇ + K q = f + Σ (nᵢ Nᵢ + tᵢ Tᵢ): an elastic structure with contacts on a belt.
 
     Friction Tᵢ is μ(|wᵢ|) Nᵢ sgn wᵢ in slip, at most μ_s Nᵢ in stick, with the sliding speed

@@ -18,7 +18,7 @@ import scipy.linalg as la
 from squealpipe.laws import friction_laws
 from squealpipe.laws.friction import slip_force, stick_limit
 from squealpipe.laws.tables import is_table
-from squealpipe.systems.structures.definition import Structure
+from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.friction import Friction
 from squealpipe.systems.structures.modes import modal_damping_of
 
@@ -50,7 +50,7 @@ class Numbers:
     mobility: np.ndarray
 
     @classmethod
-    def of(cls, structure: Structure) -> Self:
+    def of(cls, structure: ContactStructure) -> Self:
         """Of a structure of few degrees of freedom."""
         factor = la.cho_factor(structure.mass.toarray())
         scaled = structure.normals * structure.stiffnesses
@@ -83,7 +83,7 @@ class Motion:
     """Forces and rates at a state ``s``, with parameters ``p`` and regimes ``r``."""
 
     def __init__(
-        self, structure: Structure, numbers: Numbers, s: Any, p: Any, r: Any
+        self, structure: ContactStructure, numbers: Numbers, s: Any, p: Any, r: Any
     ) -> None:
         self.structure, self.numbers, self.p = structure, numbers, p
         self.regimes = [getattr(r, each.name) for each in structure.contacts]

@@ -8,7 +8,7 @@ import numpy as np
 
 from squealpipe.parameters import brief, is_whole_number
 from squealpipe.schema.structures import ARGUMENTS, OF_CONTACT, SCALED
-from squealpipe.systems.structures.definition import Structure
+from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.pencil import DENSE
 from squealpipe.systems.structures.spectrum import Limits, check_frequency
 from squealpipe.text import suggestion
@@ -35,7 +35,7 @@ class Asked:
 
 
 def asked_of(
-    structure: Structure,
+    structure: ContactStructure,
     factors: Mapping[str, Any],
     *,
     frequency_max: float | None = None,
@@ -64,7 +64,7 @@ def asked_of(
     )
 
 
-def factors_of(structure: Structure) -> list[str]:
+def factors_of(structure: ContactStructure) -> list[str]:
     """Names of a structure's factors; those of one contact are ``<contact>_preload``, ….
 
     ``mu_static``, ``friction_speed`` and ``modal_damping`` are values of these arguments. The
@@ -80,7 +80,7 @@ def factors_of(structure: Structure) -> list[str]:
 
 
 def checked_factors(
-    structure: Structure, given: Mapping[str, Any]
+    structure: ContactStructure, given: Mapping[str, Any]
 ) -> dict[str, np.ndarray]:
     """Values of each factor, a number or a 1-D array.
 
@@ -120,7 +120,9 @@ def real_line(name: str, values: Any) -> np.ndarray:
     return array
 
 
-def with_factors(structure: Structure, factors: Mapping[str, float]) -> Structure:
+def with_factors(
+    structure: ContactStructure, factors: Mapping[str, float]
+) -> ContactStructure:
     """The structure with these values of factors."""
     if not factors:
         return structure
@@ -152,7 +154,7 @@ def _stiffness(contact: str, factors: Mapping[str, float]) -> float:
 
 
 def _limits(
-    structure: Structure, frequency_max: float | None, n_modes: int | None
+    structure: ContactStructure, frequency_max: float | None, n_modes: int | None
 ) -> Limits:
     check_frequency(frequency_max)
     if n_modes is not None and not (is_whole_number(n_modes) and n_modes >= 1):

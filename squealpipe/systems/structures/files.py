@@ -14,13 +14,13 @@ from squealpipe.laws.tables import named
 from squealpipe.parameters import brief, is_finite_number
 from squealpipe.systems.structures.contact import Contact
 from squealpipe.systems.structures.contact_table import read_contacts
-from squealpipe.systems.structures.definition import Structure
+from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.matrices import real_square
 from squealpipe.systems.structures.readers import Labelled, read_matrix
 from squealpipe.systems.structures.units import SI, Scales, scales_of
 from squealpipe.text import suggestion
 
-Form = TypeVar("Form", bound=Structure)
+Form = TypeVar("Form", bound=ContactStructure)
 MATRICES = ("mass", "stiffness", "damping")
 NUMBERS = ("mu", "belt_speed", "mu_static", "friction_speed")
 KEYS = (

@@ -9,17 +9,19 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-from squealpipe.systems.structures.definition import Structure
+from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.pencil import LowRank, Pencil, Uncertain
 from squealpipe.systems.structures.sliding import (
     OF_FRICTION,
-    Sliding,
+    SteadySliding,
     acting_directions,
     contact_stiffness,
 )
 
 
-def pencil_about(structure: Structure, state: Sliding, modal: LowRank | None) -> Pencil:
+def pencil_about(
+    structure: ContactStructure, state: SteadySliding, modal: LowRank | None
+) -> Pencil:
     """The pencil of small motions about steady sliding, with the damping of single modes."""
     acting = acting_directions(structure, state.closed, state.drag)
     falling = state.force * state.slope
@@ -37,7 +39,7 @@ def pencil_about(structure: Structure, state: Sliding, modal: LowRank | None) ->
     )
 
 
-def _uncertain(structure: Structure, state: Sliding) -> Uncertain | None:
+def _uncertain(structure: ContactStructure, state: SteadySliding) -> Uncertain | None:
     """What rounding of forces and of friction leaves open in damping and stiffness."""
     rounding = OF_FRICTION * np.finfo(float).eps
     closed = state.closed

@@ -5,7 +5,7 @@ import scipy.linalg as la
 import scipy.sparse as sp
 from scipy.sparse.linalg import eigsh
 
-from squealpipe.systems.structures.definition import Structure
+from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.pencil import DENSE, LowRank
 
 FIRST = 40
@@ -13,7 +13,9 @@ FIRST = 40
 
 
 def modes_at_rest(
-    structure: Structure, number: int | None = None, omega_max: float | None = None
+    structure: ContactStructure,
+    number: int | None = None,
+    omega_max: float | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """The lowest modes: ω (k,), rad/s, ascending, and Φ (n, k) with ΦᵀMΦ = 1.
 
@@ -36,7 +38,9 @@ def modes_at_rest(
 
 
 def modal_damping_of(
-    structure: Structure, number: int | None = None, omega_max: float | None = None
+    structure: ContactStructure,
+    number: int | None = None,
+    omega_max: float | None = None,
 ) -> LowRank | None:
     """M Φ diag(2 ζ ω) Φᵀ M of so many modes, or of those up to a frequency, rad/s, or all."""
     ratios = structure.modal_damping

@@ -11,7 +11,7 @@ from squealpipe.parameters import brief, is_finite_number, is_whole_number
 from squealpipe.systems.belt_contact import FIRST, SLIP, BeltContact, Surface, negative
 from squealpipe.systems.components import MOST_COMPONENTS, Component, Switch
 from squealpipe.systems.definition import MOST_STATES
-from squealpipe.systems.structures.definition import Structure
+from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.dynamics import Motion, Numbers, reads_speed, total
 from squealpipe.systems.structures.modes import modes_at_rest
 from squealpipe.systems.system import System
@@ -21,7 +21,7 @@ HIDDEN = 1e-14
 
 
 def system(
-    structure: Structure, displacements: Mapping[str, Any] | None = None
+    structure: ContactStructure, displacements: Mapping[str, Any] | None = None
 ) -> System:
     """The structure with contact loss, friction and stick as a :class:`squealpipe.System`.
 
@@ -81,7 +81,7 @@ def system(
     )
 
 
-def _parameters(structure: Structure) -> dict[str, float]:
+def _parameters(structure: ContactStructure) -> dict[str, float]:
     friction = structure.friction
     found = {"mu": friction.mu, "belt_speed": structure.belt_speed, "preload": 1.0}
     if friction.mu_static is not None:
@@ -94,7 +94,7 @@ def _parameters(structure: Structure) -> dict[str, float]:
 class Equations:
     """The equations of motion of a structure, traced once for each state and regime."""
 
-    def __init__(self, structure: Structure) -> None:
+    def __init__(self, structure: ContactStructure) -> None:
         self.structure, self.numbers = structure, Numbers.of(structure)
         # functions of one contact are called with the constants of its regimes again and again
         self.at = lru_cache(maxsize=8)(self._at)
@@ -162,7 +162,7 @@ class _Scale(NamedTuple):
     force: float
 
     @classmethod
-    def of(cls, structure: Structure) -> Self:
+    def of(cls, structure: ContactStructure) -> Self:
         """By the preloads, or where there are none by load, or by the belt."""
         omega, modes = modes_at_rest(structure)
         elastic = omega[omega > 1e-6 * omega.max()]

@@ -8,7 +8,7 @@ from squealpipe.inputs import takes_units
 from squealpipe.methods.progress import report
 from squealpipe.parameters import brief, is_finite_number, is_whole_number
 from squealpipe.systems.structures.contact import Contact
-from squealpipe.systems.structures.definition import Structure
+from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.dense import all_modes
 from squealpipe.systems.structures.linearized import pencil_about
 from squealpipe.systems.structures.modes import modes_at_rest
@@ -38,12 +38,12 @@ class Errors(NamedTuple):
 
 @takes_units
 def reduce(
-    structure: Structure,
+    structure: ContactStructure,
     *,
     n_modes: int | None = None,
     frequency_max: float | None = None,
     tol: float = 1e-2,
-) -> Structure:
+) -> ContactStructure:
     """The structure in coordinates of its lowest modes at rest.
 
     The modes Φ are those of (M, K + Σ kᵢ nᵢnᵢᵀ) without friction, with ΦᵀMΦ = 1. Their number is
@@ -91,8 +91,8 @@ def reduce(
 
 
 def _smallest(
-    structure: Structure, truth: np.ndarray, fewest: int, tol: float
-) -> Structure:
+    structure: ContactStructure, truth: np.ndarray, fewest: int, tol: float
+) -> ContactStructure:
     most = structure.size
     kept = Kept(structure, min(max(FIRST, fewest + AND_LARGER), most))
     met: list[tuple[int, Errors]] = []
@@ -113,7 +113,7 @@ def _smallest(
 class Kept:
     """The lowest modes, and what becomes of matrices and contacts in their coordinates."""
 
-    def __init__(self, structure: Structure, number: int) -> None:
+    def __init__(self, structure: ContactStructure, number: int) -> None:
         self.whole, self.number = structure, number
         self.omega, self.modes = modes_at_rest(structure, number)
         modes = self.modes
@@ -135,7 +135,7 @@ class Kept:
         self.load = modes.T @ structure.load
         self.balanced = structure.given_load is None
 
-    def reduced(self, number: int) -> Structure:
+    def reduced(self, number: int) -> ContactStructure:
         """The structure of the lowest of these modes."""
         contacts = [
             Contact(
@@ -167,7 +167,9 @@ class Kept:
         pairs = all_modes(pencil_about(reduced, state, None))
         return np.array([each.value for each in pairs])
 
-    def structure(self, number: int, errors: Errors, truth: np.ndarray) -> Structure:
+    def structure(
+        self, number: int, errors: Errors, truth: np.ndarray
+    ) -> ContactStructure:
         """That structure with its modes and its record."""
         reduced = self.reduced(number)
         reduced.modes = self.modes[:, :number]
@@ -180,7 +182,7 @@ class Kept:
         return reduced
 
 
-def _unstable(structure: Structure, frequency_max: float | None) -> Any:
+def _unstable(structure: ContactStructure, frequency_max: float | None) -> Any:
     """Eigenvalues of the unstable modes of the whole structure."""
     solver = Solver(structure, Limits(frequency_max), structure.belt_speed)
     spectrum = solver.at(structure.mu)

@@ -12,7 +12,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
-from squealpipe.systems.structures.definition import Structure
+from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.pencil import Extended
 
 SINGULAR = 1e-13
@@ -37,7 +37,7 @@ class NoSlidingError(ValueError):
 
 
 @dataclass(frozen=True)
-class Sliding:
+class SteadySliding:
     """Steady sliding.
 
     Attributes:
@@ -57,7 +57,9 @@ class Sliding:
     force_error: np.ndarray
 
 
-def steady_sliding(structure: Structure, mu: float, belt_speed: float) -> Sliding:
+def steady_sliding(
+    structure: ContactStructure, mu: float, belt_speed: float
+) -> SteadySliding:
     """The state in which all closed contacts slide along with the belt.
 
     Raises:
@@ -85,7 +87,7 @@ def steady_sliding(structure: Structure, mu: float, belt_speed: float) -> Slidin
         wrong = np.flatnonzero(closed != (reach > 0))
         if not wrong.size:
             force = np.where(closed, reach, 0.0)
-            return Sliding(displacement, force, closed, drag, slope, force_error)
+            return SteadySliding(displacement, force, closed, drag, slope, force_error)
         closed[wrong[0]] = ~closed[wrong[0]]
         # with much friction pivoting may pass the state by
         if closed.tobytes() in seen:
@@ -102,7 +104,7 @@ def steady_sliding(structure: Structure, mu: float, belt_speed: float) -> Slidin
     )
 
 
-def _sought(structure: Structure, drag: np.ndarray) -> np.ndarray | None:
+def _sought(structure: ContactStructure, drag: np.ndarray) -> np.ndarray | None:
     """Which contacts are closed in a state that fits, of all combinations; None if none does.
 
     With springs kᵢ at all contacts the nearing uᵢ = nᵢᵀq is linear in u itself and in the forces
@@ -137,7 +139,7 @@ def _sought(structure: Structure, drag: np.ndarray) -> np.ndarray | None:
 
 
 def changes(
-    structure: Structure, low: float, high: float, belt_speed: float
+    structure: ContactStructure, low: float, high: float, belt_speed: float
 ) -> list[tuple[float, float]]:
     """Where contacts open or close on the way from one friction to another.
 
@@ -168,7 +170,7 @@ def changes(
 
 
 def _balance(
-    structure: Structure, closed: np.ndarray, drag: np.ndarray
+    structure: ContactStructure, closed: np.ndarray, drag: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """q of K q + Σ k (n + σ μ t) nᵀ q = f + Σ (n + σ μ t) preload over closed contacts.
 
@@ -220,7 +222,7 @@ def _balance(
 
 
 def _unbalanced(
-    structure: Structure, closed: np.ndarray, drag: np.ndarray
+    structure: ContactStructure, closed: np.ndarray, drag: np.ndarray
 ) -> Callable[[np.ndarray], np.ndarray]:
     """f + Σ (n + σ μ t) N − K q over closed contacts as a function of q, rounded once."""
     stiffness = Extended(structure.stiffness)
@@ -246,14 +248,14 @@ def _unbalanced(
 
 
 def acting_directions(
-    structure: Structure, closed: np.ndarray, drag: np.ndarray
+    structure: ContactStructure, closed: np.ndarray, drag: np.ndarray
 ) -> Any:
     """n + σ μ t of closed contacts, 0 of open ones, (n, contacts)."""
     return (structure.normals + structure.tangentials * drag) * closed
 
 
 def contact_stiffness(
-    structure: Structure, closed: np.ndarray, acting: np.ndarray
+    structure: ContactStructure, closed: np.ndarray, acting: np.ndarray
 ) -> Any:
     """Σ k (n + σ μ t) nᵀ, sparse."""
     normals = sp.csr_array(structure.normals * (structure.stiffnesses * closed))

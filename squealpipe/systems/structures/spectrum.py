@@ -9,12 +9,12 @@ import numpy as np
 
 from squealpipe.parameters import brief, is_finite_number
 from squealpipe.systems.structures import band, dense
-from squealpipe.systems.structures.definition import Structure
+from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.linearized import pencil_about
 from squealpipe.systems.structures.modes import modal_damping_of, modes_at_rest
 from squealpipe.systems.structures.pencil import DENSE, LowRank, Pencil
 from squealpipe.systems.structures.refinement import Eigenpair, error_of_forces
-from squealpipe.systems.structures.sliding import Sliding, steady_sliding
+from squealpipe.systems.structures.sliding import SteadySliding, steady_sliding
 
 BEYOND = 1.05
 """The band of so many modes ends so far beyond the frequency that they reach without friction."""
@@ -31,7 +31,7 @@ class Spectrum:
     """
 
     mu: float
-    state: Sliding
+    state: SteadySliding
     pencil: Pencil
     pairs: list[Eigenpair]
 
@@ -101,7 +101,7 @@ def check_frequency(frequency_max: float | None) -> None:
 class Solver:
     """Modes of one structure at any friction, one belt speed after another; remembers them."""
 
-    structure: Structure
+    structure: ContactStructure
     limits: Limits
     belt_speed: float
     modal: LowRank | None = None

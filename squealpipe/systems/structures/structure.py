@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Self
 
-from squealpipe.systems.structures import definition
 from squealpipe.systems.structures.complex_modes import complex_modes
+from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.files import read
 from squealpipe.systems.structures.reduction import reduce
 
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from squealpipe.systems.system import System
 
 
-class Structure(definition.Structure):  # noqa: D101 (that of the definition)
-    __doc__ = definition.Structure.__doc__
+class Structure(ContactStructure):  # noqa: D101 (that of the definition)
+    __doc__ = ContactStructure.__doc__
 
     complex_modes, reduce = complex_modes, reduce
 

@@ -1,10 +1,10 @@
-"""Settled motions told apart by their statistics."""
+"""SettledMotion motions told apart by their statistics."""
 
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
 from squealpipe.schema.squealing import NO_ATTRACTOR
-from squealpipe.systems.structures.squeal.settling import Settled, difference
+from squealpipe.systems.structures.squeal.settling import SettledMotion, difference
 
 SCATTER = 3.0
 """Multiples of a run's own change between windows within which it may be another's motion."""
@@ -12,7 +12,7 @@ NEAREST, FARTHEST = 0.02, 0.06
 """Difference of statistics up to which motions are one attractor, and from which they never are."""
 
 
-def grouped(settled: list[Settled], pushes: int) -> np.ndarray:
+def grouped(settled: list[SettledMotion], pushes: int) -> np.ndarray:
     """The number of the attractor of each run, those of most random starts first; −1: not settled.
 
     The first ``pushes`` runs are no random starts. Runs that have died out are

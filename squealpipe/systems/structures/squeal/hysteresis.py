@@ -18,7 +18,7 @@ from squealpipe.systems.structures.squeal.descent import (
 from squealpipe.systems.structures.squeal.fold import add_fold
 from squealpipe.systems.structures.squeal.onset import FirstOnset, first_onset
 from squealpipe.systems.structures.squeal.plant import Plant
-from squealpipe.systems.structures.squeal.settling import Settled
+from squealpipe.systems.structures.squeal.settling import SettledMotion
 from squealpipe.systems.structures.squeal.windows import Running
 
 FOLLOWED = 3
@@ -27,7 +27,9 @@ ALIKE = 0.05
 """Largest difference of levels at which two tracks that end at one friction are one motion."""
 
 
-def hysteresis(plant: Plant, settled: list[Settled], how: Running) -> dict[str, Any]:
+def hysteresis(
+    plant: Plant, settled: list[SettledMotion], how: Running
+) -> dict[str, Any]:
     """Variables of the onset and of tracks: motions followed down in friction until they die.
 
     Args:

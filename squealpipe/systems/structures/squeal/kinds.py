@@ -16,7 +16,7 @@ from squealpipe.schema.squealing import Kind
 from squealpipe.systems.cycles.find import find_cycle
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.structures.squeal.plant import Plant
-from squealpipe.systems.structures.squeal.settling import Settled
+from squealpipe.systems.structures.squeal.settling import SettledMotion
 from squealpipe.systems.structures.squeal.windows import Running, run, strongest_line
 
 BESIDE, OFF = 7, 1e-8
@@ -55,7 +55,7 @@ class Described:
     amplitudes: np.ndarray
 
 
-def described(plant: Plant, settled: Settled, how: Running) -> Described:
+def described(plant: Plant, settled: SettledMotion, how: Running) -> Described:
     """Run on from where a start has settled."""
     nothing = np.empty(0)
     if settled.quiet:
@@ -125,7 +125,7 @@ def _repeats(raw: dict[str, np.ndarray], length: float, within: float) -> bool:
 
 
 def _closed(
-    plant: Plant, settled: Settled, raw: dict[str, np.ndarray], frequency: float
+    plant: Plant, settled: SettledMotion, raw: dict[str, np.ndarray], frequency: float
 ) -> Cycle | None:
     """The stable cycle through the end of the run, if the exact map finds it there."""
     if raw["outcome"][0] != Outcome.converged or not np.isfinite(frequency):

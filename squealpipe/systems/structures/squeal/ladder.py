@@ -15,7 +15,7 @@ from squealpipe.schema.comparison import Reliability, Role
 from squealpipe.schema.origin import recorded
 from squealpipe.schema.outcomes import Outcome
 from squealpipe.schema.squeal_ladder import NO_MODE, SQUEAL_LADDER, PushAnswer
-from squealpipe.systems.structures.definition import Structure
+from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.pencil import DENSE
 from squealpipe.systems.structures.reduction import reduce
 from squealpipe.systems.structures.squeal.methods import (
@@ -117,7 +117,7 @@ def squeal_ladder(
     return _dataset(finest, places, told, reference, span)
 
 
-def _sizes(structure: Structure, n_modes: Sequence[int]) -> list[int]:
+def _sizes(structure: ContactStructure, n_modes: Sequence[int]) -> list[int]:
     fewest = max(len(structure.contacts), 2)
     sizes = distinct(n_modes, fewest, min(structure.size, MOST_MODES))
     if structure.size <= MOST_MODES:
@@ -130,7 +130,9 @@ def _sizes(structure: Structure, n_modes: Sequence[int]) -> list[int]:
     return sizes
 
 
-def _plant(structure: Structure, size: int, frequency_max: float | None) -> Plant:
+def _plant(
+    structure: ContactStructure, size: int, frequency_max: float | None
+) -> Plant:
     if size == structure.size:
         return Plant(structure)
     limit = None if structure.size <= DENSE else frequency_max

@@ -15,7 +15,7 @@ import numpy as np
 from squealpipe.methods.taylor.lanes import taylor_terms
 from squealpipe.schema import Outcome
 from squealpipe.schema.comparison import Role
-from squealpipe.systems.structures.definition import Structure
+from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.reduction import Kept
 from squealpipe.systems.structures.spectrum import Limits, Solver
 from squealpipe.systems.structures.squeal.plant import PUSH, Plant
@@ -106,7 +106,7 @@ class Told:
 
 
 def complex_modes_told(
-    structure: Structure,
+    structure: ContactStructure,
     number: int | None,
     frequencies: np.ndarray,
     frequency_max: float | None,
@@ -275,7 +275,7 @@ def _pushes(plant: Plant, frequencies: np.ndarray) -> list[int | None]:
     return [_same(plant.frequencies, grows, float(each)) for each in frequencies]
 
 
-def _nothing(structure: Structure) -> dict[str, Any]:
+def _nothing(structure: ContactStructure) -> dict[str, Any]:
     names = ("separated", "stuck", "creep", "force")
     return {name: np.full(len(structure.contacts), np.nan) for name in names}
 

@@ -8,7 +8,7 @@ import scipy.linalg as la
 from scipy.optimize import linear_sum_assignment
 
 from squealpipe.systems.structures.complex_modes import complex_modes
-from squealpipe.systems.structures.definition import Structure
+from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.modes import modes_at_rest
 from squealpipe.systems.structures.motion_system import system
 from squealpipe.systems.structures.reduction import reduce
@@ -35,7 +35,7 @@ class Plant:
         ValueError: beyond 1000 degrees of freedom, which are to be reduced by hand.
     """
 
-    def __init__(self, structure: Structure) -> None:
+    def __init__(self, structure: ContactStructure) -> None:
         self.whole = structure
         self.structure = (
             structure if structure.size <= MOST_MODES else reduce(structure)

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from squealpipe.schema.squealing import MOST_DAMPING
-from squealpipe.systems.structures.definition import Structure
+from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.reduction import reduce
 from squealpipe.systems.structures.spectrum import Limits, Solver, Spectrum
 
@@ -12,7 +12,7 @@ TRIED = np.geomspace(1e-4, MOST_DAMPING, 24)
 """Ratios between which stability is taken to change once at most."""
 
 
-def added_damping(structure: Structure) -> float:
+def added_damping(structure: ContactStructure) -> float:
     """The smallest ratio of damping, added to every mode at rest, from which no mode grows.
 
     Damping may destabilize before it stabilizes: from this ratio to the largest tried nothing
@@ -31,10 +31,10 @@ def added_damping(structure: Structure) -> float:
     return float(brentq(lambda ratio: _growth(modal, ratio), *ends, xtol=1e-9))
 
 
-def _growth(modal: Structure, ratio: float) -> float:
+def _growth(modal: ContactStructure, ratio: float) -> float:
     """The largest growth rate at this ratio, 1/s."""
     return float(_spectrum(modal.with_(modal_damping=ratio)).values.real.max())
 
 
-def _spectrum(structure: Structure) -> Spectrum:
+def _spectrum(structure: ContactStructure) -> Spectrum:
     return Solver(structure, Limits(), structure.belt_speed).at(structure.mu)

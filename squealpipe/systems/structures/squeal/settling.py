@@ -40,7 +40,7 @@ WIDE = 5
 
 
 @dataclass
-class Settled:
+class SettledMotion:
     """What one start has settled to.
 
     Attributes:
@@ -86,11 +86,11 @@ def horizon(plant: Plant, t_end: float | None) -> tuple[float, float, float]:
 
 def settle(
     plant: Plant, states: np.ndarray, t_end: float | None, how: Running
-) -> list[Settled]:
+) -> list[SettledMotion]:
     """Run all starts until each has settled, or the time has passed."""
     growing, length, most = horizon(plant, t_end)
     count = len(states)
-    settled: dict[int, Settled] = {}
+    settled: dict[int, SettledMotion] = {}
     before: list[Rows | None] = [None] * count
     energies: list[list[np.ndarray]] = [[] for _ in range(count)]
     instants: list[list[np.ndarray]] = [[] for _ in range(count)]
@@ -113,7 +113,7 @@ def settle(
                 found = _judged(plant, before[row], now, at_rest)
                 late = elapsed + span >= (1.0 - 1e-9) * most
                 if found is None and (late or not now.finished):
-                    found = Settled(False, False, now, np.inf, 0.0)
+                    found = SettledMotion(False, False, now, np.inf, 0.0)
                 if found is not None:
                     found.elapsed = elapsed + span
                     found.energies = np.concatenate(energies[row])
@@ -138,16 +138,16 @@ def at_rest_regimes(plant: Plant) -> np.ndarray:
 
 def _judged(
     plant: Plant, before: Rows | None, now: Rows, at_rest: np.ndarray
-) -> Settled | None:
+) -> SettledMotion | None:
     """What two windows in succession show; None: nothing yet."""
     if not now.finished:
         return None
     if not now.events and (now.regimes == at_rest).all() and plant.decays:
         # nothing switched in a whole window: the motion is linear about steady sliding, and decays
-        return Settled(True, True, now, 0.0, 0.0)
+        return SettledMotion(True, True, now, 0.0, 0.0)
     if before is None or not stays(before, now):
         return None
-    return Settled(False, True, now, difference(before, now), 0.0)
+    return SettledMotion(False, True, now, difference(before, now), 0.0)
 
 
 class Statistics(Protocol):

@@ -17,7 +17,7 @@ from squealpipe.systems.structures.squeal.hysteresis import hysteresis
 from squealpipe.systems.structures.squeal.kinds import Described, described
 from squealpipe.systems.structures.squeal.plant import PUSH, Plant
 from squealpipe.systems.structures.squeal.remedies import added_damping
-from squealpipe.systems.structures.squeal.settling import Settled, settle
+from squealpipe.systems.structures.squeal.settling import SettledMotion, settle
 from squealpipe.systems.structures.squeal.windows import Running
 from squealpipe.validation import Natural, Positive, Seed, Tolerance, Workers
 
@@ -133,7 +133,10 @@ def squealing_modes(
 
 
 def _of_modes(
-    plant: Plant, settled: list[Settled], numbers: np.ndarray, found: list[Described]
+    plant: Plant,
+    settled: list[SettledMotion],
+    numbers: np.ndarray,
+    found: list[Described],
 ) -> dict[str, Any]:
     """What becomes of each unstable mode."""
     count = len(plant.unstable)
@@ -159,7 +162,7 @@ def _of_modes(
 
 
 def _of_attractors(
-    plant: Plant, members: list[list[Settled]], found: list[Described]
+    plant: Plant, members: list[list[SettledMotion]], found: list[Described]
 ) -> dict[str, Any]:
     """Levels, shares of time, frequencies and multipliers; statistics are means over all runs."""
     count = len(members)
