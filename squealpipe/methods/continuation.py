@@ -31,7 +31,7 @@ class ContinuationSettings:
         tolerance: of the largest component of F.
         stagnant: the same where Newton's method gets no further, as by round-off; 0 for never.
         max_iterations: Newton iterations of a step; with more, the step is halved.
-        easy_iterations: with no more than these, the next step grows.
+        easy_iterations, growth: with no more than these, the next step grows by this factor.
         least_cosine: of the angle between tangents before and after a step.
     """
 
@@ -42,6 +42,7 @@ class ContinuationSettings:
     stagnant: float = 0.0
     max_iterations: int = 6
     easy_iterations: int = 3
+    growth: float = 1.5
     least_cosine: float = 0.97
     max_points: int = 2000
 
@@ -168,7 +169,9 @@ class PseudoArclength:
         if not (near and float(tangent @ state.tangent) > settings.least_cosine):
             return None
         easy = iterations <= settings.easy_iterations
-        following = min(state.step * (1.5 if easy else 1.0), settings.longest_step)
+        following = min(
+            state.step * (settings.growth if easy else 1.0), settings.longest_step
+        )
         curvature = (tangent - state.tangent) / length
         return ContinuationState(
             point, tangent, curvature, following, iterations, residual

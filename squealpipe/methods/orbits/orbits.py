@@ -144,7 +144,7 @@ class OrbitEquations:
 
 @dataclass(frozen=True)
 class Across(PseudoArclength):
-    """Pseudo-arclength whose corrector is in closed form, and ends at round-off."""
+    """Pseudo-arclength whose corrector is in closed form; its tolerance is of end velocities."""
 
     def correct(
         self, problem: Any, guess: Vector, normal: Vector
@@ -154,7 +154,7 @@ class Across(PseudoArclength):
         work = np.empty((MAX_SEGMENTS, 9)), np.empty(MAX_SEGMENTS), np.empty(4)
         unit = normal / np.linalg.norm(normal)
         count, iterations, residual = solve_constrained(
-            problem.rows, point, unit, 0.0, *work, tangent
+            problem.rows, point, unit, self.settings.tolerance, *work, tangent
         )
         problem.work += (iterations + 1) * problem.fastest * abs(float(guess[2]))
         if count == 0:
@@ -162,7 +162,8 @@ class Across(PseudoArclength):
         return point, math.copysign(1.0, tangent @ unit) * tangent, iterations, residual
 
 
-ACROSS = Across(ContinuationSettings())
+ACROSS = Across(ContinuationSettings(tolerance=1e-300))
+"""Goes on until round-off stops the progress."""
 
 
 def orbit_across(

@@ -16,7 +16,14 @@ from numpy.typing import NDArray
 
 from squealpipe.methods.branch_line import Line
 from squealpipe.methods.continuation import ContinuationSettings, ContinuationState
-from squealpipe.methods.orbits.orbits import Across, Orbit, OrbitEquations, solve_orbit
+from squealpipe.methods.orbits.orbits import (
+    ACROSS,
+    Across,
+    Orbit,
+    OrbitEquations,
+    orbit_across,
+    solve_orbit,
+)
 from squealpipe.methods.orbits.piecewise_linear import PiecewiseLinearSystem
 from squealpipe.methods.orbits.shooting import LONGEST_PHASE
 from squealpipe.methods.orbits.shorter_orbits import (
@@ -64,7 +71,9 @@ class TraceSettings(ContinuationSettings):
 
     shortest_step: float = 1e-12
     longest_step: float = 0.1
-    easy_iterations: int = 5
+    tolerance: float = 1e-13
+    easy_iterations: int = 4
+    growth: float = 2.0
     least_cosine: float = 0.98
     max_points: int = 4000
     strict: bool = True
@@ -148,7 +157,7 @@ class _Trace:
                 return
             there = self.equations.orbit(following.point)
             line = Line(
-                self.algorithm,
+                ACROSS,
                 self.equations,
                 (state, here),
                 (following, there),
@@ -167,9 +176,8 @@ class _Trace:
                 self.end = TraceEnd.pole
                 return
             state, here = self._from_higher_rest(following, there)
-            if not self.settings.strict:
-                # a resonance is crossed along the straight tangent
-                state = replace(state, curvature=np.zeros(3))
+            # a resonance is narrower than what the curvature before it is good for
+            state = replace(state, curvature=np.zeros(3))
             self.sense = self.equations.sense(state)
 
     def _accepts(self, here: Orbit, trial: ContinuationState) -> bool:
@@ -250,9 +258,11 @@ class _Trace:
             pieces = max(1, math.ceil(share * line.reach / unit))
             for piece in range(1, pieces + 1 - reached):
                 try:
-                    yield line.at(share * piece / pieces)[1]
+                    orbit = line.at(share * piece / pieces)[1]
                 except ArithmeticError:
                     continue
+                polished = orbit_across(self.system, orbit.point, line.normal)
+                yield polished if piece == pieces and polished else orbit
         if not reached:
             return
         there = line.at(share)[1].from_higher_rest()
