@@ -37,7 +37,7 @@ from squealpipe.execution.supervised import StoppedError, stops_raise
 
 HELP = """Friction-induced vibration with contact loss: from one run to the whole study.
 
-Exit codes: 0 done; 1 done, and the answer is no (different, changed, another verdict, not
+Exit codes: 0 done; 1 done, with a negative answer (different, changed, another verdict, not
 converged); 2 not done (wrong input, missing file, cannot compare); 130 interrupted.
 
 Every command takes -q (print answers and errors alone) and -v (tracebacks and warnings).

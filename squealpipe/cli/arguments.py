@@ -135,7 +135,7 @@ Dpi = Annotated[
         converter=_whole,
         metavar="INT",
         n_tokens=1,
-        help="its dots per inch; 200 by default.",
+        help="dots per inch of the picture; 200 by default.",
     ),
 ]
 Units = Annotated[
@@ -144,7 +144,7 @@ Units = Annotated[
         name="--unit",
         negative="",
         metavar="UNIT",
-        help="unit of the axes of its kind, like mm, kN or Hz; repeatable.",
+        help="unit of the axes that show its quantity, like mm, kN or Hz; repeatable.",
     ),
 ]
 State = Annotated[list[float] | None, _signed(parse_state, "X,Y,VX,VY", negative="")]

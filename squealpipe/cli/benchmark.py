@@ -32,8 +32,8 @@ def run(
     Args:
         solver: a shipped one, or FILE.py:FUNCTION; all that are installed by default.
         problem: names of problems; all by default.
-        tolerance: by default 1e-6, 1e-8, 1e-10 and 1e-12.
-        time_limit: s of wall time after which an answer is given up; 120 by default.
+        tolerance: tolerances to run at; by default 1e-6, 1e-8, 1e-10 and 1e-12.
+        time_limit: wall time after which an answer is given up, s; 120 by default.
     """
     from squealpipe.benchmark.adapters import SOLVERS, installed
     from squealpipe.benchmark.scoring import TIME_LIMIT, TOLERANCES, benchmark
@@ -94,7 +94,7 @@ def problems(*, output: Output = Path("problems.json"), force: Force = False) ->
 def score(
     answers: Path, /, *, output: Output = Path("benchmark.nc"), force: Force = False
 ) -> int:
-    """Score answers that a solver in any language wrote as JSON; exit code as of a run.
+    """Score answers that a solver in any language wrote as JSON; exit codes as for a run.
 
     Example: `squealpipe benchmark score answers.json -o theirs.nc`
 

@@ -65,7 +65,7 @@ def spectrum(
 
     Args:
         file: run that `squealpipe simulate -o` wrote.
-        last: take only so much of its end, like 0.2s; by default all of the run.
+        last: length of the last part of the run to use, like 0.2s; by default the whole run.
     """
     check_output(output, force=force)
     if picture is not None:

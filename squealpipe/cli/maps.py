@@ -86,7 +86,7 @@ def refine(
     output: Output = Path("refined.nc"),
     brake: Drawn = DRAWN,
 ) -> int:
-    """Map where contact is kept at high resolution, running the boundaries alone.
+    """Map at high resolution where contact is kept, with runs only along the boundaries.
 
     Example: `squealpipe refine --resolution 181 --coarse 46 --t-end 50 -o refined.nc`
 
@@ -142,7 +142,7 @@ def basin(
         vx: speed along the belt, m/s.
         vy: speed away from the belt, m/s.
         t_end: end of each run, s.
-        t_late: from where the late extrema count, s; 0.8 of t_end by default.
+        t_late: time from which the late extrema are taken, s; 0.8 of t_end by default.
     """
     given = {"x": x, "y": y, "vx": vx, "vy": vy}
     starts: dict[str, Any] = {
@@ -195,11 +195,11 @@ def disturbance(
     Example: `squealpipe disturbance 0.75pi 0.75pi --leads-to contact_lost --t-end 50`
 
     Args:
-        leads_to: what it is to lead to.
+        leads_to: what the disturbance must lead to.
         t_end: time within which that happens, s; 200 √(2 mass/(k1 + k2)) by default.
         bound: largest disturbance tried, in preload lengths; 3 for contact loss, 15 for the whirl.
         directions: random directions.
-        seed: of the directions.
+        seed: of the random directions.
     """
     found = compute(
         "smallest_disturbance",

@@ -92,12 +92,12 @@ def infer(
 
     Args:
         samples: number of parameter sets.
-        reading: the study's reading.
+        reading: the study's reading of the sign of friction.
         kappa: range of k3/k, LOW,HIGH.
         mu_range: range of the friction coefficient, LOW,HIGH.
         length_ratio: range of L/l_pre, LOW,HIGH.
         speed_ratio: range of the belt speed over l_pre √(k/m), LOW,HIGH.
-        seed: of the sample.
+        seed: of the random sample.
     """
     found = compute(
         "infer_parameters",
@@ -142,12 +142,12 @@ def propensity(
     --distribution k1=normal:1:0.05 -o propensity.nc`
 
     Args:
-        distribution: of a parameter or angle: uniform:low:high, normal:mean:std or
+        distribution: distribution of a parameter or angle: uniform:low:high, normal:mean:std or
             lognormal:median:log_std; repeat for more.
         samples: size of the sample, a power of 2.
         t_end: end of each run, s; 200 √(mass/k1) by default.
-        spring_correlation: of k1 and k2; no Sobol indices are given with it.
-        seed: of the sample.
+        spring_correlation: correlation of k1 and k2; with it there are no Sobol indices.
+        seed: of the random sample.
     """
     distributions = dict(map(_distribution, distribution))
     if len(distributions) < len(distribution):

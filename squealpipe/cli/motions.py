@@ -234,7 +234,7 @@ def branch(
 
     Args:
         parameter: a physical parameter, alpha1 or alpha2.
-        to: value at which the branch ends, like the parameter on the command line.
+        to: value at which the branch ends, written like the parameter's option.
         start: a file written by `squealpipe cycle`, a state x,y,vx,vy near the first cycle, or
             onset (the loss of stability of steady sliding); by default what a run from rest
             settles to.

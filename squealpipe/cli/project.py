@@ -145,9 +145,9 @@ def _commented(name: str, row: Row) -> str:
 def run(
     *, config: Configs = None, quick: Switch = False, cores: Whole | None = None
 ) -> int:
-    """Compute a study; say one line for each rule, the time left, and the log of what fails.
+    """Compute a study; print one line per rule, the time left, and the log of any failure.
 
-    Stop it and run the same command again: it goes on where it was, rule by rule.
+    If it is stopped, run the same command again: it resumes with the rules that are not done.
 
     Example: `squealpipe run --config mine.yaml --quick`
 

@@ -51,8 +51,8 @@ def modes(
         file: structure, a YAML file that names its matrices and contacts (see the gallery).
         mu: friction, a number or first:last:count; that of the file by default.
         belt_speed: likewise, m/s.
-        frequency_max: modes up to there, Hz.
-        n_modes: so many modes; this or the other limit is needed beyond 1000 degrees of freedom.
+        frequency_max: highest frequency of the modes, Hz.
+        n_modes: number of modes; one of both limits is needed beyond 1000 degrees of freedom.
         vary: a further factor with its value or values; repeat for more. preload=0.5:2:7 and
             contact_stiffness=0.5,1,2 multiply those of all contacts, p1_preload and p1_stiffness
             those of a contact p1, mass, damping and stiffness the matrices; modal_damping,
@@ -137,24 +137,24 @@ def squeal(
 ) -> int:
     """Say which unstable modes of a structure squeal, how loud, and with how much contact loss.
 
-    It is run from small pushes along its unstable modes and from random starts, with every loss of
-    contact located, until the motions have settled. Exit code 0: quiet; 1: not quiet, or
+    The structure is run from small pushes along its unstable modes and from random starts until the
+    motions have settled; every loss of contact is located. Exit code 0: quiet; 1: not quiet, or
     undetermined.
 
     Example: `squealpipe squeal pad.yaml -o squeal.nc`
 
     Args:
         file: structure, a YAML file that names its matrices and contacts (see the gallery).
-        samples: random starts, of at most the energy that the preload stores.
-        seed: number that the random starts follow from.
+        samples: random starts, each with at most the energy that the preload stores.
+        seed: of the random starts.
         t_end: longest time of a run, s; by default 8000 periods of the slowest unstable mode,
             after the time in which it grows.
         n_modes: modes to reduce the structure to; by default as many as errors below 1 % need,
             and no reduction up to 32 degrees of freedom.
         frequency_max: reduce to the modes that the unstable ones up to this frequency need, Hz;
             needed beyond 1000 degrees of freedom.
-        onset: also follow what squeals down in friction until it dies: whether squeal lasts below
-            the critical friction, and how far; costs about as much as the rest.
+        onset: also lower the friction until the squeal dies, to see whether it lasts below the
+            critical friction, and how far; costs about as much as the rest.
     """
     from squealpipe import squealing_modes
     from squealpipe.study.report.squealing import lines
@@ -188,19 +188,20 @@ def ladder(
 ) -> int:
     """Ask several methods which unstable modes of a structure squeal; chart accuracy and cost.
 
-    Complex modes of the whole and the reduced structure, runs with every event located and runs
-    with friction and contact smoothed are held against the finest run. Exit code 0: all agree with
+    Complex modes of the whole and the reduced structure, runs with every event located, and runs
+    with smoothed friction and contact are compared with the finest run. Exit code 0: all agree with
     it; 1: some do not. It takes minutes.
 
     Example: `squealpipe ladder pad.yaml -o ladder.nc`
 
     Args:
         file: structure, a YAML file that names its matrices and contacts (see the gallery).
-        pushes: unstable modes along which is pushed, the fastest first.
+        pushes: number of unstable modes to push along, the fastest-growing first.
         t_end: time of each run, s; by default until the last of these has grown, and 200 periods of
             the unstable mode of lowest frequency.
-        frequency_max: unstable modes up to there count, Hz; needed beyond 1000 degrees of freedom.
-        repeats: of what is quick, for the median of its CPU time.
+        frequency_max: highest frequency of the unstable modes, Hz; needed beyond 1000 degrees of
+            freedom.
+        repeats: repetitions of quick methods, for the median of their CPU time.
     """
     from squealpipe import squeal_ladder
     from squealpipe.schema.comparison import Reliability

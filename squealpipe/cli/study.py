@@ -112,7 +112,7 @@ def compare(
     Args:
         a: archive name or path.
         b: archive name or path.
-        every: report all of it: also what is equal, and where each side was made.
+        every: report everything, including what is equal and where each side was made.
         json_: print JSON.
     """
     from squealpipe.store.comparison.compare import compare as difference_of
