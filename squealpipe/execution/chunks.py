@@ -1,4 +1,4 @@
-"""Finished runs of a sweep on disk, so that the same command goes on where it was."""
+"""Finished runs of a sweep on disk, so that the same command resumes where it stopped."""
 
 import hashlib
 import io

@@ -1,4 +1,4 @@
-"""How two datasets of one schema are held against each other where numbers alone do not do."""
+"""How two datasets of one schema are compared where numbers alone do not suffice."""
 
 from dataclasses import KW_ONLY, dataclass
 from enum import Enum

@@ -21,7 +21,7 @@ def open_results(
 ) -> xr.DataTree:
     """The datasets of a run as a tree: one node each, by their names below ``data/``.
 
-    Every file is held against its checksum.
+    Every file is checked against its checksum.
 
     Args:
         name_or_path: an archive by its name, or a folder of results.

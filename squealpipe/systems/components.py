@@ -139,7 +139,7 @@ class Composition:
         """The regime of each component that a start names; −1 where it names none.
 
         Raises:
-            ValueError: a regime or a component that there is not.
+            ValueError: a regime or a component does not exist.
         """
         found = np.full(len(self.names), -1, np.int64)
         if chosen is None:

@@ -177,11 +177,11 @@ class Definition:
             raise ValueError(f"two switches share a name: {', '.join(names)}")
 
     def check_regime(self, start: Mapping[str, Any]) -> None:
-        """Refuse a start in a regime that there is not."""
+        """Raise if the regime of a start does not exist."""
         self.composition.numbers(start.get("regime"))
 
     def check_parameter(self, name: str) -> None:
-        """Refuse a parameter that there is not."""
+        """Raise if a parameter does not exist."""
         if name not in self.parameters:
             near = suggestion(name, self.parameters)
             raise ValueError(f"{self.name}: parameter {name!r} is unknown; {near}")

@@ -38,7 +38,7 @@ def check(
     parameters: Sequence[str],
     to: Mapping[str, Sequence[float]],
 ) -> None:
-    """Refuse a curve that there is not."""
+    """Raise if the requested curve does not exist."""
     names = [each.name for each in LABELS]
     if label not in names:
         raise ValueError(f"label {label!r}: {suggestion(str(label), names)}")

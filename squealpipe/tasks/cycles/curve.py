@@ -69,7 +69,7 @@ def cycle_curve(
         Dataset ``cycle_curve`` over ``point``; ``label`` says what else happens there.
 
     Raises:
-        ValueError: a label or parameter that there is not, limits that do not ascend or leave the
+        ValueError: a label or parameter that does not exist, limits that do not ascend or leave the
             start out, or no such point in ``start``.
     """
     own = {"alpha1": alpha1, "alpha2": alpha2}
