@@ -1,11 +1,10 @@
 """Structures with friction contacts, event by event with matrix exponentials; shares no code.
 
-Coulomb friction with one coefficient makes a motion linear between events. Which contacts stick
-after an event is found by trying all combinations of those that are at belt speed; for
-independent directions one alone violates nothing.
+Coulomb friction with one coefficient makes a motion linear between events. After an event what is
+violated changes, the first contact first and from the first again after each change, until nothing
+is. Without a static limit of its own one combination alone violates nothing, for independent
+directions.
 """
-
-from itertools import product
 
 import numpy as np
 from scipy.linalg import expm
@@ -30,6 +29,7 @@ class ManyContacts:
         self.k, self.preload = structure.stiffnesses, structure.preloads
         self.belt = structure.speeds * structure.belt_speed
         self.mu, self.load = structure.mu, structure.load
+        self.mu_static = structure.friction.static_mu
         self.state = np.array([*q, *v])
         self.side = [
             OPEN if force <= 0 else int(np.sign(speed))
@@ -84,69 +84,63 @@ class ManyContacts:
             if side:
                 yield i, "belt", side * speed
             else:
-                yield i, "slips slower", self.mu * normal - held[i]
-                yield i, "slips faster", self.mu * normal + held[i]
+                yield i, "slips slower", self.mu_static * normal - held[i]
+                yield i, "slips faster", self.mu_static * normal + held[i]
 
-    def settle(self, at_belt):
-        """The sides of contacts at belt speed that violate nothing."""
-        size, z = len(self.mass), np.append(self.state, 1.0)
-        best = (-np.inf, None)
-        for chosen in product((0, 1, -1), repeat=len(at_belt)):
-            sides = list(self.side)
-            for i, side in zip(at_belt, chosen, strict=True):
-                sides[i] = side
-            whole, held = self.flow(sides)
-            pulls = self.t.T @ (whole @ z)[size : 2 * size]
-            limits, holds = self.mu * self.normal(self.state), held @ z
-            margins = [
-                -sides[i] * pulls[i] if sides[i] else limits[i] - abs(holds[i])
-                for i in at_belt
-            ]
-            best = max(
-                best, (min(margins, default=0.0), sides), key=lambda each: each[0]
-            )
-        self.side = best[1]
+    def settle(self):
+        """Carry out what happens at one instant, in the order of contacts, until all is well."""
+        for _ in range(100):
+            whole, held = self.flow(self.side)
+            now = np.append(self.state, 1.0)
+            for i, what, row in self.guards(held):
+                heights = (row @ now, row @ whole @ now, row @ whole @ whole @ now)
+                if next((h for h in heights if abs(h) > SAME), 0.0) < 0.0:
+                    self.change(i, what)
+                    break
+            else:
+                return
+        raise RuntimeError("regimes send the motion back and forth")
 
-    def next_event(self, step):
-        """Go to the next event: its time from here."""
+    def next_event(self, step, most):
+        """Go to the next event: its time from here, None if it takes longer than ``most``."""
         whole, held = self.flow(self.side)
         guards = list(self.guards(held))
         rows = np.array([row for *_, row in guards])
         now, elapsed = np.append(self.state, 1.0), 0.0
         first, later = expm(whole * step / 64), expm(whole * step)
-        while True:
+        while elapsed < most:
             h = step if elapsed else step / 64
             end = (later if elapsed else first) @ now
             hit = _crossing(whole, rows, now, end, h, begins=not elapsed)
             if hit is not None:
                 now = expm(whole * hit) @ now
                 self.state = now[:-1]
-                heights, slopes = rows @ now, rows @ whole @ now
-                falls = (abs(heights) < SAME) & (slopes < 0)
-                self.change([guards[k][:2] for k in np.flatnonzero(falls)])
+                self.settle()
                 return elapsed + hit
             now, elapsed = end, elapsed + h
+        return None
 
-    def change(self, events):
-        """Carry out what happens at one instant."""
-        size, asks = len(self.mass), False
-        speeds = self.speed(self.state)
-        for i, what in events:
-            if what == "lifts":
-                self.side[i] = OPEN
-            elif what == "lands":
-                self.side[i] = int(np.sign(speeds[i]))
-            elif what.startswith("slips"):  # friction goes on from its limit
-                self.side[i] = 1 if what == "slips slower" else -1
-            asks |= what == "belt"
-        if not asks:
-            return
-        met = {i for i, what in events if what == "belt" and self.side[i] != OPEN}
-        at_belt = [i for i, side in enumerate(self.side) if side == 0 or i in met]
-        along = self.t[:, at_belt]
-        moved = np.linalg.solve(self.mass, along)
-        self.state[size:] += moved @ np.linalg.solve(along.T @ moved, speeds[at_belt])
-        self.settle(at_belt)
+    def change(self, i, what):
+        """Carry out one event."""
+        speed = self.speed(self.state)[i]
+        if what == "lifts":
+            self.side[i] = OPEN
+        elif what == "lands":
+            self.side[i] = int(np.sign(speed))
+        elif what == "slips slower":
+            self.side[i] = 1
+        elif what == "slips faster":
+            self.side[i] = -1
+        else:  # at belt speed: friction holds it there if it can
+            moved = np.linalg.solve(self.mass, self.t[:, i])
+            self.state[len(self.mass) :] += moved * speed / (self.t[:, i] @ moved)
+            before, self.side[i] = self.side[i], 0
+            _, held = self.flow(self.side)
+            if (
+                abs(held[i] @ np.append(self.state, 1.0))
+                > self.mu_static * self.normal(self.state)[i]
+            ):
+                self.side[i] = -before
 
 
 def _crossing(whole, rows, start, end, h, *, begins):

@@ -32,6 +32,7 @@ class Reference:
         self.mu, self.mu_static = mu, mu if mu_static is None else mu_static
         self.inverse = np.linalg.inv(self.mass)
         self.size = len(self.mass)
+        self.known = {}
 
     def pressing(self, z):
         return self.preload - self.k * (self.n.T @ z[: self.size])
@@ -59,14 +60,33 @@ class Reference:
     def rates(self, z, modes):
         return np.concatenate([z[self.size :], self.forces(z, modes)[0]])
 
-    def signs(self, z, modes):
-        """What must stay positive: of each contact two numbers."""
-        normal, speed = self.pressing(z), self.sliding(z)
-        friction = self.forces(z, modes)[1] if (modes == STICK).any() else 0.0 * normal
-        first = np.where(modes == OPEN, -normal, normal)
-        second = np.where(np.abs(modes) == 1, modes * speed, np.inf)
-        limit = self.mu_static * normal - np.abs(friction)
-        return np.concatenate([first, np.where(modes == STICK, limit, second)])
+    def laws(self, modes):
+        """Matrix and offset of z′, and of what must stay positive: of each contact three numbers.
+
+        They are made once of each combination of modes.
+        """
+        slips, sticks = np.abs(modes) == 1, modes == STICK
+
+        def positive(z):
+            normal, friction = self.pressing(z), self.forces(z, modes)[1]
+            limit = self.mu_static * normal
+            slides = np.where(slips, modes * self.sliding(z), 1.0)
+            return np.concatenate(
+                [
+                    np.where(modes == OPEN, -normal, normal),
+                    np.where(sticks, limit - friction, slides),
+                    np.where(sticks, limit + friction, 1.0),
+                ]
+            )
+
+        if (key := tuple(modes)) not in self.known:
+            found = []
+            for law in (lambda z: self.rates(z, modes), positive):
+                offset = law(np.zeros(2 * self.size))
+                columns = [law(unit) - offset for unit in np.eye(2 * self.size)]
+                found += [np.array(columns).T.copy(), offset]
+            self.known[key] = found
+        return self.known[key]
 
     def settled(self, z, modes, loose):
         """The modes of contacts at rest on the belt, and the velocities that stick gives them."""
@@ -126,38 +146,48 @@ class Reference:
 
     def leg(self, time, z, modes, t_end, rtol, atol):
         """To the next event: time, state, and which numbers vanish there."""
+        matrix, offset, signs, levels = self.laws(modes)
         solver = DOP853(
-            lambda _, y: self.rates(y, modes), time, z, t_end, rtol=rtol, atol=atol
+            lambda _, y: matrix @ y + offset, time, z, t_end, rtol=rtol, atol=atol
         )
-        last = self.signs(z, modes)
         scale = np.concatenate(
-            [self.preload, np.minimum(self.preload, np.abs(self.belt))]
+            [self.preload, np.minimum(self.preload, np.abs(self.belt)), self.preload]
         )
-        last = np.where(np.abs(last) < 1e-9 * scale, 1e-300, last)  # starts from zero
+        left = np.abs(signs @ z + levels) < 1e-9 * scale  # zero where the leg starts
         while solver.status == "running":
             solver.step()
             dense, start = solver.dense_output(), solver.t_old
-            for t in np.linspace(start, solver.t, SAMPLES + 1)[1:]:
-                now = self.signs(dense(t), modes)
-                crossed = np.flatnonzero(now < 0)
-                if crossed.size:
-                    roots = [
-                        self.root(dense, modes, i, start, t)
-                        if last[i] > 1e-200
-                        else start
-                        for i in crossed
-                    ]
-                    first = min(roots)
-                    close = [
-                        i
-                        for i, r in zip(crossed, roots, strict=True)
-                        if r - first < 1e-12 * t
-                    ]
-                    return first, dense(first), close
-                last, start = np.maximum(now, 1e-300), t
+            times = np.linspace(start, solver.t, SAMPLES + 1)
+            below = signs @ dense(times[1:]) + levels[:, None] < 0.0
+            if below.any():
+                place = int(below.any(axis=0).argmax())
+                crossed = np.flatnonzero(below[:, place])
+                span = times[place], times[place + 1]
+                roots = [
+                    root(dense, signs[i], levels[i], span, begins=left[i] and not place)
+                    for i in crossed
+                ]
+                first = min(roots)
+                close = [
+                    i
+                    for i, each in zip(crossed, roots, strict=True)
+                    if each - first < 1e-12 * times[place + 1]
+                ]
+                return first, dense(first), close
+            left[:] = False
         return t_end, solver.y, []
 
-    def root(self, dense, modes, which, start, end):
-        return brentq(
-            lambda t: self.signs(dense(t), modes)[which], start, end, xtol=1e-16 * end
-        )
+
+def root(dense, row, level, span, *, begins):
+    """Where row · z + level falls through zero; from zero it may rise first, for a moment."""
+
+    def height(t):
+        return row @ dense(t) + level
+
+    start, end = span
+    if begins:
+        tries = start + (end - start) / 2.0 ** np.arange(1, 40)
+        start = next((t for t in tries if height(t) > 0.0), start)
+    if height(start) <= 0.0:
+        return start
+    return brentq(height, start, end, xtol=1e-16 * end)

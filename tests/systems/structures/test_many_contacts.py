@@ -11,7 +11,10 @@ SIDES = {"slip_slower": 1, "slip_faster": -1, "stick": 0, "separated": OPEN}
 
 
 def random_structure(seed):
-    """A structure, and displacements and velocities to start from; every third is symmetric."""
+    """A structure, and displacements and velocities to start from.
+
+    Every third is symmetric: its contacts switch in pairs; every second has a static limit.
+    """
     rng = np.random.default_rng(seed)
     contacts = int(rng.integers(2, 9))
     twice = seed % 3 == 0
@@ -31,7 +34,7 @@ def random_structure(seed):
             else matrix
         )
 
-    mass, stiffness, damping = definite(1.0), definite(1.0), definite(0.02)
+    mass, stiffness, damping = definite(1.0), definite(1.0), definite(0.003)
     n, t = rng.normal(size=(2, half, size)) / np.sqrt(size)
     k, preload = rng.uniform(0.5, 2.0, half), rng.uniform(0.3, 1.0, half)
     speed = rng.uniform(0.5, 1.5, half) * rng.choice([-1.0, 1.0], half)
@@ -44,11 +47,13 @@ def random_structure(seed):
             made.append(
                 Contact(f"c{len(made) + 1}", normal, along, k[i], preload[i], speed[i])
             )
-    structure = Structure(
-        both(mass), both(stiffness, 0.3), both(damping), contacts=made,
-        mu=float(rng.uniform(0.2, 0.8)), belt_speed=float(rng.uniform(0.1, 0.6)),
-    )  # fmt: skip
+    mu, belt_speed = float(rng.uniform(0.2, 0.8)), float(rng.uniform(0.1, 0.6))
     q, v = 0.5 * rng.normal(size=(2, size))
+    structure = Structure(
+        both(mass), both(stiffness, 0.3), both(damping), contacts=made, mu=mu,
+        mu_static=None if seed % 2 else mu * float(rng.uniform(1.05, 1.7)),
+        belt_speed=belt_speed,
+    )  # fmt: skip
     return structure, np.tile(q, 1 + twice), np.tile(v, 1 + twice)
 
 
@@ -80,9 +85,11 @@ def compare(seed):
     structure, q, v = random_structure(seed)
     truth = ManyContacts(structure, q, v)
     expected = [(0.0, tuple(truth.side))]
-    while len(expected) <= INSTANTS and expected[-1][0] < 200.0:
-        time = expected[-1][0] + truth.next_event(0.05)
-        expected.append((time, tuple(truth.side)))
+    while len(expected) <= INSTANTS:
+        wait = truth.next_event(0.05, most=50.0)
+        if wait is None:
+            break
+        expected.append((expected[-1][0] + wait, tuple(truth.side)))
     end = expected[-1][0]
     system = structure.system()
     start = {f"q{i + 1}": x for i, x in enumerate(q)} | {
@@ -102,7 +109,10 @@ def compare(seed):
     return "ok" if error < 1e-8 else f"wrong: state by {error:.1e}"
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize(
+    "seed",
+    [1, 2, *(pytest.param(seed, marks=pytest.mark.release) for seed in range(3, 16))],
+)
 def test_contacts_that_are_coupled_agree_with_an_integrator_apart(seed):
     assert compare(seed) == "ok"
 
