@@ -17,6 +17,10 @@ FEW_EVENTS = 60
 """Events up to which each is marked."""
 MOST_NAMED = 10
 """States that a legend names beside regimes."""
+MOST_LISTED = 6
+"""States that an axis lists one by one."""
+DASHES = ("-", "--", ":")
+"""Of states whose colour others have."""
 
 
 def draw_states(axes: Axes, run: xr.Dataset) -> None:
@@ -29,10 +33,17 @@ def draw_states(axes: Axes, run: xr.Dataset) -> None:
     if run.sizes["event"] <= FEW_EVENTS:
         for instant in run.event_time.values:
             axes.axvline(instant, color=GREY, linewidth=0.4)
-    for state, colour in zip(alike, PALETTE * len(alike), strict=False):
-        axes.plot(run.time, state, color=colour, label=str(state.name))
-    names = ", ".join(str(state.name) for state in alike)
-    axes.set(xlabel=label(run.time), ylabel=f"{names} ({states[0].units})")
+    for place, state in enumerate(alike):
+        turn, colour = divmod(place, len(PALETTE))
+        axes.plot(
+            run.time, state, color=PALETTE[colour], label=str(state.name),
+            linestyle=DASHES[turn % len(DASHES)],
+        )  # fmt: skip
+    names = [str(state.name) for state in alike]
+    title = ", ".join(names)
+    if len(names) > MOST_LISTED:
+        title = f"{names[0]} to {names[-1]}"
+    axes.set(xlabel=label(run.time), ylabel=f"{title} ({states[0].units})")
     patches = _draw_regimes(axes, run) if "component" in run.dims else []
     lines = axes.get_lines()[-len(alike) :]
     if patches:
@@ -59,7 +70,10 @@ def _draw_regimes(axes: Axes, run: xr.Dataset) -> list[Patch]:
         number: max((c for c in components if name.startswith(f"{c}_")), key=len)
         for number, name in names.items()
     }
-    short = {n: names[n].removeprefix(f"{owner}_") for n, owner in owners.items()}
+    short = {
+        n: names[n].removeprefix(f"{owner}_").replace("_", " ")
+        for n, owner in owners.items()
+    }
     regimes = list(dict.fromkeys(short.values()))
     shades = colormaps["cividis"](np.linspace(0.0, 1.0, len(regimes)))
     colours = dict(zip(regimes, shades, strict=True))
@@ -80,6 +94,7 @@ def _draw_regimes(axes: Axes, run: xr.Dataset) -> list[Patch]:
             end, base + 0.4 * height, f" {component}", va="center", fontsize="small"
         )
     axes.set_ylim(bottom - (len(components) + 0.5) * height, top)
+    axes.set_yticks([tick for tick in axes.get_yticks() if bottom <= tick <= top])
     return [Patch(color=colours[name], label=name) for name in regimes]
 
 

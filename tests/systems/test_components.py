@@ -171,6 +171,12 @@ def test_a_picture_shows_the_regimes_of_each_component_as_a_band():
         if hasattr(patch, "get_facecolor")
     }
     assert {"closed", "open"} <= set(names)
+    tops = [
+        path.vertices[:, 1].max()
+        for each in axes.collections
+        for path in each.get_paths()
+    ]
+    assert axes.get_yticks().min() > max(tops)  # bands have no scale
     for component, band in zip(("leading", "trailing"), axes.collections, strict=True):
         for regime in ("closed", "open"):
             width = sum(
