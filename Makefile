@@ -4,7 +4,12 @@ VENV := .venv
 BIN := $(VENV)/bin
 STUDY := $(VENV)/.made-from-lock
 DEV := $(VENV)/.made-from-dev-lock
+KERNELS := $(VENV)/.kernels-compiled
 TESTS := $(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
+
+# Where the surroundings forbid byte code (many containers do), each of hundreds of processes would compile
+# again what it imports: a process of the tests 10 s, a small job 2 s.
+unexport PYTHONDONTWRITEBYTECODE
 
 # Snakemake and Matplotlib keep caches in the home folder; without one that can be written, here.
 ifneq ($(shell test -w "$$HOME" && echo yes),yes)
@@ -59,21 +64,23 @@ lint: dev
 docs: dev  ## pages and API reference as one site, build/site
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build
 
-env: $(STUDY)  ## what a study needs
+env: $(KERNELS)  ## what a study needs
 
-dev: $(DEV)  ## and what tests, checks and docs need
+dev: $(DEV) $(KERNELS)  ## and what tests, checks and docs need; make -j2 does both at once
 
-# The last two steps compile the event loop (17 s) and the tracer of orbits (9 s) into the user's cache,
-# which several first jobs would otherwise do at once; and byte code of what jobs import, where an
-# environment (many containers') lets no job write it: 2 to 3 s in each.
 $(STUDY): requirements.lock pyproject.toml
 	@case "$(CURDIR)" in *[[:space:]]*) echo "make env: the path '$(CURDIR)' has a space, which the first lines of installed scripts cannot hold; move the checkout" >&2; exit 1;; esac
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install -q --no-compile --disable-pip-version-check --require-hashes -r requirements.lock
 	$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps --no-build-isolation -e .
 	$(BIN)/python -m compileall -q squealpipe
-	PYTHONDONTWRITEBYTECODE= $(BIN)/python -c "from squealpipe.methods.taylor.loop import loop; loop()"
-	PYTHONDONTWRITEBYTECODE= $(BIN)/python -c "import matplotlib.pyplot, netCDF4, snakemake.cli, squealpipe.cli, squealpipe as s; s.periodic_orbit(s.Parameters(), 0.9, 2.8, mode=1, y_peak=2)"
+	touch $@
+
+# These compile the event loop (17 s) and the tracer of orbits (9 s) into the user's cache, which several
+# first jobs would otherwise do at once; and byte code of what jobs import, for those who may not write it.
+$(KERNELS): $(STUDY)
+	$(BIN)/python -c "from squealpipe.methods.taylor.loop import loop; loop()"
+	$(BIN)/python -c "import matplotlib.pyplot, netCDF4, snakemake.cli, squealpipe.cli, squealpipe as s; s.periodic_orbit(s.Parameters(), 0.9, 2.8, mode=1, y_peak=2)"
 	touch $@
 
 $(DEV): requirements-dev.lock $(STUDY)

@@ -62,7 +62,10 @@ def run_snakemake(directory, *arguments, surroundings=None):
 
 def pytest_collection_modifyitems(items):
     """The long files first, so that two processes end at about the same time."""
-    long = ("references", "installation", "readme", "random_systems", "cycles")
+    long = (
+        "references", "installation", "readme", "random_systems", "cycles", "entered_beyond",
+        "published_cycles", "damped_chart", "quality", "documentation",
+    )  # fmt: skip
     files = [f"test_{name}.py" for name in long]
     items.sort(
         key=lambda item: (

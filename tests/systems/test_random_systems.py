@@ -12,6 +12,7 @@ from squealpipe.functions import cos
 from squealpipe.schema import Outcome
 from squealpipe.systems.shipped.dry_friction import dry_friction_oscillator
 from squealpipe.systems.shipped.impact_oscillator import impact_oscillator
+from tests.samples import some
 
 T_END, MOST_EVENTS = 15.0, 60
 DRAWS = int(
@@ -197,7 +198,7 @@ def independent_run(system, start, parameters, max_step):
 @pytest.mark.parametrize(
     ("seed", "draws"),
     [*((n, 1) for n in range(6)),
-     *(pytest.param(n, DRAWS, marks=pytest.mark.release) for n in range(6, 60))],
+     *(pytest.param(n, DRAWS, marks=pytest.mark.release) for n in some(range(6, 60)))],
 )  # fmt: skip
 def test_events_of_random_systems_are_those_of_dop853(seed, draws):
     """Some runs of one structure, event by event."""

@@ -4,7 +4,6 @@ from __future__ import annotations  # help shows Angle, not its checks
 
 from types import SimpleNamespace
 
-import mpmath
 import numpy as np
 import xarray as xr
 
@@ -201,6 +200,8 @@ def _spectrum(
     )
     if k3 == 0 or not close.any():
         return invariants
+    import mpmath  # a quarter of a second, which most jobs and commands can save
+
     rows, columns = np.nonzero(close)
     with mpmath.workdps(DIGITS):
         p = SimpleNamespace(
@@ -228,6 +229,8 @@ def _spectrum(
 
 def _precise(value: float) -> np.ndarray:
     """One high-precision number that multiplies arrays of them."""
+    import mpmath
+
     return np.array([mpmath.mpf(value)], dtype=object)
 
 
@@ -235,6 +238,8 @@ def _precise_geometry(
     angles: np.ndarray, index: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Cosines and sines of some of the angles as arrays of high-precision numbers."""
+    import mpmath
+
     needed, inverse = np.unique(index, return_inverse=True)
     pairs = [mpmath.cos_sin(mpmath.mpf(value)) for value in angles[needed].tolist()]
     table = np.array(pairs, dtype=object).reshape(-1, 2)

@@ -10,6 +10,7 @@ from squealpipe.schema.curves import ChartLine
 from squealpipe.tasks.curves.stability import GRID
 from squealpipe.tasks.dynamics.runs import simulate, validity_map
 from squealpipe.tasks.linear.maps import stability_map
+from tests.samples import some
 
 T_END = 3.0
 LAWS = ("exponential", "hyperbolic", "table", "python")
@@ -88,7 +89,7 @@ def design(place, names, axes, params):
 
 @pytest.mark.parametrize(
     ("seed", "cells"),
-    [(2, 50), *(pytest.param(i, 300, marks=pytest.mark.release) for i in range(20))],
+    [(2, 50), *(pytest.param(i, 300, marks=pytest.mark.release) for i in some(range(20)))],
 )
 def test_charts_of_random_damped_brakes_are_their_maps_and_runs(seed, cells):
     params, axes = random_brake(seed)
