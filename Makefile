@@ -8,7 +8,7 @@ KERNELS := $(VENV)/.kernels-compiled
 TESTS := $(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
 
 # Where the surroundings forbid byte code (many containers do), each of hundreds of processes would compile
-# again what it imports: a process of the tests 10 s, a small job 2 s.
+# again what it imports: a process of the tests for 10 s, a job in a new environment for 3 s.
 unexport PYTHONDONTWRITEBYTECODE
 
 # Snakemake and Matplotlib keep caches in the home folder; without one that can be written, here.
@@ -42,6 +42,7 @@ GENERIC := tests/laws tests/models tests/methods tests/tasks/linear tests/system
   tests/systems/test_cycles.py::test_flip_of_the_impact_oscillator \
   tests/tasks/backbones/test_backbone.py::test_a_period_doubling_just_above_grazing_is_found
 test-processors: dev  ## numerical tests and the tiny study as on other processors
+	$(AVX2) $(LOOP) & $(AVX2) $(ORBITS) && wait $$!
 	$(AVX2) $(TESTS) $(NUMERICAL)
 	tests/processors generic $(TESTS) $(GENERIC)
 	$(if $(SQUEALPIPE_TINY),,$(BIN)/snakemake $(TINY))
@@ -78,9 +79,10 @@ $(STUDY): requirements.lock pyproject.toml
 
 # These compile the event loop (17 s) and the tracer of orbits (9 s) into the user's cache, which several
 # first jobs would otherwise do at once; and byte code of what jobs import, for those who may not write it.
+LOOP = $(BIN)/python -c "from squealpipe.methods.taylor.loop import loop; loop()"
+ORBITS = $(BIN)/python -c "import matplotlib.pyplot, netCDF4, snakemake.cli, squealpipe.cli, squealpipe as s; s.periodic_orbit(s.Parameters(), 0.9, 2.8, mode=1, y_peak=2)"
 $(KERNELS): $(STUDY)
-	$(BIN)/python -c "from squealpipe.methods.taylor.loop import loop; loop()"
-	$(BIN)/python -c "import matplotlib.pyplot, netCDF4, snakemake.cli, squealpipe.cli, squealpipe as s; s.periodic_orbit(s.Parameters(), 0.9, 2.8, mode=1, y_peak=2)"
+	$(LOOP) & $(ORBITS) && wait $$!
 	touch $@
 
 $(DEV): requirements-dev.lock $(STUDY)

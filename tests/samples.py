@@ -1,4 +1,4 @@
-"""How many random cases the release tests take: every third, or with SQUEALPIPE_SAMPLES=all each."""
+"""How many random cases the release tests take: a third, or all with SQUEALPIPE_SAMPLES=all."""
 
 import os
 

@@ -89,7 +89,10 @@ def design(place, names, axes, params):
 
 @pytest.mark.parametrize(
     ("seed", "cells"),
-    [(2, 50), *(pytest.param(i, 300, marks=pytest.mark.release) for i in some(range(20)))],
+    [
+        (2, 50),
+        *(pytest.param(i, 300, marks=pytest.mark.release) for i in some(range(20))),
+    ],
 )
 def test_charts_of_random_damped_brakes_are_their_maps_and_runs(seed, cells):
     params, axes = random_brake(seed)
