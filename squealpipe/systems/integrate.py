@@ -2,7 +2,7 @@
 
 import math
 import weakref
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -84,6 +84,7 @@ class RunOptions:
         sums: keep there what has added up, too.
         tangent: follow a perturbation, for its growth and the horizon of predictability.
         log_events: room for the events of each run.
+        logged: kinds of events that are logged, by default all.
         most_steps, most_events: of each run.
         unit_sizes: of the states; by default the system's.
         t_start: what the system's functions take for the time where a run begins; all other
@@ -101,6 +102,7 @@ class RunOptions:
     sums: bool = False
     tangent: bool = False
     log_events: int = 0
+    logged: Container[str] | None = None
     most_steps: Any = MOST_STEPS
     most_events: Any = MOST_EVENTS
     unit_sizes: np.ndarray | None = None
@@ -287,6 +289,7 @@ class _Batch:
     def _memory(self, counts: dict[str, int], queue: list[int]) -> dict[str, Any]:
         """What the loop reads, and where it works, for one process."""
         t, options, written = self.system.integrated, self.options, self.written
+        logged = t.kinds if options.logged is None else options.logged
         n_events = len(t.surfaces) + len(t.outputs)
         # outputs are watched in all lanes, surfaces as regimes ask
         active = np.zeros(n_events, np.int64)
@@ -320,6 +323,7 @@ class _Batch:
             "share": np.array([share, self.tol, written.bent.any()], float),
             "noise": np.zeros((len(t.surfaces), 2, LANES)),
             "scratch": np.zeros((6, width)),
+            "logs": np.array([kind in logged for kind in t.kinds], np.int64),
             "initial": self.initial,
             "parameters": self.parameters,
             "first_regime": self.regimes,

@@ -22,14 +22,14 @@ BY_EVENT, BY_TURNS = 98, 99
     DELAY, GAP, ORIGIN, FIXED_ROWS,
 ) = range(14)  # fmt: skip
 """Rows of numbers of the lanes that every system has; those of a system follow."""
-JOB, OUTCOME, SAMPLE, EVENTS, CHAINED, HIT, LATE, REGIMES = range(8)
+JOB, OUTCOME, SAMPLE, EVENTS, LOGGED, CHAINED, HIT, LATE, REGIMES = range(9)
 """Rows of integers of the lanes; the last is the first of the regimes, one a component."""
 
 ARRAYS = (
     "rows", "integers", "series", "inverses", "sizes", "tracked", "regimes", "falls", "rises",
     "component_of", "first_constant", "owner", "marks", "active", "fresh", "beyond", "exact",
     "steep", "bent", "share", "noise", "scratch", "initial", "parameters", "first_regime", "limits",
-    "final", "extremes", "counts", "firsts", "durations", "ends", "summary", "sample_times",
+    "final", "extremes", "logs", "counts", "firsts", "durations", "ends", "summary", "sample_times",
     "samples", "sample_regimes", "sample_sums", "event_times", "event_kinds", "event_regimes",
     "event_states", "peaks", "points", "half_turns", "queue",
 )  # fmt: skip

@@ -339,6 +339,7 @@ def _advance(table: Any) -> int:
         limits=view(t.limits, (t.n_jobs, 7), np.float64),
         final=view(t.final, (t.n_jobs, size), np.float64),
         extremes=view(t.extremes, (t.n_jobs, t.n_tracked, 2, 2), np.float64),
+        logs=view(t.logs, (t.n_kinds,), np.int64),
         counts=view(t.counts, (t.n_jobs, t.n_kinds), np.int64),
         firsts=view(t.firsts, (t.n_jobs, t.n_kinds), np.float64),
         durations=view(t.durations, (t.n_jobs, t.n_regimes), np.float64),

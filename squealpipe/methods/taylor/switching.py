@@ -104,16 +104,17 @@ def is_beyond(t: Any, m: Any, lane: int, which: int) -> bool:
 
 @part
 def _log(t: Any, m: Any, lane: int, kind: int, regime: int) -> int:
-    """Count an event and, where there is room, log it; returns how many there were."""
+    """Count an event and, if its kind is and there is room, log it; returns how many there were."""
     integers, job, after = m.integers, m.integers[layout.JOB, lane], m.scratch[3]
-    count = integers[layout.EVENTS, lane]
-    if count < t.n_logged:
-        m.event_times[job, count] = (
+    count, place = integers[layout.EVENTS, lane], integers[layout.LOGGED, lane]
+    if m.logs[kind] and place < t.n_logged:
+        m.event_times[job, place] = (
             m.rows[layout.CLOCK, lane] + m.rows[layout.CORRECTION, lane]
         )
-        m.event_kinds[job, count], m.event_regimes[job, count] = kind, regime
+        m.event_kinds[job, place], m.event_regimes[job, place] = kind, regime
         for variable in range(t.n_states):
-            m.event_states[job, count, variable] = after[variable]
+            m.event_states[job, place, variable] = after[variable]
+        integers[layout.LOGGED, lane] = place + 1
     integers[layout.EVENTS, lane] = count + 1
     m.counts[job, kind] += 1
     before, peaks = m.scratch[0], m.peaks[job, kind]

@@ -241,7 +241,7 @@ class Ensemble:
     @property
     def logged(self) -> np.ndarray:
         """Whether the log holds all events of a run."""
-        return self._shaped(self._raw["logged"])
+        return np.asarray(self.events <= self._raw["event_times"].shape[1])
 
     @property
     def event_kinds(self) -> np.ndarray:
@@ -259,7 +259,6 @@ def run_ensemble(
     sums: bool = False,
     tangent: bool = False,
     log_events: Seed = 0,
-    fill_log: bool = True,
     workers: Workers = None,
     **options: Any,
 ) -> Ensemble:
@@ -270,8 +269,7 @@ def run_ensemble(
             them; the results have the shape to which they are broadcast.
         tracked: of :data:`TRACKED`, those whose extremes are read.
         sums: keep what has added up at ``times``, too.
-        log_events: number of events a run to keep.
-        fill_log: run again where knots of a law's table, which are left out, took their place.
+        log_events: number of events a run to keep; knots of a law's table are none of A1.
         workers: processes; None takes all cores. The results are the same bit for bit.
     """
     jobs = jobs_of(parameters, alpha1, alpha2, **options)
@@ -281,22 +279,14 @@ def run_ensemble(
         sums=sums,
         tangent=tangent,
         log_events=log_events,
-        fill_log=fill_log,
         workers=workers,
     )
 
 
-def integrate(
-    jobs: Jobs,
-    tracked: Sequence[str],
-    *,
-    log_events: int = 0,
-    fill_log: bool = True,
-    **options: Any,
-) -> Ensemble:
+def integrate(jobs: Jobs, tracked: Sequence[str], **options: Any) -> Ensemble:
     """The results of some runs; the arguments are those of :func:`run_ensemble`."""
     parts = [
-        (rows, _run(jobs, system, rows, tracked, log_events, fill_log, **options))
+        (rows, _run(jobs, system, rows, tracked, **options))
         for system, rows in jobs.groups()
     ]
     _, raw = parts[0]
@@ -317,8 +307,6 @@ def _run(
     system: System,
     rows: Any,
     tracked: Sequence[str],
-    log_events: int,
-    fill_log: bool,
     workers: int | None = None,
     **options: Any,
 ) -> dict[str, np.ndarray]:
@@ -335,60 +323,28 @@ def _run(
     )
     until = "separation" if jobs.stop_at_first_separation else None
     most_steps, most_events = jobs.most
-    room = log_events
-    while True:
-        raw = integrate_system(
-            system,
-            values,
-            np.where(apart, 0.0, t_end) if until else t_end,
-            RunOptions(
-                regime=starts,
-                t_late=t_late,
-                late_from="contact" if jobs.late_from_return else None,
-                until=until,
-                around=points,
-                most_turns=jobs.stop_at_turns,
-                tracked=tracked,
-                times=jobs.times[rows],
-                log_events=room,
-                most_steps=most_steps[rows],
-                most_events=most_events[rows],
-                **options,
-            ),
-            tol=jobs.tol,
-            workers=workers,
-        )
-        count = raw["n_events"]
-        raw |= {"starts_apart": apart, "points": points, "logged": count <= room}
-        others = np.array(
-            [name not in Event.__members__ for name in system.traced.kinds]
-        )
-        if not log_events or not others.any():
-            return raw
-        # knots of a law's table are not events of A1
-        if not fill_log or raw["logged"].all():
-            return raw | _without(others, raw, log_events)
-        room = int(count.max())
-
-
-def _without(
-    others: np.ndarray, raw: dict[str, np.ndarray], room: int
-) -> dict[str, np.ndarray]:
-    """The first logged events of each run without those of other kinds."""
-    kinds = raw["event_kinds"]
-    gone = (kinds < 0) | others[kinds]
-    order = np.argsort(gone, axis=1, kind="stable")[:, :room]
-    gone = np.take_along_axis(gone, order, axis=1)
-    times, states = raw["event_times"], raw["event_states"]
-    return {
-        "event_kinds": np.where(gone, -1, np.take_along_axis(kinds, order, axis=1)),
-        "event_times": np.where(gone, np.nan, np.take_along_axis(times, order, axis=1)),
-        "event_states": np.where(
-            gone[..., None],
-            np.nan,
-            np.take_along_axis(states, order[..., None], axis=1),
+    raw = integrate_system(
+        system,
+        values,
+        np.where(apart, 0.0, t_end) if until else t_end,
+        RunOptions(
+            regime=starts,
+            t_late=t_late,
+            late_from="contact" if jobs.late_from_return else None,
+            until=until,
+            around=points,
+            most_turns=jobs.stop_at_turns,
+            tracked=tracked,
+            times=jobs.times[rows],
+            logged=Event.__members__,
+            most_steps=most_steps[rows],
+            most_events=most_events[rows],
+            **options,
         ),
-    }
+        tol=jobs.tol,
+        workers=workers,
+    )
+    return raw | {"starts_apart": apart, "points": points}
 
 
 def run_map(

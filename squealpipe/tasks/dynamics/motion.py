@@ -44,8 +44,7 @@ def as_judged(t_end: Any) -> dict[str, Any]:
 
 def with_log(t_end: float, params: Any) -> dict[str, Any]:
     """Arguments of ``run_ensemble`` for runs that :func:`judge` is given."""
-    room = room_for_events(t_end, params)
-    return {**as_judged(t_end), "log_events": room, "fill_log": False}
+    return {**as_judged(t_end), "log_events": room_for_events(t_end, params)}
 
 
 def room_for_events(t_end: float, params: Any) -> int:
