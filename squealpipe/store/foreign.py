@@ -9,7 +9,7 @@ import xarray as xr
 
 from squealpipe.laws.numerals import decimal_sign, numeral
 from squealpipe.laws.rows import text_rows
-from squealpipe.store.netcdf import DAMAGED, MARK, load
+from squealpipe.store.netcdf import DAMAGED, MARK, load, with_plain_texts
 from squealpipe.store.whole_files import StoreError
 
 
@@ -38,10 +38,7 @@ def load_any(path: str | os.PathLike[str]) -> xr.Dataset:
         ) from error
     if not foreign:  # ours, but without its last line
         return load(source)
-    for variable in dataset.variables.values():
-        if variable.dtype == object:
-            variable.values = variable.values.astype(str)
-    return dataset
+    return with_plain_texts(dataset)
 
 
 def _table(path: Path) -> xr.Dataset:
@@ -61,11 +58,7 @@ def _table(path: Path) -> xr.Dataset:
         frame = frame.set_index(first)
     else:
         frame.index.name = "row"
-    dataset = xr.Dataset.from_dataframe(frame)
-    for variable in dataset.variables.values():
-        if variable.dtype == object:
-            variable.values = variable.values.astype(str)
-    return dataset
+    return with_plain_texts(xr.Dataset.from_dataframe(frame))
 
 
 def _form(path: Path) -> dict[str, Any]:

@@ -180,7 +180,12 @@ def read(path: str | os.PathLike[str]) -> xr.Dataset:
         raise StoreError(
             f"{source} is truncated or not NetCDF-4 ({error}); delete it and run snakemake again"
         ) from error
+    return with_plain_texts(dataset)
+
+
+def with_plain_texts(dataset: xr.Dataset) -> xr.Dataset:
+    """The dataset, whose texts are NumPy's instead of objects."""
     for variable in dataset.variables.values():
-        if variable.dtype == np.dtype("O"):
+        if variable.dtype == object:
             variable.values = variable.values.astype(str)
     return dataset

@@ -18,18 +18,15 @@ from squealpipe.study.report import answer
 LONGEST_NAME = 31
 """Characters of a sheet's name that Excel allows."""
 
-CURES = (
-    "scene",
-    "changed alone",
-    "unit",
-    "now",
-    "quiet from",
-    "change (% or deg)",
-    "quiet from, any start",
-    "lowest tried",
-    "highest tried",
-)
-"""Columns of the sheet that says what stops the squeal."""
+CURES = {
+    "now": "value",
+    "quiet from": "quiet_from",
+    "change (% or deg)": "change",
+    "quiet from, any start": "quiet_from_any_start",
+    "lowest tried": "lowest_tried",
+    "highest tried": "highest_tried",
+}
+"""Columns of numbers on the sheet that says what stops the squeal → variables of the answer."""
 
 
 def write_tables(
@@ -40,7 +37,8 @@ def write_tables(
     first = book.active
     first.title = "Answer"
     _fill(first, ["quantity", "unit", *answers], _scalars(answers))
-    _fill(book.create_sheet("What stops it"), CURES, _cures(answers))
+    head = ["scene", "changed alone", "unit", *CURES]
+    _fill(book.create_sheet("What stops it"), head, _cures(answers))
     _fill(
         book.create_sheet("Parameters"),
         ["parameter", "meaning", "value", "unit"],
@@ -101,22 +99,8 @@ def _cures(answers: Mapping[str, xr.Dataset]) -> Iterable[list[Any]]:
     for scene, told in answers.items():
         for name in told.cure.values:
             row = told.sel(cure=name)
-            yield [
-                scene,
-                answer.NAMES[str(name)],
-                str(row.unit.item()),
-                *(
-                    float(row[key])
-                    for key in (
-                        "value",
-                        "quiet_from",
-                        "change",
-                        "quiet_from_any_start",
-                        "lowest_tried",
-                        "highest_tried",
-                    )
-                ),
-            ]
+            words, unit = answer.NAMES[str(name)], str(row.unit.item())
+            yield [scene, words, unit, *(float(row[key]) for key in CURES.values())]
 
 
 def _plain(name: str, value: Any) -> Any:

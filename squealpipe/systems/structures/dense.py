@@ -18,6 +18,7 @@ from squealpipe.systems.structures.refinement import (
     error_of_rounding_of_square,
     polished,
     quotient,
+    unit_vector,
 )
 
 BACKWARD = 8.0
@@ -78,7 +79,7 @@ def _of_real_square(
     pencil: Pencil, square: float, right: np.ndarray, left: np.ndarray, scale: float
 ) -> list[Eigenpair]:
     """A pair on the imaginary axis, or two real values, of a real λ."""
-    v, w = _unit(right), _unit(left)
+    v, w = unit_vector(right), unit_vector(left)
     error = _error_of_square(pencil, v, w, scale)
     if abs(square) > error:
         mass, _, stiffness = (w @ each for each in pencil.products(v))
@@ -110,7 +111,7 @@ def _checked(
     pencil: Pencil, value: complex, right: np.ndarray, left: np.ndarray, scale: float
 ) -> Eigenpair:
     """A complex root of λ with its error."""
-    v, w = _unit(right), _unit(left)
+    v, w = unit_vector(right), unit_vector(left)
     error = _error_of_square(pencil, v, w, scale)
     spread = min(error / (2 * abs(value)), np.sqrt(error))
     return Eigenpair(complex(value), v, w, float(spread))
@@ -143,8 +144,8 @@ def _damped(pencil: Pencil) -> list[Eigenpair]:
         )
         bound = BACKWARD * np.finfo(float).eps * norm
         error = min(bound * condition, np.sqrt(bound * norm))
-        v = _unit(la.solve_triangular(lower.T, x[:size]).astype(complex))
-        w = _unit(la.solve_triangular(lower.T, y[size:]).astype(complex))
+        v = unit_vector(la.solve_triangular(lower.T, x[:size]).astype(complex))
+        w = unit_vector(la.solve_triangular(lower.T, y[size:]).astype(complex))
         if error > ENOUGH * max(abs(value.real), 1.0):
             root, rate = quotient(pencil, value, v, w)
             gap = np.abs(np.delete(values, place) - value).min(initial=np.inf)
@@ -157,7 +158,3 @@ def _damped(pencil: Pencil) -> list[Eigenpair]:
                 )
         pairs.append(Eigenpair(complex(value), v, w, float(error)))
     return pairs
-
-
-def _unit(vector: np.ndarray) -> Any:
-    return vector / np.linalg.norm(vector)

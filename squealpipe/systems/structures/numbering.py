@@ -225,14 +225,10 @@ class Way:
     def _nearest(self, step: Step, number: int) -> int | None:
         """The mode that came near by frequency, if one did."""
         first = next(iter(self.steps.values()))
-        now = {
-            int(k): v.imag
-            for k, v in zip(step.numbers, step.spectrum.values, strict=True)
-        }
-        then = {
-            int(k): v.imag
-            for k, v in zip(first.numbers, first.spectrum.values, strict=True)
-        }
+        now, then = (
+            dict(zip(at.numbers.tolist(), at.spectrum.values.imag, strict=True))
+            for at in (step, first)
+        )
         own = now.pop(number)
         if own == 0 or number not in then:
             return None

@@ -117,8 +117,8 @@ def polished(
         factors = pencil.factorized(value + offset)
         before = value
         for _ in range(2):
-            right = _unit(factors.solve(pencil.rate(value, right)))
-            left = _unit(factors.solve_adjoint(pencil.rate(value, left)))
+            right = unit_vector(factors.solve(pencil.rate(value, right)))
+            left = unit_vector(factors.solve_adjoint(pencil.rate(value, left)))
             last, (value, rate) = value, quotient(pencil, value, right, left)
             change = abs(value - last)
         if abs(value - before) <= 1e-6 * abs(value):
@@ -131,7 +131,7 @@ def refined(pencil: Pencil, estimates: Sequence[Estimate]) -> Iterator[Eigenpair
     """Each eigenpair by Rayleigh's quotient, polished where that is not accurate enough."""
     values = np.array([each.value for each in estimates])
     for place, each in enumerate(with_progress(estimates)):
-        right, left = _unit(each.right), _unit(each.left)
+        right, left = unit_vector(each.right), unit_vector(each.left)
         value, rate = quotient(pencil, each.value, right, left)
         others = np.abs(np.delete(values, place) - value)
         # what is left of the vectors' errors, wᴴQ Q⁻¹ Q v, by the factors of a point nearby: these
@@ -147,5 +147,6 @@ def refined(pencil: Pencil, estimates: Sequence[Estimate]) -> Iterator[Eigenpair
             yield Eigenpair(value, right, left, error)
 
 
-def _unit(vector: np.ndarray) -> Any:
+def unit_vector(vector: np.ndarray) -> Any:
+    """A vector of length 1."""
     return vector / np.linalg.norm(vector)

@@ -6,7 +6,6 @@ import numpy as np
 
 from squealpipe.parameters import HORIZON
 from squealpipe.schema import Outcome
-from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.inference.candidates import Candidates
 from squealpipe.tasks.inference.unstable_cells import (
     midpoints,
@@ -80,15 +79,7 @@ def _outcome(
     shape = np.broadcast_shapes(candidates.fields["mu"].shape, alpha1.shape)
     if 0 in shape:
         return np.zeros(shape, np.int8)
-    run = run_ensemble(
-        candidates.fields,
-        alpha1,
-        alpha2,
-        t_end=HORIZON * candidates.time_unit,
-        model=candidates.model,
-        stop_at_first_separation=True,
-        tracked=(),
-        tol=candidates.tol,
-        workers=candidates.workers,
-    )
-    return run.outcome
+    t_end = HORIZON * candidates.time_unit
+    return candidates.ensemble(
+        alpha1, alpha2, t_end=t_end, stop_at_first_separation=True, tracked=()
+    ).outcome

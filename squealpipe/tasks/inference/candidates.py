@@ -71,19 +71,30 @@ class Candidates:
         """√(m/k1), s."""
         return np.asarray(np.sqrt(self.fields["mass"] / self.fields["k1"]))
 
-    def run(self, scene: Scene, variant: str = "") -> Ensemble:
-        """The motion at a scene over its horizon, with its second half as the late one."""
-        t_end = scene.t_end * self.time_unit
+    def ensemble(
+        self, alpha1: Any, alpha2: Any, *, variant: str = "", **options: Any
+    ) -> Ensemble:
+        """Motions of all sets."""
         return run_ensemble(
             self.fields,
-            scene.alpha1,
-            scene.alpha2,
-            t_end=t_end,
-            t_late=0.5 * t_end,
-            tracked=("x", "contact_force"),
+            alpha1,
+            alpha2,
             model=self.model + variant,
             tol=self.tol,
             workers=self.workers,
+            **options,
+        )
+
+    def run(self, scene: Scene, variant: str = "") -> Ensemble:
+        """The motion at a scene over its horizon, with its second half as the late one."""
+        t_end = scene.t_end * self.time_unit
+        return self.ensemble(
+            scene.alpha1,
+            scene.alpha2,
+            variant=variant,
+            t_end=t_end,
+            t_late=0.5 * t_end,
+            tracked=("x", "contact_force"),
             initial_state=self.initial_state,
         )
 
@@ -102,15 +113,11 @@ class Candidates:
             if not left.size:
                 break
             some = self.subset(left)
-            run = run_ensemble(
-                some.fields,
+            run = some.ensemble(
                 scene.alpha1,
                 scene.alpha2,
                 t_end=WINDOW * some.time_unit,
                 tracked=("x",),
-                model=self.model,
-                tol=self.tol,
-                workers=self.workers,
                 initial_state=state[left],
             )
             sizes[left, window] = np.maximum(run.early_max_x, run.late_max_x)

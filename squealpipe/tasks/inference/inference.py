@@ -93,10 +93,7 @@ def infer_parameters(
         {
             **groups,
             **joined,
-            "baseline_kappa": params.kappa,
-            "baseline_mu": params.mu,
-            "baseline_length_ratio": params.length_ratio,
-            "baseline_speed_ratio": params.speed_ratio,
+            **{f"baseline_{name}": getattr(params, name) for name in ranges},
             "baseline_reading": list(READINGS).index(reading),
             "baseline_margin": [
                 [float(each.margin[0]) for each in row] for row in margins

@@ -3,18 +3,14 @@
 The unstable cycle is the smallest vibration that is still drawn to squeal at its friction.
 """
 
-from typing import Any
-
 import numpy as np
 
-from squealpipe.schema import Outcome
 from squealpipe.schema.branch_labels import Label
 from squealpipe.systems.cycles.branch import first_point
-from squealpipe.systems.cycles.find import find_cycle
 from squealpipe.systems.cycles.following import Follower
-from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.cycles.trail import BranchPoint
 from squealpipe.systems.structures.squeal.descent import Track, UnstableCycles
+from squealpipe.systems.structures.squeal.kinds import stable_cycle
 from squealpipe.systems.structures.squeal.plant import Plant
 
 MOST_POINTS = 32
@@ -29,8 +25,9 @@ TURNS_AT = {Label.fold, Label.border_collision}
 
 def add_fold(plant: Plant, track: Track, onset: float, width: float) -> None:
     """Locate where a track dies by the cycle that it lasts in, if it is one that folds there."""
-    cycle = _cycle(plant, track)
-    first = first_point(cycle, "mu", 0.0) if cycle is not None else None
+    last = track.lasts
+    cycle = stable_cycle(plant, last.state, last.regimes, last.frequency, mu=last.mu)
+    first = first_point(cycle, "mu", 0.0) if cycle and cycle.events else None
     if first is None:
         return
     follower = Follower(0.0, BEFORE * onset, MOST_POINTS)
@@ -46,23 +43,6 @@ def add_fold(plant: Plant, track: Track, onset: float, width: float) -> None:
     track.unstable = UnstableCycles(
         frictions[place:], np.array([_speed(plant, each) for each in points[place:]])
     )
-
-
-def _cycle(plant: Plant, track: Track) -> Cycle | None:
-    """The stable cycle that a track lasts in."""
-    last, system = track.lasts, plant.system
-    values: dict[str, Any] = {**system.parameters, "mu": last.mu}
-    cycle, outcome = find_cycle(
-        system,
-        values,
-        last.state,
-        guess=True,
-        regime=system.joint.number(last.regimes.tolist()),
-        unit=1.0 / last.frequency,
-    )
-    if cycle is None or outcome != Outcome.converged:
-        return None
-    return cycle if cycle.is_stable and cycle.events else None
 
 
 def _speed(plant: Plant, point: BranchPoint) -> float:

@@ -6,6 +6,7 @@ closes it to a cycle, whose multipliers decide. What neither repeats nor runs aw
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -124,23 +125,40 @@ def _repeats(raw: dict[str, np.ndarray], length: float, within: float) -> bool:
     return repeats_after(at[late], kinds[late], within) > 0
 
 
+def stable_cycle(
+    plant: Plant,
+    state: np.ndarray,
+    regimes: np.ndarray,
+    frequency: float,
+    **parameters: float,
+) -> Cycle | None:
+    """The stable cycle near a state, if the exact map closes one there.
+
+    Args:
+        frequency: of the motion, Hz.
+        parameters: of the system, where they are not its own.
+    """
+    system = plant.system
+    values: dict[str, Any] = {**system.parameters, **parameters}
+    regime = system.joint.number(regimes.tolist())
+    cycle, outcome = find_cycle(
+        system, values, state, guess=True, regime=regime, unit=1.0 / frequency
+    )
+    if cycle is None or outcome != Outcome.converged or not cycle.is_stable:
+        return None
+    return cycle
+
+
 def _closed(
     plant: Plant, settled: SettledMotion, raw: dict[str, np.ndarray], frequency: float
 ) -> Cycle | None:
     """The stable cycle through the end of the run, if the exact map finds it there."""
     if raw["outcome"][0] != Outcome.converged or not np.isfinite(frequency):
         return None
-    system = plant.system
-    regime = system.joint.number(raw["sample_regimes"][0, -1].tolist())
-    cycle, outcome = find_cycle(
-        system,
-        system.parameters,
-        raw["final"][0],
-        guess=True,
-        regime=regime,
-        unit=1.0 / frequency,
+    cycle = stable_cycle(
+        plant, raw["final"][0], raw["sample_regimes"][0, -1], frequency
     )
-    if cycle is None or outcome != Outcome.converged or not cycle.is_stable:
+    if cycle is None:
         return None
     # the same motion: as many events in a period as in the run
     rate = len(cycle.events) / cycle.period

@@ -187,8 +187,7 @@ def exact_told(
         found = _exact_ends(plant, rows[1], rows[2], count, tol)
     for place in pushes:
         if place is None:
-            nothing = _nothing(plant.structure)
-            ends.append(PushEnd(outcome=Outcome.converged, has_mode=False, **nothing))
+            ends.append(_without_mode(plant.structure))
         else:
             ends.append(found[known.index(place)])
     return Told(
@@ -227,8 +226,7 @@ def smoothed_told(
     ends, spent, evaluations = [], 0.0, 0
     for place in _pushes(plant, frequencies):
         if place is None:
-            nothing = _nothing(structure)
-            ends.append(PushEnd(outcome=Outcome.converged, has_mode=False, **nothing))
+            ends.append(_without_mode(structure))
             continue
         start = plant.pushed(place, PUSH)
         samples, once = _timed(lambda start=start: model.run(start, times, tol), 1)  # type: ignore[misc]
@@ -278,6 +276,11 @@ def _pushes(plant: Plant, frequencies: np.ndarray) -> list[int | None]:
 def _nothing(structure: ContactStructure) -> dict[str, Any]:
     names = ("separated", "stuck", "creep", "force")
     return {name: np.full(len(structure.contacts), np.nan) for name in names}
+
+
+def _without_mode(structure: ContactStructure) -> PushEnd:
+    nothing = _nothing(structure)
+    return PushEnd(outcome=Outcome.converged, has_mode=False, **nothing)
 
 
 def _instants(plant: Plant, horizon: Horizon) -> tuple[float, np.ndarray]:
