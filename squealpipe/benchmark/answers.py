@@ -122,8 +122,8 @@ def _score(
         answer.get("derivative"),
     )
     try:
-        found = score(data, truth, parts, float(answer["tolerance"]))
+        scored = score(data, truth, parts, float(answer["tolerance"]))
     except (TypeError, ValueError) as failure:
-        found = failed(data, f"{type(failure).__name__}: {failure}")
+        scored = failed(data, f"{type(failure).__name__}: {failure}")
     spent = answer.get("cpu_time")
-    return found._replace(cpu_time=np.nan if spent is None else float(spent))
+    return scored._replace(cpu_time=np.nan if spent is None else float(spent))

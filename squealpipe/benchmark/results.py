@@ -114,5 +114,5 @@ def read_results(path: Path | str) -> xr.Dataset:
 def shipped() -> dict[str, Any]:
     """The results that come with the package, with package and processor of each solver."""
     text = (files("squealpipe.benchmark") / "results.json").read_text("utf-8")
-    found: dict[str, Any] = json.loads(text)
-    return found
+    results: dict[str, Any] = json.loads(text)
+    return results

@@ -52,7 +52,7 @@ class Score(NamedTuple):
     def words(self) -> str:
         """The score as text: the verdict, then what is wrong."""
         counts = {n: getattr(self, n) for n in ("missed", "spurious", "out_of_order")}
-        found = [
+        remarks = [
             f"{count} {name.replace('_', ' ')}"
             for name, count in counts.items()
             if count > 0
@@ -62,10 +62,10 @@ class Score(NamedTuple):
             self.verdict == Reliability.flagged or np.isinf(self.error)
         )
         if self.verdict > Reliability.right and not (np.isnan(self.error) or said):
-            found.append(f"error {self.error:.1e}")
-        found += [self.message] * bool(self.message)
+            remarks.append(f"error {self.error:.1e}")
+        remarks += [self.message] * bool(self.message)
         verdict = self.verdict.name.replace("_", " ")
-        return f"{verdict} ({', '.join(found)})" if found else verdict
+        return f"{verdict} ({', '.join(remarks)})" if remarks else verdict
 
 
 def score(
@@ -194,23 +194,23 @@ def measure(data: Mapping[str, Any], solve: Callable[..., Any], tol: float) -> S
         spent = time.process_time() - started
         if problem.calls:
             answer = (*answer[:3], problem.calls, *answer[4:])
-        found = score(data, references()[data["name"]], answer, tol)
+        scored = score(data, references()[data["name"]], answer, tol)
     except NotImplementedError as refusal:
         return Score(Reliability.not_applicable, message=str(refusal)[:64])
     except (Exception, SystemExit) as failure:  # noqa: BLE001 (whatever a solver raises)
         spent = time.process_time() - started
-        found = failed(data, f"{type(failure).__name__}: {failure}", problem.calls)
+        scored = failed(data, f"{type(failure).__name__}: {failure}", problem.calls)
     if altered := _altered(problem, data):
-        remarks = [found.message] * bool(found.message)
-        found = found._replace(message="; ".join([*remarks, f"altered {altered}"]))
-    return found._replace(cpu_time=spent, message=found.message[:64])
+        remarks = [scored.message] * bool(scored.message)
+        scored = scored._replace(message="; ".join([*remarks, f"altered {altered}"]))
+    return scored._replace(cpu_time=spent, message=scored.message[:64])
 
 
 def failed(data: Mapping[str, Any], flag: str, calls: int = 0) -> Score:
     """The score of no answer, and of what was said instead."""
     reference = references()[data["name"]]
-    found = score(data, reference, (None, None, [], calls, flag), 1.0)
-    return found._replace(message=flag[:64])
+    scored = score(data, reference, (None, None, [], calls, flag), 1.0)
+    return scored._replace(message=flag[:64])
 
 
 def _altered(problem: Problem, data: Mapping[str, Any]) -> str:
@@ -268,9 +268,9 @@ def benchmark(
         cells.append([])
         for name, worker in workers.items():
             _ask(worker, data, tolerances[0])  # compiles before any stopwatch runs
-            found = [_ask(worker, data, tol) for tol in tolerances]
+            scores = [_ask(worker, data, tol) for tol in tolerances]
             cells[-1].append(
-                [each._replace(cpu_ratio=each.cpu_time / unit) for each in found]
+                [each._replace(cpu_ratio=each.cpu_time / unit) for each in scores]
             )
             done(data["name"], name, cells[-1][-1])
     for worker in workers.values():

@@ -27,16 +27,16 @@ def list_runs(*, json_: AsJson = False) -> int:
     """
     from squealpipe.store.catalogue import paper_configuration, runs
 
-    found, paper = runs(), paper_configuration()
+    listed, paper = runs(), paper_configuration()
     if json_:
         print(
             json.dumps(
-                [asdict(run) | {"changed": run.changed(paper)} for run in found],
+                [asdict(run) | {"changed": run.changed(paper)} for run in listed],
                 indent=1,
             )
         )
         return DONE
-    if not found:
+    if not listed:
         print(
             "no archives and no results yet; run snakemake, then squealpipe archive NAME"
         )
@@ -60,13 +60,13 @@ def list_runs(*, json_: AsJson = False) -> int:
             "damaged" if run.faults else "intact" if run.finished else "unfinished",
             _changes(run.changed(paper)),
         )
-        for run in found
+        for run in listed
     ]
     widths = [max(len(row[column]) for row in rows) for column in range(5)]
     for row in rows:
         cells = [cell.ljust(width) for cell, width in zip(row, widths, strict=False)]
         print("  ".join([*cells, row[-1]]).rstrip())
-    _warn(found)
+    _warn(listed)
     return DONE
 
 

@@ -36,13 +36,13 @@ def assess(
     from squealpipe.study.report.answer import lines
 
     if output is not None:
-        found = compute("assess", brake, alpha1, alpha2, output=output, tol=tol)
+        verdict = compute("assess", brake, alpha1, alpha2, output=output, tol=tol)
     elif brake.picture is not None:
         raise ValueError("--picture is drawn beside a dataset; name that by --output")
     else:
         import squealpipe
 
         with working("assess"):
-            found = squealpipe.assess(brake.params, alpha1, alpha2, tol=tol)
-    answer(*lines(found))
-    return DONE if int(found.verdict) == 0 else ANSWER_IS_NO
+            verdict = squealpipe.assess(brake.params, alpha1, alpha2, tol=tol)
+    answer(*lines(verdict))
+    return DONE if int(verdict.verdict) == 0 else ANSWER_IS_NO

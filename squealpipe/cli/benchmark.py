@@ -105,10 +105,10 @@ def score(
     from squealpipe.cli.output import check_output, write
 
     check_output(output, force=force)
-    found = write(
+    scores = write(
         lambda: score_answers(answers), output, config={"answers": answers.name}
     )
-    return _verdict(found, output)
+    return _verdict(scores, output)
 
 
 def results(

@@ -55,10 +55,10 @@ def session(arguments: Sequence[str]) -> Iterator[list[str]]:
     """Apply -q and -v, which every command takes, and give the other arguments."""
     arguments = _options_first(arguments)
     end = arguments.index("--") if "--" in arguments else len(arguments)
-    found = {SWITCHES[each] for each in arguments[:end] if each in SWITCHES}
+    switches = {SWITCHES[each] for each in arguments[:end] if each in SWITCHES}
     kept = [each for each in arguments[:end] if each not in SWITCHES]
-    SESSION.quiet = "quiet" in found
-    SESSION.verbose = "verbose" in found or os.environ.get(TRACEBACK, "0") not in {
+    SESSION.quiet = "quiet" in switches
+    SESSION.verbose = "verbose" in switches or os.environ.get(TRACEBACK, "0") not in {
         "",
         "0",
     }

@@ -95,7 +95,7 @@ def refine(
         coarse: points per side of the first grid.
         t_end: end of each run, s; 200 √(mass/k1) by default.
     """
-    found = compute(
+    validity = compute(
         "refine_validity_map",
         brake,
         output=output,
@@ -106,11 +106,14 @@ def refine(
         tol=tol,
         workers=workers,
     )
-    (low, high), run = found.inherited_error_interval.values, int(found.computed.sum())
+    (low, high), run = (
+        validity.inherited_error_interval.values,
+        int(validity.computed.sum()),
+    )
     wrong = f"; of the others {low:.2%} to {high:.2%} are wrong (95 %)"
     answer(
-        f"contact is lost in {int(found.separates.sum())} of {found.separates.size} cells",
-        f"{run} cells were run{wrong if run < found.computed.size else ''}",
+        f"contact is lost in {int(validity.separates.sum())} of {validity.separates.size} cells",
+        f"{run} cells were run{wrong if run < validity.computed.size else ''}",
     )
     return DONE
 

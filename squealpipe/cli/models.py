@@ -58,15 +58,15 @@ def choose(
     from squealpipe.schema.ladder import Level
 
     with working("choose"):
-        found = choose_model(brake.params, alpha1, alpha2, question, t_end=t_end)
+        choice = choose_model(brake.params, alpha1, alpha2, question, t_end=t_end)
     value = (
-        f"{found.value:.6g}"
+        f"{choice.value:.6g}"
         if question != "contact_lost"
-        else ("no", "yes")[int(found.value)]
+        else ("no", "yes")[int(choice.value)]
     )
     answer(
         f"{question.replace('_', ' ')}: {value}",
-        f"by {Level[found.model].label}: {found.reason}",
+        f"by {Level[choice.model].label}: {choice.reason}",
     )
     return DONE
 
@@ -99,7 +99,7 @@ def infer(
         speed_ratio: range of the belt speed over l_pre √(k/m), LOW,HIGH.
         seed: of the random sample.
     """
-    found = compute(
+    inference = compute(
         "infer_parameters",
         brake,
         output=output,
@@ -114,7 +114,7 @@ def infer(
         workers=workers,
     )
     for name, count in zip(
-        found.reading.values, found.feasible_count.values, strict=True
+        inference.reading.values, inference.feasible_count.values, strict=True
     ):
         answer(f"{name}: {count} of {samples} sets meet every statement")
     return DONE
@@ -155,7 +155,7 @@ def propensity(
     for name in sorted(set(distributions) & SESSION.typed):
         raise ValueError(f"{name} is both fixed and distributed; keep one")
     t_end = HORIZON * brake.params.time_unit if t_end is None else t_end
-    found = compute(
+    shares = compute(
         "propensity",
         brake,
         alpha1,
@@ -167,8 +167,8 @@ def propensity(
         spring_correlation=spring_correlation,
         seed=seed,
     )
-    for name in found.quantity.values:
-        one = found.sel(quantity=name)
+    for name in shares.quantity.values:
+        one = shares.sel(quantity=name)
         share, low, high = (float(one[f"share{end}"]) for end in ("", "_low", "_high"))
         answer(
             f"{name.replace('_', ' '):<20} {share:8.2%}  (95 %: {low:.2%} to {high:.2%})"

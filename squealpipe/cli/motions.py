@@ -187,7 +187,7 @@ def cycle(
             rest settles to.
         t_settle: after which that run counts as settled, s; 2000 √(mass/min(k1, k2)) by default.
     """
-    found = compute(
+    orbit = compute(
         "limit_cycle",
         brake,
         alpha1,
@@ -196,17 +196,17 @@ def cycle(
         guess=guess,
         t_settle=t_settle,
     )
-    outcome, why = ending(found.outcome)
+    outcome, why = ending(orbit.outcome)
     if outcome not in {"converged", "family_member"}:
         answer(f"no periodic motion was found: {why}")
         return ANSWER_IS_NO
     answer(
-        f"period {float(found.period):.9g} s, {'stable' if found.stable == 1 else 'not stable'}, "
-        f"{found.sizes['event']} events",
-        f"x from {float(found.x_min):.6g} to {float(found.x_max):.6g} m, "
-        f"y from {float(found.y_min):.6g} to {float(found.y_max):.6g} m",
-        f"in contact for {float(found.contact_fraction):.1%} of it, in stick for "
-        f"{float(found.stick_fraction):.1%}",
+        f"period {float(orbit.period):.9g} s, {'stable' if orbit.stable == 1 else 'not stable'}, "
+        f"{orbit.sizes['event']} events",
+        f"x from {float(orbit.x_min):.6g} to {float(orbit.x_max):.6g} m, "
+        f"y from {float(orbit.y_min):.6g} to {float(orbit.y_max):.6g} m",
+        f"in contact for {float(orbit.contact_fraction):.1%} of it, in stick for "
+        f"{float(orbit.stick_fraction):.1%}",
     )
     if outcome == "family_member":
         answer(f"note: {why}")
@@ -242,7 +242,7 @@ def branch(
         doubled: follow the branch that leaves at the first period doubling instead.
     """
     name = parameter.replace("-", "_")
-    found = compute(
+    cycles = compute(
         "cycle_branch",
         brake,
         alpha1,
@@ -254,15 +254,15 @@ def branch(
         n_points=n_points,
         doubled=doubled,
     )
-    _, why = ending(found.end)
-    if not found.sizes["point"]:
+    _, why = ending(cycles.end)
+    if not cycles.sizes["point"]:
         answer(f"no point of a branch was found: {why}")
         return ANSWER_IS_NO
-    values = found[name]
+    values = cycles[name]
     answer(
-        f"{found.sizes['point']} points, {parameter} from {float(values[0]):.6g} to "
+        f"{cycles.sizes['point']} points, {parameter} from {float(values[0]):.6g} to "
         f"{float(values[-1]):.6g}",
-        *_special(found, values),
+        *_special(cycles, values),
         f"the branch ends: {why}",
     )
     return DONE

@@ -136,5 +136,5 @@ def ending(outcome: xr.DataArray) -> tuple[str, str]:
     """The name of an outcome, and the words for it with its remedy."""
     from squealpipe.schema import Outcome
 
-    found = Outcome(int(outcome))
-    return found.name, f"{found.name} ({found.remedy})"
+    reached = Outcome(int(outcome))
+    return reached.name, f"{reached.name} ({reached.remedy})"

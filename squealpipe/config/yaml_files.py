@@ -93,8 +93,8 @@ def overlay(base: dict[str, Any], top: Mapping[str, Any]) -> None:
 
 def flat(tree: Mapping[str, Any], stem: str = "") -> dict[str, Any]:
     """Dotted key → value, for all that is not a mapping."""
-    found: dict[str, Any] = {}
+    leaves: dict[str, Any] = {}
     for key, value in tree.items():
         path = f"{stem}.{key}" if stem else str(key)
-        found |= flat(value, path) if isinstance(value, Mapping) else {path: value}
-    return found
+        leaves |= flat(value, path) if isinstance(value, Mapping) else {path: value}
+    return leaves

@@ -69,11 +69,11 @@ class Chunks:
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def _files(self) -> list[tuple[int, int, Path]]:
-        found = []
+        files = []
         for path in self.place.glob("[0-9]*-[0-9]*-*.npz"):
             first, last, _ = path.stem.split("-")
-            found.append((int(first), int(last), path))
-        return sorted(found)
+            files.append((int(first), int(last), path))
+        return sorted(files)
 
 
 def beside(output: Path, key: str) -> Chunks:

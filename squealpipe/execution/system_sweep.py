@@ -185,10 +185,10 @@ class SystemSweep:
         whole: dict[Any, Any] = dict(part.variables)
         for name, array in arrays.items():
             whole[name] = (part[name].dims, array, part[name].attrs)
-        found = xr.Dataset(whole, attrs=part.attrs).set_coords([*part.coords])
-        if "attractor" in found:
-            return basin.renumbered(self.system, found)
-        return found
+        joined = xr.Dataset(whole, attrs=part.attrs).set_coords([*part.coords])
+        if "attractor" in joined:
+            return basin.renumbered(self.system, joined)
+        return joined
 
     def _block(
         self, some: Mapping[str, Sequence[float]], workers: int | None

@@ -13,8 +13,8 @@ def without_neighbours() -> Iterator[None]:
     Whether that is on Python's path depends on how Python was started, and no key of a result
     follows what is imported from there.
     """
-    before, here = sys.path[:], Path.cwd()
-    sys.path[:] = [entry for entry in before if Path(entry).resolve() != here]
+    before, folder = sys.path[:], Path.cwd()
+    sys.path[:] = [entry for entry in before if Path(entry).resolve() != folder]
     try:
         yield
     finally:

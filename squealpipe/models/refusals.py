@@ -23,23 +23,25 @@ def extensions(params: Parameters) -> list[str]:
     of_other_laws = {name for law in LAWS.values() for name in law.PARAMETERS} - set(
         LAWS[COULOMB].PARAMETERS
     )
-    given = {
+    beyond = {
         name: getattr(params, name)
         for name, row in TABLE.items()
         if row.extension and name not in of_other_laws
     }
     if params.static_mu == params.mu:
-        given.pop("mu_static")
-    return [name for name, value in given.items() if value != DEFAULTS[name]]
+        beyond.pop("mu_static")
+    return [name for name, value in beyond.items() if value != DEFAULTS[name]]
 
 
 def refuse_extensions(params: Parameters, who: str, why: str) -> None:
     """Stop a level that carries no :func:`extensions`."""
     if wrong := extensions(params):
-        found = ", ".join(f"{name} = {brief(getattr(params, name))}" for name in wrong)
+        extended = ", ".join(
+            f"{name} = {brief(getattr(params, name))}" for name in wrong
+        )
         remedy = ", ".join(f"{name} = {DEFAULTS[name]!r}" for name in wrong)
         raise ValueError(
-            f"{found}: {who} cannot carry this ({why}); use model A1, or {remedy}"
+            f"{extended}: {who} cannot carry this ({why}); use model A1, or {remedy}"
         )
 
 

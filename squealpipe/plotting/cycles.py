@@ -134,17 +134,17 @@ def trace_branch(
         points = branch.label.values == value
         if name in MARKS and points.any():
             marker, colour, words = MARKS[name]
-            here = parameters[points], sizes[points]
-            axes.plot(*here, marker, color=colour, markersize=4, zorder=4, label=words)
+            sites = parameters[points], sizes[points]
+            axes.plot(*sites, marker, color=colour, markersize=4, zorder=4, label=words)
 
 
 def key_entries(panels: Iterable[Axes]) -> tuple[list[Artist], list[str]]:
     """Each label once, over all panels."""
-    found: dict[str, Artist] = {}
+    entries: dict[str, Artist] = {}
     for panel in panels:
         for handle, words in zip(*panel.get_legend_handles_labels(), strict=True):
-            found.setdefault(words, handle)
-    return list(found.values()), list(found)
+            entries.setdefault(words, handle)
+    return list(entries.values()), list(entries)
 
 
 def joined(chosen: np.ndarray) -> np.ndarray:

@@ -24,10 +24,10 @@ def has_tracks(answer: xr.Dataset) -> bool:
 
 def draw_hysteresis(axes: Axes, answer: xr.Dataset) -> None:
     """Level of each motion that was followed, over friction; dashed: the unstable cycle."""
-    own = parameter(answer, "mu")
+    own_mu = parameter(answer, "mu")
     for friction, line, words in (
         (float(answer.onset_mu), ":", "critical"),
-        (own, "-.", "its own"),
+        (own_mu, "-.", "its own"),
     ):
         if np.isfinite(friction):
             label = f"{words}, μ = {number(friction, 3)}"

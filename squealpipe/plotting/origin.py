@@ -12,15 +12,15 @@ from squealpipe.plotting.style import pi_label
 
 def parameter(dataset: xr.Dataset, name: str) -> Any:
     """A parameter of the run, a number or a law, from the attributes of its dataset."""
-    own = json.loads(dataset.attrs.get("parameters", "{}"))
+    parameters = json.loads(dataset.attrs.get("parameters", "{}"))
     study = json.loads(dataset.attrs.get("config", "{}")).get("parameters", {})
     if TABLE[name].extension:
         study = {name: DEFAULTS[name], **study}
-    if name not in own | study:
+    if name not in parameters | study:
         raise ValueError(
             f"the dataset carries no parameter {name}; save it with its configuration"
         )
-    value = (study | own)[name]
+    value = (study | parameters)[name]
     return value if isinstance(value, str) else float(value)
 
 

@@ -106,11 +106,11 @@ def file_key(key: str, path: str | os.PathLike[str]) -> str:
 def refuse_edited(output: str | os.PathLike[str]) -> None:
     """Raise if a module that this process has loaded is younger than the workflow's reading."""
     started = float(os.environ.get(STARTED, "inf"))
-    own: set[Path] = set()
+    own_files: set[Path] = set()
     for module in list(sys.modules.values()):
         file = Path(str(getattr(module, "__file__", "")))
         if file.is_relative_to(PACKAGE):
-            own |= {
+            own_files |= {
                 file,
                 *(
                     read
@@ -121,7 +121,7 @@ def refuse_edited(output: str | os.PathLike[str]) -> None:
     now = time.time()  # a file dated later has another clock's date, not one of an edit
     edited = [
         path.relative_to(PACKAGE.parent).as_posix()
-        for path in sorted(own)
+        for path in sorted(own_files)
         if not path.exists() or started < path.stat().st_mtime <= now
     ]
     if edited:
@@ -150,12 +150,12 @@ def state_key(path: str | Path, key: str) -> None:
 def key_behind(path: str | Path) -> str | None:
     """The key that a file ends with; None if it states none, or was changed since."""
     content, mark, line = Path(path).read_bytes().rpartition(MARK)
-    found = re.fullmatch(
+    keyed = re.fullmatch(
         rb'([0-9a-f]{16} [\w./-]+) ([0-9a-f]{16})(\n| -->\n|"\n}\n)', line
     )
     return (
-        found[1].decode()
-        if found and found[2].decode() == digest(content + mark)
+        keyed[1].decode()
+        if keyed and keyed[2].decode() == digest(content + mark)
         else None
     )
 

@@ -30,14 +30,14 @@ def closure(script: str | Path) -> list[Path]:
     data files that a module reads and of modules that it imports by name. Imports below
     ``if TYPE_CHECKING`` do not count; imports inside functions do.
     """
-    found: set[Path] = set()
+    modules: set[Path] = set()
     waiting = [Path(script)]
     while waiting:
         for module in read_source(waiting.pop()).imports:
-            if module not in found:
-                found.add(module)
+            if module not in modules:
+                modules.add(module)
                 waiting.append(module)
-    return sorted(found)
+    return sorted(modules)
 
 
 @cache

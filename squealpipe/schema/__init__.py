@@ -403,11 +403,11 @@ def schema_of(dataset: xr.Dataset) -> DatasetSchema:
 @cache
 def all_schemas() -> dict[str, DatasetSchema]:
     """Every schema of the package by name."""
-    found = {}
+    schemas = {}
     for module in pkgutil.walk_packages(__path__, f"{__name__}."):
         table = importlib.import_module(module.name)
         for value in vars(table).values():
             for schema in value if isinstance(value, tuple) else (value,):
                 if isinstance(schema, DatasetSchema):
-                    found[schema.name] = schema
-    return found
+                    schemas[schema.name] = schema
+    return schemas

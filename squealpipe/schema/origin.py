@@ -68,21 +68,21 @@ def origin(name: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
         arguments: argument → value; of a dataset among them, the attributes are inherited.
     """
     model, method = _HOW[name]
-    given = {key: value for key, value in arguments.items() if key != "workers"}
+    options = {key: value for key, value in arguments.items() if key != "workers"}
     stated: dict[str, Any] = {"made_by": f"squealpipe.{name}"}
-    for key, value in list(given.items()):
+    for key, value in list(options.items()):
         if isinstance(value, Parameters):
-            stated["parameters"] = _as_json(given.pop(key))
+            stated["parameters"] = _as_json(options.pop(key))
         elif hasattr(value, "as_dict"):  # a structure
-            stated["parameters"] = json.dumps(given.pop(key).as_dict())
+            stated["parameters"] = json.dumps(options.pop(key).as_dict())
         elif isinstance(value, xr.Dataset):
             stated = {k: value.attrs[k] for k in INHERITED if k in value.attrs} | stated
-            del given[key]
-    stated["model"] = given.pop("model", model or stated.get("model", ""))
-    stated["method"] = given.pop("method", method or stated.get("method", ""))
-    stated["tolerance"] = given.pop("tol", stated.get("tolerance", "round-off"))
+            del options[key]
+    stated["model"] = options.pop("model", model or stated.get("model", ""))
+    stated["method"] = options.pop("method", method or stated.get("method", ""))
+    stated["tolerance"] = options.pop("tol", stated.get("tolerance", "round-off"))
     stated["arguments"] = json.dumps(
-        {key: plain(value) for key, value in given.items()}
+        {key: plain(value) for key, value in options.items()}
     )
     return {**stated, **versions()}
 
@@ -122,8 +122,8 @@ def plain(value: Any) -> Any:
 @functools.cache
 def versions() -> Mapping[str, str]:
     """Attributes with the version of this package and of the libraries that decide results."""
-    found = {name: importlib.metadata.version(name) for name in LIBRARIES}
-    libraries = json.dumps(found, sort_keys=True, separators=(",", ":"))
+    installed = {name: importlib.metadata.version(name) for name in LIBRARIES}
+    libraries = json.dumps(installed, sort_keys=True, separators=(",", ":"))
     return {
         "package_version": importlib.metadata.version("squealpipe"),
         "libraries": libraries,

@@ -295,17 +295,17 @@ def names_in_results(own: Mapping[str, Iterable[str]]) -> set[str]:
     Args:
         own: the word between brackets → the system's names that it stands for.
     """
-    found: set[str] = set()
+    names: set[str] = set()
     for table in TABLES.values():
         for name, entry in {**table.variables, **table.coordinates}.items():
-            found.update(entry.dims)
+            names.update(entry.dims)
             before, bracket, rest = name.partition("<")
             word, _, after = rest.partition(">")
             if not bracket:
-                found.add(name)
+                names.add(name)
             elif before or after:  # else it is one of the system's own
-                found.update(f"{before}{each}{after}" for each in own.get(word, ()))
-    return found
+                names.update(f"{before}{each}{after}" for each in own.get(word, ()))
+    return names
 
 
 @cache

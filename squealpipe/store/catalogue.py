@@ -147,14 +147,16 @@ def _results(place: Path, base: Path) -> StoredRun:
             faults.append(str(error))
             continue
         part = json.loads(stated.get("config", "{}"))
-        found = flat(
+        recorded = flat(
             {key: part[key] for key in part if key in Study.model_fields or "." in key}
         )
-        mixed = [key for key in found if config.get(key, found[key]) != found[key]]
-        faults += [
-            f"{path}: {key} = {found[key]}, elsewhere {config[key]}" for key in mixed
+        mixed = [
+            key for key in recorded if config.get(key, recorded[key]) != recorded[key]
         ]
-        config |= found
+        faults += [
+            f"{path}: {key} = {recorded[key]}, elsewhere {config[key]}" for key in mixed
+        ]
+        config |= recorded
         commits.add(str(stated.get("commit", "")))
         dates.append(str(stated.get("history", "")).partition(" ")[0])
     return StoredRun(

@@ -24,9 +24,9 @@ def commit(root: Path = ROOT) -> str:
         root / "Snakefile"
     ).is_file():  # installed below a repository of someone else's
         return UNKNOWN
-    found = _git(root, "describe", "--always", "--abbrev=12") or UNKNOWN
+    described = _git(root, "describe", "--always", "--abbrev=12") or UNKNOWN
     changes = ("status", "--porcelain", "--untracked-files=no", "--", ".", ":!results")
-    return f"{found}-dirty" if _git(root, *changes) else found
+    return f"{described}-dirty" if _git(root, *changes) else described
 
 
 def _git(root: Path, *arguments: str) -> str:

@@ -22,32 +22,32 @@ def misfits(keys: Mapping[str, str], root: Path = Path()) -> list[str]:
     Args:
         keys: file → the key that it must state.
     """
-    found = []
+    unfit = []
     for path, key in keys.items():
         try:
             stated = stated_key(root / path)
         except FileNotFoundError:
-            found.append(f"{path}: missing")
+            unfit.append(f"{path}: missing")
         except StoreError as error:
-            found.append(f"{path}: {error}")
+            unfit.append(f"{path}: {error}")
         else:
             if stated is None:
-                found.append(
+                unfit.append(
                     f"{path}: changed, or does not state what it was made from"
                 )
             elif stated.partition(" ")[2] != key.partition(" ")[2]:
-                found.append(f"{path}: is a copy of {stated.partition(' ')[2]}")
+                unfit.append(f"{path}: is a copy of {stated.partition(' ')[2]}")
             elif stated != key:
-                found.append(f"{path}: made with another configuration or other code")
-    return found
+                unfit.append(f"{path}: made with another configuration or other code")
+    return unfit
 
 
 def refuse_misfits(keys: Mapping[str, str], root: Path = Path()) -> None:
     """Raise if a file is not what it should be."""
-    found = misfits(keys, root)
-    if found:
+    unfit = misfits(keys, root)
+    if unfit:
         raise StoreError(
             "not the results of this configuration and code:\n"
-            + "\n".join(f"  {line}" for line in found)
+            + "\n".join(f"  {line}" for line in unfit)
             + "\ndelete these files and run snakemake, with the same --configfile"
         )

@@ -52,18 +52,18 @@ def write_matlab(dataset: xr.Dataset, about: Mapping[str, str], path: Path) -> N
 def matlab_names(names: Iterable[str], taken: Iterable[str] = ()) -> dict[str, str]:
     """Name → a name that MATLAB takes; those that are one already stay, and none comes twice."""
     names, used = list(names), {*taken}
-    found = {name: name for name in names if _is_name(name) and name not in used}
-    used |= {*found}
+    renamed = {name: name for name in names if _is_name(name) and name not in used}
+    used |= {*renamed}
     for name in names:
-        if name not in found:
+        if name not in renamed:
             plain = _plain(name)
             short, number = plain[:LONGEST], 1
             while short in used or short in KEYWORDS:
                 number += 1
                 short = f"{plain[: LONGEST - 1 - len(str(number))]}_{number}"
-            found[name] = short
+            renamed[name] = short
             used.add(short)
-    return {name: found[name] for name in names}
+    return {name: renamed[name] for name in names}
 
 
 def _is_name(name: str) -> bool:

@@ -99,10 +99,10 @@ def load(path: AnyPath, *, schema: str | None = None) -> xr.Dataset:
     """
     source = Path(path)
     dataset = read(source)
-    found = str(dataset.attrs.get("schema"))
-    if schema is not None and found != schema:
+    schema_name = str(dataset.attrs.get("schema"))
+    if schema is not None and schema_name != schema:
         raise SchemaError(
-            f"{source} holds {found!r}, {schema!r} was expected; pass the right file"
+            f"{source} holds {schema_name!r}, {schema!r} was expected; pass the right file"
         )
     validate(dataset, schema_of(dataset))
     return dataset

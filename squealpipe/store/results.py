@@ -35,11 +35,11 @@ def open_results(
         StoreError: a file is damaged, a copy under another name, or no dataset of this package.
     """
     place = locate(name_or_path, root)
-    found = {}
+    datasets = {}
     for name, path in dataset_files(place).items():
-        found[name] = read(path)
-        refuse_copy(name, path, found[name].attrs)
-    return xr.DataTree.from_dict(found, name=place.name)
+        datasets[name] = read(path)
+        refuse_copy(name, path, datasets[name].attrs)
+    return xr.DataTree.from_dict(datasets, name=place.name)
 
 
 def refuse_copy(name: str, path: Path, stated: Mapping[str, Any]) -> None:

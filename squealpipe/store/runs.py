@@ -113,7 +113,7 @@ def verify(
     )
     names = (path.relative_to(folder).as_posix() for path in there)
     present = {name for name in names if name.startswith(part)}
-    found = [
+    faults = [
         f"changed: {path}"
         for path in sorted(present & set(listed))
         if (folder / path).is_symlink()
@@ -121,12 +121,12 @@ def verify(
     ]
     seal = folder / SEAL
     if not seal.is_file() or seal.read_bytes() != seal_text(folder).encode():
-        found.append(f"changed: {MANIFEST}")
-    found += [f"missing: {path}" for path in sorted(set(listed) - present)]
-    found += [
+        faults.append(f"changed: {MANIFEST}")
+    faults += [f"missing: {path}" for path in sorted(set(listed) - present)]
+    faults += [
         f"extra: {path}" for path in sorted(present - set(listed) - {MANIFEST, SEAL})
     ]
-    return Verification(folder, len(listed), found)
+    return Verification(folder, len(listed), faults)
 
 
 def dataset_files(place: Path) -> dict[str, Path]:
@@ -146,16 +146,16 @@ def dataset_files(place: Path) -> dict[str, Path]:
     ).intact:
         raise StoreError("\n".join(frozen.lines()))
     base = place / "data" if (place / "data").is_dir() else place
-    found = {
+    files = {
         path.relative_to(base).with_suffix("").as_posix(): path
         for path in regular_files(base)
         if path.suffix == ".nc"
     }
-    if not found:
+    if not files:
         raise ValueError(
             f"{place} holds no dataset (*.nc); run snakemake first, or check the path"
         )
-    return found
+    return files
 
 
 def regular_files(base: Path) -> list[Path]:

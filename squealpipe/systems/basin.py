@@ -60,7 +60,7 @@ def basin(
     last_low, last_high = np.moveaxis(whole["late_extremes"], -1, 0)
     over, shape = tuple(grid.coordinates), grid.shape
     numbers = _numbered(motion, whole["late_extremes"])
-    found: dict[str, Any] = {
+    variables: dict[str, Any] = {
         "motion": flag(
             "what the motion has become",
             over,
@@ -82,9 +82,9 @@ def basin(
         ):
             column = np.where(np.isfinite(values[:, i]), values[:, i], np.nan)
             label = labels(f"{word} {name} in the last quarter", unit)
-            found[f"{name}_{which}"] = (over, column.reshape(shape), label)
+            variables[f"{name}_{which}"] = (over, column.reshape(shape), label)
     attributes = attributes_of(system, "basin", grid.fixed, tol)
-    return build("basin", found, grid.coordinates, attributes)
+    return build("basin", variables, grid.coordinates, attributes)
 
 
 def renumbered(system: Any, dataset: xr.Dataset) -> xr.Dataset:

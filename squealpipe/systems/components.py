@@ -141,9 +141,9 @@ class Composition:
         Raises:
             ValueError: a regime or a component does not exist.
         """
-        found = np.full(len(self.names), -1, np.int64)
+        numbers_of = np.full(len(self.names), -1, np.int64)
         if chosen is None:
-            return found
+            return numbers_of
         if self.names == ("",):
             chosen = {"": chosen}
         elif not isinstance(chosen, Mapping):
@@ -165,8 +165,8 @@ class Composition:
                 raise ValueError(
                     f"start: regime {regime!r}: {suggestion(str(regime), known)}"
                 )
-            found[place] = list(self.regimes).index(joined(name, regime))
-        return found
+            numbers_of[place] = list(self.regimes).index(joined(name, regime))
+        return numbers_of
 
     def chosen(self, numbers: Sequence[int]) -> str | dict[str, str]:
         """What a start gives as ``regime`` for the regimes of all components."""

@@ -56,10 +56,10 @@ class Joint:
 
     def along(self, first: Sequence[int], entered: Sequence[int]) -> np.ndarray:
         """Numbers from a start on, after each of the regimes that are entered."""
-        found = [self.number(first)]
+        numbers = [self.number(first)]
         for regime in entered:
-            found.append(self.entered(found[-1], int(regime)))
-        return np.array(found, np.int64)
+            numbers.append(self.entered(numbers[-1], int(regime)))
+        return np.array(numbers, np.int64)
 
     def constants(self, number: int) -> np.ndarray:
         """All constants."""
@@ -95,7 +95,7 @@ class Joint:
         t, rng = self.traced, np.random.default_rng(2)
         names = [TIME, *self._states, *t.parameters, *t.constants]
         values: dict[str, Any] = {name: rng.uniform(0.3, 1.7, 16) for name in names}
-        found = np.zeros(len(t.surfaces), bool)
+        held = np.zeros(len(t.surfaces), bool)
         here = dict(zip(t.constants, self.constants(number), strict=True))
 
         def at(roots: Any, constants: dict[str, Any]) -> np.ndarray:
@@ -110,5 +110,5 @@ class Joint:
                 [derivative(surface, z) for z in t.variables],
                 dict(zip(t.constants, seen, strict=True)),
             )
-            found[place] = np.abs((slopes * rates).sum(axis=0)).max() < 1e-14
-        return found
+            held[place] = np.abs((slopes * rates).sum(axis=0)).max() < 1e-14
+        return held

@@ -127,8 +127,8 @@ class RepeatableRuns:
         """Periods after which all states at the same instants of the forcing repeat."""
         size = len(spans)
         with np.errstate(divide="ignore"):
-            found = self.system.period(SimpleNamespace(**self.values))
-        forcing = np.broadcast_to(np.asarray(found, float), size)
+            period = self.system.period(SimpleNamespace(**self.values))
+        forcing = np.broadcast_to(np.asarray(period, float), size)
         if not (np.isfinite(forcing) & (forcing > 0.0)).all():
             raise ValueError(
                 f"{self.system.name}: the period of its forcing must be greater than 0"
@@ -196,16 +196,18 @@ class RepeatableRuns:
         path = at(every, times)
         begin = path[:, :1]
         normal = path[:, 1] - path[:, 0]
-        found = [_near_returns(*each) for each in zip(times, path, normal, strict=True)]
+        returns = [
+            _near_returns(*each) for each in zip(times, path, normal, strict=True)
+        ]
         period = np.full(rows.size, np.nan)
         for number in range(_TRIES):
             which = np.array(
-                [i for i in every if np.isnan(period[i]) and len(found[i]) > number],
+                [i for i in every if np.isnan(period[i]) and len(returns[i]) > number],
                 int,
             )
             if not which.size:
                 break
-            time = np.array([found[i][number] for i in which])
+            time = np.array([returns[i][number] for i in which])
             width = window[which] / (_SAMPLES - 1)
             for _ in range(3):
                 places = time[:, None] + width[:, None] * np.linspace(-1.0, 1.0, 9)

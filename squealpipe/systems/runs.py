@@ -79,25 +79,25 @@ def simulate(
     run = replace(run, times=run.times + t_start, reached=reached)
     kinds = dict(enumerate(system.traced.kinds))
     names = dict(enumerate(system.regimes))
-    found: dict[str, Any] = {
+    variables: dict[str, Any] = {
         name: ("time", run.path[:, i], labels(f"state {name}", system.units[name]))
         for i, name in enumerate(system.states)
     }
-    found |= _outputs_along(system, values, times, run)
-    found["regime"] = regime_flag(system, "regime", ("time",), run.path_regimes)
-    found["event_time"] = ("event", run.times, labels("time of the event", "s"))
-    found["event_kind"] = flag("kind of the event", "event", run.kinds, kinds)
-    found["event_regime"] = flag("regime entered", "event", run.entered, names)
-    found["outcome"] = outcome(system, (), run.outcome)
-    found["end_time"] = ((), run.reached, labels("time reached", "s"))
+    variables |= _outputs_along(system, values, times, run)
+    variables["regime"] = regime_flag(system, "regime", ("time",), run.path_regimes)
+    variables["event_time"] = ("event", run.times, labels("time of the event", "s"))
+    variables["event_kind"] = flag("kind of the event", "event", run.kinds, kinds)
+    variables["event_regime"] = flag("regime entered", "event", run.entered, names)
+    variables["outcome"] = outcome(system, (), run.outcome)
+    variables["end_time"] = ((), run.reached, labels("time reached", "s"))
     if sensitivity:
-        found |= sensitivities(system, sensitivity, values, run, times, t_start)
+        variables |= sensitivities(system, sensitivity, values, run, times, t_start)
     coordinates = {
         "time": ("time", times, labels("time", "s")),
         **components_of(system),
     }
     attributes = attributes_of(system, "simulate", values, tol)
-    return build("simulate", found, coordinates, attributes)
+    return build("simulate", variables, coordinates, attributes)
 
 
 def _outputs_along(
@@ -172,13 +172,13 @@ def ensemble(
     def field(long_name: str, units: str, array: np.ndarray) -> Any:
         return over, array.reshape(shape), labels(long_name, units)
 
-    found: dict[str, Any] = {}
+    variables: dict[str, Any] = {}
     units = {
         **system.units,
         **{name: unit for name, (unit, _) in system.outputs.items()},
     }
     for i, name in enumerate(system.states):
-        found[name] = field(f"{name} at the end", units[name], raw["final"][:, i])
+        variables[name] = field(f"{name} at the end", units[name], raw["final"][:, i])
     for i, name in enumerate(units):
         for j, which in enumerate(("_min", "_max")):
             label = f"{('smallest', 'largest')[j]} {name}"
@@ -187,28 +187,30 @@ def ensemble(
                 np.where(np.isfinite(extreme), extreme, np.nan)
                 for extreme in (raw["extremes"][:, i, j], raw["late_extremes"][:, i, j])
             )
-            found[name + which] = field(label, units[name], whole)
-            found[f"late_{name}{which}"] = field(
+            variables[name + which] = field(label, units[name], whole)
+            variables[f"late_{name}{which}"] = field(
                 f"{label} from t_late on", units[name], late_one
             )
     for i, name in enumerate(system.traced.kinds):
-        found[f"count_{name}"] = field(
+        variables[f"count_{name}"] = field(
             f"number of events {name}", "1", raw["counts"][:, i]
         )
-        found[f"first_{name}"] = field(
+        variables[f"first_{name}"] = field(
             f"time of the first {name}", "s", raw["firsts"][:, i] + t_start
         )
     for i, name in enumerate(system.regimes):
-        found[f"time_in_{name}"] = field(
+        variables[f"time_in_{name}"] = field(
             f"time in regime {name}", "s", raw["durations"][:, i]
         )
     if horizon:
         with np.errstate(all="ignore"):  # NaN of a run that ended where it began
             rate = np.where(raw["reached"], raw["log_growth"] / raw["reached"], np.nan)
-        found["lyapunov_exponent"] = field("growth rate of a perturbation", "s-1", rate)
-        found["predictability_horizon"] = field(
+        variables["lyapunov_exponent"] = field(
+            "growth rate of a perturbation", "s-1", rate
+        )
+        variables["predictability_horizon"] = field(
             "time at which an error of tol is lost", "s", raw["horizon"] + t_start
         )
-    found["outcome"] = outcome(system, over, raw["outcome"].reshape(shape))
+    variables["outcome"] = outcome(system, over, raw["outcome"].reshape(shape))
     attributes = attributes_of(system, "ensemble", grid.fixed, tol)
-    return build("ensemble", found, grid.coordinates, attributes)
+    return build("ensemble", variables, grid.coordinates, attributes)

@@ -81,16 +81,18 @@ class Starts:
         """
         open_ones = np.flatnonzero(chosen < 0).tolist()
         last = [entries[-1][0] for entries in self.entries]
-        found = np.tile(np.where(chosen < 0, last, chosen), (size, 1)).astype(np.int64)
+        numbers = np.tile(np.where(chosen < 0, last, chosen), (size, 1)).astype(
+            np.int64
+        )
         known = {TIME_UNIT: np.ones(size), **values}
         fits = np.ones((size, self.traced.n_components), bool)
         for _ in range(_SWEEPS * len(open_ones)):
-            before = found.copy()
+            before = numbers.copy()
             for k in open_ones:
-                first = self._first_that_fits(known, found, k)
+                first = self._first_that_fits(known, numbers, k)
                 fits[:, k] = first >= 0
-                found[:, k] = np.where(first >= 0, first, found[:, k])
-            if self.traced.n_components == 1 or (before == found).all():
+                numbers[:, k] = np.where(first >= 0, first, numbers[:, k])
+            if self.traced.n_components == 1 or (before == numbers).all():
                 break
         if not fits.all():
             unfit = self.composition.names[int(np.argmin(fits.all(axis=0)))]
@@ -99,7 +101,7 @@ class Starts:
                 f"no regime{of} fits the start: in each, some surface is below zero; give "
                 "start={'regime': …} or starts_in"
             )
-        return found
+        return numbers
 
     def _first_that_fits(
         self, known: Mapping[str, Any], now: np.ndarray, component: int

@@ -23,15 +23,15 @@ def simplest(surface: Symbol) -> Symbol:
         return surface
     factors = list(_factors(surface))
     times = Counter(map(id, factors))
-    sign, found = 1.0, symbol(1.0)
+    sign, product = 1.0, symbol(1.0)
     for factor in {id(each): each for each in factors}.values():
         if factor.kind == "number":
             sign *= math.copysign(1.0, factor.arguments[0]) ** times[id(factor)]
         elif not factor.varies:
-            found = found * factor ** float(times[id(factor)])
+            product = product * factor ** float(times[id(factor)])
         elif times[id(factor)] % 2:
-            found = found * simplest(factor)
-    return sign * found if found.varies else surface
+            product = product * simplest(factor)
+    return sign * product if product.varies else surface
 
 
 def _factors(product: Symbol) -> Iterator[Symbol]:

@@ -39,7 +39,7 @@ def describe(
             for place, value in reset.items():
                 roots[f"{switch.name}{into} resets {states[place]}"] = value
     roots |= dict(zip(outputs, traced.outputs, strict=True))
-    found = _written(roots, margins)
+    written = _written(roots, margins)
     for row, component, name in zip(
         traced.regimes, traced.component_of, regimes, strict=True
     ):
@@ -48,8 +48,8 @@ def describe(
             f"{c.removeprefix(REGIME)}={v:g}"
             for c, v in zip(traced.constants[columns], row[columns], strict=True)
         )
-        found[f"regime {name}"] = ", ".join(values)
-    return found
+        written[f"regime {name}"] = ", ".join(values)
+    return written
 
 
 def _written(
@@ -66,18 +66,18 @@ def _written(
         for each in inner:
             uses[id(each)] += 1
     names: dict[int, str] = {}
-    found: dict[str, str] = {}
+    written: dict[str, str] = {}
     if sum(lengths[id(each)] for each in every) > LONG:
         for node in nodes:
             if uses[id(node)] > 1 and lengths[id(node)] > 20:
                 text = expression(node, names)
                 names[id(node)] = f"part{len(names) + 1}"
-                found[names[id(node)]] = text
-    found |= {what: expression(root, names) for what, root in roots.items()}
+                written[names[id(node)]] = text
+    written |= {what: expression(root, names) for what, root in roots.items()}
     for what, margin in margins.items():
         text = "otherwise" if margin is None else f"{expression(margin, names)} >= 0"
-        found[what] = text
-    return found
+        written[what] = text
+    return written
 
 
 def expression(node: Symbol, names: Mapping[int, str] = MappingProxyType({})) -> str:

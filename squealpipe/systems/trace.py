@@ -129,8 +129,8 @@ class Traced:
             )
         ]
         parts = constant_parts(steps + at_switches if skipped else steps, skipped)
-        given = {id(n): parameter(f"{prefix}{i}") for i, n in enumerate(parts)}
-        made = substituted(steps + at_switches, given)
+        placeholders = {id(n): parameter(f"{prefix}{i}") for i, n in enumerate(parts)}
+        made = substituted(steps + at_switches, placeholders)
 
         def of(root: Any) -> Any:
             return None if root is None else made[id(root)]
@@ -230,19 +230,19 @@ class Tracer:
         self, what: str, function: Callable[..., Any], r: Any = None
     ) -> dict[str, Symbol]:
         """A function that gives a mapping of states."""
-        found = self._call(what, function, r)
-        if not isinstance(found, Mapping):
+        values = self._call(what, function, r)
+        if not isinstance(values, Mapping):
             raise TypeError(
-                f"{what} gives {type(found).__name__}; a dict of states is needed"
+                f"{what} gives {type(values).__name__}; a dict of states is needed"
             )
-        for name in found:
+        for name in values:
             if name not in self.states:
                 raise ValueError(
                     f"{what} gives {name!r}; {suggestion(name, self.states)}"
                 )
         return {
             name: self._symbol(f"{what}[{name!r}]", value)
-            for name, value in found.items()
+            for name, value in values.items()
         }
 
     def _numbers(self, regime: str) -> Names:
@@ -255,15 +255,15 @@ class Tracer:
 
     def table(self) -> np.ndarray:
         """(regime, constant) their values."""
-        found = np.zeros((len(self.regimes), len(self.constants)))
+        filled = np.zeros((len(self.regimes), len(self.constants)))
         for row, place, regime in zip(
-            found, self.composition.component_of, self.regimes, strict=True
+            filled, self.composition.component_of, self.regimes, strict=True
         ):
             constants = self.composition.regimes[regime]
             first = self.first_constant[place]
             for column, name in enumerate(self._names[place]):
                 row[first + column] = float(constants[name])
-        return found
+        return filled
 
     def _call(self, what: str, function: Callable[..., Any], r: Any) -> Any:
         try:

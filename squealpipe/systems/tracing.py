@@ -41,10 +41,10 @@ class TracedSystem(Definition):
             if regime not in self.field:
                 raise ValueError(f"the field has no function for regime {regime!r}")
             what = f"the field of {regime!r}"
-            found = tracer.several(what, self.field[regime], tracer.numbers(regime))
-            here = parameter(REGIME + _indicator(regime))
-            rates = self._complete(what, found)
-            total = [a + only(here, b) for a, b in zip(total, rates, strict=True)]
+            changes = tracer.several(what, self.field[regime], tracer.numbers(regime))
+            in_regime = parameter(REGIME + _indicator(regime))
+            rates = self._complete(what, changes)
+            total = [a + only(in_regime, b) for a, b in zip(total, rates, strict=True)]
         return total
 
     def _complete(self, what: str, found: Mapping[str, Symbol]) -> list[Symbol]:
@@ -135,13 +135,13 @@ class TracedSystem(Definition):
                     f"{what}: its surface is constant in regime {self.name_of(regime)!r}; leave "
                     "that regime out of `leaves`"
                 )
-        given = [switch.to] if isinstance(switch.to, str) else list(switch.to)
-        if not given or not (isinstance(given[-1], str) or given[-1][1] is None):
+        entered = [switch.to] if isinstance(switch.to, str) else list(switch.to)
+        if not entered or not (isinstance(entered[-1], str) or entered[-1][1] is None):
             raise ValueError(
                 f"{what}: `to` has no last resort; end it with a regime alone"
             )
         targets = []
-        for entry in given:
+        for entry in entered:
             regime, condition, kind = (
                 (entry, None, switch.name)
                 if isinstance(entry, str)
@@ -326,12 +326,12 @@ def _marks(
     falls: np.ndarray, rises: np.ndarray, switches: Sequence[SwitchSymbols]
 ) -> np.ndarray:
     """(regime, surface) 1 where the only switch keeps the regime and the state: a marker."""
-    found = np.zeros(falls.shape, np.int64)
+    marks = np.zeros(falls.shape, np.int64)
     for regime, surface in np.argwhere((falls >= 0) != (rises >= 0)):
         number = max(falls[regime, surface], rises[regime, surface])
         if number < len(switches):
-            found[regime, surface] = switches[number].changes_nothing_in(regime)
-    return np.ascontiguousarray(found)
+            marks[regime, surface] = switches[number].changes_nothing_in(regime)
+    return np.ascontiguousarray(marks)
 
 
 def _indicator(regime: str) -> str:

@@ -77,7 +77,7 @@ def explorer_data(
 
     history = (count * count, samples)
     branch = (count * count, len(modes), branch_points)
-    found = run_shared(
+    filled = run_shared(
         fill,
         {
             **dict.fromkeys(HISTORIES, (history, np.float32)),
@@ -91,7 +91,7 @@ def explorer_data(
     )
     maps = {
         name: each.reshape(count, count, *each.shape[1:])
-        for name, each in found.items()
+        for name, each in filled.items()
     }
     fixed = ("preload", "length1", "length2", "belt_speed")
     return build(

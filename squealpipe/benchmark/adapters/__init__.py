@@ -34,10 +34,10 @@ def solver(name: str) -> Callable[..., Any] | None:
     if colon:
         if not Path(path).is_file():
             raise ValueError(f"solver {name!r}: there is no file {path}")
-        found = runpy.run_path(path)
-        if function not in found:
+        script = runpy.run_path(path)
+        if function not in script:
             raise ValueError(f"solver {name!r}: {path} has no function {function}")
-        return found[function]  # type: ignore[no-any-return]
+        return script[function]  # type: ignore[no-any-return]
     if name not in SOLVERS:
         known = "; ".join(SOLVERS)
         raise ValueError(
@@ -52,10 +52,10 @@ def solver(name: str) -> Callable[..., Any] | None:
 def installed(names: Iterable[str]) -> dict[str, Callable[..., Any]]:
     """Solvers by name (without folders); those that are not installed are left out, and said so."""
     names = dict.fromkeys(names)
-    found = {name.rpartition("/")[2]: solver(name) for name in names}
-    if len(found) < len(names):
+    adapters = {name.rpartition("/")[2]: solver(name) for name in names}
+    if len(adapters) < len(names):
         raise ValueError(f"two solvers have the same name: {', '.join(names)}")
-    for name, solve in found.items():
+    for name, solve in adapters.items():
         if solve is None:
             print(f"{name}: {SOLVERS[name][1]} is not installed, left out")
-    return {name: solve for name, solve in found.items() if solve is not None}
+    return {name: solve for name, solve in adapters.items() if solve is not None}

@@ -12,7 +12,7 @@ def solve(problem: Problem, tol: float) -> Any:
     """Times, kinds, state, evaluations."""
 
     def advance(problem: Problem, regime: str, watched: Any, t: float, y: Any) -> Any:
-        found = pysolve_ivp(
+        solution = pysolve_ivp(
             lambda t, y: np.array(problem.field(t, y.tolist(), regime)),
             (t, problem.t_end),
             np.array(y, float),
@@ -24,15 +24,15 @@ def solve(problem: Problem, tol: float) -> Any:
                 [*(each for each in problem.times if each > t), problem.t_end]
             ),
         )
-        if found.event_terminated:
-            hit = found.event_terminate_index
+        if solution.event_terminated:
+            hit = solution.event_terminate_index
             return (
-                found.t_events[hit][-1],
-                found.y_events[hit].reshape(len(y), -1)[:, -1],
+                solution.t_events[hit][-1],
+                solution.y_events[hit].reshape(len(y), -1)[:, -1],
                 hit,
             )
-        if not found.success:
-            raise RuntimeError(found.message)
-        return problem.t_end, found.y[:, -1], None
+        if not solution.success:
+            raise RuntimeError(solution.message)
+        return problem.t_end, solution.y[:, -1], None
 
     return run(problem, advance)

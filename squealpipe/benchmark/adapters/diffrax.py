@@ -45,9 +45,11 @@ def solve(problem: Problem, tol: float) -> Any:
     """Times, kinds, state, evaluations."""
 
     def advance(problem: Problem, regime: str, watched: Any, t: float, y: Any) -> Any:
-        found = compiled(problem.name, regime, tol)(float(t), jnp.array(y, float))
-        problem.calls += STAGES * int(found.stats["num_steps"])
-        fired = next((i for i, hit in enumerate(found.event_mask or ()) if hit), None)
-        return float(found.ts[-1]), found.ys[-1].tolist(), fired
+        solution = compiled(problem.name, regime, tol)(float(t), jnp.array(y, float))
+        problem.calls += STAGES * int(solution.stats["num_steps"])
+        fired = next(
+            (i for i, hit in enumerate(solution.event_mask or ()) if hit), None
+        )
+        return float(solution.ts[-1]), solution.ys[-1].tolist(), fired
 
     return run(problem, advance)

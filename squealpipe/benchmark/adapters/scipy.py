@@ -16,7 +16,7 @@ def solve(problem: Problem, tol: float, method: str = "DOP853") -> Any:
     """Times, kinds, state, evaluations."""
 
     def advance(problem: Problem, regime: str, watched: Any, t: float, y: Any) -> Any:
-        found = solve_ivp(
+        solution = solve_ivp(
             lambda t, y: problem.field(t, y.tolist(), regime),
             (t, problem.t_end),
             np.array(y, float),  # scipy hands it to the events as it is
@@ -26,11 +26,11 @@ def solve(problem: Problem, tol: float, method: str = "DOP853") -> Any:
             atol=tol,
             events=[switch.event(regime) for switch in watched],
         )
-        if found.status < 0:
-            raise RuntimeError(found.message)
-        if found.status == 1:
-            hit = next(i for i, times in enumerate(found.t_events) if len(times))
-            return found.t_events[hit][-1], found.y_events[hit][-1], hit
-        return problem.t_end, found.y[:, -1] if found.y.size else y, None
+        if solution.status < 0:
+            raise RuntimeError(solution.message)
+        if solution.status == 1:
+            hit = next(i for i, times in enumerate(solution.t_events) if len(times))
+            return solution.t_events[hit][-1], solution.y_events[hit][-1], hit
+        return problem.t_end, solution.y[:, -1] if solution.y.size else y, None
 
     return run(problem, advance)

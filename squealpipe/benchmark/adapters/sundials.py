@@ -29,12 +29,12 @@ def solve(problem: Problem, tol: float) -> Any:
             rates, method="Adams", rtol=tol, atol=tol, max_num_steps=100_000, **events
         )
         ends = [t, *(each for each in problem.times if each > t), problem.t_end]
-        found = solver.solve(np.array(ends), np.array(y, float))
-        if found.status == 2:
-            hit = int(np.flatnonzero(found.i_events[-1])[0])
-            return found.t_events[-1], found.y_events[-1], hit
-        if not found.success:
-            raise RuntimeError(found.message)
-        return problem.t_end, found.y[-1], None
+        solution = solver.solve(np.array(ends), np.array(y, float))
+        if solution.status == 2:
+            hit = int(np.flatnonzero(solution.i_events[-1])[0])
+            return solution.t_events[-1], solution.y_events[-1], hit
+        if not solution.success:
+            raise RuntimeError(solution.message)
+        return problem.t_end, solution.y[-1], None
 
     return run(problem, advance)

@@ -19,7 +19,7 @@ def solve(problem: Problem, tol: float, sigma: float = 1e3) -> Any:
     constants = {"sigma": sigma, **problem.data["smoothed"]}
     problem.fields[problem.regime] = problem.function(problem.rates, constants)
     span = 0.0, problem.t_end
-    found = solve_ivp(
+    solution = solve_ivp(
         lambda t, y: problem.field(
             t, y.tolist()
         ),  # Python's numbers are several times faster
@@ -29,6 +29,6 @@ def solve(problem: Problem, tol: float, sigma: float = 1e3) -> Any:
         rtol=tol,
         atol=tol,
     )
-    if not found.success:
-        raise RuntimeError(found.message)
-    return None, None, found.y[:, -1], problem.calls
+    if not solution.success:
+        raise RuntimeError(solution.message)
+    return None, None, solution.y[:, -1], problem.calls

@@ -51,8 +51,8 @@ class DatasetDifference:
     def differences(self) -> list[VariableDifference]:
         """Variables beyond their tolerance, worst first; volatile ones are not judged."""
         judged = [entry for entry in self.variables if not entry.volatile]
-        found = [entry for entry in judged if entry.verdict >= Agreement.different]
-        return sorted(found, key=lambda entry: entry.severity, reverse=True)
+        differing = [entry for entry in judged if entry.verdict >= Agreement.different]
+        return sorted(differing, key=lambda entry: entry.severity, reverse=True)
 
     @property
     def severity(self) -> tuple[int, float, float]:
@@ -231,13 +231,13 @@ def _unmatched_entries(
     a: xr.Dataset, b: xr.Dataset, aligned: Aligned, schema: DatasetSchema
 ) -> list[VariableDifference]:
     """What lists of results have on one side alone; fillers must lie on the other's curve."""
-    found = []
+    unmatched = []
     for dim, how in schema.lists.items():
         if dim not in aligned.alone:
             sizes = a.sizes.get(dim), b.sizes.get(dim)
             if sizes[0] != sizes[1]:
                 reason = f"{sizes[0]} entries against {sizes[1]}"
-                found.append(_differs(f"number of {dim}", reason))
+                unmatched.append(_differs(f"number of {dim}", reason))
             continue
         alone, lengths, fillers = aligned.alone[dim], [], []
         for each, places in zip((a, b), alone, strict=True):
@@ -250,10 +250,12 @@ def _unmatched_entries(
                 f"{lengths[0]} entries against {lengths[1]}; "
                 f"{rest[0]} and {rest[1]} of these have no counterpart"
             )
-            found.append(_differs(f"number of {dim}", reason))
+            unmatched.append(_differs(f"number of {dim}", reason))
         if any(map(len, fillers)):
-            found += beside_the_curve(a, b, dim, how, schema, (fillers[0], fillers[1]))
-    return found
+            unmatched += beside_the_curve(
+                a, b, dim, how, schema, (fillers[0], fillers[1])
+            )
+    return unmatched
 
 
 def _differs(name: str, reason: str) -> VariableDifference:

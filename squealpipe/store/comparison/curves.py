@@ -68,13 +68,13 @@ def beside_the_curve(
         unmatched: places of such points along ``dim`` on both sides.
     """
     columns = list(_columns(a, b, dim, schema, skipped={*how.kinds, dim}))
-    found: dict[str, VariableDifference] = {}
+    distances: dict[str, VariableDifference] = {}
     for swapped, points in zip((False, True), unmatched, strict=True):
         sides = (b, a) if swapped else (a, b)
         for place in points.tolist():
             nodes = _same_curve(sides, how, place)
             for column in columns:
-                found.setdefault(
+                distances.setdefault(
                     column.name,
                     VariableDifference(
                         name=f"{column.name} between points",
@@ -82,8 +82,8 @@ def beside_the_curve(
                     ),
                 )
             for name, gap, allowed in _gaps(columns, place, nodes, swapped=swapped):
-                found[name] = _with_gap(found[name], gap, allowed, dim, place)
-    return list(found.values())
+                distances[name] = _with_gap(distances[name], gap, allowed, dim, place)
+    return list(distances.values())
 
 
 def _columns(

@@ -88,16 +88,16 @@ def judge(
         )
         growth = max(float(a[how.by]), float(b[how.by]), 1.0)
         entry = replace(entry, atol=entry.atol + UNIT * growth * size)
-    found = difference(name, a[name], b[name], entry)
+    judged = difference(name, a[name], b[name], entry)
     allowed = {ComparedAs.unjudged: 1.0, ComparedAs.most: how.share}.get(
         how.compared, 0.0
     )
     if (
-        found.verdict == Agreement.different
-        and found.differing <= allowed * found.compared
+        judged.verdict == Agreement.different
+        and judged.differing <= allowed * judged.compared
     ):
-        return replace(found, verdict=Agreement.within_tolerance, reason=how.reason)
-    return found
+        return replace(judged, verdict=Agreement.within_tolerance, reason=how.reason)
+    return judged
 
 
 def difference(
@@ -158,14 +158,14 @@ def _sampled(a: xr.DataArray, b: xr.DataArray, how: RoundOff) -> dict[str, Any]:
     rows = [side.reshape(-1, side.shape[-1]) for side in rows]
     chances = np.array([ks_2samp(x, y).pvalue for x, y in zip(*rows, strict=True)])
     unlikely = int((chances <= SMALLEST_CHANCE).sum())
-    found: dict[str, Any] = {
+    numbers: dict[str, Any] = {
         "compared": len(chances),
         "differing": unlikely,
         "compared_as": how.compared.value,
     }
     if np.array_equal(sides[0], sides[1], equal_nan=True):
-        return found | {"verdict": Agreement.equal}
-    return found | {
+        return numbers | {"verdict": Agreement.equal}
+    return numbers | {
         "verdict": Agreement.different if unlikely else Agreement.within_tolerance,
         "where": _place(a.isel({how.sample: 0}), int(chances.argmin()))
         if chances.size
@@ -229,15 +229,15 @@ def _continuous(a: xr.DataArray, b: xr.DataArray, entry: Variable) -> dict[str, 
         np.asarray(side.values, np.result_type(side.dtype, float)) for side in (a, b)
     )
     differing, same = outside_tolerance(left, right, entry), _same(left, right)
-    found: dict[str, Any] = {
+    numbers: dict[str, Any] = {
         "compared": left.size,
         "rtol": entry.rtol,
         "atol": entry.atol,
     }
     if entry.round_off is not None:
-        found["compared_as"] = entry.round_off.compared.value
+        numbers["compared_as"] = entry.round_off.compared.value
     if same.all():
-        return found | {"verdict": Agreement.equal}
+        return numbers | {"verdict": Agreement.equal}
     with np.errstate(invalid="ignore", over="ignore"):
         gap = np.where(same, 0.0, np.abs(left - right))
     one_sided = ~np.isfinite(gap)
@@ -246,7 +246,7 @@ def _continuous(a: xr.DataArray, b: xr.DataArray, entry: Variable) -> dict[str, 
     relative = np.divide(
         gap, scale, out=np.zeros_like(gap), where=np.isfinite(gap) & (scale > 0)
     )
-    return found | {
+    return numbers | {
         "verdict": Agreement.different
         if differing.any()
         else Agreement.within_tolerance,

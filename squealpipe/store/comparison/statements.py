@@ -35,7 +35,7 @@ def changed_statements(a: xr.Dataset, b: xr.Dataset) -> list[StatementChange]:
     beyond = outside_tolerance(
         a.value.values, b.value.values, CLAIMS.variables["value"]
     )
-    found = []
+    changed = []
     for i in range(a.sizes["claim"]):
         rows = a.isel(claim=i), b.isel(claim=i)
         codes = [int(row.verdict) for row in rows]
@@ -45,7 +45,7 @@ def changed_statements(a: xr.Dataset, b: xr.Dataset) -> list[StatementChange]:
                 value if math.isfinite(value := float(row.value)) else None
                 for row in rows
             ]
-            found.append(
+            changed.append(
                 StatementChange(
                     claim=str(rows[0].claim.values),
                     statement=str(rows[0].statement.values)
@@ -54,4 +54,4 @@ def changed_statements(a: xr.Dataset, b: xr.Dataset) -> list[StatementChange]:
                     values=(numbers[0], numbers[1]),
                 )
             )
-    return sorted(found, key=lambda change: not change.verdict_changed)
+    return sorted(changed, key=lambda change: not change.verdict_changed)

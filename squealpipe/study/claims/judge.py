@@ -56,20 +56,20 @@ def judge(
 def _row(statement: Statement, run: Evidence, second: Evidence) -> dict[str, Any]:
     basis, share, count = standing(statement, run)
     run.forget()
-    here = _judged(statement.check, run)
+    judgement = _judged(statement.check, run)
     datasets = "; ".join(run.forget())
     physics = statement.physics or statement.check
     same = second is run and physics is statement.check
-    mended = here if same else _judged(physics, second)
+    mended = judgement if same else _judged(physics, second)
     printed = (
-        here.verdict == ClaimVerdict.holds and mended.verdict == ClaimVerdict.fails
+        judgement.verdict == ClaimVerdict.holds and mended.verdict == ClaimVerdict.fails
     )
-    verdict_here = ClaimVerdict.holds_only_as_printed if printed else here.verdict
+    verdict_here = ClaimVerdict.holds_only_as_printed if printed else judgement.verdict
     verdict, corrected_verdict = verdict_here, mended.verdict
     # The paper prints no parameters: what divides the feasible set depends on those one takes.
     if DECIDED < share < 1.0 - DECIDED and verdict != ClaimVerdict.cannot_be_decided:
         verdict = ClaimVerdict.depends_on_the_parameters
-        if mended.verdict == here.verdict:
+        if mended.verdict == judgement.verdict:
             corrected_verdict = verdict
     return {
         "statement": statement.text,
@@ -84,7 +84,7 @@ def _row(statement: Statement, run: Evidence, second: Evidence) -> dict[str, Any
         "verdict": verdict,
         "verdict_here": verdict_here,
         **{
-            key: getattr(here, key)
+            key: getattr(judgement, key)
             for key in ("value", "relation", "threshold", "evidence")
         },
         "dataset": datasets,

@@ -25,11 +25,11 @@ def cell(
 
 def on_grid_of(dataset: xr.Dataset, other: xr.Dataset) -> xr.Dataset:
     """The cells of a map that are also cells of another one."""
-    found = _nearest(
+    on_grid = _nearest(
         dataset, other.alpha1, other.alpha2, f"cells of {other.attrs['schema']}"
     )
     # angles that differ by round-off would be dropped where both maps are compared
-    return found.assign_coords(alpha1=other.alpha1, alpha2=other.alpha2)
+    return on_grid.assign_coords(alpha1=other.alpha1, alpha2=other.alpha2)
 
 
 def _nearest(dataset: xr.Dataset, alpha1: Any, alpha2: Any, what: str) -> xr.Dataset:

@@ -19,14 +19,14 @@ def rows(claims: xr.Dataset) -> list[dict[str, Any]]:
     ``as_recorded``: the verdict here is the recorded one; ``unmet``: the statement fails here
     though its deciding comparison is true.
     """
-    found = []
+    records = []
     for name in claims.claim.values.tolist():
         row = {
             str(key): _plain(value)
             for key, value in claims.sel(claim=name).data_vars.items()
         }
         fails = row["verdict_here"] == "fails" and row["value"] is not None
-        found.append(
+        records.append(
             {
                 "id": name,
                 **row,
@@ -36,19 +36,19 @@ def rows(claims: xr.Dataset) -> list[dict[str, Any]]:
                 and passes(row["value"], row["relation"], row["threshold"]),
             }
         )
-    return found
+    return records
 
 
 def tally(statements: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """Numbers of verdicts, those of fitted statements apart from those of tests."""
     words = {"predicted": "tests", "fitted": "fitted", "unknown": "not told apart"}
-    found = []
+    tallies = []
     for basis, name in words.items():
-        own = [row["verdict"] for row in statements if row["basis"] == basis]
-        if own:
-            counts = [own.count(verdict.words) for verdict in ClaimVerdict]
-            found.append({"basis": name, "number": len(own), "counts": counts})
-    return found
+        verdicts = [row["verdict"] for row in statements if row["basis"] == basis]
+        if verdicts:
+            counts = [verdicts.count(verdict.words) for verdict in ClaimVerdict]
+            tallies.append({"basis": name, "number": len(verdicts), "counts": counts})
+    return tallies
 
 
 def table(path: str | os.PathLike[str]) -> tuple[list[dict[str, Any]], int]:

@@ -23,12 +23,12 @@ Item = TypeVar("Item")
 
 def find_module(name: str) -> Path:
     """The module of a figure."""
-    found = list(FOLDER.glob(f"*/{name}.py"))
-    if len(found) != 1:
+    files = list(FOLDER.glob(f"*/{name}.py"))
+    if len(files) != 1:
         raise ValueError(
-            f"{len(found)} modules figures/<topic>/{name}.py; one is needed"
+            f"{len(files)} modules figures/<topic>/{name}.py; one is needed"
         )
-    return found[0]
+    return files[0]
 
 
 @cache
@@ -51,20 +51,20 @@ def datasets_of(name: str, known: Iterable[str]) -> list[str] | None:
     """Names of the known datasets that a figure reads; None where one that it needs is missing."""
     names = list(known)
     matches = [_matches(entry, names) for entry in reads(name)]
-    return [match for found in matches for match in found] if all(matches) else None
+    return [match for matched in matches for match in matched] if all(matches) else None
 
 
 def arguments(name: str, datasets: Mapping[str, Item]) -> list[Item | dict[str, Item]]:
     """The datasets of a figure in the order in which it declares them."""
-    given: list[Item | dict[str, Item]] = []
+    ordered: list[Item | dict[str, Item]] = []
     for entry in reads(name):
-        found = {match: datasets[match] for match in _matches(entry, datasets)}
-        if not found:
+        matched = {match: datasets[match] for match in _matches(entry, datasets)}
+        if not matched:
             raise ValueError(
                 f"the figure {name} reads the dataset {entry}, which is not there"
             )
-        given.append(found if WILDCARDS & set(entry) else found[entry])
-    return given
+        ordered.append(matched if WILDCARDS & set(entry) else matched[entry])
+    return ordered
 
 
 def draw(name: str, datasets: Mapping[str, Any]) -> Figure:
@@ -75,7 +75,7 @@ def draw(name: str, datasets: Mapping[str, Any]) -> Figure:
 
 def texts(name: str, datasets: Mapping[str, Any]) -> tuple[str, str]:
     """Caption and alternative text of a figure."""
-    module, found = _import(name), []
+    module, written = _import(name), []
     for constant in ("CAPTION", "ALT"):
         text = getattr(module, constant, "")
         text = text(*arguments(name, datasets)) if callable(text) else text
@@ -83,8 +83,8 @@ def texts(name: str, datasets: Mapping[str, Any]) -> tuple[str, str]:
             raise ValueError(
                 f"{module.__name__} has no {constant}; give a text or a function of its datasets"
             )
-        found.append(text.strip())
-    return found[0], found[1]
+        written.append(text.strip())
+    return written[0], written[1]
 
 
 def topic(name: str) -> str:

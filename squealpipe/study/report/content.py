@@ -211,17 +211,20 @@ def levels(run: Evidence) -> list[list[str]]:
     if "assumptions" not in run:
         return []
     table = run["assumptions"]
-    found = []
+    written = []
     for level, words in TABLE_1.items():
-        own = table.sel(level=level)
+        at_level = table.sel(level=level)
         needed = [
-            name for name in own.assumption.values if own.needed.sel(assumption=name)
+            name
+            for name in at_level.assumption.values
+            if at_level.needed.sel(assumption=name)
         ]
         held = "; ".join(
-            f"{name}: {int(own.held.sel(assumption=name).sum())}" for name in needed
+            f"{name}: {int(at_level.held.sel(assumption=name).sum())}"
+            for name in needed
         )
-        found.append([level, *words, f"{held}; of {table.sizes['scene']}"])
-    return found
+        written.append([level, *words, f"{held}; of {table.sizes['scene']}"])
+    return written
 
 
 def distances(run: Evidence) -> dict[str, Any] | None:

@@ -9,16 +9,16 @@ from typing import Any
 
 def lineage(rules: Iterable[Any], folder: str) -> dict[str, dict[str, Any]]:
     """Datasets by name, each with its path, rule and the datasets that it was made from."""
-    found: dict[str, dict[str, Any]] = {}
+    ancestors: dict[str, dict[str, Any]] = {}
     for rule in rules:
         read = sorted(set(_names(rule.input, folder)))
         for name in _names(rule.output, folder):
-            found[name] = {
+            ancestors[name] = {
                 "path": f"{folder}{name}.nc",
                 "rule": rule.name,
                 "datasets": read,
             }
-    return found
+    return ancestors
 
 
 def _names(items: Iterable[Any], folder: str) -> list[str]:

@@ -60,17 +60,17 @@ def _verdicts(run: Evidence) -> dict[str, Any]:
 
 
 def _inferred(run: Evidence) -> dict[str, Any]:
-    found = run["parameter_inference"]
+    inference = run["parameter_inference"]
     shares = {
-        f"share_{reading}{end}": 100 * found[f"share{end}"].sel(reading=reading)
-        for reading in found.reading.values
+        f"share_{reading}{end}": 100 * inference[f"share{end}"].sel(reading=reading)
+        for reading in inference.reading.values
         for end in ("", "_low", "_high")
     }
-    counts = zip(found.reading.values, found.feasible_count.values, strict=True)
+    counts = zip(inference.reading.values, inference.feasible_count.values, strict=True)
     return {
-        "sets": found.sizes["sample"],
+        "sets": inference.sizes["sample"],
         # growth's is much the same wherever it grows: |x| goes with the root of time
-        "margin": of_study(found).baseline_margin.drop_sel(statement="F3").min(),
+        "margin": of_study(inference).baseline_margin.drop_sel(statement="F3").min(),
         **{f"sets_{reading}": count for reading, count in counts},
         **shares,
     }

@@ -36,7 +36,8 @@ def gather_structure(
     run = {name: load(made.path) for name, made in datasets.items()}
     modes, answer = run["structure/modes"], run["structure/squeal"]
     verdict = Verdict(int(answer.verdict))
-    own = json.loads(modes.attrs["parameters"])
+    numbers = json.loads(modes.attrs["parameters"])
+    speed = engineering(numbers["belt_speed"], "m s-1")
     told = (
         cause(modes, answer),
         squealing.level(answer),
@@ -45,7 +46,7 @@ def gather_structure(
     )
     return {
         "title": "Which mode squeals? Report of a structure",
-        "set": f"mu = {number(own['mu'])}, belt speed {engineering(own['belt_speed'], 'm s-1')}",
+        "set": f"mu = {number(numbers['mu'])}, belt speed {speed}",
         "verdict": verdict.name,
         "headline": squealing.headline(answer),
         "lines": [line for line in told if line],

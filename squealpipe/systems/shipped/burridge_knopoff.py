@@ -42,14 +42,14 @@ def burridge_knopoff(blocks: int = 10) -> System:
     numbers = range(1, blocks + 1)
 
     def field(t: Any, s: Any, p: Any, r: Any) -> dict[str, Any]:
-        found = {f"x{i}": getattr(s, f"v{i}") for i in numbers}
+        rates = {f"x{i}": getattr(s, f"v{i}") for i in numbers}
         for i in numbers:
             regime = getattr(r, f"block{i}")
             slides = regime.direction * (p.belt_speed - getattr(s, f"v{i}"))
             force = regime.direction * p.limit / (1.0 + p.fall * slides)
             total = pull(i, blocks, s, p) + force
-            found[f"v{i}"] = (1.0 - regime.stick) * total / p.mass
-        return found
+            rates[f"v{i}"] = (1.0 - regime.stick) * total / p.mass
+        return rates
 
     return System(
         f"Burridge–Knopoff chain of {blocks} blocks",

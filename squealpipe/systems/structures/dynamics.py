@@ -108,8 +108,8 @@ class Motion:
     def normal_forces(self) -> list[Any]:
         """N of each contact, N."""
         return [
-            own.contact * force
-            for own, force in zip(self.regimes, self.pressing, strict=True)
+            regime.contact * force
+            for regime, force in zip(self.regimes, self.pressing, strict=True)
         ]
 
     @cached_property
@@ -131,16 +131,16 @@ class Motion:
     @cached_property
     def slip_friction(self) -> list[Any]:
         """T of each contact that slips, N; 0 in stick."""
-        found = []
-        for own, force, speed in zip(
+        forces = []
+        for regime, force, speed in zip(
             self.regimes, self.normal_forces, self.sliding_speeds, strict=True
         ):
-            law = friction_at(self.structure.friction, self.p, own)
+            law = friction_at(self.structure.friction, self.p, regime)
             coefficient = law.factor * friction_laws.coefficient(
-                own.direction * speed, law
+                regime.direction * speed, law
             )
-            found.append(slip_force(force, own.direction, coefficient))
-        return found
+            forces.append(slip_force(force, regime.direction, coefficient))
+        return forces
 
     @cached_property
     def pulls(self) -> list[Any]:
@@ -165,18 +165,18 @@ class Motion:
     @cached_property
     def _relieved(self) -> list[Any]:
         """N + stiffness · nᵀq of each contact: the preload in contact, N."""
-        found = []
-        for contact, own, lift in zip(
+        relieved = []
+        for contact, regime, lift in zip(
             self.structure.contacts, self.regimes, self.lifts, strict=True
         ):
-            closed = own.contact * (contact.preload * self.p.preload)
-            found.append(closed + (1.0 - own.contact) * contact.stiffness * lift)
-        return found
+            closed = regime.contact * (contact.preload * self.p.preload)
+            relieved.append(closed + (1.0 - regime.contact) * contact.stiffness * lift)
+        return relieved
 
     @cached_property
     def _held(self) -> list[list[Any]]:
         """(t_Sᵀ M⁻¹ t_S)⁻¹ over the contacts S that stick, 0 elsewhere, kg."""
-        masks = [own.stick for own in self.regimes]
+        masks = [regimes.stick for regimes in self.regimes]
         matrix = [
             [
                 masks[i] * masks[j] * float(value) + (i == j) * (1.0 - masks[i])
@@ -259,14 +259,14 @@ def friction_at(friction: Friction, p: Any, regime: Any = None) -> Any:
 
 def total(coefficients: Iterable[Any], values: Sequence[Any]) -> Any:
     """Σ c x without terms whose coefficient is 0."""
-    found: Any = 0.0
+    summed: Any = 0.0
     for coefficient, value in zip(coefficients, values, strict=True):
         if isinstance(coefficient, float):
             coefficient = float(coefficient)
             if coefficient == 0.0:
                 continue
-        found = found + coefficient * value
-    return found
+        summed = summed + coefficient * value
+    return summed
 
 
 def inverse_of(matrix: Sequence[Sequence[Any]]) -> list[list[Any]]:

@@ -83,12 +83,12 @@ def system(
 
 def _parameters(structure: ContactStructure) -> dict[str, float]:
     friction = structure.friction
-    found = {"mu": friction.mu, "belt_speed": structure.belt_speed, "preload": 1.0}
+    parameters = {"mu": friction.mu, "belt_speed": structure.belt_speed, "preload": 1.0}
     if friction.mu_static is not None:
-        found["mu_static"] = friction.mu_static
+        parameters["mu_static"] = friction.mu_static
     if reads_speed(friction):
-        found["friction_speed"] = friction.friction_speed
-    return found
+        parameters["friction_speed"] = friction.friction_speed
+    return parameters
 
 
 class Equations:
@@ -106,8 +106,8 @@ class Equations:
         """Rates of all states."""
         rates = self.at(s, p, r).accelerations
         places = range(1, self.structure.size + 1)
-        found = {f"q{i}": getattr(s, f"v{i}") for i in places}
-        return found | {f"v{i}": rate for i, rate in zip(places, rates, strict=True)}
+        changes = {f"q{i}": getattr(s, f"v{i}") for i in places}
+        return changes | {f"v{i}": rate for i, rate in zip(places, rates, strict=True)}
 
     def of_contact(self, what: str, place: int) -> Surface:
         """A quantity of one contact, by its name in :class:`Motion`."""
@@ -115,15 +115,15 @@ class Equations:
 
     def outputs(self, displacements: Mapping[str, Any]) -> dict[str, Any]:
         """Normal force and sliding speed of each contact, and displacements."""
-        found: dict[str, Any] = {}
+        outputs: dict[str, Any] = {}
         for place, contact in enumerate(self.structure.contacts):
             force = self.of_contact("normal_forces", place)
             speed = self.of_contact("sliding_speeds", place)
-            found[f"{contact.name}_normal_force"] = ("N", force)
-            found[f"{contact.name}_speed"] = ("m s-1", speed)
+            outputs[f"{contact.name}_normal_force"] = ("N", force)
+            outputs[f"{contact.name}_speed"] = ("m s-1", speed)
         for name, given in displacements.items():
-            found[name] = ("m", _displacement(self._shape(name, given)))
-        return found
+            outputs[name] = ("m", _displacement(self._shape(name, given)))
+        return outputs
 
     def _shape(self, name: str, given: Any) -> np.ndarray:
         """What a displacement of the whole structure is of each state's."""

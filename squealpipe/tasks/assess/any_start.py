@@ -233,13 +233,13 @@ def dies_out_always(
     Args:
         kinds: how many of the three kinds are tried.
     """
-    found = [False] * len(sides)
+    answers = [False] * len(sides)
     open_rows: dict[int, tuple[Design, Sliding]] = {}
     for row, (side, value) in enumerate(zip(sides, values, strict=True)):
         design = side.cure.apply(value)
         sliding = Sliding.of(design)
         if sliding is not None and not sliding.is_unstable:
-            found[row], open_rows[row] = True, (design, sliding)
+            answers[row], open_rows[row] = True, (design, sliding)
     for kind in range(kinds):
         owners, starts = [], []
         for row, (design, sliding) in open_rows.items():
@@ -255,9 +255,9 @@ def dies_out_always(
             if settled.lasts:
                 lasting.setdefault(row, []).append(settled.last.final)
         for row, states in lasting.items():
-            found[row], sides[row].motions = False, states[:MOST_MOTIONS]
+            answers[row], sides[row].motions = False, states[:MOST_MOTIONS]
             del open_rows[row]
-    return found
+    return answers
 
 
 def strikes(design: Design, sliding: Sliding) -> list[Start]:

@@ -105,19 +105,19 @@ def assess(
 def _linear(design: Design, sliding: Sliding | None) -> dict[str, Any]:
     """What is known of small motions."""
     linear = stability_map(design.params, [design.alpha1], [design.alpha2])
-    found = {
+    linear_facts = {
         "growth_rate": float(linear.growth_rate[0, 0]),
         "mode_frequency": linear.frequency.values[0, 0] / (2.0 * np.pi),
     }
     if sliding is None:
-        return found | {
+        return linear_facts | {
             "mechanism": Mechanism.no_sliding_state,
             **dict.fromkeys(
                 ("sliding_growth_rate", "x_sliding", "y_sliding", "sliding_force"),
                 np.nan,
             ),
         }
-    return found | {
+    return linear_facts | {
         "mechanism": sliding.mechanism,
         "sliding_growth_rate": sliding.growth_rate,
         "x_sliding": sliding.state[0],

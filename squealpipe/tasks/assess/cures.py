@@ -52,11 +52,11 @@ def boundaries(
         lead(sides, nearest, tol=tol)
     follow = partial(dies_out_always, tol=tol, kinds=1)
     anywhere = any_start(cures, sides, nearest, quiet, always, test, follow)
-    found = {}
+    located = {}
     for name, cure in cures.items():
         ends = [*cure.below, cure.value, *cure.above]
         first, second = nearest.get(name, math.nan), anywhere.get(name, math.nan)
-        found[name] = Boundary(
+        located[name] = Boundary(
             cure.value,
             first,
             second,
@@ -67,7 +67,7 @@ def boundaries(
         )
     return dict(
         sorted(
-            found.items(),
+            located.items(),
             key=lambda item: (
                 math.inf if math.isnan(item[1].change) else abs(item[1].change),
                 list(CURES).index(item[0]),
@@ -128,7 +128,7 @@ def _dies_out(
         if sliding is not None and not sliding.is_unstable:
             rows.append(row)
             starts.append(pushed(design, sliding))
-    found = [False] * len(sides)
+    answers = [False] * len(sides)
     for row, settled in zip(rows, settle(starts, tol=tol) if rows else [], strict=True):
-        found[row] = settled.verdict is Verdict.quiet
-    return found
+        answers[row] = settled.verdict is Verdict.quiet
+    return answers

@@ -60,7 +60,7 @@ def cures_of(design: Design) -> dict[str, Cure]:
             return lambda value: design._replace(alpha1=value)
         return lambda value: design._replace(alpha2=value)
 
-    found = {
+    cures = {
         "mu": _friction(design),
         "k3": _scaled(
             params.k3,
@@ -68,13 +68,13 @@ def cures_of(design: Design) -> dict[str, Cure]:
         ),
     }
     for name in ("k1", "k2", "preload", "belt_speed"):
-        found[name] = _scaled(getattr(params, name), number(name))
+        cures[name] = _scaled(getattr(params, name), number(name))
     for name in ("alpha1", "alpha2"):
         now = getattr(design, name)
         steps = STEP * np.arange(1, 1 + round(FARTHEST / STEP))
-        found[name] = Cure(now, angle(name), now - steps, now + steps)
-    found["damping"] = _damping(design)
-    return found
+        cures[name] = Cure(now, angle(name), now - steps, now + steps)
+    cures["damping"] = _damping(design)
+    return cures
 
 
 def with_friction(params: Parameters, factor: float) -> Parameters:

@@ -57,7 +57,7 @@ def verdict_map(
             ]
 
     cells = (alpha1.size * count,)
-    found = run_shared(
+    filled = run_shared(
         fill,
         {
             "verdict": (cells, np.int8),
@@ -67,7 +67,7 @@ def verdict_map(
         jobs=alpha1.size,
         workers=workers,
     )
-    maps = {name: values.reshape(-1, count) for name, values in found.items()}
+    maps = {name: values.reshape(-1, count) for name, values in filled.items()}
     undetermined = maps["verdict"] == Verdict.undetermined
     without = maps["mechanism"] == Mechanism.no_sliding_state
     return build(

@@ -82,15 +82,15 @@ def sides_of(cures: dict[str, Cure]) -> list[Side]:
 
 def nearer(cures: dict[str, Cure], sides: Sequence[Side]) -> dict[str, float]:
     """The nearer answer of both sides of each cure that has one."""
-    found: dict[str, float] = {}
+    steps: dict[str, float] = {}
     for side in sides:
         value = cures[side.name].value
-        best = found.get(side.name, math.nan)
+        best = steps.get(side.name, math.nan)
         if not math.isnan(side.answer) and not abs(best - value) <= abs(
             side.answer - value
         ):
-            found[side.name] = side.answer
-    return found
+            steps[side.name] = side.answer
+    return steps
 
 
 def search(sides: list[Side], quiet: bool, test: Test, located: float) -> list[Side]:

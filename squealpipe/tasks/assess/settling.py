@@ -116,13 +116,13 @@ def start_at(design: Design, sliding: Sliding | None, state: np.ndarray) -> Star
 
 def settle(starts: Sequence[Start], *, tol: float, most: float = MOST) -> list[Settled]:
     """Run each start until it has settled, ``most`` periods at most."""
-    found: dict[int, Settled] = {}
+    settled: dict[int, Settled] = {}
     states = np.array([start.state for start in starts])
     length = np.array([_first_window(start, most) for start in starts])
     period = np.array([start.design.period for start in starts])
     elapsed = np.zeros(len(starts))
     before: dict[int, tuple[Windows, float]] = {}
-    while rows := [row for row in range(len(starts)) if row not in found]:
+    while rows := [row for row in range(len(starts)) if row not in settled]:
         seconds = length[rows] * period[rows]
         designs = [starts[row].design for row in rows]
         with (
@@ -143,9 +143,9 @@ def settle(starts: Sequence[Start], *, tol: float, most: float = MOST) -> list[S
                     verdict = Verdict.quiet  # too slowly to become small
             if verdict is not None:
                 time = float(elapsed[row] * period[row])
-                found[row] = Settled(verdict, now, time)
+                settled[row] = Settled(verdict, now, time)
             before[row], states[row] = (now, float(seconds[at])), now.final
-    return [found[row] for row in range(len(starts))]
+    return [settled[row] for row in range(len(starts))]
 
 
 def _first_window(start: Start, most: float) -> float:

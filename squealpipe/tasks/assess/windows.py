@@ -90,14 +90,14 @@ def _ensemble(
     designs: Sequence[Design], starts: np.ndarray, lengths: np.ndarray, tol: float
 ) -> Ensemble:
     params = [design.params for design in designs]
-    given: dict[str, Any] = {
+    numbers: dict[str, Any] = {
         name: np.array([getattr(each, name) for each in params]) for name in NUMBERS
     }
-    given["mu_static"] = np.array([each.static_mu for each in params])
+    numbers["mu_static"] = np.array([each.static_mu for each in params])
     for name in ("friction_law", "contact_law"):
-        given[name] = getattr(params[0], name)
+        numbers[name] = getattr(params[0], name)
     return run_ensemble(
-        given,
+        numbers,
         np.array([design.alpha1 for design in designs]),
         np.array([design.alpha2 for design in designs]),
         t_end=lengths,

@@ -178,8 +178,8 @@ def _branch(case: BranchCase) -> HardScene:
 
 
 def _exact_orbit(case: BranchCase) -> Answer:
-    found = periodic_orbit(BASE, *case.angles, mode=case.mode, y_peak=case.y_peak)
-    return Answer(float(found.omega), _flag(found.outcome))
+    orbit = periodic_orbit(BASE, *case.angles, mode=case.mode, y_peak=case.y_peak)
+    return Answer(float(orbit.omega), _flag(orbit.outcome))
 
 
 def _our_balance(case: BranchCase) -> Answer:
@@ -214,10 +214,10 @@ def _newton(
     start: NDArray[np.float64],
 ) -> Answer:
     with np.errstate(all="ignore"):
-        found = balance.solve(start, balance.peak_row, case.y_peak)
-    if found is None:
+        solution = balance.solve(start, balance.peak_row, case.y_peak)
+    if solution is None:
         return Answer(math.nan, NOT_CONVERGED)
-    return Answer(abs(float(found[0][-1])) * scene.frequency)
+    return Answer(abs(float(solution[0][-1])) * scene.frequency)
 
 
 def _paper(
@@ -243,10 +243,10 @@ def _paper(
         z[: N_HARMONICS + 1], z[N_HARMONICS + 1 : -1], float(z[-1])
     )
     with np.errstate(all="ignore"):
-        found = balance.solve(start, max_iterations=40)
-    if not found.converged:
+        solution = balance.solve(start, max_iterations=40)
+    if not solution.converged:
         return Answer(math.nan, NOT_CONVERGED)
-    omega, peak = abs(found.omega), balance.peak(found)
+    omega, peak = abs(solution.omega), balance.peak(solution)
     own = find_orbit(scene, case.mode, peak)[0] if peak > 1.0 else None
     if exact and own:
         omega += exact.omega - own.omega
@@ -298,12 +298,12 @@ def _period_doubling() -> HardScene:
 
     def hill() -> Answer:
         guess = orbit_series(scene, exact, HILL_HARMONICS) if exact else None
-        found = (
+        solution = (
             None if guess is None else balance.solve(guess, balance.peak_row, y_peak)
         )
-        if found is None:
+        if solution is None:
             return Answer(math.nan, NOT_CONVERGED)
-        _, y, omega = balance.split(found[0])
+        _, y, omega = balance.split(solution[0])
         share = sampled_share_above(y, 1.0, HILL_SAMPLES)
         multipliers = hill_multipliers(scene.system, share, omega)
         return Answer(float(np.abs(multipliers).max() > 1.0 + 1e-3))

@@ -152,9 +152,11 @@ def _paper(
     eta = balance.start_from_cosines(z[: count + 1], z[count + 1 : -1], float(z[-1]))
 
     def error_of(found: SampledSolution) -> float:
-        own, _ = find_orbit(scene, MODE, max(balance.peak(found), 1.0 + 1e-6))
+        exact, _ = find_orbit(scene, MODE, max(balance.peak(found), 1.0 + 1e-6))
         return (
-            abs(found.omega / own.omega - 1.0) if found.converged and own else math.nan
+            abs(found.omega / exact.omega - 1.0)
+            if found.converged and exact
+            else math.nan
         )
 
     return partial(balance.solve, eta, max_iterations=25), error_of

@@ -20,9 +20,10 @@ CONSEQUENCES: dict[str, str] = {
 def judge_consequences(candidates: Candidates) -> dict[str, np.ndarray]:
     """Whether each consequence holds at each parameter set: key → booleans."""
     pairs = zip(candidates.sets, candidates.unstable, strict=True)
-    found = [_linear(params, cells) for params, cells in pairs]
+    per_pair = [_linear(params, cells) for params, cells in pairs]
     return {
-        key: np.array([verdict[key] for verdict in found], bool) for key in CONSEQUENCES
+        key: np.array([verdict[key] for verdict in per_pair], bool)
+        for key in CONSEQUENCES
     }
 
 

@@ -296,9 +296,9 @@ def judge(
         left = np.flatnonzero((holds == Holds.no).sum(axis=1) <= failures)
         if not left.size:
             break
-        found = measure(candidates.subset(left), [stage])
+        measured = measure(candidates.subset(left), [stage])
         for column, constraint in enumerate(CONSTRAINTS):
             if constraint.stage == stage:
-                margin[left, column] = found[constraint.name].margin
-                holds[left, column] = verdicts(found[constraint.name])
+                margin[left, column] = measured[constraint.name].margin
+                holds[left, column] = verdicts(measured[constraint.name])
     return margin, holds

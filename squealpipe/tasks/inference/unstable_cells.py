@@ -51,9 +51,11 @@ def unstable_cells(params: Parameters, *, inside: float = INSIDE) -> Unstable:
 def _on_grid(params: Parameters) -> Unstable:
     """Several statements ask for the cells of one set, which take a tenth of a second."""
     alpha1, alpha2 = midpoints(DAMPED_GRID)
-    found = stability(damped_system(params, alpha1, alpha2))
-    couples = (found.regime == LinearRegime.flutter) & (found.shape_similarity >= ALIKE)
-    return _where(found.regime, alpha1, alpha2, couples)
+    linear = stability(damped_system(params, alpha1, alpha2))
+    couples = (linear.regime == LinearRegime.flutter) & (
+        linear.shape_similarity >= ALIKE
+    )
+    return _where(linear.regime, alpha1, alpha2, couples)
 
 
 def _where(

@@ -88,8 +88,8 @@ def choose_model(
     """
     horizon = HORIZON * params.time_unit if t_end is None else t_end
     cells = np.array([alpha1]), np.array([alpha2])
-    found = choose_models(params, *cells, question, t_end=horizon, tol=tol, workers=1)
-    level, value = Level(int(found.level[0])), float(found.value[0])
+    choices = choose_models(params, *cells, question, t_end=horizon, tol=tol, workers=1)
+    level, value = Level(int(choices.level[0])), float(choices.value[0])
     ruled = _has_rule(params, question)
     return Choice(
         model=level.name,
@@ -98,7 +98,7 @@ def choose_model(
         if level == Level.a1
         else f"the linear motion keeps clear of l_pre by a margin ({SAMPLE})",
         checks=("linear motion",) * ruled + ("A1",) * (level == Level.a1),
-        cost=found.cost,
+        cost=choices.cost,
     )
 
 

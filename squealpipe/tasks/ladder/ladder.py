@@ -46,11 +46,13 @@ def model_ladder(
     run_ensemble(
         params, alpha1[:1], alpha2[:1], t_end=short, workers=1
     )  # compile off the clock
-    found = {level: answer(level, scenes) for level in Level}
-    truth = found[Level.a1].values
-    reached = np.asarray(found[Level.a1].belt_reached, dtype=bool)
-    error = np.stack([_errors(found[level].values, truth) for level in LEVELS], axis=1)
-    valid = np.stack([found[level].valid for level in LEVELS], axis=1)
+    answers = {level: answer(level, scenes) for level in Level}
+    truth = answers[Level.a1].values
+    reached = np.asarray(answers[Level.a1].belt_reached, dtype=bool)
+    error = np.stack(
+        [_errors(answers[level].values, truth) for level in LEVELS], axis=1
+    )
+    valid = np.stack([answers[level].valid for level in LEVELS], axis=1)
     # where the belt is never reached, A1 without stick is A1
     valid[:, LEVELS.index(Level.a1_no_stick)] &= reached
     cheapest = (valid & (error <= tol)).argmax(axis=1)

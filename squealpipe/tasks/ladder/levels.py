@@ -86,7 +86,7 @@ def _in_time(level: Level, scenes: Scenes) -> Answers:
     params, alpha1, alpha2, horizon, workers = scenes
     end = level.share * horizon
     times = sample_times(params, end)
-    found = run_ensemble(
+    runs = run_ensemble(
         params,
         alpha1,
         alpha2,
@@ -96,9 +96,9 @@ def _in_time(level: Level, scenes: Scenes) -> Answers:
         tracked=("vx", PEAK, REACH),
         workers=workers,
     )
-    values = np.stack([answer_of(found, question, times) for question in QUESTIONS])
-    holds = found.outcome == Outcome.converged
+    values = np.stack([answer_of(runs, question, times) for question in QUESTIONS])
+    holds = runs.outcome == Outcome.converged
     if level.model == "A4":
-        holds &= slides(found.max_vx, params)
-    reached = found.sticks + found.slips + found.reversals > 0
+        holds &= slides(runs.max_vx, params)
+    reached = runs.sticks + runs.slips + runs.reversals > 0
     return Answers(values, np.broadcast_to(holds, values.shape), reached)

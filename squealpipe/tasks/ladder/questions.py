@@ -45,5 +45,5 @@ def dominant_frequency(samples: np.ndarray, times: np.ndarray) -> np.ndarray:
     top = spectrum[..., 1:-1].argmax(axis=-1) + 1
     offset, _ = vertex(*neighbours(np.log(spectrum + 1e-300), top))
     bin_width = 2.0 * math.pi / (samples.shape[-1] * (times[1] - times[0]))
-    found = (top + np.clip(offset, -0.5, 0.5)) * bin_width
-    return np.asarray(np.where(np.isfinite(samples).all(axis=-1), found, np.nan))
+    frequency = (top + np.clip(offset, -0.5, 0.5)) * bin_width
+    return np.asarray(np.where(np.isfinite(samples).all(axis=-1), frequency, np.nan))

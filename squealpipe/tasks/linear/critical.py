@@ -68,9 +68,11 @@ def critical_damping_map(
         Dataset over (damping1, damping2), ∞ where no friction destabilizes.
     """
     _refuse_slope(params)
-    given = {name: getattr(params, name) for name in ("mass", "k1", "k2", "k3", "drag")}
+    numbers = {
+        name: getattr(params, name) for name in ("mass", "k1", "k2", "k3", "drag")
+    }
     system = SimpleNamespace(
-        **given,
+        **numbers,
         belt_direction=params.belt_direction,
         damping1=damping1[:, None],
         damping2=damping2[None, :],

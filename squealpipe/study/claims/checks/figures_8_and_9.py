@@ -41,12 +41,12 @@ def first_vanishes_in_contact(run: Evidence) -> Finding:
     middle = cell(run, "natural_frequencies", 0.5, 0.5).omega.sel(
         contact_state="contact"
     )
-    here = float(middle.sel(mode=1) / first.max())
+    relative = float(middle.sel(mode=1) / first.max())
     zeros = (first <= VANISHING * first.max()).sum()
     divergent = (contact.outcome.sel(mode=1) == Outcome.divergence).sum()
     return finding(
-        (here, "≤", VANISHING),
-        f"ω1 at (0.5π, 0.5π) is {here:.2g} of its largest value. In all, ω1 is zero in "
+        (relative, "≤", VANISHING),
+        f"ω1 at (0.5π, 0.5π) is {relative:.2g} of its largest value. In all, ω1 is zero in "
         f"{int(zeros)} cells, {int(divergent)} of them by divergence.",
     )
 

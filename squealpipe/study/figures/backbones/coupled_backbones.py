@@ -50,11 +50,11 @@ def draw(
     figure = draw_scenes(branches, 0.6 + 2.5 * len(scenes))
     for panel, scene in zip(figure.axes[::2], scenes, strict=True):
         leaving = [doubled.get(f"doubled_branch/{scene}_{number}") for number in (1, 2)]
-        found = [
+        drawn = [
             branch for branch in leaving if branch is not None and branch.sizes["point"]
         ]
-        if found:
-            _draw_doubled(panel, branches[f"backbone/{scene}_mode1"], found)
+        if drawn:
+            _draw_doubled(panel, branches[f"backbone/{scene}_mode1"], drawn)
     return figure
 
 

@@ -21,8 +21,8 @@ LABELS = {"cpu_ratio": "CPU time over that of DOP853 at 10⁻⁸", "evaluations"
 
 def scenes_of_a1(benchmark: xr.Dataset) -> xr.Dataset:
     """The problems of model A1 that have an answer: every method can be asked all of them."""
-    own = benchmark.problem.str.startswith(OF_A1) & knowable(benchmark)
-    chosen: xr.Dataset = benchmark.isel(problem=own.values)
+    of_a1 = benchmark.problem.str.startswith(OF_A1) & knowable(benchmark)
+    chosen: xr.Dataset = benchmark.isel(problem=of_a1.values)
     return chosen
 
 

@@ -149,5 +149,5 @@ def _listed(
     by_line = dict(
         zip(chart.boundary.values, unit * chart.distance.values[place], strict=True)
     )
-    found = (by_line.get(which.name, np.inf) for which in known)
-    return [number(far, 3) if np.isfinite(far) else "none" for far in found]
+    values = (by_line.get(which.name, np.inf) for which in known)
+    return [number(far, 3) if np.isfinite(far) else "none" for far in values]

@@ -69,8 +69,8 @@ def _sizes(axes: Axes, sizes: xr.Dataset) -> None:
     kinds.append((changed, "x", style.BLACK, "another kind in the last quarter"))
     for chosen, marker, colour, words in kinds:
         if chosen.any():
-            here = speed[chosen], sizes.amplitude.values[chosen]
-            axes.loglog(*here, marker, color=colour, markersize=4, label=words)
+            points = speed[chosen], sizes.amplitude.values[chosen]
+            axes.loglog(*points, marker, color=colour, markersize=4, label=words)
     line = np.geomspace(speed[0], speed[-1], 200)
     energy = float(sizes.energy_offset) + float(sizes.energy_slope) * line
     axes.loglog(line, energy, "--", color=style.GREY, label="energy at speed V")

@@ -98,9 +98,9 @@ def draw_kinds(
 
 def key() -> list[Patch]:
     """What the tones mean."""
-    found = style.patches(KINDS)
-    found[1].set_hatch(style.HATCH)
-    return found
+    patches = style.patches(KINDS)
+    patches[1].set_hatch(style.HATCH)
+    return patches
 
 
 def draw(found: Mapping[str, xr.Dataset]) -> Figure:

@@ -64,8 +64,8 @@ def _draw(panel: Axes, run: xr.Dataset) -> None:
     start, end = ((direction * share * scale, 2 * belt) for share in (0.4, 0.9))
     arrow(panel, start, end, 9, RED)
     law = law_in_words(parameter(run, "friction_law")).partition(",")[0]
-    own = law in {"table", "Python file"}
-    friction = f"$μ$: {law}" if own else f"$μ$ = {number(parameter(run, 'mu'))}"
+    from_file = law in {"table", "Python file"}
+    friction = f"$μ$: {law}" if from_file else f"$μ$ = {number(parameter(run, 'mu'))}"
     contact = law_in_words(parameter(run, "contact_law")).partition(",")[0]
     spring = (
         "contact: table"

@@ -85,17 +85,17 @@ def layers(
     verdicts: xr.Dataset | None = None,
 ) -> dict[str, Layer]:
     """All layers, in the order of the chooser; those of missing datasets are left out."""
-    found = {}
+    by_name = {}
     levels = {int(level): level.label for level in Level}
     colours = {int(level): colour_of(level) for level in Level}
     if hammering is not None:
         motion = hammering.motion.where(
             hammering.motion_changed == 0, MotionFlag.unsettled
         )
-        found["motion"] = _regimes("motion (A1)", motion)
-    found |= _of_verdicts(verdicts) | _of_contact(validity, stability)
+        by_name["motion"] = _regimes("motion (A1)", motion)
+    by_name |= _of_verdicts(verdicts) | _of_contact(validity, stability)
     if hammering is not None:
-        found |= {
+        by_name |= {
             "peak_force": Layer(
                 "peak contact force / (k₃ lₚᵣₑ)", hammering.peak_contact_force
             ),
@@ -107,19 +107,19 @@ def layers(
             ),
         }
     if stability is not None:
-        found["growth_rate"] = Layer("growth rate (A3)", stability.growth_rate)
+        by_name["growth_rate"] = Layer("growth rate (A3)", stability.growth_rate)
     if frequencies is not None:
         for state, words in (("contact", "in contact"), ("separated", "separated")):
             for mode in (1, 2):
                 chosen = frequencies.omega.sel(mode=mode, contact_state=state)
-                found[f"omega{mode}_{state}"] = Layer(
+                by_name[f"omega{mode}_{state}"] = Layer(
                     f"ω{'₁₂'[mode - 1]} {words}", chosen
                 )
     if ladder is not None:
         for question in ladder.question.values.tolist():
             cheapest = ladder.cheapest.sel(question=question)
             label = f"cheapest model: {question.replace('_', ' ')}"
-            found[f"cheapest_{question}"] = _categories(
+            by_name[f"cheapest_{question}"] = _categories(
                 label, cheapest, levels, colours
             )
-    return found
+    return by_name

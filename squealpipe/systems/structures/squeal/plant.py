@@ -85,8 +85,8 @@ class Plant:
     @property
     def pressed(self) -> np.ndarray:
         """Preload of each contact, or where it has none its force in steady sliding, N."""
-        given = self.structure.preloads
-        force = np.where(given > 0, given, self.spectrum.state.force)
+        preloads = self.structure.preloads
+        force = np.where(preloads > 0, preloads, self.spectrum.state.force)
         return np.where(force > 0, force, np.nan)
 
     @cached_property

@@ -87,19 +87,19 @@ def squealing_modes(
         [run for run, at in zip(settled, numbers, strict=True) if at == number]
         for number in range(numbers.max(initial=NO_ATTRACTOR) + 1)
     ]
-    found = [described(plant, runs[0], how) for runs in members]
-    of_mode = _of_modes(plant, settled, numbers, found)
-    of_attractor = _of_attractors(plant, members, found)
+    modes = [described(plant, runs[0], how) for runs in members]
+    of_mode = _of_modes(plant, settled, numbers, modes)
+    of_attractor = _of_attractors(plant, members, modes)
     shares = _shares(numbers[len(pushes) :], len(members))
     first = int(numbers[0])
     verdict = Verdict.undetermined
     decided = plant.unstable.size or plant.decays  # a push lasts where nothing damps it
-    if decided and first != NO_ATTRACTOR and found[first].kind is not Kind.undetermined:
+    if decided and first != NO_ATTRACTOR and modes[first].kind is not Kind.undetermined:
         verdict = Verdict(int(of_attractor["motion"][first]))
     below = {}
     if onset:
         below = hysteresis(plant, [runs[0] for runs in members], how)
-    loud = [place for place, each in enumerate(found) if not members[place][0].quiet]
+    loud = [place for place, each in enumerate(modes) if not members[place][0].quiet]
     drawn_in = set(numbers[len(pushes) :].tolist())
     record = plant.structure.record
     return build(
