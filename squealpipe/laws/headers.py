@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from squealpipe.laws.numerals import numeral
-from squealpipe.laws.rows import FileRows
+from squealpipe.laws.rows import FileRows, Line, Row
 from squealpipe.units import UnitError, in_si, is_long_name, is_unit, plain_unit
 
 UNITS = {"speed": "m s-1", "coefficient": "1", "compression": "m", "force": "N"}
@@ -52,7 +52,7 @@ def header_row(
     is_header: Callable[[Sequence[str]], list[int]],
 ) -> int:
     """Which row is the header: that with the name of the knots over a number."""
-    cells = [row for _, row in table.rows]
+    cells = [row.cells for row in table.rows]
     candidates = {
         number: at for number, row in enumerate(cells) if (at := is_header(row))
     }
@@ -85,11 +85,9 @@ def _are_units(row: Sequence[str]) -> bool:
     return bool(written) and all(map(is_unit, written))
 
 
-def units_row(
-    path: Path, row: tuple[int, Sequence[str]], places: Sequence[Place]
-) -> list[str] | None:
+def units_row(path: Path, row: Row, places: Sequence[Place]) -> list[str] | None:
     """Units of both columns, if the row below the header is one of units."""
-    written = [_bare(cell_at(row[1], place.at)) for place in places]
+    written = [_bare(cell_at(row.cells, place.at)) for place in places]
     if any(numeral(unit) and unit not in NO_UNIT for unit in written):
         return None
     if not any(unit not in NO_UNIT for unit in written) and "1" in written:
@@ -103,8 +101,8 @@ def units_row(
                 else f"take the row out if the column is in {_unit_in_words(place)}"
             )
             raise ValueError(
-                f"{path}, row {row[0]}: {unit!r} is no number, nor a unit that is known; write a "
-                f"number there, or a unit of {place.name}, or {without}"
+                f"{path}, row {row.number}: {unit!r} is no number, nor a unit that is known; write "
+                f"a number there, or a unit of {place.name}, or {without}"
             )
     return [unit if unit not in NO_UNIT else "" for unit in written]
 
@@ -216,9 +214,7 @@ def _unit_too(column: str) -> str:
     return f" (what is not in {unit} needs its unit behind the name)" if unit else ""
 
 
-def refuse_units_elsewhere(
-    path: Path, place: Place, lines: Iterable[tuple[int, str]]
-) -> None:
+def refuse_units_elsewhere(path: Path, place: Place, lines: Iterable[Line]) -> None:
     """Refuse a column without a unit where a comment, or a line above, speaks of one.
 
     Args:

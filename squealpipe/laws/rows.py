@@ -26,12 +26,26 @@ _CLEAN = {code + 0xFEE0: code for code in range(0x21, 0x7F)} | dict.fromkeys(
 _NUMERIC = re.compile(r"[\s|]*[\"']?[-+.,−]?\d")
 
 
-class FileRows(NamedTuple):
-    """Rows of a file by their number, what separates their cells, and its comments."""
+class Line(NamedTuple):
+    """A line of a file by its number."""
 
-    rows: list[tuple[int, list[str]]]
+    number: int
+    text: str
+
+
+class Row(NamedTuple):
+    """Cells of a line of a file by its number."""
+
+    number: int
+    cells: list[str]
+
+
+class FileRows(NamedTuple):
+    """Rows of a file, what separates their cells, and its comments."""
+
+    rows: list[Row]
     separator: str
-    comments: Sequence[tuple[int, str]] = ()
+    comments: Sequence[Line] = ()
 
 
 def text_rows(path: Path, is_header: Callable[[Sequence[str]], object]) -> FileRows:
@@ -43,42 +57,42 @@ def text_rows(path: Path, is_header: Callable[[Sequence[str]], object]) -> FileR
     """
     lines = _whole_lines(_decoded(path).splitlines())
     separator = None
-    kept: list[tuple[int, str]] = []
-    comments: list[tuple[int, str]] = []
+    kept: list[Line] = []
+    comments: list[Line] = []
     for number, line in lines:
         if match := re.fullmatch(r"\s*sep=(.)\s*", line):  # Excel's
             separator = match[1]
         elif is_comment(line):
-            comments.append((number, line.lstrip(" \t#%/!")))
+            comments.append(Line(number, line.lstrip(" \t#%/!")))
         elif line.strip(" ;,\t") and not _RULER.fullmatch(line):
-            kept.append((number, line))
+            kept.append(Line(number, line))
     separator = separator or _separator([line for _, line in kept])
     rows = _split_rows(kept, separator)
     if rows and not any(is_header(cells) for _, cells in rows):
         in_comments = [
-            (number, cells)
+            row
             for line in comments
-            for number, cells in _split_rows([line], separator, len(rows[0][1]))
-            if line[0] < rows[0][0] and len(cells) == len(rows[0][1])
+            for row in _split_rows([line], separator, len(rows[0].cells))
+            if row.number < rows[0].number and len(row.cells) == len(rows[0].cells)
         ]
-        headers = [place for place, row in enumerate(in_comments) if is_header(row[1])]
+        headers = [at for at, row in enumerate(in_comments) if is_header(row.cells)]
         if headers:  # and the units that may stand below it
             rows = in_comments[headers[-1] :] + rows
     return FileRows(rows, separator, comments)
 
 
 def _split_rows(
-    lines: Sequence[tuple[int, str]], separator: str, width: int | None = None
-) -> list[tuple[int, list[str]]]:
+    lines: Sequence[Line], separator: str, width: int | None = None
+) -> list[Row]:
     """Cells of lines.
 
     Args:
         width: how many cells a row between blanks has; by default as most of the lines.
     """
-    lines = [(number, _without_remark(line, separator)) for number, line in lines]
+    lines = [Line(at, _without_remark(text, separator)) for at, text in lines]
     if separator == " ":
         return _by_blanks(lines, width)
-    quote = "'" if lines and lines[0][1].lstrip().startswith("'") else '"'
+    quote = "'" if lines and lines[0].text.lstrip().startswith("'") else '"'
     rows = []
     for number, line in lines:
         text = io.StringIO(line.strip(" |") if separator == "|" else line)
@@ -88,19 +102,19 @@ def _split_rows(
             ),
             [],
         )
-        rows.append((number, [_QUOTED.sub(r"\1", cell.strip()) for cell in cells]))
+        rows.append(Row(number, [_QUOTED.sub(r"\1", cell.strip()) for cell in cells]))
     return rows
 
 
-def _whole_lines(lines: Iterable[str]) -> list[tuple[int, str]]:
+def _whole_lines(lines: Iterable[str]) -> list[Line]:
     """Lines with the number of each; a quoted cell with a line break is one line."""
-    whole: list[tuple[int, str]] = []
+    whole: list[Line] = []
     for number, line in enumerate(lines, 1):
-        if whole and _is_open(whole[-1][1]):
+        if whole and _is_open(whole[-1].text):
             start, text = whole[-1]
-            whole[-1] = (start, f"{text} {line}")
+            whole[-1] = Line(start, f"{text} {line}")
         else:
-            whole.append((number, line))
+            whole.append(Line(number, line))
     return whole
 
 
@@ -173,15 +187,13 @@ def _separator(lines: Sequence[str]) -> str:
     return ","
 
 
-def _by_blanks(
-    lines: Sequence[tuple[int, str]], width: int | None
-) -> list[tuple[int, list[str]]]:
+def _by_blanks(lines: Sequence[Line], width: int | None) -> list[Row]:
     """Cells between blanks; names of columns may hold single ones, like ``speed (m/s)``."""
     widths = Counter(
         len(line.split()) for _, line in lines if _NUMERIC.match(line)
     ) or Counter([2])
     width = width or widths.most_common(1)[0][0]
-    return [(number, _cells_between_blanks(line, width)) for number, line in lines]
+    return [Row(number, _cells_between_blanks(line, width)) for number, line in lines]
 
 
 def _cells_between_blanks(line: str, width: int) -> list[str]:

@@ -6,7 +6,7 @@ from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
-from squealpipe.laws.rows import FileRows, clean, is_comment
+from squealpipe.laws.rows import FileRows, Row, clean, is_comment
 
 _FOR_POSITIVE = re.compile(r'(?:"[^"]*"|\\.|[^;"\\])*')
 """Of a format its part for positive numbers, the first."""
@@ -38,7 +38,7 @@ def sheet(path: Path, is_header: Callable[[Sequence[str]], object]) -> FileRows:
     }
     filled = [title for title, rows in pages.items() if rows]
     headed = [
-        title for title in filled if any(is_header(row) for _, row in pages[title])
+        title for title in filled if any(is_header(row.cells) for row in pages[title])
     ]
     title = headed[0] if len(headed) == 1 else filled[0] if len(filled) == 1 else None
     if title is None:
@@ -62,16 +62,16 @@ def sheet(path: Path, is_header: Callable[[Sequence[str]], object]) -> FileRows:
     return FileRows(pages[title], ",")  # numbers of cells have a decimal point
 
 
-def _page_rows(page: Any) -> list[tuple[int, list[str]]]:
+def _page_rows(page: Any) -> list[Row]:
     """Rows of a sheet, without comments and empty ones."""
     rows = [
-        (number, [_cell_text(cell) for cell in row])
+        Row(number, [_cell_text(cell) for cell in row])
         for number, row in enumerate(page.iter_rows(), 1)
     ]
     return [
-        (number, row)
-        for number, row in rows
-        if any(row) and not is_comment(next(filter(None, row)))
+        row
+        for row in rows
+        if any(row.cells) and not is_comment(next(filter(None, row.cells)))
     ]
 
 

@@ -22,7 +22,7 @@ from squealpipe.laws.headers import (
     units_row,
 )
 from squealpipe.laws.numerals import Numeral, decimal_sign, numeral, plain
-from squealpipe.laws.rows import text_rows
+from squealpipe.laws.rows import Line, Row, text_rows
 from squealpipe.laws.sheets import sheet
 from squealpipe.units import UnitError, in_si, is_unit
 
@@ -62,17 +62,17 @@ def read_pairs(
     excel = path.suffix.lower() == ".xlsx"
     table = (sheet if excel else text_rows)(path, is_header)
     start = header_row(path, table, columns, is_header)
-    header = table.rows[start][1]
+    header = table.rows[start].cells
     wanted = places(path, header, columns, chosen)
-    data = [row for row in table.rows[start + 1 :] if row[1] != header]
+    data = [row for row in table.rows[start + 1 :] if row.cells != header]
     if data and (units := units_row(path, data[0], wanted)) is not None:
         wanted = [
             place._replace(unit=unit or place.unit)
             for place, unit in zip(wanted, units, strict=True)
         ]
-        first = data[0][1]
-        data = [row for row in data if row[1] != first]
-    above = [(number, "\t".join(cells)) for number, cells in table.rows[:start]]
+        first = data[0].cells
+        data = [row for row in data if row.cells != first]
+    above = [Line(row, "\t".join(cells)) for row, cells in table.rows[:start]]
     for place in wanted:
         refuse_units_elsewhere(path, place, [*table.comments, *above])
     if not data:
@@ -88,11 +88,11 @@ def read_pairs(
     ]
     knots, values = _in_si(path, table.separator, wanted, columns_of_cells)
     pairs = list(zip(knots, values, strict=True))
-    _check_values(path, columns, [row for row, _ in data], pairs)
+    _check_values(path, columns, [row.number for row in data], pairs)
     return pairs
 
 
-def _check_rows(path: Path, width: int, data: Iterable[tuple[int, list[str]]]) -> None:
+def _check_rows(path: Path, width: int, data: Iterable[Row]) -> None:
     """Refuse rows with more cells than the header has names."""
     for line, row in data:
         if any(row[width:]):

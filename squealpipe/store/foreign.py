@@ -68,7 +68,7 @@ def _form(path: Path) -> dict[str, Any]:
         ValueError: a comma of some number is decimal or separates thousands.
     """
     table = text_rows(path, is_header=lambda _: False)  # comments are left out
-    above = table.rows[0][0] - 1 if table.rows else 0
+    above = table.rows[0].number - 1 if table.rows else 0
     if table.separator == ",":
         return {"skiprows": above}
     numbers = [
@@ -86,6 +86,6 @@ def _form(path: Path) -> dict[str, Any]:
         "sep": r"\s+",
         "decimal": decimal,
         "header": None,
-        "names": table.rows[0][1],
+        "names": table.rows[0].cells,
         "skiprows": above + 1,
     }

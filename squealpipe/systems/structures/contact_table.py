@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.laws.rows import text_rows
+from squealpipe.laws.rows import Row, text_rows
 from squealpipe.laws.sheets import sheet
 from squealpipe.parameters import brief, finite_number
 from squealpipe.systems.structures.contact import Contact
@@ -79,7 +79,7 @@ def read_contacts(
     return contacts
 
 
-def _rows(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
+def _rows(path: Path) -> tuple[list[str], list[Row]]:
     """The names of the columns, and the rows below by their line."""
     if not path.is_file():
         raise FileNotFoundError(f"contacts: no file {path}")
@@ -87,7 +87,7 @@ def _rows(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     table = (sheet if excel else text_rows)(path, lambda row: "name" in row)
     if not table.rows:
         raise ValueError(f"{path} is empty; {HEADER}")
-    header = table.rows[0][1]
+    header = table.rows[0].cells
     if not set(header) & set(KNOWN):
         raise ValueError(f"{path} begins with {brief(header)}; {HEADER}")
     for name in header:
