@@ -143,15 +143,15 @@ def compare(
             datasets.append(missing)
             continue
         try:
-            pair = (load(left[name]), load(right[name]))
+            first, second = load(left[name]), load(right[name])
         except ValueError as error:
             datasets.append(_refused(name, str(error)))
             continue
-        parameters |= _changes(*map(configuration, pair))
-        environment |= _changes(*map(_environment, pair))
-        datasets.append(compare_datasets(name, *pair))
-        if pair[0].attrs["schema"] == pair[1].attrs["schema"] == CLAIMS.name:
-            statements = changed_statements(*pair)
+        parameters |= _changes(configuration(first), configuration(second))
+        environment |= _changes(_environment(first), _environment(second))
+        datasets.append(compare_datasets(name, first, second))
+        if first.attrs["schema"] == second.attrs["schema"] == CLAIMS.name:
+            statements = changed_statements(first, second)
     physical_first = sorted(
         parameters, key=lambda key: (not PHYSICAL_KEY.match(key), key)
     )
@@ -171,9 +171,9 @@ def compare_datasets(name: str, a: xr.Dataset, b: xr.Dataset) -> DatasetDifferen
 
     Points of grids are matched by value, entries of lists as the schema's ``lists`` say.
     """
-    kinds = (a.attrs["schema"], b.attrs["schema"])
-    if kinds[0] != kinds[1]:
-        return _refused(name, f"the schemas are {kinds[0]!r} and {kinds[1]!r}")
+    of_a, of_b = a.attrs["schema"], b.attrs["schema"]
+    if of_a != of_b:
+        return _refused(name, f"the schemas are {of_a!r} and {of_b!r}")
     schema, schema_of_b = schema_of(a), schema_of(b)
     try:
         aligned = align(a, b, schema)
@@ -215,15 +215,14 @@ def compare_datasets(name: str, a: xr.Dataset, b: xr.Dataset) -> DatasetDifferen
 def _judged(name: str, aligned: Aligned, entry: Variable) -> VariableDifference:
     """One variable of both sides: its numbers, if these mean the same."""
     pair = aligned.a[name], aligned.b[name]
-    if pair[0].dims != pair[1].dims:
-        return _differs(name, f"dimensions {pair[0].dims} against {pair[1].dims}")
-    for what, both in (
+    for what, (left, right) in (
+        ("dimensions", [each.dims for each in pair]),
         ("units", [each.attrs.get("units", "1") for each in pair]),
         ("flags", [meanings(each) for each in pair]),
         ("type", ["text" if each.dtype.kind in "UOS" else "number" for each in pair]),
     ):
-        if both[0] != both[1]:
-            return _differs(name, f"{what} {both[0]} against {both[1]}")
+        if left != right:
+            return _differs(name, f"{what} {left} against {right}")
     return judge(name, aligned.a, aligned.b, entry)
 
 
