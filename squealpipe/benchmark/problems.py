@@ -69,17 +69,12 @@ class Problem:
         number: Callable[[Any], Any] = float,
     ) -> None:
         self.data = data
-        self.name, self.group, self.purpose = (
-            data["name"],
-            data["class"],
-            data["purpose"],
-        )
+        self.name, self.group = data["name"], data["class"]
+        self.purpose = data["purpose"]
         self.states, self.regime = list(data["start"]), data["regime"]
         self.start = [number(value) for value in data["start"].values()]
-        self.t_end, self.times = (
-            number(data["t_end"]),
-            [number(t) for t in data["times"]],
-        )
+        self.t_end = number(data["t_end"])
+        self.times = [number(t) for t in data["times"]]
         self.parameters = {
             name: number(value) for name, value in data["parameters"].items()
         }
@@ -147,6 +142,10 @@ class Problem:
         return Transition(
             data["name"], leaves, lambda t, y, regime: when[regime](t, y), fire
         )
+
+    def times_after(self, t: Any) -> list[Any]:
+        """Times still to be reached: those at which the state is asked, and the end."""
+        return [*(time for time in self.times if time > t), self.t_end]
 
     def watched(self, regime: str) -> list[Transition]:
         """The switches that can fire in a regime."""

@@ -106,10 +106,8 @@ def refine(
         tol=tol,
         workers=workers,
     )
-    (low, high), run = (
-        validity.inherited_error_interval.values,
-        int(validity.computed.sum()),
-    )
+    low, high = validity.inherited_error_interval.values
+    run = int(validity.computed.sum())
     wrong = f"; of the others {low:.2%} to {high:.2%} are wrong (95 %)"
     answer(
         f"contact is lost in {int(validity.separates.sum())} of {validity.separates.size} cells",

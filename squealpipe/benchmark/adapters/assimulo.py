@@ -36,15 +36,10 @@ def solve(problem: Problem, tol: float) -> Any:
         if watched:
             asked.state_events, asked.handle_event = surfaces, stop
         solver = CVode(asked)
-        solver.discr, solver.rtol, solver.atol, solver.verbosity = (
-            "Adams",
-            tol,
-            tol,
-            QUIET,
-        )
+        solver.discr, solver.verbosity = "Adams", QUIET
+        solver.rtol, solver.atol = tol, tol
         if t < problem.t_end:
-            ends = [*(each for each in problem.times if each > t), problem.t_end]
-            solver.simulate(problem.t_end, 0, ends)
+            solver.simulate(problem.t_end, 0, problem.times_after(t))
         return solver.t, solver.y.copy(), next(iter(fired), None)
 
     return run(problem, advance)

@@ -20,9 +20,7 @@ def solve(problem: Problem, tol: float) -> Any:
             rtol=tol,
             atol=tol,
             events=[switch.event(regime) for switch in watched],
-            t_eval=np.array(
-                [*(each for each in problem.times if each > t), problem.t_end]
-            ),
+            t_eval=np.array(problem.times_after(t)),
         )
         if solution.event_terminated:
             hit = solution.event_terminate_index

@@ -21,7 +21,7 @@ def solve(problem: Problem, tol: float, method: str = "DOP853") -> Any:
             (t, problem.t_end),
             np.array(y, float),  # scipy hands it to the events as it is
             method=method,
-            t_eval=[*(each for each in problem.times if each > t), problem.t_end],
+            t_eval=problem.times_after(t),
             rtol=tol,
             atol=tol,
             events=[switch.event(regime) for switch in watched],

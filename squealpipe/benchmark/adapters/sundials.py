@@ -28,8 +28,8 @@ def solve(problem: Problem, tol: float) -> Any:
         solver = CVODE(
             rates, method="Adams", rtol=tol, atol=tol, max_num_steps=100_000, **events
         )
-        ends = [t, *(each for each in problem.times if each > t), problem.t_end]
-        solution = solver.solve(np.array(ends), np.array(y, float))
+        times = np.array([t, *problem.times_after(t)])
+        solution = solver.solve(times, np.array(y, float))
         if solution.status == 2:
             hit = int(np.flatnonzero(solution.i_events[-1])[0])
             return solution.t_events[-1], solution.y_events[-1], hit

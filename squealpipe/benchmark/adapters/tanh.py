@@ -20,9 +20,8 @@ def solve(problem: Problem, tol: float, sigma: float = 1e3) -> Any:
     problem.fields[problem.regime] = problem.function(problem.rates, constants)
     span = 0.0, problem.t_end
     solution = solve_ivp(
-        lambda t, y: problem.field(
-            t, y.tolist()
-        ),  # Python's numbers are several times faster
+        # Python's numbers are several times faster
+        lambda t, y: problem.field(t, y.tolist()),
         span,
         problem.start,
         method="LSODA",

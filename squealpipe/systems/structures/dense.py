@@ -152,9 +152,7 @@ def _damped(pencil: Pencil) -> list[Eigenpair]:
             second = error**2 / gap if gap else np.inf
             better = error_of_rounding(pencil, value, v, w, rate) + second
             if better < error and abs(root - value) <= error:
-                value, error = (
-                    complex(root.real, root.imag if value.imag else 0.0),
-                    better,
-                )
+                value = complex(root.real, root.imag if value.imag else 0.0)
+                error = better
         pairs.append(Eigenpair(complex(value), v, w, float(error)))
     return pairs
