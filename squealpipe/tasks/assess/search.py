@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
 from squealpipe.tasks.assess.designs import Cure
 from squealpipe.tasks.assess.sliding import Sliding
@@ -126,14 +126,7 @@ def search(sides: list[Side], quiet: bool, test: Test, located: float) -> list[S
 def _plan(side: Side, quiet: bool, located: float) -> None:
     """The linear boundary of a side, and the values that are to be run."""
     now = _is_stable(side, side.inner)
-    flags = []
-    for value in side.values:
-        flags.append(_is_stable(side, float(value)))
-        if quiet and not flags[-1]:
-            break
-        if not quiet and len(flags) > 1 and flags[-2] and not flags[-1]:
-            break  # the first stretch of stable values has ended
-    reached = side.values[: len(flags)]
+    reached, flags = _reached(side, quiet)
     if quiet:
         if flags[-1]:
             side.rungs = thinned(reached)
@@ -159,6 +152,48 @@ def _plan(side: Side, quiet: bool, located: float) -> None:
     side.inner = side.exact
     rest = [v for v in outer if abs(v - side.cure.value) > abs(check - side.cure.value)]
     side.rungs = [check, *thinned(np.array(rest))]
+
+
+def _reached(side: Side, quiet: bool) -> tuple[np.ndarray, list[bool]]:
+    """Values outward as far as the linear boundary is looked for, and which of them are stable.
+
+    Between three that are alike, the growth may come up to zero and cross it twice.
+    """
+    values, margins = [side.inner], [_margin(side, side.inner)]
+    for value in side.values:
+        values.append(float(value))
+        margins.append(_margin(side, values[-1]))
+        stable = [margin <= 0.0 for margin in margins]
+        peak = _peak(side, values[-3:]) if _turns(margins[-3:], quiet) else None
+        if peak is not None:
+            nearer = [v for v in values if abs(v - side.inner) < abs(peak - side.inner)]
+            return np.array([*nearer[1:], peak]), [*stable[1 : len(nearer)], not quiet]
+        if quiet and not stable[-1]:
+            break
+        if not quiet and len(stable) > 2 and stable[-2] and not stable[-1]:
+            break  # the first stretch of stable values has ended
+    return np.array(values[1:]), stable[1:]
+
+
+def _turns(margins: Sequence[float], quiet: bool) -> bool:
+    """Whether three margins of the sign that is to change are nearest to zero in the middle."""
+    if len(margins) < 3 or any((margin <= 0.0) != quiet for margin in margins):
+        return False
+    first, middle, last = map(abs, margins)
+    return middle < min(first, last)
+
+
+def _peak(side: Side, values: Sequence[float]) -> float | None:
+    """Where the growth beside the middle one of three values has the other sign, if anywhere."""
+    stable = _is_stable(side, values[1])
+    sign = -1.0 if stable else 1.0
+    found = minimize_scalar(
+        lambda value: sign * _margin(side, value),
+        bounds=sorted((values[0], values[2])),
+        method="bounded",
+        options={"xatol": 0.02 * abs(values[2] - values[0])},
+    )
+    return float(found.x) if _is_stable(side, float(found.x)) != stable else None
 
 
 def _locate(side: Side, inner: float, outer: float) -> tuple[float, float]:
