@@ -157,7 +157,7 @@ def test_without_friction_it_is_quiet_and_the_margin_is_where_it_starts():
 
 def is_quiet(sides, values):
     """An answer of runs that all die out: the linear boundary decides."""
-    return [True] * len(sides) if len(values) == len(sides) else []
+    return [True for _ in zip(sides, values, strict=True)]
 
 
 @pytest.mark.parametrize("speed", [10.0, 12.0, 14.0])
