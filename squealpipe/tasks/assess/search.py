@@ -188,7 +188,7 @@ def _peak(side: Side, values: Sequence[float]) -> float | None:
     stable = _is_stable(side, values[1])
     sign = -1.0 if stable else 1.0
     found = minimize_scalar(
-        lambda value: sign * _margin(side, value),
+        lambda value: sign * _margin(side, float(value)),
         bounds=sorted((values[0], values[2])),
         method="bounded",
         options={"xatol": 0.02 * abs(values[2] - values[0])},
