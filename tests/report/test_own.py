@@ -14,6 +14,7 @@ from squealpipe.config.mistakes import ConfigError
 from squealpipe.config.settings import PAPER, parse_study, read_study
 from squealpipe.parameters import Parameters
 from squealpipe.plotting.style import save_figure
+from squealpipe.schema.assess import Verdict
 from squealpipe.store import load
 from squealpipe.store.netcdf import save
 from squealpipe.store.provenance import stamped
@@ -21,7 +22,7 @@ from squealpipe.study.figures.declared import draw, reads
 from squealpipe.study.report import answer
 from squealpipe.study.report.build import write_document
 from squealpipe.study.report.content import Made, parameter_table, picture_files
-from squealpipe.study.report.own import gather_own
+from squealpipe.study.report.own import gather_own, scene
 from squealpipe.study.report.tables import write_tables
 from squealpipe.tasks.assess.map import verdict_map
 from squealpipe.tasks.assess.shares import verdict_shares
@@ -190,6 +191,23 @@ def test_sliding_far_from_rest_is_told_with_its_distance(answers):
     assert far.startswith(near)
     assert "61 times the preload" in far
     assert far in answer.lines(told)
+
+
+def test_what_is_quiet_unless_struck_names_only_starts_that_last(answers):
+    told = answers["mine"].copy(deep=True)
+    told["verdict"], told["quiet_unless_struck"] = Verdict.quiet, True
+    for sudden, named in ((Verdict.hammers, True), (Verdict.quiet, False)):
+        told["sudden_verdict"] = sudden
+        assert ("a sudden start" in answer.headline(told)) == named
+
+
+def test_what_has_not_settled_has_no_time_by_which_it_had(answers):
+    told = answers["mine"].copy(deep=True)
+    told["verdict"] = Verdict.undetermined
+    shown = scene("mine", told, simulate(PAD, 0.5, 2.4, t_end=20 * PAD.time_unit))
+    assert shown["numbers"][-1]["pushed"] == "not settled"
+    assert shown["numbers"][-1]["sudden"].endswith("s")
+    assert shown["level"].startswith("Level at the end")
 
 
 def test_a_table_of_friction_stands_for_the_coefficient(tmp_path):

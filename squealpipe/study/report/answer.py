@@ -151,16 +151,18 @@ def _far(answer: xr.Dataset) -> str:
 
 def level(answer: xr.Dataset) -> str:
     """How loud, in one sentence."""
-    if verdict_of(answer) is Verdict.quiet:
+    verdict = verdict_of(answer)
+    if verdict is Verdict.quiet:
         return f"Level: none; the contact force is {_force(answer)}."
+    when = " at the end" * (verdict is Verdict.undetermined)
     along, across = (
         engineering(float(answer[f"velocity_rms_{way}"]), "m s-1")
         for way in ("along", "across")
     )
     peak = engineering(float(answer.displacement_peak), "m")
     return (
-        f"Level: {along} rms along the belt and {across} across it; displacement up to {peak}, "
-        f"contact force up to {_force(answer)}."
+        f"Level{when}: {along} rms along the belt and {across} across it; "
+        f"displacement up to {peak}, contact force up to {_force(answer)}."
     )
 
 

@@ -138,6 +138,9 @@ def _numbers(told: xr.Dataset) -> list[dict[str, str]]:
                 "sudden": _written(values[1], unit),
             }
         )
+    for column, prefix in (("pushed", ""), ("sudden", "sudden_")):
+        if answer.verdict_of(told, prefix) is Verdict.undetermined:
+            rows[-1][column] = "not settled"
     return rows
 
 

@@ -81,11 +81,13 @@ def draw(verdicts: xr.Dataset, answers: Mapping[str, xr.Dataset]) -> Figure:
             arrow.arrow_patch.set_clip_path(panel.patch)  # it may lead out of the map
         panel.plot(*at, "x", color="white", markersize=8, markeredgewidth=3)
         panel.plot(*at, "x", color=BLUE, markersize=6, markeredgewidth=1.5)
+        is_right = 2.0 * at[0] > sum(ends[0])  # the name of the scene stays in the map
         panel.annotate(
             name.removeprefix("assess/"),
             at,
-            (6, -10),
+            (-6 if is_right else 6, -10),
             textcoords="offset points",
+            ha="right" if is_right else "left",
             color=BLUE,
             path_effects=HALO,
         )
