@@ -15,9 +15,10 @@ from pydantic import Field, ValidationError, field_validator, model_validator
 
 from squealpipe.config import sections
 from squealpipe.config.mistakes import ConfigError, mistakes
+from squealpipe.config.own import Name, OwnScene, SweepSection
 from squealpipe.config.quantities import scales
 from squealpipe.config.ranges import sweep_config
-from squealpipe.config.sections import Name, Section
+from squealpipe.config.sections import Section
 from squealpipe.config.structure import StructureSection, place_file
 from squealpipe.config.yaml_files import flat, overlay, read_yaml
 from squealpipe.laws.table_files import ENDINGS
@@ -47,7 +48,7 @@ class Study(Section):
     results: Annotated[str, Field(pattern=r"^[\w./-]+$")] = "results"
     paper: bool = True
     reading: Literal["as_printed", "along_plus_x", "along_minus_x"] = "as_printed"
-    scenes: dict[Name, sections.OwnScene] = Field(default={})
+    scenes: dict[Name, OwnScene] = Field(default={})
     structure: StructureSection | None = None
     parameters: sections.ParametersSection = sections.ParametersSection()
     linear: sections.LinearSection = sections.LinearSection()
@@ -59,7 +60,7 @@ class Study(Section):
     robustness: sections.RobustnessSection = sections.RobustnessSection()
     contact_points: sections.ContactPointsSection = sections.ContactPointsSection()
     explorer: sections.ExplorerSection = sections.ExplorerSection()
-    sweeps: dict[Name, sections.SweepSection] = Field(default={})
+    sweeps: dict[Name, SweepSection] = Field(default={})
 
     @field_validator("results")
     @classmethod

@@ -18,9 +18,9 @@ from squealpipe.schema.squeal_ladder import NO_MODE, SQUEAL_LADDER, PushAnswer
 from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.pencil import DENSE
 from squealpipe.systems.structures.reduction import reduce
+from squealpipe.systems.structures.squeal.ends import PushEnd
 from squealpipe.systems.structures.squeal.methods import (
     Horizon,
-    PushEnd,
     Told,
     complex_modes_told,
     distinct,

@@ -7,7 +7,7 @@ at the last window; complex modes say that each unstable mode rings.
 import statistics
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -18,29 +18,26 @@ from squealpipe.schema.comparison import Role
 from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.reduction import Kept
 from squealpipe.systems.structures.spectrum import Limits, Solver
-from squealpipe.systems.structures.squeal.plant import PUSH, Plant
-from squealpipe.systems.structures.squeal.settling import WIDE, stays
-from squealpipe.systems.structures.squeal.smoothed import Samples, Smoothed
-from squealpipe.systems.structures.squeal.windows import (
-    Rows,
-    Running,
-    run,
-    run_window,
-    strongest_line,
+from squealpipe.systems.structures.squeal.ends import (
+    FEWEST_SAMPLES,
+    FINEST,
+    MOST_SAMPLES,
+    NEAR,
+    PushEnd,
+    exact_ends,
+    nothing,
+    smoothed_end,
+    without_mode,
 )
+from squealpipe.systems.structures.squeal.plant import PUSH, Plant
+from squealpipe.systems.structures.squeal.settling import WIDE
+from squealpipe.systems.structures.squeal.smoothed import Smoothed
+from squealpipe.systems.structures.squeal.windows import Rows, Running, run_window
 
 APART = 0.05
 """By how much the next of several pushes is larger, over the first."""
 STARTS = 4
 """Runs with exact events from pushes that differ a little: their scatter is an error."""
-NEAR = 0.1
-"""Distance of frequencies within which a mode of another reduction is the same one's."""
-DIED_OUT = 0.5
-"""Velocity, over that of the push, below which a motion that does not grow has died out."""
-FINEST = 12.0
-"""Samples in a period of the fastest mode."""
-FEWEST_SAMPLES, MOST_SAMPLES = 2**14, 2**16
-"""In each window."""
 GROWS = 1e-9
 """Growth rate over the modulus above which it is no round-off."""
 LONG = 4.0
@@ -58,32 +55,6 @@ class Horizon:
     def end(self) -> float:
         """Of all runs, s."""
         return self.growing + 2.0 * self.window
-
-
-@dataclass(frozen=True, kw_only=True)
-class PushEnd:
-    """What a push has ended in, as a method says.
-
-    Attributes:
-        frequency: of the strongest line, Hz; NaN where nothing rings.
-        speed: rms of all contacts, m/s; NaN where a method does not say.
-        separated, stuck, creep, force: of each contact, as in the schema; NaN likewise.
-        quiet: whether it has died out.
-        has_mode: whether the method has a mode near the one that was asked for.
-        scatter: largest differences among starts of relative frequency, relative speed and shares
-            without contact; NaN of one start.
-    """
-
-    outcome: Outcome
-    frequency: float = np.nan
-    speed: float = np.nan
-    separated: np.ndarray
-    stuck: np.ndarray
-    creep: np.ndarray
-    force: np.ndarray
-    quiet: bool = False
-    has_mode: bool = True
-    scatter: tuple[float, float, float] = (np.nan, np.nan, np.nan)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -127,7 +98,7 @@ def complex_modes_told(
 
     values, spent = _timed(ask, repeats)
     at, grows = values.imag / (2.0 * np.pi), values.real > GROWS * np.abs(values)
-    nothing = _nothing(structure)
+    untold = nothing(structure)
     ends = []
     for frequency in frequencies:
         place = _same(at, grows, frequency)
@@ -138,7 +109,7 @@ def complex_modes_told(
                 frequency=float(at[place]) if rings else np.nan,
                 quiet=not rings,
                 has_mode=place is not None,
-                **nothing,
+                **untold,
             )
         )
     count = structure.size if number is None else number
@@ -184,10 +155,10 @@ def exact_told(
         compiled = max(first - again, 0.0)
         rows, spent = _timed(ask, repeats)
         evaluations = int(sum(row.steps.sum() for row in rows)) * taylor_terms(tol)
-        found = _exact_ends(plant, rows[1], rows[2], count, tol)
+        found = exact_ends(plant, rows[1], rows[2], count, tol)
     for place in pushes:
         if place is None:
-            ends.append(_without_mode(plant.structure))
+            ends.append(without_mode(plant.structure))
         else:
             ends.append(found[known.index(place)])
     return Told(
@@ -226,12 +197,12 @@ def smoothed_told(
     ends, spent, evaluations = [], 0.0, 0
     for place in _pushes(plant, frequencies):
         if place is None:
-            ends.append(_without_mode(structure))
+            ends.append(without_mode(structure))
             continue
         start = plant.pushed(place, PUSH)
         samples, once = _timed(lambda start=start: model.run(start, times, tol), 1)  # type: ignore[misc]
         spent, evaluations = spent + once, evaluations + samples.evaluations
-        ends.append(_smoothed_end(plant, samples, model.friction_width, belt, step))
+        ends.append(smoothed_end(plant, samples, model.friction_width, belt, step))
     both = widths[1] > 0
     return Told(
         method="friction and contact smoothed" if both else "friction smoothed",
@@ -273,16 +244,6 @@ def _pushes(plant: Plant, frequencies: np.ndarray) -> list[int | None]:
     return [_same(plant.frequencies, grows, float(each)) for each in frequencies]
 
 
-def _nothing(structure: ContactStructure) -> dict[str, Any]:
-    names = ("separated", "stuck", "creep", "force")
-    return {name: np.full(len(structure.contacts), np.nan) for name in names}
-
-
-def _without_mode(structure: ContactStructure) -> PushEnd:
-    nothing = _nothing(structure)
-    return PushEnd(outcome=Outcome.converged, has_mode=False, **nothing)
-
-
 def _instants(plant: Plant, horizon: Horizon) -> tuple[float, np.ndarray]:
     """Step and instants, s: 0, and both windows in equal steps."""
     count = int(np.ceil(horizon.window * FINEST * plant.fastest))
@@ -290,114 +251,6 @@ def _instants(plant: Plant, horizon: Horizon) -> tuple[float, np.ndarray]:
     step = horizon.window / count
     late = horizon.growing + step * np.arange(1, 2 * count + 1)
     return step, np.concatenate([[0.0], late])
-
-
-def _died_out(plant: Plant, before: float, now: float) -> bool:
-    """By the velocities of all modes in two windows."""
-    return now < DIED_OUT * PUSH * np.sqrt(plant.energy) and now <= before
-
-
-def _exact_ends(
-    plant: Plant, before: Rows, now: Rows, count: int, tol: float
-) -> list[PushEnd]:
-    """Of each push, over the starts that belong to it; the frequency from a run behind."""
-    step = 1.0 / (FINEST * plant.fastest)
-    length = int(min(np.ceil(float(now.length[0]) / step), MOST_SAMPLES))
-    times = step * np.arange(1, length + 1)
-    how = Running(tol, workers=1)
-    raw = run(plant, now.final, times, how, regime=now.regimes)
-    lines = [
-        strongest_line(plant.modal_velocities(each), step) for each in raw["samples"]
-    ]
-    ends = []
-    for first in range(0, len(lines), count):
-        mine = slice(first, first + count)
-        rows, earlier = now.at(mine), before.at(mine)
-        finished = rows.finished.all() and earlier.finished.all()
-        calm = [
-            _died_out(plant, float(a), float(b)) and events == 0
-            for a, b, events in zip(earlier.total, rows.total, rows.events, strict=True)
-        ]
-        steady = all(stays(earlier.at(place), rows.at(place)) for place in range(count))
-        speeds = np.sqrt((rows.speed**2).mean(axis=1))
-        ringing = np.array(lines[mine])
-        scatter = (
-            float(np.ptp(ringing) / ringing.mean()),
-            float(np.ptp(speeds) / speeds.mean()),
-            float(np.ptp(rows.separated, axis=0).max()),
-        )
-        quiet = all(calm)
-        # starts that end apart have not settled to one motion
-        together = quiet or (scatter[0] < NEAR and not any(calm))
-        outcome = Outcome.no_convergence
-        if finished:
-            outcome = Outcome.unresolved
-            if (quiet or steady) and together:
-                outcome = Outcome.converged
-        ends.append(
-            PushEnd(
-                outcome=outcome,
-                frequency=np.nan if quiet else float(ringing.mean()),
-                speed=0.0 if quiet else float(np.sqrt((speeds**2).mean())),
-                separated=rows.separated.mean(axis=0),
-                stuck=rows.stuck.mean(axis=0),
-                creep=np.where(rows.stuck.any(axis=0), 0.0, np.nan),
-                force=rows.force.max(axis=0) / plant.pressed,
-                quiet=quiet,
-                scatter=(0.0, 0.0, 0.0) if quiet else scatter,
-            )
-        )
-    return ends
-
-
-@dataclass(frozen=True)
-class Window:
-    """Statistics of one window of one smoothed run, as :class:`Rows` has them of exact ones."""
-
-    modal: np.ndarray
-    separated: np.ndarray
-    stuck: np.ndarray
-    total: float = field(init=False)
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "total", float(np.sqrt((self.modal**2).sum())))
-
-
-def _smoothed_end(
-    plant: Plant, samples: Samples, width: float, belt: np.ndarray, step: float
-) -> PushEnd:
-    if not samples.finished:
-        return PushEnd(outcome=Outcome.no_convergence, **_nothing(plant.structure))
-    modal = plant.modal_velocities(samples.states)
-    closed = samples.pressing > 0
-    slow = closed & (np.abs(samples.sliding) < width)
-    half = len(modal) // 2
-    before, now = (
-        Window(
-            np.sqrt((modal[part] ** 2).mean(axis=0)),
-            1.0 - closed[part].mean(axis=0),
-            slow[part].mean(axis=0),
-        )
-        for part in (slice(half), slice(half, None))
-    )
-    late = slice(half, None)
-    quiet = _died_out(plant, before.total, now.total)
-    speed = plant.contact_speeds(samples.states[late])
-    count = slow[late].sum(axis=0)
-    crept = (np.abs(samples.sliding[late]) * slow[late]).sum(axis=0)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        creep = np.where(count > 0, crept / count / belt, np.nan)
-    settled = quiet or stays(before, now)
-    return PushEnd(
-        outcome=Outcome.converged if settled else Outcome.unresolved,
-        frequency=np.nan if quiet else strongest_line(modal[late], step),
-        speed=0.0 if quiet else float(np.sqrt((speed**2).mean())),
-        separated=now.separated,
-        stuck=now.stuck,
-        creep=creep,
-        force=samples.forces[late].max(axis=0) / plant.pressed,
-        quiet=quiet,
-    )
 
 
 def distinct(numbers: Sequence[int], fewest: int, most: int) -> list[int]:
