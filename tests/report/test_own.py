@@ -157,6 +157,8 @@ def test_tables_hold_the_numbers_of_the_answer(answers, tmp_path):
     for words, value in cures:
         name = next(key for key, each in answer.NAMES.items() if each == words)
         expected = float(told.quiet_from.sel(cure=name))
+        if name.startswith("alpha"):
+            expected = math.degrees(expected)
         assert (value is None) == math.isnan(expected)
         if value is not None:
             assert value == pytest.approx(expected)
@@ -199,6 +201,12 @@ def test_what_is_quiet_unless_struck_names_only_starts_that_last(answers):
     for sudden, named in ((Verdict.hammers, True), (Verdict.quiet, False)):
         told["sudden_verdict"] = sudden
         assert ("a sudden start" in answer.headline(told)) == named
+    told.quiet_from.loc[{"cure": "mu"}] = np.nan
+    told.quiet_from_any_start.loc[{"cure": "mu"}] = 0.1
+    words = {cure.name: cure for cure in answer.cures(told)}
+    assert (words["mu"].quiet_from, words["mu"].any_start) == ("none", "0.1")
+    assert "mu" not in {cure.name for cure in answer.of_a_push(list(words.values()))}
+    assert answer.NAMES["mu"] not in dict(answer.not_cures(told))
 
 
 def test_what_has_not_settled_has_no_time_by_which_it_had(answers):

@@ -1,7 +1,7 @@
 """The answer of a dataset ``assess`` in words that need no handbook."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -29,6 +29,8 @@ ROUND_OFF = 1e-7
 """Growth rate over the highest frequency, rad/s, that is the round-off of an undamped motion."""
 FAR = 10.0
 """Distance of steady sliding from rest, over the preload, from which it is told."""
+NOT_FOUND = "none"
+"""In place of a value that was not found within the range searched."""
 CHEAPEST = 3
 """Cures that an answer names."""
 
@@ -192,8 +194,25 @@ def sudden(answer: xr.Dataset) -> str:
 
 
 def cures(answer: xr.Dataset) -> list[CureWords]:
-    """The table of cures, the smallest change first; without those that were not found."""
+    """The table of cures, the smallest change first; without those that were not found.
+
+    Those that are known from any start alone come last.
+    """
     return [_words(answer.sel(cure=name)) for name in _found(answer)]
+
+
+def of_a_push(table: Sequence[CureWords]) -> list[CureWords]:
+    """The cures by which a small push begins or ceases to die out."""
+    return [cure for cure in table if cure.quiet_from != NOT_FOUND]
+
+
+def stops(answer: xr.Dataset) -> str:
+    """What the table of cures tells."""
+    if verdict_of(answer) is not Verdict.quiet:
+        return "What stops it"
+    if bool(answer.quiet_unless_struck):
+        return "How far until a small push is enough"
+    return "How far from noise"
 
 
 def not_cures(answer: xr.Dataset) -> list[tuple[str, str]]:
@@ -220,19 +239,16 @@ def lines(answer: xr.Dataset) -> Iterator[str]:
     yield level(answer)
     yield impacts(answer)
     yield sudden(answer)
-    table = cures(answer)
+    table = of_a_push(cures(answer))
     if not table:
         yield "No single change within the ranges searched alters the verdict."
         return
-    yield (
-        "How far from noise, the smallest change first:"
-        if quiet
-        else "What stops it, the smallest change first:"
-    )
+    yield f"{stops(answer)}, the smallest change first:"
     for cure in table[:CHEAPEST]:
         yield f"  {cure_line(cure, quiet)}"
     others = [cure.words for cure in table[CHEAPEST:]]
-    vain = [words for words, _ in not_cures(answer)]
+    known = {cure.name for cure in table}
+    vain = [words for name, words in NAMES.items() if name not in known]
     told = [f"also {', '.join(others)}"] if others else []
     told += [f"no answer within the range searched: {', '.join(vain)}"] if vain else []
     if told:
@@ -249,20 +265,22 @@ def _found(answer: xr.Dataset) -> list[str]:
     return [
         str(name)
         for name in answer.cure.values
-        if math.isfinite(float(answer.quiet_from.sel(cure=name)))
+        for cure in [answer.sel(cure=name)]
+        if np.isfinite([cure.quiet_from, cure.quiet_from_any_start]).any()
     ]
 
 
 def _words(cure: xr.Dataset) -> CureWords:
     name = str(cure.cure.item())
     unit = str(cure.unit.item())
+    is_none = name == "mu" and float(cure.quiet_from) <= NO_FRICTION * float(cure.value)
     return CureWords(
         name,
         NAMES[name],
         _value(name, float(cure.value), unit),
-        _value(name, float(cure.quiet_from), unit)
-        if float(cure.quiet_from) > NO_FRICTION * float(cure.value) or name != "mu"
-        else "practically no friction",
+        "practically no friction"
+        if is_none
+        else _value(name, float(cure.quiet_from), unit),
         _change(name, float(cure.change), float(cure.value)),
         _value(name, float(cure.quiet_from_any_start), unit),
         _range(cure),
@@ -277,7 +295,7 @@ def _range(cure: xr.Dataset) -> str:
 
 def _value(name: str, value: float, unit: str) -> str:
     if not math.isfinite(value):
-        return "none"
+        return NOT_FOUND
     if name.startswith("alpha"):
         return f"{number(float(np.degrees(value)))}°"
     if name == "damping":
@@ -286,6 +304,8 @@ def _value(name: str, value: float, unit: str) -> str:
 
 
 def _change(name: str, change: float, value: float) -> str:
+    if not math.isfinite(change):
+        return "–"
     sign = "+" if change > 0 else "−"
     unit = "°" if name.startswith("alpha") else " %"
     if value == 0.0 and name == "damping":  # of nothing there are no per cent

@@ -78,8 +78,10 @@ def scene(name: str, told: xr.Dataset, started: xr.Dataset) -> dict[str, Any]:
         "cause": answer.cause(told),
         "level": answer.level(told),
         "sudden": answer.sudden(told),
+        "stops": answer.stops(told),
         "cheapest": [
-            answer.cure_line(cure, quiet) for cure in cures[: answer.CHEAPEST]
+            answer.cure_line(cure, quiet)
+            for cure in answer.of_a_push(cures)[: answer.CHEAPEST]
         ],
         "cures": [cure._asdict() for cure in cures],
         "not_cures": [

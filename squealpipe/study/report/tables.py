@@ -1,5 +1,6 @@
 """The tables of the report, and the spectra, as one Excel file."""
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from squealpipe.parameters import TABLE, Parameters, law_in_words
 from squealpipe.schema import meanings
 from squealpipe.store.whole_files import whole_file
 from squealpipe.study.report import answer
+from squealpipe.units import plain_unit
 
 LONGEST_NAME = 31
 """Characters of a sheet's name that Excel allows."""
@@ -43,8 +45,9 @@ def write_tables(
         book.create_sheet("Parameters"),
         ["parameter", "meaning", "value", "unit"],
         (
-            [name, TABLE[name].meaning, _plain(name, value), TABLE[name].units]
+            [name, TABLE[name].meaning, *_plain(name, value)]
             for name, value in parameters.as_dict().items()
+            if TABLE[name].enters_a1 and name not in parameters.in_laws
         ),
     )
     for name, told in answers.items():
@@ -86,12 +89,14 @@ def _scalars(answers: Mapping[str, xr.Dataset]) -> Iterable[list[Any]]:
     for name, variable in told.data_vars.items():
         if variable.ndim:
             continue
-        unit = str(variable.attrs.get("units", ""))
+        factor, unit = _turned(str(variable.attrs.get("units", "")))
         row = [str(variable.attrs.get("long_name", name)), unit]
         for each in answers.values():
             flags = meanings(each[name])
             value = each[name].item()
-            row.append(flags[int(value)].replace("_", " ") if flags else value)
+            if flags:
+                value = flags[int(value)].replace("_", " ")
+            row.append(factor * value if factor != 1.0 else value)
         yield row
 
 
@@ -99,10 +104,23 @@ def _cures(answers: Mapping[str, xr.Dataset]) -> Iterable[list[Any]]:
     for scene, told in answers.items():
         for name in told.cure.values:
             row = told.sel(cure=name)
-            words, unit = answer.NAMES[str(name)], str(row.unit.item())
-            yield [scene, words, unit, *(float(row[key]) for key in CURES.values())]
+            factor, unit = _turned(str(row.unit.item()))
+            values = [
+                float(row[key]) * (1.0 if key == "change" else factor)
+                for key in CURES.values()
+            ]
+            yield [scene, answer.NAMES[str(name)], unit, *values]
 
 
-def _plain(name: str, value: Any) -> Any:
-    laws = TABLE[name].laws
-    return law_in_words(value, laws.TABLE_UNITS) if laws else value
+def _turned(units: str) -> tuple[float, str]:
+    """Factor and unit of a column: SI, but angles in degrees."""
+    if units == "rad":
+        return math.degrees(1.0), "deg"
+    return 1.0, plain_unit(units or "1")
+
+
+def _plain(name: str, value: Any) -> list[Any]:
+    laws, units = TABLE[name].laws, TABLE[name].units
+    if laws:
+        return [law_in_words(value, laws.TABLE_UNITS), ""]
+    return [value, plain_unit(units)]
