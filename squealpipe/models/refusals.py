@@ -11,6 +11,10 @@ from squealpipe.laws.friction_laws import COULOMB, FALLING, LAWS, coefficient
 from squealpipe.laws.tables import is_table
 from squealpipe.parameters import DEFAULTS, TABLE, Parameters, brief
 
+OF_OTHER_LAWS = {name for law in LAWS.values() for name in law.PARAMETERS} - set(
+    LAWS[COULOMB].PARAMETERS
+)
+"""Parameters that some friction law reads, but not Coulomb's."""
 WHY_A4 = (
     "A4 has families of periodic orbits by its first integral alone, which damping and friction "
     "that depends on speed destroy, and closed forms for a linear contact alone"
@@ -20,13 +24,10 @@ WHY_CIRCLES = "its curves are circles of the undamped model A3 alone"
 
 def extensions(params: Parameters) -> list[str]:
     """Parameters that give dashpots or other laws than the paper's, with one μ."""
-    of_other_laws = {name for law in LAWS.values() for name in law.PARAMETERS} - set(
-        LAWS[COULOMB].PARAMETERS
-    )
     beyond = {
         name: getattr(params, name)
         for name, row in TABLE.items()
-        if row.extension and name not in of_other_laws
+        if row.extension and name not in OF_OTHER_LAWS
     }
     if params.static_mu == params.mu:
         beyond.pop("mu_static")
@@ -86,7 +87,7 @@ def _why_unread(params: Parameters, name: str, varied: Collection[str]) -> str:
         return "a table of contact is read at one preload"
     if name == "damping3" and contact != "dashpot":
         return f"contact_law = {brief(contact)} does not read it"
-    if name == "friction_speed" and law in LAWS:
+    if name in OF_OTHER_LAWS and law in LAWS:
         # from a static coefficient that is that of sliding nothing falls
         static = params.mu_static
         falls = "mu_static" in varied or (

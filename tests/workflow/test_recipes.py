@@ -100,6 +100,7 @@ PARAMETER_AND_LAW = """
 import numpy as np
 from squealpipe import Parameters, stability_map
 from squealpipe.config.settings import parse_study
+from squealpipe.models.refusals import refuse_unread
 from tests.oracles.a1_automaton import A1Automaton
 from squealpipe.solvers.a1.jobs import jobs_of
 from tests.oracles.a1_scipy import simulate_scipy
@@ -122,6 +123,15 @@ jobs = jobs_of(
     params, 1.0, 2.0, t_end=1.0, model="A1", tol=1e-12, initial_state=np.zeros(4), times=None,
 )
 assert np.isclose(jobs.values["friction_slope"], 0.4 * 2.0 / np.sqrt(1.7 / 0.8), rtol=1e-14)
+
+# what no equation reads cannot vary
+refuse_unread(params, ["friction_slope"])
+try:
+    refuse_unread(Parameters(), ["friction_slope"])
+except ValueError as error:
+    assert "friction_law = 'coulomb' does not read it" in str(error)
+else:
+    raise AssertionError
 
 # the law: symbols of the reference against floats with public solvers, stick and slip
 for mu_static in (None, 0.35):
