@@ -89,6 +89,6 @@ if not PAPERS_FRICTION and workflow.is_main_process:
     )
     print(
         "Left out, for they carry neither dashpots nor any laws but Coulomb's with one μ and a "
-        f"linear contact: {left_out}. Without {' and '.join(beyond)} they are part of the study.",
+        f"linear contact: {left_out}. Without {', '.join(beyond)} they are part of the study.",
         file=sys.stderr,
     )
