@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from squealpipe.laws.numerals import numeral
-from squealpipe.laws.rows import FileRows, Line, Row
+from squealpipe.laws.rows import FileLine, FileRow, FileRows
 from squealpipe.units import UnitError, in_si, is_long_name, is_unit, plain_unit
 
 UNITS = {"speed": "m s-1", "coefficient": "1", "compression": "m", "force": "N"}
@@ -85,7 +85,7 @@ def _are_units(row: Sequence[str]) -> bool:
     return bool(written) and all(map(is_unit, written))
 
 
-def units_row(path: Path, row: Row, places: Sequence[Place]) -> list[str] | None:
+def units_row(path: Path, row: FileRow, places: Sequence[Place]) -> list[str] | None:
     """Units of both columns, if the row below the header is one of units."""
     written = [_bare(cell_at(row.cells, place.at)) for place in places]
     if any(numeral(unit) and unit not in NO_UNIT for unit in written):
@@ -214,7 +214,7 @@ def _unit_too(column: str) -> str:
     return f" (what is not in {unit} needs its unit behind the name)" if unit else ""
 
 
-def refuse_units_elsewhere(path: Path, place: Place, lines: Iterable[Line]) -> None:
+def refuse_units_elsewhere(path: Path, place: Place, lines: Iterable[FileLine]) -> None:
     """Refuse a column without a unit where a comment, or a line above, speaks of one.
 
     Args:

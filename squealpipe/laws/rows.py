@@ -26,14 +26,14 @@ _CLEAN = {code + 0xFEE0: code for code in range(0x21, 0x7F)} | dict.fromkeys(
 _NUMERIC = re.compile(r"[\s|]*[\"']?[-+.,−]?\d")
 
 
-class Line(NamedTuple):
+class FileLine(NamedTuple):
     """A line of a file by its number."""
 
     number: int
     text: str
 
 
-class Row(NamedTuple):
+class FileRow(NamedTuple):
     """Cells of a line of a file by its number."""
 
     number: int
@@ -43,9 +43,9 @@ class Row(NamedTuple):
 class FileRows(NamedTuple):
     """Rows of a file, what separates their cells, and its comments."""
 
-    rows: list[Row]
+    rows: list[FileRow]
     separator: str
-    comments: Sequence[Line] = ()
+    comments: Sequence[FileLine] = ()
 
 
 def text_rows(path: Path, is_header: Callable[[Sequence[str]], object]) -> FileRows:
@@ -57,15 +57,15 @@ def text_rows(path: Path, is_header: Callable[[Sequence[str]], object]) -> FileR
     """
     lines = _whole_lines(_decoded(path).splitlines())
     separator = None
-    kept: list[Line] = []
-    comments: list[Line] = []
+    kept: list[FileLine] = []
+    comments: list[FileLine] = []
     for number, line in lines:
         if match := re.fullmatch(r"\s*sep=(.)\s*", line):  # Excel's
             separator = match[1]
         elif is_comment(line):
-            comments.append(Line(number, line.lstrip(" \t#%/!")))
+            comments.append(FileLine(number, line.lstrip(" \t#%/!")))
         elif line.strip(" ;,\t") and not _RULER.fullmatch(line):
-            kept.append(Line(number, line))
+            kept.append(FileLine(number, line))
     separator = separator or _separator([line for _, line in kept])
     rows = _split_rows(kept, separator)
     if rows and not any(is_header(cells) for _, cells in rows):
@@ -82,14 +82,14 @@ def text_rows(path: Path, is_header: Callable[[Sequence[str]], object]) -> FileR
 
 
 def _split_rows(
-    lines: Sequence[Line], separator: str, width: int | None = None
-) -> list[Row]:
+    lines: Sequence[FileLine], separator: str, width: int | None = None
+) -> list[FileRow]:
     """Cells of lines.
 
     Args:
         width: how many cells a row between blanks has; by default as most of the lines.
     """
-    lines = [Line(at, _without_remark(text, separator)) for at, text in lines]
+    lines = [FileLine(at, _without_remark(text, separator)) for at, text in lines]
     if separator == " ":
         return _by_blanks(lines, width)
     quote = "'" if lines and lines[0].text.lstrip().startswith("'") else '"'
@@ -102,19 +102,21 @@ def _split_rows(
             ),
             [],
         )
-        rows.append(Row(number, [_QUOTED.sub(r"\1", cell.strip()) for cell in cells]))
+        rows.append(
+            FileRow(number, [_QUOTED.sub(r"\1", cell.strip()) for cell in cells])
+        )
     return rows
 
 
-def _whole_lines(lines: Iterable[str]) -> list[Line]:
+def _whole_lines(lines: Iterable[str]) -> list[FileLine]:
     """Lines with the number of each; a quoted cell with a line break is one line."""
-    whole: list[Line] = []
+    whole: list[FileLine] = []
     for number, line in enumerate(lines, 1):
         if whole and _is_open(whole[-1].text):
             start, text = whole[-1]
-            whole[-1] = Line(start, f"{text} {line}")
+            whole[-1] = FileLine(start, f"{text} {line}")
         else:
-            whole.append(Line(number, line))
+            whole.append(FileLine(number, line))
     return whole
 
 
@@ -187,13 +189,15 @@ def _separator(lines: Sequence[str]) -> str:
     return ","
 
 
-def _by_blanks(lines: Sequence[Line], width: int | None) -> list[Row]:
+def _by_blanks(lines: Sequence[FileLine], width: int | None) -> list[FileRow]:
     """Cells between blanks; names of columns may hold single ones, like ``speed (m/s)``."""
     widths = Counter(
         len(line.split()) for _, line in lines if _NUMERIC.match(line)
     ) or Counter([2])
     width = width or widths.most_common(1)[0][0]
-    return [Row(number, _cells_between_blanks(line, width)) for number, line in lines]
+    return [
+        FileRow(number, _cells_between_blanks(line, width)) for number, line in lines
+    ]
 
 
 def _cells_between_blanks(line: str, width: int) -> list[str]:

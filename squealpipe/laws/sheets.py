@@ -6,7 +6,7 @@ from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
-from squealpipe.laws.rows import FileRows, Row, clean, is_comment
+from squealpipe.laws.rows import FileRow, FileRows, clean, is_comment
 
 _FOR_POSITIVE = re.compile(r'(?:"[^"]*"|\\.|[^;"\\])*')
 """Of a format its part for positive numbers, the first."""
@@ -62,10 +62,10 @@ def sheet(path: Path, is_header: Callable[[Sequence[str]], object]) -> FileRows:
     return FileRows(pages[title], ",")  # numbers of cells have a decimal point
 
 
-def _page_rows(page: Any) -> list[Row]:
+def _page_rows(page: Any) -> list[FileRow]:
     """Rows of a sheet, without comments and empty ones."""
     rows = [
-        Row(number, [_cell_text(cell) for cell in row])
+        FileRow(number, [_cell_text(cell) for cell in row])
         for number, row in enumerate(page.iter_rows(), 1)
     ]
     return [

@@ -22,7 +22,7 @@ from squealpipe.laws.headers import (
     units_row,
 )
 from squealpipe.laws.numerals import Numeral, decimal_sign, numeral, plain
-from squealpipe.laws.rows import Line, Row, text_rows
+from squealpipe.laws.rows import FileLine, FileRow, text_rows
 from squealpipe.laws.sheets import sheet
 from squealpipe.units import UnitError, in_si, is_unit
 
@@ -72,7 +72,7 @@ def read_pairs(
         ]
         first = data[0].cells
         data = [row for row in data if row.cells != first]
-    above = [Line(row, "\t".join(cells)) for row, cells in table.rows[:start]]
+    above = [FileLine(row, "\t".join(cells)) for row, cells in table.rows[:start]]
     for place in wanted:
         refuse_units_elsewhere(path, place, [*table.comments, *above])
     if not data:
@@ -92,7 +92,7 @@ def read_pairs(
     return pairs
 
 
-def _check_rows(path: Path, width: int, data: Iterable[Row]) -> None:
+def _check_rows(path: Path, width: int, data: Iterable[FileRow]) -> None:
     """Refuse rows with more cells than the header has names."""
     for line, row in data:
         if any(row[width:]):

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.laws.rows import Row, text_rows
+from squealpipe.laws.rows import FileRow, text_rows
 from squealpipe.laws.sheets import sheet
 from squealpipe.parameters import brief, finite_number
 from squealpipe.systems.structures.contact import Contact
@@ -79,7 +79,7 @@ def read_contacts(
     return contacts
 
 
-def _rows(path: Path) -> tuple[list[str], list[Row]]:
+def _rows(path: Path) -> tuple[list[str], list[FileRow]]:
     """The names of the columns, and the rows below by their line."""
     if not path.is_file():
         raise FileNotFoundError(f"contacts: no file {path}")
