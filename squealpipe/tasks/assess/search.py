@@ -157,17 +157,19 @@ def _plan(side: Side, quiet: bool, located: float) -> None:
 def _reached(side: Side, quiet: bool) -> tuple[np.ndarray, list[bool]]:
     """Values outward as far as the linear boundary is looked for, and which of them are stable.
 
-    Between three that are alike, the growth may come up to zero and cross it twice.
+    Of a quiet brake, growth may come up to zero between three stable values and cross it twice; of
+    another one, a stretch of quiet as short is no cure.
     """
     values, margins = [side.inner], [_margin(side, side.inner)]
     for value in side.values:
         values.append(float(value))
         margins.append(_margin(side, values[-1]))
         stable = [margin <= 0.0 for margin in margins]
-        peak = _peak(side, values[-3:]) if _turns(margins[-3:], quiet) else None
+        turns = quiet and _turns(margins[-3:])
+        peak = _peak(side, values[-3:]) if turns else None
         if peak is not None:
             nearer = [v for v in values if abs(v - side.inner) < abs(peak - side.inner)]
-            return np.array([*nearer[1:], peak]), [*stable[1 : len(nearer)], not quiet]
+            return np.array([*nearer[1:], peak]), [*stable[1 : len(nearer)], False]
         if quiet and not stable[-1]:
             break
         if not quiet and len(stable) > 2 and stable[-2] and not stable[-1]:
@@ -175,25 +177,22 @@ def _reached(side: Side, quiet: bool) -> tuple[np.ndarray, list[bool]]:
     return np.array(values[1:]), stable[1:]
 
 
-def _turns(margins: Sequence[float], quiet: bool) -> bool:
-    """Whether three margins of the sign that is to change are nearest to zero in the middle."""
-    if len(margins) < 3 or any((margin <= 0.0) != quiet for margin in margins):
+def _turns(margins: Sequence[float]) -> bool:
+    """Whether three margins are all stable, the middle one least."""
+    if len(margins) < 3 or max(margins) > 0.0:
         return False
-    first, middle, last = map(abs, margins)
-    return middle < min(first, last)
+    return margins[1] > max(margins[0], margins[2])
 
 
 def _peak(side: Side, values: Sequence[float]) -> float | None:
-    """Where the growth beside the middle one of three values has the other sign, if anywhere."""
-    stable = _is_stable(side, values[1])
-    sign = -1.0 if stable else 1.0
+    """Where small motions grow beside the middle one of three stable values, if anywhere."""
     found = minimize_scalar(
-        lambda value: sign * _margin(side, float(value)),
+        lambda value: -_margin(side, float(value)),
         bounds=sorted((values[0], values[2])),
         method="bounded",
         options={"xatol": 0.02 * abs(values[2] - values[0])},
     )
-    return float(found.x) if _is_stable(side, float(found.x)) != stable else None
+    return None if _is_stable(side, float(found.x)) else float(found.x)
 
 
 def _locate(side: Side, inner: float, outer: float) -> tuple[float, float]:
