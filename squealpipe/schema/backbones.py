@@ -83,7 +83,9 @@ BACKBONE = DatasetSchema(
     name="backbone",
     title="A backbone of model A4: a family of free periodic motions",
     lists={
-        "point": Listing(position="y_peak"),
+        "point": Listing(
+            kinds=("outcome",), position="y_peak", fillers=(int(Outcome.converged),)
+        ),
         "special": Listing(kinds=("special_kind",), position="special_y_peak"),
     },
     coordinates={
@@ -141,6 +143,7 @@ BACKBONE = DatasetSchema(
 DOUBLED_BRANCH = DatasetSchema(
     name="doubled_branch",
     title="Periodic motions of model A4 of doubled period, from a period doubling on",
+    lists=BACKBONE.lists,
     coordinates={name: BACKBONE.coordinates[name] for name in ("point", "special")},
     variables={
         **{

@@ -461,3 +461,13 @@ def test_statements_that_changed_are_told_with_verdict_and_value(tmp_path):
     assert [change.verdict_changed for change in found] == [True, False]
     assert found[0].verdicts == ("holds", "fails")
     assert found[1].values == (1.0, 1.1)
+
+
+def test_a_backbone_traced_in_other_steps_is_the_same_curve():
+    """Its points lie where steps ended: without three of them it is still the same curve."""
+    whole = backbone(Parameters(), 0.9, 2.8, mode=1, y_peak_max=3.0)
+    fewer = whole.isel(point=np.delete(np.arange(whole.sizes["point"]), [-15, -10, -5]))
+    found = compare_datasets("backbone", whole, fewer)
+    assert found.verdict is Agreement.within_tolerance
+    moved = fewer.assign(omega=fewer.omega * (1 + 1e-3 * (fewer.point > 20)))
+    assert compare_datasets("backbone", whole, moved).verdict is Agreement.different

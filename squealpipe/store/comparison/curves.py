@@ -32,15 +32,16 @@ class _Column:
         return float(np.ptp(finite)) or 1.0 if finite.size else 1.0
 
     @property
+    def jumps(self) -> bool:
+        """Whether it is a label or a count, which has no values between its neighbours'."""
+        return self.entry.flags is not None or self.entry.stored.kind != "f"
+
+    @property
     def places(self) -> bool:
         """Whether it tells where on the curve a point lies."""
         both = np.concatenate([self.left, self.right])
         # several numbers a point, such as multipliers, may meet and change places
-        if (
-            self.entry.flags is not None
-            or len(self.entry.dims) > 1
-            or not np.isfinite(both).all()
-        ):
+        if self.jumps or len(self.entry.dims) > 1 or not np.isfinite(both).all():
             return False
         # what is the same all along, but for round-off, says nothing
         allowed = self.entry.atol + self.entry.rtol * float(
@@ -136,7 +137,7 @@ def _gaps(
     for column, value, curved, off, near, extent in zip(
         columns, point, cubic, error, around, extents, strict=True
     ):
-        if column.entry.flags is not None or not np.isfinite(near).all():
+        if column.jumps or not np.isfinite(near).all():
             same = any(_equal(value, each, column.entry) for each in near)
             yield column.name, 0.0 if same else np.inf, 0.0
             continue
