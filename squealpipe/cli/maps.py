@@ -200,7 +200,7 @@ def disturbance(
         t_end: time within which that happens, s; 200 √(2 mass/(k1 + k2)) by default.
         bound: largest disturbance tried, in preload lengths; 3 for contact loss, 15 for the whirl.
         directions: random directions.
-        seed: of the random directions.
+        seed: seed of the random directions.
     """
     found = compute(
         "smallest_disturbance",

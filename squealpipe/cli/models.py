@@ -97,7 +97,7 @@ def infer(
         mu_range: range of the friction coefficient, LOW,HIGH.
         length_ratio: range of L/l_pre, LOW,HIGH.
         speed_ratio: range of the belt speed over l_pre √(k/m), LOW,HIGH.
-        seed: of the random sample.
+        seed: seed of the random sample.
     """
     inference = compute(
         "infer_parameters",
@@ -147,7 +147,7 @@ def propensity(
         samples: size of the sample, a power of 2.
         t_end: end of each run, s; 200 √(mass/k1) by default.
         spring_correlation: correlation of k1 and k2; with it there are no Sobol indices.
-        seed: of the random sample.
+        seed: seed of the random sample.
     """
     distributions = dict(map(_distribution, distribution))
     if len(distributions) < len(distribution):

@@ -52,7 +52,7 @@ def modes(
         mu: friction, a number or first:last:count; that of the file by default.
         belt_speed: likewise, m/s.
         frequency_max: highest frequency of the modes, Hz.
-        n_modes: number of modes; one of both limits is needed beyond 1000 degrees of freedom.
+        n_modes: number of modes; one of these two limits is needed beyond 1000 degrees of freedom.
         vary: a further factor with its value or values; repeat for more. preload=0.5:2:7 and
             contact_stiffness=0.5,1,2 multiply those of all contacts, p1_preload and p1_stiffness
             those of a contact p1, mass, damping and stiffness the matrices; modal_damping,
@@ -146,7 +146,7 @@ def squeal(
     Args:
         file: structure, a YAML file that names its matrices and contacts (see the gallery).
         samples: random starts, each with at most the energy that the preload stores.
-        seed: of the random starts.
+        seed: seed of the random starts.
         t_end: longest time of a run, s; by default 8000 periods of the slowest unstable mode,
             after the time in which it grows.
         n_modes: modes to reduce the structure to; by default as many as errors below 1 % need,
