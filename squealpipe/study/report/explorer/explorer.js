@@ -121,7 +121,8 @@
     const values = valuesOf(layer);
     const ticks = ["0", "π/4", "π/2", "3π/4", "π"].map((text, k) => [k * Math.PI / 4, text]);
     draw("map", {
-      axes: ["α₁", "α₂"].map((title) => ({ title, unit: "rad", ticks, range: [-0.05, Math.PI + 0.05] })),
+      // room for a mark at an end, also on a phone
+      axes: ["α₁", "α₂"].map((title) => ({ title, unit: "rad", ticks, range: [-0.15, Math.PI + 0.15] })),
       equal: true,
       zoom: false,
       image: {
