@@ -60,8 +60,8 @@ def _draw_benchmark(axes: Axes, found: xr.Dataset) -> None:
     for name, sign, shift in (("missed", "−", -0.22), ("spurious", "+", 0.22)):
         worst = found[name].where(wrong, 0).max("tol").values
         for row, column in np.argwhere(worst > 0):
-            number_ = f"{sign}{worst[row, column]}"
-            style.write(axes, column, row + shift, number_, **_SMALL)
+            events = f"{sign}{worst[row, column]}"
+            style.write(axes, column, row + shift, events, **_SMALL)
     silent = (
         (found.verdict == Reliability.silently_wrong).sum(["problem", "tol"]).values
     )

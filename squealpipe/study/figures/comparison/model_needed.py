@@ -63,9 +63,9 @@ def draw(ladder: xr.Dataset) -> Figure:
             panel.barh(row, 100 * share, left=left, color=colour, ec="white", lw=0.8)
             if share >= _LABELLED:
                 dark = np.dot(to_rgb(colour), (0.299, 0.587, 0.114)) < 0.5
-                colour = style.WHITE if dark else style.BLACK
+                ink = style.WHITE if dark else style.BLACK
                 middle, words = left + 50 * share, f"{100 * share:.0f}"
-                style.write(panel, middle, row, words, color=colour)
+                style.write(panel, middle, row, words, color=ink)
             left += 100 * share
     panel.set_yticks(range(len(bars)), list(bars))
     panel.invert_yaxis()
