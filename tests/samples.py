@@ -2,9 +2,12 @@
 
 import os
 
-STEP = 1 if os.environ.get("SQUEALPIPE_SAMPLES") == "all" else 3
+WHOLE = os.environ.get("SQUEALPIPE_SAMPLES") == "all"
 
 
 def some(seeds):
-    """These of the seeds; neighbours differ in kind, so each kind is among them."""
-    return seeds[::STEP]
+    """These of the seeds: of nine the first, third and fifth.
+
+    Kinds go by the remainder of a seed by two, three or four; all are among these.
+    """
+    return [seed for place, seed in enumerate(seeds) if WHOLE or place % 9 in {0, 2, 4}]
