@@ -296,6 +296,12 @@ class TestInBrowser:
             assert (
                 page.inner_text("#command") == f"squealpipe simulate pi/2 pi {OPTIONS}"
             )
+            tops = page.evaluate(
+                "[...document.querySelectorAll('#map circle')].map((mark) => "
+                "mark.cy.baseVal.value - mark.r.baseVal.value)"
+            )
+            assert len(tops) == 2
+            assert min(tops) >= 0  # not clipped at π
             assert faults == []
 
 
