@@ -101,12 +101,17 @@ __all__ = [
     "validity_map",
 ]
 
+MODULES = ("benchmark", "functions", "structures")
+"""Public modules that are found without an import of their own."""
+
 
 def __getattr__(name: str) -> Any:
     if name == "__version__":
         from importlib.metadata import version
 
         return version("squealpipe")
+    if name in MODULES:
+        return importlib.import_module(f"squealpipe.{name}")
     if name not in HOME:
         raise AttributeError(
             f"squealpipe has no {name!r}; it offers {', '.join(sorted(HOME))}"
@@ -115,4 +120,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted([*HOME, "__version__"])
+    return sorted([*HOME, *MODULES, "__version__"])

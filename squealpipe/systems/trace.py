@@ -272,6 +272,10 @@ class Tracer:
             remedy = "; for cos, exp and the like take squealpipe.functions"
             wants = remedy if isinstance(error, TypeError) else ""
             raise type(error)(f"{what}: {error}{wants}") from error
+        except ArithmeticError as error:
+            raise ValueError(
+                f"{what}: {error}; it must be finite in each regime"
+            ) from error
 
     def _symbol(self, what: str, value: Any) -> Symbol:
         try:

@@ -316,6 +316,7 @@ STUCK = hit(lambda t, s, p, r: p.gap - s.x, reset=lambda t, s, p, r: {"v": 2.0 *
         (pull(lambda s: abs(s.x)), TypeError, "make each side a reg"),
         (pull(lambda s: -np.cos(s.x)), TypeError, "take squealpipe.functions"),
         (pull(lambda s: -s.y), AttributeError, "has no 'y'"),
+        (pull(lambda s: -s.x / 0.0), ValueError, "the field: .* in each regime"),
         (
             pull(lambda s: -1.0 if s.x == 0.0 else 0.0),
             TypeError,
