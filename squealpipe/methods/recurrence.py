@@ -6,6 +6,8 @@ import numpy as np
 
 LEAST_REPEATS = 3
 """Whole periods that a sequence must show."""
+REPEATED = 1e-6
+"""Largest difference in a repetition: of intervals over their mean, of states over their ranges."""
 EVENTS_AT_ONCE = 2**20
 """Logged events that are held in memory at once, 48 bytes each."""
 

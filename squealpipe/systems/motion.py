@@ -14,6 +14,7 @@ import numpy as np
 
 from squealpipe.methods.recurrence import (
     LEAST_REPEATS,
+    REPEATED,
     crossings,
     in_blocks,
     repeats_after,
@@ -23,8 +24,6 @@ from squealpipe.systems.integrate import RunOptions, integrate
 
 AT_REST = 1e-3
 """A motion rests whose states stay this close together, over their ranges in the whole run."""
-REPEATED = 1e-6
-"""Largest difference in a cycle: of intervals over the mean one, of states over their ranges."""
 MOST_PERIODS = 32
 """Periods of the forcing up to which a cycle is sought."""
 _SAMPLES, _PER_STEP = 4096, 8

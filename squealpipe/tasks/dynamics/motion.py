@@ -4,7 +4,12 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.methods.recurrence import LEAST_REPEATS, in_blocks, repeats_after
+from squealpipe.methods.recurrence import (
+    LEAST_REPEATS,
+    REPEATED,
+    in_blocks,
+    repeats_after,
+)
 from squealpipe.schema import Outcome
 from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.solvers.a1.ensemble import Ensemble, integrate
@@ -25,8 +30,6 @@ TURNS_PER_RETURN = 0.5
 and back makes none, however long it lasts."""
 REGULAR_GROWTH_POWER = 2.0
 """A perturbation of a regular motion grows like a power of time, of a chaotic one exponentially."""
-INTERVAL_TOLERANCE = 1e-6
-"""Largest difference of event intervals that counts as a repetition, over their mean."""
 LEAST_EVENTS = 4 * LEAST_REPEATS
 """Events in the later half of a run from which a repetition is sought."""
 CALM = (MotionFlag.contact_kept, MotionFlag.hammered_then_contact, MotionFlag.at_rest)
@@ -175,7 +178,7 @@ def regular_kind(times: np.ndarray, kinds: np.ndarray, t_end: float) -> MotionFl
     late = times > 0.5 * t_end
     if np.count_nonzero(late) < LEAST_EVENTS:
         return MotionFlag.undetermined
-    if repeats_after(times[late], kinds[late], INTERVAL_TOLERANCE):
+    if repeats_after(times[late], kinds[late], REPEATED):
         return MotionFlag.periodic_hammering
     after, kinds, late = np.diff(times), kinds[:-1], late[:-1]
     for kind in np.unique(kinds):
