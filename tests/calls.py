@@ -41,7 +41,7 @@ CALLS: dict[str, Callable[[sp.Parameters], xr.Dataset]] = {
         distributions={"mu": {"distribution": "uniform", "low": 0.1, "high": 0.9}},
     ),
     "cycle_branch": lambda p: sp.cycle_branch(
-        p, 0.9, 2.8, parameter="mu", to=p.mu + 0.1, start="onset", n_points=2
+        p, 0.22, 0.96, parameter="mu", to=0.9, start="onset", n_points=2
     ),
     "infer_parameters": lambda p: sp.infer_parameters(p, samples=2, workers=1),
     "contact_boundary": lambda p: sp.contact_boundary(

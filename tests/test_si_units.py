@@ -22,10 +22,19 @@ UNITS = {
 }  # fmt: skip
 
 
+WITH_DASHPOTS = {
+    "cycle_branch": "without, it begins where two modes merge, ill-conditioned"
+}
+
+
 @pytest.mark.parametrize("name", CALLS)
 def test_answers_scale(name):
     """As long as no chaos magnifies the last digits, which these horizons leave no time for."""
-    real, scaled = CALLS[name](SI), CALLS[name](UNIT)
+    share = 0.01 if name in WITH_DASHPOTS else 0.0
+    real, scaled = (
+        CALLS[name](p.with_(damping1=share * np.sqrt(p.k1 * p.mass)))
+        for p in (SI, UNIT)
+    )
     assert dict(real.sizes) == dict(scaled.sizes)
     if (
         "cure" in real

@@ -105,7 +105,7 @@ class Sliding:
     @cached_property
     def margin(self) -> float:
         """By how much small motions grow faster than round-off, 1/s."""
-        return _margin(self.jacobian)
+        return excess_growth(self.jacobian)
 
     @cached_property
     def marginal(self) -> float:
@@ -119,7 +119,7 @@ class Sliding:
             return Mechanism.none
         level = _level(self.design)
         _, slopes = _linearized(_acceleration(level), self.state[:2], level)
-        if _margin(_jacobian(slopes)) <= 0.0:
+        if excess_growth(_jacobian(slopes)) <= 0.0:
             return Mechanism.falling_friction
         leading = self._roots[np.argmax(self._roots.real)]
         oscillates = abs(leading.imag) > np.sqrt(GROWS) * abs(leading)
@@ -273,7 +273,7 @@ def _jacobian(slopes: np.ndarray) -> np.ndarray:
     return np.vstack([np.eye(4)[2:], slopes])
 
 
-def _margin(jacobian: np.ndarray) -> float:
+def excess_growth(jacobian: np.ndarray) -> float:
     """By how much small motions grow faster than round-off, 1/s.
 
     Where no force depends on velocity, frequencies that merge lose half of their digits; elsewhere

@@ -9,6 +9,7 @@ from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.guess import eventless
 from squealpipe.systems.cycles.line import ALONG, STEPS
 from squealpipe.systems.cycles.solution import Cycle
+from squealpipe.tasks.assess.sliding import excess_growth
 from squealpipe.tasks.cycles.scene import IN_SYSTEM, CycleScene
 from squealpipe.tasks.cycles.sliding import steady_sliding
 
@@ -29,11 +30,7 @@ def find_onset(
 
     def growth(value: float) -> float:
         found = steady_sliding(scene.at(value), flow)
-        return (
-            np.nan
-            if found is None
-            else float(np.linalg.eigvals(found.jacobian).real.max())
-        )
+        return np.nan if found is None else excess_growth(found.jacobian)
 
     grid = np.linspace(begin, to, _SCAN)
     rates = np.array([growth(float(value)) for value in grid])

@@ -181,6 +181,14 @@ def test_branch_goes_round_a_fold_and_labels_it():
     assert not stable[fold + 1 :].any()
 
 
+def test_round_off_of_an_undamped_pair_is_no_onset():
+    """Its growth is zero up to flutter: the sign of what is left of it is no loss of stability."""
+    params = Parameters(k3=0.7, mu=0.3, belt_speed=1.1, length1=50.0, length2=50.0)
+    branch = cycle_branch(params, 0.9, 2.8, parameter="mu", to=0.4, start="onset")
+    assert branch.sizes["point"] == 0
+    assert branch.end == Outcome.no_convergence
+
+
 def test_branch_is_born_at_the_flutter_onset_of_long_springs():
     params = FORMER.with_(
         damping1=0.01, damping2=0.02, mu=0.0, length1=1e4, length2=1e4, k2=1.1
