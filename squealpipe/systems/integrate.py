@@ -84,7 +84,7 @@ class RunOptions:
         sums: keep there what has added up, too.
         tangent: follow a perturbation, for its growth and the horizon of predictability.
         log_events: room for the events of each run.
-        logged: kinds of events that are logged, by default all.
+        logged: kinds of events that are logged, by default all, as a record of one run needs.
         most_steps, most_events: of each run.
         unit_sizes: of the states; by default the system's.
         t_start: what the system's functions take for the time where a run begins; all other

@@ -41,7 +41,7 @@ _LARGEST_CHANGE = 0.2
 _CLOSE = 1e-2
 """Step over the longest one below which a meeting with another branch is judged."""
 _MOST_WORK = 1e7
-"""Phase of the fastest mode in all shots of a trace, rad."""
+"""Phase of the fastest mode in all shots of Newton's method in a trace, rad."""
 _NEAR = 1e-3
 """How far, over 1 + |z|, an orbit moves when its peak is set right; at a fold like a root."""
 
