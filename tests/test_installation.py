@@ -146,7 +146,7 @@ def test_wheel_in_a_bare_environment(checkout, tmp_path):
     run(command, "run", *configs, cwd=folder)
     text = (folder / "results/measured/report/index.html").read_text()
     assert "Does it squeal?" in text
-    assert "0.5 at 0, 0.4 at 1, 0.36 at 3" in text
+    assert "0.5 at 0 m/s, 0.4 at 1 m/s, 0.36 at 3 m/s" in text
     assert "dashpot along spring 1" in text
     assert "leaning: alpha1 65" in text
     assert "Quiet: the vibration dies out" in text

@@ -469,5 +469,9 @@ def test_a_backbone_traced_in_other_steps_is_the_same_curve():
     fewer = whole.isel(point=np.delete(np.arange(whole.sizes["point"]), [-15, -10, -5]))
     found = compare_datasets("backbone", whole, fewer)
     assert found.verdict is Agreement.within_tolerance
+    last = whole.sizes["point"] - 1
+    twice = whole.isel(point=np.sort(np.append(np.arange(last + 1), last - 10)))
+    itself = compare_datasets("backbone", twice, twice)
+    assert itself.verdict is not Agreement.different
     moved = fewer.assign(omega=fewer.omega * (1 + 1e-3 * (fewer.point > 20)))
     assert compare_datasets("backbone", whole, moved).verdict is Agreement.different

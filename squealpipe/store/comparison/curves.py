@@ -125,6 +125,9 @@ def _gaps(
         yield from ((column.name, np.inf, 0.0) for column in columns)
         return
     line = curve[placing] / extents[placing, None]
+    # a point that stands twice, as a special one may, is one node
+    distinct = np.append(True, (np.diff(line) != 0.0).any(axis=0))
+    curve, line = curve[:, distinct], line[:, distinct]
     at = _nearest_place(line, point[placing] / extents[placing])
     # what is not finite is compared with its neighbours
     with np.errstate(invalid="ignore"):
