@@ -25,6 +25,7 @@ NOT_COPIED = shutil.ignore_patterns(
     ".*_cache",
     ".hypothesis",
     "*.egg-info",
+    "build",
 )
 
 
