@@ -261,8 +261,9 @@ class _Trace:
                     orbit = line.at(share * piece / pieces)[1]
                 except ArithmeticError:
                     continue
-                polished = orbit_across(self.system, orbit.point, line.normal)
-                yield polished if piece == pieces and polished else orbit
+                if piece == pieces:
+                    orbit = orbit_across(self.system, orbit.point, line.normal) or orbit
+                yield orbit
         if not reached:
             return
         there = line.at(share)[1].from_higher_rest()
