@@ -1,8 +1,6 @@
 """Branches of cycles in one parameter, stable and unstable, with located special points.
 
-Pseudo-arclength continuation of an event map. A step is accepted only if the branch does not turn
-round in it and multipliers change by little; a solution that is not a motion of the system ends the
-smooth piece where the first margin is zero, and the branch goes on with other events from there.
+:mod:`squealpipe.systems.cycles.following` makes the steps.
 """
 
 from __future__ import annotations
