@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -41,6 +42,15 @@ class CurvePoint:
     cycle: Cycle
     residual: float
     label: Meeting = Meeting.regular
+
+
+class _End(NamedTuple):
+    """Where a curve ends within a step, and whether it may go on with other events."""
+
+    share: float
+    label: Meeting
+    reason: str
+    order_changes: bool = False
 
 
 def _at_point(test: Test, state: ContinuationState, _: Cycle) -> float:
@@ -94,18 +104,18 @@ class _Way:
             found = self._met(line)
             end = self._end(line)
             for share in sorted(found):
-                if end is None or share < end[0] - 1e-6:
+                if end is None or share < end.share - 1e-6:
                     yield self._point(line.at(share)[0], found[share])
             if end is not None:
-                changed = self._point(line.at(end[0])[0], end[1])
+                changed = self._point(line.at(end.share)[0], end.label)
                 following = (
-                    self._goes_on(line, end[0]) if end[2].startswith("order") else None
+                    self._goes_on(line, end.share) if end.order_changes else None
                 )
-                if following is not None and end[1] == Meeting.end:
+                if following is not None and end.label == Meeting.end:
                     changed = replace(changed, label=Meeting.regular)
                 yield changed
                 if following is None:
-                    self.end = end[2]
+                    self.end = end.reason
                     return
             yield self._point(following, Meeting.regular)
             state = following
@@ -160,8 +170,8 @@ class _Way:
     def _is_cycle(self, state: ContinuationState) -> bool:
         return self._cycle(state).period > 0.0
 
-    def _end(self, line: Line[Cycle]) -> tuple[float, Meeting, str] | None:
-        """(share of the step, label, reason) where the curve ends."""
+    def _end(self, line: Line[Cycle]) -> _End | None:
+        """The first end of the curve within a step."""
         ends, point = [], line.known[1.0][0].point
         if self.inside(point) <= 0.0:
             share = line.root(partial(_at_point, self.inside))
@@ -173,20 +183,19 @@ class _Way:
                     Meeting.resonance_1_1 if point[-1] < 1.0 else Meeting.resonance_1_2
                 )
                 why = "multipliers_are_real"
-            ends.append((share, met, why))
+            ends.append(_End(share, met, why))
         least, key = self.curve.least_margin(point)
         if least < -MARGIN_ROUND_OFF and key is not None:
             share = line.root(lambda there, _: self.curve.least_margin(there.point)[0])
             share = 0.0 if share is None else share
             state, cycle = line.at(share)
-            ends.append(
-                (share, *self._changed(cycle, self.curve.least_margin(state.point)[1]))
-            )
+            first = self.curve.least_margin(state.point)[1]
+            ends.append(self._changed(share, cycle, first))
         return min(ends, default=None)
 
-    def _changed(self, cycle: Cycle, key: Margin | None) -> tuple[Meeting, str]:
+    def _changed(self, share: float, cycle: Cycle, key: Margin | None) -> _End:
         if key is None:
-            return Meeting.end, "curve_lost"
+            return _End(share, Meeting.end, "curve_lost")
         label = label_of(cycle, {key: 0.0})
         met = Meeting.end
         if key.kind == MarginKind.length:
@@ -201,9 +210,8 @@ class _Way:
         if key.kind in {MarginKind.touch, MarginKind.edge}:
             number = int(max(of(event.before)[key.which] for of in watched))
         names = [*(each.name for each in system.switches), *system.stops]
-        return met, f"order_changes_{key.kind.name}_of_{names[number]}".replace(
-            " ", "_"
-        )
+        reason = f"order_changes_{key.kind.name}_of_{names[number]}".replace(" ", "_")
+        return _End(share, met, reason, order_changes=True)
 
     def _cycle(self, state: ContinuationState) -> Cycle:
         return self.curve.cycle(state.point)
