@@ -139,7 +139,9 @@ ASSESS = DatasetSchema(
         "path_regime": flag(
             "regime of the settled motion", REGIMES, "sample", volatile=True
         ),
-        "value": or_nan("present value", dims=("cure",)),
+        "value": or_nan(
+            "present value (of mu: the coefficient at belt speed)", dims=("cure",)
+        ),
         "unit": text("unit of the values", "cure"),
         "quiet_from": or_nan(
             "nearest value at which the verdict changes between quiet and not",

@@ -205,8 +205,42 @@ def test_what_is_quiet_unless_struck_names_only_starts_that_last(answers):
     told.quiet_from_any_start.loc[{"cure": "mu"}] = 0.1
     words = {cure.name: cure for cure in answer.cures(told)}
     assert (words["mu"].quiet_from, words["mu"].any_start) == ("none", "0.1")
-    assert "mu" not in {cure.name for cure in answer.of_a_push(list(words.values()))}
+    assert "mu" not in {cure.name for cure in answer.of_a_push(told)}
     assert answer.NAMES["mu"] not in dict(answer.not_cures(told))
+
+
+def test_a_cure_that_a_blow_undoes_is_told_after_the_one_that_is_safe(answers):
+    """ "alpha2 quiet from 50.6°" was all that was said of a pad that hammers there if struck."""
+    told = answers["mine"].copy(deep=True)
+    told["verdict"], told["quiet_unless_struck"] = Verdict.hammers, False
+    for key in ("quiet_from", "quiet_from_any_start", "change", "change_any_start"):
+        told[key][:] = np.nan
+    found = {
+        "alpha2": (math.radians(50.6), math.radians(56.5), 0.6, 6.5),
+        "mu": (0.3, 0.3, -5.0, -5.0),
+        "k3": (7e6, np.nan, 1.0, np.nan),
+    }
+    told.value.loc[{"cure": "alpha2"}] = math.radians(50.0)
+    for name, row in found.items():
+        keys = ("quiet_from", "quiet_from_any_start", "change", "change_any_start")
+        for key, number in zip(keys, row, strict=True):
+            told[key].loc[{"cure": name}] = number
+    box = scene("mine", told, simulate(PAD, 0.5, 2.4, t_end=20 * PAD.time_unit))
+    said = [line.strip() for line in answer.lines(told)]
+    assert box["cheapest"] == said[said.index(box["cheapest"][0]) :][:3]
+    mu, alpha2, k3 = box["cheapest"]
+    assert alpha2.endswith("quiet from 56.5° (+6.5°); from 50.6° unless struck")
+    assert mu.endswith("quiet from 0.3 (−5 %)")
+    assert k3.endswith("quiet from 7 kN/mm (+1 %) unless struck")
+    told["verdict"] = Verdict.quiet
+    (alpha2,) = (row for row in answer.of_a_push(told) if row.name == "alpha2")
+    line = answer.cure_line(alpha2, told)
+    assert line.endswith("quiet up to 56.5° (+6.5°); up to 50.6° unless struck")
+    told["quiet_unless_struck"] = True
+    line = answer.cure_line(alpha2, told)
+    assert line.endswith(
+        "dies out up to 50.6° (+0.6°); quiet from any start at 56.5° (+6.5°)"
+    )
 
 
 def test_what_has_not_settled_has_no_time_by_which_it_had(answers):

@@ -1,7 +1,7 @@
 """The answer of a dataset ``assess`` in words that need no handbook."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +12,7 @@ from squealpipe.text import number, percent
 from squealpipe.units import engineering
 
 NAMES = {
-    "mu": "friction coefficient",
+    "mu": "friction coefficient at belt speed",
     "k3": "contact stiffness k3",
     "k1": "stiffness of spring 1",
     "k2": "stiffness of spring 2",
@@ -44,6 +44,7 @@ class CureWords(NamedTuple):
     quiet_from: str
     change: str
     any_start: str
+    change_any_start: str
     tried: str
 
 
@@ -194,15 +195,31 @@ def sudden(answer: xr.Dataset) -> str:
 
 
 def cures(answer: xr.Dataset) -> list[CureWords]:
-    """The table of cures, the smallest change first; without those that were not found.
+    """The table of cures, the smallest change by which a push dies out first.
 
-    Those that are known from any start alone come last.
+    Those that are known from any start alone come last; those that were not found are left out.
     """
     return [_words(answer.sel(cure=name)) for name in _found(answer)]
 
 
-def of_a_push(table: Sequence[CureWords]) -> list[CureWords]:
-    """The cures by which a small push begins or ceases to die out."""
+def of_a_push(answer: xr.Dataset) -> list[CureWords]:
+    """The cures by which a small push begins or ceases to die out, the smallest change first.
+
+    The change is the one that is told first: that to the value which is safe from any start. Cures
+    of which no such value was found follow.
+    """
+
+    def order(name: str) -> tuple[bool, float]:
+        safe, push = (
+            abs(float(answer[key].sel(cure=name)))
+            for key in ("change_any_start", "change")
+        )
+        if bool(answer.quiet_unless_struck):
+            return False, push
+        return not math.isfinite(safe), safe if math.isfinite(safe) else push
+
+    names = sorted(_found(answer), key=order)
+    table = [_words(answer.sel(cure=name)) for name in names]
     return [cure for cure in table if cure.quiet_from != NOT_FOUND]
 
 
@@ -225,27 +242,42 @@ def not_cures(answer: xr.Dataset) -> list[tuple[str, str]]:
     ]
 
 
-def cure_line(cure: CureWords, quiet: bool) -> str:
-    """One cure in a line."""
-    word = "quiet up to" if quiet else "quiet from"
-    return f"{cure.words}: now {cure.now}, {word} {cure.quiet_from} ({cure.change})"
+def cure_line(cure: CureWords, answer: xr.Dataset) -> str:
+    """One cure in a line: first the value that is safe from any start, where the two differ.
+
+    A value from which a small push dies out does not stop a pad that a blow or a sudden start
+    makes hammer.
+    """
+    word = "up to" if verdict_of(answer) is Verdict.quiet else "from"
+    push = f"{cure.quiet_from} ({cure.change})"
+    safe = f"{cure.any_start} ({cure.change_any_start})"
+    if bool(answer.quiet_unless_struck):
+        told = f"a small push dies out up to {push}"
+        if cure.any_start != NOT_FOUND:
+            told = f"{told}; quiet from any start at {safe}"
+    elif cure.any_start == cure.quiet_from:
+        told = f"quiet {word} {push}"
+    elif cure.any_start == NOT_FOUND:
+        told = f"quiet {word} {push} unless struck"
+    else:
+        told = f"quiet {word} {safe}; {word} {cure.quiet_from} unless struck"
+    return f"{cure.words}: now {cure.now}, {told}"
 
 
 def lines(answer: xr.Dataset) -> Iterator[str]:
     """The answer in ten lines or fewer."""
-    quiet = verdict_of(answer) is Verdict.quiet
     yield headline(answer)
     yield cause(answer)
     yield level(answer)
     yield impacts(answer)
     yield sudden(answer)
-    table = of_a_push(cures(answer))
+    table = of_a_push(answer)
     if not table:
         yield "No single change within the ranges searched alters the verdict."
         return
     yield f"{stops(answer)}, the smallest change first:"
     for cure in table[:CHEAPEST]:
-        yield f"  {cure_line(cure, quiet)}"
+        yield f"  {cure_line(cure, answer)}"
     others = [cure.words for cure in table[CHEAPEST:]]
     known = {cure.name for cure in table}
     vain = [words for name, words in NAMES.items() if name not in known]
@@ -283,6 +315,7 @@ def _words(cure: xr.Dataset) -> CureWords:
         else _value(name, float(cure.quiet_from), unit),
         _change(name, float(cure.change), float(cure.value)),
         _value(name, float(cure.quiet_from_any_start), unit),
+        _change(name, float(cure.change_any_start), float(cure.value)),
         _range(cure),
     )
 

@@ -80,8 +80,8 @@ def scene(name: str, told: xr.Dataset, started: xr.Dataset) -> dict[str, Any]:
         "sudden": answer.sudden(told),
         "stops": answer.stops(told),
         "cheapest": [
-            answer.cure_line(cure, quiet)
-            for cure in answer.of_a_push(cures)[: answer.CHEAPEST]
+            answer.cure_line(cure, told)
+            for cure in answer.of_a_push(told)[: answer.CHEAPEST]
         ],
         "cures": [cure._asdict() for cure in cures],
         "not_cures": [

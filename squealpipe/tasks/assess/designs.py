@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squealpipe.laws.friction_laws import LAWS
+from squealpipe.laws.friction_laws import COULOMB, LAWS
 from squealpipe.laws.tables import is_table, scaled
 from squealpipe.parameters import Parameters
 from squealpipe.substitutes import critical_damping
@@ -100,15 +100,14 @@ def damping_ratio(params: Parameters) -> float:
 
 def _friction(design: Design) -> Cure:
     params = design.params
-    mu = params.mu
-    if params.friction_law not in LAWS:
-        mu = abs(params.drag)
+    # of whatever law, the coefficient at which the mass slides steadily
+    mu = abs(params.drag)
     if mu == 0.0:
         above = np.linspace(0.0, 1.0, 51)[1:]
-        zero = design._replace(params=params.with_(mu_static=None))
+        level = params.with_(friction_law=COULOMB, mu_static=None, friction_speed=1.0)
         return Cure(
             0.0,
-            lambda value: zero._replace(params=zero.params.with_(mu=value)),
+            lambda value: design._replace(params=level.with_(mu=value)),
             np.zeros(0),
             above,
         )
