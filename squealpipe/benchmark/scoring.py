@@ -8,8 +8,8 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
+import scipy
 import xarray as xr
-from scipy.optimize import linear_sum_assignment
 
 from squealpipe.benchmark.adapters.scipy import solve as reference_solver
 from squealpipe.benchmark.machine import processor, versions
@@ -164,7 +164,7 @@ def matched(
         mine = [j for j, each in enumerate(kinds) if each == kind]
         theirs = [i for i, each in enumerate(reference["kinds"]) if each == kind]
         apart = np.array(reference["times"])[theirs, None] - times[mine]
-        rows, columns = linear_sum_assignment(np.abs(apart) ** 0.5)
+        rows, columns = scipy.optimize.linear_sum_assignment(np.abs(apart) ** 0.5)
         pairs += [(theirs[i], mine[j]) for i, j in zip(rows, columns, strict=True)]
     return np.array(sorted(pairs), int).reshape(-1, 2)
 

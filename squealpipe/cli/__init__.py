@@ -111,6 +111,8 @@ def run(arguments: Sequence[str]) -> int:
         try:
             code = int(application()(list(map(by_name, left))))
             sys.stdout.flush()
+            for finishing in SESSION.closing:
+                finishing()
         except BrokenPipeError:  # the reader, for instance `head`, has enough
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             return DONE

@@ -38,6 +38,7 @@ class _Session:
         typed: physical parameters that stood on the command line.
         held: what ends with the command: names that it keeps to write to.
         remedy: what to do after an interruption.
+        closing: what is left to do when the answer is printed, as to draw its picture.
     """
 
     quiet: bool = False
@@ -45,6 +46,7 @@ class _Session:
     typed: set[str] = field(default_factory=set)
     held: ExitStack = field(default_factory=ExitStack)
     remedy: str = AGAIN
+    closing: list[Callable[[], None]] = field(default_factory=list)
 
 
 SESSION = _Session()
@@ -62,7 +64,7 @@ def session(arguments: Sequence[str]) -> Iterator[list[str]]:
         "",
         "0",
     }
-    SESSION.typed, SESSION.remedy = set(), AGAIN
+    SESSION.typed, SESSION.remedy, SESSION.closing = set(), AGAIN, []
     with warnings.catch_warnings(), ExitStack() as SESSION.held:
         if not SESSION.verbose and not sys.warnoptions:
             warnings.simplefilter("ignore")

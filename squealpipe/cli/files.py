@@ -7,14 +7,7 @@ from cyclopts import Parameter
 
 from squealpipe.cli.arguments import LOOK, Force, Look, Output, OutputElsewhere, Time
 from squealpipe.cli.console import DONE, answer, say
-from squealpipe.cli.output import (
-    PICTURES,
-    TABLES,
-    check_output,
-    draw,
-    draw_beside,
-    write,
-)
+from squealpipe.cli.output import PICTURES, TABLES, check_output, draw, finish, write
 from squealpipe.units import engineering
 
 
@@ -80,9 +73,7 @@ def spectrum(
         output,
         config={"run": dataset_id(run), "last": last},
     )
-    if picture is not None:
-        draw_beside(made, output, picture, look)
-    say(f"wrote {output}{f' and {picture}' if picture else ''}")
+    finish(made, output, picture, look)
     lines = made.peak_frequency.values
     told = ", ".join(engineering(float(line), "Hz", 4) for line in lines[:3])
     answer(f"strongest lines of the contact force: {told or 'none'}")

@@ -100,9 +100,7 @@ def compute(
             output,
             config={"parameters": brake.params.as_dict(), **stated},
         )
-    if isinstance(brake, Drawn) and drawn is not None:
-        draw_beside(dataset, output, drawn, brake)
-    say(f"wrote {output}{f' and {drawn}' if drawn else ''}")
+    finish(dataset, output, drawn, brake)
     return dataset
 
 
@@ -124,12 +122,25 @@ def draw(
     save_figure(figure, [path], size=look.figure_size, dpi=look.dpi)
 
 
-def draw_beside(dataset: xr.Dataset, output: Path, drawn: Path, look: Look) -> None:
-    """Write the picture of a dataset that is written; where it fails, say how to draw it later."""
-    SESSION.remedy = (
-        f"{output} is written; squealpipe plot {output} -o {drawn} draws it"
-    )
-    draw(dataset, drawn, look)
+def finish(
+    dataset: xr.Dataset, output: Path, drawn: Path | None, look: Look | Written
+) -> None:
+    """Have the picture of a written dataset drawn after the command's answer, and say so then.
+
+    Matplotlib takes a second, for which nobody has to wait who asked for a number. An interrupted
+    command says how to draw it later.
+    """
+
+    def finishing() -> None:
+        if drawn is not None and isinstance(look, Look):
+            draw(dataset, drawn, look)
+        say(f"wrote {output}{f' and {drawn}' if drawn else ''}")
+
+    if drawn is not None:
+        SESSION.remedy = (
+            f"{output} is written; squealpipe plot {output} -o {drawn} draws it"
+        )
+    SESSION.closing.append(finishing)
 
 
 def ending(outcome: xr.DataArray) -> tuple[str, str]:

@@ -19,8 +19,8 @@ from squealpipe.cli.arguments import (
     Whole,
     pairs_of,
 )
-from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer, say, working
-from squealpipe.cli.output import check_output, check_picture, draw_beside, write
+from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer, working
+from squealpipe.cli.output import check_output, check_picture, finish, write
 from squealpipe.cli.signatures import options_of
 from squealpipe.config.ranges import parse_range
 
@@ -99,8 +99,7 @@ def _compute(
     config = {"parameters": structure.as_dict(), **given}
     with working(task.__name__.replace("_", " ")):
         dataset = write(lambda: task(structure, **given), output, config=config)
-    draw_beside(dataset, output, drawn, files)
-    say(f"wrote {output} and {drawn}")
+    finish(dataset, output, drawn, files)
     return dataset
 
 

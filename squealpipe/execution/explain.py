@@ -21,7 +21,7 @@ from squealpipe.execution.durations import job_times, together
 from squealpipe.rerun.key import PLAN
 from squealpipe.rerun.sources import WORKFLOW
 from squealpipe.store.keys import misfits
-from squealpipe.store.netcdf import attributes
+from squealpipe.store.sealed import attributes
 from squealpipe.store.whole_files import StoreError
 from squealpipe.text import duration
 

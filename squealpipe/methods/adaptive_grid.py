@@ -13,7 +13,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from scipy.ndimage import binary_dilation, maximum_filter, minimum_filter
+import scipy
 
 Evaluate = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
 
@@ -56,7 +56,7 @@ def refine_grid(evaluate: Evaluate, resolution: int, coarse: int) -> RefinedGrid
         ]  # new points take those before them
         computed = _refined(computed, False)
         suspects, reserve = _refined(suspects, False), _refined(reserve, np.nan)
-        suspected_here = binary_dilation(doubtful, np.ones((3, 3)))
+        suspected_here = scipy.ndimage.binary_dilation(doubtful, np.ones((3, 3)))
         while True:
             rows, columns = np.nonzero((_changes(labels) | suspected_here) & ~computed)
             if not rows.size:
@@ -81,7 +81,10 @@ def follow_boundaries(evaluate: Evaluate, grid: RefinedGrid) -> None:
 
 def _changes(labels: np.ndarray) -> np.ndarray:
     """Points with another label next to them."""
-    return np.asarray(maximum_filter(labels, 3) != minimum_filter(labels, 3))
+    return np.asarray(
+        scipy.ndimage.maximum_filter(labels, 3)
+        != scipy.ndimage.minimum_filter(labels, 3)
+    )
 
 
 def _refined(values: np.ndarray, between: object) -> np.ndarray:
@@ -94,7 +97,7 @@ def _refined(values: np.ndarray, between: object) -> np.ndarray:
 def _nearly_used_up(reserve: np.ndarray) -> np.ndarray:
     """Points whose reserve is small against its range among the points around."""
     known = np.isfinite(reserve)
-    most = maximum_filter(np.where(known, reserve, -np.inf), 3)
-    least = minimum_filter(np.where(known, reserve, np.inf), 3)
+    most = scipy.ndimage.maximum_filter(np.where(known, reserve, -np.inf), 3)
+    least = scipy.ndimage.minimum_filter(np.where(known, reserve, np.inf), 3)
     with np.errstate(invalid="ignore"):
         return np.asarray(known & (reserve < RESERVE_OF_CHANGE * (most - least)))

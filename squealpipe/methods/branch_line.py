@@ -4,8 +4,8 @@ from collections.abc import Callable
 from typing import Generic, TypeVar
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from squealpipe.methods.continuation import (
     ContinuationState,
@@ -83,6 +83,10 @@ class Line(Generic[Found]):
             first = value(begin)
             if first <= 0.0 and value(end) < 0.0:
                 return begin if first > -ZERO_ROUND_OFF else None
-            return float(brentq(value, begin, end, xtol=_ZERO, rtol=_ZERO, maxiter=60))
+            return float(
+                scipy.optimize.brentq(
+                    value, begin, end, xtol=_ZERO, rtol=_ZERO, maxiter=60
+                )
+            )
         except (ArithmeticError, ValueError, RuntimeError):
             return None

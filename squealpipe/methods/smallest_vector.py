@@ -13,9 +13,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.linalg import expm
-from scipy.optimize import minimize_scalar
 
 Array = NDArray[np.float64]
 Happens = Callable[[Array], NDArray[np.bool_]]
@@ -150,14 +149,14 @@ def smallest_linear(matrix: Array, row: Array, level: float, t_end: float) -> fl
         )
     count = int(np.ceil(rate * t_end / PHASE)) + 1
     step = t_end / count
-    move, rows = expm(step * matrix), np.empty((count + 1, len(row)))
+    move, rows = scipy.linalg.expm(step * matrix), np.empty((count + 1, len(row)))
     rows[0] = row
     for index in range(count):
         rows[index + 1] = rows[index] @ move
     longest = int(np.argmax(np.linalg.norm(rows, axis=1)))
     low, high = step * max(longest - 1, 0), step * min(longest + 1, count)
-    best = minimize_scalar(
-        lambda time: -float(np.linalg.norm(row @ expm(time * matrix))),
+    best = scipy.optimize.minimize_scalar(
+        lambda time: -float(np.linalg.norm(row @ scipy.linalg.expm(time * matrix))),
         bounds=(low, high),
         method="bounded",
         options={"xatol": 1e-9 * step},

@@ -2,7 +2,11 @@
 
 import ast
 import hashlib
+import json
+import os
+import sys
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
@@ -46,9 +50,64 @@ def read_source(path: Path) -> Source:
 
     Docstrings of :data:`STATEMENTS` count. A data file is taken as it is.
     """
+    content = path.read_bytes()
     if path.suffix != ".py":
-        return Source(frozenset(), hashlib.sha256(path.read_bytes()).hexdigest()[:16])
-    tree = ast.parse(path.read_bytes())
+        return Source(frozenset(), hashlib.sha256(content).hexdigest()[:16])
+    module = _parsed(content, path.parent == STATEMENTS)
+    files = {file for name in module.imports for file in _files(name)}
+    if path.is_relative_to(PACKAGE):
+        files |= {file for each in module.inputs for file in path.parent.glob(each)}
+    return Source(frozenset(files), module.code)
+
+
+class _Module(NamedTuple):
+    """What was read of a module: package modules that it imports, ``INPUT_FILES``, its digest."""
+
+    imports: list[str]
+    inputs: list[str]
+    code: str
+
+
+def _parsed(content: bytes, documented: bool) -> _Module:
+    """Parse a module, or remember what was found in the same text before.
+
+    Syntax trees of all modules take as long as all else that a dry run does.
+    """
+    key = hashlib.sha256(content + bytes(documented)).hexdigest()[:32]
+    known = _remembered()
+    if key not in known:
+        known[key] = _parse(content, documented)
+        # where nothing can be written, it is parsed again next time
+        with suppress(OSError), _memory().open("a", encoding="utf-8") as file:
+            file.write(json.dumps([key, known[key]]) + "\n")
+    return known[key]
+
+
+@cache
+def _memory() -> Path:
+    """File in the user's cache folder, of this reader of sources and this Python alone."""
+    user = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")  # noqa: PTH111
+    reader = hashlib.sha256(Path(__file__).read_bytes() + sys.version.encode())
+    path = Path(user, "squealpipe", f"sources-{reader.hexdigest()[:16]}.jsonl")
+    with suppress(OSError):
+        path.parent.mkdir(parents=True, exist_ok=True)
+    return path
+
+
+@cache
+def _remembered() -> dict[str, _Module]:
+    """Digest of a text → what was found in it."""
+    known = {}
+    with suppress(OSError):
+        for line in _memory().read_text(encoding="utf-8").splitlines():
+            with suppress(ValueError, TypeError):  # torn by another process
+                key, found = json.loads(line)
+                known[key] = _Module(*found)
+    return known
+
+
+def _parse(content: bytes, documented: bool) -> _Module:
+    tree = ast.parse(content)
     nodes = [tree, *_statements(tree.body)]
     names: set[str] = set()
     for node in nodes:
@@ -57,30 +116,26 @@ def read_source(path: Path) -> Source:
         elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
             names.add(node.module)
             names.update(f"{node.module}.{alias.name}" for alias in node.names)
-    for node in nodes if path.parent != STATEMENTS else []:
+    inputs = [pattern for node in tree.body for pattern in _input_files(node)]
+    for node in nodes if not documented else []:
         if isinstance(
             node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
         ):
             first = node.body[0] if node.body else None
             if isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant):
                 node.body.pop(0)
+    own = sorted(name for name in names if name.partition(".")[0] == PACKAGE.name)
     code = hashlib.sha256(ast.dump(tree).encode()).hexdigest()[:16]
-    imported = {file for name in names for file in _files(name)}
-    return Source(frozenset(imported | _input_files(path, tree)), code)
+    return _Module(own, inputs, code)
 
 
-def _input_files(path: Path, tree: ast.Module) -> set[Path]:
-    """Files beside a module of the package that its ``INPUT_FILES`` names."""
-    if not path.is_relative_to(PACKAGE):
-        return set()
-    for node in tree.body:
-        if isinstance(node, ast.Assign) and any(
-            isinstance(target, ast.Name) and target.id == INPUT_FILES
-            for target in node.targets
-        ):
-            patterns = ast.literal_eval(node.value)
-            return {file for each in patterns for file in path.parent.glob(each)}
-    return set()
+def _input_files(node: ast.stmt) -> Sequence[str]:
+    """The patterns of ``INPUT_FILES``, if a statement assigns them."""
+    assigned = isinstance(node, ast.Assign) and any(
+        isinstance(target, ast.Name) and target.id == INPUT_FILES
+        for target in node.targets
+    )
+    return ast.literal_eval(node.value) if assigned else ()  # type: ignore[attr-defined, no-any-return]
 
 
 def _statements(body: Sequence[ast.AST]) -> Iterator[ast.AST]:
@@ -100,8 +155,6 @@ def _statements(body: Sequence[ast.AST]) -> Iterator[ast.AST]:
 def _files(name: str) -> list[Path]:
     """The module's file and the ``__init__`` of each package above it."""
     parts = name.split(".")
-    if parts[0] != PACKAGE.name:
-        return []
     files = []
     for depth in range(1, len(parts) + 1):
         base = PACKAGE.joinpath(*parts[1:depth])

@@ -14,9 +14,9 @@ from squealpipe.config.settings import PAPER, Study, read_study
 from squealpipe.config.yaml_files import flat
 from squealpipe.laws.friction_laws import COULOMB
 from squealpipe.parameters import DEFAULTS, SYMBOLS, TABLE, Parameters
-from squealpipe.store.netcdf import attributes
 from squealpipe.store.results import refuse_copy
 from squealpipe.store.runs import dataset_files, read_manifest, verify
+from squealpipe.store.sealed import attributes
 from squealpipe.store.whole_files import ARCHIVES, MANIFEST
 from squealpipe.text import nearest
 

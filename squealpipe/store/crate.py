@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from squealpipe.store.netcdf import attributes
+from squealpipe.store.sealed import attributes
 
 METADATA = "ro-crate-metadata.json"
 TYPES = {".nc": "application/x-netcdf", ".yaml": "application/yaml"}

@@ -9,7 +9,8 @@ import xarray as xr
 
 from squealpipe.laws.numerals import decimal_sign, numeral
 from squealpipe.laws.rows import text_rows
-from squealpipe.store.netcdf import DAMAGED, MARK, load, with_plain_texts
+from squealpipe.store.netcdf import DAMAGED, load, with_plain_texts
+from squealpipe.store.sealed import MARK
 from squealpipe.store.whole_files import StoreError
 
 

@@ -3,19 +3,18 @@
 from __future__ import annotations  # help shows Angle, not its checks
 
 import datetime
-import hashlib
 import os
 import re
 from pathlib import Path
 from typing import Any
 
-import netCDF4
 import numpy as np
 import xarray as xr
 
 from squealpipe.schema import SchemaError, schema_of, validate
 from squealpipe.store.checkout import commit
 from squealpipe.store.identity import dataset_id, without_foreign_key
+from squealpipe.store.sealed import MARK, verified
 from squealpipe.store.whole_files import (
     StoreError,
     checksum,
@@ -24,8 +23,6 @@ from squealpipe.store.whole_files import (
     whole_file,
 )
 from squealpipe.validation import AnyPath, checked
-
-MARK = b"\n# squealpipe sha256 "
 
 ATTRIBUTE_NAME = re.compile(r"(?!_NC)[^\W\d][\w .@+-]{0,99}")
 STORED_NUMBERS = ("i1", "i2", "i4", "i8", "u1", "u2", "u4", "u8", "f4", "f8")
@@ -135,29 +132,6 @@ def _is_text_or_numbers(value: Any) -> bool:
         return False
     stored = values.dtype.kind == "U" or values.dtype.str[1:] in STORED_NUMBERS
     return stored and values.ndim < 2
-
-
-def attributes(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """Global attributes of a dataset file."""
-    with netCDF4.Dataset(verified(path)) as file:
-        return {name: file.getncattr(name) for name in file.ncattrs()}
-
-
-def verified(path: str | os.PathLike[str]) -> Path:
-    """The path of a dataset file whose bytes are those that were written, before HDF5 opens it."""
-    source = Path(path)
-    if not source.is_file():
-        raise FileNotFoundError(
-            f"no dataset {source}; make it with snakemake, or check the path"
-        )
-    content, mark, stated = source.read_bytes().rpartition(MARK)
-    if not mark or stated != hashlib.sha256(content).hexdigest().encode() + b"\n":
-        raise StoreError(
-            f"{source} was changed or damaged since squealpipe wrote it, or another program wrote "
-            "it; if a study made it, delete it and run snakemake again; a file of another program "
-            "can be drawn (squealpipe plot) and converted (squealpipe convert)"
-        )
-    return source
 
 
 def made_now() -> str:

@@ -10,8 +10,9 @@ from squealpipe.schema.claims import Basis, ClaimVerdict
 from squealpipe.schema.inference import of_study
 from squealpipe.store.netcdf import save
 from squealpipe.store.provenance import stamped
+from squealpipe.study.claims.datasets import READ
 from squealpipe.study.claims.judge import judge
-from squealpipe.study.claims.statements import READ, STATEMENTS
+from squealpipe.study.claims.statements import STATEMENTS
 from squealpipe.study.claims.table import rows, table
 from squealpipe.study.figures.linear import fig07
 

@@ -19,8 +19,8 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import SchemaError
 from squealpipe.store import StoreError, load, produce, save
 from squealpipe.store.keys import stated_key
-from squealpipe.store.netcdf import MARK
 from squealpipe.store.provenance import stamped
+from squealpipe.store.sealed import MARK
 from squealpipe.store.whole_files import checksum
 from squealpipe.tasks.linear.maps import stability_map
 

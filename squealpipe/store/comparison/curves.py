@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 import xarray as xr
-from scipy.optimize import minimize_scalar
 
 from squealpipe.schema import DatasetSchema, Variable
 from squealpipe.schema.agreement import Listing
@@ -171,7 +171,7 @@ def _nearest_place(line: np.ndarray, point: np.ndarray) -> float:
         return float(((_interpolated(line, line, at)[0] - point) ** 2).sum())
 
     low, high = max(segment - 0.5, 0.0), min(segment + 1.5, line.shape[1] - 1.0)
-    refined = minimize_scalar(
+    refined = scipy.optimize.minimize_scalar(
         squared_distance, bounds=(low, high), method="bounded", options={"xatol": 1e-12}
     )
     choices = [

@@ -6,8 +6,8 @@ from enum import IntEnum
 from typing import Any
 
 import numpy as np
+import scipy
 import xarray as xr
-from scipy.stats import ks_2samp
 
 from squealpipe.schema import Outcome, Variable, flag_table
 from squealpipe.schema.agreement import ComparedAs, RoundOff
@@ -156,7 +156,9 @@ def _sampled(a: xr.DataArray, b: xr.DataArray, how: RoundOff) -> dict[str, Any]:
     sides = [side.transpose(..., how.sample).values.astype(float) for side in (a, b)]
     rows = [np.nan_to_num(side, nan=np.inf, posinf=np.inf) for side in sides]
     rows = [side.reshape(-1, side.shape[-1]) for side in rows]
-    chances = np.array([ks_2samp(x, y).pvalue for x, y in zip(*rows, strict=True)])
+    chances = np.array(
+        [scipy.stats.ks_2samp(x, y).pvalue for x, y in zip(*rows, strict=True)]
+    )
     unlikely = int((chances <= SMALLEST_CHANCE).sum())
     numbers: dict[str, Any] = {
         "compared": len(chances),
@@ -189,7 +191,7 @@ def _beyond_horizon(
     ]
     if np.array_equal(*samples):
         return found
-    chance = float(ks_2samp(*samples, method="asymp").pvalue)
+    chance = float(scipy.stats.ks_2samp(*samples, method="asymp").pvalue)
     verdict = (
         Agreement.different if chance <= SMALLEST_CHANCE else Agreement.within_tolerance
     )

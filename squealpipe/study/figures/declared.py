@@ -5,15 +5,18 @@ It holds ``READS``, the names of its datasets; ``draw``, which takes them in tha
 a wildcard (``backbone/F10_*``) stands for all datasets that match, as a mapping by name.
 """
 
+from __future__ import annotations
+
 import ast
 from collections.abc import Iterable, Mapping
 from fnmatch import fnmatchcase
 from functools import cache
 from importlib import import_module
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from matplotlib.figure import Figure
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 FOLDER = Path(__file__).resolve().parent
 WILDCARDS = frozenset("*?[")

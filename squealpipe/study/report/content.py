@@ -13,7 +13,7 @@ from PIL import Image
 
 from squealpipe.parameters import TABLE, Parameters, law_in_words
 from squealpipe.schema.claims import ClaimVerdict, Origin
-from squealpipe.store.netcdf import attributes
+from squealpipe.store.sealed import attributes
 from squealpipe.store.whole_files import checksum
 from squealpipe.study.claims.evidence import Evidence
 from squealpipe.study.claims.table import rows, tally

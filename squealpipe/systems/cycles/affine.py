@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-import scipy.linalg as la
+import scipy
 from numpy.typing import NDArray
 
 from squealpipe.methods.taylor.symbols import Symbol, degree
@@ -43,7 +43,7 @@ def derivatives(
     rates = field(places) / sizes[:, None]
     slopes = by(places).reshape(n, p, n + 1) * (units[:, None] / sizes[:, None, None])
     if p == 0:
-        moved = la.expm((rates[:, 1:] - rates[:, :1]) * length)
+        moved = scipy.linalg.expm((rates[:, 1:] - rates[:, :1]) * length)
         return np.asarray(moved * (sizes[:, None] / sizes))
     size = n * (1 + p)
     whole = np.zeros((size + 1, size + 1))
@@ -52,7 +52,7 @@ def derivatives(
         whole[rows, :n] = values[:, 1:] - values[:, :1]
         whole[rows, size] = values[:, 0]
         whole[rows, rows] = rates[:, 1:] - rates[:, :1]
-    moved = la.expm(whole * length)
+    moved = scipy.linalg.expm(whole * length)
     found = np.empty((n, n + p))
     found[:, :n] = moved[:n, :n] * (sizes[:, None] / sizes)
     first = np.concatenate([start / sizes, np.zeros(n * p), [1.0]])

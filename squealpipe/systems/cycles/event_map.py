@@ -13,8 +13,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import csc_array
-from scipy.sparse.linalg import splu
+import scipy
 
 from squealpipe.systems.cycles.crossing import Crossing
 from squealpipe.systems.cycles.flow import Flow
@@ -271,6 +270,8 @@ def _newton_step(jacobian: Vector, values: Vector) -> Vector:
     if rows != columns or rows < _LONG_CHAIN:
         return np.asarray(np.linalg.lstsq(jacobian, values, rcond=1e-10)[0])
     try:
-        return np.asarray(splu(csc_array(jacobian)).solve(values))
+        return np.asarray(
+            scipy.sparse.linalg.splu(scipy.sparse.csc_array(jacobian)).solve(values)
+        )
     except RuntimeError:  # exactly singular
         return np.full(columns, np.nan)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import barycentric_interpolate
+import scipy
 
 from squealpipe.methods.continuation import ContinuationState
 from squealpipe.schema import Outcome
@@ -126,5 +126,5 @@ class Trail:
         squares = (_sizes_of(shapes) / sizes.max()) ** 2
         unit = float(self.points[-1].cycle.map.units[-1])
         beyond = np.array([shape[0] for shape in shapes]) * unit - last
-        rest = float(barycentric_interpolate(squares, beyond, 0.0))
+        rest = float(scipy.interpolate.barycentric_interpolate(squares, beyond, 0.0))
         return last + rest if abs(rest) < _AT_REST * np.abs(beyond).max() else None

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
+import scipy
 
 from squealpipe.tasks.assess.designs import Cure
 from squealpipe.tasks.assess.sliding import Sliding
@@ -186,7 +186,7 @@ def _turns(margins: Sequence[float]) -> bool:
 
 def _peak(side: Side, values: Sequence[float]) -> float | None:
     """Where small motions grow beside the middle one of three stable values, if anywhere."""
-    found = minimize_scalar(
+    found = scipy.optimize.minimize_scalar(
         lambda value: -_margin(side, float(value)),
         bounds=sorted((values[0], values[2])),
         method="bounded",
@@ -204,7 +204,9 @@ def _locate(side: Side, inner: float, outer: float) -> tuple[float, float]:
     if signs[0] == signs[1]:
         return outer, outer
     near = ROOT * abs(outer - inner)
-    root = brentq(partial(_margin, side), inner, outer, xtol=near, rtol=ROOT)
+    root = scipy.optimize.brentq(
+        partial(_margin, side), inner, outer, xtol=near, rtol=ROOT
+    )
     for at, end in enumerate(ends):
         step = near + ROOT * abs(root)
         value = root

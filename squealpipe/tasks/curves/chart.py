@@ -7,9 +7,8 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+import scipy
 import xarray as xr
-from scipy.interpolate import CubicSpline
-from scipy.ndimage import distance_transform_edt, label
 
 from squealpipe.methods.chords import Vector
 from squealpipe.methods.regions import chains_of, holds, loops_of
@@ -187,15 +186,15 @@ def _smooth(line: Vector, width: Vector, label: Vector) -> Vector:
         at = np.interp(
             np.arange(0.0, j - i + 1e-9, 0.01), np.arange(j - i + 1), way[i : j + 1]
         )
-        found.append(CubicSpline(way[i : j + 1], line[i : j + 1])(at))
+        found.append(scipy.interpolate.CubicSpline(way[i : j + 1], line[i : j + 1])(at))
     there = np.concatenate(found)
     return np.concatenate([there, there[::-1]])
 
 
 def _parts(where: np.ndarray) -> tuple[Vector, np.ndarray]:
     """Connected parts of a grid's points: the place farthest from its edge, and points, of each."""
-    numbers, count = label(where)
-    inner = distance_transform_edt(np.pad(where, 1))[1:-1, 1:-1]
+    numbers, count = scipy.ndimage.label(where)
+    inner = scipy.ndimage.distance_transform_edt(np.pad(where, 1))[1:-1, 1:-1]
     at = [
         np.unravel_index(np.argmax(inner * (numbers == k)), where.shape)
         for k in range(1, count + 1)

@@ -1,7 +1,7 @@
 """Where steady sliding loses its stability and a branch of cycles is born."""
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from squealpipe.methods.continuation import ContinuationState
 from squealpipe.systems.cycles.event_map import EventMap
@@ -39,7 +39,9 @@ def find_onset(
         return None
     low, high = grid[crossing[0]], grid[crossing[0] + 1]
     onset = float(
-        brentq(growth, low, high, xtol=1e-14 * max(abs(begin), abs(to)), rtol=1e-14)
+        scipy.optimize.brentq(
+            growth, low, high, xtol=1e-14 * max(abs(begin), abs(to)), rtol=1e-14
+        )
     )
     found = steady_sliding(scene.at(onset), flow)
     if found is None:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import root
+import scipy
 
 from squealpipe.models.variants import VARIANT_RULES
 from squealpipe.solvers.a1.jobs import STATE
@@ -56,7 +56,7 @@ def steady_sliding(scene: CycleScene, flow: Flow | None = None) -> SlidingState 
                 / force
             )
 
-        found = root(pull, state[:2], tol=1e-13)
+        found = scipy.optimize.root(pull, state[:2], tol=1e-13)
         unbalanced = float(np.abs(pull(found.x)).max()) * force / scene.scaled.k3
         if not unbalanced < _BALANCE or found.x[1] >= 1.0:
             return None

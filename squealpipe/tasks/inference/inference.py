@@ -9,9 +9,9 @@ from __future__ import annotations  # help shows Angle, not its checks
 from typing import Annotated, Any
 
 import numpy as np
+import scipy
 import xarray as xr
 from pydantic import Strict
-from scipy.stats import qmc
 
 from squealpipe.models.refusals import refuse_extensions
 from squealpipe.parameters import Parameters
@@ -144,7 +144,7 @@ def _over_samples(sets: Candidates) -> dict[str, Any]:
 
 
 def _sample(samples: int, seed: int, ranges: dict[str, Range]) -> dict[str, np.ndarray]:
-    points = qmc.Halton(len(ranges), seed=seed).random(samples)
+    points = scipy.stats.qmc.Halton(len(ranges), seed=seed).random(samples)
     groups = {}
     for column, (name, limits) in enumerate(ranges.items()):
         share = points[:, column]

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from scipy import stats
+import scipy
 
 from squealpipe.config.ranges import NUMBERS
 from squealpipe.inputs import ANGLES
@@ -57,16 +57,16 @@ def _frozen(name: str, kind: str, first: float, second: float) -> Any:
     if kind == "uniform":
         if not first < second:
             raise ValueError(f"{name}: low = {first!r} must be below high = {second!r}")
-        return stats.uniform(first, second - first)
+        return scipy.stats.uniform(first, second - first)
     if not second > 0:
         raise ValueError(
             f"{name}: {KINDS[kind][1]} = {second!r}: a number above 0 is needed"
         )
     if kind == "normal":
-        return stats.truncnorm(-TRUNCATION, TRUNCATION, loc=first, scale=second)
+        return scipy.stats.truncnorm(-TRUNCATION, TRUNCATION, loc=first, scale=second)
     if not first > 0:
         raise ValueError(f"{name}: median = {first!r}: a number above 0 is needed")
-    return stats.lognorm(second, scale=first)
+    return scipy.stats.lognorm(second, scale=first)
 
 
 def _check_support(name: str, kind: str, frozen: Any) -> None:

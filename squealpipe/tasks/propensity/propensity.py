@@ -8,9 +8,9 @@ from types import SimpleNamespace
 from typing import Annotated, Any
 
 import numpy as np
+import scipy
 import xarray as xr
 from annotated_types import Ge, Interval, MinLen
-from scipy import stats
 
 from squealpipe.codes import LinearRegime
 from squealpipe.inputs import ANGLES
@@ -157,10 +157,10 @@ def _correlate(
     points: np.ndarray, first: int, second: int, correlation: float
 ) -> np.ndarray:
     """Two columns of a uniform sample joined by a Gaussian copula."""
-    normal = stats.norm.ppf(points[:, [first, second]])
+    normal = scipy.stats.norm.ppf(points[:, [first, second]])
     mixed = correlation * normal[:, 0] + np.sqrt(1.0 - correlation**2) * normal[:, 1]
     joined = points.copy()
-    joined[:, second] = stats.norm.cdf(mixed)
+    joined[:, second] = scipy.stats.norm.cdf(mixed)
     return joined
 
 

@@ -6,7 +6,7 @@ estimates, whose spread is the error (Owen's randomized quasi-Monte Carlo).
 """
 
 import numpy as np
-from scipy import stats
+import scipy
 
 from squealpipe.schema.inference import CONFIDENCE, wilson_interval
 
@@ -20,7 +20,7 @@ def scrambled(inputs: int, size: int, seed: int) -> np.ndarray:
     """Points in the open unit cube, (size, inputs); equal parts are independent scramblings."""
     points = np.concatenate(
         [
-            stats.qmc.Sobol(inputs, rng=rng).random(size // REPLICATES)
+            scipy.stats.qmc.Sobol(inputs, rng=rng).random(size // REPLICATES)
             for rng in np.random.default_rng(seed).spawn(REPLICATES)
         ]
     )
@@ -45,7 +45,7 @@ def _half_width(replicates: np.ndarray) -> np.ndarray:
     """Of the mean over the last axis, by Student's t."""
     number = replicates.shape[-1]
     error = replicates.std(axis=-1, ddof=1) / np.sqrt(number)
-    return np.asarray(stats.t.ppf(0.5 + 0.5 * CONFIDENCE, number - 1) * error)
+    return np.asarray(scipy.stats.t.ppf(0.5 + 0.5 * CONFIDENCE, number - 1) * error)
 
 
 def saltelli_matrices(inputs: int, size: int, seed: int) -> np.ndarray:

@@ -8,6 +8,7 @@ from squealpipe.schema.claims import ClaimVerdict
 from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD
 from squealpipe.study.claims.checks import figures_6_and_7, figures_8_and_9
 from squealpipe.study.claims.checks.motions import scene
+from squealpipe.study.claims.datasets import PRINTED
 from squealpipe.study.claims.evidence import (
     Evidence,
     Finding,
@@ -34,9 +35,6 @@ GROUPS = ("k3/k", "μ", "L/l_pre", "V/(l_pre √(k/m))")
 """The dimensionless groups on which all results depend."""
 READ_IN_THE_PAPER: tuple[str, ...] = ()
 """Those of them whose values the paper prints: read by hand, so E9 is no result of a dataset."""
-
-PRINTED = "F2a_printed"
-"""The scene (π/2, π) with the friction of Eq. (4) as printed."""
 
 
 @rows.add(

@@ -1,8 +1,8 @@
 """Looking things up in the A1 motions of the paper's scenes."""
 
 import numpy as np
+import scipy
 import xarray as xr
-from scipy.interpolate import CubicHermiteSpline
 
 from squealpipe.codes import Event
 from squealpipe.schema.dynamics.growth import HORIZON, WINDOW, WINDOWS
@@ -61,7 +61,9 @@ def repetition(motion: xr.Dataset) -> tuple[float, int, int]:
         raise MissingDataError(f"the run has {instants.size} returns to the belt")
     time = motion.time.values
     tracks = [
-        CubicHermiteSpline(time, motion[name].values, motion[f"v{name}"].values)
+        scipy.interpolate.CubicHermiteSpline(
+            time, motion[name].values, motion[f"v{name}"].values
+        )
         for name in "xy"
     ]
     states = np.stack(
