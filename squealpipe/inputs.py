@@ -15,7 +15,7 @@ from squealpipe.parameters import (
     UNITS_OF_INPUTS,
     brief,
 )
-from squealpipe.units import UnitError, has_unit, in_si, number_of
+from squealpipe.units import UnitError, has_unit, holds_units, in_si, number_of
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _IN_PI = re.compile(rf"([+-]?)({_NUMBER})?\s*\*?\s*(?:pi|π)(?:/({_NUMBER}))?")
@@ -23,17 +23,22 @@ _IN_UNITS = re.compile(rf"({_NUMBER})\s*(deg|°|rad)?")
 ANGLE_FORMS = "write 0.4pi, 2pi/5, 72deg or radians"
 ANGLES = ("alpha1", "alpha2")
 UNITS = UNITS_OF_INPUTS | {
-    **dict.fromkeys(("t_end", "t_late", "t_settle", "times", "last"), "s"),
+    **dict.fromkeys(("t_start", "t_end", "t_late", "t_settle", "times", "last"), "s"),
     **dict.fromkeys(("x", "y", "x0", "y0", "y_peak"), "m"),
     **dict.fromkeys(("y_peak_max", "x_amplitude_max"), "m"),
     **dict.fromkeys(("vx", "vy", "vx0", "vy0"), "m s-1"),
+    "time_scale": "s",
     "frequency_max": "Hz",
-    "tol": "1",
+    **dict.fromkeys(("tol", "smoothed_tol", "spring_correlation", "bound"), "1"),
+    **dict.fromkeys(("kappa", "lambda_", "length_ratio", "speed_ratio"), "1"),
+    "modal_damping": "1",
 }
 """CF units of parameters and of the options of tasks, whose values may be texts with a unit."""
 STATE, STATES = ("x", "y", "vx", "vy"), ("initial_state", "guess", "start")
 """What a state consists of, and the arguments that are states."""
-_OF_PARTS = frozenset({"distributions", *STATES, *ANGLES})
+BY_NAME = ("distributions", "design", "to")
+"""Arguments that may hold values by the name of what they are for."""
+_OF_PARTS = frozenset({*BY_NAME, *STATES, *ANGLES})
 """Further arguments that may hold texts with units."""
 
 
@@ -72,13 +77,18 @@ def parse_number(text: str, units: str | None = None) -> float:
             return in_si(text, units, KEYS_THAT_TAKE)
         except UnitError as error:
             raise UnitError(f"{text!r}: {error}") from None
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
+    value = plain_number(text)
     if not math.isfinite(value):
         raise ValueError(f"{text!r} is not a number; write for instance 0.3 or 1e-3")
     return value
+
+
+def plain_number(text: str) -> float:
+    """The number of a text; NaN where it is none, as ``1_000``, which Python takes for one."""
+    try:
+        return math.nan if "_" in text else float(text)
+    except ValueError:
+        return math.nan
 
 
 def reader(name: str) -> Callable[[str], float]:
@@ -89,23 +99,26 @@ def reader(name: str) -> Callable[[str], float]:
 
 
 def read_distribution(name: str, numbers: Mapping[str, Any]) -> dict[str, Any]:
-    """A distribution whose numbers may be texts with the unit of its parameter or an angle."""
-    one = reader(name)
+    """A distribution whose numbers may have the unit of its parameter, or be angles."""
     return {
-        key: one(value)
-        if isinstance(value, str) and key not in {"distribution", "log_std"}
-        else value
+        key: value
+        if key in {"distribution", "log_std"}
+        else reader(name)(value)
+        if isinstance(value, str)
+        else _quantity(name, value, UNITS)
         for key, value in numbers.items()
     }
 
 
+OF_FRICTION = ("mu_static", "friction_speed", "modal_damping")
+"""Further keywords of a structure's verbs that are no factors."""
 Given = ParamSpec("Given")
 Result = TypeVar("Result")
 
 
 def takes_units(function: Callable[Given, Result]) -> Callable[Given, Result]:
     """Have a function read its arguments, and friction, by :func:`with_units`."""
-    names = [*inspect.signature(function).parameters, "mu_static", "friction_speed"]
+    names = [*inspect.signature(function).parameters, *OF_FRICTION]
 
     @functools.wraps(function)
     def run(*args: Given.args, **kwargs: Given.kwargs) -> Result:
@@ -145,46 +158,48 @@ def with_units(
 def _argument(
     name: str, value: Any, about: Mapping[str, Any], units: Mapping[str, str]
 ) -> Any:
-    is_end = name == "to" and "parameter" in about and "system" not in about
+    is_end = name == "to" and "parameter" in about
+    if name == "to" and "system" in about:
+        return value  # of a parameter that has no declared unit
     name_of_unit = str(about["parameter"]) if is_end else name
     if name_of_unit not in units and name_of_unit not in _OF_PARTS:
         return value
     try:
-        if name == "distributions" and isinstance(value, Mapping):
+        return _read(name_of_unit, value, units)
+    except ValueError as error:
+        reason = str(error).removeprefix(f"{value!r}: ")
+        raise ValueError(f"{name} = {brief(value)}: {reason}") from None
+
+
+def _read(name: str, value: Any, units: Mapping[str, str]) -> Any:
+    """A value in SI, or each of several; what has no unit is as it was."""
+    if isinstance(value, Mapping):
+        if name not in BY_NAME:
+            return value
+        if name == "distributions":
             return {
                 key: read_distribution(key, numbers)
                 if isinstance(numbers, Mapping)
                 else numbers
                 for key, numbers in value.items()
             }
-        if isinstance(value, list | tuple):
-            if not any(map(_may_have_unit, value)):
-                return value
-            if name in STATES and len(value) == len(STATE):
-                return [
-                    _quantity(part, one, units)
-                    for part, one in zip(STATE, value, strict=True)
-                ]
-            return [_quantity(name_of_unit, one, units) for one in value]
-        return _quantity(name_of_unit, value, units)
-    except ValueError as error:
-        reason = str(error).removeprefix(f"{value!r}: ")
-        raise ValueError(f"{name} = {brief(value)}: {reason}") from None
-
-
-def _may_have_unit(value: Any) -> bool:
-    quantity = hasattr(value, "dimensionality") and hasattr(value, "magnitude")
-    return isinstance(value, str) or quantity
+        return {key: _read(str(key), each, units) for key, each in value.items()}
+    if not isinstance(value, list | tuple):
+        return _quantity(name, value, units)
+    if not any(isinstance(each, str) or holds_units(each) for each in value):
+        return value
+    of_state = name in STATES and len(value) == len(STATE)
+    parts = STATE if of_state else [name] * len(value)
+    read = (_read(part, each, units) for part, each in zip(parts, value, strict=True))
+    return tuple(read) if isinstance(value, tuple) else list(read)
 
 
 def _quantity(name: str, value: Any, units: Mapping[str, str]) -> Any:
-    """A value in SI; one that is no text with a unit is left for others to judge."""
+    """A value in SI; one that has no unit is left for others to judge."""
     unit = "rad" if name in ANGLES else units.get(name)
-    if unit is None or not _may_have_unit(value):
+    if unit is None:
         return value
     if isinstance(value, str) and unit == "rad":
         written = has_unit(value) or re.search("pi|π", value, re.IGNORECASE)
         return parse_angle(value) if written else value
-    if isinstance(value, str) or not getattr(value.magnitude, "shape", ()):
-        return number_of(value, unit, KEYS_THAT_TAKE)
-    return value.magnitude * in_si(f"1 {value.units:D}", unit, KEYS_THAT_TAKE)
+    return number_of(value, unit, KEYS_THAT_TAKE)

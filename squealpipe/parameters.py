@@ -92,13 +92,29 @@ def finite_number(
     Raises:
         ValueError: it is none of these; names argument and value.
     """
-    try:
-        number = number_of(value, units, keys)
-    except ValueError as error:
-        raise ValueError(f"{name} = {brief(value)}: {error}") from error
+    number = numbers_in_si(name, value, units, keys)
     if not is_finite_number(number):
         raise ValueError(f"{name} = {brief(value)}: a finite number is needed")
     return float(number)
+
+
+def numbers_in_si(
+    name: str, value: Any, units: str, keys: Mapping[str, str] | None = None
+) -> Any:
+    """A number, list, array or matrix in SI where it has units; else the value as it is.
+
+    Args:
+        name: of the argument, for messages.
+        units: CF unit of the result, or that of a state.
+        keys: names and CF units of other inputs, to say which takes what was written.
+
+    Raises:
+        ValueError: a unit of another kind; names argument and value.
+    """
+    try:
+        return number_of(value, units, keys)
+    except ValueError as error:
+        raise ValueError(f"{name} = {brief(value)}: {error}") from error
 
 
 def direction_of(belt_speed: Any) -> Any:

@@ -28,6 +28,7 @@ QUANTITIES = {
     "m-1": ("an inverse length", "1000 1/m"),
     "rad": ("an angle", "22 deg"),
     "Hz": ("a frequency", "2 kHz"),
+    "N m": ("a torque or an energy", "12 N m"),
     "1": ("a number without a unit, or in %", "30 %"),
 }
 """CF unit → what it measures, and an example of how people write it; others are read, too."""
@@ -50,10 +51,48 @@ TURNING, CYCLES = (*TURNS, "revolution"), ("hertz",)
 """What names of units of angular frequencies hold, rpm among them, and of frequencies."""
 SPELLINGS = (
     "newton_second = newton * second = Ns",
+    "newton_meter = newton * meter = Nm",
+    "newton_millimeter = newton * millimeter = Nmm",
     "kilopond = kilogram_force = kp",
-    "kilometer_in_an_hour = kilometer / hour = kmh",
+    "kilometer_in_an_hour = kilometer / hour = kmh = kmph",
+    "@alias pound = lbm",
 )
-"""Units as engineers write them that pint does not know."""
+"""Units as engineers write them that pint does not know, or takes for others.
+
+To pint Nm is a number (of yarn) and a metre, and kmph a thousand miles per hour.
+"""
+AMBIGUOUS = {
+    r"[kM]?tons?": "1000 kg or, in America, 907.18 kg; write t, or 907.18 kg",
+    r"[kM]?tons?_force|force_[kM]?tons?": (
+        "9.807 kN or, in America, 8.896 kN; write tf, or 2000 lbf"
+    ),
+    "gr": "a gram or a grain; write g, or grain",
+    "mt": "a metric ton or a thousandth of one; write t, or kg",
+    "cwt|hundredweight": "45.36 kg or, in Britain, 50.8 kg; write it in kg",
+    "[gG]rad": "a degree or a 400th of a turn; write deg, or gon",
+}
+"""Patterns of words for units that mean two things to people → both, and the remedy."""
+USUAL = (
+    *(
+        "g",
+        "kg",
+        "t",
+        "µm",
+        "mm",
+        "cm",
+        "m",
+        "km",
+        "ms",
+        "s",
+        "min",
+        "h",
+        "N",
+        "kN",
+        "Pa",
+    ),
+    *("kPa", "MPa", "GPa", "bar", "Hz", "kHz", "rad", "deg", "rpm", "newton", "meter"),
+)
+"""Units that are meant where one is written in other letters, like KN."""
 
 _ABROAD = (
     dict.fromkeys(("km/t", "km/tim", "km/std", "km/u", "км/ч"), "km/h")
@@ -70,6 +109,12 @@ _BEYOND_A_NUMBER = re.compile(rf"\s*(?!{NUMBER}\s*$)[-+−]?\.?\d", re.ASCII)
 _POWER = re.compile(r"(?<=[^\W\d])(-?\d)")
 _LONGEST = 60
 """Characters of the longest text that is read as a quantity."""
+
+
+NOT_OF_PINT = (
+    "a quantity of another library than pint, or an array of quantities; write a text with its "
+    "unit, like '2 mm', or a plain number"
+)
 
 
 class UnitError(ValueError):
@@ -114,13 +159,44 @@ def in_si(text: str, units: str, keys: Mapping[str, str] | None = None) -> float
     match = _QUANTITY.fullmatch(tidy)
     if match is None or len(tidy) > _LONGEST:
         raise UnitError(f"{what} is needed, like {example}")
-    unit = _unit(match[2])
+    return float(Decimal(match[1]) * _factor(match[2], units, keys))
+
+
+def _factor(written: str, units: str, keys: Mapping[str, str] | None) -> Decimal:
+    """What a number in one unit is multiplied by to be one in another.
+
+    Raises:
+        UnitError: the unit is unknown, ambiguous or of another kind.
+    """
+    what, example = kind_and_example(units)
+    for word in re.findall(r"[^\W\d]+", written):
+        for pattern, readings in AMBIGUOUS.items():
+            if re.fullmatch(pattern, word):
+                raise UnitError(f"{word} is {readings}")
+    unit, target = _unit(written), _unit(units)
     if unit is None:
-        raise UnitError(f"unknown unit {match[2]!r}; {what} is needed, like {example}")
-    if _cf_unit(unit, [units]) is None:
+        near = _usual_letters(written)
+        hint = f"; did you mean {near}?" if near else ""
+        raise UnitError(
+            f"unknown unit {written!r}{hint or f'; {what} is needed, like {example}'}"
+        )
+    if target is None:
+        raise UnitError(
+            f"the unit {units!r} of this number is unknown; give a plain number"
+        )
+    if not _measures(unit, units):
         raise UnitError(_wrong_kind(unit, units, keys))
-    quantity = _registry().Quantity(Decimal(match[1]), unit)
-    return float(quantity.to(_pint_text(units)).magnitude)
+    factor: Decimal = _registry().Quantity(Decimal(1), unit).to(target).magnitude
+    return factor * Decimal(_turns_of(unit, target) or 1.0)
+
+
+def _usual_letters(written: str) -> str:
+    """A unit in the usual capital and small letters, if it is known then and was not before."""
+    usual = {unit.lower(): unit for unit in USUAL}
+    near = re.sub(
+        r"[^\W\d]+", lambda word: usual.get(word[0].lower(), word[0]), written
+    )
+    return near if near != written and is_unit(near) else ""
 
 
 def conversion(unit: str, other: str) -> float | None:
@@ -131,15 +207,28 @@ def conversion(unit: str, other: str) -> float | None:
     pair = _unit(unit), _unit(other)
     if None in pair or pair[0].dimensionality != pair[1].dimensionality:
         return None
-    factor = float(_registry().Quantity(Decimal(1), pair[0]).to(pair[1]).magnitude)
+    turns = _turns_of(*pair)
+    if turns is None:
+        return None
+    return (
+        float(_registry().Quantity(Decimal(1), pair[0]).to(pair[1]).magnitude) * turns
+    )
+
+
+def _turns_of(unit: Any, other: Any) -> float | None:
+    """2π from a frequency to an angular one, or its inverse; 1 of other units of one kind.
+
+    pint takes all of them, and rates in 1/s, for the same.
+    """
+    pair = unit, other
     turns, cycles = (
         [_names_any(each, words) for each in pair] for words in (TURNING, CYCLES)
     )
     if turns[0] == turns[1] and cycles[0] == cycles[1]:
-        return factor
+        return 1.0
     if not all(map(operator.or_, turns, cycles)):
         return None
-    return factor / math.tau if turns[0] else factor * math.tau
+    return 1.0 / math.tau if turns[0] else math.tau
 
 
 def _is_rotation(unit: Any) -> bool:
@@ -155,12 +244,67 @@ def number_of(value: Any, units: str, keys: Mapping[str, str] | None = None) -> 
     """A number in SI from a text with a unit or a quantity of pint; else the value as it is.
 
     Text that is a plain number, or does not begin with one, is left for the caller to refuse.
+    Arrays and lists, of quantities too, become arrays and lists of numbers.
+
+    Args:
+        units: CF unit of the result, or any that pint knows.
+
+    Raises:
+        UnitError: the unit is unknown, ambiguous or of another kind; another library's quantity.
     """
     if isinstance(value, str):
         return in_si(value, units, keys) if _BEYOND_A_NUMBER.match(value) else value
-    if hasattr(value, "magnitude") and hasattr(value, "dimensionality"):
-        return in_si(f"{float(value.magnitude)!r} {value.units:D}", units, keys)
+    if _is_quantity(value):
+        return _scaled(value.magnitude, _factor(f"{value.units:D}", units, keys))
+    if holds_units(value):
+        if not isinstance(value, list | tuple):
+            raise UnitError(NOT_OF_PINT)
+        return [number_of(each, units, keys) for each in value]
     return value
+
+
+def holds_units(value: Any) -> bool:
+    """Whether a value is a quantity or a text with a unit, or a list or array that holds one."""
+    if isinstance(value, str):
+        return _BEYOND_A_NUMBER.match(value) is not None
+    if isinstance(value, list | tuple):
+        return any(map(holds_units, value))
+    if getattr(getattr(value, "dtype", None), "kind", "") == "O":
+        return any(map(holds_units, getattr(value, "flat", ())))
+    of_others = hasattr(value, "value") and (
+        hasattr(value, "unit") or hasattr(value, "units")
+    )
+    in_array = _is_quantity(getattr(value, "data", None))  # of xarray
+    return _is_quantity(value) or in_array or of_others
+
+
+def refuse_units(value: Any) -> None:
+    """Raise if a value that has no declared unit has one."""
+    if holds_units(value):
+        raise UnitError("a plain number is needed, for no unit is declared for it")
+
+
+def _is_quantity(value: Any) -> bool:
+    return hasattr(value, "magnitude") and hasattr(value, "dimensionality")
+
+
+def _scaled(magnitude: Any, factor: Decimal) -> Any:
+    """Numbers, or a dense or sparse array of them, times a factor, each rounded once."""
+    import numpy as np
+
+    def one(number: Any) -> float:
+        return float(Decimal(str(number)) * factor)
+
+    if hasattr(magnitude, "tocoo"):
+        scaled = magnitude.tocoo(copy=True).astype(float)
+        scaled.data = np.array([one(each) for each in magnitude.tocoo().data.tolist()])
+        return scaled.asformat(magnitude.format)
+    if np.iscomplexobj(magnitude) or np.ma.is_masked(magnitude):
+        raise UnitError("real numbers are needed, none of them masked")
+    array = np.asarray(magnitude)
+    if not array.ndim:
+        return one(array.item())
+    return np.array([one(each) for each in array.ravel().tolist()]).reshape(array.shape)
 
 
 def shown_in(largest: float, units: str) -> tuple[float, str]:
@@ -176,6 +320,10 @@ def plain_unit(units: str) -> str:
     """A CF unit as people write it: m/s, N s/m, rad/s."""
     if units == "1":
         return ""
+    if not re.fullmatch(
+        r"[A-Za-z\d -]*", units
+    ):  # no CF unit: a state's own, like rad/s
+        return units
     parts = re.findall(r"([A-Za-z]+)(-?\d+)?", units)
     above = " ".join(
         name + power.translate(RAISED)
@@ -192,6 +340,7 @@ def plain_unit(units: str) -> str:
 
 def kind_and_example(units: str) -> tuple[str, str]:
     """What a CF unit measures, and an example of how people write it."""
+    units = "1" if units in {"", "-"} else units
     plain = plain_unit(units)
     return QUANTITIES.get(units, (f"a value in {plain}", f"1 {plain}"))
 
@@ -253,33 +402,33 @@ def _unit(text: str) -> Any:
     failures = (PintError, ValueError, TypeError, AttributeError, AssertionError)
     try:
         text = _ABROAD.get(text, text)
+        if text in {"", "-"}:  # as states have it that have no unit
+            text = "1"
         text = text.replace("U/min", "rpm")  # German; U is an enzyme's unit to pint
         return _registry().parse_units(_POWER.sub(r"**\1", text))  # m s-1, cm2
     except (*failures, ArithmeticError, SyntaxError, tokenize.TokenError, LookupError):
         return None
 
 
-def _pint_text(units: str) -> str:
-    """A CF unit as pint reads it."""
-    factors = re.findall(r"([A-Za-z]+)(-?\d+)?", units)
-    return "*".join(f"{name}**{power or 1}" for name, power in factors)
+def _measures(unit: Any, units: str) -> bool:
+    """Whether a unit measures what another, a CF unit, does."""
+    target = _unit(units)
+    if unit.dimensionality != target.dimensionality:
+        return False
+    if target.dimensionless:
+        if _names_any(target, TURNS):
+            return str(unit) in TURNS
+        ratio = "/" in str(unit) and not _names_any(unit, TURNING)  # as N/kN
+        return ratio or str(unit) in PLAIN
+    if units == "Hz":  # not rad/s, nor a rate in 1/s
+        return _names_any(unit, CYCLES)
+    per_second = _registry().parse_units("1/s").dimensionality
+    return unit.dimensionality != per_second or _turns_of(unit, target) is not None
 
 
 def _cf_unit(unit: Any, candidates: Any) -> str | None:
     """The first of some CF units that measures the same as a unit."""
-    for units in candidates:
-        if units in {"1", "rad"}:
-            if str(unit) in (PLAIN if units == "1" else TURNS):
-                return str(units)
-        elif units == "Hz":  # not rad/s, nor a rate in 1/s
-            if conversion(str(unit), units) and _names_any(unit, CYCLES):
-                return str(units)
-        elif (
-            unit.dimensionality
-            == _registry().parse_units(_pint_text(units)).dimensionality
-        ):
-            return str(units)
-    return None
+    return next((units for units in candidates if _measures(unit, units)), None)
 
 
 def _wrong_kind(unit: Any, units: str, keys: Mapping[str, str] | None) -> str:
@@ -300,4 +449,7 @@ def _wrong_kind(unit: Any, units: str, keys: Mapping[str, str] | None) -> str:
         else ""
     )
     what, example = kind_and_example(units)
-    return f"{is_kind}; {what} is needed, like {example}{elsewhere}"
+    gravity = _registry().parse_units("m/s**2").dimensionality
+    of_weight = unit.dimensionality * gravity == _unit(units).dimensionality
+    weight = " (a weight is written lbf or kgf)" if of_weight else ""
+    return f"{is_kind}; {what} is needed, like {example}{weight}{elsewhere}"

@@ -25,6 +25,7 @@ from xarray import Dataset
 from squealpipe.inputs import UNITS, with_units
 from squealpipe.parameters import BEYOND_A_TURN, FULL_TURN, brief, is_whole_number
 from squealpipe.text import in_words, suggestion
+from squealpipe.units import refuse_units
 
 Given = ParamSpec("Given")
 Result = TypeVar("Result")
@@ -52,13 +53,17 @@ def checked(
         ValueError: an argument that is not allowed; names it, its value and what is needed.
         TypeError: an argument is missing, unknown or given twice.
     """
-    names = list(inspect.signature(function).parameters)
+    arguments = inspect.signature(function).parameters
+    names = list(arguments)
+    further = any(each.kind == each.VAR_KEYWORD for each in arguments.values())
+    # of a brake these are its parameters, of a system names of its own
+    readable = [*names, *units] if further and "params" in names else names
     config = ConfigDict(arbitrary_types_allowed=True, strict=True)
     call = validate_call(config=config)(function)
 
     @functools.wraps(function)
     def run(*args: Given.args, **kwargs: Given.kwargs) -> Result:
-        read, named = with_units(names, args, kwargs, units)
+        read, named = with_units(readable, args, kwargs, units)
         try:
             return call(*read, **named)
         except ValidationError as error:
@@ -105,6 +110,7 @@ def real_array(name: str, values: Any, *, infinite: bool = False) -> np.ndarray:
 
 
 def _reals(values: Any, *, infinite: bool = False) -> np.ndarray:
+    refuse_units(values)
     if np.ma.is_masked(values):
         raise ValueError("masked entries: fill them or leave them out")
     try:

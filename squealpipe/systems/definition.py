@@ -7,8 +7,9 @@ from functools import cached_property
 from typing import Annotated, Any
 
 import numpy as np
+from pydantic import WrapValidator
 
-from squealpipe.parameters import is_finite_number
+from squealpipe.parameters import is_finite_number, numbers_in_si
 from squealpipe.schema import Outcome
 from squealpipe.schema.systems import names_in_results
 from squealpipe.systems.components import (
@@ -21,6 +22,7 @@ from squealpipe.systems.components import (
 )
 from squealpipe.systems.trace import Names, Traced
 from squealpipe.text import suggestion
+from squealpipe.units import holds_units
 from squealpipe.validation import Identifier, Number, Positive, Word, checked, needed
 
 Size = Annotated[
@@ -31,7 +33,9 @@ Output = Annotated[tuple[str, Function], needed("(unit, function) is")]
 StartValue = Annotated[
     Number | str | Mapping[str, str],
     needed("a finite number, or the name of a regime, is"),
+    WrapValidator(lambda value, check: value if holds_units(value) else check(value)),
 ]
+"""One with a unit is read where its state is known."""
 Field = Annotated[
     Function | Mapping[str, Function], needed("a function, or one for each regime, is")
 ]
@@ -104,7 +108,11 @@ class Definition:
             [1.0 if isinstance(v, str) else float(v[1]) for v in states.values()]
         )
         self.parameters = dict(parameters)
-        self.field, self.start = field, dict(start)
+        self.field = field
+        self.start = {
+            key: in_unit_of_state(self.units, key, value)
+            for key, value in start.items()
+        }
         self.composition = Composition.of(
             _components(regimes, switches, starts_in, components)
         )
@@ -198,6 +206,20 @@ class Definition:
     def name_of(self, regime: int) -> str:
         """The name of a regime, with its component's."""
         return list(self.regimes)[regime]
+
+
+def in_unit_of_state(units: Mapping[str, str], name: str, value: Any) -> Any:
+    """Return a start in the unit of its state, from a number, a text with a unit or a quantity.
+
+    Args:
+        units: state → unit; what is no state, as ``regime``, is left as it is.
+
+    Raises:
+        ValueError: the unit is of another kind; names the state and the value.
+    """
+    if name not in units:
+        return value
+    return numbers_in_si(f"start: {name}", value, units[name])
 
 
 def _components(

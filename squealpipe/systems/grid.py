@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from squealpipe.systems.definition import in_unit_of_state
 from squealpipe.systems.labels import labels
 from squealpipe.systems.tracing import TracedSystem as System
 from squealpipe.text import suggestion
@@ -94,4 +95,5 @@ def call_values(
     for name in parameters:
         system.check_parameter(name)
     states = {name: system.start[name] for name in system.units}
+    start = {name: in_unit_of_state(system.units, name, start[name]) for name in start}
     return {**states, **system.parameters, **start, **parameters}

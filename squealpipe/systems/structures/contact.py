@@ -12,6 +12,8 @@ from squealpipe.parameters import (
     is_finite_number,
     is_whole_number,
 )
+from squealpipe.units import refuse_units
+from squealpipe.validation import real_array
 
 DEPENDENT = 1e-9
 """Smallest singular value of unit directions that are independent."""
@@ -53,6 +55,15 @@ class Contact:
             name = f"contact {self.name}: {key}"
             value = finite_number(name, getattr(self, key), units)
             object.__setattr__(self, key, value)
+        for key in ("normal", "tangential"):
+            direction = getattr(self, key)
+            each = (
+                [*direction.values()] if isinstance(direction, Mapping) else direction
+            )
+            try:
+                refuse_units(each)
+            except ValueError as error:
+                raise self._refusal(key, direction, str(error)) from None
         if not self.stiffness > 0:
             raise self._refusal("stiffness", self.stiffness, "must be greater than 0")
         if self.speed == 0:
@@ -81,15 +92,8 @@ class Contact:
                     raise self._refusal(which, coefficient, "a finite number is needed")
                 vector[int(place)] = float(coefficient)
         else:
-            try:
-                vector = np.asarray(given, dtype=float)
-            except (TypeError, ValueError):
-                raise self._refusal(
-                    which,
-                    given,
-                    "{degree of freedom: coefficient} or an array is needed",
-                ) from None
-            if vector.shape != (size,) or not np.isfinite(vector).all():
+            vector = real_array(f"contact {self.name}: {which}", given)
+            if vector.shape != (size,):
                 raise self._refusal(
                     which,
                     given,

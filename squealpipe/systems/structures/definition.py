@@ -7,10 +7,11 @@ from typing import Any, Self
 import numpy as np
 import scipy.sparse as sp
 
-from squealpipe.parameters import brief, finite_number
+from squealpipe.parameters import brief, finite_number, numbers_in_si
 from squealpipe.systems.structures.contact import Contact, directions
 from squealpipe.systems.structures.friction import Friction, default_mu
 from squealpipe.systems.structures.matrices import checked_mass, real_square
+from squealpipe.validation import real_array
 
 
 class ContactStructure:
@@ -53,6 +54,14 @@ class ContactStructure:
         friction_speed: float = 1.0,
         load: Any = None,
     ) -> None:
+        mass, stiffness, damping = (
+            numbers_in_si(name, matrix, units)
+            for name, matrix, units in (
+                ("mass", mass, "kg"),
+                ("stiffness", stiffness, "N m-1"),
+                ("damping", damping, "N s m-1"),
+            )
+        )
         self.mass = checked_mass(real_square("mass", mass))
         self.size = int(self.mass.shape[0])
         """Degrees of freedom n."""
@@ -63,6 +72,10 @@ class ContactStructure:
         )
         self.modal_damping = _ratios(modal_damping, self.size)
         self.belt_speed = finite_number("belt_speed", belt_speed, "m s-1")
+        if not isinstance(contacts, Sequence):
+            raise ValueError(  # noqa: TRY004 (of all arguments mistakes are values)
+                f"contacts = {brief(contacts)}: a list of Contact is needed"
+            )
         self.contacts = tuple(contacts)
         for contact in self.contacts:
             if not isinstance(contact, Contact):
@@ -78,8 +91,8 @@ class ContactStructure:
             ),
             friction_speed=finite_number("friction_speed", friction_speed, "m s-1"),
         )
-        self.given_load = load
-        self.load = self._load(load)
+        self.given_load = numbers_in_si("load", load, "N")
+        self.load = self._load(self.given_load)
         self.modes: np.ndarray | None = None
         """Of a reduced structure, (n of the whole, n): amplitudes → displacements."""
         self.record: dict[str, Any] = {}
@@ -117,13 +130,10 @@ class ContactStructure:
             return (
                 -self.normals @ self.preloads if self.contacts else np.zeros(self.size)
             )
-        try:
-            vector = np.asarray(load, dtype=float)
-        except (TypeError, ValueError):
-            raise ValueError(f"load = {brief(load)}: numbers are needed") from None
+        vector = real_array("load", load)
         if vector.ndim == 0 and vector == 0:
             return np.zeros(self.size)
-        if vector.shape != (self.size,) or not np.isfinite(vector).all():
+        if vector.shape != (self.size,):
             raise ValueError(
                 f"load has shape {vector.shape}: {self.size} finite numbers are needed, or 0"
             )
@@ -189,7 +199,8 @@ class ContactStructure:
 
 def _ratios(given: Any, size: int) -> np.ndarray:
     """Damping ratios, one number or one for each of the lowest modes."""
-    several = given.tolist() if isinstance(given, np.ndarray) else given
+    several = numbers_in_si("modal_damping", given, "1")
+    several = several.tolist() if isinstance(several, np.ndarray) else several
     if isinstance(several, Sequence) and not isinstance(several, str):
         ratios = np.array([finite_number("modal_damping", one, "1") for one in several])
     else:

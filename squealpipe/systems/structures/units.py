@@ -8,6 +8,8 @@ from squealpipe.units import UnitError, in_si
 KINDS = {"length": "m", "mass": "kg", "time": "s"}
 """What each word of units like ``mm-t-s`` measures → its SI unit."""
 
+POUNDS = ("lb", "lbs")
+
 
 class Scales(NamedTuple):
     """Factors to SI units, of matrices whose degrees of freedom are displacements."""
@@ -22,6 +24,13 @@ class Scales(NamedTuple):
 SI = Scales(1.0, 1.0, 1.0, 1.0, 1.0)
 
 
+def _is_force(word: str) -> bool:
+    try:
+        return in_si(f"1 {word}", "N") > 0
+    except UnitError:
+        return False
+
+
 def scales_of(units: Any) -> Scales:
     """The factors of units like ``mm-t-s``.
 
@@ -32,13 +41,27 @@ def scales_of(units: Any) -> Scales:
     needed = "units of length, mass and time are needed, like mm-t-s or m-kg-s"
     if len(words) != len(KINDS):
         raise ValueError(f"units = {brief(units)}: {needed}")
+    if words[1].lower() in POUNDS:
+        raise ValueError(
+            f"units = {brief(units)}: {words[1]} is a mass or a force; write "
+            f"{words[0]}-pound-{words[2]} if masses are in lb (and forces in lb "
+            f"{words[0]}/{words[2]}²), {words[0]}-{'slug' if words[0] == 'ft' else 'slinch'}-"
+            f"{words[2]} if forces are in lbf"
+        )
     factors = []
     for word, (kind, si) in zip(words, KINDS.items(), strict=True):
         try:
-            factors.append(in_si(f"1 {word}", si))
+            # Abaqus's manual calls the tonne of mm, s and N so
+            factors.append(in_si(f"1 {'t' if word.lower() == 'ton' else word}", si))
         except UnitError as error:
+            force = (
+                "; of units with one of force name that of mass, which is force times time² over "
+                "length, like t with mm, s and N"
+                if kind == "mass" and _is_force(word)
+                else ""
+            )
             raise ValueError(
-                f"units = {brief(units)}: {word!r} is no {kind}; {needed}"
+                f"units = {brief(units)}: {word!r} is no {kind} ({error}); {needed}{force}"
             ) from error
     length, mass, time = factors
     return Scales(
