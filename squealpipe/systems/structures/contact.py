@@ -137,9 +137,10 @@ def _dependent(columns: np.ndarray) -> Any:
     """The combination of unit columns that vanishes, None if they are independent."""
     if not columns.size:
         return None
-    _, sizes, rows = np.linalg.svd(
-        columns / np.linalg.norm(columns, axis=0), full_matrices=True
-    )
+    # the triangle of QR has the same singular values and rows: columns of a large structure are
+    # long, and the square factor of a full decomposition would be as large as a dense matrix
+    triangle = np.linalg.qr(columns / np.linalg.norm(columns, axis=0), mode="r")
+    _, sizes, rows = np.linalg.svd(triangle, full_matrices=True)
     if columns.shape[1] <= columns.shape[0] and sizes[-1] > DEPENDENT:
         return None
     return rows[-1]

@@ -132,6 +132,12 @@ def _direction(text: str, labels: list[str] | None, size: int) -> dict[int, floa
                 raise ValueError(
                     f"{place}: degrees of freedom are 1 to {size} in files"
                 )
+            if labels is not None:
+                # a node's number would be taken for that of a row
+                raise ValueError(
+                    f"{place} is a row, but the matrices name nodes and directions; write "
+                    f"{labels[number]} if row {place} is meant"
+                )
         direction[number] = direction.get(number, 0.0) + _number(coefficient, place)
     return direction
 

@@ -35,7 +35,7 @@ KEYS = (
 )
 TRIANGLES = ("mirror", "keep")
 NOTHING = 1e-13
-"""Entries below this share of the largest are round-off."""
+"""Entries below this share of their rows' own scale are round-off."""
 
 
 def read(path: str | PathLike[str], form: type[Form]) -> Form:
@@ -173,14 +173,26 @@ def _completed(matrix: Any, path: Path, given: Labelled, triangle: str | None) -
     Raises:
         ValueError: only one is there, or only a part of the other, and nobody says what is meant.
     """
-    off = matrix - sp.diags_array(matrix.diagonal())
-    # assembly leaves round-off where there is nothing, on either side
-    pattern = (abs(off) > NOTHING * np.abs(matrix.data).max(initial=0.0)).astype(int)
+    off = sp.coo_array(matrix - sp.diags_array(matrix.diagonal()))
+    # assembly leaves round-off where there is nothing, on either side; a row is measured by itself,
+    # for a penalty or a rotation in other units makes single rows larger by any factor
+    sizes, diagonal = abs(off), np.abs(matrix.diagonal())
+    largest = np.maximum(
+        sizes.max(axis=0).toarray().ravel(), sizes.max(axis=1).toarray().ravel()
+    )
+    scale = np.maximum(
+        *(np.minimum(each[off.row], each[off.col]) for each in (largest, diagonal))
+    )
+    significant = np.abs(off.data) > NOTHING * scale
+    pattern = sp.csr_array(
+        (np.ones(significant.sum(), int), (off.row[significant], off.col[significant])),
+        off.shape,
+    )
     single = pattern.nnz - pattern.multiply(pattern.T).nnz
     if not single or triangle == "keep":
         return matrix
     if single == pattern.nnz and (given.halved or triangle == "mirror"):
-        return matrix + off.T
+        return sp.csr_array(matrix + off.T)
     what = (
         "no entry off the diagonal has"
         if single == pattern.nnz

@@ -11,7 +11,7 @@ from squealpipe.parameters import brief
 from squealpipe.systems.structures.pencil import DENSE
 
 SYMMETRIC = 1e-10
-"""Largest asymmetry of a mass, over its largest entry, that is taken for round-off."""
+"""Asymmetry of a mass up to which it is round-off, over the geometric mean of both diagonals."""
 
 
 def real_square(name: str, given: Any, size: int | None = None) -> sp.csr_array:
@@ -21,7 +21,9 @@ def real_square(name: str, given: Any, size: int | None = None) -> sp.csr_array:
         ValueError: it is no matrix, not square, of another size, complex or not finite.
     """
     if sp.issparse(given):
-        matrix = sp.csr_array(given, copy=True)
+        # entries at one place are added up as floats: of bytes 100 + 100 would be -56
+        wide = complex if given.dtype.kind == "c" else float
+        matrix = sp.csr_array(given.astype(wide), copy=True)
     else:
         try:
             array = np.asarray(given)
@@ -66,9 +68,11 @@ def checked_mass(mass: sp.csr_array) -> sp.csr_array:
     Raises:
         ValueError: it is not; names degrees of freedom without mass.
     """
-    difference = abs(mass - mass.T)
-    largest = np.abs(mass.data).max(initial=0.0)
-    if difference.nnz and difference.max() > SYMMETRIC * largest:
+    difference = sp.coo_array(abs(mass - mass.T))
+    root = np.sqrt(np.abs(mass.diagonal()))
+    if (
+        difference.data > SYMMETRIC * root[difference.row] * root[difference.col]
+    ).any():
         half = sp.triu(mass, 1).nnz == 0 or sp.tril(mass, -1).nnz == 0
         raise ValueError(
             "mass is not symmetric"

@@ -1,14 +1,17 @@
 """Matrix Market files: scipy reads them, and their lines are checked first.
 
 The reader of scipy skips what it does not know: a comma in a number, the exponent of ``1.5D+03``,
-what stands behind an entry; and of a file that says ``symmetric`` but holds both triangles it adds
-up both.
+what stands behind an entry, of integers all from the first sign that is no digit on (``3e2`` is 3);
+and of a file that says ``symmetric`` but holds both triangles it adds up both.
 """
 
+import io
 import re
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import pandas as pd  # type: ignore[import-untyped]
 import scipy.io
 import scipy.sparse as sp
 
@@ -22,12 +25,14 @@ NUMBER = r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|[iI]nf(?:inity)?|[nN]a[n
 
 
 def read_matrix_market(path: Path) -> Any:
-    """A matrix from a Matrix Market file.
+    """A matrix from a Matrix Market file; integers are read as the numbers that they are.
 
     Raises:
         ValueError: it is cut off, or has lines that are no entries.
     """
-    rows, columns, stated, form, field, symmetry = scipy.io.mminfo(path)
+    banner, body = _parted(path.read_bytes())
+    content = banner + body
+    rows, columns, stated, form, field, symmetry = scipy.io.mminfo(io.BytesIO(content))
     if field == "pattern":
         raise ValueError("it says where entries are but not what they are (pattern)")
     if form == "array":
@@ -35,8 +40,8 @@ def read_matrix_market(path: Path) -> Any:
             "general": rows * columns,
             "skew-symmetric": rows * (rows - 1) // 2,
         }.get(symmetry, rows * (rows + 1) // 2)
-    _check_entries(path, stated, form, field)
-    matrix = scipy.io.mmread(path)
+    _check_entries(content, stated, form, field)
+    matrix = scipy.io.mmread(io.BytesIO(content))
     if symmetry != "general" and sp.issparse(matrix):
         once = sp.csr_array(matrix)  # entries at one place are added up
         if once.nnz < matrix.nnz:
@@ -47,24 +52,63 @@ def read_matrix_market(path: Path) -> Any:
     return matrix
 
 
-def _check_entries(path: Path, stated: int, form: str, field: str) -> None:
-    """Count the entries: an array that is cut off is filled with zeros when read."""
+def _parted(content: bytes) -> tuple[bytes, bytes]:
+    """The first line as scipy takes it, where integers are called real, and what follows."""
+    first, end, body = content.lstrip().partition(b"\n")
+    first = re.sub(rb"(?i)^%%matrixmarket", b"%%MatrixMarket", first)
+    return re.sub(rb"(?i)\b(unsigned-)?integer\b", b"real", first) + end, body
+
+
+def _check_entries(content: bytes, stated: int, form: str, field: str) -> None:
+    """Count the entries: an array that is cut off is filled with zeros when read.
+
+    Raises:
+        ValueError: a line is no entry, or there are others than the sizes say.
+    """
+    width = 2 * (form == "coordinate") + (2 if field == "complex" else 1)
+    if _is_table(content, stated, width, places=form == "coordinate"):
+        return
+    # slower, but it says which line is wrong
     parts = [NUMBER] * (2 if field == "complex" else 1)
     if form == "coordinate":
         parts = [PLACE, PLACE, *parts]
     entry = re.compile(r"\s*" + r"\s+".join(parts) + r"\s*")
     lines, last = -1, "\n"  # the first is that of sizes
-    with path.open(encoding="utf-8", errors="replace") as file:
-        for number, last in enumerate(file, 1):
-            if not last.strip() or last.startswith("%"):
-                continue
-            if lines >= 0 and not entry.fullmatch(last):
-                raise ValueError(
-                    f"line {number} is no entry: {last.strip()[:60]!r}; rows and columns count "
-                    "from 1, and numbers are like -1.5e+03, with a decimal point and an e"
-                )
-            lines += 1
+    text = content.decode("utf-8", errors="replace")
+    for number, last in enumerate(io.StringIO(text, newline=None), 1):
+        if not last.strip() or last.startswith("%"):
+            continue
+        if lines >= 0 and not entry.fullmatch(last):
+            raise ValueError(
+                f"line {number} is no entry: {last.strip()[:60]!r}; rows and columns count "
+                "from 1, and numbers are like -1.5e+03, with a decimal point and an e"
+            )
+        lines += 1
     if lines != stated:
         raise ValueError(f"{lines} entries, but its size says {stated}")
     if not last.endswith("\n"):
         raise ValueError(UNENDED)
+
+
+def _is_table(content: bytes, stated: int, width: int, *, places: bool) -> bool:
+    """Whether all lines below that of sizes are entries, as many as stated, in plain numbers."""
+    start = 0
+    while content.startswith((b"%", b"\n", b"\r"), start):
+        start = content.find(b"\n", start) + 1
+        if not start:
+            return False
+    body = content[content.find(b"\n", start) + 1 :]
+    if not body.endswith(b"\n") or body.translate(None, b"0123456789+-.eE \r\n"):
+        return False
+    kinds: dict[int, type] = dict.fromkeys(range(width), float)
+    if places:
+        kinds |= {0: int, 1: int}
+    try:
+        table = pd.read_csv(
+            io.BytesIO(body), sep=r"\s+", header=None, dtype=kinds, engine="c"
+        )
+    except ValueError:
+        return False
+    if table.shape != (stated, width) or not np.isfinite(table.to_numpy(float)).all():
+        return False
+    return not places or bool((table[[0, 1]] >= 1).to_numpy().all())

@@ -1,9 +1,10 @@
 """Matrices from files that other programs write, with the names of their degrees of freedom.
 
-Matrix Market, ``.npz`` of scipy.sparse, MATLAB ``.mat`` (5 and 7.3), Abaqus ``*MATRIX OUTPUT`` and
-``*SUBSTRUCTURE MATRIX OUTPUT``, CalculiX ``.sti``, ``.mas`` and ``.dof``.
+Matrix Market, ``.npz`` of scipy.sparse or of arrays, ``.npy``, MATLAB ``.mat`` (5 and 7.3), Abaqus
+``*MATRIX OUTPUT`` and ``*SUBSTRUCTURE MATRIX OUTPUT``, CalculiX ``.sti``, ``.mas`` and ``.dof``.
 """
 
+import io
 import re
 import zipfile
 import zlib
@@ -12,6 +13,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+import pandas as pd
 import scipy.io
 import scipy.sparse as sp
 
@@ -66,7 +68,7 @@ def read_matrix(path: Path, key: str, variable: str | None = None) -> Labelled:
 
     Args:
         key: ``mass``, ``stiffness`` or ``damping``, for files that hold several.
-        variable: name in a MATLAB file that holds several.
+        variable: name in a MATLAB or ``.npz`` file that holds several.
 
     Raises:
         FileNotFoundError: no such file.
@@ -76,8 +78,9 @@ def read_matrix(path: Path, key: str, variable: str | None = None) -> Labelled:
         raise FileNotFoundError(f"{key}: no file {path}")
     readers: dict[str, Callable[[], Labelled]] = {
         ".mtx": lambda: _mtx(path, key),
-        ".npz": lambda: Labelled(sp.load_npz(path)),
-        ".mat": lambda: Labelled(_matlab(path, variable)),
+        ".npz": lambda: Labelled(_npz(path, key, variable)),
+        ".npy": lambda: Labelled(np.load(path, allow_pickle=False)),
+        ".mat": lambda: Labelled(_matlab(path, key, variable)),
         ".sti": lambda: _calculix(path),
         ".mas": lambda: _calculix(path),
     }
@@ -106,8 +109,8 @@ def _mtx(path: Path, key: str) -> Labelled:
     """Matrix Market or Abaqus; both end in ``.mtx``."""
     with path.open(encoding="utf-8", errors="replace") as file:
         lines = (line for line in file if line.strip() and not line.startswith("**"))
-        first = next(lines, "")
-    if first.startswith("%%MatrixMarket"):
+        first = next(lines, "").lstrip()
+    if first.lower().startswith("%%matrixmarket"):
         return Labelled(read_matrix_market(path))
     if first.startswith("%"):
         raise ValueError(BANNER)
@@ -202,24 +205,45 @@ def _without_zeros(label: str, path: Path) -> str:
 
 def _numbers(path: Path) -> np.ndarray:
     """Lines of numbers, separated by commas or blanks, each as many."""
+    content = path.read_bytes()
+    if content and not content.endswith(b"\n"):  # a number may be cut off in its digits
+        raise ValueError(UNENDED)
+    # exponents of Fortran, and commas
+    plain = content.translate(bytes.maketrans(b"dDE,\t", b"eee  "))
+    if not plain.translate(None, b"0123456789+-.e \r\n"):
+        try:
+            table = pd.read_csv(
+                io.BytesIO(plain),
+                sep=r"\s+",
+                header=None,
+                dtype=float,
+                float_precision="round_trip",
+            ).to_numpy()
+        except ValueError:  # the slower reader says which line is wrong
+            return _numbers_by_line(content)
+        if np.isfinite(table).all():
+            return np.asarray(table)
+    return _numbers_by_line(content)
+
+
+def _numbers_by_line(content: bytes) -> np.ndarray:
+    """Likewise, with comments, or with the line that is wrong."""
     rows = []
-    with path.open(encoding="utf-8", errors="replace") as file:
-        for number, line in enumerate(file, 1):
-            words = line.replace(",", " ").split()
-            if not line.endswith("\n"):  # a number may be cut off within its digits
-                raise ValueError(UNENDED)
-            if not words or words[0].startswith(("*", "#")):
-                continue
-            try:
-                rows.append([float(word.upper().replace("D", "E")) for word in words])
-            except ValueError:
-                raise ValueError(
-                    f"line {number} is no row of numbers: {line.strip()}"
-                ) from None
-            if len(rows[-1]) != len(rows[0]):
-                raise ValueError(
-                    f"line {number} has {len(words)} numbers, not {len(rows[0])}"
-                )
+    text = content.decode("utf-8", errors="replace")
+    for number, line in enumerate(io.StringIO(text, newline=None), 1):
+        words = line.replace(",", " ").split()
+        if not words or words[0].startswith(("*", "#")):
+            continue
+        try:
+            rows.append([float(word.upper().replace("D", "E")) for word in words])
+        except ValueError:
+            raise ValueError(
+                f"line {number} is no row of numbers: {line.strip()}"
+            ) from None
+        if len(rows[-1]) != len(rows[0]):
+            raise ValueError(
+                f"line {number} has {len(words)} numbers, not {len(rows[0])}"
+            )
     if not rows:
         raise ValueError("it has no numbers")
     return np.array(rows)
@@ -242,22 +266,30 @@ def _of_triplets(rows: np.ndarray, size: int = 0) -> Any:
     )
 
 
-def _matlab(path: Path, variable: str | None) -> Any:
+def _npz(path: Path, key: str, variable: str | None) -> Any:
+    """One sparse matrix of scipy.sparse, or one of several arrays by its name."""
+    with np.load(path, allow_pickle=False) as file:
+        if "format" not in file.files:
+            return file[_chosen(file.files, key, variable)]
+    return sp.load_npz(path)
+
+
+def _matlab(path: Path, key: str, variable: str | None) -> Any:
     try:
         content = scipy.io.loadmat(path, spmatrix=False)
     except NotImplementedError:  # version 7.3 is HDF5
-        return _matlab_hdf5(path, variable)
+        return _matlab_hdf5(path, key, variable)
     names = [name for name in content if not name.startswith("__")]
-    return content[_chosen(names, variable)]
+    return content[_chosen(names, key, variable)]
 
 
-def _matlab_hdf5(path: Path, variable: str | None) -> Any:
+def _matlab_hdf5(path: Path, key: str, variable: str | None) -> Any:
     """A matrix of MATLAB 7.3: columns first, sparse ones by columns."""
     import h5py  # type: ignore[import-untyped]
 
     with h5py.File(path, "r") as file:
         names = [name for name in file if not name.startswith("#")]
-        entry = file[_chosen(names, variable)]
+        entry = file[_chosen(names, key, variable)]
         if isinstance(entry, h5py.Group):
             columns = entry["jc"][()]
             shape = int(entry.attrs["MATLAB_sparse"]), len(columns) - 1
@@ -273,11 +305,16 @@ def _number(values: np.ndarray) -> np.ndarray:
     return values
 
 
-def _chosen(names: list[str], variable: str | None) -> str:
+def _chosen(names: list[str], key: str, variable: str | None) -> str:
+    """The variable that is named; else the only one, or the one called mass or M, and so on."""
     if variable is None and len(names) == 1:
         return names[0]
     if variable in names:
         return str(variable)
+    usual = {"mass": "M", "damping": "C", "stiffness": "K"}
+    called = [name for name in (key, usual.get(key)) if name in names]
+    if variable is None and len(called) == 1:
+        return str(called[0])
     listed = ", ".join(names)
     raise ChoiceError(
         f"it holds {listed}; say which, like {{file: brake.mat, variable: {names[0]}}}"

@@ -1,13 +1,14 @@
 """Structures from files of other programs: each is read right or refused."""
 
 import gzip
+import time
 
 import numpy as np
 import pytest
 import scipy.io
 import scipy.sparse as sp
 
-from squealpipe import Structure, load
+from squealpipe import Contact, Structure, load
 from squealpipe.cli import run
 from squealpipe.config.ranges import sweep_config
 from squealpipe.execution.sweep import planned
@@ -20,12 +21,16 @@ CONTACTS = (
     "name,normal,tangential,stiffness,preload,speed\nedge,2:1 3:-0.5,1:1,4.0,1.5,-2\n"
 )
 LABELS = ["3.1", "3.2", "17.1"]
+BY_NODE = CONTACTS.replace("2:1 3:-0.5,1:1", "3.2:1 17.1:-0.5,3.1:1")
+"""The same contact where the matrices name nodes and directions."""
 
 
 def structure_of(
-    folder, text="mass: M.mtx\nstiffness: K.mtx\ncontacts: contacts.csv\n"
+    folder,
+    text="mass: M.mtx\nstiffness: K.mtx\ncontacts: contacts.csv\n",
+    contacts=CONTACTS,
 ):
-    (folder / "contacts.csv").write_text(CONTACTS)
+    (folder / "contacts.csv").write_text(contacts)
     (folder / "pad.yaml").write_text(text)
     return Structure.read(folder / "pad.yaml")
 
@@ -122,15 +127,32 @@ def as_matrix_market(folder):
     return "mass: M.mtx\nstiffness: K.mtx\ncontacts: contacts.csv\n"
 
 
+def as_numpy(folder):
+    np.savez(folder / "pad.npz", M=MASS, K=STIFFNESS, C=0.0 * MASS)
+    return "mass: pad.npz\nstiffness: pad.npz\ncontacts: contacts.csv\n"
+
+
+def as_numpy_by_name(folder):
+    np.savez(folder / "pad.npz", m1=MASS, k1=STIFFNESS)
+    np.save(folder / "K.npy", STIFFNESS)
+    return (
+        "mass: {file: pad.npz, variable: m1}\nstiffness: K.npy\n"
+        "contacts: contacts.csv\n"
+    )
+
+
 FORMS = (
-    as_matrix_market, as_scipy, as_matlab, as_matlab_73, as_calculix, as_abaqus,
-    as_abaqus_substructure,
+    as_matrix_market, as_scipy, as_numpy, as_numpy_by_name, as_matlab, as_matlab_73,
+    as_calculix, as_abaqus, as_abaqus_substructure,
 )  # fmt: skip
 
 
 @pytest.mark.parametrize("form", FORMS)
 def test_each_programs_form_is_read(tmp_path, form):
-    structure = structure_of(tmp_path, form(tmp_path))
+    contacts = BY_NODE if form in (as_calculix, as_abaqus) else CONTACTS
+    if form is as_abaqus_substructure:  # three nodes with a direction each
+        contacts = BY_NODE.replace("17.1", "20.1").replace("3.2", "17.1")
+    structure = structure_of(tmp_path, form(tmp_path), contacts)
     assert_read(structure)
     (edge,) = structure.contacts
     assert structure.normals[:, 0] == pytest.approx([0.0, 1.0, -0.5])
@@ -138,14 +160,88 @@ def test_each_programs_form_is_read(tmp_path, form):
     assert (edge.stiffness, edge.preload, edge.speed) == (4.0, 1.5, -2.0)
 
 
-def test_directions_are_named_by_node_where_the_matrices_have_labels(tmp_path):
+def test_a_row_is_refused_where_the_matrices_name_nodes(tmp_path):
     text = as_abaqus(tmp_path)
-    by_row = structure_of(tmp_path, text)
-    table = CONTACTS.replace("2:1 3:-0.5,1:1", "3.2:1 17.1:-0.5,3.1:1")
-    (tmp_path / "contacts.csv").write_text(table)
-    by_node = Structure.read(tmp_path / "pad.yaml")
-    assert np.array_equal(by_node.normals, by_row.normals)
-    assert np.array_equal(by_node.tangentials, by_row.tangentials)
+    with pytest.raises(ValueError, match=r"2 is a row, .* write 3\.2 if row 2"):
+        structure_of(tmp_path, text)
+
+
+BANNER = "%%MatrixMarket matrix"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"{BANNER} coordinate integer general\n2 2 2\n1 1 3e2\n2 2 250.7\n",
+        f"{BANNER} coordinate unsigned-integer general\n2 2 2\n1 1 3e2\n2 2 250.7\n",
+        f"{BANNER} array integer general\n2 2\n3e2\n0\n0\n250.7\n",
+        f" {BANNER} coordinate real general\n2 2 2\n1 1 300\n2 2 250.7\n",
+        f"\n{BANNER.lower()} coordinate real general\n2 2 2\n1 1 3.e+2\n2 2 2507E-1\n",
+    ],
+)
+def test_numbers_of_a_matrix_market_file_are_those_that_stand_there(tmp_path, text):
+    (tmp_path / "K.mtx").write_text(text)
+    np.save(tmp_path / "M.npy", np.eye(2))
+    (tmp_path / "pad.yaml").write_text("mass: M.npy\nstiffness: K.mtx\n")
+    structure = Structure.read(tmp_path / "pad.yaml")
+    assert structure.stiffness.toarray().tolist() == [[300.0, 0.0], [0.0, 250.7]]
+
+
+def test_a_load_of_integers_keeps_its_exponents(tmp_path):
+    text = as_matrix_market(tmp_path) + "load: f.mtx\n"
+    array = f"{BANNER} array integer general\n3 1\n-3e2\n250.7\n1\n"
+    (tmp_path / "f.mtx").write_text(array)
+    assert structure_of(tmp_path, text).load.tolist() == [-300.0, 250.7, 1.0]
+
+
+def test_bytes_at_one_place_are_added_up_as_numbers(tmp_path):
+    twice = np.array([100, 100, 100], np.int8), ([0, 0, 1], [0, 0, 1])
+    stiffness = sp.coo_array(twice, (2, 2))
+    sp.save_npz(tmp_path / "K.npz", stiffness)
+    np.save(tmp_path / "M.npy", np.eye(2, dtype=np.uint8))
+    (tmp_path / "pad.yaml").write_text("mass: M.npy\nstiffness: K.npz\n")
+    for structure in (
+        Structure(np.eye(2), stiffness),
+        Structure.read(tmp_path / "pad.yaml"),
+    ):
+        assert structure.stiffness.diagonal().tolist() == [200.0, 100.0]
+
+
+@pytest.mark.parametrize("penalty", [1e12, 1e18, 1e20, 1e36])
+def test_one_triangle_is_known_as_one_beside_a_penalty(tmp_path, penalty):
+    whole = STIFFNESS + np.diag([0.0, 0.0, penalty])
+    scipy.io.mmwrite(tmp_path / "K.mtx", sp.coo_array(np.tril(whole)))
+    scipy.io.mmwrite(tmp_path / "M.mtx", sp.coo_array(MASS))
+    text = "mass: M.mtx\nstiffness: K.mtx\n"
+    (tmp_path / "pad.yaml").write_text(text)
+    with pytest.raises(ValueError, match="triangle: mirror"):
+        Structure.read(tmp_path / "pad.yaml")
+    (tmp_path / "pad.yaml").write_text(text + "triangle: mirror\n")
+    mirrored = Structure.read(tmp_path / "pad.yaml")
+    assert np.array_equal(mirrored.stiffness.toarray(), whole)
+
+
+def test_assembly_leaves_round_off_on_one_side_that_is_no_entry(tmp_path):
+    noisy = STIFFNESS * [[1.0, 1e6, 1.0]] * [[1.0], [1e6], [1.0]]  # other units
+    noisy[0, 2] = 1e-15
+    noisy[2, 0] = 0.0
+    scipy.io.mmwrite(tmp_path / "K.mtx", sp.coo_array(noisy))
+    scipy.io.mmwrite(tmp_path / "M.mtx", sp.coo_array(np.eye(3)))
+    (tmp_path / "pad.yaml").write_text("mass: M.mtx\nstiffness: K.mtx\n")
+    assert Structure.read(tmp_path / "pad.yaml").size == 3
+
+
+def test_a_structure_with_many_contacts_is_made_in_little_memory():
+    size, number = 20_000, 40
+    contacts = [
+        Contact(f"p{i}", {2 * i: 1.0}, {2 * i + 1: 1.0}, 1e5, 10.0)
+        for i in range(number)
+    ]
+    started = time.process_time()
+    structure = Structure(sp.eye_array(size), sp.eye_array(size), contacts=contacts)
+    # a square factor of its directions would have 3.2 GB and take minutes
+    assert time.process_time() - started < 5.0
+    assert structure.size == size
 
 
 def test_millimetres_tonnes_and_seconds_become_si(tmp_path):
