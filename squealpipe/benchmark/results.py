@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from squealpipe.benchmark.problems import all_data
+from squealpipe.benchmark.scoring import BENCHMARK_VERSION, Score, Stored
 from squealpipe.schema.comparison import Reliability
 
 INPUT_FILES = ("results.json",)
@@ -42,14 +44,10 @@ def results_as_json(datasets: Iterable[xr.Dataset]) -> str:
     solvers: dict[str, dict[str, str]] = {}
     lines = []
     for dataset in datasets:
-        packages = json.loads(dataset.attrs.get("solver_versions", "{}"))
         for name in dataset.solver.values.tolist():
             if name in solvers:
                 raise ValueError(f"two results of {name!r}")
-            solvers[name] = {
-                "package": packages.get(name, "unknown"),
-                "processor": dataset.attrs.get("processor", "unknown"),
-            }
+            solvers[name] = origin_of(dataset, name)
             lines += [_entry(dataset, problem, name) for problem in dataset.problem]
     head = {
         "benchmark_version": int(benchmark_version),
@@ -59,6 +57,18 @@ def results_as_json(datasets: Iterable[xr.Dataset]) -> str:
     text = json.dumps(head, ensure_ascii=False, indent=1).removesuffix("\n}")
     body = ",\n".join(json.dumps(line, ensure_ascii=False) for line in lines)
     return f'{text},\n "results": [\n{body}\n]}}\n'
+
+
+def origin_of(dataset: xr.Dataset, solver: str) -> dict[str, str]:
+    """Package and processor of a solver's answers; of older datasets both are attributes."""
+    if "processor" in dataset.variables:
+        one = dataset.sel(solver=solver)
+        return {name: str(one[name].item()) for name in ("package", "processor")}
+    packages = json.loads(dataset.attrs.get("solver_versions", "{}"))
+    return {
+        "package": packages.get(solver, "unknown"),
+        "processor": dataset.attrs.get("processor", "unknown"),
+    }
 
 
 def _entry(dataset: xr.Dataset, problem: xr.DataArray, solver: str) -> dict[str, Any]:
@@ -116,3 +126,51 @@ def shipped() -> dict[str, Any]:
     text = (files("squealpipe.benchmark") / "results.json").read_text("utf-8")
     results: dict[str, Any] = json.loads(text)
     return results
+
+
+def shipped_answers(solver: str, tolerances: Sequence[float]) -> Stored | None:
+    """Answers of a solver that come with the package.
+
+    Returns:
+        None if no answers of this solver are shipped.
+
+    Raises:
+        ValueError: a tolerance is not among those of the shipped results.
+    """
+    table = shipped()
+    if (
+        solver not in table["solvers"]
+        or table["benchmark_version"] != BENCHMARK_VERSION
+    ):
+        return None
+    known = [float(tolerance) for tolerance in table["tolerances"]]
+    if missing := [tol for tol in tolerances if tol not in known]:
+        raise ValueError(
+            f"tolerance {missing[0]:g}: answers of {solver} are shipped at "
+            f"{', '.join(f'{tol:g}' for tol in known)}; take one of these, or set "
+            "comparison.benchmark.run_peers to true"
+        )
+    columns = [known.index(tol) for tol in tolerances]
+    unknowable = {data["name"] for data in all_data() if "unknowable" in data}
+    scores: dict[str, list[Score]] = {
+        entry["problem"]: [
+            _score_of(entry, column, answerable=entry["problem"] not in unknowable)
+            for column in columns
+        ]
+        for entry in table["results"]
+        if entry["solver"] == solver
+    }
+    return Stored(scores, table["solvers"][solver])
+
+
+def _score_of(entry: dict[str, Any], column: int, *, answerable: bool) -> Score:
+    verdict = Reliability[entry["verdict"][column]]
+    numbers = {
+        name: math.nan if entry[name][column] is None else entry[name][column]
+        for name in NUMBERS
+    }
+    # JSON has no infinity: of a problem with an answer a missing error is that of no state
+    if verdict and entry["error"][column] is None and answerable:
+        numbers["error"] = math.inf
+    counts = {name: entry[name][column] for name in COUNTS}
+    return Score(verdict, message=entry["message"][column], **counts, **numbers)

@@ -1,10 +1,10 @@
 """What an answer is worth: its events against the reference's, its error over the growth."""
 
-import json
 import time
 from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
 from functools import partial
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -66,6 +66,18 @@ class Score(NamedTuple):
         remarks += [self.message] * bool(self.message)
         verdict = self.verdict.name.replace("_", " ")
         return f"{verdict} ({', '.join(remarks)})" if remarks else verdict
+
+
+class Stored(NamedTuple):
+    """Answers that a solver gave earlier.
+
+    Attributes:
+        scores: by the problem's name, one for each tolerance.
+        origin: ``package`` and ``processor``.
+    """
+
+    scores: Mapping[str, list[Score]]
+    origin: Mapping[str, str]
 
 
 def score(
@@ -236,6 +248,7 @@ def benchmark(
     names: Sequence[str] = (),
     tolerances: Sequence[float] = TOLERANCES,
     time_limit: float = TIME_LIMIT,
+    stored: Mapping[str, Stored] = MappingProxyType({}),
     done: Callable[[str, str, list[Score]], None] = lambda *_: None,
 ) -> xr.Dataset:
     """Dataset ``benchmark``: every solver on every problem at every tolerance.
@@ -243,6 +256,7 @@ def benchmark(
     Args:
         solvers: name → ``solve(problem, tol)``; each runs in a process of its own.
         time_limit: s of wall time for one answer.
+        stored: answers at these tolerances of solvers that are not asked anew.
         done: called with problem, solver and its scores.
 
     Raises:
@@ -255,7 +269,7 @@ def benchmark(
         )
     if min(tolerances) <= 0.0:
         raise ValueError(f"tolerance {min(tolerances):g}: has to be above 0")
-    if not solvers:
+    if not solvers and not stored:
         raise ValueError("no solver that is asked for is installed")
     chosen = [known[name] for name in names or known]
     cells: list[list[list[Score]]] = []
@@ -264,7 +278,9 @@ def benchmark(
         for name, solve in solvers.items()
     }
     for data in chosen:
-        unit = measure(data, reference_solver, REFERENCE_TOLERANCE).cpu_time
+        unit = np.nan
+        if workers:
+            unit = measure(data, reference_solver, REFERENCE_TOLERANCE).cpu_time
         cells.append([])
         for name, worker in workers.items():
             _ask(worker, data, tolerances[0])  # compiles before any stopwatch runs
@@ -273,9 +289,11 @@ def benchmark(
                 [each._replace(cpu_ratio=each.cpu_time / unit) for each in scores]
             )
             done(data["name"], name, cells[-1][-1])
+        cells[-1] += [each.scores[data["name"]] for each in stored.values()]
     for worker in workers.values():
         worker.close()
-    return dataset_of(chosen, list(solvers), tolerances, cells)
+    origins = {name: each.origin for name, each in stored.items()}
+    return dataset_of(chosen, [*solvers, *stored], tolerances, cells, origins=origins)
 
 
 def _ask(worker: Worker[Score], data: Mapping[str, Any], tol: float) -> Score:
@@ -291,11 +309,13 @@ def dataset_of(
     tolerances: Sequence[float],
     cells: Sequence[Sequence[Sequence[Score]]],
     machine: str = "",
+    origins: Mapping[str, Mapping[str, str]] = MappingProxyType({}),
 ) -> xr.Dataset:
     """Dataset ``benchmark`` of scores over (problem, solver, tolerance).
 
     Args:
         machine: the processor on which the solvers ran; this one by default.
+        origins: package and processor of the solvers that ran elsewhere, by name.
     """
     table = np.array(cells, dtype=object)
     columns = {name: table[..., i].tolist() for i, name in enumerate(Score._fields)}
@@ -306,12 +326,19 @@ def dataset_of(
     }
     groups = [data["class"] for data in chosen]
     role = [Role.ours if name == "squealpipe" else Role.public for name in solvers]
-    columns |= {"group": groups, "role": role}
-    attributes = {
-        "benchmark_version": BENCHMARK_VERSION,
-        "processor": machine or processor(),
-        "solver_versions": json.dumps(versions(solvers)),
+    machine, packages = machine or processor(), versions(solvers)
+    elsewhere = [origins.get(name, {}) for name in solvers]
+    columns |= {
+        "group": groups,
+        "role": role,
+        "processor": [each.get("processor", machine) for each in elsewhere],
+        "package": [
+            each.get("package", packages.get(name, "unknown"))
+            for name, each in zip(solvers, elsewhere, strict=True)
+        ],
+        "shipped": [bool(each) for each in elsewhere],
     }
+    attributes = {"benchmark_version": BENCHMARK_VERSION, "processor": machine}
     return build(BENCHMARK, columns, coordinates, attributes)
 
 

@@ -222,7 +222,11 @@ class HarmonicComparison(Section):
 
 
 class BenchmarkComparison(Section):
-    """Integrators with events: solvers (those that are not installed are left out), tolerances."""
+    """Integrators with events: solvers, tolerances, and whether peers run too.
+
+    Peers' answers are shipped with the package; one whose answers are not, or each of them with
+    ``run_peers``, runs here, if it is installed.
+    """
 
     solvers: Annotated[tuple[str, ...], Field(min_length=1)] = (
         *("squealpipe", "DOP853", "RK45", "LSODA", "heyoka", "CyRK", "SUNDIALS"),
@@ -232,6 +236,7 @@ class BenchmarkComparison(Section):
         tuple[Annotated[float, Field(ge=1e-13, lt=1e-2), In("1")], ...],
         Field(min_length=1),
     ] = (1e-6, 1e-8, 1e-10, 1e-12)
+    run_peers: bool = False
 
 
 class LadderComparison(Section):

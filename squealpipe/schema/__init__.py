@@ -96,7 +96,8 @@ class DatasetSchema:
     """All variables and coordinates of one kind of dataset.
 
     ``lists`` names the dimensions whose length follows from the result, and how their entries
-    are matched when two datasets are compared.
+    are matched when two datasets are compared. ``judged`` names dimensions of which a comparison
+    judges some entries alone: those at which a variable has a value.
     """
 
     name: str
@@ -105,6 +106,7 @@ class DatasetSchema:
     coordinates: Mapping[str, Variable] = field(default_factory=dict)
     version: int = 1
     lists: Mapping[str, Listing] = field(default_factory=dict)
+    judged: Mapping[str, tuple[str, int]] = field(default_factory=dict)
 
     def lookup(self, name: str) -> Variable | None:
         """The entry of a data variable or coordinate."""

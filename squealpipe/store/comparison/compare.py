@@ -4,7 +4,7 @@ import json
 import math
 import os
 import re
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -198,9 +198,9 @@ def compare_datasets(name: str, a: xr.Dataset, b: xr.Dataset) -> DatasetDifferen
             shared = aligned.a[variable].size
             compared += 0 if entry.volatile or not found.compared else shared
         else:
-            variables.append(
-                _differs(variable, f"only in the {'first' if sides[0] else 'second'}")
-            )
+            reason = f"only in the {'first' if sides[0] else 'second'}"
+            alone = _differs(variable, reason)
+            variables.append(replace(alone, volatile=entry.volatile))
     judged = [entry.verdict for entry in variables if not entry.volatile]
     return DatasetDifference(
         name=name,

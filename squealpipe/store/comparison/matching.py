@@ -32,8 +32,11 @@ class Aligned:
 
 def align(a: xr.Dataset, b: xr.Dataset, schema: DatasetSchema | None = None) -> Aligned:
     """Both datasets on what they share: by the names of dimensions, and along these by values."""
-    notes, alone = [], {}
+    notes: list[str] = []
+    alone = {}
     lists = {} if schema is None else schema.lists
+    if schema is not None:
+        a, b, notes = _judged_part(a, b, schema)
     order = list(dict.fromkeys([*a.dims, *b.dims]))
     a, b = (each.transpose(*order, missing_dims="ignore") for each in (a, b))
     for dim in sorted(map(str, set(a.dims) & set(b.dims))):
@@ -69,6 +72,20 @@ def align(a: xr.Dataset, b: xr.Dataset, schema: DatasetSchema | None = None) -> 
             b = b.assign_coords({dim: a[dim].variable})
         notes += [note] if note else []
     return Aligned(a, b, notes, alone)
+
+
+def _judged_part(
+    a: xr.Dataset, b: xr.Dataset, schema: DatasetSchema
+) -> tuple[xr.Dataset, xr.Dataset, list[str]]:
+    """Both datasets at the entries that a comparison judges, and notes of the others."""
+    notes = []
+    for dim, (name, value) in schema.judged.items():
+        if not all(name in each.variables for each in (a, b)):
+            continue
+        left_out = [str(v) for v in a[dim].values[a[name].values != value]]
+        a, b = (each.isel({dim: each[name].values == value}) for each in (a, b))
+        notes += [f"{dim}: not judged: {', '.join(left_out)}"] if left_out else []
+    return a, b, notes
 
 
 def match(

@@ -1,9 +1,8 @@
 """The benchmark of integrators with events."""
 
-from squealpipe.benchmark.adapters import installed
-from squealpipe.benchmark.scoring import benchmark
+from squealpipe.benchmark.peers import benchmark_beside_peers
 from squealpipe.execution.job import Job
 
 job = Job(snakemake)
 study = job.settings["comparison.benchmark"]
-job.make(lambda: benchmark(installed(study["solvers"]), tolerances=study["tolerances"]))
+job.make(lambda: benchmark_beside_peers(**study))

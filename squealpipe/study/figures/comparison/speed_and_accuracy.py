@@ -9,6 +9,7 @@ from squealpipe.study.figures.comparison.work_precision_benchmark import (
     COSTS,
     knowable,
     medians,
+    where_solvers_ran,
 )
 
 READS = ("benchmark",)
@@ -33,7 +34,8 @@ def caption(benchmark: xr.Dataset) -> str:
         "A1, the same for all integrators; left and low is better. A line runs from a tolerance "
         "of 10⁻⁶ to 10⁻¹². Filled: right in all scenes; hollow: not in all, and said so; crossed "
         "out: silently wrong in one or more, so no bargain at any price. Grey band: the "
-        "filled points that no other beats; red ring: the setting of our maps."
+        "filled points that no other beats; red ring: the setting of our maps. "
+        f"{where_solvers_ran(benchmark)}"
     )
 
 

@@ -30,12 +30,36 @@ ACROSS = 2
 
 
 def caption(benchmark: xr.Dataset) -> str:
-    """What is shown, and which solvers were left out."""
+    """What is shown, where each solver ran, and which were left out."""
     missing = left_out(benchmark)
-    return f"{SHOWN} Not installed and left out: {', '.join(missing) or 'none'}."
+    return (
+        f"{SHOWN} {where_solvers_ran(benchmark)} Not installed and left out: "
+        f"{', '.join(missing) or 'none'}."
+    )
 
 
 CAPTION = caption
+
+
+def where_solvers_ran(benchmark: xr.Dataset) -> str:
+    """Which answers are shipped, with packages and processors, and on which one the others ran."""
+    if "shipped" not in benchmark or not (benchmark.shipped == 1).any():
+        return "All solvers ran with this study."
+    stored = benchmark.isel(solver=(benchmark.shipped == 1).values)
+    places = [
+        f"on {processor} ({', '.join(dict.fromkeys(each.package.values.tolist()))})"
+        for processor, each in stored.groupby("processor")
+    ]
+    ran = benchmark.solver.values[benchmark.shipped.values == 0].tolist()
+    here = (
+        f"; {', '.join(ran)} ran with this study, on {benchmark.attrs['processor']}"
+        if ran
+        else ""
+    )
+    return (
+        "Answers of the others are shipped with the package and were computed "
+        f"{' and '.join(places)}{here}."
+    )
 
 
 def left_out(benchmark: xr.Dataset) -> list[str]:

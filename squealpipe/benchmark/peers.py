@@ -1,0 +1,45 @@
+"""Our engine beside its peers: it runs, and they are asked anew only on demand."""
+
+from collections.abc import Sequence
+
+import xarray as xr
+
+from squealpipe.benchmark.adapters import installed
+from squealpipe.benchmark.results import shipped_answers
+from squealpipe.benchmark.scoring import TOLERANCES, benchmark
+
+OURS = "squealpipe"
+
+
+def benchmark_beside_peers(
+    solvers: Sequence[str],
+    *,
+    tolerances: Sequence[float] = TOLERANCES,
+    run_peers: bool = False,
+) -> xr.Dataset:
+    """Dataset ``benchmark`` of our engine, run here, and of peers, whose answers are shipped.
+
+    A peer's answers say nothing new when a study is computed again, and take most of its time.
+
+    Args:
+        solvers: names, or FILE.py:FUNCTION. Without shipped answers a solver runs here; one that
+            is not installed is left out then.
+        run_peers: ask all of them anew.
+
+    Raises:
+        ValueError: answers are not shipped at one of the tolerances, or a solver is unknown.
+    """
+    tolerances = sorted(tolerances, reverse=True)
+    stored = {
+        name: found
+        for name in solvers
+        if name != OURS and not run_peers
+        if (found := shipped_answers(name, tolerances)) is not None
+    }
+    found = benchmark(
+        installed(name for name in solvers if name not in stored),
+        tolerances=tolerances,
+        stored=stored,
+    )
+    names = [name.rpartition("/")[2] for name in solvers]
+    return found.sel(solver=[name for name in names if name in found.solver])
