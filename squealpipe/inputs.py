@@ -15,6 +15,7 @@ from squealpipe.parameters import (
     UNITS_OF_INPUTS,
     brief,
 )
+from squealpipe.text import as_number
 from squealpipe.units import UnitError, has_unit, holds_units, in_si, number_of
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
@@ -77,18 +78,10 @@ def parse_number(text: str, units: str | None = None) -> float:
             return in_si(text, units, KEYS_THAT_TAKE)
         except UnitError as error:
             raise UnitError(f"{text!r}: {error}") from None
-    value = plain_number(text)
+    value = as_number(text)
     if not math.isfinite(value):
         raise ValueError(f"{text!r} is not a number; write for instance 0.3 or 1e-3")
     return value
-
-
-def plain_number(text: str) -> float:
-    """The number of a text; NaN where it is none, as ``1_000``, which Python takes for one."""
-    try:
-        return math.nan if "_" in text else float(text)
-    except ValueError:
-        return math.nan
 
 
 def reader(name: str) -> Callable[[str], float]:

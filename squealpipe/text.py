@@ -1,6 +1,7 @@
 """Words for people: numbers in sentences, labels and tables, and the name that was meant."""
 
 import difflib
+import math
 import re
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -52,6 +53,14 @@ def number(value: float, digits: int = 3) -> str:
     """A number as people write it: 1326, −0.0042, 2.6·10⁻¹⁵, 10⁻⁸."""
     written_out = 10**digits <= abs(value) < 10**LONGEST_PLAIN
     return as_people_write(f"{value:.0f}" if written_out else f"{value:.{digits}g}")
+
+
+def as_number(text: str) -> float:
+    """The number of a text; NaN where it is none, as ``1_000``, which Python takes for one."""
+    try:
+        return math.nan if "_" in text else float(text)
+    except ValueError:
+        return math.nan
 
 
 def percent(share: float, digits: int = 2) -> str:

@@ -98,6 +98,7 @@ NO_NUMBERS = {
     "statement",
     "Scene-name",
     "path",
+    "displacements",
 }
 """Arguments that are an object or words."""
 VERBS = [
@@ -131,7 +132,7 @@ def _arguments():
                 yield pytest.param(name, keyword, id=f"{name}-{keyword}")
 
 
-@pytest.mark.parametrize(("name", "argument"), _arguments())
+@pytest.mark.parametrize(("name", "argument"), [*_arguments()])
 def test_no_argument_drops_the_unit_of_a_quantity(name, argument):
     """Kelvin fits nothing here: whatever takes 300 K has taken 300."""
     function = _function(name)

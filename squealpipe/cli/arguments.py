@@ -1,6 +1,5 @@
 """The option types that every command shares, and parameters taken from a study."""
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -13,6 +12,7 @@ from squealpipe.config.ranges import parse_range
 from squealpipe.inputs import STATE, parse_angle, parse_number, reader
 from squealpipe.parameters import SYMBOLS, Parameters
 from squealpipe.substitutes import SUBSTITUTES
+from squealpipe.text import as_number
 from squealpipe.units import has_unit, in_si
 
 
@@ -22,10 +22,7 @@ def _reader(read: Callable[[str], Any]) -> Callable[[Any, Sequence[Any]], Any]:
 
 
 def _parse_whole(text: str) -> int:
-    try:
-        number = float(text)
-    except ValueError:
-        number = math.nan
+    number = as_number(text)
     if not number.is_integer():
         raise ValueError(
             f"{text!r} is not a whole number; write for instance 100, without a unit"

@@ -99,6 +99,10 @@ def _number(name: str, text: str) -> Any:
             return in_si(text, UNITS_OF_FLAGS[flag], UNITS_OF_FLAGS)
         except UnitError as error:
             raise ValueError(f"{flag} {text}: {error}") from None
+    if flag in UNITS_OF_FLAGS and "_" in text:  # which Python takes for a number
+        raise ValueError(
+            f"{flag} {text}: it is not a number; write for instance 1000 or 1e3"
+        )
     try:
         return float(text)
     except ValueError:

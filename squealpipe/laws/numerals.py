@@ -17,10 +17,10 @@ _TIMES_TEN = re.compile(
 )
 _EXPONENT = re.compile(r"(?<=[\d.,])[dD](?=[+-]?\d{1,3}(?!\d))")  # Fortran's
 _CELL = re.compile(
-    r"([+-]?(?:\d[\d.,]*|[.,]\d+)(?:[eE][+-]?\d{1,3})?)\s*([^\d\s.,].*)?", re.ASCII
+    r"([+-]?(?:\d[\d.,]*|[.,]\d+)(?:[eE][+-]?\d{1,3})?)\s*([^\d\s.,_].*)?", re.ASCII
 )
 _PLAIN = re.compile(r"[+-]?(\d+(\.\d*|,\d+)?|[.,]\d+)", re.ASCII)
-_MAY_BE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}([.,])\d{3}", re.ASCII)
+MAY_BE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}([.,])\d{3}", re.ASCII)
 _GROUPED = {
     # thousands, and in India hundreds of thousands; with a decimal sign behind, or several groups
     "point": re.compile(
@@ -70,7 +70,7 @@ def decimal_sign(cells: Iterable[tuple[str, str]], separator: str) -> str:
         if sign := next((s for s in _GROUPED if _GROUPED[s].fullmatch(mantissa)), None):
             grouped = True
             proven.setdefault(sign, (where, text))
-        elif match := _MAY_BE_THOUSANDS.fullmatch(mantissa):
+        elif match := MAY_BE_THOUSANDS.fullmatch(mantissa):
             undecided.setdefault("comma" if match[1] == "," else "point", (where, text))
         elif "," in mantissa:
             proven.setdefault("comma", (where, text))

@@ -41,11 +41,23 @@ class FileRow(NamedTuple):
 
 
 class FileRows(NamedTuple):
-    """Rows of a file, what separates their cells, and its comments."""
+    """Rows of a file, what separates their cells, its comments, and cells of doubtful text.
+
+    Excel keeps numbers without thousands; a text like ``1.000`` in a sheet may be one or thousand.
+    """
 
     rows: list[FileRow]
     separator: str
     comments: Sequence[FileLine] = ()
+    doubtful: frozenset[tuple[int, str]] = frozenset()
+
+    def refuse_doubtful(self, path: Path, row: int, cell: str) -> None:
+        """Raise if a cell that is needed is text whose point may separate thousands."""
+        if (row, cell) in self.doubtful:
+            raise ValueError(
+                f"{path}, row {row}: {cell!r} is text, and its point may separate thousands; turn "
+                "the cell into a number in Excel"
+            )
 
 
 def text_rows(path: Path, is_header: Callable[[Sequence[str]], object]) -> FileRows:

@@ -1,17 +1,24 @@
 """Rows of cells of Excel sheets, as people see them there."""
 
+import datetime
 import re
 from collections.abc import Callable, Sequence
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
+from squealpipe.laws.numerals import MAY_BE_THOUSANDS
 from squealpipe.laws.rows import FileRow, FileRows, clean, is_comment
 
 _FOR_POSITIVE = re.compile(r'(?:"[^"]*"|\\.|[^;"\\])*')
 """Of a format its part for positive numbers, the first."""
 _WORDS = re.compile(r'"([^"]*)"|\\(.)|\[\$([^\]-]*)[^\]]*\]|\[[^\]]*\]|[_*].')
 """What a format writes beside the number; colours and gaps, too, which are no words."""
+TIMES = (datetime.date, datetime.time, datetime.timedelta)
+IS_TIME = (
+    " (a date or time to Excel; format the column as text, then write the cell again)"
+)
+"""What stands behind cells like 2:1 and 1.2 that Excel took for something else."""
 
 
 def sheet(path: Path, is_header: Callable[[Sequence[str]], object]) -> FileRows:
@@ -59,7 +66,15 @@ def sheet(path: Path, is_header: Callable[[Sequence[str]], object]) -> FileRows:
                     f"{path}, row {cell.row}: the formula in {cell.coordinate} has no stored "
                     "value; write its value there, or open the file in Excel and save it"
                 )
-    return FileRows(pages[title], ",")  # numbers of cells have a decimal point
+    doubtful = frozenset(
+        (cell.row, _cell_text(cell))
+        for row in book[title].iter_rows()
+        for cell in row
+        if isinstance(cell.value, str)
+        and MAY_BE_THOUSANDS.fullmatch(cell.value.strip())
+    )
+    # numbers of cells have a decimal point
+    return FileRows(pages[title], ",", doubtful=doubtful)
 
 
 def _page_rows(page: Any) -> list[FileRow]:
@@ -80,6 +95,8 @@ def _cell_text(cell: Any) -> str:
     value = cell.value
     if value is None:
         return ""
+    if isinstance(value, TIMES):
+        return f"{value}{IS_TIME}"
     if isinstance(value, bool) or not isinstance(value, int | float):
         return clean(str(value)).strip()
     factor, unit = shown_as(cell.number_format)

@@ -86,6 +86,8 @@ def read_pairs(
     columns_of_cells = [
         [Cell(row, cell_at(cells, place.at)) for row, cells in data] for place in wanted
     ]
+    for cell in (cell for column in columns_of_cells for cell in column):
+        table.refuse_doubtful(path, cell.row, cell.text)
     knots, values = _in_si(path, table.separator, wanted, columns_of_cells)
     pairs = list(zip(knots, values, strict=True))
     _check_values(path, columns, [row.number for row in data], pairs)

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 from squealpipe.laws.one_file import without_neighbours
 from squealpipe.laws.table_files import ENDINGS, read_pairs
+from squealpipe.text import as_number
 
 BETWEEN = ("linear", "cubic")
 
@@ -85,7 +86,7 @@ def read_table(
 def knots_of(text: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Knots and values of the text of a table."""
     try:
-        pairs = [tuple(map(float, pair.split(":"))) for pair in text.split()[1:]]
+        pairs = [tuple(map(as_number, pair.split(":"))) for pair in text.split()[1:]]
         knots, values = (tuple(each) for each in zip(*pairs, strict=True))
     except ValueError:
         raise ValueError(

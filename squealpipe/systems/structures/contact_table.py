@@ -4,18 +4,17 @@ Text in any encoding, with commas, semicolons or tabs between its cells, or an E
 """
 
 import re
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import NamedTuple
 
-import numpy as np
-
-from squealpipe.laws.rows import FileRow, text_rows
-from squealpipe.laws.sheets import sheet
+from squealpipe.laws.numerals import Numeral, decimal_sign, numeral, plain
+from squealpipe.laws.rows import FileRows, text_rows
+from squealpipe.laws.sheets import IS_TIME, sheet
 from squealpipe.parameters import brief, finite_number
 from squealpipe.systems.structures.contact import Contact
 from squealpipe.systems.structures.units import Scales
 from squealpipe.text import suggestion
-from squealpipe.units import has_unit
 
 CONTACT_COLUMNS = ("name", "normal", "tangential", "stiffness", "preload")
 KNOWN = (*CONTACT_COLUMNS, "speed")
@@ -35,9 +34,9 @@ def read_contacts(
         FileNotFoundError: no such file.
         ValueError: names the line and what is wrong there.
     """
-    header, rows = _rows(path)
-    contacts = []
-    for line, cells in rows:
+    header, table = _rows(path)
+    lines = []
+    for line, cells in table.rows:
         where = f"{path}, line {line}"
         row = dict(zip(header, cells, strict=False))
         row.pop("", "")
@@ -46,41 +45,92 @@ def read_contacts(
             raise ValueError(
                 f"{where} has {len(cells)} cells, but the header {len(header)} columns"
             )
-        # a cell has a unit of its own, or is a number in the units of the file
-        numbers = {
-            name: (
-                finite_number(f"{where}: {name}", row[name], units)
-                if has_unit(row[name])
-                else _number(row[name], f"{where}: {name}") * factor
-            )
-            for name, units, factor in (
-                ("stiffness", "N m-1", scales.stiffness),
-                ("preload", "N", scales.force),
-                ("speed", "1", 1.0),
-            )
-            if row.get(name)
-        }
         for name in CONTACT_COLUMNS:
             if not row.get(name):
                 raise ValueError(f"{where}: {name} is missing")
+        for name in row.keys() - {"name"}:
+            table.refuse_doubtful(path, line, row[name])
+        lines.append(
+            _Line(where, row["name"], _terms(where, row), _numerals(where, row))
+        )
+    # all cells together tell whether numbers have a decimal point or comma
+    written = (cell for line in lines for cell in line.written())
+    sign = decimal_sign(written, table.separator)
+    return [line.contact(sign, labels, size, scales) for line in lines]
+
+
+class _Term(NamedTuple):
+    """One term of a direction as it is written: a degree of freedom and its coefficient."""
+
+    place: str
+    coefficient: Numeral
+
+
+class _Line(NamedTuple):
+    """A row of the table, before it is known what its commas and points are."""
+
+    where: str
+    name: str
+    directions: dict[str, list[_Term]]
+    numerals: dict[str, Numeral]
+
+    def written(self) -> Iterator[tuple[str, str]]:
+        """Where each number stands, and its text."""
+        for key, terms in self.directions.items():
+            for term in terms:
+                yield f"{self.where}: {key}", term.coefficient.text
+        for key, each in self.numerals.items():
+            yield f"{self.where}: {key}", each.text
+
+    def contact(
+        self, sign: str, labels: list[str] | None, size: int, scales: Scales
+    ) -> Contact:
+        """The contact, in SI units."""
         try:
-            contacts.append(
-                Contact(
-                    row["name"],
-                    _direction(row["normal"], labels, size),
-                    _direction(row["tangential"], labels, size),
-                    numbers["stiffness"],
-                    numbers["preload"],
-                    numbers.get("speed", 1.0),
-                )
-            )
+            directions = [
+                _direction(self.directions[key], sign, labels, size)
+                for key in ("normal", "tangential")
+            ]
+            normal, tangential = directions
+            values = self._values(sign, scales)
+            return Contact(self.name, normal, tangential, **values)
         except ValueError as error:
-            raise ValueError(f"{where}: {error}") from error
-    return contacts
+            raise ValueError(f"{self.where}: {error}") from error
+
+    def _values(self, sign: str, scales: Scales) -> dict[str, float]:
+        factors = {"stiffness": scales.stiffness, "preload": scales.force, "speed": 1.0}
+        values = {}
+        for key, each in self.numerals.items():
+            text = plain(each.text, sign)
+            # a cell has a unit of its own, or is a number in the units of the file
+            values[key] = (
+                finite_number(key, f"{text} {each.unit}", UNITS[key])
+                if each.unit
+                else finite_number(key, float(text), UNITS[key]) * factors[key]
+            )
+        return values
 
 
-def _rows(path: Path) -> tuple[list[str], list[FileRow]]:
-    """The names of the columns, and the rows below by their line."""
+UNITS = {"stiffness": "N m-1", "preload": "N", "speed": "1"}
+"""Columns of numbers → CF unit."""
+
+
+def _numerals(where: str, row: Mapping[str, str]) -> dict[str, Numeral]:
+    """The numbers of a row as they are written."""
+    return {key: _numeral(f"{where}: {key}", row[key]) for key in UNITS if row.get(key)}
+
+
+def _numeral(where: str, text: str) -> Numeral:
+    number = numeral(text)
+    if number is None:
+        raise ValueError(
+            f"{where} = {brief(text)}: a number is needed, like 1.5 or 2e7"
+        )
+    return number
+
+
+def _rows(path: Path) -> tuple[list[str], FileRows]:
+    """The names of the columns, and the rows below."""
     if not path.is_file():
         raise FileNotFoundError(f"contacts: no file {path}")
     excel = path.suffix.lower() == ".xlsx"
@@ -107,16 +157,40 @@ def _rows(path: Path) -> tuple[list[str], list[FileRow]]:
     names = [name for name in header if name]
     if len(set(names)) < len(names):
         raise ValueError(f"{path}: a column is there twice; it has {', '.join(names)}")
-    return header, table.rows[1:]
+    return header, table._replace(rows=table.rows[1:])
 
 
-def _direction(text: str, labels: list[str] | None, size: int) -> dict[int, float]:
-    """{degree of freedom from 0: coefficient} of ``12:1 40:-1``, or of ``31.2:1``."""
+def _terms(where: str, row: Mapping[str, str]) -> dict[str, list[_Term]]:
+    """The terms of both directions, like ``12:1 40:-1`` or ``31.2:0,5; 31.3:1``."""
+    terms: dict[str, list[_Term]] = {}
+    for key in ("normal", "tangential"):
+        if row[key].endswith(IS_TIME):
+            raise ValueError(f"{where}: {key} = {row[key]}, like 12:1")
+        text = re.sub(r"\s*:\s*", ":", row[key].strip())
+        # what separates terms stands before a degree of freedom and its colon
+        parts = [part.strip(" ,;") for part in re.split(r"[\s,;]+(?=[^\s,;:]+:)", text)]
+        terms[key] = []
+        for part in filter(None, parts):
+            place, colon, coefficient = part.partition(":")
+            if not colon:
+                raise ValueError(
+                    f"{where}: {part!r} is no direction; write for instance 12:1 40:-1"
+                )
+            number = _numeral(f"{where}: {key}: {place}", coefficient)
+            if number.unit:
+                raise ValueError(
+                    f"{where}: {part!r} is no direction: a coefficient has no unit"
+                )
+            terms[key].append(_Term(place, number))
+    return terms
+
+
+def _direction(
+    terms: Sequence[_Term], sign: str, labels: list[str] | None, size: int
+) -> dict[int, float]:
+    """{degree of freedom from 0: coefficient}; ``31.2`` is a node and its direction."""
     direction: dict[int, float] = {}
-    for part in re.sub(r"\s*:\s*", ":", text.replace(",", " ")).split():
-        place, colon, coefficient = part.partition(":")
-        if not colon:
-            raise ValueError(f"{part!r} is no direction; write for instance 12:1 40:-1")
+    for place, coefficient in terms:
         if "." in place:
             if labels is None:
                 raise ValueError(
@@ -126,9 +200,8 @@ def _direction(text: str, labels: list[str] | None, size: int) -> dict[int, floa
                 raise ValueError(f"{place}: no such node and direction in the matrices")
             number = labels.index(place)
         else:
-            row = _number(place, "degree of freedom")
-            number = int(row) - 1
-            if row != int(row) or not 0 <= number < size:
+            number = int(place) - 1 if re.fullmatch(r"\d{1,9}", place, re.ASCII) else -1
+            if not 0 <= number < size:
                 raise ValueError(
                     f"{place}: degrees of freedom are 1 to {size} in files"
                 )
@@ -138,17 +211,6 @@ def _direction(text: str, labels: list[str] | None, size: int) -> dict[int, floa
                     f"{place} is a row, but the matrices name nodes and directions; write "
                     f"{labels[number]} if row {place} is meant"
                 )
-        direction[number] = direction.get(number, 0.0) + _number(coefficient, place)
+        value = float(plain(coefficient.text, sign))
+        direction[number] = direction.get(number, 0.0) + value
     return direction
-
-
-def _number(text: Any, what: str) -> float:
-    try:
-        value = float(text)
-    except (TypeError, ValueError):
-        raise ValueError(
-            f"{what} = {brief(text)}: a number is needed, with a decimal point"
-        ) from None
-    if not np.isfinite(value):
-        raise ValueError(f"{what} = {brief(text)}: a finite number is needed")
-    return value
