@@ -20,6 +20,7 @@ from squealpipe.schema.branch_labels import Label, Meeting
 from squealpipe.systems.cycles.admissible import Margin, MarginKind, margins
 from squealpipe.systems.cycles.event_map import FREE, EventMap, PhaseCondition
 from squealpipe.systems.cycles.event_order import label_of
+from squealpipe.systems.cycles.guess import without_brief_legs
 from squealpipe.systems.cycles.legs import LegEnd, Vector
 from squealpipe.systems.cycles.line import flip
 from squealpipe.systems.cycles.solution import Cycle
@@ -27,6 +28,8 @@ from squealpipe.systems.cycles.solution import Cycle
 _DIFFERENCE = 1e-7
 _NEAR = 1e-4
 """Margin of a start below which it is taken for the one that vanishes."""
+_SAME = 1e-6
+"""By how much extremes change, or a margin is below zero, where a leg has only just vanished."""
 _NO_MARGIN = Margin(MarginKind.length, -1, FREE)
 RETURNS = {Label.fold: 0.0, Label.period_doubling: np.pi, Label.torus: np.nan}
 """By which angle a disturbance is turned in a period; NaN where it is an unknown."""
@@ -212,6 +215,26 @@ def _real(vector: Vector) -> Vector:
     return np.asarray(part / np.linalg.norm(part))
 
 
+def _without_vanished_legs(cycle: Cycle) -> Cycle:
+    """The same cycle without the legs that have just vanished.
+
+    At a touch round-off decides whether the run has a pair of events there. With the pair, the
+    speeds of both and the leg between them are all zero along the curve, and either may be taken
+    for an end of it.
+    """
+    for equations, guess in without_brief_legs(cycle):
+        point = equations.solve(guess)
+        if point is None:
+            continue
+        shorter = Cycle.at(equations, point)
+        moved = np.abs(shorter.extremes - cycle.extremes)[:, : equations.flow.size]
+        same = bool((moved <= _SAME * cycle.extent).all())
+        least = min(margins(shorter).values(), default=0.0)
+        if same and shorter.period > 0.0 and least > -_SAME:
+            return _without_vanished_legs(shorter)
+    return cycle
+
+
 def curve_of(cycle: Cycle, label: Label) -> tuple[Curve, Vector]:
     """The equations of the curve through a cycle with two followed parameters, and a guess."""
     equations = cycle.map
@@ -220,6 +243,8 @@ def curve_of(cycle: Cycle, label: Label) -> tuple[Curve, Vector]:
         return Curve(equations, label), np.append(cycle.point, abs(np.angle(first)))
     if label in RETURNS:
         return Curve(equations, label), cycle.point
+    cycle = _without_vanished_legs(cycle)
+    equations = cycle.map
     near = {
         k: abs(v)
         for k, v in margins(cycle).items()

@@ -124,6 +124,13 @@ class _Way:
         """Shares of a step at which something else happens."""
         found: dict[float, Meeting] = {}
         first, last = (line.known[share][0].point for share in (0.0, 1.0))
+        if self.curve.label in RETURNS and all(
+            abs(self.curve.least_margin(point)[0]) <= MARGIN_ROUND_OFF
+            for point in (first, last)
+        ):
+            # the cycles are at a change of their events, where the branch turns, all along: the
+            # return map has no derivative there, and round-off would decide on its multipliers
+            return found
         for label, test in self.curve.tests().items():
             if test(first) * test(last) < 0.0:
                 share = line.root(partial(_at_point, test))

@@ -217,3 +217,51 @@ def test_a_curve_of_folds_goes_on_with_another_order_of_events():
     assert [bool(text) for text in curve.change.values] == [
         outcome == Outcome.order_changes for outcome in curve.outcome.values
     ]
+
+
+def test_round_off_of_a_start_does_not_decide_whether_a_grazing_curve_goes_on():
+    """At a touch a run may have the pair of events or not; on AVX2 it had it, and that was all."""
+    params, *angles = FLUTTER[0], FLUTTER[1] * math.pi, FLUTTER[2] * math.pi
+    branch = cycle_branch(params, *angles, parameter="mu", to=0.7, start="onset")
+    at = branch.isel(point=int(np.flatnonzero(branch.label == Label.grazing)[0]))
+    curves = [
+        cycle_curve(
+            params, *angles, label="grazing", parameters=("mu", "alpha1"), n_points=9,
+            start=at.assign(mu=at.mu * (1.0 + moved)), to={"alpha1": (0.955, 0.9603)},
+        )
+        for moved in (0.0, 1e-12, 1e-11, 1e-10, 1e-9)
+    ]  # fmt: skip
+    for curve in curves:
+        assert list(curve.outcome.values) == [Outcome.converged] * 2
+        np.testing.assert_allclose(curve.mu[[0, -1]], curves[0].mu[[0, -1]], rtol=1e-9)
+
+
+def test_where_folds_are_onsets_of_stick_round_off_makes_no_special_points():
+    """Beyond where a curve of folds meets the onset of stick, branches turn at that onset.
+
+    The stick of no length leaves the return map without a derivative all along, and multipliers
+    that round-off had made told of a fold–flip, twice.
+    """
+    params = FORMER.with_(k3=0.65, belt_speed=-100.0, length1=15.0, length2=15.0,
+                          damping1=0.02, damping2=0.02)  # fmt: skip
+    angles = (0.83 * math.pi, 0.83 * math.pi)
+
+    def branch_of(params, start):
+        return cycle_branch(
+            params, *angles, parameter="mu", to=0.01, start=start, n_points=30
+        )
+
+    curve = cycle_curve(
+        params, *angles, label="fold", parameters=("mu", "k3"), to={"k3": (0.06, 0.7)},
+        start=branch_of(params, [-6.12, 45.1, 101.48, -0.1]),
+    )  # fmt: skip
+    special = [Meeting.regular, Meeting.stick_onset, Meeting.end]
+    assert set(curve.label.values) == set(special)
+    low = int(curve.k3.values.argmin())
+    soft = params.with_(k3=0.09, mu=0.11631937199880295)
+    start = [-2.3956, 75.6176, 100.9722, -0.0119]
+    softer = cycle_branch(soft, *angles, parameter="k3", to=0.06, start=start)
+    turned = branch_of(soft.with_(k3=0.06), start_of(softer.isel(point=-1)))
+    turn = int(turned.mu.values.argmin())
+    assert turned.label[turn] == Label.stick_onset
+    assert float(curve.mu[low]) == pytest.approx(float(turned.mu[turn]), rel=1e-10)
