@@ -82,6 +82,8 @@ class RunOptions:
             largest value alone.
         times: instants at which the state is kept, (instants,) or (runs, instants).
         sums: keep there what has added up, too.
+        extremes_between: keep there the extremes of what is tracked since the instant before (the
+            first: since the run's begin), from the series of the steps and not from the samples.
         tangent: follow a perturbation, for its growth and the horizon of predictability.
         log_events: room for the events of each run.
         logged: kinds of events that are logged, by default all, as a record of one run needs.
@@ -100,6 +102,7 @@ class RunOptions:
     tracked: Sequence[str] | None = None
     times: np.ndarray | None = None
     sums: bool = False
+    extremes_between: bool = False
     tangent: bool = False
     log_events: int = 0
     logged: Container[str] | None = None
@@ -137,6 +140,7 @@ def integrate(
         ``log_growth`` of the perturbation, ``horizon`` (NaN: not passed) and ``reached``, the time
         at the end; ``half_turns``; ``samples`` and ``sample_regimes`` (of each component);
         ``sample_growth``, ``sample_durations``, ``sample_half_turns`` and ``sample_counts``;
+        ``sample_extremes`` (runs, instants, tracked, smallest and largest; NaN: not reached);
         ``event_times``, ``event_kinds``, ``event_regimes``, ``event_states``.
 
     Raises:
@@ -229,6 +233,7 @@ class _Batch:
         t, size = self.system.integrated, self.size
         n_samples, n_logged = self.sample_times.shape[1], self.options.log_events
         n_sums = sum(count for _, count in self._sums())
+        n_between = n_samples if self.options.extremes_between else 0
         return {
             "final": ((size, t.size), "f8"),
             "extremes": ((size, len(self.watched), 2, 2), "f8"),
@@ -240,6 +245,7 @@ class _Batch:
             "samples": ((size, n_samples, t.size), "f8"),
             "sample_regimes": ((size, n_samples, t.n_components), "i8"),
             "sample_sums": ((size, n_samples, n_sums), "f8"),
+            "sample_extremes": ((size, n_between, len(self.watched), 2), "f8"),
             "peaks": ((size, self.n_kinds, t.size), "f8"),
             "half_turns": ((size, self.points.shape[1]), "f8"),
             "event_times": ((size, n_logged), "f8"),
@@ -273,6 +279,7 @@ class _Batch:
             "n_kinds": self.n_kinds,
             "n_samples": self.sample_times.shape[1],
             "n_sums": sum(count for _, count in self._sums()),
+            "n_between": self.sample_times.shape[1] * options.extremes_between,
             "n_logged": options.log_events,
             "n_points": n_points,
             "until": number.get(options.until, -1),
@@ -323,6 +330,7 @@ class _Batch:
             "share": np.array([share, self.tol, written.bent.any()], float),
             "noise": np.zeros((len(t.surfaces), 2, LANES)),
             "scratch": np.zeros((6, width)),
+            "between": np.zeros((len(self.watched), 2, LANES)),
             "logs": np.array([kind in logged for kind in t.kinds], np.int64),
             "initial": self.initial,
             "parameters": self.parameters,
@@ -334,7 +342,14 @@ class _Batch:
 
     def run(self, arrays: dict[str, np.ndarray], first: int, stride: int) -> None:
         """Every ``stride``-th run from the ``first`` on, in one process."""
-        for name in ("samples", "sample_sums", "event_times", "event_states", "firsts"):
+        for name in (
+            "samples",
+            "sample_sums",
+            "sample_extremes",
+            "event_times",
+            "event_states",
+            "firsts",
+        ):
             arrays[name][first::stride] = np.nan
         arrays["extremes"][first::stride] = [np.inf, -np.inf]
         for name in ("sample_regimes", "event_kinds", "event_regimes"):

@@ -14,9 +14,11 @@ HOLDS, FAILS = ClaimVerdict.holds, ClaimVerdict.fails
 
 
 def put(name, value):
-    """Replace a variable, keeping its attributes."""
+    """Replace a variable, keeping its attributes; its extremes are then those of the samples."""
 
     def change(dataset):
+        between = [f"{name}_min", f"{name}_max"]
+        dataset = dataset.drop_vars(between, errors="ignore")
         old = dataset[name]
         new = xr.broadcast(xr.DataArray(value(dataset)), old)[0].transpose(*old.dims)
         return dataset.assign({name: new.astype(old.dtype).assign_attrs(old.attrs)})

@@ -30,8 +30,8 @@ ARRAYS = (
     "component_of", "first_constant", "owner", "marks", "active", "fresh", "beyond", "exact",
     "steep", "bent", "share", "noise", "scratch", "initial", "parameters", "first_regime", "limits",
     "final", "extremes", "logs", "counts", "firsts", "durations", "ends", "summary", "sample_times",
-    "samples", "sample_regimes", "sample_sums", "event_times", "event_kinds", "event_regimes",
-    "event_states", "peaks", "points", "half_turns", "queue",
+    "samples", "sample_regimes", "sample_sums", "sample_extremes", "between", "event_times",
+    "event_kinds", "event_regimes", "event_states", "peaks", "points", "half_turns", "queue",
 )  # fmt: skip
 FUNCTIONS = (
     "perturb",
@@ -46,8 +46,8 @@ FUNCTIONS = (
 SIZES = (
     "n_terms", "n_jobs", "n_states", "n_variables", "n_surfaces", "n_outputs", "n_tracked",
     "n_parameters", "n_constants", "n_regimes", "n_components", "n_table", "n_kinds", "n_samples",
-    "n_sums", "n_logged", "n_points", "n_rounds", "until", "late_from", "tangent", "take_step",
-    *FUNCTIONS, "n_series", "n_rows", "n_switches",
+    "n_sums", "n_between", "n_logged", "n_points", "n_rounds", "until", "late_from", "tangent",
+    "take_step", *FUNCTIONS, "n_series", "n_rows", "n_switches",
 )  # fmt: skip
 TABLE = np.dtype([(name, "i8") for name in (*ARRAYS, *SIZES)])
 

@@ -20,6 +20,7 @@ from squealpipe.methods.taylor.observation import (
     clear_extremes,
     count_turns,
     entered_row,
+    extremes_between,
     log_norm,
     observe,
     sample,
@@ -153,6 +154,8 @@ def _start(
         c[t.n_states, 0, lane] = rows[layout.ORIGIN, lane]
     for index in range(t.n_tracked):
         clear_extremes(m, lane, index, first)
+        if t.n_between:
+            m.between[index, 0, lane], m.between[index, 1, lane] = math.inf, -math.inf
     row = first + 2 * t.n_tracked
     rows[row : row + t.n_regimes, lane] = 0.0
     for point in range(t.n_points):
@@ -252,6 +255,15 @@ def _ended(t: Any, m: Any, special: int, busy: int) -> int:
 
 
 @inline
+def _gather_extremes(t: Any, m: Any, c: Any, busy: int) -> None:
+    """Gather the extremes between the asked instants over one step of all lanes, if asked for."""
+    while t.n_between and busy:
+        lane = first_bit(busy)
+        busy ^= 1 << lane
+        extremes_between(t, m, c, lane)
+
+
+@inline
 def _rounds(t: Any, m: Any, c: Any) -> int:
     """Steps of all lanes until none is busy, or there were enough."""
     tangent_row = layout.FIXED_ROWS + t.n_variables
@@ -282,6 +294,8 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
         _cut_all(t, m, c, special)
         if t.verify:
             special |= _check(t, m, c, parameters, busy)
+        # before the samples, which count on to the next one that is due
+        _gather_extremes(t, m, c, busy)
         while due:
             lane = first_bit(due)
             due ^= 1 << lane
@@ -351,6 +365,10 @@ def _advance(table: Any) -> int:
             t.sample_regimes, (t.n_jobs, t.n_samples, t.n_components), np.int64
         ),
         sample_sums=view(t.sample_sums, (t.n_jobs, t.n_samples, t.n_sums), np.float64),
+        sample_extremes=view(
+            t.sample_extremes, (t.n_jobs, t.n_between, t.n_tracked, 2), np.float64
+        ),
+        between=view(t.between, (t.n_tracked, 2, LANES), np.float64),
         event_times=view(t.event_times, (t.n_jobs, t.n_logged), np.float64),
         event_kinds=view(t.event_kinds, (t.n_jobs, t.n_logged), np.int64),
         event_regimes=view(t.event_regimes, (t.n_jobs, t.n_logged), np.int64),

@@ -28,11 +28,12 @@ PIECES = 8
 
 
 @part
-def _extremes(c: Any, index: int, lane: int, step: float) -> Any:
-    """Least and largest value at turning points inside a step."""
+def _extremes(c: Any, index: int, lane: int, begin: float, end: float) -> Any:
+    """Return the least and largest value at turning points inside a part of a step."""
     low, high = math.inf, -math.inf
-    before, bend = c[index, 1, lane], 2.0 * c[index, 2, lane]
-    _, after, last_bend = evaluate_twice(c, index, lane, step)
+    step = end - begin
+    _, before, bend = evaluate_twice(c, index, lane, begin)
+    _, after, last_bend = evaluate_twice(c, index, lane, end)
     if before * after > 0.0:
         # a rate that loses its sign in between crosses zero along its tangents
         plain = (
@@ -44,7 +45,7 @@ def _extremes(c: Any, index: int, lane: int, step: float) -> Any:
     else:
         plain = bend * last_bend > 0.0
     pieces = 1 if plain else PIECES
-    left, width = 0.0, step / pieces
+    left, width = begin, step / pieces
     for _ in range(pieces):
         right = left + width
         _, after, _ = evaluate_twice(c, index, lane, right)
@@ -118,10 +119,47 @@ def observe(t: Any, m: Any, c: Any, first_extreme: int, busy: int) -> None:
             lane = first_bit(bits)
             bits ^= 1 << lane
             inner_low, inner_high = _extremes(
-                c, variable, lane, m.rows[layout.STEP, lane]
+                c, variable, lane, 0.0, m.rows[layout.STEP, lane]
             )
             m.rows[r, lane] = min(m.rows[r, lane], inner_low)
             m.rows[r + 1, lane] = max(m.rows[r + 1, lane], inner_high)
+
+
+@part
+def extremes_between(t: Any, m: Any, c: Any, lane: int) -> None:
+    """Gather the extremes of a lane's tracked quantities between the asked instants, over one step.
+
+    Each instant gets those since the instant before it, the first those since the run's begin: an
+    extreme lies between samples, and a record of samples alone would miss it.
+    """
+    rows, job = m.rows, m.integers[layout.JOB, lane]
+    following, times = m.integers[layout.SAMPLE, lane], m.sample_times[job]
+    step, begin = rows[layout.STEP, lane], 0.0
+    while True:
+        end, due = step, False
+        if following < times.size:
+            offset = (times[following] - rows[layout.CLOCK, lane]) - rows[
+                layout.CORRECTION, lane
+            ]
+            due = offset <= step
+            end = offset if due else step
+        for index in range(t.n_tracked):
+            quantity = m.tracked[index, 0]
+            low, high = _extremes(c, quantity, lane, begin, end)
+            for time in (begin, end):
+                value = evaluate(c, quantity, lane, time)
+                low, high = min(low, value), max(high, value)
+            low = min(low, m.between[index, 0, lane])
+            high = max(high, m.between[index, 1, lane])
+            if due:
+                m.sample_extremes[job, following, index, 0] = low
+                m.sample_extremes[job, following, index, 1] = high
+                low, high = math.inf, -math.inf
+            m.between[index, 0, lane], m.between[index, 1, lane] = low, high
+        if not due:
+            return
+        begin = end
+        following += 1
 
 
 @inline

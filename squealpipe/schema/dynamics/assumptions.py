@@ -44,6 +44,7 @@ ASSUMPTIONS = DatasetSchema(
         ),
         "largest_x": _largest("m", "largest |x|"),
         "largest_y": _largest("m", "largest y"),
+        "max_displacement": _largest("m", "largest distance from the start position"),
         "t_end": Variable("end of the motion", "s", ("scene",)),
         "outcome": outcome(
             *TABLE, among=(*RUN_ENDS, Outcome.separated, Outcome.singular_static_state)

@@ -17,6 +17,7 @@ from squealpipe.schema import (
     whether,
 )
 from squealpipe.schema.agreement import ComparedAs, Listing, RoundOff
+from squealpipe.schema.dynamics.extremes import EXTREMES
 from squealpipe.schema.linear import ANGLES, MAP, ONE_PAIR, REGIME_LINEAR
 
 REGIMES = {**{int(each): each.name for each in Regime}, -1: "not_reached"}
@@ -73,6 +74,22 @@ def _series(units: str, long_name: str) -> Variable:
     return or_nan(long_name, units, ("time",), round_off=_GROWN)
 
 
+def _extremes_between() -> dict[str, Variable]:
+    """Extremes between the instants, which files of version 1.0.0 have not."""
+    units = {"x": "m", "y": "m", "vx": "m s-1", "normalized_contact_force": "1"}
+    return {
+        f"{name}_{end}": or_nan(
+            f"{words} {name} since the instant before, by the integrator's series",
+            units[name],
+            ("time",),
+            optional=True,
+            round_off=_GROWN,
+        )
+        for name in EXTREMES
+        for end, words in (("min", "smallest"), ("max", "largest"))
+    }
+
+
 TIME = Variable("time", "s", ("time",))
 FREQUENCY = Variable("angular frequency", "rad s-1", ("frequency",))
 
@@ -88,6 +105,7 @@ SIMULATION = DatasetSchema(
         "vy": _series("m s-1", "velocity away from the belt"),
         "normal_force": _series("N", "contact force"),
         "normalized_contact_force": _series("1", "contact force over k3 l_pre"),
+        **_extremes_between(),
         "regime": flag("regime", REGIMES, "time"),
         "event_time": Variable(
             "instant of a regime change", "s", ("event",), round_off=_GROWN
@@ -101,6 +119,9 @@ SIMULATION = DatasetSchema(
         "n_steps": count("Taylor steps of the run", dtype="i8"),
         "return_peak_contact_force": replace(RETURN_FORCE, round_off=_GROWN),
         "impact_speed": replace(IMPACT_SPEED, round_off=_GROWN),
+        "max_displacement": Variable(
+            "largest distance from the origin", "m", optional=True, round_off=_GROWN
+        ),
         "growth": or_nan(
             "factor by which a small perturbation of the start has grown at the end",
             optional=True,
@@ -126,11 +147,11 @@ RUN_SUMMARY = DatasetSchema(
         "impact_rate": Variable("contacts regained per time", "s-1"),
         "separated_fraction": Variable("share of the time without contact"),
         "stick_fraction": Variable("share of the time in stick"),
-        "peak_contact_force": Variable("largest sampled contact force over k3 l_pre"),
+        "peak_contact_force": Variable("largest contact force over k3 l_pre"),
         "return_peak_contact_force": RETURN_FORCE,
         "impact_speed": IMPACT_SPEED,
-        "largest_x": Variable("largest |x| among the samples", "m"),
-        "largest_y": Variable("largest |y| among the samples", "m"),
+        "largest_x": Variable("largest |x|", "m"),
+        "largest_y": Variable("largest |y|", "m"),
         "force_spectrum": Variable(
             "amplitude spectrum of the normalized contact force", dims=("frequency",)
         ),

@@ -231,6 +231,19 @@ class Ensemble:
         """Their sum."""
         return self._shaped(self._raw["counts"][:, self._kinds[:-1] >= 0].sum(axis=1))
 
+    def between_samples(self, name: str) -> tuple[np.ndarray, np.ndarray]:
+        """Smallest and largest value of a tracked quantity since the instant before each sample.
+
+        Lengths and velocities in SI units, the contact force over k3 l_pre; NaN past ``time``.
+        """
+        values = self._raw["sample_extremes"][:, :, self._tracked.index(name)]
+        unit = {
+            "contact_force": 1.0 / self.jobs.values["k3"],
+            "vx": self.jobs.length / self.jobs.time_unit,
+        }.get(name, self.jobs.length)
+        low, high = np.moveaxis(values, -1, 0)
+        return self._shaped(low, unit), self._shaped(high, unit)
+
     @property
     def sample_regimes(self) -> np.ndarray:
         """Regimes there; −1 past ``time``."""
@@ -257,6 +270,7 @@ def run_ensemble(
     *,
     tracked: Sequence[str] = TRACKED,
     sums: bool = False,
+    extremes_between: bool = False,
     tangent: bool = False,
     log_events: Seed = 0,
     workers: Workers = None,
@@ -269,6 +283,8 @@ def run_ensemble(
             them; the results have the shape to which they are broadcast.
         tracked: of :data:`TRACKED`, those whose extremes are read.
         sums: keep what has added up at ``times``, too.
+        extremes_between: keep the extremes of what is tracked between these instants, for
+            :meth:`Ensemble.between_samples`.
         log_events: number of events a run to keep; knots of a law's table are none of A1.
         workers: processes; None takes all cores. The results are the same bit for bit.
     """
@@ -277,6 +293,7 @@ def run_ensemble(
         jobs,
         tracked,
         sums=sums,
+        extremes_between=extremes_between,
         tangent=tangent,
         log_events=log_events,
         workers=workers,

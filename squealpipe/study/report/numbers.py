@@ -10,6 +10,7 @@ from squealpipe.schema import meanings
 from squealpipe.schema.claims import Basis, ClaimVerdict, Origin
 from squealpipe.schema.comparison import Role
 from squealpipe.schema.curves import ChartLine
+from squealpipe.schema.dynamics.extremes import largest_size
 from squealpipe.schema.inference import of_study
 from squealpipe.study.claims.evidence import Evidence
 from squealpipe.study.claims.maps import unstable_yet_sliding
@@ -83,13 +84,15 @@ def _growth(run: Evidence) -> dict[str, Any]:
     )
     short, long = run["simulate/F3"], run["simulate/F3_long"]
     return {
-        "F3_size": abs(short.x).max() / preload,
+        "F3_size": largest_size(short, "x").max() / preload,
         "F3_time": short.time[-1] / unit,
         "whirl_size": whirl.amplitude[0] / preload,
         "whirl_slope": whirl.slope,
-        "F3_long_size": abs(long.x).max() / preload,
+        "F3_long_size": largest_size(long, "x").max() / preload,
         "F3_long_time": long.time[-1] / unit,
-        "one_sign_F3_long_size": abs(run["corrected/simulate/F3_long"].x).max()
+        "one_sign_F3_long_size": largest_size(
+            run["corrected/simulate/F3_long"], "x"
+        ).max()
         / preload,
     }
 
@@ -134,7 +137,7 @@ def _bounded(run: Evidence) -> dict[str, Any]:
         for name, i in (("F10", 2), ("F13", 1))
     }
     return {
-        "F4_size": abs(run["simulate/F4"].x).max() / run.parameters.preload,
+        "F4_size": largest_size(run["simulate/F4"], "x").max() / run.parameters.preload,
         "F4_growth": run["simulate/F4"].growth,
         "F4_time": run["simulate/F4"].time[-1] / unit,
         "F4_change": 100 * run["claims"].value.sel(claim="F4"),

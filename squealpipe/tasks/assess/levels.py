@@ -6,6 +6,7 @@ import numpy as np
 
 from squealpipe.codes import Regime
 from squealpipe.laws.contact import normal_force
+from squealpipe.methods.parabola import largest
 from squealpipe.methods.recurrence import repeats_after
 from squealpipe.methods.spectrum import amplitude_spectrum, highest_peaks
 from squealpipe.schema.assess import HARMONICS, LINES, SAMPLES, Verdict
@@ -94,7 +95,7 @@ def _scalars(design: Design, run: Ensemble) -> dict[str, Any]:
     return {
         "velocity_rms_along": float(np.sqrt(np.mean(vx**2))),
         "velocity_rms_across": float(np.sqrt(np.mean(vy**2))),
-        "displacement_peak": float(np.hypot(x - x.mean(), y - y.mean()).max()),
+        "displacement_peak": float(largest(np.hypot(x - x.mean(), y - y.mean()))),
         "peak_contact_force": float(run.peak_contact_force) * load,
         "peak_contact_force_over_preload": float(run.peak_contact_force),
         "impact_speed": float(run.impact_speed),

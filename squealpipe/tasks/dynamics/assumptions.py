@@ -8,6 +8,7 @@ import xarray as xr
 
 from squealpipe.laws import springs
 from squealpipe.laws.contact import contact_force
+from squealpipe.methods import parabola
 from squealpipe.methods.linear_response import response_from_rest
 from squealpipe.models import a2
 from squealpipe.models.a4 import contact_matrix
@@ -15,6 +16,7 @@ from squealpipe.models.refusals import refuse_extensions
 from squealpipe.parameters import SCENES, Parameters, Scene
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.assumptions import ASSUMPTIONS, LINEAR_PULL
+from squealpipe.schema.dynamics.extremes import extremes, largest_size
 from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.validation import Angles, Positive, checked
 
@@ -55,14 +57,25 @@ NEEDS = {
 STEPS_PER_TIME_UNIT = 20
 
 
-class MotionArrays(NamedTuple):
-    """States along a motion; arrays over time."""
+class LevelMotion(NamedTuple):
+    """The motion that a level computes: its path, and extremes that lie between the path's samples.
+
+    Attributes:
+        x, y: the path, (time,), m; empty where the level has no motion.
+        largest_x, largest_y: of |x| and of y, m.
+        max_displacement: largest √(x² + y²), m.
+        max_vx: largest ẋ, m/s.
+        lowest_force: smallest contact force, N.
+    """
 
     x: np.ndarray
     y: np.ndarray
-    vx: np.ndarray
-    force: np.ndarray
     outcome: int
+    largest_x: float = np.nan
+    largest_y: float = np.nan
+    max_displacement: float = np.nan
+    max_vx: float = np.nan
+    lowest_force: float = np.nan
 
 
 def check_assumptions(params: Parameters, scenes: Iterable[Scene] = ()) -> xr.Dataset:
@@ -71,7 +84,10 @@ def check_assumptions(params: Parameters, scenes: Iterable[Scene] = ()) -> xr.Da
     names = list(LIMITS)
     measures = np.full((len(LEVELS), len(chosen), len(names)), np.nan)
     outcomes = np.zeros(measures.shape[:2], dtype=int)
-    largest_x, largest_y = (np.full(measures.shape[:2], np.nan) for _ in range(2))
+    sizes = {
+        name: np.full(measures.shape[:2], np.nan)
+        for name in ("largest_x", "largest_y", "max_displacement")
+    }
     for row, level in enumerate(LEVELS):
         for column, scene in enumerate(chosen):
             motion = _motion(params, scene, level)
@@ -79,8 +95,8 @@ def check_assumptions(params: Parameters, scenes: Iterable[Scene] = ()) -> xr.Da
             if not motion.x.size:
                 continue
             measures[row, column] = _measures(params, scene, motion)
-            largest_x[row, column] = np.abs(motion.x).max()
-            largest_y[row, column] = motion.y.max()
+            for name, values in sizes.items():
+                values[row, column] = getattr(motion, name)
     limits = np.array([LIMITS[name] for name in names])
     below = np.array([name in BELOW for name in names])
     return build(
@@ -90,8 +106,7 @@ def check_assumptions(params: Parameters, scenes: Iterable[Scene] = ()) -> xr.Da
             "measure": measures,
             "limit": limits,
             "held": np.where(below, measures <= limits, measures > limits),
-            "largest_x": largest_x,
-            "largest_y": largest_y,
+            **sizes,
             "t_end": [scene.t_end * params.time_unit for scene in chosen],
             "outcome": outcomes,
         },
@@ -120,10 +135,15 @@ def linear_pull_map(
     step, steps = _steps(params, t_end)
     lowest = np.full(stiffness.k11.shape, np.inf)
     pulling = np.zeros(lowest.shape)
+    before, last = np.full((2, *lowest.shape), np.nan)
     for state in _linear_response(params, stiffness, step, steps):
         force = 1.0 - state[..., 1] / params.preload
-        lowest = np.minimum(lowest, force)
+        # the lowest force lies between samples, at the vertex of the parabola through three
+        turned = (last < before) & (last <= force)
+        _, vertex = parabola.vertex(before, last, force)
+        lowest = np.minimum(lowest, np.where(turned, vertex, force))
         pulling += force < 0
+        before, last = last, force
     return build(
         LINEAR_PULL,
         {
@@ -136,7 +156,7 @@ def linear_pull_map(
     )
 
 
-def _motion(params: Parameters, scene: Scene, level: str) -> MotionArrays:
+def _motion(params: Parameters, scene: Scene, level: str) -> LevelMotion:
     """The motion from rest that a level computes; empty where it has none."""
     t_end = scene.t_end * params.time_unit
     if level == "A2":
@@ -145,13 +165,23 @@ def _motion(params: Parameters, scene: Scene, level: str) -> MotionArrays:
         return _linear_motion(params, scene, t_end)
     run = simulate(params, scene.alpha1, scene.alpha2, t_end=t_end, model=level)
     reached = np.isfinite(run.x.values)
-    x, y, vx, force = (
-        run[name].values[reached] for name in ("x", "y", "vx", "normal_force")
+    x, y = (run[name].values[reached] for name in ("x", "y"))
+    if not x.size:
+        return LevelMotion(x, y, int(run.outcome))
+    lowest, _ = extremes(run, "normalized_contact_force")
+    return LevelMotion(
+        x,
+        y,
+        int(run.outcome),
+        largest_x=np.nanmax(largest_size(run, "x")),
+        largest_y=np.nanmax(extremes(run, "y")[1]),
+        max_displacement=float(run.max_displacement),
+        max_vx=np.nanmax(extremes(run, "vx")[1]),
+        lowest_force=np.nanmin(lowest) * params.k3 * params.preload,
     )
-    return MotionArrays(x, y, vx, force, int(run.outcome))
 
 
-def _sliding_state(params: Parameters, scene: Scene) -> MotionArrays:
+def _sliding_state(params: Parameters, scene: Scene) -> LevelMotion:
     """A2: one state, at y = 0, with the friction of its reaction force."""
     stiffness = springs.linear_stiffness(
         params, springs.geometry(scene.alpha1, scene.alpha2)
@@ -159,15 +189,21 @@ def _sliding_state(params: Parameters, scene: Scene) -> MotionArrays:
     reaction = float(a2.reaction_force(stiffness, params.drag, a2.actuation(params)))
     if np.isnan(reaction) or stiffness.k11 == 0:
         nothing = np.array([])
-        return MotionArrays(
-            nothing, nothing, nothing, nothing, Outcome.singular_static_state
-        )
-    still = np.zeros(1)
-    x = np.array([params.drag * reaction / stiffness.k11])
-    return MotionArrays(x, still, still, np.array([reaction]), Outcome.converged)
+        return LevelMotion(nothing, nothing, Outcome.singular_static_state)
+    x = params.drag * reaction / float(stiffness.k11)
+    return LevelMotion(
+        np.array([x]),
+        np.zeros(1),
+        Outcome.converged,
+        largest_x=abs(x),
+        largest_y=0.0,
+        max_displacement=abs(x),
+        max_vx=0.0,
+        lowest_force=reaction,
+    )
 
 
-def _linear_motion(params: Parameters, scene: Scene, t_end: float) -> MotionArrays:
+def _linear_motion(params: Parameters, scene: Scene, t_end: float) -> LevelMotion:
     """A3 in time: Eqs. (6) and (7) from rest; velocities by central differences."""
     stiffness = springs.linear_stiffness(
         params, springs.geometry(scene.alpha1, scene.alpha2)
@@ -175,8 +211,16 @@ def _linear_motion(params: Parameters, scene: Scene, t_end: float) -> MotionArra
     step, steps = _steps(params, t_end)
     states = np.array(list(_linear_response(params, stiffness, step, steps)))
     x, y = states[:, 0], states[:, 1]
-    return MotionArrays(
-        x, y, np.gradient(x, step), contact_force(y, params), Outcome.converged
+    largest_y = _largest(y)
+    return LevelMotion(
+        x,
+        y,
+        Outcome.converged,
+        largest_x=_largest(np.abs(x)),
+        largest_y=largest_y,
+        max_displacement=_largest(np.hypot(x, y)),
+        max_vx=_largest(np.gradient(x, step)),
+        lowest_force=float(contact_force(largest_y, params)),
     )
 
 
@@ -201,7 +245,7 @@ def _steps(params: Parameters, t_end: float) -> tuple[float, int]:
     return t_end / steps, steps
 
 
-def _measures(params: Parameters, scene: Scene, motion: MotionArrays) -> list[float]:
+def _measures(params: Parameters, scene: Scene, motion: LevelMotion) -> list[float]:
     """The number that decides about each assumption, in the order of ``LIMITS``."""
     g = springs.geometry(scene.alpha1, scene.alpha2)
     x1, y1, x2, y2 = springs.fixed_ends(params, g)
@@ -211,7 +255,7 @@ def _measures(params: Parameters, scene: Scene, motion: MotionArrays) -> list[fl
             motion.x, motion.y, springs.linear_stiffness(params, g)
         )
     )
-    largest = np.hypot(*exact).max()
+    largest = _largest(np.hypot(*exact))
     turns, lengths = [], []
     for x_fixed, y_fixed, length in (
         (x1, y1, params.length1),
@@ -220,18 +264,20 @@ def _measures(params: Parameters, scene: Scene, motion: MotionArrays) -> list[fl
         turn = np.arctan2(motion.y - y_fixed, motion.x - x_fixed) - np.arctan2(
             -y_fixed, -x_fixed
         )
-        turns.append(np.abs(np.angle(np.exp(1j * turn))).max())
-        lengths.append(
-            np.sqrt(
-                springs.squared_distance(motion.x, motion.y, x_fixed, y_fixed)
-            ).min()
-            / length
-        )
+        turns.append(_largest(np.abs(np.angle(np.exp(1j * turn)))))
+        squared = springs.squared_distance(motion.x, motion.y, x_fixed, y_fixed)
+        lengths.append(-_largest(-np.sqrt(squared)) / length)
     belt = params.belt_speed
     return [
-        float(motion.force.min() / (params.k3 * params.preload)),
-        float((1.0 - motion.vx / belt).min()) if belt else -np.inf,
-        float(max(turns)),
-        float(np.hypot(*(linear - exact)).max() / largest) if largest > 0 else 0.0,
-        float(min(lengths)),
+        motion.lowest_force / (params.k3 * params.preload),
+        1.0 - motion.max_vx / belt if belt else -np.inf,
+        max(turns),
+        _largest(np.hypot(*(linear - exact))) / largest if largest > 0 else 0.0,
+        min(lengths),
     ]
+
+
+def _largest(values: np.ndarray) -> float:
+    """Return the largest of samples along a path, between them if there are several."""
+    few = values.size < 3  # no parabola
+    return float(values.max() if few else parabola.largest(values))

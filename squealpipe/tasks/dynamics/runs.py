@@ -15,7 +15,7 @@ from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.runs import SIMULATION, VALIDITY_MAP
 from squealpipe.schema.origin import recorded
-from squealpipe.solvers.a1.ensemble import PEAK, Ensemble, integrate, run_map
+from squealpipe.solvers.a1.ensemble import REACH, Ensemble, integrate, run_map
 from squealpipe.solvers.a1.jobs import Model, jobs_of
 from squealpipe.tasks.linear.maps import stability_map
 from squealpipe.tasks.sampling import default_times, unresolved
@@ -85,7 +85,14 @@ def simulate(
     room, logged = 0, FIRST_LOG
     while room < logged:
         room = logged
-        run = integrate(job, (PEAK,), tangent=growth, log_events=room, workers=1)
+        run = integrate(
+            job,
+            ("x", "y", "vx", "contact_force", REACH),
+            tangent=growth,
+            log_events=room,
+            extremes_between=True,
+            workers=1,
+        )
         logged = int(run.events)
     if int(run.outcome) == Outcome.accumulation:
         # reversals at one instant, where the variant has no stick to go over to, are one
@@ -100,6 +107,14 @@ def simulate(
         normal = np.where(off, 0.0, normal_force(y, vy, params))
     else:
         normal = normal_force(y, vy, params)
+    force = normal / (params.k3 * params.preload)
+    low, high = run.between_samples("contact_force")
+    if VARIANT_RULES[model].separates:
+        # a step that ends where contact is lost ends a round-off below zero
+        low, high = np.maximum(low, 0.0), np.maximum(high, 0.0)
+    extremes = {name: run.between_samples(name) for name in ("x", "y", "vx")}
+    extremes["normalized_contact_force"] = low, high
+    states = {"x": x, "y": y, "vx": vx, "normalized_contact_force": force}
     return build(
         SIMULATION,
         {
@@ -108,7 +123,15 @@ def simulate(
             "vx": vx,
             "vy": vy,
             "normal_force": normal,
-            "normalized_contact_force": normal / (params.k3 * params.preload),
+            "normalized_contact_force": force,
+            # a run of no length has no series
+            **{
+                f"{name}_{end}": least_or_most(states[name], value)
+                for name, values in extremes.items()
+                for end, least_or_most, value in zip(
+                    ("min", "max"), (np.fmin, np.fmax), values, strict=True
+                )
+            },
             "regime": run.sample_regimes,
             "event_time": run.event_times[:logged],
             "event_kind": run.event_kinds[:logged],
@@ -121,6 +144,7 @@ def simulate(
             "n_steps": run.steps,
             "return_peak_contact_force": run.return_peak_contact_force,
             "impact_speed": run.impact_speed,
+            "max_displacement": run.max_displacement,
             **({"growth": np.exp(run.log_growth)} if growth else {}),
             "outcome": run.outcome,
         },

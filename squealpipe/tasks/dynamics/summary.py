@@ -15,6 +15,7 @@ from squealpipe.methods.spectrum import (
     strongest_lines,
 )
 from squealpipe.schema import build
+from squealpipe.schema.dynamics.extremes import extremes, largest_size
 from squealpipe.schema.dynamics.intervals import intervals
 from squealpipe.schema.dynamics.runs import RUN_SUMMARY
 from squealpipe.schema.origin import recorded
@@ -31,7 +32,7 @@ PADDING = 8
 def summarize(run: xr.Dataset) -> xr.Dataset:
     """Summarize a run that was sampled uniformly from its start.
 
-    Times of events are exact; forces, displacements and the spectrum come from the samples.
+    Times of events and extremes are exact; the spectrum comes from the samples.
 
     Args:
         run: dataset ``simulation``.
@@ -52,6 +53,7 @@ def summarize(run: xr.Dataset) -> xr.Dataset:
     apart, stuck = (intervals(run, each) for each in (Regime.separated, Regime.stick))
     returns = np.count_nonzero(run.event_kind.values == Event.contact)
     force = run.normalized_contact_force.values[: time.size]
+    _, highest = extremes(run, "normalized_contact_force")
     frequency, amplitude = amplitude_spectrum(force, step, padding=PADDING)
     kept = PEAKS if lasts(force) else 0
     peak_frequency, peak_amplitude = strongest_lines(
@@ -64,11 +66,13 @@ def summarize(run: xr.Dataset) -> xr.Dataset:
             "impact_rate": returns / end,
             "separated_fraction": np.diff(apart).sum() / end,
             "stick_fraction": np.diff(stuck).sum() / end,
-            "peak_contact_force": np.fmax(force.max(), run.return_peak_contact_force),
+            "peak_contact_force": np.fmax(
+                highest[: time.size].max(), run.return_peak_contact_force
+            ),
             "return_peak_contact_force": float(run.return_peak_contact_force),
             "impact_speed": float(run.impact_speed),
-            "largest_x": np.abs(run.x.values[: time.size]).max(),
-            "largest_y": np.abs(run.y.values[: time.size]).max(),
+            "largest_x": largest_size(run, "x")[: time.size].max(),
+            "largest_y": largest_size(run, "y")[: time.size].max(),
             "force_spectrum": amplitude,
             "dominant_frequency": peak_frequency,
             "dominant_amplitude": peak_amplitude,

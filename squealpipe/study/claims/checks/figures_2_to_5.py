@@ -4,6 +4,7 @@ import numpy as np
 
 from squealpipe.codes import Event
 from squealpipe.schema.claims import ClaimVerdict
+from squealpipe.schema.dynamics.extremes import extremes, largest_size
 from squealpipe.schema.dynamics.growth import (
     GROWS,
     WINDOW,
@@ -36,7 +37,7 @@ def contact_is_kept(name: str) -> Check:
     def check(run: Evidence) -> Finding:
         """Lowest contact force over the run, as a share of the preload."""
         motion = scene(run, name)
-        lowest = float(motion.normalized_contact_force.min())
+        lowest = float(extremes(motion, "normalized_contact_force")[0].min())
         lost = events(motion, Event.separation).size
         return finding(
             (lowest, ">", 0),
@@ -76,18 +77,18 @@ def responses_differ_little(run: Evidence) -> Finding:
     or less than what sets the first three responses apart from the fourth.
     """
     forces = [
-        scene(run, name).normalized_contact_force
+        extremes(scene(run, name), "normalized_contact_force")
         for name in ("F2a", "F2b", "F2c", "F2d")
     ]
-    extremes = np.array([[float(force.min()), float(force.max())] for force in forces])
-    spread = float(np.ptp(extremes[:3], axis=0).max())
-    apart = float(np.abs(extremes[:3] - extremes[3]).max(axis=1).min())
+    ends = np.array([[low.min(), high.max()] for low, high in forces])
+    spread = float(np.ptp(ends[:3], axis=0).max())
+    apart = float(np.abs(ends[:3] - ends[3]).max(axis=1).min())
     closer = spread < apart
     undecided = ClaimVerdict.cannot_be_decided
     return finding(
         (spread, "≤", LITTLE),
-        f"The lowest forces are {_listed(extremes[:3, 0])} of the preload, the highest "
-        f"{_listed(extremes[:3, 1])}: a spread of {spread:.3g}, and at least {apart:.3g} from the "
+        f"The lowest forces are {_listed(ends[:3, 0])} of the preload, the highest "
+        f"{_listed(ends[:3, 1])}: a spread of {spread:.3g}, and at least {apart:.3g} from the "
         f"fourth response. The text has no number for “minimal”; the inference took {LITTLE:g}.",
         passed=ClaimVerdict.holds if closer else undecided,
         otherwise=undecided if closer else ClaimVerdict.fails,
@@ -107,12 +108,13 @@ def unstable_response_grows(run: Evidence) -> Finding:
     sizes = windows(run, longer)
     growth = Growth(int(judge_growth(sizes)))
     undecided = growth is Growth.undecided
+    judged = growth.name.replace("undecided", "is undecided")
     return finding(
         (float(least_growth(sizes)), "≥", GROWS),
         f"In windows of {WINDOW:g} √(m/k1) of a run to {until(run, longer)}, |x| reaches "
-        f"{_listed(sizes)} l_pre: it {growth.name.replace('undecided', 'is undecided')}. In the "
-        f"time of the paper's figure it reaches {early:.3g} l_pre in the first half of the run to "
-        f"{until(run, shown)} and {late:.3g} l_pre in the second.",
+        f"{_listed(sizes, digits=5)} l_pre: it {judged}. In the time of the paper's figure it "
+        f"reaches {early:.3g} l_pre in the first half of the run to {until(run, shown)} and "
+        f"{late:.3g} l_pre in the second.",
         otherwise=ClaimVerdict.cannot_be_decided if undecided else ClaimVerdict.fails,
     )
 
@@ -131,9 +133,9 @@ def limit_cycle_is_bounded(run: Evidence) -> Finding:
     motion = scene(run, "F4")
     early, late = halves(motion)
     longest = max(run.parameters.length1, run.parameters.length2)
-    largest = float(np.abs(motion.x.values).max() / longest)
+    largest = float(largest_size(motion, "x").max() / longest)
     longer = scene(run, "F4_long")
-    later = float(np.abs(longer.x.values).max() / longest)
+    later = float(largest_size(longer, "x").max() / longest)
     bounded = max(largest, later) < BOUND and late < GROWTH_THRESHOLD * early
     evidence = (
         f"|x| reaches {largest:.3g} of the longer free length up to {until(run, motion)} "
@@ -189,7 +191,7 @@ def mass_jumps(run: Evidence) -> Finding:
     """Number of flights."""
     motion = scene(run, "F5a")
     flights = events(motion, Event.separation).size
-    height = float(motion.y.max() / run.parameters.preload)
+    height = float(extremes(motion, "y")[1].max() / run.parameters.preload)
     return finding(
         (flights, "≥", JUMPS),
         f"{flights} flights up to {until(run, motion)}, up to y = {height:.3g} l_pre; "
@@ -197,5 +199,5 @@ def mass_jumps(run: Evidence) -> Finding:
     )
 
 
-def _listed(values: np.ndarray) -> str:
-    return ", ".join(f"{value:.3g}" for value in values)
+def _listed(values: np.ndarray, digits: int = 3) -> str:
+    return ", ".join(f"{value:.{digits}g}" for value in values)

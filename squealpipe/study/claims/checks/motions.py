@@ -5,6 +5,7 @@ import scipy
 import xarray as xr
 
 from squealpipe.codes import Event
+from squealpipe.schema.dynamics.extremes import extremes, largest_size
 from squealpipe.schema.dynamics.growth import HORIZON, WINDOW, WINDOWS
 from squealpipe.study.claims.evidence import Evidence, MissingDataError
 
@@ -32,7 +33,7 @@ def halves(motion: xr.Dataset) -> tuple[float, float]:
     if motion.sizes["time"] < 10:
         raise MissingDataError("the run holds fewer than ten instants")
     half = motion.sizes["time"] // 2
-    size = np.abs(motion.x.values) / float(motion.preload)
+    size = largest_size(motion, "x") / float(motion.preload)
     return float(size[:half].max()), float(size[half:].max())
 
 
@@ -43,7 +44,7 @@ def windows(run: Evidence, motion: xr.Dataset) -> np.ndarray:
         raise MissingDataError(
             f"the long run ends at {end:g} √(m/k1), before {HORIZON:g}"
         )
-    size = np.abs(motion.x.values) / float(motion.preload)
+    size = largest_size(motion, "x") / float(motion.preload)
     window = (motion.time.values / (WINDOW * run.parameters.time_unit)).astype(int)
     return np.array([size[window == number].max() for number in range(WINDOWS)])
 
@@ -69,7 +70,7 @@ def repetition(motion: xr.Dataset) -> tuple[float, int, int]:
     states = np.stack(
         [tracks[0](instants), *(track(instants, 1) for track in tracks)], axis=1
     )
-    ranges = [np.ptp(motion[name].values) for name in ("x", "vx", "vy")]
+    ranges = [np.ptp(extremes(motion, name)) for name in ("x", "vx", "vy")]
     late = states[states.shape[0] // 2 :] / np.array(ranges)
     changes = [
         np.abs(late[apart:] - late[:-apart]).max()

@@ -10,6 +10,7 @@ from squealpipe.parameters import SCENES
 from squealpipe.plotting import style
 from squealpipe.plotting.origin import time_unit
 from squealpipe.schema import meanings
+from squealpipe.schema.dynamics.extremes import largest_size
 from squealpipe.text import number
 
 READS = ("simulate/whirl", "whirl")
@@ -48,7 +49,7 @@ def draw(run: xr.Dataset, sizes: xr.Dataset) -> Figure:
     panel.axhline(0, color=style.GREY, linewidth=0.5)
     panel.set(xlabel="t (s)", ylabel="x (m)", xlim=(0, float(run.time[-1])))
     panel.legend(loc="lower right", bbox_to_anchor=(1, 0.98))
-    largest = number(float(np.abs(run.x).max()), 4)
+    largest = number(float(largest_size(run, "x").max()), 4)
     style.panel_letter(panel, "a", f"x in time, max |x| = {largest} m")
     _sizes(axes[0, 1], sizes)
     return figure
