@@ -27,3 +27,8 @@ def finished(study_copy, monkeypatch):
         "squealpipe.execution.explain.WORKFLOW", study_copy / "workflow"
     )
     return study_copy
+
+
+def pytest_itemcollected(item):
+    """All tests of this folder start Snakemake: they belong to the release tier."""
+    item.add_marker(pytest.mark.release)

@@ -2,13 +2,8 @@
 
 import re
 
-import pytest
-
 from squealpipe.store import load
 from squealpipe.store.whole_files import checksum
-
-pytestmark = pytest.mark.release
-
 
 TINY = "workflow/config/tiny.yaml"
 EDIT = "dynamics: {hammering_points: 12}\n"

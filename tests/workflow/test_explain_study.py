@@ -8,8 +8,6 @@ import pytest
 from squealpipe.execution.explain import explain
 from squealpipe.store import load, save
 
-pytestmark = pytest.mark.release
-
 TINY = "workflow/config/tiny.yaml"
 
 

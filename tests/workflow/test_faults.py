@@ -12,9 +12,6 @@ import pytest
 from squealpipe.store import StoreError, load
 from tests.conftest import run_snakemake
 
-pytestmark = pytest.mark.release
-
-
 SMALL = """
 dynamics: {validity_points: 31, validity_horizon: 100.0}
 """

@@ -112,7 +112,6 @@ def test_each_option_has_a_study():
     assert set().union(*map(options_of, STUDIES.values())) == expected
 
 
-@pytest.mark.release
 @pytest.mark.timeout(1800)
 @pytest.mark.parametrize("name", STUDIES)
 def test_the_report_has_the_answer(name, tmp_path):

@@ -55,7 +55,6 @@ NOT_CARRIED = {
 """Rules of levels with the paper's friction alone, and what reads nothing but their datasets."""
 
 
-@pytest.mark.release
 def test_rules_that_cannot_carry_it_are_left_out_and_all_others_stay(tmp_path):
     def planned(text):
         (tmp_path / "mine.yaml").write_text(text)
@@ -76,7 +75,6 @@ def test_rules_that_cannot_carry_it_are_left_out_and_all_others_stay(tmp_path):
         assert "results/tiny/data/natural_frequencies.nc" not in made
 
 
-@pytest.mark.release
 @pytest.mark.parametrize("how", ["--snakefile", "--directory"])
 def test_a_plan_can_be_made_from_any_folder(how, tmp_path):
     (tmp_path / "mine.yaml").write_text("results: out\n")

@@ -13,9 +13,6 @@ import pytest
 from squealpipe.rerun.key import PLAN
 from tests.conftest import ROOT
 
-pytestmark = pytest.mark.release
-
-
 ROW, LAW, LAW_NAME, RECORD, FIGURE, FIGURE_NAME, SYSTEM = range(7)
 FILES = {
     LAW: "squealpipe/laws/friction_laws/rising.py",

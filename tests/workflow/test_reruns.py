@@ -19,8 +19,6 @@ from squealpipe.config.yaml_files import flat
 from squealpipe.rerun.key import PLAN, WATCHERS
 from squealpipe.rerun.sources import PACKAGE, closure
 
-pytestmark = pytest.mark.release
-
 ROOT = Path(__file__).resolve().parents[2]
 STATED = Path(__file__).with_name("direct_readers.yaml")
 FIX = "SQUEALPIPE_FIX=1 python -m pytest -m release tests/workflow/test_reruns.py"

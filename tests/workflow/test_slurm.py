@@ -21,8 +21,6 @@ import yaml
 from squealpipe.store import load
 from squealpipe.store.comparison.compare import compare
 
-pytestmark = pytest.mark.release
-
 SCRIPTS = Path(__file__).with_name("slurm")
 PROFILE = [
     *("--workflow-profile", "workflow/profiles/slurm", "--set-scatter", "maps=2"),

@@ -8,7 +8,7 @@ from squealpipe.cli import run
 from squealpipe.study.report import squealing
 from tests.conftest import ROOT, run_snakemake, text_of_page
 
-pytestmark = [pytest.mark.release, pytest.mark.timeout(1800)]
+pytestmark = pytest.mark.timeout(1800)
 
 
 def test_the_report_says_its_onsets_and_its_headline(tmp_path, monkeypatch):

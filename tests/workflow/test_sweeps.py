@@ -1,13 +1,8 @@
 """Sweeps of the study: in parts or whole the same bits, and an edit touches its own sweep alone."""
 
-import pytest
-
 from squealpipe.cli import run
 from squealpipe.execution.explain import explain
 from squealpipe.store import load
-
-pytestmark = pytest.mark.release
-
 
 TINY = "workflow/config/tiny.yaml"
 RAGGED = """
