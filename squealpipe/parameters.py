@@ -92,6 +92,8 @@ def finite_number(
     Raises:
         ValueError: it is none of these; names argument and value.
     """
+    if type(value) is float and math.isfinite(value):
+        return value  # copies of parameters are checked again, thousands of times in a search
     number = numbers_in_si(name, value, units, keys)
     if not is_finite_number(number):
         raise ValueError(f"{name} = {brief(value)}: a finite number is needed")
