@@ -28,9 +28,6 @@ test: dev  ## the tests of each change, minutes
 test-release: dev  ## the rest: whole studies, cluster, faults, browser, recipes, large samples
 	$(TESTS) -m release --timeout 3000
 
-# Round-off decides in kernels, integrators, closed forms and conserved quantities; what is built on them
-# is compared whole, as the tiny study.
-NUMERICAL := tests/methods tests/solvers tests/validation tests/systems/test_truth.py
 TINY := -q all --cores 2 --configfile workflow/config/tiny.yaml
 # In .ci/run the first tier has made the study already.
 HERE := $(if $(SQUEALPIPE_TINY),$(SQUEALPIPE_TINY)/study/squealpipe/results/tiny,results/tiny)
@@ -41,9 +38,9 @@ AVX2 := tests/processors avx2
 GENERIC := tests/laws tests/models tests/methods tests/tasks/linear tests/systems/test_truth.py \
   tests/systems/test_cycles.py::test_flip_of_the_impact_oscillator \
   tests/tasks/backbones/test_backbone.py::test_a_period_doubling_just_above_grazing_is_found
-test-processors: dev  ## numerical tests and the tiny study as on other processors
+test-processors: dev  ## the tests of each change, and the tiny study, as on other processors
 	$(AVX2) $(LOOP) & $(AVX2) $(ORBITS) && wait $$!
-	$(AVX2) $(TESTS) $(NUMERICAL)
+	$(AVX2) $(TESTS)
 	tests/processors generic $(TESTS) $(GENERIC)
 	$(if $(SQUEALPIPE_TINY),,$(BIN)/snakemake $(TINY))
 	$(AVX2) $(BIN)/snakemake $$(cd $(HERE) && find data -name '*.nc' | sed 's|^|results/avx2/|') \
