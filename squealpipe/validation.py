@@ -195,7 +195,10 @@ def within_a_turn(angles: Any) -> Any:
 def _path(value: Any) -> Path:
     if not isinstance(value, str | os.PathLike) or "\0" in os.fspath(value):
         raise ValueError("a path is needed")
-    return Path(value)
+    try:
+        return Path(value).expanduser()  # a shell would have replaced ~
+    except RuntimeError as error:
+        raise ValueError("no home folder is known for it; write the folder") from error
 
 
 def _values(value: Any) -> Any:

@@ -12,6 +12,7 @@ from squealpipe.execution.explain import (
     explain,
     snakemake_command,
 )
+from squealpipe.rerun.sources import PACKAGE
 
 
 def job(rule, seconds, outputs=(), reasons=(), follows=()):
@@ -84,3 +85,15 @@ def test_what_cannot_be_planned_is_one_message(tmp_path, monkeypatch):
     monkeypatch.setattr("squealpipe.execution.explain.WORKFLOW", tmp_path)
     with pytest.raises(WorkflowError, match="broken"):
         explain(directory=tmp_path)
+
+
+@pytest.mark.parametrize("ask", [snakemake_command, explain])
+def test_a_checkout_with_a_package_of_its_own_says_which_was_imported(ask, tmp_path):
+    (tmp_path / "Snakefile").touch()
+    package = tmp_path / "squealpipe"
+    package.mkdir()
+    (package / "__init__.py").touch()
+    with pytest.raises(WorkflowError) as caught:
+        ask(directory=tmp_path)
+    assert f"imported from {PACKAGE}, but" in str(caught.value)
+    assert f"PYTHONPATH={tmp_path} before the command" in str(caught.value)

@@ -33,8 +33,6 @@ def assess(
     Args:
         output: also write the dataset (.nc or .csv), and a picture of the settled motion beside it.
     """
-    from squealpipe.study.report.answer import lines
-
     if output is not None:
         verdict = compute("assess", brake, alpha1, alpha2, output=output, tol=tol)
     elif brake.picture is not None:
@@ -44,5 +42,8 @@ def assess(
 
         with working("assess"):
             verdict = squealpipe.assess(brake.params, alpha1, alpha2, tol=tol)
+
+    from squealpipe.study.report.answer import lines
+
     answer(*lines(verdict))
     return DONE if int(verdict.verdict) == 0 else ANSWER_IS_NO

@@ -35,11 +35,13 @@ def run(
         tolerance: tolerances to run at; by default 1e-6, 1e-8, 1e-10 and 1e-12.
         time_limit: wall time after which an answer is given up, s; 120 by default.
     """
-    from squealpipe.benchmark.adapters import SOLVERS, installed
-    from squealpipe.benchmark.scoring import TIME_LIMIT, TOLERANCES, benchmark
     from squealpipe.cli.output import check_output, write
 
     check_output(output, force=force)
+
+    from squealpipe.benchmark.adapters import SOLVERS, installed
+    from squealpipe.benchmark.scoring import TIME_LIMIT, TOLERANCES, benchmark
+
     solvers = installed(solver or SOLVERS)
     tolerances = sorted({*(tolerance or TOLERANCES)}, reverse=True)
 
@@ -80,11 +82,13 @@ def problems(*, output: Output = Path("problems.json"), force: Force = False) ->
 
     Example: `squealpipe benchmark problems -o problems.json`
     """
-    from squealpipe.benchmark.answers import problems_as_json
     from squealpipe.cli.output import check_output
-    from squealpipe.store.whole_files import whole_file
 
     check_output(output, force=force, kinds=(".json",))
+
+    from squealpipe.benchmark.answers import problems_as_json
+    from squealpipe.store.whole_files import whole_file
+
     with whole_file(output) as temporary:
         temporary.write_text(problems_as_json(), encoding="utf-8")
     print(f"wrote {output}")
@@ -101,10 +105,12 @@ def score(
     Args:
         answers: the file; docs/benchmark.md has its form.
     """
-    from squealpipe.benchmark.answers import score_answers
     from squealpipe.cli.output import check_output, write
 
     check_output(output, force=force)
+
+    from squealpipe.benchmark.answers import score_answers
+
     scores = write(
         lambda: score_answers(answers), output, config={"answers": answers.name}
     )
@@ -125,11 +131,13 @@ def results(
     Args:
         files: datasets of `squealpipe benchmark`, each of other solvers.
     """
-    from squealpipe.benchmark.results import results_as_json
     from squealpipe.cli.output import check_output
-    from squealpipe.store.whole_files import whole_file
 
     check_output(output, force=force, kinds=(".json",))
+
+    from squealpipe.benchmark.results import results_as_json
+    from squealpipe.store.whole_files import whole_file
+
     text = results_as_json(map(_dataset, files))
     with whole_file(output) as temporary:
         temporary.write_text(text, encoding="utf-8")

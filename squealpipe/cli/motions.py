@@ -24,7 +24,7 @@ from squealpipe.cli.arguments import (
     parse_state,
 )
 from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer
-from squealpipe.cli.output import compute, ending
+from squealpipe.cli.output import compute, ending, refuse_existing
 from squealpipe.cli.signatures import options_of
 from squealpipe.inputs import reader
 
@@ -80,6 +80,8 @@ def simulate(
     t_end = 50.0 * brake.params.time_unit if t_end is None else t_end
     if not 0 < t_end < float("inf"):
         raise ValueError(f"--t-end {t_end!r} must be greater than 0 and finite")
+
+    refuse_existing(output, force=brake.force)
 
     import numpy as np
 

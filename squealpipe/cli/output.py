@@ -30,11 +30,10 @@ def check_output(
     if path.suffix not in kinds:
         endings = ", ".join(kinds[:-1]) + f" or {kinds[-1]}"
         raise ValueError(f"{option} {path}: end the name in {endings}")
-    if not force:
-        _refuse_existing(path, option)
+    refuse_existing(path, force=force, option=option)
     reserve(path, SESSION.held, option)
-    if not force:  # another command may just have finished
-        _refuse_existing(path, option)
+    # another command may just have finished
+    refuse_existing(path, force=force, option=option)
     if path.suffix in {".csv", ".parquet"} and not force:
         for other in sorted(path.parent.glob(f"{escape(path.stem)}.*{path.suffix}")):
             raise ValueError(
@@ -43,8 +42,9 @@ def check_output(
             )
 
 
-def _refuse_existing(path: Path, option: str) -> None:
-    if path.is_file():
+def refuse_existing(path: Path, *, force: bool, option: str = "--output") -> None:
+    """Refuse a file that exists, as :func:`check_output` does, before anything slow is imported."""
+    if path.is_file() and not force:
         raise ValueError(
             f"{option} {path} exists; add --force to overwrite it, or change the name"
         )

@@ -20,7 +20,13 @@ from squealpipe.cli.arguments import (
     pairs_of,
 )
 from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer, working
-from squealpipe.cli.output import check_output, check_picture, finish, write
+from squealpipe.cli.output import (
+    check_output,
+    check_picture,
+    finish,
+    refuse_existing,
+    write,
+)
 from squealpipe.cli.signatures import options_of
 from squealpipe.config.ranges import parse_range
 
@@ -69,6 +75,8 @@ def modes(
             option = name.replace("_", "-")
             raise ValueError(f"--vary {name}: write --{option} {text} instead")
         asked[name] = _one_or_more(parse_range(text))
+
+    refuse_existing(output, force=files.force)
 
     from squealpipe.systems.structures.complex_modes import complex_modes
 
@@ -155,6 +163,8 @@ def squeal(
         onset: also lower the friction until the squeal dies, to see whether it lasts below the
             critical friction, and how far; costs about as much as the rest.
     """
+    refuse_existing(output, force=files.force)
+
     from squealpipe import squealing_modes
     from squealpipe.study.report.squealing import lines
 
@@ -202,6 +212,8 @@ def ladder(
             freedom.
         repeats: repetitions of quick methods, for the median of their CPU time.
     """
+    refuse_existing(output, force=files.force)
+
     from squealpipe import squeal_ladder
     from squealpipe.schema.comparison import Reliability
     from squealpipe.study.report.squeal_ladder import lines

@@ -18,7 +18,7 @@ from squealpipe.cli.arguments import (
     pairs_of,
 )
 from squealpipe.cli.console import DONE, SESSION, answer, say, working
-from squealpipe.cli.output import check_output, write
+from squealpipe.cli.output import check_output, refuse_existing, write
 from squealpipe.config.ranges import read_fixed, read_values, sweep_config
 
 
@@ -51,6 +51,8 @@ def sweep(
             further dimensions.
         option: a further keyword of the task, for instance t_end=100; repeat for more.
     """
+    refuse_existing(output, force=brake.force)
+
     from squealpipe.execution.chunks import beside
     from squealpipe.execution.sweep import outcome_lines, planned, run_sweep
     from squealpipe.rerun.key import rule_key, sources

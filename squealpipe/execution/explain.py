@@ -7,6 +7,7 @@ each file should be made from. Nothing is read from text that Snakemake writes f
 import json
 import os
 import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -19,7 +20,7 @@ from squealpipe.config.settings import PAPER, Study, read_study
 from squealpipe.config.yaml_files import flat, read_yaml
 from squealpipe.execution.durations import job_times, together
 from squealpipe.rerun.key import PLAN
-from squealpipe.rerun.sources import WORKFLOW
+from squealpipe.rerun.sources import PACKAGE, WORKFLOW
 from squealpipe.store.keys import misfits
 from squealpipe.store.sealed import attributes
 from squealpipe.store.whole_files import StoreError
@@ -174,6 +175,7 @@ def snakemake_command(
 
     A quick study goes beside the full one: ``results/mine-quick`` beside ``results/mine``.
     """
+    refuse_other_package(Path(directory))
     given = [Path(path).absolute() for path in configs]
     full = read_study(PAPER, *given)
     paths = [*([QUICK] if quick else []), *given]
@@ -191,6 +193,22 @@ def snakemake_command(
     if changes:
         command += ["--config", *(f"{key}={value}" for key, value in changes.items())]
     return command, study
+
+
+def refuse_other_package(directory: Path) -> None:
+    """Raise if a folder is a checkout with a package of its own, which Snakemake would import.
+
+    Its code would be compared with that of another checkout, and every rule would seem changed.
+    """
+    own = directory.absolute() / PACKAGE.name
+    if not ((own / "__init__.py").is_file() and (own.parent / "Snakefile").is_file()):
+        return
+    if not own.samefile(PACKAGE):
+        raise WorkflowError(
+            f"the package was imported from {PACKAGE}, but this folder is a checkout with one of "
+            f"its own, {own}; run .venv/bin/squealpipe of this folder (make env builds it), or "
+            f"write PYTHONPATH={shlex.quote(str(own.parent))} before the command"
+        )
 
 
 def _changes(path: Path, made: Mapping[str, Any]) -> list[str]:

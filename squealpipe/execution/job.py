@@ -1,5 +1,6 @@
 """What a rule of the workflow gives its script: a slice of the study, parameters, files."""
 
+import time
 from collections.abc import Callable, Iterable
 from functools import cached_property
 from typing import Any
@@ -25,6 +26,7 @@ class Job:
         self.settings, self.out = snakemake.params.get("settings", {}), snakemake.output
         self.key = snakemake.params.key
         self.item = snakemake.wildcards.get("scatteritem", "1-of-1")
+        self._since = time.perf_counter()
 
     @cached_property
     def params(self) -> Parameters:
@@ -55,8 +57,19 @@ class Job:
     ) -> None:
         """Run a task and save what it returns, with its provenance.
 
+        Its wall time begins where that of the result before it ended, or the job: what several
+        results of a job share is counted once, with the first of them.
+
         Args:
             further: what it is given beside the slice.
         """
         config, target = {**self.settings, **further}, output or self.out[0]
-        produce(task, config=config, output=target, inputs=inputs, key=self.key)
+        produce(
+            task,
+            config=config,
+            output=target,
+            inputs=inputs,
+            key=self.key,
+            started=self._since,
+        )
+        self._since = time.perf_counter()

@@ -47,8 +47,9 @@ EVERY = 5.0
 """Time after which finished runs go to disk, s."""
 MOST = 2000
 """Finished runs that are held in memory."""
-BATCH = 32
-"""Runs that a process gets at once, so that short ones are not lost in handing them over."""
+BATCH, BATCH_TIME = 32, 0.5
+"""Runs that a process gets at once, so that short ones are not lost in handing them over, and the
+time that they may take, s: an interruption loses what is under way."""
 
 
 @checked
@@ -245,21 +246,25 @@ def _runs(sweep: Sweep, workers: int | None, first: int) -> Iterator[Run]:
             yield _arrays(sweep, point, workers)
         return
     others = set(active_children())
-    batch = max(1, min(BATCH, len(points) // (8 * number)))
-    batches = (points[at : at + batch] for at in range(0, len(points), batch))
+    most = max(1, min(BATCH, len(points) // (8 * number)))
+    size, at = 1, 0
     with ProcessPoolExecutor(
         number, get_context("fork"), leave_interrupts_to_the_parent
     ) as pool:
         try:
             # not by its map, which cancels runs to come: the pool's thread trips over those;
             # a few ahead, so that what waits to be read is bounded
-            ahead: deque[Future[list[Run]]] = deque()
-            for part in batches:
-                ahead.append(pool.submit(_batch, sweep, part))
-                if len(ahead) > 4 * number:
-                    yield from ahead.popleft().result()
-            while ahead:
-                yield from ahead.popleft().result()
+            ahead: deque[Future[tuple[list[Run], float]]] = deque()
+            while ahead or at < len(points):
+                while at < len(points) and len(ahead) <= 4 * number:
+                    ahead.append(pool.submit(_batch, sweep, points[at : at + size]))
+                    at += size
+                runs, seconds = ahead.popleft().result()
+                # so that handing them over costs little, and an interruption loses little
+                size = min(
+                    max(1, int(len(runs) * BATCH_TIME / max(seconds, 1e-9))), most
+                )
+                yield from runs
         except BrokenProcessPool as error:
             raise RuntimeError(
                 "a worker process was killed, perhaps for want of memory; run the same command "
@@ -271,8 +276,11 @@ def _runs(sweep: Sweep, workers: int | None, first: int) -> Iterator[Run]:
             raise
 
 
-def _batch(sweep: Sweep, points: Sequence[Sequence[float]]) -> list[Run]:
-    return [_arrays(sweep, point, 1) for point in points]
+def _batch(sweep: Sweep, points: Sequence[Sequence[float]]) -> tuple[list[Run], float]:
+    """Some runs, and how long they took, s."""
+    started = time.monotonic()
+    runs = [_arrays(sweep, point, 1) for point in points]
+    return runs, time.monotonic() - started
 
 
 def _arrays(sweep: Sweep, point: Sequence[float], workers: int | None) -> Run:

@@ -24,7 +24,7 @@ from squealpipe.systems import basin, runs
 from squealpipe.systems.system import System
 from squealpipe.text import suggestion
 
-FIRST, MOST = 8 * LANES, 8192
+FIRST, MOST = LANES, 8192
 """Runs of the first block, and of the largest."""
 EVERY = 5.0
 """Time that a block should take, s."""

@@ -186,7 +186,7 @@ def named(given: Any, columns: tuple[str, str], folder: Path = Path()) -> Any:
                 f"{key} = {given[key]!r}: write the name of a file"
             )
     if set(given) == {"python"}:
-        return (folder / given["python"]).read_text(encoding="utf-8")
+        return (folder / Path(given["python"]).expanduser()).read_text(encoding="utf-8")
     options = (f"{columns[0]}_column", "value_column")
     if not {"table"} <= set(given) <= {"table", "between", *options}:
         raise ValueError(
@@ -195,4 +195,6 @@ def named(given: Any, columns: tuple[str, str], folder: Path = Path()) -> Any:
         )
     first, second = (given.get(option) for option in options)
     between = given.get("between", "linear")
-    return read_table(folder / given["table"], columns, between, (first, second))
+    return read_table(
+        folder / Path(given["table"]).expanduser(), columns, between, (first, second)
+    )

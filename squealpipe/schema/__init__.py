@@ -18,6 +18,7 @@ import xarray as xr
 
 from squealpipe.schema.agreement import Listing, RoundOff
 from squealpipe.schema.outcomes import Outcome as Outcome
+from squealpipe.text import nearest
 from squealpipe.validation import checked
 
 SYSTEM = "system "
@@ -390,12 +391,21 @@ def find(name: str) -> DatasetSchema:
         derive = importlib.import_module(f"{__name__}.{module}").derived
         if (schema := derive(name)) is not None:
             return schema  # type: ignore[no-any-return]
-    raise SchemaError(f"no schema {name!r}; known: {', '.join(sorted(schemas))}")
+    near = nearest(name, schemas)
+    raise SchemaError(
+        f"no schema {name!r}" + (f"; did you mean {near!r}?" if near else "")
+    )
 
 
 def schema_of(dataset: xr.Dataset) -> DatasetSchema:
     """The schema that a dataset states; of a system, with the names that the dataset has."""
     name = str(dataset.attrs.get("schema"))
+    if "schema" not in dataset.attrs:
+        raise SchemaError(
+            "the dataset states no schema, so it is not one of this package, or an operation has "
+            "dropped its attributes; keep them, as with xr.set_options(keep_attrs=True), or write "
+            "it by dataset.to_netcdf(path), which `squealpipe plot` and `convert` read, too"
+        )
     if not name.startswith(SYSTEM):
         return find(name)
     systems = importlib.import_module(f"{__name__}.systems")

@@ -23,10 +23,12 @@ def produce(
     output: str | os.PathLike[str],
     inputs: Iterable[str | os.PathLike[str]] = (),
     key: str | None = None,
+    started: float | None = None,
 ) -> Path:
     """Run a task, stamp the result with its provenance, and save it.
 
     Args:
+        started: when work on it began, by ``time.perf_counter``; now by default.
         config: exactly the configuration that the task was given.
         inputs: NetCDF files that the task read.
         key: of the rule (see :mod:`squealpipe.rerun.key`).
@@ -35,7 +37,7 @@ def produce(
         RuntimeError: the code was edited while the study ran, so the key may be another's; what is
             there stays.
     """
-    dataset = stamped(make, config=config, inputs=inputs)
+    dataset = stamped(make, config=config, inputs=inputs, started=started)
     if key is not None:
         refuse_edited(output)
         dataset = with_key(dataset, file_key(key, output))
@@ -47,11 +49,12 @@ def stamped(
     *,
     config: Mapping[str, Any],
     inputs: Iterable[str | os.PathLike[str]] = (),
+    started: float | None = None,
 ) -> xr.Dataset:
     """What a task makes, with its provenance and wall time, not yet saved."""
+    started = time.perf_counter() if started is None else started
     # before the task reads them: what is there afterwards may be others
     ids = {str(path): load(path).attrs["dataset_id"] for path in inputs}
-    started = time.perf_counter()
     dataset = make()
     text = canonical(config)
     return dataset.assign_attrs(

@@ -32,6 +32,11 @@ def _is_archive(folder: Path) -> bool:
 
 def refuse_place(path: Path) -> None:
     """Raise if a file must not be written there: the one gate of everything that writes."""
+    if path.parts[:1] and path.parts[0].startswith("~"):
+        raise StoreError(
+            f"{path}: the shell did not replace {path.parts[0]}, as behind an equals sign; write "
+            "the folder itself, or ./ before it if it is called so"
+        )
     if path.exists() and not path.is_file():
         raise StoreError(
             f"{path} is not a regular file; choose another name to write to"

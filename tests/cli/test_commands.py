@@ -38,6 +38,32 @@ def test_version_and_help_without_numerics(capsys):
 
 
 @pytest.mark.parametrize(
+    "words",
+    [
+        ["simulate", "1", "2"],
+        ["assess", "1", "2"],
+        [*SWEPT, "--vary", "mu=0,1"],
+        ["modes", "pad.yaml"],
+        ["squeal", "pad.yaml"],
+        ["ladder", "pad.yaml"],
+        ["benchmark"],
+        ["map", "stability"],
+    ],
+)
+def test_an_output_that_exists_is_refused_at_once(words, tmp_path):
+    (tmp_path / "there.nc").touch()
+    code = (
+        f"import sys; from squealpipe.cli import run; run({[*words, '-o', 'there.nc']});"
+        f"print(*sorted(set({HEAVY}) & set(sys.modules)))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, check=True, cwd=tmp_path
+    )
+    assert b"there.nc exists; add --force" in done.stderr
+    assert not done.stdout.strip()
+
+
+@pytest.mark.parametrize(
     ("arguments", "message"),
     [
         (["simulat"], 'Did you mean "simulate"'),
@@ -61,6 +87,9 @@ def test_version_and_help_without_numerics(capsys):
         (["simulate", "1", "2", "-o", "run.txt"], "end the name in .nc or .csv"),
         (["simulate", "1", "2", "--points", "100000000000000"], "Unable to allocate"),
         (["simulate", "1", "2", "-c", "nowhere.yaml"], "no configuration nowhere.yaml"),
+        (["simulate", "1", "2", "--mu", "1_000"], "1_000: it is not a number"),
+        (["simulate", "1", "2", "--t-end", "1_0"], "'1_0' is not a number"),
+        (["simulate", "1", "2", "--mass", "1 ton"], "1000 kg or, in America, 907.18"),
         (["verify", "nothing"], "no archive, folder or file 'nothing'"),
         (["claims", "--file", "nothing.nc"], "make them with: squealpipe run"),
         (

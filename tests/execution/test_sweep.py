@@ -19,6 +19,7 @@ from squealpipe.cli import run as command
 from squealpipe.config.ranges import longest, parse_range
 from squealpipe.config.settings import parse_study
 from squealpipe.execution.chunks import Chunks
+from squealpipe.execution.job import Job
 from squealpipe.execution.scatter import join, scattered_rows
 from squealpipe.execution.sweep import Sweep, planned, run_sweep
 from squealpipe.schema import find
@@ -255,6 +256,33 @@ def test_a_sweep_that_was_stopped_goes_on_where_it_was(tmp_path, monkeypatch, fi
     assert Chunks(tmp_path / ".runs", "1" * 16).finished() == 0  # of something else
 
 
+def test_an_interrupted_sweep_keeps_what_its_processes_finished(tmp_path, monkeypatch):
+    """Slow runs are handed out one by one: a batch of 32 would be lost as a whole."""
+    run = Sweep.run
+
+    def slow(self, point, workers=None):
+        time.sleep(0.1)
+        return run(self, point, workers)
+
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Sweep, "run", slow)
+    plan = linear_sweep(
+        vary={"mu": np.linspace(0.0, 1.0, 600).tolist(), "alpha1": [1.0]}
+    )
+    kept = Chunks(tmp_path / ".runs", "0" * 16)
+    before = signal.signal(signal.SIGALRM, interrupt)
+    signal.setitimer(signal.ITIMER_REAL, 1.5)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            run_sweep(plan, workers=2, kept=kept)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+    assert 2 <= kept.finished() < 600
+
+
 def test_a_damaged_chunk_is_made_again(tmp_path):
     kept, plan = Chunks(tmp_path / ".runs", "0" * 16), Sweep(**RAGGED)
     whole = run_sweep(plan, workers=1, kept=kept)
@@ -418,3 +446,24 @@ def test_foreign_parts_are_not_joined():
         join([a, stability_map(FORMER, GRID[3:], GRID[:4])])
     with pytest.raises(ValueError, match="no parts"):
         join([])
+
+
+def test_wall_times_of_a_job_cover_all_of_it(tmp_path):
+    """A boundary that was made before its file was had a wall time of 0.04 s."""
+    paths = [str(tmp_path / f"{name}.nc") for name in ("first", "second")]
+    given = SimpleNamespace(
+        params=SimpleNamespace(key="0" * 16, get=lambda *_: {}),
+        wildcards={},
+        output=paths,
+    )
+    started = time.perf_counter()
+    job = Job(given)
+    time.sleep(0.05)
+    made = stability_map(FORMER, ANGLES, ANGLES)
+    job.make(lambda: made, paths[0])
+    time.sleep(0.1)
+    job.make(lambda: made, paths[1])
+    took = [load(path).wall_time_s for path in paths]
+    assert took[0] >= 0.05
+    assert took[1] >= 0.1
+    assert sum(took) <= time.perf_counter() - started

@@ -21,7 +21,7 @@ from squealpipe.store import StoreError, load, produce, save
 from squealpipe.store.keys import stated_key
 from squealpipe.store.provenance import stamped
 from squealpipe.store.sealed import MARK
-from squealpipe.store.whole_files import checksum
+from squealpipe.store.whole_files import checksum, whole_file
 from squealpipe.tasks.linear.maps import stability_map
 
 ANGLES = np.linspace(0, np.pi, 31)
@@ -203,6 +203,30 @@ def test_foreign_unknown_and_damaged_files_are_refused(tmp_path, dataset, path):
     for missing in (tmp_path / "none.nc", tmp_path):
         with pytest.raises(FileNotFoundError, match="make it with snakemake"):
             load(missing)
+
+
+def test_a_dataset_of_nobody_is_refused_in_two_lines(tmp_path, dataset):
+    with pytest.raises(SchemaError, match="states no schema") as caught:
+        save(xr.Dataset({"x": ("t", [1.0])}), tmp_path / "x.nc")
+    assert "to_netcdf" in str(caught.value)
+    for name, says in (("colour_map", ""), ("stability_maps", "'stability_map'")):
+        with pytest.raises(SchemaError, match=f"no schema '{name}'.*{says}") as caught:
+            save(dataset.assign_attrs(schema=name), tmp_path / "x.nc")
+        assert len(str(caught.value)) < 80
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_home_folder_is_found(tmp_path, monkeypatch, dataset):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.chdir(tmp_path)
+    assert save(dataset, "~/map.nc") == tmp_path / "map.nc"
+    assert load(Path("~/map.nc")).identical(load(tmp_path / "map.nc"))
+    with (
+        pytest.raises(StoreError, match="the shell did not replace ~"),
+        whole_file(Path("~/other.csv")),
+    ):
+        pass
+    assert [each.name for each in tmp_path.iterdir()] == ["map.nc"]
 
 
 def test_claimed_sizes_beyond_memory_are_refused(tmp_path):

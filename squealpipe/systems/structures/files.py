@@ -60,7 +60,7 @@ def read(path: str | PathLike[str], form: type[Form]) -> Form:
         FileNotFoundError: a file that does not exist.
         ValueError: a key, value or file that is wrong; names it.
     """
-    source = Path(path)
+    source = Path(path).expanduser()
     content = _content(source)
     scales = scales_of(content["units"]) if "units" in content else SI
     matrices, labels = _matrices(content, source.parent, scales)

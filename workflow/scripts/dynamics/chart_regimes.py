@@ -107,7 +107,7 @@ def around_angles(at, state):
 
 
 over_angles: dict[str, Any] = {}
-over_friction: dict[str, dict[str, Any]] = {name: {} for name in files}
+state = None
 if damping:
     whirl_at = SCENES["F3"].alpha1, SCENES["F3"].alpha2
     first = limit_cycle(
@@ -116,9 +116,6 @@ if damping:
     if first.outcome == Outcome.converged:
         state = [float(first[name]) for name in STATE]
         over_angles = around_angles(whirl_at, state)
-        over_friction = {
-            name: around_friction(at, state) for name, at in angles.items()
-        }
 job.make(
     lambda: regime_chart(
         params,
@@ -130,9 +127,15 @@ job.make(
     job.out.angles,
 )
 for name, path in files.items():
+    at = angles[name]
     job.make(
         lambda: regime_chart(
-            params, *angles[name], kappa=kappa, mu=mu, **over_friction[name], **options
+            params,
+            *at,
+            kappa=kappa,
+            mu=mu,
+            **(around_friction(at, state) if state else {}),
+            **options,
         ),
         path,
         scene=name,
