@@ -20,7 +20,7 @@ from squealpipe.substitutes import (
     stands_for,
     stood_for,
 )
-from squealpipe.text import suggestion
+from squealpipe.text import as_number, suggestion
 from squealpipe.units import engineering, number_of
 
 FULL_TURN = 2 * math.pi * (1 + 1e-9)
@@ -96,7 +96,9 @@ def finite_number(
         return value  # copies of parameters are checked again, thousands of times in a search
     number = numbers_in_si(name, value, units, keys)
     if not is_finite_number(number):
-        raise ValueError(f"{name} = {brief(value)}: a finite number is needed")
+        is_text = isinstance(value, str) and math.isfinite(as_number(value))
+        remedy = f", not text: write {value} without quotation marks" if is_text else ""
+        raise ValueError(f"{name} = {brief(value)}: a finite number is needed{remedy}")
     return float(number)
 
 

@@ -45,7 +45,16 @@ SHOWN_IN: dict[str, tuple[tuple[float, str, float], ...]] = {
 """CF unit → factor, unit as people write it, and the least value so written; largest first."""
 PLAIN = ("percent", "permille", "ppm", "dimensionless")
 """Units of numbers without one; pint takes angles for such numbers too."""
-TURNS = ("degree", "radian", "gradian", "turn", "arcminute", "arcsecond", "milliradian")
+TURNS = (
+    "degree",
+    "radian",
+    "gradian",
+    "grade",
+    "turn",
+    "arcminute",
+    "arcsecond",
+    "milliradian",
+)
 """Units of angles, which pint takes for plain numbers."""
 TURNING, CYCLES = (*TURNS, "revolution"), ("hertz",)
 """What names of units of angular frequencies hold, rpm among them, and of frequencies."""
@@ -62,10 +71,12 @@ SPELLINGS = (
 To pint Nm is a number (of yarn) and a metre, and kmph a thousand miles per hour.
 """
 AMBIGUOUS = {
-    r"[kM]?tons?": "1000 kg or, in America, 907.18 kg; write t, or 907.18 kg",
+    r"[kM]?tons?": "1000 kg or, in America, 907.18 kg; write t, or short_ton",
     r"[kM]?tons?_force|force_[kM]?tons?": (
         "9.807 kN or, in America, 8.896 kN; write tf, or 2000 lbf"
     ),
+    "Mm": "a million metres; write mm, or km",
+    "Ms": "a million seconds; write ms, or s",
     "gr": "a gram or a grain; write g, or grain",
     "mt": "a metric ton or a thousandth of one; write t, or kg",
     "cwt|hundredweight": "45.36 kg or, in Britain, 50.8 kg; write it in kg",

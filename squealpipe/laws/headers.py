@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from squealpipe.laws.numerals import numeral
 from squealpipe.laws.rows import FileLine, FileRow, FileRows
-from squealpipe.units import UnitError, in_si, is_long_name, is_unit, plain_unit
+from squealpipe.units import USUAL, UnitError, in_si, is_long_name, is_unit, plain_unit
 
 UNITS = {"speed": "m s-1", "coefficient": "1", "compression": "m", "force": "N"}
 """Column → CF unit in which its values are stored, and meant where none is written."""
@@ -178,6 +178,7 @@ def places(
     ]
     if len(where[0]) == 1 and not where[1] and chosen[1] is None and len(filled) == 2:
         where[1] = [at for at in filled if at != where[0][0]]
+        _refuse_other_unit(path, header[where[1][0]], columns[1])
     for at, name, column, option in zip(where, chosen, columns, options, strict=True):
         if len(at) > 1:
             raise ValueError(
@@ -206,6 +207,25 @@ def places(
         Place(column, at[0], header[at[0]], _split(header[at[0]], UNITS[column])[1])
         for column, at in zip(columns, where, strict=True)
     ]
+
+
+def _refuse_other_unit(path: Path, head: str, column: str) -> None:
+    """Refuse a column of any name whose last word is a unit of something else: ``force kg``."""
+    word = re.split(r"[\s_,:;=/-]+", head.rstrip("_ "))[-1]
+    everyday = len(word) > 1 and word in (
+        *USUAL,
+        "ton",
+        "tons",
+        "lb",
+        "lbs",
+        "lbf",
+        "kgf",
+    )
+    if everyday and not _split(head, UNITS[column])[1]:
+        raise ValueError(
+            f"{path}: column {head!r} ends in {word}, which is no unit of {column}; write its unit "
+            f"in brackets, like {column} [{plain_unit(UNITS[column]) or '%'}], or take the word out"
+        )
 
 
 def _unit_too(column: str) -> str:
