@@ -1,5 +1,7 @@
 """A small run to freeze, verify and compare."""
 
+import shutil
+
 import numpy as np
 import pytest
 import yaml
@@ -40,16 +42,22 @@ def write_run(root, *, points=13, mu=0.3, results="results"):
     return root
 
 
-@pytest.fixture(name="write_run")
+@pytest.fixture(name="write_run", scope="session")
 def _write_run():
     return write_run
 
 
-@pytest.fixture(name="keys_of")
+@pytest.fixture(name="keys_of", scope="session")
 def _keys_of():
     return keys_of
 
 
+@pytest.fixture(scope="module")
+def finished_run(tmp_path_factory):
+    """A run that no test changes: computed and archived once, copied for each."""
+    return write_run(tmp_path_factory.mktemp("run") / "checkout")
+
+
 @pytest.fixture
-def run(tmp_path):
-    return write_run(tmp_path / "checkout")
+def run(finished_run, tmp_path):
+    return shutil.copytree(finished_run, tmp_path / "checkout")

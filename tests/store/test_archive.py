@@ -19,10 +19,19 @@ from squealpipe.store.runs import verify
 from squealpipe.store.whole_files import checksum
 
 
+@pytest.fixture(scope="module")
+def finished_archive(finished_run, keys_of, tmp_path_factory):
+    """A checkout with an archive that no test changes."""
+    root = shutil.copytree(
+        finished_run, tmp_path_factory.mktemp("archive") / "checkout"
+    )
+    return archive("first", keys=keys_of(root), root=root)
+
+
 @pytest.fixture
-def frozen(run, keys_of):
+def frozen(finished_archive, run):
     """Its files are read-only: to damage one, replace it."""
-    return archive("first", keys=keys_of(run), root=run)
+    return shutil.copytree(finished_archive, run / "results/archive/first")
 
 
 def replace(path, content):
@@ -225,11 +234,11 @@ def test_a_dataset_that_was_edited_by_hand_is_not_frozen(run, keys_of):
     ],
 )
 def test_no_command_writes_into_an_archive(
-    run, keys_of, monkeypatch, capsys, command, manifest
+    run, frozen, monkeypatch, capsys, command, manifest
 ):
     monkeypatch.chdir(run)
-    at = archive("first", keys=keys_of(run), root=run)
-    archive("other", keys=keys_of(run), root=run)
+    at = frozen
+    shutil.copytree(at, at.with_name("other"))
     Path("CITATION.cff").write_text("")
     shutil.copy(run / "results/data/stability_map.nc", "map.nc")
     if manifest == "lost":

@@ -12,13 +12,20 @@ from squealpipe.store.catalogue import StoredRun, matching
 from squealpipe.store.runs import locate
 
 
-@pytest.fixture
-def memory(tmp_path, write_run, keys_of, monkeypatch):
+@pytest.fixture(scope="module")
+def two_archives(tmp_path_factory, write_run, keys_of):
     """A checkout with two archives of μ = 0.3 and 0.25 and a folder of results."""
-    root = write_run(tmp_path / "checkout")
+    root = write_run(tmp_path_factory.mktemp("two") / "checkout")
     archive("first", keys=keys_of(root), root=root)
     write_run(root, mu=0.25)
     archive("second", keys=keys_of(root), root=root)
+    return root
+
+
+@pytest.fixture
+def memory(two_archives, tmp_path, monkeypatch):
+    """A copy of it, as the current folder."""
+    root = shutil.copytree(two_archives, tmp_path / "checkout")
     monkeypatch.chdir(root)
     return root
 
