@@ -32,13 +32,10 @@ MINUTES = {
     "A1: simultaneous events", "relaxation",
 }  # fmt: skip
 """Extrapolated only when references are made: none is written on which both ways disagree."""
-CASES = [
-    pytest.param(name, marks=[pytest.mark.release] * (name in SLOW))
-    for name in DATA
-    if name not in MINUTES
-]
+CASES = [name for name in DATA if name not in MINUTES]
 
 
+@pytest.mark.release
 @pytest.mark.parametrize("name", CASES)
 def test_extrapolation_agrees(name):
     assert disagreement(references()[name], extrapolation(DATA[name])) < (
@@ -47,11 +44,12 @@ def test_extrapolation_agrees(name):
 
 
 QUICK = {"two gates", "shaken table", "A1: grazing contact"}
+QUICKEST = {"two gates"}
 
 
 @pytest.mark.parametrize(
     "name",
-    [pytest.param(n, marks=[pytest.mark.release] * (n not in QUICK)) for n in DATA],
+    [pytest.param(n, marks=[pytest.mark.release] * (n not in QUICKEST)) for n in DATA],
 )
 def test_long_double_gives_what_is_shipped(name):
     """And where it is not slow, what some hundred displaced runs give."""
@@ -160,7 +158,7 @@ def test_digits_are_those_of_the_doubles(name):
     "name",
     [
         "kept at zero",
-        "chaotic impacts",
+        pytest.param("chaotic impacts", marks=pytest.mark.release),
         pytest.param("stick–slip", marks=pytest.mark.release),
         pytest.param("A1: hammering", marks=pytest.mark.release),
     ],

@@ -15,6 +15,7 @@ LONG_RUNS = ("F3", "F4", "F9b")
 """Values of chaotic length or of ties between cells: verdicts are compared only."""
 
 
+@pytest.mark.release
 def test_verdicts_and_dimensionless_values_do_not_depend_on_the_units(
     evidence, baseline
 ):

@@ -378,6 +378,7 @@ def test_a_killed_worker_is_told_with_its_remedy(monkeypatch):
         run_sweep(Sweep(**RAGGED), workers=2)
 
 
+@pytest.mark.release
 def test_a_killed_command_goes_on_where_it_was(tmp_path):
     """Its dataset is that of a command that nobody disturbed."""
     words = [

@@ -68,6 +68,7 @@ COMMAND = [
 ]  # fmt: skip
 
 
+@pytest.mark.release
 def test_a_terminal_gets_the_time_left_and_a_pipe_nothing(tmp_path):
     short = [word.replace("600", "20") for word in COMMAND]
     done = subprocess.run(short, cwd=tmp_path, capture_output=True, check=True)

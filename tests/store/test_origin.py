@@ -34,7 +34,13 @@ MODEL_AND_TOLERANCE = {
 }
 
 
-@pytest.mark.parametrize("name", MODEL_AND_TOLERANCE)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.release] * (name == "assess"))  # 5 s
+        for name in MODEL_AND_TOLERANCE
+    ],
+)
 def test_attributes_tell_what_made_it_and_survive_the_file(name, tmp_path):
     made, (model, tolerance) = CALLS[name](PARAMS), MODEL_AND_TOLERANCE[name]
     back = load(save(made, tmp_path / "made.nc"))
