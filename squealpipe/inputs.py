@@ -37,7 +37,7 @@ UNITS = UNITS_OF_INPUTS | {
 """CF units of parameters and of the options of tasks, whose values may be texts with a unit."""
 STATE, STATES = ("x", "y", "vx", "vy"), ("initial_state", "guess", "start")
 """What a state consists of, and the arguments that are states."""
-BY_NAME = ("distributions", "design", "to")
+BY_NAME = ("distributions", "design", "to", "vary", "fixed")
 """Arguments that may hold values by the name of what they are for."""
 _OF_PARTS = frozenset({*BY_NAME, *STATES, *ANGLES})
 """Further arguments that may hold texts with units."""
@@ -80,15 +80,22 @@ def parse_number(text: str, units: str | None = None) -> float:
             raise UnitError(f"{text!r}: {error}") from None
     value = as_number(text)
     if not math.isfinite(value):
-        raise ValueError(f"{text!r} is not a number; write for instance 0.3 or 1e-3")
+        of_none = ", and no unit is declared for it" if has_unit(text) else ""
+        raise ValueError(
+            f"{text!r} is not a number{of_none}; write for instance 0.3 or 1e-3"
+        )
     return value
 
 
-def reader(name: str) -> Callable[[str], float]:
-    """What reads a text as a value of a parameter, an angle or an option."""
-    if name in ANGLES:
+def reader(name: str, units: Mapping[str, str] = UNITS) -> Callable[[str], float]:
+    """What reads a text as a value of a parameter, an angle or an option.
+
+    Args:
+        units: CF unit by name; what is not there has none.
+    """
+    if name in ANGLES and units is UNITS:
         return parse_angle
-    return partial(parse_number, units=UNITS.get(name))
+    return partial(parse_number, units=units.get(name))
 
 
 def read_distribution(name: str, numbers: Mapping[str, Any]) -> dict[str, Any]:

@@ -4,6 +4,7 @@
 
 import inspect
 import re
+from dataclasses import replace
 
 import numpy as np
 import pint
@@ -16,6 +17,7 @@ from squealpipe import (
     Contact,
     Parameters,
     Structure,
+    Sweep,
     System,
     boundary_distance,
     contact_boundary,
@@ -103,6 +105,7 @@ NO_NUMBERS = {
 """Arguments that are an object or words."""
 VERBS = [
     *(name for name in squealpipe.__all__ if name not in {"run_sweep", "SCENES"}),
+    "elastic_pad",
     *(f"System.{verb}" for verb in ("simulate", "ensemble", "basin")),
     *(f"System.{verb}" for verb in ("limit_cycle", "cycle_branch", "cycle_curve")),
     *(f"Structure.{verb}" for verb in ("complex_modes", "reduce", "read", "system")),
@@ -119,6 +122,8 @@ def _function(name):
             "cycle_branch": branch.cycle_branch,
             "cycle_curve": curve.cycle_curve,
         }[verb]
+    if name == "elastic_pad":
+        return elastic_pad
     found = getattr(squealpipe, owner)
     return getattr(found, verb) if verb else found
 
@@ -314,3 +319,16 @@ def test_other_libraries_quantities_are_refused():
             ValueError, match=r"t_end = .*a quantity of another library"
         ):
             simulate(PAD, 0.1, 0.2, t_end=value)
+
+
+def test_sweeps_have_units():
+    sweep = Sweep(
+        task="validity_map",
+        params=PAD,
+        vary={"mu": QUANTITY([10, 30], "percent"), "alpha1": ["30 deg", 1.0]},
+        fixed={"alpha2": "60deg", "t_end": QUANTITY(20, "ms")},
+    )
+    assert sweep.vary == {"mu": [0.1, 0.3], "alpha1": [np.radians(30), 1.0]}
+    assert sweep.fixed == {"alpha2": np.radians(60), "t_end": 0.02}
+    with pytest.raises(ValueError, match=r"fixed = .*that is a length; a time"):
+        replace(sweep, fixed={"alpha2": 1.0, "t_end": "20 mm"})

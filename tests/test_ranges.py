@@ -118,3 +118,24 @@ def test_a_sweep_has_one_form_and_no_parameter_stands_twice_in_it():
     assert form(parameters={"mu": 0.9, "k3": 2.0, "mass": 1.0}) == form()
     with pytest.raises(ValueError, match="mu is both fixed and varied"):
         form(fixed={"mu": 0.1})
+
+
+@pytest.mark.parametrize(
+    ("task", "name", "text"),
+    [
+        ("own.py:oscillator", "k1", "7 kN/mm"),
+        ("own.py:oscillator", "x0", "1mm,2mm"),
+        ("pad.yaml:complex_modes", "preload", "1mm,2mm"),
+    ],
+)
+def test_names_of_a_system_are_not_those_of_the_brake(task, name, text):
+    """k1 of a system is not in N/m, and a preload of modes is a factor."""
+    with pytest.raises(ValueError, match="no unit is declared"):
+        read_values(name, text, task)
+
+
+def test_what_systems_and_structures_share_has_units():
+    assert read_values("alpha1", "400", "own.py:oscillator") == [400.0]
+    assert read_values("t_end", "20 ms", "own.py:oscillator") == [0.02]
+    assert read_values("mu", "10%,20%", "pad.yaml:complex_modes") == [0.1, 0.2]
+    assert read_fixed("times", ["1 ms", 0.002]) == [1e-3, 2e-3]

@@ -66,9 +66,9 @@ def sweep(
         raise ValueError(f"{name} is both fixed and varied; keep one")
     settings = sweep_config(
         task=task,
-        vary={name: read_values(name, text) for name, text in varied.items()},
+        vary={name: read_values(name, text, task) for name, text in varied.items()},
         fixed={
-            **{name: read_fixed(name, value) for name, value in options.items()},
+            **{name: read_fixed(name, value, task) for name, value in options.items()},
             **angles,
         },
         parameters=brake.params.as_dict(),

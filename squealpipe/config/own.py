@@ -75,7 +75,7 @@ class SweepSection(Section):
         found, faults = {}, []
         for name, value in given.items():
             try:
-                found[name] = read(name, value)
+                found[name] = read(name, value, info.data.get("task", ""))
             except ValueError as error:
                 faults.append(f"{name}: {error}")
         if faults:

@@ -6,7 +6,14 @@ Both are read into one canonical form, so a sweep has one meaning wherever it st
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from squealpipe.inputs import ANGLES, parse_angle, parse_number, reader
+from squealpipe.inputs import (
+    ANGLES,
+    OF_FRICTION,
+    UNITS,
+    parse_angle,
+    parse_number,
+    reader,
+)
 from squealpipe.parameters import TABLE
 from squealpipe.units import UnitError, has_unit
 
@@ -48,14 +55,33 @@ def parse_range(text: str, one: Callable[[str], float] = parse_number) -> list[f
     return [first * (last / first) ** step for step in steps[:-1]] + [last]
 
 
-def read_values(name: str, given: object) -> list[float]:
-    """Values over which a name is swept."""
-    if name in TABLE and name not in NUMBERS:
+def units_of(task: str) -> Mapping[str, str]:
+    """Name → CF unit of what a task takes; a system or structure has names of its own.
+
+    A preload of a structure's sweep is a factor, not a length, and k1 of a system whatever it says.
+    """
+    if is_structure(task):
+        names = ("mu", "belt_speed", "frequency_max", *OF_FRICTION)
+    elif ":" in task:
+        names = ("t_start", "t_end", "t_late", "tol")
+    else:
+        return UNITS
+    return {name: UNITS[name] for name in names}
+
+
+def read_values(name: str, given: object, task: str = "") -> list[float]:
+    """Values over which a name is swept.
+
+    Args:
+        task: of the sweep; by default one of the brake.
+    """
+    units = units_of(task)
+    if units is UNITS and name in TABLE and name not in NUMBERS:
         raise ValueError(
             f"{name} cannot be varied, for its values are words; sweep once for each, with {name} "
             "fixed, over mu_static or friction_speed"
         )
-    one = reader(name)
+    one = reader(name, units)
     if isinstance(given, str):
         values = parse_range(given, one)
     else:
@@ -69,29 +95,32 @@ def read_values(name: str, given: object) -> list[float]:
     return [int(value) for value in values]
 
 
-def read_fixed(name: str, given: object) -> Any:
+def read_fixed(name: str, given: object, task: str = "") -> Any:
     """A value that stays the same: an angle, a parameter, or an option of a task.
 
     Args:
         given: a value or text; an option may also be a range like ``0:20:50``, a list, a word or
             None.
+        task: of the sweep; by default one of the brake.
     """
+    units = units_of(task)
+    one = reader(name, units)
     if not isinstance(given, str | int | float | Sequence | None):
         raise ValueError(  # noqa: TRY004
             f"{given!r} is not a value; write a number, a word or a list of numbers"
         )
-    if name in (*ANGLES, *NUMBERS) and given is not None:
-        return reader(name)(_as_text(given))
+    if units is UNITS and name in (*ANGLES, *NUMBERS) and given is not None:
+        return one(_as_text(given))
     if isinstance(given, str):
         try:
-            values = parse_range(given, reader(name))
+            values = parse_range(given, one)
         except UnitError:
             raise
         except ValueError:
             return given
         given = values if len(values) > 1 else values[0]
     if isinstance(given, Sequence) and not isinstance(given, str):
-        return [parse_number(_as_text(item)) for item in given]
+        return [one(_as_text(item)) for item in given]
     if isinstance(given, float) and given.is_integer() and abs(given) < 2**53:
         return int(given)
     return given

@@ -41,6 +41,7 @@ from squealpipe.schema.origin import origin
 from squealpipe.schema.sweep import OPTIONS, fill_up, is_ragged, ragged_dims, sweep_name
 from squealpipe.tasks.sampling import default_times
 from squealpipe.text import suggestion
+from squealpipe.units import holds_units
 from squealpipe.validation import Line, Workers, checked
 
 EVERY = 5.0
@@ -54,9 +55,13 @@ time that they may take, s: an interruption loses what is under way."""
 
 @checked
 def _gate(
-    task: str, params: Parameters, vary: Mapping[str, Line], fixed: Mapping[str, Any]
-) -> None:
-    """Types of the fields of a sweep."""
+    task: str,  # noqa: ARG001 (its type is checked)
+    params: Parameters,  # noqa: ARG001
+    vary: Mapping[str, Line],
+    fixed: Mapping[str, Any],
+) -> tuple[Mapping[str, Any], Mapping[str, Any]]:
+    """What varies and what is fixed, in SI; types of all fields of a sweep are checked."""
+    return vary, fixed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,7 +86,7 @@ class Sweep:
     fixed: Mapping[str, Any]
 
     def __post_init__(self) -> None:
-        _gate(self.task, self.params, self.vary, self.fixed)
+        self._read_units()
         if self.task not in TASKS:
             raise ValueError(f"no task {self.task!r}; {suggestion(self.task, TASKS)}")
         options = options_of(self.task)
@@ -113,6 +118,14 @@ class Sweep:
         ranges = {*self.vary} & {*NUMBERS} - {"preload", *options}
         refuse_unread(params, sorted(ranges))
         self._refuse_other_times()
+
+    def _read_units(self) -> None:
+        """Check the types of all fields, and have values with units in SI."""
+        vary, fixed = _gate(self.task, self.params, self.vary, self.fixed)
+        if holds_units([*self.vary.values(), *self.fixed.values()]):
+            plain = {name: np.asarray(each).tolist() for name, each in vary.items()}
+            object.__setattr__(self, "vary", plain)
+            object.__setattr__(self, "fixed", fixed)
 
     def _with(self, given: Mapping[str, Any]) -> tuple[Parameters, dict[str, Any]]:
         """The parameters with what is given of them, and the rest: angles and options."""

@@ -21,6 +21,8 @@ _CELL = re.compile(
 )
 _PLAIN = re.compile(r"[+-]?(\d+(\.\d*|,\d+)?|[.,]\d+)", re.ASCII)
 MAY_BE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}([.,])\d{3}", re.ASCII)
+_ONE_DIGIT = re.compile(r"[+-]?\d[.,]", re.ASCII)
+"""Before the exponent of 1.000E+03, whose point is a decimal one."""
 _GROUPED = {
     # thousands, and in India hundreds of thousands; with a decimal sign behind, or several groups
     "point": re.compile(
@@ -67,10 +69,11 @@ def decimal_sign(cells: Iterable[tuple[str, str]], separator: str) -> str:
     grouped = False
     for where, text in cells:
         mantissa = _mantissa(text)
+        scientific = text != mantissa and _ONE_DIGIT.match(mantissa)
         if sign := next((s for s in _GROUPED if _GROUPED[s].fullmatch(mantissa)), None):
             grouped = True
             proven.setdefault(sign, (where, text))
-        elif match := MAY_BE_THOUSANDS.fullmatch(mantissa):
+        elif not scientific and (match := MAY_BE_THOUSANDS.fullmatch(mantissa)):
             undecided.setdefault("comma" if match[1] == "," else "point", (where, text))
         elif "," in mantissa:
             proven.setdefault("comma", (where, text))

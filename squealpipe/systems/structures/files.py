@@ -10,6 +10,8 @@ import scipy.sparse as sp
 
 from squealpipe.config.yaml_files import read_yaml
 from squealpipe.laws.friction_laws import COLUMNS
+from squealpipe.laws.numerals import decimal_sign, numeral, plain
+from squealpipe.laws.rows import text_rows
 from squealpipe.laws.tables import named
 from squealpipe.parameters import brief, is_finite_number
 from squealpipe.systems.structures.contact import Contact
@@ -237,6 +239,27 @@ def _in_order(key: str, given: Labelled, labels: list[str] | None) -> Any:
     )
 
 
+def _column(path: Path) -> np.ndarray:
+    """Numbers of a text file, one a line or all in one, as people and programs write them.
+
+    Raises:
+        ValueError: a cell that is no number, or whose comma or point may separate thousands.
+    """
+    table = text_rows(path, lambda _: False)
+    if len(table.rows) > 1 and max(len(row.cells) for row in table.rows) > 1:
+        raise ValueError("it has several columns")
+    cells = []
+    for row in table.rows:
+        for cell in filter(None, row.cells):
+            number = numeral(cell)
+            if number is None or number.unit:
+                raise ValueError(f"line {row.number}: {brief(cell)} is no number")
+            cells.append((f"line {row.number}", number.text))
+    between = table.separator if len(table.rows) == 1 else "\n"
+    sign = decimal_sign(cells, between)
+    return np.array([[float(plain(text, sign)) for _, text in cells]])
+
+
 def _load(given: Any, folder: Path, scales: Scales) -> Any:
     if given == 0:
         return 0.0
@@ -250,11 +273,11 @@ def _load(given: Any, folder: Path, scales: Scales) -> Any:
             entries = read_matrix(path, "load").matrix
             entries = entries.toarray() if sp.issparse(entries) else entries
         else:
-            entries = np.loadtxt(path, ndmin=2)
+            entries = _column(path)
     except ValueError as error:
         text = str(error).removeprefix("load: ").removeprefix(f"{path}: ")
         raise ValueError(
-            f"load: {path}: {text}; one number a line is needed"
+            f"load: {path}: {text}; one real number a line is needed"
         ) from error
     if 1 not in entries.shape or np.iscomplexobj(entries):
         raise ValueError(f"load: {path}: one real number a line is needed")

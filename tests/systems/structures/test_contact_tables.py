@@ -1,10 +1,12 @@
-"""Numbers in tables of contacts: right as people write them on five continents, or refused."""
+"""Numbers in tables of contacts and files of loads: right as people write them, or refused."""
 
 import datetime
 
 import pytest
 
 from squealpipe.systems.structures.contact_table import read_contacts
+from squealpipe.systems.structures.files import read
+from squealpipe.systems.structures.structure import Structure
 from squealpipe.systems.structures.units import SI, scales_of
 
 HEADER = ("name", "normal", "tangential", "stiffness", "preload")
@@ -107,3 +109,36 @@ def test_text_of_a_sheet_may_have_thousands(tmp_path):
         ValueError, match=r"'1.000' is text, and its point may separate"
     ):
         read_contacts(path, None, 4, SI)
+
+
+LOADS = {
+    "1.5\n-2\n": [1.5, -2.0],
+    "1.5 -2\n": [1.5, -2.0],
+    "1,5;-2,0\n": [1.5, -2.0],
+    "# N\n1.5D0\n−2\n": [1.5, -2.0],
+    "1.500e+00\n-2.000e+00\n": [1.5, -2.0],
+    "1.500\n-0.250\n": [1.5, -0.25],
+    "1'500.5\n2\n": [1500.5, 2.0],
+    "1.500\n2\n": "may separate thousands; write 1.5000 or 1500",
+    "1_500\n2\n": "line 1: '1_500' is no number",
+    "nan\n2\n": "line 1: 'nan' is no number",
+    "1.5 N\n2\n": "line 1: '1.5 N' is no number",
+    "1 2\n3 4\n": "it has several columns",
+    "1e400\n2\n": "finite numbers are needed",
+}
+
+
+@pytest.mark.parametrize("text", LOADS)
+def test_loads_are_read_as_tables_are(text, tmp_path):
+    matrix = (
+        "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 1.0\n2 2 1.0\n"
+    )
+    (tmp_path / "m.mtx").write_text(matrix)
+    (tmp_path / "load.txt").write_text(text)
+    source = tmp_path / "pad.yaml"
+    source.write_text("mass: m.mtx\nstiffness: m.mtx\nload: load.txt\n")
+    if isinstance(LOADS[text], str):
+        with pytest.raises(ValueError, match=LOADS[text]):
+            read(source, Structure)
+    else:
+        assert read(source, Structure).load.tolist() == LOADS[text]
