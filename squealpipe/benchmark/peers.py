@@ -36,10 +36,10 @@ def benchmark_beside_peers(
         if name != OURS and not run_peers
         if (found := shipped_answers(name, tolerances)) is not None
     }
-    found = benchmark(
+    scored = benchmark(
         installed(name for name in solvers if name not in stored),
         tolerances=tolerances,
         stored=stored,
     )
     names = [name.rpartition("/")[2] for name in solvers]
-    return found.sel(solver=[name for name in names if name in found.solver])
+    return scored.sel(solver=[name for name in names if name in scored.solver])

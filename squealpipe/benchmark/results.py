@@ -165,7 +165,7 @@ def shipped_answers(solver: str, tolerances: Sequence[float]) -> Stored | None:
 
 def _score_of(entry: dict[str, Any], column: int, *, answerable: bool) -> Score:
     verdict = Reliability[entry["verdict"][column]]
-    numbers = {
+    numbers: dict[str, Any] = {
         name: math.nan if entry[name][column] is None else entry[name][column]
         for name in NUMBERS
     }

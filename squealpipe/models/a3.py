@@ -148,19 +148,32 @@ def circle_arcs(
 
     Points crowd towards the ends, where the angles vary like a square root.
     """
-    nearest, farthest = abs(p.k1 - p.k2), p.k1 + p.k2
-    offset = abs(centre)
-    if radius * offset == 0:
-        return []
-    low, high = (
-        np.clip((reach**2 - offset**2 - radius**2) / (2 * offset * radius), -1.0, 1.0)
-        for reach in (nearest, farthest)
-    )
-    if low == high:
-        return []
-    turn = _crowded(np.arccos(high), np.arccos(low), points)
-    direction = centre / offset
-    return [centre + radius * direction * np.exp(1j * sign * turn) for sign in (1, -1)]
+    arcs = reached_arcs(p, centre, radius, points)
+    return [arc.reshape(-1) for arc in arcs] if np.isfinite(arcs[0]).all() else []
+
+
+def reached_arcs(p: Any, centre: Any, radius: Any, points: int) -> list[np.ndarray]:
+    """The same of many circles, two arcs (circles, points); NaN of one that is not reached.
+
+    Args:
+        p, centre, radius: numbers or arrays (circles, 1).
+    """
+    nearest, farthest = np.abs(p.k1 - p.k2), p.k1 + p.k2
+    offset = np.abs(centre)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        low, high = (
+            np.clip(
+                (reach**2 - offset**2 - radius**2) / (2 * offset * radius), -1.0, 1.0
+            )
+            for reach in (nearest, farthest)
+        )
+        none = (radius * offset == 0) | (low == high)
+        turn = _crowded(np.arccos(high), np.arccos(low), points)
+        direction = np.where(none, np.nan, centre / np.where(offset == 0, 1.0, offset))
+    return [
+        np.atleast_2d(centre + radius * direction * np.exp(1j * sign * turn))
+        for sign in (1, -1)
+    ]
 
 
 def line_parts(p: Any, normal: complex, level: float, points: int) -> list[np.ndarray]:
@@ -178,16 +191,16 @@ def line_parts(p: Any, normal: complex, level: float, points: int) -> list[np.nd
     return [unit * (distance + 1j * sign * along) for sign in (1, -1)]
 
 
-def _crowded(start: float, stop: float, points: int) -> np.ndarray:
+def _crowded(start: Any, stop: Any, points: int) -> np.ndarray:
     share = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, points))
     return np.asarray(start + (stop - start) * share)
 
 
-def flutter_circle(p: Any, k3: float) -> tuple[complex, float]:
+def flutter_circle(p: Any, k3: Any) -> tuple[Any, Any]:
     """Centre and radius of the circle in the plane of Z inside which there is flutter, N/m."""
-    return k3 * (1.0 - 1j * p.drag), abs(p.drag) * k3
+    return k3 * (1.0 - 1j * p.drag), np.abs(p.drag) * k3
 
 
-def divergence_circle(p: Any, k3: float) -> tuple[complex, float]:
+def divergence_circle(p: Any, k3: Any) -> tuple[Any, Any]:
     """Centre and radius of the circle in the plane of Z outside which there is divergence, N/m."""
-    return k3 * (1.0 - 1j * p.drag), float(np.hypot(p.k1 + p.k2 + k3, p.drag * k3))
+    return k3 * (1.0 - 1j * p.drag), np.hypot(p.k1 + p.k2 + k3, p.drag * k3)

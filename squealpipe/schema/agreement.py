@@ -12,6 +12,7 @@ class ComparedAs(Enum):
     grown = "the digits that the growth of errors leaves"
     beyond_horizon = "distribution of the cells beyond the predictability horizon"
     most = "all values but a few"
+    judged = "the values that both sides have judged"
     unjudged = "nothing"
 
 
@@ -25,6 +26,7 @@ class RoundOff:
         sample: the dimension along which the values are a sample.
         by: the variable that holds the growth of errors, or the outcome of a cell.
         share: of the values that may differ.
+        none: flag of a value that was not judged.
     """
 
     compared: ComparedAs
@@ -35,6 +37,7 @@ class RoundOff:
     sample: str = ""
     by: str = ""
     share: float = 0.0
+    none: int = -1
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -18,6 +18,7 @@ from squealpipe.schema import (
     text,
     whether,
 )
+from squealpipe.schema.agreement import ComparedAs, RoundOff
 
 CONFIDENCE = 0.95
 """Confidence of every interval that is given for a share."""
@@ -122,10 +123,16 @@ PARAMETER_INFERENCE = DatasetSchema(
         "length_ratio": Variable("free length of the springs over l_pre", dims=SAMPLE),
         "speed_ratio": Variable("belt speed over l_pre √(k/m)", dims=SAMPLE),
         "holds": flag(
-            "whether the statement holds; not judged where other statements had failed",
+            "whether the statement holds; undecided where starts that nobody can tell apart "
+            "disagree; not judged, so nothing is said of it, where cheaper statements had failed",
             Holds,
             *JUDGED,
             *STATEMENT,
+            round_off=RoundOff(
+                ComparedAs.judged,
+                "of a set that another statement has refuted none is judged",
+                none=int(Holds.not_judged),
+            ),
         ),
         "feasible": whether("all statements hold", *JUDGED),
         "outcome": outcome(

@@ -3,7 +3,12 @@
 import numpy as np
 import pytest
 
-from squealpipe.schema.dynamics.growth import Growth, growth_margin, judge_growth
+from squealpipe.schema.dynamics.growth import (
+    Growth,
+    growth_fails,
+    growth_margin,
+    judge_growth,
+)
 
 SQUARE_ROOT = np.sqrt(np.arange(1.0, 7.0))
 WHIRL = np.array([19.9, 90.5, 90.8, 90.4, 90.4, 90.4])
@@ -24,8 +29,11 @@ def test_what_a_long_run_says(sizes, growth):
 
 
 def test_the_margin_has_the_sign_of_the_verdict():
-    """√T grows by √(6/5) in the last of six windows; nothing is said of what is undecided."""
-    margins = growth_margin(np.stack([SQUARE_ROOT, WHIRL, [1, 2, 4, 8, 8.1, 9]]))
+    """√T grows by √(6/5) in the last of six windows; one window that falls short settles it."""
+    short = np.array([1.0, 2.0, 4.0, 4.1, np.nan, np.nan])
+    sizes = np.stack([SQUARE_ROOT, WHIRL, [1, 2, 4, 8, 8.1, 9], short])
+    margins = growth_margin(sizes)
     assert margins[0] == pytest.approx(np.log(np.sqrt(1.2) / 1.05), rel=1e-12)
-    assert margins[1] < 0
-    assert np.isnan(margins[2])
+    assert (margins[1:] < 0).all()
+    np.testing.assert_array_equal(growth_fails(sizes), [False, True, True, True])
+    assert np.isnan(growth_margin(np.full(6, np.nan)))

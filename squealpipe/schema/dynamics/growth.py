@@ -50,8 +50,23 @@ def judge_growth(sizes: Any) -> np.ndarray:
     return np.where(least_growth(sizes) >= GROWS, Growth.grows, otherwise)
 
 
+def growth_fails(sizes: Any) -> np.ndarray:
+    """Whether a window that is known says already that a run does not grow by the rule.
+
+    Args:
+        sizes: (…, ``WINDOWS``), NaN of windows that were not run.
+    """
+    sizes = np.asarray(sizes, float)
+    ratios = sizes[..., -JUDGED:] / sizes[..., -JUDGED - 1 : -1]
+    return np.asarray((ratios < GROWS).any(axis=-1))
+
+
 def growth_margin(sizes: Any) -> np.ndarray:
-    """ln of the least growth over ``GROWS``: positive if it grows; NaN where it is undecided."""
-    undecided = judge_growth(sizes) == Growth.undecided
-    margin = np.log(least_growth(sizes) / GROWS)
-    return np.where(undecided, np.nan, margin)
+    """ln of the least growth over ``GROWS``, positive if it grows; NaN if no window says so.
+
+    Args:
+        sizes: (…, ``WINDOWS``), NaN from the window on that follows one in which growth fails.
+    """
+    sizes = np.asarray(sizes, float)
+    ratios = sizes[..., -JUDGED:] / sizes[..., -JUDGED - 1 : -1]
+    return np.asarray(np.log(np.fmin.reduce(ratios, axis=-1) / GROWS))

@@ -81,6 +81,11 @@ def judge(
         and a[name].dims == a[how.by].dims
     ):
         return _beyond_horizon(name, a, b, entry, how)
+    if how.compared is ComparedAs.judged and a[name].shape == b[name].shape:
+        left, right = a[name].values, b[name].values
+        unjudged = (left == how.none) | (right == how.none)
+        matched = b[name].copy(data=np.where(unjudged, left, right))
+        return difference(name, a[name], matched, entry)
     if how.compared is ComparedAs.grown and stated:
         size = max(
             float(np.abs(side[name]).max()) if side[name].size else 0.0

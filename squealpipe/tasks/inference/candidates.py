@@ -12,9 +12,14 @@ from squealpipe.models.contact_system import ContactSystem, contact_system
 from squealpipe.parameters import SCENES, TABLE, Parameters, Scene, direction_of
 from squealpipe.reading import reading_of
 from squealpipe.schema import Outcome
-from squealpipe.schema.dynamics.growth import WINDOW, WINDOWS
+from squealpipe.schema.dynamics.growth import WINDOW, WINDOWS, growth_fails
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
-from squealpipe.tasks.inference.unstable_cells import Unstable, unstable_cells
+from squealpipe.tasks.inference.unstable_cells import (
+    INSIDE,
+    Unstable,
+    unstable_along_edges,
+    unstable_cells,
+)
 
 
 @dataclass(frozen=True)
@@ -32,6 +37,10 @@ class Candidates:
     Attributes:
         fields: names of ``Parameters`` → 1-D arrays of one length.
         initial_state: (x, y, ẋ, ẏ) of the scenes' runs, (4,) or one for each set, m and m/s.
+        exact: whether margins are wanted. Else they may be bounds of the right sign, and motions
+            end as soon as the sign is known.
+        sampled: whether the starts are a random sample. What is chance then shows in the share of
+            it that meets a statement, and none is judged from several starts.
     """
 
     fields: Mapping[str, np.ndarray]
@@ -39,11 +48,16 @@ class Candidates:
     workers: int | None = None
     initial_state: Any = (0.0, 0.0, 0.0, 0.0)
     model: str = "A1"
+    exact: bool = True
+    sampled: bool = False
 
     @classmethod
-    def of(cls, params: Parameters, *, tol: float, workers: int | None = 1) -> Self:
-        """One candidate."""
-        fields = {name: np.array([value]) for name, value in params.as_dict().items()}
+    def of(cls, *params: Parameters, tol: float, workers: int | None = 1) -> Self:
+        """Candidates one by one, which have the same parameters beyond the paper's model."""
+        fields = {
+            name: np.array([each.as_dict()[name] for each in params])
+            for name in params[0].as_dict()
+        }
         return cls(fields, tol, workers)
 
     def read(self, name: str) -> Self:
@@ -56,10 +70,19 @@ class Candidates:
         return replace(self, fields=fields, model=reading.a1_model)
 
     def subset(self, rows: np.ndarray) -> Self:
-        """Some of the sets, which all start alike."""
+        """Some of the sets."""
+        state = np.asarray(self.initial_state, float)
         return replace(
-            self, fields={name: each[rows] for name, each in self.fields.items()}
+            self,
+            fields={name: each[rows] for name, each in self.fields.items()},
+            initial_state=state[rows] if state.ndim == 2 else state,
         )
+
+    def moved(self, x: float, y: float) -> Self:
+        """The same sets, started from somewhere else by this displacement over l_pre."""
+        preload = np.asarray(self.fields["preload"])[:, None]
+        apart = preload * np.array([x, y, 0.0, 0.0])
+        return replace(self, initial_state=np.asarray(self.initial_state) + apart)
 
     @property
     def size(self) -> int:
@@ -101,15 +124,17 @@ class Candidates:
     def windows(self, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
         """Largest |x| in each window of a long run at a scene, and how the run ended.
 
-        Window after window starts where the one before ended; a run that ended early is not taken
-        up again, and its windows from there on are NaN.
+        Window after window starts where the one before ended. A run that ended early is not taken
+        up again, and its windows from there on are NaN; so, unless margins are wanted, one that
+        does not grow by the rule of :mod:`squealpipe.schema.dynamics.growth` whatever comes next.
         """
         sizes = np.full((self.size, WINDOWS), np.nan)
         outcome = np.full(self.size, int(Outcome.converged), np.int8)
         state = np.broadcast_to(np.array(self.initial_state, float), (self.size, 4))
         state = state.copy()
         for window in range(WINDOWS):
-            left = np.flatnonzero(outcome == Outcome.converged)
+            going = outcome == Outcome.converged
+            left = np.flatnonzero(going if self.exact else going & ~growth_fails(sizes))
             if not left.size:
                 break
             some = self.subset(left)
@@ -178,7 +203,14 @@ class Candidates:
     @cached_property
     def unstable(self) -> list[Unstable]:
         """Angles at which A3 is unstable, of each set."""
-        return [unstable_cells(params) for params in self.sets]
+        return self.unstable_cells(INSIDE)
+
+    def unstable_cells(self, inside: float) -> list[Unstable]:
+        """The same, at this distance from the centre of the disc of flutter, in radii."""
+        if self.extended:
+            return [unstable_cells(params, inside=inside) for params in self.extended]
+        fields = {**self.fields, "drag": self.drag}
+        return unstable_along_edges(fields, inside=inside)
 
 
 def sets_of(

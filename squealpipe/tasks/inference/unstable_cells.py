@@ -6,7 +6,8 @@ flutter fills one disc there, so a search along its rim finds unstable cells.
 
 from collections.abc import Mapping
 from functools import lru_cache
-from typing import NamedTuple
+from types import SimpleNamespace
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -24,6 +25,12 @@ INSIDE = 1.0 - 1e-6
 """Their distance from its centre, in radii: unstable, and at the edge where contact lasts."""
 DIVERGENT = 24
 """Points along each arc that bounds divergence."""
+AT_ONCE = 256
+"""Sets whose cells are looked for at once, half a megabyte an array."""
+READ = ("mass", "k1", "k2", "k3")
+EQUAL = ("length1", "length2", "damping1", "damping2")
+"""Parameters that the linear model reads, and others that a mirror image has to share."""
+FLUTTER = LinearRegime.flutter
 
 
 class Unstable(NamedTuple):
@@ -42,9 +49,35 @@ def unstable_cells(params: Parameters, *, inside: float = INSIDE) -> Unstable:
     """
     if not is_undamped(params):
         return _on_grid(params)
-    alpha1, alpha2 = _along_edges(params, inside)
-    regime = np.asarray(a3.regime(contact_system(params, alpha1, alpha2).invariants))
-    return _where(regime, alpha1, alpha2, regime == LinearRegime.flutter)
+    fields = {
+        name: np.array([getattr(params, name)]) for name in (*READ, *EQUAL, "drag")
+    }
+    return unstable_along_edges(fields, inside=inside)[0]
+
+
+def unstable_along_edges(
+    fields: Mapping[str, np.ndarray], *, inside: float = INSIDE
+) -> list[Unstable]:
+    """The same of many sets without dashpots, whose friction does not depend on speed.
+
+    Args:
+        fields: parameters by name, and ``drag``, (sets,).
+    """
+    found: list[Unstable] = []
+    for first in range(0, len(fields["mass"]), AT_ONCE):
+        rows = slice(first, first + AT_ONCE)
+        p = SimpleNamespace(**{name: fields[name][rows, None] for name in READ})
+        p.drag = np.asarray(fields["drag"])[rows, None]
+        mirrored = springs_alike({n: v[rows] for n, v in fields.items()})
+        alpha1, alpha2, there = _along_edges(p, mirrored, inside)
+        regime = np.asarray(a3.regime(contact_system(p, alpha1, alpha2).invariants))
+        found += [
+            _where(kind[known], first[known], second[known], kind[known] == FLUTTER)
+            for kind, first, second, known in zip(
+                regime, alpha1, alpha2, there, strict=True
+            )
+        ]
+    return found
 
 
 @lru_cache(maxsize=4)
@@ -72,31 +105,48 @@ def midpoints(number: int) -> tuple[np.ndarray, np.ndarray]:
     return alpha1.ravel(), alpha2.ravel()
 
 
+def springs_alike(fields: Mapping[str, np.ndarray | float]) -> np.ndarray:
+    """Where (α1, α2) and (π − α2, π − α1) are the same system."""
+    pairs = [
+        np.equal(fields.get(f"{name}1", 0.0), fields.get(f"{name}2", 0.0))
+        for name in ("k", "length", "damping")
+    ]
+    return np.asarray(pairs[0] & pairs[1] & pairs[2])
+
+
 def springs_are_equal(fields: Mapping[str, np.ndarray | float]) -> bool:
     """Whether (α1, α2) and (π − α2, π − α1) are the same system at every parameter set."""
-    return all(
-        bool(np.all(np.equal(fields.get(f"{name}1", 0.0), fields.get(f"{name}2", 0.0))))
-        for name in ("k", "length", "damping")
-    )
+    return bool(springs_alike(fields).all())
 
 
-def _along_edges(params: Parameters, inside: float) -> tuple[np.ndarray, np.ndarray]:
-    """Angles, rad, that are unstable if any are, undamped.
+def _along_edges(
+    p: Any, mirrored: np.ndarray, inside: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Angles, rad, that are unstable if any are, undamped, and which of them there are.
 
     Flutter is searched at ``RIM`` directions, just inside of its disc in the plane of Z. For
     divergence, outside of a circle that ends at |Z| = k1 + k2, the search goes along the middle
     between the two.
+
+    Args:
+        p: parameters, each (sets, 1).
+        mirrored: whether (α1, α2) and (π − α2, π − α1), which have the same Z, also have the same
+            motion, (sets,).
     """
-    farthest, nearest = params.k1 + params.k2, abs(params.k1 - params.k2)
-    centre, radius = a3.flutter_circle(params, params.k3)
+    farthest, nearest = p.k1 + p.k2, np.abs(p.k1 - p.k2)
+    centre, radius = a3.flutter_circle(p, p.k3)
     turn = (np.arange(RIM) + 0.5) * (2.0 * np.pi / RIM)
     flutter = centre + inside * radius * np.exp(1j * turn)
-    arcs = a3.circle_arcs(params, *a3.divergence_circle(params, params.k3), DIVERGENT)
-    edge = np.concatenate([np.zeros(0, complex), *(arc[1:-1] for arc in arcs)])
-    z = np.concatenate([flutter, edge * 0.5 * (1.0 + farthest / np.abs(edge))])
-    z = z[(np.abs(z) < farthest) & (np.abs(z) > max(nearest, 1e-9 * farthest))]
-    alpha1, alpha2 = a3.angles_from_plane(z, params)
-    if springs_are_equal(params.as_dict()):
-        # (α1, α2) and (π − α2, π − α1) have the same Z and the same motion.
-        alpha1, alpha2 = alpha1[0], alpha2[0]
-    return alpha1, alpha2
+    arcs = a3.reached_arcs(p, *a3.divergence_circle(p, p.k3), DIVERGENT)
+    edge = np.concatenate([arc[:, 1:-1] for arc in arcs], axis=1)
+    z = np.concatenate([flutter, edge * 0.5 * (1.0 + farthest / np.abs(edge))], axis=1)
+    with np.errstate(invalid="ignore"):  # NaN where the circle is not reached
+        there = (np.abs(z) < farthest) & (
+            np.abs(z) > np.maximum(nearest, 1e-9 * farthest)
+        )
+    alpha1, alpha2 = a3.angles_from_plane(np.where(there, z, farthest), p)
+    both = np.stack([there, there & ~mirrored[:, None]])
+    first, second, known = (
+        np.concatenate(list(each), axis=1) for each in (alpha1, alpha2, both)
+    )
+    return first, second, known

@@ -1,5 +1,7 @@
 """What follows for a candidate beyond the constraints: fine maps, random cells, resolutions."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -40,7 +42,8 @@ def linear(params):
 
 def judged(params):
     """And those on all angles."""
-    found = measure(Candidates.of(params, tol=1e-9), [Stage.maps])
+    on_maps = [Stage.printed, Stage.black, Stage.maps]
+    found = measure(Candidates.of(params, tol=1e-9), on_maps)
     return linear(params) | {
         name: bool(each.margin[0] > 0) for name, each in found.items()
     }
@@ -143,6 +146,9 @@ def test_the_separating_share_has_converged(likely):
     )
     assert np.abs(coarse - fine).max() < CLEAR / ANGLES[0]
     assert ((coarse > 0.5) != (fine > 0.5)).sum() <= 1
+    bounds = separating_share(replace(Candidates(likely, 1e-9), exact=False))
+    np.testing.assert_array_equal(bounds > 0.5, coarse > 0.5)
+    assert (bounds <= coarse).all()
     few = {name: values[:3] for name, values in likely.items()}
     unequal = few | {"length2": few["length1"] * (1 + 1e-12)}
     np.testing.assert_array_equal(
@@ -178,7 +184,9 @@ def test_damped_settings_are_judged_by_the_damped_problem(beyond):
         found = linear(damped)
         assert found["F6b"] == (not ((regime > 0) & sliding.possible.values).any())
         scene = SCENES["F3"]
-        f6d = measure(Candidates.of(damped, tol=1e-9))["F6d"].margin.item()
+        f6d = measure(Candidates.of(damped, tol=1e-9), [Stage.linear])[
+            "F6d"
+        ].margin.item()
         growth = stability_map(
             damped, [scene.alpha1], [scene.alpha2]
         ).growth_rate.item()
@@ -189,7 +197,8 @@ def test_damped_settings_are_judged_by_the_damped_problem(beyond):
         )
         fast = (each.with_(belt_speed=40.0) for each in (slow, params))
         margins = {
-            measure(Candidates.of(p, tol=1e-9))["F6d"].margin.item() for p in fast
+            measure(Candidates.of(p, tol=1e-9), [Stage.linear])["F6d"].margin.item()
+            for p in fast
         }
         assert len(margins) == 1  # friction falls by e^-40000 only
         changed += found != linear(params)
