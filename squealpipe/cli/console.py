@@ -26,6 +26,7 @@ SWITCHES = {"-q": "quiet", "--quiet": "quiet", "-v": "verbose", "--verbose": "ve
 
 
 AGAIN = "run the same command again"
+NOTHING_KEPT = "nothing was kept"
 
 
 @dataclass
@@ -45,7 +46,7 @@ class _Session:
     verbose: bool = False
     typed: set[str] = field(default_factory=set)
     held: ExitStack = field(default_factory=ExitStack)
-    remedy: str = AGAIN
+    remedy: str = NOTHING_KEPT
     closing: list[Callable[[], None]] = field(default_factory=list)
 
 
@@ -64,7 +65,7 @@ def session(arguments: Sequence[str]) -> Iterator[list[str]]:
         "",
         "0",
     }
-    SESSION.typed, SESSION.remedy, SESSION.closing = set(), AGAIN, []
+    SESSION.typed, SESSION.remedy, SESSION.closing = set(), NOTHING_KEPT, []
     with warnings.catch_warnings(), ExitStack() as SESSION.held:
         if not SESSION.verbose and not sys.warnoptions:
             warnings.simplefilter("ignore")
@@ -126,6 +127,10 @@ def working(what: str) -> Iterator[None]:
         task = progress.add_task(what, total=None)
         begun = False
 
+        def say_above(line: str) -> None:
+            if not SESSION.quiet:
+                progress.console.print(line, highlight=False, markup=False)
+
         def tell(share: float) -> None:
             nonlocal begun
             # the speed is that of what comes after: a resumed sweep begins at a share
@@ -133,7 +138,7 @@ def working(what: str) -> Iterator[None]:
             show(task, completed=share, total=1.0)
             begun = True
 
-        with shown(tell):
+        with shown(tell, say_above):
             yield
 
 

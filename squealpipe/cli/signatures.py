@@ -5,7 +5,9 @@ The task's signature is read from its source, not imported: ``--help`` stays qui
 
 import ast
 import inspect
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
@@ -60,3 +62,25 @@ def options_of(task: str) -> Callable[[Command], Command]:
         return command
 
     return filled
+
+
+OF_STRUCTURES = ("n_modes", "frequency_max", "t_end")
+"""Arguments of structures' tasks that messages and answers name, as options are named."""
+
+
+def in_options(text: str) -> str:
+    """The words of a task in those of a terminal: ``--n-modes 32`` for ``n_modes=32``."""
+    for name in OF_STRUCTURES:
+        option = f"--{name.replace('_', '-')}"
+        text = re.sub(rf"\b{name} ?= ?(?=[\w'.+-])", f"{option} ", text)
+        text = re.sub(rf"(?<![\w-]){name}\b", option, text)
+    return text
+
+
+@contextmanager
+def errors_in_options() -> Iterator[None]:
+    """Have errors of a structure's task say what to type."""
+    try:
+        yield
+    except ValueError as error:
+        raise ValueError(in_options(str(error))) from error

@@ -27,7 +27,7 @@ from squealpipe.cli.output import (
     refuse_existing,
     write,
 )
-from squealpipe.cli.signatures import options_of
+from squealpipe.cli.signatures import errors_in_options, in_options, options_of
 from squealpipe.config.ranges import parse_range
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ def _compute(
     structure = Structure.read(file)
     given = {name: value for name, value in options.items() if value is not None}
     config = {"parameters": structure.as_dict(), **given}
-    with working(task.__name__.replace("_", " ")):
+    with working(task.__name__.replace("_", " ")), errors_in_options():
         dataset = write(lambda: task(structure, **given), output, config=config)
     finish(dataset, output, drawn, files)
     return dataset
@@ -157,7 +157,7 @@ def squeal(
         t_end: longest time of a run, s; by default 8000 periods of the slowest unstable mode,
             after the time in which it grows.
         n_modes: modes to reduce the structure to; by default as many as errors below 1 % need,
-            and no reduction up to 32 degrees of freedom.
+            and no reduction up to 32 degrees of freedom. At most 32.
         frequency_max: reduce to the modes that the unstable ones up to this frequency need, Hz;
             needed beyond 1000 degrees of freedom.
         onset: also lower the friction until the squeal dies, to see whether it lasts below the
@@ -167,18 +167,21 @@ def squeal(
 
     from squealpipe import squealing_modes
     from squealpipe.study.report.squealing import lines
+    from squealpipe.systems.structures.squeal.plant import carried, check_modes
 
     def squeal(structure: Any, **options: Any) -> xr.Dataset:
-        limits = {
-            k: options.pop(k) for k in ("n_modes", "frequency_max") if k in options
-        }
-        reduced = structure.reduce(**limits) if limits else structure
+        number, limit = (options.pop(k, None) for k in ("n_modes", "frequency_max"))
+        check_modes(number)
+        if number is None:
+            reduced = carried(structure, limit)
+        else:
+            reduced = structure.reduce(n_modes=number, frequency_max=limit)
         return squealing_modes(reduced, **options)
 
     asked = {"n_modes": n_modes, "frequency_max": frequency_max}
     asked |= {"samples": samples, "seed": seed, "tol": tol, "t_end": t_end}
     dataset = _compute(squeal, file, asked | {"onset": onset or None}, output, files)
-    answer(*lines(dataset))
+    answer(*map(in_options, lines(dataset)))
     return DONE if int(dataset.verdict) == 0 else ANSWER_IS_NO
 
 

@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from squealpipe.schema.squealing import MOST_MODES
 from squealpipe.systems.structures.pencil import DENSE
-from squealpipe.systems.structures.squeal.plant import MOST_MODES
+from squealpipe.systems.structures.squeal.plant import carried, check_modes
 from squealpipe.systems.structures.squeal.squealing_modes import squealing_modes
 from squealpipe.systems.structures.structure import Structure
 
@@ -43,22 +44,26 @@ def modes_over_friction(structure: Structure, section: Mapping[str, Any]) -> xr.
     points = next((n for size, n in POINTS if structure.size <= size), FEWEST)
     frictions = np.linspace(0.0, BEYOND * structure.mu or 1.0, points)
     allowed = frictions[frictions <= structure.friction.largest_mu]
-    return structure.complex_modes(mu=allowed, frequency_max=section["frequency_max"])
+    return structure.complex_modes(
+        mu=allowed, frequency_max=_band(structure, section["frequency_max"])
+    )
+
+
+def _band(structure: Structure, frequency_max: float | None) -> float | None:
+    """The end of the band, Hz; none of a small structure, which is run as it is."""
+    return None if structure.size <= MOST_MODES else frequency_max
 
 
 def squealing(
     structure: Structure, section: Mapping[str, Any], workers: int
 ) -> xr.Dataset:
     """Which unstable modes squeal, of the structure reduced as its section says."""
-    limits = {
-        name: section[name]
-        for name in ("n_modes", "frequency_max")
-        if section[name] is not None
-    }
-    # a small structure is run as it is, whatever frequencies are shown
-    whole = structure.size <= MOST_MODES and section["n_modes"] is None
+    number, limit = section["n_modes"], _band(structure, section["frequency_max"])
+    check_modes(number)
     return squealing_modes(
-        structure if whole or not limits else structure.reduce(**limits),
+        carried(structure, limit)
+        if number is None
+        else structure.reduce(n_modes=number, frequency_max=limit),
         **{name: section[name] for name in ("samples", "seed", "t_end")},
         onset=True,
         workers=workers,

@@ -12,6 +12,7 @@ class _Progress:
 
     low, size = 0.0, 1.0
     show: Callable[[float], None] | None = None
+    say: Callable[[str], None] | None = None
 
 
 _NOW = _Progress()
@@ -21,6 +22,12 @@ def report(share: Callable[[], float]) -> None:
     """Show how much of the present part is done; ``share`` is called only where it is shown."""
     if _NOW.show is not None:
         _NOW.show(_NOW.low + _NOW.size * min(max(float(share()), 0.0), 1.0))
+
+
+def partial_answer(line: Callable[[], str]) -> None:
+    """Show what is known already; ``line`` is called only where it is shown."""
+    if _NOW.say is not None:
+        _NOW.say(line())
 
 
 @contextmanager
@@ -46,15 +53,22 @@ def with_progress(items: Sequence[Item]) -> Iterator[Item]:
 def alone() -> Iterator[Callable[[float], None]]:
     """Take over: what is computed meanwhile shows nothing, and its caller shows its own share."""
     show = _NOW.show
-    with shown(None):
+    with shown(None, _NOW.say):
         yield lambda share: None if show is None else show(_NOW.low + _NOW.size * share)
 
 
 @contextmanager
-def shown(show: Callable[[float], None] | None) -> Iterator[None]:
-    """Give the share of the whole that is done to ``show`` meanwhile; None shows nothing."""
-    before, _NOW.show = _NOW.show, show
+def shown(
+    show: Callable[[float], None] | None, say: Callable[[str], None] | None = None
+) -> Iterator[None]:
+    """Give the share of the whole that is done to ``show`` meanwhile; None shows nothing.
+
+    Args:
+        say: takes lines of partial answers.
+    """
+    before = _NOW.show, _NOW.say
+    _NOW.show, _NOW.say = show, say
     try:
         yield
     finally:
-        _NOW.show = before
+        _NOW.show, _NOW.say = before

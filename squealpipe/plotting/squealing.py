@@ -74,10 +74,14 @@ def draw_poles(axes: Axes, answer: xr.Dataset) -> None:
 
 
 def _poles(axes: Axes, answer: xr.Dataset) -> None:
+    # modes whose error is not known, beyond the band of a large structure, are left out
+    if "pole_growth_rate_error" in answer:
+        answer = answer.isel(pole=answer.pole_growth_rate_error.notnull().values)
     frequencies = answer.pole_frequency.values
     factor, unit = frequency_unit(frequencies)
     frequency, growth = frequencies * factor, answer.pole_growth_rate
     unstable = np.isin(answer.pole.values, answer.mode.values)
+    _errors(axes, answer, factor)
     axes.axhline(0.0, color=style.GREY, linewidth=0.6)
     for place, ring in enumerate(answer.dominant_frequency.values * factor):
         if np.isfinite(ring):
@@ -93,10 +97,34 @@ def _poles(axes: Axes, answer: xr.Dataset) -> None:
             axes.plot(
                 frequency[which], growth[which], mark, ms=4, color=colour, label=label
             )
-    show_what_grows(axes, growth.values)
+    shown = growth.values
+    if answer.sizes.get("missing", 0):
+        lost = answer.missing_growth_rate.values
+        shown = np.concatenate([shown, lost])
+        at = answer.missing_frequency.values * factor
+        axes.plot(
+            at, lost, "D", ms=4, mfc="none", color=style.RED, label="missing in the run"
+        )
+    show_what_grows(axes, shown)
     axes.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
     axes.margins(x=0.08)
     axes.set(xlabel=f"frequency ({unit})", ylabel=GROWTH)
+
+
+def _errors(axes: Axes, answer: xr.Dataset, factor: float) -> None:
+    """Bars from each mode's place to that of the whole structure's, where both are apart."""
+    if not float(answer.get("growth_rate_error", 0.0)):
+        return
+    axes.errorbar(
+        answer.pole_frequency.values * factor,
+        answer.pole_growth_rate.values,
+        answer.pole_growth_rate_error.values,
+        answer.pole_frequency_error.values * factor,
+        fmt="none",
+        ecolor=style.GREY,
+        elinewidth=0.8,
+        label="error of the modes kept",
+    )
 
 
 def draw_shares(axes: Axes, answer: xr.Dataset) -> None:

@@ -18,6 +18,8 @@ from squealpipe.schema.agreement import Listing
 from squealpipe.schema.assess import Verdict
 
 NO_ATTRACTOR = -1
+MOST_MODES = 32
+"""Modes in which a structure can be run."""
 MOST_DAMPING = 0.2
 """Largest ratio of damping that is tried as a remedy."""
 ABOVE = 1.01
@@ -57,6 +59,12 @@ def _of_onset(long_name: str, units: str = "1", *dims: str, **other: Any) -> Var
     return or_nan(long_name, units, dims, optional=True, **other)
 
 
+def _of_whole(long_name: str, units: str = "1", *dims: str, **other: Any) -> Variable:
+    """One that says how the modes kept agree with the whole; a round-off of 0 where they are it."""
+    other = {"volatile": True, **other} if "rtol" not in other else other
+    return or_nan(long_name, units, dims, optional=True, **other)
+
+
 def _level(long_name: str, units: str = "1", *, rtol: float = 0.05) -> Variable:
     return or_nan(long_name, units, _ATTRACTOR, rtol=rtol, atol=1e-3)
 
@@ -92,6 +100,39 @@ SQUEALING = DatasetSchema(
         "critical_mu": or_nan(
             "smallest friction at which growth leaves zero", "1", _MODE, rtol=1e-8
         ),
+        "mode_frequency_error": _of_whole(
+            "difference of its frequency from the whole structure's", "Hz", "mode"
+        ),
+        "mode_growth_rate_error": _of_whole(
+            "difference of its growth rate from the whole structure's", "s-1", "mode"
+        ),
+        "mode_is_sure": whether(
+            "whether it grows by more than that difference", "mode", optional=True
+        ),
+        "missing_frequency": _of_whole(
+            "frequency of an unstable mode of the whole structure that is missing in the "
+            "modes kept",
+            "Hz",
+            "missing",
+            rtol=1e-8,
+        ),
+        "missing_growth_rate": _of_whole(
+            "its growth rate", "s-1", "missing", rtol=1e-6
+        ),
+        "same_modes_grow": whether(
+            "whether the modes that grow are those of the whole structure",
+            optional=True,
+        ),
+        "whole_decays": whether(
+            "whether every small motion of the whole structure dies out", optional=True
+        ),
+        "modes_that_would_do": count(
+            "modes kept that agree with the whole structure within 1 %, where these do not; "
+            "0: not needed, or not known",
+            optional=True,
+        ),
+        "degrees_of_freedom": count("of the whole structure", optional=True),
+        "frequency_max": _of_whole("end of the band that was compared, NaN: all", "Hz"),
         "ends_in": count(
             "attractor of a start of 1 % along this mode, -1: undetermined", *_MODE
         ),
@@ -155,7 +196,18 @@ SQUEALING = DatasetSchema(
         "separated_fraction": _of_contact("share of the time without contact"),
         "stick_fraction": _of_contact("share of the time in stick"),
         "peak_force": _of_contact(
-            "largest normal force over the preload (over that of steady sliding if it is 0)"
+            "largest normal force over the preload (over that of steady sliding if it is 0), NaN "
+            "where the contact is open then"
+        ),
+        "peak_normal_force": or_nan(
+            "largest normal force", "N", _AT, rtol=0.05, atol=0.01, optional=True
+        ),
+        "sliding_force": or_nan(
+            "normal force in steady sliding, 0 where the contact is open",
+            "N",
+            ("contact",),
+            rtol=1e-6,
+            optional=True,
         ),
         "impacts_per_period": _of_contact(
             "returns to contact in a period of the dominant frequency"
@@ -190,6 +242,16 @@ SQUEALING = DatasetSchema(
         "pole_growth_rate": Variable(
             "growth rate of the mode", "s-1", _POLE, rtol=1e-6, atol=1e-6
         ),
+        "pole_frequency_error": _of_whole(
+            "difference of its frequency from the whole structure's, NaN: not known",
+            "Hz",
+            "pole",
+        ),
+        "pole_growth_rate_error": _of_whole(
+            "difference of its growth rate from the whole structure's, NaN: not known",
+            "s-1",
+            "pole",
+        ),
         **{
             name: or_nan(
                 f"{words} of a state of the motion, in the coordinates of its run",
@@ -214,6 +276,12 @@ SQUEALING = DatasetSchema(
         "added_damping": or_nan(
             "smallest ratio of damping, added to every mode, from which none grows",
             rtol=1e-5,
+        ),
+        "added_damping_outcome": flag(
+            "whether it is known: not reached up to the largest ratio tried, or unresolved "
+            "where the modes kept do not give it",
+            Outcome,
+            optional=True,
         ),
         "onset_mu": _of_onset(
             "critical friction of steady sliding: the smallest of all modes", rtol=1e-8

@@ -42,7 +42,8 @@ def test_interrupt_stops_the_command_and_its_processes(name, tmp_path):
         os.killpg(done.pid, signal.SIGINT)
         told = done.communicate(timeout=4.0)[1]
     assert done.returncode == INTERRUPTED
-    assert told == "squealpipe: interrupted; run the same command again\n"
+    remedy = "run the same command again" if name == "sweep" else "nothing was kept"
+    assert told == f"squealpipe: interrupted; {remedy}\n"
     assert not list(tmp_path.iterdir())
 
 
@@ -62,7 +63,7 @@ def test_other_signals_that_stop_a_command_leave_no_lock_either(
     with pytest.raises(SystemExit) as left:
         main()
     assert left.value.code == 128 + number
-    told = f"squealpipe: stopped by {name}; run the same command again\n"
+    told = f"squealpipe: stopped by {name}; nothing was kept\n"
     assert capsys.readouterr().err == told
     assert not list(tmp_path.iterdir())
     assert signal.getsignal(number) is before

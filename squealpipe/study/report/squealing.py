@@ -8,38 +8,61 @@ import xarray as xr
 from squealpipe.plotting.origin import parameter
 from squealpipe.schema import Outcome
 from squealpipe.schema.assess import Verdict
-from squealpipe.schema.squealing import JUST_ABOVE, NO_ATTRACTOR, Kind, OnsetKind
+from squealpipe.schema.squealing import (
+    JUST_ABOVE,
+    MOST_MODES,
+    NO_ATTRACTOR,
+    Kind,
+    OnsetKind,
+)
 from squealpipe.text import number
 from squealpipe.units import engineering
 
 LISTED = 8
 """Attractors and modes that are told."""
+EXACT = 1e-6
+"""Relative error that is not told: of a structure that was not reduced."""
 
 
 def lines(answer: xr.Dataset) -> list[str]:
     """The verdict, the modes, and what they end in."""
-    return [headline(answer), *modes(answer), *attractors(answer), *onset(answer)]
+    return [
+        headline(answer),
+        *modes(answer),
+        *missing(answer),
+        *attractors(answer),
+        *onset(answer),
+    ]
 
 
 def headline(answer: xr.Dataset) -> str:
     """The verdict in one sentence."""
     verdict = Verdict(int(answer.verdict))
+    if answer.attrs.get("not_run"):
+        return f"Undetermined: nothing was run, for {answer.attrs['not_run']}."
+    if not agrees(answer):
+        return f"Undetermined: {_disagreement(answer)}. {_what_would_do(answer)}"
     if verdict is Verdict.quiet:
         if bool(answer.quiet_unless_struck):
             lasting = answer.share.values[answer.motion.values != Verdict.quiet].sum()
             return (
                 "Quiet unless struck: small motions die out, but a vibration that lasts exists "
                 f"beside steady sliding; {_percent(lasting)} of random starts end in it."
+                f"{_within(answer)}"
             )
         if _lasts(answer):
             return (
                 "Quiet from rest: every start that settled came back to steady sliding, but "
-                "squeal that has begun at more friction lasts at this one."
+                f"squeal that has begun at more friction lasts at this one.{_within(answer)}"
             )
-        return "Quiet: steady sliding is stable, and every start that settled came back to it."
+        return (
+            "Quiet: steady sliding is stable, and every start that settled came back to it."
+            f"{_within(answer)}"
+        )
     if verdict is Verdict.undetermined:
         largest = float(answer.pole_growth_rate.max())
-        if not answer.sizes["mode"] and largest >= 0:
+        fades = bool(answer.get("whole_decays", True))
+        if not answer.sizes["mode"] and (largest >= 0 or not fades):
             return (
                 "Undetermined: small motions about steady sliding neither grow nor die out; give "
                 "the structure damping."
@@ -54,12 +77,107 @@ def headline(answer: xr.Dataset) -> str:
         return f"Squeals at {at}; contact is kept."
     worst = int(first.separated_fraction.values.argmax())
     loses = first.isel(contact=worst)
-    force = number(float(first.peak_force.max()), 2)
     return (
         f"Hammers at {at}: contact {loses.contact.item()} is open "
-        f"{_percent(float(loses.separated_fraction))} of the time, the peak force is {force} times "
-        "the preload of its contact."
+        f"{_percent(float(loses.separated_fraction))} of the time, {_peak_force(first)}."
     )
+
+
+def _peak_force(motion: xr.Dataset) -> str:
+    """The largest normal force, over the preload and in newtons as far as both are known."""
+    ratio = float(
+        motion.peak_force.max()
+    )  # NaN of contacts that are open at rest is left out
+    newtons = ""
+    if "peak_normal_force" in motion:
+        newtons = engineering(float(motion.peak_normal_force.max()), "N")
+    if not np.isfinite(ratio):
+        return (
+            f"the peak force is {newtons}" if newtons else "the peak force is not known"
+        )
+    told = f"the peak force is {number(ratio, 2)} times the preload of its contact"
+    return f"{told}, the largest of all {newtons}" if newtons else told
+
+
+def agrees(answer: xr.Dataset) -> bool:
+    """Whether the modes that grow in what was run are those of the whole structure."""
+    return bool(answer.get("same_modes_grow", True))
+
+
+def frequency_max(answer: xr.Dataset) -> float:
+    """The end of the band in which modes were compared with those of the whole, Hz."""
+    limit = float(answer.get("frequency_max", np.nan))
+    return limit if np.isfinite(limit) else np.inf
+
+
+def _within(answer: xr.Dataset) -> str:
+    """How far up small motions were looked at, where that was limited."""
+    limit = frequency_max(answer)
+    if not np.isfinite(limit):
+        return ""
+    return f" Modes above {engineering(limit, 'Hz')} were not examined."
+
+
+def _disagreement(answer: xr.Dataset) -> str:
+    """Which modes of the whole structure the modes that are run do not stand for."""
+    kept = f"the {int(answer.n_modes)} modes kept"
+    parts = []
+    if count := answer.sizes.get("missing", 0):
+        lost = answer.isel(missing=0)
+        modes_ = "mode" if count == 1 else "modes"
+        fastest = "" if count == 1 else ", the fastest"
+        parts.append(
+            f"{count} unstable {modes_} of the whole structure ({_named(lost, 'missing_')}"
+            f"{fastest}) {'is' if count == 1 else 'are'} missing in {kept}"
+        )
+    unsure = answer.isel(mode=~answer.mode_is_sure.values)
+    if unsure.sizes["mode"]:
+        names = ", ".join(f"mode {int(each)}" for each in unsure.mode.values[:LISTED])
+        parts.append(
+            f"whether {names} of {kept} grows is within the error of its growth rate"
+        )
+    return "; and ".join(parts)
+
+
+def _named(mode: xr.Dataset, prefix: str = "") -> str:
+    """Frequency and growth rate of a mode, with their errors where they are not 0."""
+    frequency, growth = (
+        float(mode[f"{prefix}{name}"]) for name in ("frequency", "growth_rate")
+    )
+    off, apart = (
+        float(mode.get(f"mode_{name}_error", 0.0))
+        for name in ("frequency", "growth_rate")
+    )
+    told = engineering(frequency, "Hz", 4), number(growth)
+    if prefix or max(off / max(frequency, 1e-300), apart / abs(growth)) < EXACT:
+        return f"{told[0]}, growth rate {told[1]} 1/s"
+    if not np.isfinite(apart):
+        return f"{told[0]}, growth rate {told[1]} 1/s of unknown error"
+    return (
+        f"{told[0]} ± {engineering(off, 'Hz', 2)}, growth rate {told[1]} ± "
+        f"{number(apart, 2)} 1/s"
+    )
+
+
+def _what_would_do(answer: xr.Dataset) -> str:
+    """How to get a verdict."""
+    enough, size = int(answer.modes_that_would_do), int(answer.degrees_of_freedom)
+    band = "or look at a narrower band with a smaller frequency_max"
+    if not enough:
+        return f"No number of modes was found that would do; {band}."
+    whole = " (all there are)" if enough == size else ""
+    if enough <= MOST_MODES:
+        return f"{enough} modes{whole} would do: n_modes={enough}."
+    return f"{enough} modes{whole} would do, more than the {MOST_MODES} that runs can have; {band}."
+
+
+def missing(answer: xr.Dataset) -> Iterator[str]:
+    """Unstable modes of the whole structure that are not among the modes kept."""
+    for place in range(min(answer.sizes.get("missing", 0), LISTED)):
+        lost = answer.isel(missing=place)
+        yield f"Not in the modes kept: {_named(lost, 'missing_')} (of the whole structure)."
+    if answer.sizes.get("missing", 0) > LISTED:
+        yield f"{answer.sizes['missing'] - LISTED} more of these grow more slowly."
 
 
 def _end(answer: xr.Dataset) -> int:
@@ -83,6 +201,8 @@ def _near(answer: xr.Dataset, motion: xr.Dataset) -> str:
 
 def level(answer: xr.Dataset) -> str:
     """How loud what a small push ends in is, and where contact is lost, in one sentence."""
+    if answer.attrs.get("not_run") or not agrees(answer):
+        return "Level: not known."
     if Verdict(int(answer.verdict)) is Verdict.quiet:
         return "Level: none."
     end = _end(answer)
@@ -120,13 +240,16 @@ def beside(answer: xr.Dataset) -> str | None:
 def modes(answer: xr.Dataset) -> Iterator[str]:
     """What becomes of each unstable mode."""
     if not answer.sizes["mode"]:
-        yield "No mode of steady sliding is unstable."
+        kept = "" if agrees(answer) else f" in the {int(answer.n_modes)} modes kept"
+        yield f"No mode of steady sliding is unstable{kept}."
     for place in range(min(answer.sizes["mode"], LISTED)):
         mode = answer.isel(mode=place)
-        named = (
-            f"Mode {int(mode.mode)} ({engineering(float(mode.frequency), 'Hz')}, growth rate "
-            f"{number(float(mode.growth_rate))} 1/s)"
-        )
+        named = f"Mode {int(mode.mode)} ({_named(mode)})"
+        if not bool(mode.get("mode_is_sure", True)):
+            named += ", whose sign of growth is not known,"
+        if answer.attrs.get("not_run"):
+            yield f"{named} is unstable."
+            continue
         end = int(mode.ends_in)
         if end == NO_ATTRACTOR:
             yield f"{named} ends in a motion that is undetermined."
@@ -144,7 +267,11 @@ def modes(answer: xr.Dataset) -> Iterator[str]:
 
 def attractors(answer: xr.Dataset) -> Iterator[str]:
     """What random starts end in."""
+    if answer.attrs.get("not_run"):
+        return
     size = answer.sizes["sample"]
+    if not agrees(answer):
+        yield f"What follows is of the {int(answer.n_modes)} modes kept, not of the structure:"
     for place in range(min(answer.sizes["attractor"], LISTED)):
         one = answer.isel(attractor=place)
         share = (
@@ -175,9 +302,14 @@ def attractors(answer: xr.Dataset) -> Iterator[str]:
         )
 
 
-def onset(answer: xr.Dataset) -> Iterator[str]:
-    """Where squeal begins and where it dies as friction falls, if it was followed."""
-    if "onset_kind" not in answer:
+def onset(answer: xr.Dataset, of_whole: float | None = None) -> Iterator[str]:
+    """Where squeal begins and where it dies as friction falls, if it was followed.
+
+    Args:
+        of_whole: critical friction of the whole structure, where it is known: it is told, and the
+            one of the modes kept is within 1 % of it (see ``squeal/onset.py``).
+    """
+    if "onset_kind" not in answer or not agrees(answer):
         return
     critical, outcome = float(answer.onset_mu), Outcome(int(answer.onset_outcome))
     if outcome is Outcome.already_unstable:
@@ -188,10 +320,14 @@ def onset(answer: xr.Dataset) -> Iterator[str]:
             "unstable."
         )
     elif np.isnan(critical):
-        yield "Where steady sliding turns unstable could not be located."
+        yield (
+            "Where steady sliding turns unstable could not be located, or not confirmed in the "
+            "whole structure."
+        )
     else:
         at = engineering(float(answer.onset_frequency), "Hz")
-        begins = f"Steady sliding turns unstable at mu = {number(critical, 4)} ({at})."
+        told = critical if of_whole is None or not of_whole > 0 else of_whole
+        begins = f"Steady sliding turns unstable at mu = {number(told, 4)} ({at})."
         yield f"{begins} {_kind(answer)}"
     for place in range(answer.sizes["track"]):
         one = answer.isel(track=place)

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.plotting.origin import parameter
-from squealpipe.schema import meanings
+from squealpipe.schema import Outcome, meanings
 from squealpipe.schema.assess import Verdict
 from squealpipe.schema.squealing import MOST_DAMPING, NO_ATTRACTOR
 from squealpipe.schema.structures import Onset
@@ -42,7 +42,7 @@ def gather_structure(
         cause(modes, answer),
         squealing.level(answer),
         squealing.beside(answer),
-        *squealing.onset(answer),
+        *squealing.onset(answer, _critical(modes)),
     )
     return {
         "title": "Which mode squeals? Report of a structure",
@@ -52,7 +52,7 @@ def gather_structure(
         "lines": [line for line in told if line],
         "quiet": verdict is Verdict.quiet,
         "stops": stops(modes, answer),
-        "fates": list(squealing.modes(answer)),
+        "fates": [*squealing.modes(answer), *squealing.missing(answer)],
         "ends": list(squealing.attractors(answer)),
         "onsets": onsets(modes),
         "contacts": contacts(answer),
@@ -84,12 +84,21 @@ def _critical(modes: xr.Dataset) -> float:
 
 def cause(modes: xr.Dataset, answer: xr.Dataset) -> str:
     """Why, in a sentence for each of the fastest modes."""
-    growing = _unstable(modes)
+    growing, beyond = _unstable(modes), _beyond(answer)
+    if not growing and beyond:
+        return f"Cause: not known of the mode at {beyond}, beyond the band that was examined."
     if not growing:
         damped = answer.pole_growth_rate.values.max() < 0
         fades = "small motions die out" if damped else "no small motion grows"
         return f"Steady sliding is stable: {fades}."
     return "Cause: " + "; ".join(_origin(modes, mode) for mode in growing[:3]) + "."
+
+
+def _beyond(answer: xr.Dataset) -> str:
+    """The fastest mode that grows in what was run beyond the band of the modes over friction."""
+    limit = squealing.frequency_max(answer)
+    above = answer.frequency.values[answer.frequency.values > limit]
+    return engineering(float(above[0]), "Hz") if above.size else ""
 
 
 def _origin(modes: xr.Dataset, mode: xr.Dataset) -> str:
@@ -126,6 +135,10 @@ def stops(modes: xr.Dataset, answer: xr.Dataset) -> list[str]:
     """What stops it, or how far from noise it is."""
     own = float(modes.mu[_own_friction(modes)])
     critical, damping = _critical(modes), float(answer.added_damping)
+    if not _unstable(modes) and (beyond := _beyond(answer)):
+        return [
+            f"What stops the mode at {beyond} was not examined: give a larger frequency_max."
+        ]
     if not _unstable(modes):
         if np.isfinite(critical):
             upto = f"mu = {number(critical)} ({_change(critical, own)})"
@@ -143,7 +156,9 @@ def stops(modes: xr.Dataset, answer: xr.Dataset) -> list[str]:
         friction = "Friction: where growth begins was not located."
     else:
         friction = "Friction: at no friction are all modes stable."
-    if np.isfinite(damping):
+    if _unresolved(answer):
+        damper = "Damping: the modes that were run do not tell how much more stops it."
+    elif np.isfinite(damping):
         damper = (
             f"More damping: with {number(100 * damping, 2)} percentage points of damping ratio "
             "added to every mode none grows."
@@ -154,6 +169,12 @@ def stops(modes: xr.Dataset, answer: xr.Dataset) -> list[str]:
             "suffice."
         )
     return [friction, damper]
+
+
+def _unresolved(answer: xr.Dataset) -> bool:
+    """Whether the added damping is not known."""
+    outcome = answer.get("added_damping_outcome", Outcome.converged)
+    return Outcome(int(outcome)) is Outcome.unresolved
 
 
 def squeal_below(answer: xr.Dataset, own: float) -> str:
@@ -218,7 +239,10 @@ def contacts(answer: xr.Dataset) -> list[dict[str, Any]]:
                 "name": str(contact),
                 "open": percent(float(at.separated_fraction)),
                 "stick": percent(float(at.stick_fraction)),
-                "force": number(float(at.peak_force)),
+                "force": _number_or_dash(at.peak_force),
+                "newtons": engineering(float(at.peak_normal_force), "N")
+                if "peak_normal_force" in at
+                else "–",
                 "impacts": number(float(at.impacts_per_period)),
                 "speed": engineering(float(at.contact_velocity_rms), "m s-1"),
             }
@@ -233,6 +257,10 @@ def contacts(answer: xr.Dataset) -> list[dict[str, Any]]:
             }
         )
     return tables
+
+
+def _number_or_dash(value: xr.DataArray) -> str:
+    return number(float(value)) if np.isfinite(value) else "–"
 
 
 def structure(modes: xr.Dataset, answer: xr.Dataset) -> dict[str, Any]:
@@ -283,6 +311,11 @@ def not_examined(answer: xr.Dataset) -> list[str]:
             f"are within {percent(errors[0])}, growth rates within {percent(errors[1])} of "
             "the larger of themselves and 1 % of the angular frequency.",
         )
+    if np.isfinite(squealing.frequency_max(answer)):
+        above = engineering(squealing.frequency_max(answer), "Hz")
+        rest.insert(1, f"Modes of the whole structure above {above}.")
+    if answer.attrs.get("not_run"):
+        rest.insert(0, f"Runs: {answer.attrs['not_run']}.")
     if float(answer.share_undetermined) > 0:
         rest.append("The starts that had not settled at the end of their runs.")
     if (answer.ends_in == NO_ATTRACTOR).any():

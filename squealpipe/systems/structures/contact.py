@@ -108,8 +108,7 @@ def directions(contacts: Sequence[Contact], size: int) -> tuple[np.ndarray, np.n
     """All normals and all tangentials, (n, contacts) each.
 
     Raises:
-        ValueError: a name twice, or directions that depend on each other: stick forces of these
-            contacts could not be told apart.
+        ValueError: a name twice, or a contact whose two directions are parallel.
     """
     names = [contact.name for contact in contacts]
     for name in names:
@@ -120,26 +119,34 @@ def directions(contacts: Sequence[Contact], size: int) -> tuple[np.ndarray, np.n
         for which in ("normal", "tangential")
     )
     for n, t, name in zip(normal.T, tangential.T, names, strict=True):
-        if _dependent(np.stack([n, t], axis=1)) is not None:
+        if are_parallel(n, t):
             raise ValueError(f"contact {name}: normal and tangential are parallel")
-    if (share := _dependent(tangential)) is not None:
-        which = [
-            name for name, part in zip(names, share, strict=True) if abs(part) > 1e-6
-        ]
-        raise ValueError(
-            f"the tangential directions of {', '.join(which)} are dependent: one follows from the "
-            "others, and so their friction forces in stick are undetermined; merge these contacts"
-        )
     return normal, tangential
+
+
+def are_parallel(one: np.ndarray, other: np.ndarray) -> bool:
+    """Whether two directions are one, up to its sign."""
+    return _dependent(np.stack([one, other], axis=1)) is not None
+
+
+def dependent_contacts(names: Sequence[str], tangentials: np.ndarray) -> list[str]:
+    """Contacts of whose sliding directions, (n, contacts), one follows from the others.
+
+    If they all stick at once, their friction forces cannot be told apart.
+    """
+    if (share := _dependent(tangentials)) is None:
+        return []
+    return [name for name, part in zip(names, share, strict=True) if abs(part) > 1e-6]
 
 
 def _dependent(columns: np.ndarray) -> Any:
     """The combination of unit columns that vanishes, None if they are independent."""
     if not columns.size:
         return None
+    lengths = np.linalg.norm(columns, axis=0)  # 0 in modes with a node at the contact
     # the triangle of QR has the same singular values and rows: columns of a large structure are
     # long, and the square factor of a full decomposition would be as large as a dense matrix
-    triangle = np.linalg.qr(columns / np.linalg.norm(columns, axis=0), mode="r")
+    triangle = np.linalg.qr(columns / np.where(lengths > 0, lengths, 1.0), mode="r")
     _, sizes, rows = np.linalg.svd(triangle, full_matrices=True)
     if columns.shape[1] <= columns.shape[0] and sizes[-1] > DEPENDENT:
         return None

@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Sequence
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 import scipy.sparse as sp
@@ -12,6 +12,23 @@ from squealpipe.systems.structures.contact import Contact, directions
 from squealpipe.systems.structures.friction import Friction, default_mu
 from squealpipe.systems.structures.matrices import checked_mass, real_square
 from squealpipe.validation import real_array
+
+OF_SLIDING = {"mu", "belt_speed", "friction_law", "mu_static", "friction_speed"}
+"""Arguments that mean the same for a structure and for a reduced one."""
+
+
+class ReducedFrom(NamedTuple):
+    """What a reduced structure was made of.
+
+    Attributes:
+        whole: the structure of all degrees of freedom.
+        frequency_max: end of the band in which the modes of both are compared, Hz; None: all.
+        truth: modes of the whole (:class:`.agreement.Truth`), where they are known already.
+    """
+
+    whole: "ContactStructure"
+    frequency_max: float | None
+    truth: Any = None
 
 
 class ContactStructure:
@@ -36,7 +53,7 @@ class ContactStructure:
 
     Raises:
         ValueError: matrices that do not fit each other, a mass that is not positive definite,
-            numbers that are not finite or not real, or contacts whose directions are dependent.
+            numbers that are not finite or not real, or a contact whose directions are parallel.
     """
 
     def __init__(
@@ -97,6 +114,8 @@ class ContactStructure:
         """Of a reduced structure, (n of the whole, n): amplitudes → displacements."""
         self.record: dict[str, Any] = {}
         """Of a reduced structure: how many modes were kept, and their errors."""
+        self.reduced_from: ReducedFrom | None = None
+        """Of a reduced structure: what it was made of."""
 
     @property
     def mu(self) -> float:
@@ -147,8 +166,19 @@ class ContactStructure:
         )
 
     def with_(self, **changes: Any) -> Self:
-        """The same structure with other arguments."""
-        return type(self)(**{**self.arguments, **changes})
+        """The same structure with other arguments.
+
+        A reduced structure stays one of the same whole if friction or the belt alone changes; with
+        other matrices, contacts or loads it is one of its own.
+        """
+        other = type(self)(**{**self.arguments, **changes})
+        if self.reduced_from is not None and set(changes) <= OF_SLIDING:
+            origin = self.reduced_from
+            other.modes = self.modes
+            other.reduced_from = ReducedFrom(
+                origin.whole.with_(**changes), origin.frequency_max
+            )
+        return other
 
     @property
     def arguments(self) -> dict[str, Any]:

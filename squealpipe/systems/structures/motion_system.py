@@ -14,6 +14,7 @@ from squealpipe.systems.definition import MOST_STATES
 from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.dynamics import Motion, Numbers, reads_speed, total
 from squealpipe.systems.structures.modes import modes_at_rest
+from squealpipe.systems.structures.reduction import conflict_in_stick
 from squealpipe.systems.system import System
 
 HIDDEN = 1e-14
@@ -37,8 +38,8 @@ def system(
             {degree of freedom: coefficient}, counted from 0.
 
     Raises:
-        ValueError: too many degrees of freedom or contacts; a degree of freedom that does not
-            exist.
+        ValueError: too many degrees of freedom or contacts; contacts that cannot all stick at once
+            for their sliding directions are dependent; a degree of freedom that does not exist.
     """
     size = structure.size
     if 2 * size > MOST_STATES:
@@ -54,8 +55,11 @@ def system(
         )
     if len(structure.contacts) > MOST_COMPONENTS:
         raise ValueError(
-            f"{len(structure.contacts)} contacts: a system can have {MOST_COMPONENTS}"
+            f"{len(structure.contacts)} contacts: a system can have {MOST_COMPONENTS}; complex "
+            "modes take any number"
         )
+    if conflict := conflict_in_stick(structure):
+        raise ValueError(conflict)
     equations = Equations(structure)
     scale = _Scale.of(structure)
     unit = "m" if structure.modes is None else "kg^0.5 m"

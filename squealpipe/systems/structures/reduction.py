@@ -1,39 +1,47 @@
 """A structure of no more modes than its unstable complex modes need."""
 
-from typing import Any, NamedTuple
+from functools import cached_property
+from typing import Any
 
 import numpy as np
+import scipy.linalg as la
 
 from squealpipe.inputs import takes_units
 from squealpipe.methods.progress import report
 from squealpipe.parameters import brief, is_finite_number, is_whole_number
-from squealpipe.systems.structures.contact import Contact
-from squealpipe.systems.structures.definition import ContactStructure
+from squealpipe.systems.structures.agreement import (
+    Agreement,
+    Truth,
+    compared,
+    refined,
+    summary,
+)
+from squealpipe.systems.structures.contact import (
+    Contact,
+    are_parallel,
+    dependent_contacts,
+)
+from squealpipe.systems.structures.definition import ContactStructure, ReducedFrom
 from squealpipe.systems.structures.dense import all_modes
 from squealpipe.systems.structures.linearized import pencil_about
 from squealpipe.systems.structures.modes import modes_at_rest
 from squealpipe.systems.structures.pencil import DENSE
-from squealpipe.systems.structures.sliding import steady_sliding
+from squealpipe.systems.structures.sliding import (
+    NoSlidingError,
+    acting_directions,
+    contact_stiffness,
+    steady_sliding,
+)
 from squealpipe.systems.structures.spectrum import Limits, Solver, check_frequency
 
 AND_LARGER = 3
 """Larger numbers of modes that must do as well: convergence is not monotonic."""
 FIRST = 64
-"""Modes computed at first of a large structure."""
-SMALLEST_GROWTH = 0.01
-"""Growth below this share of the frequency is judged by the frequency."""
-
-
-class Errors(NamedTuple):
-    """The largest errors over all unstable modes.
-
-    Attributes:
-        frequency: |Δω|/ω.
-        growth: |Δσ|/max(|σ|, 0.01 ω).
-    """
-
-    frequency: float
-    growth: float
+"""Modes computed at first of a large structure, and numbers up to which each is tried."""
+COARSER = 8
+"""Beyond, numbers grow by this part of themselves: trying each takes minutes."""
+GROWS = 1e-9
+"""Growth over the modulus of an eigenvalue above which it is no round-off of the search."""
 
 
 @takes_units
@@ -47,9 +55,11 @@ def reduce(
     """The structure in coordinates of its lowest modes at rest.
 
     The modes Φ are those of (M, K + Σ kᵢ nᵢnᵢᵀ) without friction, with ΦᵀMΦ = 1. Their number is
-    the smallest, and no smaller than that of contacts, for which every unstable mode at the
-    structure's ``mu`` and ``belt_speed`` is right within ``tol``, by frequency and by growth rate,
-    with this and the next three numbers.
+    the smallest (beyond 64 at most an eighth above it), and no smaller than that of contacts, for
+    which the same modes grow as in the whole structure and every unstable one is right within
+    ``tol``, by frequency and by growth rate, with this and the next three numbers, at the
+    structure's ``mu`` and ``belt_speed``. Contacts whose sliding directions are independent stay
+    so.
 
     Args:
         n_modes: keep so many instead.
@@ -58,7 +68,9 @@ def reduce(
 
     Returns:
         A structure with ``modes`` (n, m), amplitudes → displacements, and ``record``: ``n_modes``,
-        ``frequency_error``, ``growth_rate_error`` and ``unstable``, how many modes were judged.
+        ``frequency_error``, ``growth_rate_error``, ``unstable`` (how many modes were judged),
+        ``missing`` (frequency and growth rate of unstable modes of the whole that it lacks) and
+        ``agrees`` (whether the same modes grow).
 
     Raises:
         ValueError: an argument; there is no steady sliding.
@@ -66,8 +78,7 @@ def reduce(
     """
     if not is_finite_number(tol) or not 0 < tol < 1:
         raise ValueError(f"tol = {brief(tol)}: a number between 0 and 1 is needed")
-    # a contact's two directions are apart in two coordinates at least
-    fewest = max(len(structure.contacts), 2 if structure.contacts else 1)
+    fewest = fewest_modes(structure)
     if n_modes is not None and not (
         is_whole_number(n_modes) and fewest <= n_modes <= structure.size
     ):
@@ -81,32 +92,22 @@ def reduce(
             f"{structure.size} degrees of freedom: give frequency_max (Hz), up to which unstable "
             f"modes are to be kept; all are computed up to {DENSE}"
         )
-    truth = _unstable(structure, frequency_max)
+    search = Search(structure, Truth.of(structure, frequency_max), frequency_max)
     if n_modes is not None:
-        kept = Kept(structure, int(n_modes))
-        return kept.structure(
-            int(n_modes), _errors(truth, kept.values(int(n_modes))), truth
+        return search.structure(int(n_modes))
+    number = search.smallest(fewest, tol)
+    if number is None:
+        raise RuntimeError(
+            f"all {structure.size} modes miss tol = {tol:g}: an unstable mode is next to a double "
+            "eigenvalue, whose growth rate has no more digits; raise tol or change mu a little"
         )
-    return _smallest(structure, truth, fewest, tol)
+    return search.structure(number)
 
 
-def _smallest(
-    structure: ContactStructure, truth: np.ndarray, fewest: int, tol: float
-) -> ContactStructure:
-    most = structure.size
-    kept = Kept(structure, min(max(FIRST, fewest + AND_LARGER), most))
-    met: list[tuple[int, Errors]] = []
-    for number in range(fewest, most + 1):
-        if number > kept.number:
-            kept = Kept(structure, min(2 * kept.number, most))
-        errors = _errors(truth, kept.values(number))
-        met = [*met, (number, errors)] if max(errors) <= tol else []
-        report(lambda number=number: number / most)  # type: ignore[misc]
-        if len(met) > AND_LARGER or (met and number == most):
-            return kept.structure(*met[0], truth)
-    raise RuntimeError(
-        f"all {most} modes miss tol = {tol:g}: an unstable mode is next to a double eigenvalue, "
-        "whose growth rate has no more digits; raise tol or change mu a little"
+def fewest_modes(structure: ContactStructure) -> int:
+    """One for each contact; its two directions are apart in two coordinates at least."""
+    return min(
+        max(len(structure.contacts), 2 if structure.contacts else 1), structure.size
     )
 
 
@@ -134,6 +135,22 @@ class Kept:
         self.tangentials = modes.T @ structure.tangentials
         self.load = modes.T @ structure.load
         self.balanced = structure.given_load is None
+
+    def parallel_contact(self, number: int) -> str | None:
+        """The first contact that has no two directions in the lowest of these modes."""
+        for place, each in enumerate(self.whole.contacts):
+            normal, along = (
+                self.normals[:number, place],
+                self.tangentials[:number, place],
+            )
+            if not normal.any() or not along.any() or are_parallel(normal, along):
+                return each.name
+        return None
+
+    def dependent(self, number: int) -> list[str]:
+        """Contacts whose sliding directions are dependent in the lowest of these modes."""
+        names = [each.name for each in self.whole.contacts]
+        return dependent_contacts(names, self.tangentials[:number])
 
     def reduced(self, number: int) -> ContactStructure:
         """The structure of the lowest of these modes."""
@@ -167,36 +184,195 @@ class Kept:
         pairs = all_modes(pencil_about(reduced, state, None))
         return np.array([each.value for each in pairs])
 
-    def structure(
-        self, number: int, errors: Errors, truth: np.ndarray
-    ) -> ContactStructure:
-        """That structure with its modes and its record."""
+    def quick_values(self, number: int, added: float = 0.0) -> np.ndarray:
+        """These eigenvalues, s with Im s ≥ 0, without their last digits and their vectors.
+
+        Args:
+            added: damping ratio of every mode, beside its own.
+        """
         reduced = self.reduced(number)
-        reduced.modes = self.modes[:, :number]
+        state = steady_sliding(reduced, reduced.mu, reduced.belt_speed)
+        acting = acting_directions(reduced, state.closed, state.drag)
+        springs = contact_stiffness(reduced, state.closed, acting)
+        stiffness = self.stiffness[:number, :number] + springs.toarray()
+        along = self.tangentials[:number]
+        damping = (
+            self.damping[:number, :number]
+            + along * (state.force * state.slope) @ along.T
+        )
+        damping = damping + np.diag(2.0 * added * self.omega[:number])
+        if not damping.any():
+            squares = la.eigvals(stiffness).astype(complex)
+            roots = 1j * np.sqrt(squares)
+            values = np.concatenate([roots, -roots])
+        else:
+            unit = np.sqrt(np.linalg.norm(stiffness)) or np.linalg.norm(damping)
+            first_order = np.zeros((2 * number, 2 * number))
+            first_order[:number, number:] = unit * np.eye(number)
+            first_order[number:, :number] = -stiffness / unit
+            first_order[number:, number:] = -damping
+            values = la.eigvals(first_order)
+        return np.asarray(values[values.imag >= 0])
+
+
+class Search:
+    """Numbers of modes kept, judged by the whole structure's unstable modes.
+
+    Args:
+        frequency_max: the end of the band, Hz, or None.
+    """
+
+    def __init__(
+        self, structure: ContactStructure, truth: Truth, frequency_max: float | None
+    ) -> None:
+        self.whole, self.truth, self.frequency_max = structure, truth, frequency_max
+        self.kept = Kept(structure, min(FIRST, structure.size))
+
+    def smallest(
+        self, fewest: int, tol: float = 1e-2, most: int | None = None
+    ) -> int | None:
+        """The smallest number that meets the tolerance with the next three; None if none does.
+
+        Args:
+            most: numbers up to there are tried; None: all.
+        """
+        number, most = fewest, self.whole.size if most is None else most
+        while number <= most:
+            if self._meets_with_larger(number, tol):
+                return number
+            report(lambda number=number, most=most: number / most)  # type: ignore[misc]
+            number += (
+                1 if number < FIRST else max(1, min(number // COARSER, most - number))
+            )
+        return None
+
+    def _meets_with_larger(self, number: int, tol: float) -> bool:
+        largest = min(number + AND_LARGER, self.whole.size)
+        return all(self._meets(each, tol) for each in range(number, largest + 1))
+
+    def _meets(self, number: int, tol: float) -> bool:
+        kept = self._at_least(number)
+        if not self._reaches(number):
+            return False
+        if kept.parallel_contact(number) or self._loses_stick(number):
+            return False
+        try:
+            values = kept.quick_values(number)
+        except NoSlidingError:  # of these modes alone
+            return False
+        grows = values.real > GROWS * np.abs(values)
+        agreement = compared(self.truth, values, grows)
+        return agreement.holds and max(agreement.errors) <= tol
+
+    def _reaches(self, number: int) -> bool:
+        """Whether the unstable modes of the whole are not far above all that are kept."""
+        if number == self.whole.size:
+            return True
+        highest = np.abs(self.truth.unstable.imag).max(initial=0.0)
+        return bool(self.kept.omega[number - 1] >= 0.5 * highest)
+
+    def _loses_stick(self, number: int) -> bool:
+        """Whether sliding directions that are independent in the whole are not in these modes."""
+        return self._all_can_stick and bool(self._at_least(number).dependent(number))
+
+    @cached_property
+    def _all_can_stick(self) -> bool:
+        return not dependent_of(self.whole)
+
+    def _at_least(self, number: int) -> Kept:
+        if number > self.kept.number:
+            larger = max(number + AND_LARGER, 2 * self.kept.number)
+            self.kept = Kept(self.whole, min(larger, self.whole.size))
+        return self.kept
+
+    def structure(self, number: int) -> ContactStructure:
+        """The structure of so many modes with its record."""
+        kept = self._at_least(number)
+        if name := kept.parallel_contact(number):
+            enough = next(
+                each
+                for each in range(number, self.whole.size + 1)
+                if not self._at_least(each).parallel_contact(each)
+            )
+            raise ValueError(
+                f"n_modes = {number}: contact {name} has no two directions in the {number} modes "
+                f"kept; keep more (n_modes={enough} suffices)"
+            )
+        reduced = kept.reduced(number)
+        reduced.modes = kept.modes[:, :number]
+        reduced.reduced_from = ReducedFrom(self.whole, self.frequency_max, self.truth)
+        spectrum = Solver(reduced, Limits(), reduced.belt_speed).at(reduced.mu)
+        agreement = agreement_of(self.truth, spectrum, reduced.modes)
         reduced.record = {
             "n_modes": number,
-            "frequency_error": errors.frequency,
-            "growth_rate_error": errors.growth,
-            "unstable": len(truth),
+            **summary(agreement),
+            "unstable": len(self.truth.unstable),
         }
         return reduced
 
 
-def _unstable(structure: ContactStructure, frequency_max: float | None) -> Any:
-    """Eigenvalues of the unstable modes of the whole structure."""
-    solver = Solver(structure, Limits(frequency_max), structure.belt_speed)
-    spectrum = solver.at(structure.mu)
+def dependent_of(structure: ContactStructure) -> list[str]:
+    """Contacts of a structure that cannot all stick at once."""
+    names = [each.name for each in structure.contacts]
+    return dependent_contacts(names, structure.tangentials)
+
+
+def conflict_in_stick(structure: ContactStructure) -> str | None:
+    """Why the structure cannot be run because of contacts that stick together, and what helps."""
+    names = dependent_of(structure)
+    if not names:
+        return None
+    who = f"contacts {', '.join(names[:-1])} and {names[-1]} cannot all stick at once"
+    origin = structure.reduced_from
+    if origin is None or dependent_of(origin.whole):
+        return (
+            f"{who}: their sliding directions are linearly dependent in the structure itself, and "
+            "so their friction forces in stick are undetermined; runs need a degree of freedom "
+            "with the elasticity between them (complex modes do not)"
+        )
+    kept = Kept(origin.whole, origin.whole.size)
+    enough = next(
+        each
+        for each in range(structure.size, origin.whole.size + 1)
+        if not kept.dependent(each)
+    )
+    return (
+        f"{who}: their sliding directions are linearly dependent in the {structure.size} modes "
+        f"kept; keep more modes (n_modes={enough} suffices)"
+    )
+
+
+def agreement_of(truth: Truth, spectrum: Any, modes: np.ndarray) -> Agreement:
+    """How the modes of a reduced structure agree with those of the whole.
+
+    Args:
+        spectrum: of the reduced structure.
+        modes: (n of the whole, n), amplitudes → displacements.
+    """
     grows = spectrum.values.real > spectrum.growth_errors
-    return spectrum.values[grows & solver.selected(spectrum)]
+    return compared(truth, spectrum.values, grows, refined(truth, spectrum, modes))
 
 
-def _errors(truth: np.ndarray, reduced: np.ndarray) -> Errors:
-    """Of each unstable mode against the nearest of the reduced structure, the largest."""
-    frequency = growth = 0.0
-    for value in truth:
-        nearest = reduced[np.abs(reduced - value).argmin()]
-        size = abs(value.imag) or abs(value)
-        frequency = max(frequency, abs(nearest.imag - value.imag) / size)
-        scale = max(abs(value.real), SMALLEST_GROWTH * size)
-        growth = max(growth, abs(nearest.real - value.real) / scale)
-    return Errors(float(frequency), float(growth))
+def modes_that_would_do(structure: ContactStructure, truth: Truth) -> int | None:
+    """More modes than a reduced structure has in which it agrees with the whole within 1 %."""
+    origin = structure.reduced_from
+    if origin is None:
+        return None
+    search = Search(origin.whole, truth, origin.frequency_max)
+    return search.smallest(structure.size + 1)
+
+
+def fitted(
+    structure: ContactStructure, frequency_max: float | None, most: int
+) -> ContactStructure:
+    """The structure of the fewest modes that agree with it within 1 %, or of the most there may be.
+
+    Args:
+        frequency_max: unstable modes up to there count, Hz; needed beyond 1000 degrees of freedom.
+        most: number of modes that may be kept, no smaller than that of contacts.
+    """
+    if structure.size > DENSE and frequency_max is None:
+        return reduce(structure)  # says what is needed
+    search = Search(structure, Truth.of(structure, frequency_max), frequency_max)
+    number = search.smallest(fewest_modes(structure), most=most)
+    return search.structure(most if number is None else number)

@@ -4,12 +4,17 @@ import numpy as np
 from scipy.sparse.csgraph import connected_components
 
 from squealpipe.schema.squealing import NO_ATTRACTOR
-from squealpipe.systems.structures.squeal.settling import SettledMotion, difference
+from squealpipe.systems.structures.squeal.settling import (
+    AGREE,
+    SettledMotion,
+    difference,
+)
 
 SCATTER = 3.0
 """Multiples of a run's own change between windows within which it may be another's motion."""
-NEAREST, FARTHEST = 0.02, 0.06
-"""Difference of statistics up to which motions are one attractor, and from which they never are."""
+FARTHEST = 0.06
+"""Difference of statistics from which two runs are never near; up to that by which two windows of
+one motion may differ they always are."""
 
 
 def grouped(settled: list[SettledMotion], pushes: int) -> np.ndarray:
@@ -24,7 +29,7 @@ def grouped(settled: list[SettledMotion], pushes: int) -> np.ndarray:
         for j, other in enumerate(settled[:i]):
             if one.agrees and other.agrees and one.quiet == other.quiet:
                 allowed = np.clip(
-                    SCATTER * max(one.change, other.change), NEAREST, FARTHEST
+                    SCATTER * max(one.change, other.change), AGREE, FARTHEST
                 )
                 same = one.quiet or difference(one.last, other.last) <= allowed
                 near[i, j] = near[j, i] = same

@@ -16,7 +16,7 @@ from squealpipe.systems.structures.squeal.descent import (
     width_of,
 )
 from squealpipe.systems.structures.squeal.fold import add_fold
-from squealpipe.systems.structures.squeal.onset import FirstOnset, first_onset
+from squealpipe.systems.structures.squeal.onset import FirstOnset, confirmed_onset
 from squealpipe.systems.structures.squeal.plant import Plant
 from squealpipe.systems.structures.squeal.settling import SettledMotion
 from squealpipe.systems.structures.squeal.windows import Running
@@ -35,7 +35,7 @@ def hysteresis(
     Args:
         settled: one run of each attractor.
     """
-    found, mu = first_onset(plant), plant.structure.mu
+    found, mu = confirmed_onset(plant), plant.structure.mu
     onset = found if isinstance(found, FirstOnset) else None
     tracks: dict[int, Track] = {}
     decays = onset.damped if onset else plant.decays

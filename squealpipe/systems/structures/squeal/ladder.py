@@ -15,6 +15,7 @@ from squealpipe.schema.comparison import Reliability, Role
 from squealpipe.schema.origin import recorded
 from squealpipe.schema.outcomes import Outcome
 from squealpipe.schema.squeal_ladder import NO_MODE, SQUEAL_LADDER, PushAnswer
+from squealpipe.schema.squealing import MOST_MODES
 from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.pencil import DENSE
 from squealpipe.systems.structures.reduction import reduce
@@ -27,7 +28,7 @@ from squealpipe.systems.structures.squeal.methods import (
     exact_told,
     smoothed_told,
 )
-from squealpipe.systems.structures.squeal.plant import MOST_MODES, Plant
+from squealpipe.systems.structures.squeal.plant import Plant
 from squealpipe.systems.structures.squeal.settling import FEWEST, FIRST, horizon
 from squealpipe.systems.structures.squeal.squealing_modes import nearest
 from squealpipe.validation import Natural, NotNegative, Positive, Tolerance

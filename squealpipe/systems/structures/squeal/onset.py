@@ -9,6 +9,7 @@ from squealpipe.schema import Outcome
 from squealpipe.schema.squealing import ABOVE
 from squealpipe.schema.structures import Onset
 from squealpipe.systems.structures.complex_modes import complex_modes
+from squealpipe.systems.structures.sliding import NoSlidingError
 from squealpipe.systems.structures.squeal.plant import Plant
 
 BEYOND, POINTS = 2.0, 24
@@ -32,6 +33,31 @@ class FirstOnset:
     frequency: float
     above: Plant
     damped: bool
+
+
+def confirmed_onset(plant: Plant) -> FirstOnset | Outcome:
+    """Where steady sliding turns unstable, if the whole structure does so within 1 % of it.
+
+    It is sought in the modes that are run. Unresolved where the whole structure disagrees.
+    """
+    found = first_onset(plant)
+    if plant.structure.reduced_from is None or found is Outcome.unresolved:
+        return found
+
+    def grows(mu: float) -> bool:
+        try:
+            return bool(plant.truth_at(mu).unstable.size)
+        except NoSlidingError:
+            return False
+
+    most = min(BEYOND * plant.structure.mu, plant.structure.friction.largest_mu)
+    if isinstance(found, FirstOnset):
+        agrees = grows(ABOVE * found.mu) and not grows(BELOW * found.mu)
+    elif found is Outcome.already_unstable:
+        agrees = grows(0.0)
+    else:
+        agrees = not grows(most)
+    return found if agrees else Outcome.unresolved
 
 
 def first_onset(plant: Plant) -> FirstOnset | Outcome:

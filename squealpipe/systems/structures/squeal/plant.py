@@ -7,18 +7,60 @@ import numpy as np
 import scipy.linalg as la
 from scipy.optimize import linear_sum_assignment
 
+from squealpipe.schema.squealing import MOST_MODES
+from squealpipe.systems.components import MOST_COMPONENTS
+from squealpipe.systems.structures.agreement import Agreement, Truth, exact
 from squealpipe.systems.structures.complex_modes import complex_modes
-from squealpipe.systems.structures.definition import ContactStructure
+from squealpipe.systems.structures.definition import ContactStructure, ReducedFrom
 from squealpipe.systems.structures.modes import modes_at_rest
 from squealpipe.systems.structures.motion_system import system
-from squealpipe.systems.structures.reduction import reduce
+from squealpipe.systems.structures.pencil import DENSE
+from squealpipe.systems.structures.reduction import (
+    agreement_of,
+    conflict_in_stick,
+    fitted,
+    modes_that_would_do,
+    reduce,
+)
 from squealpipe.systems.structures.spectrum import Limits, Solver, Spectrum
 from squealpipe.systems.system import System
 
-MOST_MODES = 32
-"""Degrees of freedom that a system can carry."""
 PUSH = 0.01
 """Push along a mode, over the deformation whose energy is that of the preload."""
+
+
+def carried(
+    structure: ContactStructure, frequency_max: float | None = None
+) -> ContactStructure:
+    """A structure of as few modes as answer, and no more than a system can carry.
+
+    Args:
+        frequency_max: unstable modes up to there count, Hz; None: as it was reduced, or all.
+
+    Returns:
+        The structure itself where it is small, or where it has too many contacts to be run.
+    """
+    if not structure.contacts:
+        raise ValueError("the structure has no contacts: nothing rubs")
+    if structure.size <= MOST_MODES:
+        return structure
+    origin = structure.reduced_from or ReducedFrom(structure, frequency_max)
+    whole, band = origin.whole, origin.frequency_max
+    if len(whole.contacts) > MOST_COMPONENTS:
+        # nothing is run: what can be said is said of the structure itself
+        return (
+            structure if structure.size <= DENSE else reduce(whole, frequency_max=band)
+        )
+    return fitted(whole, band, MOST_MODES)
+
+
+def check_modes(number: int | None) -> None:
+    """Refuse a number of modes in which a structure cannot be run."""
+    if number is not None and number > MOST_MODES:
+        raise ValueError(
+            f"n_modes = {number}: a structure can be run in {MOST_MODES}; leave it out for the "
+            "fewest that answer"
+        )
 
 
 class Plant:
@@ -32,28 +74,56 @@ class Plant:
 
     Raises:
         NoSlidingError: there is no steady sliding.
-        ValueError: beyond 1000 degrees of freedom, which are to be reduced by hand.
+        ValueError: no contact; or beyond 1000 degrees of freedom, which are to be reduced by hand.
     """
 
     def __init__(self, structure: ContactStructure) -> None:
-        self.whole = structure
-        self.structure = (
-            structure if structure.size <= MOST_MODES else reduce(structure)
-        )
-        if self.structure.size > MOST_MODES:
-            raise ValueError(
-                f"{self.structure.size} modes are needed within 1 %, and {MOST_MODES} can be "
-                f"carried: give structure.reduce(n_modes={MOST_MODES}), and see its record for "
-                "the errors"
-            )
+        self.structure = carried(structure)
         self.size = self.structure.size
         solver = Solver(self.structure, Limits(None, None), self.structure.belt_speed)
         self.spectrum: Spectrum = solver.at(self.structure.mu)
         self.sliding = np.concatenate(
             [self.spectrum.state.displacement, np.zeros(self.size)]
         )
-        if not self.structure.contacts:
-            raise ValueError("the structure has no contacts: nothing rubs")
+
+    @cached_property
+    def obstacle(self) -> str | None:
+        """Why it cannot be run, and what helps; None if it can."""
+        count = len(self.structure.contacts)
+        if count > MOST_COMPONENTS:
+            return f"{count} contacts are more than the {MOST_COMPONENTS} that runs can have"
+        if self.size > MOST_MODES:
+            return (
+                f"{self.size} modes are more than the {MOST_MODES} that runs can have"
+            )
+        return conflict_in_stick(self.structure)
+
+    @cached_property
+    def agreement(self) -> Agreement:
+        """How far its modes agree with those of the structure that it was reduced from."""
+        if self.truth is None or self.structure.modes is None:
+            return exact(self.spectrum)
+        return agreement_of(self.truth, self.spectrum, self.structure.modes)
+
+    @cached_property
+    def truth(self) -> Truth | None:
+        """Modes of the structure that it was reduced from."""
+        origin = self.structure.reduced_from
+        if origin is None:
+            return None
+        return origin.truth or Truth.of(origin.whole, origin.frequency_max)
+
+    @cached_property
+    def enough(self) -> int | None:
+        """How many modes would agree with the whole where these do not; None if none are known."""
+        if self.truth is None or self.agreement.holds:
+            return None
+        return modes_that_would_do(self.structure, self.truth)
+
+    def truth_at(self, mu: float) -> Truth:
+        """Modes of the whole, or of the structure itself, at another friction."""
+        origin = self.structure.reduced_from or ReducedFrom(self.structure, None)
+        return Truth.of(origin.whole.with_(mu=mu), origin.frequency_max)
 
     @cached_property
     def system(self) -> System:

@@ -5,12 +5,14 @@ so that none of it enters a number. The others grow to twice their length each t
 settled when its statistics in two windows agree and none of its modes still grows.
 """
 
+from collections import Counter
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
 
-from squealpipe.methods.progress import alone
+from squealpipe.methods.progress import alone, partial_answer
 from squealpipe.systems.structures.squeal.plant import Plant
 from squealpipe.systems.structures.squeal.windows import (
     BLOCKS,
@@ -19,6 +21,7 @@ from squealpipe.systems.structures.squeal.windows import (
     run_window,
 )
 from squealpipe.systems.trace import TIME
+from squealpipe.units import engineering
 
 GROWTH = np.log(1e4)
 """What small motions grow by before statistics begin: from a hundredth to beyond all bounds."""
@@ -122,9 +125,32 @@ def settle(
                 before[row] = now if turn else None  # what grows is no statistics
                 states[row], regimes[row] = now.final, now.regimes
             elapsed += span
+            partial_answer(partial(_so_far, plant, settled, count, elapsed))
             span = min(length * 2.0**turn, most - elapsed)
             turn += 1
     return [settled[row] for row in range(count)]
+
+
+def _so_far(
+    plant: Plant, settled: dict[int, SettledMotion], count: int, elapsed: float
+) -> str:
+    """What starts have settled to until now, in a line."""
+    omega = plant.rest[0]
+    ends: Counter[str] = Counter()
+    for motion in settled.values():
+        if not motion.agrees:
+            ends["not settled"] += 1
+        elif motion.quiet:
+            ends["steady sliding"] += 1
+        else:
+            mode = int(motion.last.modal.argmax())
+            ends[f"near {engineering(omega[mode] / (2 * np.pi), 'Hz')}"] += 1
+    told = ", ".join(f"{number} {where}" for where, number in ends.most_common())
+    done = sum(motion.agrees for motion in settled.values())
+    return (
+        f"after {engineering(elapsed, 's')}: {done} of {count} starts have settled"
+        + (f" ({told})" if told else "")
+    )
 
 
 def at_rest_regimes(plant: Plant) -> np.ndarray:

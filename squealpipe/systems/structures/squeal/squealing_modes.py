@@ -54,7 +54,8 @@ def squealing_modes(
 
     Args:
         structure: a :class:`squealpipe.Structure`; one of more than 32 degrees of freedom is
-            reduced within 1 % first, and beyond 1000 must be (see ``Structure.reduce``).
+            reduced first, to the fewest modes within 1 % or to 32, and beyond 1000 must be (see
+            ``Structure.reduce``).
         samples: random starts.
         t_end: longest time of a run, s; by default 8000 periods of the slowest unstable mode,
             beyond the time in which it grows.
@@ -66,8 +67,12 @@ def squealing_modes(
 
     Returns:
         Dataset ``squealing_modes``: over ``mode`` the unstable modes, and which attractor they end
-        in; over ``attractor`` kind, frequency, level, and by contact the shares of time separated
-        and in stick; ``share`` of the random starts with its interval; ``verdict``. With
+        in, with the errors of the reduction; over ``missing`` unstable modes of the whole structure
+        that the reduced one lacks; over ``attractor`` kind, frequency, level, and by contact the
+        shares of time separated and in stick; ``share`` of the random starts with its interval;
+        ``verdict``. It is undetermined where an unstable mode is missing or the sign of a growth
+        rate is within its error (``modes_that_would_do`` would decide), and where nothing could be
+        run: the attribute ``not_run`` says why. With
         ``onset`` also ``onset_kind`` (supercritical, or subcritical: squeal lasts below the
         critical friction), ``mu_dies`` of each motion that was followed, over ``track``,
         ``squeals_below_critical`` and ``hysteresis``.
@@ -81,8 +86,11 @@ def squealing_modes(
         pushes = [plant.pushed(int(plant.spectrum.values.real.argmax()), PUSH)]
     drawn = plant.random_states(samples, seed)
     how = Running(tol, seed, workers)
-    settled = settle(plant, np.concatenate([pushes, drawn]), t_end, how)
+    starts = np.concatenate([pushes, drawn])
+    settled = [] if plant.obstacle else settle(plant, starts, t_end, how)
     numbers = grouped(settled, len(pushes))
+    if plant.obstacle:
+        numbers = np.full(len(starts), NO_ATTRACTOR)
     members = [
         [run for run, at in zip(settled, numbers, strict=True) if at == number]
         for number in range(numbers.max(initial=NO_ATTRACTOR) + 1)
@@ -91,17 +99,13 @@ def squealing_modes(
     of_mode = _of_modes(plant, settled, numbers, modes)
     of_attractor = _of_attractors(plant, members, modes)
     shares = _shares(numbers[len(pushes) :], len(members))
-    first = int(numbers[0])
-    verdict = Verdict.undetermined
-    decided = plant.unstable.size or plant.decays  # a push lasts where nothing damps it
-    if decided and first != NO_ATTRACTOR and modes[first].kind is not Kind.undetermined:
-        verdict = Verdict(int(of_attractor["motion"][first]))
     below = {}
-    if onset:
+    if onset and not plant.obstacle:
         below = hysteresis(plant, [runs[0] for runs in members], how)
+    verdict = _verdict(plant, int(numbers[0]), modes, of_attractor["motion"])
     loud = [place for place, each in enumerate(modes) if not members[place][0].quiet]
     drawn_in = set(numbers[len(pushes) :].tolist())
-    record = plant.structure.record
+    damping, damping_outcome = added_damping(plant)
     return build(
         SQUEALING,
         {
@@ -114,13 +118,14 @@ def squealing_modes(
             and bool(drawn_in & set(loud)),
             "ends_at": numbers[len(pushes) :],
             "start_energy": plant.sizes(drawn - plant.sliding) ** 2 / plant.energy,
-            "settled_by": np.array([run.elapsed for run in settled[len(pushes) :]]),
+            "settled_by": np.array(
+                [run.elapsed for run in settled[len(pushes) :]] or np.zeros(samples)
+            ),
             "pole_frequency": plant.frequencies,
             "pole_growth_rate": plant.spectrum.values.real,
-            "added_damping": added_damping(plant.structure),
-            "n_modes": plant.size,
-            "frequency_error": record.get("frequency_error", 0.0),
-            "growth_rate_error": record.get("growth_rate_error", 0.0),
+            "added_damping": damping,
+            "added_damping_outcome": damping_outcome,
+            **_of_whole(plant),
         },
         {
             "mode": plant.numbers[plant.unstable],
@@ -129,7 +134,52 @@ def squealing_modes(
             "sample": np.arange(samples),
             "pole": plant.numbers,
         },
+        {"not_run": plant.obstacle or ""},
     )
+
+
+def _verdict(
+    plant: Plant, first: int, modes: list[Described], motions: np.ndarray
+) -> Verdict:
+    """What the push along the least stable mode says of the whole structure.
+
+    Args:
+        first: attractor that it ends in.
+        motions: of each attractor, a verdict.
+    """
+    # a push lasts where nothing damps it, in the modes that are run and in the whole
+    decided = plant.unstable.size or (plant.decays and plant.agreement.decays)
+    if not decided or not plant.agreement.holds or first == NO_ATTRACTOR:
+        return Verdict.undetermined
+    if modes[first].kind is Kind.undetermined:
+        return Verdict.undetermined
+    return Verdict(int(motions[first]))
+
+
+def _of_whole(plant: Plant) -> dict[str, Any]:
+    """How far the modes that are run agree with those of the whole structure."""
+    agreement, origin = plant.agreement, plant.structure.reduced_from
+    unstable = plant.unstable
+    return {
+        "mode_frequency_error": agreement.frequency_errors[unstable],
+        "mode_growth_rate_error": agreement.growth_errors[unstable],
+        "mode_is_sure": ~np.isin(unstable, agreement.unsure),
+        "pole_frequency_error": agreement.frequency_errors,
+        "pole_growth_rate_error": agreement.growth_errors,
+        "missing_frequency": agreement.missing.imag / (2.0 * np.pi),
+        "missing_growth_rate": agreement.missing.real,
+        "same_modes_grow": agreement.holds,
+        "whole_decays": agreement.decays,
+        "modes_that_would_do": plant.enough or 0,
+        "degrees_of_freedom": plant.size if origin is None else origin.whole.size,
+        "frequency_max": np.nan
+        if origin is None or origin.frequency_max is None
+        else origin.frequency_max,
+        "n_modes": plant.size,
+        "frequency_error": agreement.errors.frequency,
+        "growth_rate_error": agreement.errors.growth,
+        "sliding_force": plant.spectrum.state.force,
+    }
 
 
 def _of_modes(
@@ -150,7 +200,7 @@ def _of_modes(
     times = [
         run.arrival() if run.agrees and not run.quiet else np.nan
         for run in settled[:count]
-    ]
+    ] or [np.nan] * count
     return {
         "growth_rate": plant.spectrum.values.real[plant.unstable],
         "frequency": frequency,
@@ -184,13 +234,11 @@ def _of_attractors(
             multipliers[place] = values
             trivial = np.abs(values - 1.0).argmin()
             largest[place] = np.abs(np.delete(values, trivial)).max()
-    with np.errstate(invalid="ignore", divide="ignore"):
-        peak = (
-            np.array(
-                [np.max([run.last.force for run in runs], axis=0) for runs in members]
-            ).reshape(shape)
-            / plant.pressed
-        )
+    force = np.array(
+        [np.max([run.last.force for run in runs], axis=0) for runs in members]
+    ).reshape(shape)
+    # a contact that is open in steady sliding has no force to compare with
+    at_rest = np.where(plant.spectrum.state.force > 0, plant.pressed, np.nan)
     landings = np.array(
         [
             np.mean([run.last.landings / run.last.length for run in runs], axis=0)
@@ -235,7 +283,8 @@ def _of_attractors(
         "contact_velocity_rms": speed,
         "separated_fraction": _table(rows, "separated", shape),
         "stick_fraction": _table(rows, "stuck", shape),
-        "peak_force": peak,
+        "peak_force": force / at_rest,
+        "peak_normal_force": force,
         "impacts_per_period": landings
         / np.where(np.isfinite(frequency), frequency, np.inf)[:, None],
         "displacement": states[:, : plant.size],
