@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +20,7 @@ from squealpipe.cli.arguments import (
     Whole,
     pairs_of,
 )
-from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer, working
+from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer, say, working
 from squealpipe.cli.output import (
     check_output,
     check_picture,
@@ -45,6 +46,7 @@ def modes(
     belt_speed: Speeds = None,
     frequency_max: Frequency = None,
     n_modes: Whole | None = None,
+    critical: bool = True,
     vary: Ranges | None = None,
     output: Output = Path("modes.nc"),
     files: Files = FILES,
@@ -59,6 +61,8 @@ def modes(
         belt_speed: likewise, m/s.
         frequency_max: highest frequency of the modes, Hz.
         n_modes: number of modes; one of these two limits is needed beyond 1000 degrees of freedom.
+        critical: locate where modes turn unstable; --no-critical leaves that out, which is most of
+            the work for a structure of more than 1000 degrees of freedom.
         vary: a further factor with its value or values; repeat for more. preload=0.5:2:7 and
             contact_stiffness=0.5,1,2 multiply those of all contacts, p1_preload and p1_stiffness
             those of a contact p1, mass, damping and stiffness the matrices; modal_damping,
@@ -69,6 +73,7 @@ def modes(
         "belt_speed": _one_or_more(belt_speed),
         "frequency_max": frequency_max,
         "n_modes": n_modes,
+        "critical": critical,
     }
     for name, text in pairs_of("--vary", vary or []).items():
         if name in asked:
@@ -78,7 +83,16 @@ def modes(
 
     refuse_existing(output, force=files.force)
 
-    from squealpipe.systems.structures.complex_modes import complex_modes
+    from squealpipe.systems.structures import complex_modes as library
+
+    def complex_modes(structure: Any, **options: Any) -> xr.Dataset:
+        points = math.prod(
+            len(each) for each in options.values() if isinstance(each, list)
+        )
+        told = library.cost_beforehand(structure, points, options.get("n_modes"))
+        if told is not None:
+            say(told)
+        return library.complex_modes(structure, **options)
 
     dataset = _compute(complex_modes, file, asked, output, files)
     unstable = dataset.unstable

@@ -48,6 +48,7 @@ class Onset(IntEnum):
     located = 1
     unstable_throughout = 2
     not_followed = 3
+    not_sought = 4
 
 
 def name_over(dims: tuple[str, ...]) -> str:

@@ -4,6 +4,7 @@ Prints CPU times and ratios; the ratios are what to compare between machines. Th
 measured where its matrices are (``SQUEALPIPE_BRAKE_MATRICES``), a finer pad elsewhere.
 """
 
+import resource
 import time
 
 import numpy as np
@@ -14,7 +15,9 @@ from squealpipe import Structure, labels
 from squealpipe.benchmark.machine import processor
 from squealpipe.structures import elastic_pad
 from squealpipe.systems.structures.pencil import Pencil
+from tests.oracles.elastic_block import elastic_block
 from tests.oracles.structure_events import Reference
+from tests.systems.structures.test_large import by_scipy
 from tests.systems.structures.test_motion import names, twelve_modes
 from tests.systems.structures.test_truth import BRAKE, brake
 
@@ -107,8 +110,36 @@ def modes():
     )
 
 
+def large():
+    """Complex modes of blocks with many contacts at one friction, beside SciPy's eigensolver."""
+    print(
+        "\nLowest complex modes at one friction, without critical frictions, one core"
+    )
+    for elements, contacts, number in (((27, 16, 3), 49, 20), ((70, 17, 4), 126, 40)):
+        block = elastic_block(elements, contacts, mu=0.5)
+        modes, seconds = cpu_time(
+            lambda block=block, number=number: block.complex_modes(
+                n_modes=number, critical=False
+            )
+        )
+        most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
+        closed = modes.normal_force.values > 0
+        theirs, public = cpu_time(
+            lambda block=block, closed=closed, number=number: by_scipy(
+                block, closed, 0.5, number
+            )
+        )
+        apart = np.abs(theirs.imag / (2 * np.pi) - modes.frequency.values).max()
+        print(
+            f"  {block.size} degrees of freedom, {contacts} contacts, {number} modes: "
+            f"{seconds:.1f} s, {most:.2f} GB; SuperLU and ARPACK {public:.1f} s; "
+            f"{apart:.1e} Hz apart"
+        )
+
+
 def main():
-    """Print both."""
+    """Print all."""
+    large()
     runs()
     modes()
 

@@ -52,11 +52,17 @@ class Region(NamedTuple):
 
 
 class Near(NamedTuple):
-    """An eigenvector next to a point, with the factors there."""
+    """An eigenvector next to a point.
+
+    Attributes:
+        center: the point.
+        factors: there; None of left eigenvectors, whose factors nobody needs again.
+    """
 
     value: complex
     vector: np.ndarray
-    factors: Factors
+    center: complex
+    factors: Factors | None
 
 
 def modes_in_band(pencil: Pencil, omega_max: float) -> list[Eigenpair]:
@@ -104,7 +110,8 @@ def _covering(
             most = min(2 * most, 2 * pencil.size - 2)
         for value, vector in zip(values, vectors.T, strict=True):
             if region.holds(value, BORDER):
-                yield Near(complex(value), vector, factors)
+                kept = factors if side == "right" else None
+                yield Near(complex(value), vector, center, kept)
         rests = ((low, center.imag - reach), (center.imag + reach, high))
         if most < 2 * pencil.size - 2:
             waiting += [(*rest, 0.5) for rest in rests if rest[0] < rest[1]]
@@ -171,7 +178,7 @@ def _distinct(estimates: Iterator[Near]) -> Iterator[Near]:
     for new in estimates:
         same = (
             abs(new.value - old.value) <= SAME * abs(new.value)
-            and new.factors is not old.factors
+            and new.center != old.center
             and _parallel(new.vector, old.vector)
             for old in kept
         )
@@ -191,10 +198,10 @@ def _matched(
     single = [*right, *left]
     for i, j in zip(*places, strict=True):
         if distance[i, j] <= SAME * abs(at_right[i]):
+            found = right[i]
+            assert found.factors is not None  # noqa: S101 (of right eigenvectors)
             pairs.append(
-                Estimate(
-                    right[i].value, right[i].vector, right[i].factors, left[j].vector
-                )
+                Estimate(found.value, found.vector, found.factors, left[j].vector)
             )
             single = [
                 each for each in single if each is not right[i] and each is not left[j]

@@ -1,6 +1,8 @@
 """Complex modes of a structure as a dataset: growth, frequency and critical friction by mode."""
 
 import json
+import warnings
+from contextlib import nullcontext
 from typing import Any
 
 import numpy as np
@@ -15,7 +17,7 @@ from squealpipe.systems.structures.band import COMPLETE
 from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.factors import Asked, asked_of, with_factors
 from squealpipe.systems.structures.numbering import Way
-from squealpipe.systems.structures.pencil import DENSE
+from squealpipe.systems.structures.pencil import DENSE, one_thread
 from squealpipe.systems.structures.sliding import NoSlidingError
 from squealpipe.systems.structures.spectrum import ALL, Solver, Spectrum
 
@@ -32,6 +34,7 @@ def complex_modes(
     belt_speed: Any = None,
     frequency_max: float | None = None,
     n_modes: int | None = None,
+    critical: bool = True,
     **factors: Any,
 ) -> xr.Dataset:
     """Complex modes about steady sliding.
@@ -42,6 +45,8 @@ def complex_modes(
         frequency_max: modes up to there, Hz.
         n_modes: so many modes, by frequency. One of both is needed beyond 1000 degrees of freedom;
             with neither, all modes are computed.
+        critical: whether ``critical_mu`` is sought, by following modes along friction: most of the
+            work for a large structure. Without it ``onset`` is ``not_sought``.
         factors: further ones, a number or a 1-D array each: ``mu_static``, ``friction_speed`` (m/s)
             or ``modal_damping`` in place of the structure's; factors of what it has, namely of all
             contacts' ``preload`` and ``contact_stiffness``, of one contact's by its name
@@ -68,7 +73,43 @@ def complex_modes(
         {"mu": mu, "belt_speed": belt_speed, **factors},
         frequency_max=frequency_max,
         n_modes=n_modes,
+        critical=critical,
     )
+    points = asked.mu.size * asked.belt_speed.size
+    points *= int(np.prod([values.size for values in asked.varied.values()]))
+    if told := cost_beforehand(structure, points, n_modes):
+        warnings.warn(told, stacklevel=3)
+    with nullcontext() if structure.size <= DENSE else one_thread():
+        return _dataset(structure, asked)
+
+
+def cost_beforehand(structure: Any, points: int, n_modes: int | None) -> str | None:
+    """What complex modes of a large structure take, in a sentence; None where that is a minute.
+
+    Args:
+        points: combinations of friction, belt speed and further factors.
+        n_modes: how many modes; None: not known, 40 are taken.
+    """
+    number = n_modes or 40
+    # measured: factors of a compact body of hexahedra have 31 to 58 n^(4/3) entries, of a plate a
+    # quarter of that; 0.11 µs for each of them and each mode; of 12 bytes real, 20 complex
+    entries = 60.0 * structure.size ** (4 / 3)
+    bytes_each, slower = (20, 1.7) if structure.damping.nnz else (12, 1.0)
+    seconds = 0.11e-6 * slower * entries * number * points
+    memory = 0.3e9 + 3 * bytes_each * entries
+    if structure.size <= DENSE or (seconds < 120 and memory < 4e9):
+        return None
+    time = f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
+    return (
+        f"{structure.size:,} degrees of freedom: about {time} and {memory / 1e9:.2g} GB for "
+        f"{number} modes of a compact body at {points} value{'s' if points > 1 else ''} of what is "
+        "varied, on one core, a quarter of both for a plate; several times as long where critical "
+        "frictions are sought"
+    )
+
+
+def _dataset(structure: ContactStructure, asked: Asked) -> xr.Dataset:
+    """Complex modes as asked."""
     frictions, speeds, varied = asked.mu, asked.belt_speed, asked.varied
     ways = _ways(with_factors(structure, asked.fixed), asked)
     every = list(ways.ravel())
@@ -108,7 +149,7 @@ def complex_modes(
         "tolerance": "round-off",
         "parameters": json.dumps(structure.as_dict()),
         "arguments": json.dumps(
-            {"frequency_max": frequency_max, "n_modes": n_modes, **asked.fixed}
+            {**asked.limits.as_dict(), "critical": asked.critical, **asked.fixed}
         ),
         "open_contacts": ", ".join(sorted(opened)) or "none",
         **versions(),
@@ -119,7 +160,7 @@ def complex_modes(
 def _ways(structure: ContactStructure, asked: Asked) -> np.ndarray:
     """Modes along friction at each combination of factors, (belt speed, further ones)."""
     frictions = np.atleast_1d(asked.mu)
-    if not asked.mu.ndim and structure.contacts and asked.mu > 0:
+    if asked.critical and not asked.mu.ndim and structure.contacts and asked.mu > 0:
         # one friction alone: on the way to it from none, modes are followed all the same
         few = STEPS if structure.size <= DENSE else STEPS_IF_LARGE
         frictions = np.linspace(0.0, float(asked.mu), few)
@@ -134,7 +175,7 @@ def _ways(structure: ContactStructure, asked: Asked) -> np.ndarray:
         }
         speed = at.pop("belt_speed")
         solver = Solver(with_factors(structure, at), asked.limits, speed)
-        way = Way(solver, top)
+        way = Way(solver, top, asked.critical)
         way.follow(frictions.tolist(), _neighbour(ways, place))
         ways[place], top = way, way.top
     return ways

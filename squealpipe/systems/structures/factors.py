@@ -25,6 +25,7 @@ class Asked:
         mu, belt_speed: a number or a 1-D array each.
         varied: further factors that are arrays.
         fixed: those that are numbers.
+        critical: whether critical frictions are sought.
     """
 
     limits: Limits
@@ -32,6 +33,7 @@ class Asked:
     belt_speed: np.ndarray
     varied: dict[str, np.ndarray]
     fixed: dict[str, float]
+    critical: bool = True
 
 
 def asked_of(
@@ -40,12 +42,15 @@ def asked_of(
     *,
     frequency_max: float | None = None,
     n_modes: int | None = None,
+    critical: bool = True,
 ) -> Asked:
     """The arguments of ``complex_modes``; ``mu`` and ``belt_speed`` are factors too.
 
     Raises:
         ValueError: names the argument.
     """
+    if not isinstance(critical, bool):
+        raise ValueError(f"critical = {brief(critical)}: True or False is needed")  # noqa: TRY004
     further = dict(factors)
     mu, belt_speed = further.pop("mu", None), further.pop("belt_speed", None)
     frictions = real_line("mu", structure.mu if mu is None else mu)
@@ -61,6 +66,7 @@ def asked_of(
         real_line("belt_speed", speeds),
         {name: values for name, values in checked.items() if values.ndim},
         {name: float(values) for name, values in checked.items() if not values.ndim},
+        critical,
     )
 
 
@@ -91,7 +97,7 @@ def checked_factors(
     checked = {}
     for name, values in given.items():
         if name not in known:
-            names = ["mu", "belt_speed", "frequency_max", "n_modes", *known]
+            names = ["mu", "belt_speed", "frequency_max", "n_modes", "critical", *known]
             raise ValueError(f"{name!r} is unknown; {suggestion(name, names)}")
         checked[name] = real_line(name, values)
         if name in ARGUMENTS:

@@ -50,8 +50,8 @@ def _uncertain(structure: ContactStructure, state: SteadySliding) -> Uncertain |
     damping = (force * np.abs(state.slope))[closed]
     stiffness = (rounding * structure.stiffnesses * np.abs(state.drag))[closed]
     return Uncertain(
-        np.hstack([along, along]),
-        np.hstack([along, across]),
+        sp.csc_array(np.hstack([along, along])),
+        sp.csc_array(np.hstack([along, across])),
         np.concatenate([damping, 0.0 * stiffness]),
         np.concatenate([0.0 * damping, stiffness]),
     )

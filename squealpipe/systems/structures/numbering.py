@@ -62,12 +62,15 @@ class Way:
 
     Attributes:
         top: first number that no mode has, of this way or of those before.
+        between: whether frictions between those asked for are computed, by which modes keep their
+            numbers for sure and critical frictions are located.
         steps: by friction, those between the frictions asked for included.
         reasons: why there is no steady sliding at some.
     """
 
     solver: Solver
     top: int = 0
+    between: bool = True
     steps: dict[float, Step] = field(default_factory=dict)
     reasons: list[str] = field(default_factory=list)
     _onsets: dict[tuple[int, float, float], float | None] = field(default_factory=dict)
@@ -98,6 +101,12 @@ class Way:
     def _go(self, low: float, high: float) -> None:
         """To the next friction, past each at which contacts open or close."""
         solver = self.solver
+        if not self.between:
+            start, spectrum = self.steps[low], solver.at(high)
+            places, _ = successors(start.spectrum, spectrum)
+            numbers = self._carried(start.numbers, places, len(spectrum.pairs))
+            self.steps[high] = Step(spectrum, numbers)
+            return
         try:
             passed = changes(solver.structure, low, high, solver.belt_speed)
         except NoSlidingError:
@@ -179,6 +188,8 @@ class Way:
 
     def criticals(self, numbers: list[int]) -> list[Critical]:
         """Where growth of each of these modes leaves zero, and with which other it meets."""
+        if not self.between:
+            return [Critical(np.nan, Onset.not_sought) for _ in numbers]
         criticals = {number: self._critical(number) for number in numbers}
         # where damping lets one of two that meet grow alone, the other has met it all the same
         meeting = [

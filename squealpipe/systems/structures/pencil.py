@@ -6,6 +6,9 @@ single modes, M Φ diag(2 ζ ω) Φᵀ M, is no sparse matrix; it is carried as 
 
 from __future__ import annotations
 
+import ctypes
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -14,6 +17,7 @@ import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
+from scipy.sparse.linalg._dsolve import _superlu
 
 DENSE = 1000
 """Degrees of freedom up to which all eigenvalues are computed by dense algebra."""
@@ -46,12 +50,12 @@ class Uncertain:
     Unlike entries that are rounded one by one, all entries of such a part are wrong together.
 
     Attributes:
-        left, right: x and y, (n, k).
+        left, right: x and y, (n, k), sparse.
         damping, stiffness: a and b, (k,), each no smaller than 0.
     """
 
-    left: np.ndarray
-    right: np.ndarray
+    left: Any
+    right: Any
     damping: np.ndarray
     stiffness: np.ndarray
 
@@ -162,7 +166,7 @@ class Pencil:
         part = self.uncertain
         if part is None:
             return 0.0
-        sizes = np.abs(left.conj() @ part.left) * np.abs(right @ part.right)
+        sizes = np.abs(part.left.T @ left) * np.abs(part.right.T @ right)
         return float(sizes @ (abs(s) * part.damping + part.stiffness))
 
     def factorized(self, s: complex) -> Factors:
@@ -201,7 +205,14 @@ class Factors:
             self._dense = la.lu_factor(s * (s * mass + damping) + stiffness)
             self._sparse = None
             return
-        matrix = sp.csc_array(pencil.matrix(s), dtype=complex)
+        # without a damping matrix Q is real on the imaginary axis, and so are its factors: half the
+        # memory, and less than half the time
+        self._is_real = not pencil.damping.nnz and s.real == 0
+        matrix = pencil.matrix(s)
+        matrix = sp.csc_array(
+            matrix.real if self._is_real else matrix,
+            dtype=float if self._is_real else complex,
+        )
         # the pattern is symmetric and pivots on the diagonal are good enough for shifts off the
         # eigenvalues; each solution is held against its residual by who uses it
         self._sparse = splu(
@@ -213,7 +224,7 @@ class Factors:
         if pencil.modal is not None:
             # Woodbury's formula: (Q + s U d Uᵀ)⁻¹ by solutions with Q and a small matrix
             self.modal = pencil.modal
-            self._solved = self._sparse.solve(pencil.modal.columns.astype(complex))
+            self._solved = self._solutions(pencil.modal.columns.astype(complex))
             self._small = np.eye(len(pencil.modal.weights)) + s * (
                 pencil.modal.weights[:, None] * (pencil.modal.columns.T @ self._solved)
             )
@@ -223,7 +234,7 @@ class Factors:
         """Q⁻¹ b."""
         if self._sparse is None:
             return la.lu_solve(self._dense, right)
-        solution = self._sparse.solve(right.astype(complex))
+        solution = self._solutions(right)
         if self.modal is None:
             return solution
         inner = self._weights * (self.modal.columns.T @ solution)
@@ -233,9 +244,41 @@ class Factors:
         """Q⁻ᴴ b."""
         if self._sparse is None:
             return la.lu_solve(self._dense, right, trans=2)
-        solution = self._sparse.solve(right.astype(complex), trans="H")
+        solution = self._solutions(right, adjoint=True)
         if self.modal is None:
             return solution
         inner = la.solve(self._small.conj().T, self._solved.conj().T @ right)
         correction = self.modal.columns @ (self._weights.conj() * inner)
-        return solution - self._sparse.solve(correction.astype(complex), trans="H")
+        return solution - self._solutions(correction, adjoint=True)
+
+    def _solutions(self, right: np.ndarray, *, adjoint: bool = False) -> Any:
+        """By the sparse factors alone, without damping of single modes."""
+        trans = "H" if adjoint else "N"
+        factors: Any = self._sparse
+        if not self._is_real:
+            return factors.solve(right.astype(complex), trans=trans)
+        columns = np.column_stack([right.real, right.imag])
+        parts = factors.solve(columns, trans=trans)
+        half = parts.shape[1] // 2
+        return (parts[:, :half] + 1j * parts[:, half:]).reshape(right.shape)
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Have sparse factors computed by one thread, where SciPy's BLAS can be told so.
+
+    SuperLU hands panels of few columns to BLAS, which wakes all its threads for each: on two busy
+    cores complex factors took 30 times as long as with one thread, and all of it CPU time.
+    """
+    library = ctypes.CDLL(_superlu.__file__)
+    names = "scipy_openblas_{}_num_threads", "openblas_{}_num_threads"
+    name = next((each for each in names if hasattr(library, each.format("set"))), None)
+    if name is None:  # another BLAS: it keeps its own ways
+        yield
+        return
+    before = getattr(library, name.format("get"))()
+    getattr(library, name.format("set"))(1)
+    try:
+        yield
+    finally:
+        getattr(library, name.format("set"))(before)

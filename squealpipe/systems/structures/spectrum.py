@@ -86,6 +86,10 @@ class Limits:
     frequency_max: float | None = None
     n_modes: int | None = None
 
+    def as_dict(self) -> dict[str, float | None]:
+        """Both by name."""
+        return {"frequency_max": self.frequency_max, "n_modes": self.n_modes}
+
 
 def check_frequency(frequency_max: float | None) -> None:
     """Refuse a limit of frequencies, Hz, that is none."""
