@@ -229,7 +229,8 @@ class BenchmarkComparison(Section):
     """
 
     solvers: Annotated[tuple[str, ...], Field(min_length=1)] = (
-        *("squealpipe", "DOP853", "RK45", "LSODA", "heyoka", "CyRK", "SUNDIALS"),
+        *("squealpipe", "DOP853", "DOP853, bounded step", "DOP853, compiled field"),
+        *("RK45", "LSODA", "heyoka", "CyRK", "SUNDIALS"),
         *("tanh, σ = 10", "tanh, σ = 1000", "tanh, σ = 1e+07", "Moreau–Jean"),
     )
     tolerances: Annotated[

@@ -25,7 +25,7 @@ MARKS = [
 """How each method is drawn."""
 _FEW_DECADES = 100.0
 """Ratio of costs below which decades alone would leave an axis with hardly a label."""
-_SMALLEST = 1e-17
+SMALLEST = 1e-17
 """Errors below are drawn here: they are zero to the reference's last digit."""
 
 
@@ -48,7 +48,7 @@ def draw_methods(
         scale: factor from its unit to the axis'.
         ring: what the red rings are, which mark the role of our setting.
     """
-    error = np.maximum(rows.error.values, _SMALLEST)
+    error = np.maximum(rows.error.values, SMALLEST)
     values = rows[cost].values * scale
     fine = np.isfinite(error) & (values > 0)
     if not fine.any():

@@ -17,6 +17,8 @@ SOLVERS: dict[str, tuple[str, str, dict[str, Any]]] = {
         name: ("scipy", "scipy", {"method": name})
         for name in ("DOP853", "RK45", "LSODA", "Radau")
     },
+    "DOP853, bounded step": ("scipy", "scipy", {"longest": 0.01}),
+    "DOP853, compiled field": ("scipy", "scipy", {"compiled": True}),
     "heyoka": ("heyoka", "heyoka", {}),
     "CyRK": ("cyrk", "CyRK", {}),
     "SUNDIALS": ("sundials", "sksundae", {}),

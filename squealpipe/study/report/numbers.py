@@ -16,7 +16,11 @@ from squealpipe.study.claims.evidence import Evidence
 from squealpipe.study.claims.maps import unstable_yet_sliding
 from squealpipe.study.figures.comparison.model_ladder import shares_of_a3
 from squealpipe.study.figures.comparison.speed_and_accuracy import scenes_of_a1
-from squealpipe.study.figures.comparison.where_methods_fail import answers
+from squealpipe.study.figures.comparison.where_methods_fail import (
+    answers,
+    silent_by_class,
+    substitutes,
+)
 from squealpipe.study.figures.linear.critical_friction import LARGEST
 from squealpipe.study.figures.linear.frequency_shift import NO_SHIFT
 
@@ -205,8 +209,16 @@ def _methods(run: Evidence) -> dict[str, Any]:
     scenes = scenes_of_a1(benchmark)
     tolerances = scenes.tol.values
     asked = float(tolerances[np.abs(np.log(tolerances / QUOTED_TOLERANCE)).argmin()])
-    scenes = scenes.sel(tol=asked).median("problem")
+    scenes = scenes.sel(tol=asked)
+    cpu = scenes.cpu_ratio
+    times = cpu.sel(solver="squealpipe") / cpu.sel(solver="DOP853")
+    scenes = scenes.median("problem")
     mine, theirs = (scenes.sel(solver=name) for name in ("squealpipe", "DOP853"))
+    beside = {
+        key: scenes.cpu_ratio.sel(solver=f"DOP853, {name}") / theirs.cpu_ratio
+        for key, name in (("compiled", "compiled field"), ("bounded", "bounded step"))
+        if f"DOP853, {name}" in benchmark.solver
+    }
     table = answers(benchmark)
     public = (benchmark.role == Role.public).values
     hindsight, beforehand = shares_of_a3(run["model_ladder"])
@@ -215,10 +227,36 @@ def _methods(run: Evidence) -> dict[str, Any]:
         "ours_error": mine.error,
         "their_error": theirs.error,
         "ours_cpu": mine.cpu_ratio / theirs.cpu_ratio,
+        "ours_cpu_least": times.min(),
+        "ours_cpu_most": times.max(),
+        "compiled_cpu": beside.get("compiled", np.nan),
+        "bounded_cpu": beside.get("bounded", np.nan),
         "public_answers": table.asked.isel(solver=public).sum(),
         "public_silent": table.silent.isel(solver=public).sum(),
+        **_silent(benchmark),
         "our_answers": table.asked.isel(solver=~public).sum(),
         "our_silent": table.silent.isel(solver=~public).sum(),
         "a3_hindsight": hindsight,
         "a3_beforehand": beforehand,
+    }
+
+
+def _silent(benchmark: xr.Dataset) -> dict[str, Any]:
+    """Silent failures of methods in place of events, and of integrators that locate events."""
+    stand_ins = substitutes(benchmark)
+    integrators = [
+        name
+        for name in benchmark.solver.values.tolist()
+        if name not in (*stand_ins, "squealpipe")
+    ]
+    parts = {"substitute": stand_ins, "integrator": integrators}
+    counts = {key: silent_by_class(benchmark, names) for key, names in parts.items()}
+    return {
+        **{f"{key}_silent": sum(each.values()) for key, each in counts.items()},
+        **{
+            f"{key}_classes": ", ".join(
+                f"{name} ({count})" for name, count in each.items() if count
+            )
+            for key, each in counts.items()
+        },
     }

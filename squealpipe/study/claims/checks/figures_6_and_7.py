@@ -124,7 +124,7 @@ def linearly_stable_but_not(run: Evidence) -> Finding:
     return finding(
         (rate, "≤", SMALLEST_RATE),
         f"A3's largest growth rate there is {rate:.1g}; in a long run of A1 |x| reaches "
-        f"{early:.3g} l_pre in the first window of {WINDOW:g} √(m/k1) and {late:.3g} l_pre in the "
+        f"{early:.5g} l_pre in the first window of {WINDOW:g} √(m/k1) and {late:.5g} l_pre in the "
         "last.",
         also=growth is Growth.grows,
         otherwise=ClaimVerdict.cannot_be_decided if undecided else ClaimVerdict.fails,

@@ -1,5 +1,7 @@
 """Failures at a glance: how often each integrator is silently wrong, by class of problem."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -36,6 +38,22 @@ def answers(benchmark: xr.Dataset) -> xr.Dataset:
     order = list(dict.fromkeys(known.group.values.tolist()))
     summed: xr.Dataset = table.sel(group=order)
     return summed
+
+
+def silent_by_class(benchmark: xr.Dataset, solvers: Sequence[str]) -> dict[str, int]:
+    """Return how many answers of some solvers are silently wrong, by class, most first."""
+    silent = answers(benchmark).silent.sel(solver=list(solvers)).sum("solver")
+    counts = zip(silent.group.values.tolist(), silent.values.tolist(), strict=True)
+    return dict(sorted(counts, key=lambda row: -row[1]))
+
+
+def substitutes(benchmark: xr.Dataset) -> list[str]:
+    """Return the methods that smooth or step over events in place of locating them."""
+    return [
+        name
+        for name in benchmark.solver.values.tolist()
+        if name.startswith("tanh") or name == "Moreau–Jean"
+    ]
 
 
 def draw(benchmark: xr.Dataset) -> Figure:
