@@ -97,10 +97,16 @@ SETTINGS: dict[Any, Any] = {
 
 
 def new_figure(
-    width: float = PAGE, height: float = 3.0, **subplots: object
+    width: float = PAGE, height: float = 3.0, *, text: float = 1.0, **subplots: object
 ) -> tuple[Figure, np.ndarray]:
-    """A figure with the house style, and its axes as a 2-D array."""
+    """A figure with the house style, and its axes as a 2-D array.
+
+    Args:
+        text: size of all its texts over that of the house, for a figure that is printed small.
+    """
     mpl.rcParams.update(SETTINGS)
+    sizes = {name for name in SETTINGS if name.endswith("size")}
+    mpl.rcParams.update({name: text * SETTINGS[name] for name in sizes})
     figure = Figure(figsize=(width, height), layout="constrained")
     axes = figure.subplots(squeeze=False, **subplots)  # type: ignore[call-overload]
     return figure, axes

@@ -16,7 +16,7 @@ CAPTION = (
     "over the first periods; right: amplitude spectrum of y over 32 periods."
 )
 ALT = "Rows of two panels: time histories of y of both models, and their spectra."
-KINDS = {"period": "y in time", "order": "spectrum of y"}
+KINDS = {"period": "y", "order": "spectrum"}
 LOOKS = ((style.RED, "-"), (style.ORANGE, "--"), (style.GREEN, "-."), (style.BLUE, ":"))
 
 
@@ -24,7 +24,7 @@ def draw(beside: xr.Dataset) -> Figure:
     """One row for each scene, from dataset ``a1_beside_a4``."""
     scenes = beside.scene.values
     figure, axes = style.new_figure(
-        style.PAGE, 0.5 + 1.7 * len(scenes), nrows=len(scenes), ncols=2
+        style.PAGE, 0.5 + 1.4 * len(scenes), text=1.36, nrows=len(scenes), ncols=2
     )
     letters = iter("abcdefghijklmnopqrst")
     for row, scene in zip(axes, scenes, strict=True):

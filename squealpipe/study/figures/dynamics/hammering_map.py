@@ -6,7 +6,7 @@ import xarray as xr
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
-from matplotlib.ticker import LogLocator
+from matplotlib.ticker import LogLocator, MaxNLocator
 
 from squealpipe.plotting import plot, style
 from squealpipe.study.figures.linear.linear_overlay import mark_scene
@@ -26,7 +26,7 @@ ALT = (
 
 def draw(hammering: xr.Dataset) -> Figure:
     """Four maps."""
-    figure, axes = style.new_figure(style.PAGE, 6.2, nrows=2, ncols=2)
+    figure, axes = style.new_figure(style.PAGE, 6.0, text=1.36, nrows=2, ncols=2)
     plot(hammering, ax=axes[0, 0])
     style.panel_letter(
         axes[0, 0], "a", f"motion to t = {number(float(hammering.t_end), 4)} s"
@@ -34,8 +34,8 @@ def draw(hammering: xr.Dataset) -> Figure:
     force = hammering.peak_contact_force
     scale = {"norm": LogNorm(1.0, max(2.0, float(force.max())))}
     quantities: list[tuple[str, str, xr.DataArray, dict[str, Any]]] = [
-        ("b", "impacts per time (1/s)", hammering.impact_rate, {}),
-        ("c", "share of time separated", hammering.separated_fraction, {"vmin": 0}),
+        ("b", "impacts per time (s⁻¹)", hammering.impact_rate, {}),
+        ("c", "share of time off belt", hammering.separated_fraction, {"vmin": 0}),
         ("d", r"peak force over $k_3 l_\mathrm{pre}$", force, scale),
     ]
     for panel, (letter, title, values, scale) in zip(
@@ -43,6 +43,7 @@ def draw(hammering: xr.Dataset) -> Figure:
     ):
         mesh = style.draw_map(panel, hammering, values, cmap="viridis", **scale)
         bar = figure.colorbar(mesh, ax=panel, shrink=0.85)
+        bar.locator = MaxNLocator(4)
         if letter == "d":
             bar.ax.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
             bar.ax.yaxis.set_major_formatter("{x:g}")

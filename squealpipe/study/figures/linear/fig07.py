@@ -113,15 +113,16 @@ def draw(found: Mapping[str, xr.Dataset]) -> Figure:
     maps = _maps(found)
     names = sorted(maps, key=len)
     size = (
-        (5.6, 3.4) if len(names) > 1 else (4.3, 3.9)
+        (6.4, 4.0) if len(names) > 1 else (4.3, 3.9)
     )  # for text large enough on page one
-    figure, axes = style.new_figure(*size, ncols=len(names))
+    figure, axes = style.new_figure(*size, text=1.36, ncols=len(names))
     counts = []
     for panel, letter, name in zip(axes[0], "ab", names, strict=False):
         kinds = draw_kinds(panel, maps[name], found.get(f"{_kind(name)}{LINES}"))
         mark_scene(panel, "F3")
         counts.append(np.bincount(kinds.ravel(), minlength=len(KINDS)))
-        title = f"{TITLES[_kind(name)]}: " if len(names) > 1 else ""
+        words = TITLES[_kind(name)].removesuffix(" in all models")
+        title = f"{words}: " if len(names) > 1 else ""
         style.panel_letter(panel, letter, f"{title}{counts[-1][3]} black cells")
     handles = key()
     for index, handle in enumerate(handles):

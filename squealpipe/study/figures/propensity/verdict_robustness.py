@@ -11,8 +11,8 @@ from squealpipe.schema.inference import DAMPED_GRID, in_order, in_words
 READS = ("verdict_robustness",)
 CAPTION = (
     "The paper's statements in settings that it leaves out, by the criteria of the inference. "
-    "Blue: the statement holds; red: it fails; numbers: share of random starts, or of the feasible "
-    "parameters, in which it holds, with half of its 95 % interval; grey: not judged there. "
+    "Blue: the statement holds; red: it fails; numbers: share in % of random starts, or of the "
+    "feasible parameters, in which it holds, with half its 95 % interval; grey: not judged. "
     "R is the reaction force. With dashpots, or friction that depends on speed, coupled modes and "
     f"unstable cells are looked for on a grid of {DAMPED_GRID} × {DAMPED_GRID} angles; ω₁ is "
     "without damping."
@@ -24,7 +24,7 @@ def draw(reach: xr.Dataset) -> Figure:
     """One table."""
     reach = in_order(reach)
     share = reach.share.values
-    figure, axes = new_figure(PAGE, 0.24 * len(share) + 2.2)
+    figure, axes = new_figure(PAGE, 0.31 * len(share) + 2.4, text=1.36)
     panel = axes[0, 0]
     panel.set_facecolor("#E8E8E8")
     colours = LinearSegmentedColormap.from_list("verdict", [RED, "#FFFFFF", BLUE])
@@ -35,12 +35,12 @@ def draw(reach: xr.Dataset) -> Figure:
     for row, column in np.argwhere(np.isfinite(share)):
         value = share[row, column]
         single = reach.judged.values[row, column] == 1
-        text = "✓" if single and value else "✗" if single else f"{value:.2f}"
+        text = "✓" if single and value else "✗" if single else f"{100 * value:.0f}"
         if not single:
-            text += f"\n±{half[row, column]:.2f}"
+            text += f"\n±{100 * half[row, column]:.0f}"
         dark = abs(value - 0.5) > 0.3
-        look = {"fontsize": 7 if single else 5, "color": "white" if dark else BLACK}
-        write(panel, column + 0.5, row + 0.5, text, linespacing=0.9, **look)
+        look = {"fontsize": 9.5, "color": "white" if dark else BLACK}
+        write(panel, column + 0.5, row + 0.5, text, linespacing=0.85, **look)
     names = list(map(in_words, reach.statement.values.tolist()))
     rows = [
         name.replace("l_pre", r"$l_\mathrm{pre}$")
