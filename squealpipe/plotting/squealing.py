@@ -37,7 +37,9 @@ def figure(answer: xr.Dataset) -> Figure:
     height = 2.6 + 0.12 * count * shown.sizes["contact"] * (count > 1)
     height, ratios = min(height, 6.0), [1.7, 1.0, 1.0, 1.2]
     followed = has_tracks(answer)
-    layout: dict[str, Any] = {"nrows": 2, "height_ratios": [height, BELOW]} if followed else {}
+    layout: dict[str, Any] = (
+        {"nrows": 2, "height_ratios": [height, BELOW]} if followed else {}
+    )
     made, axes = style.new_figure(
         style.PAGE, height + BELOW * followed, ncols=4, width_ratios=ratios, **layout
     )
