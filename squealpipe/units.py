@@ -197,8 +197,24 @@ def _factor(written: str, units: str, keys: Mapping[str, str] | None) -> Decimal
         )
     if not _measures(unit, units):
         raise UnitError(_wrong_kind(unit, units, keys))
+    if not (_is_multiple(unit) and _is_multiple(target)):
+        raise UnitError(
+            f"{written.strip()} counts from another zero or in logarithms; convert it"
+        )
     factor: Decimal = _registry().Quantity(Decimal(1), unit).to(target).magnitude
     return factor * Decimal(_turns_of(unit, target) or 1.0)
+
+
+def _is_multiple(unit: Any) -> bool:
+    """Whether twice the number is twice as much: not of °C, nor of decibels."""
+    try:
+        one, two = (
+            float(_registry().Quantity(Decimal(n), unit).to_base_units().magnitude)
+            for n in (1, 2)
+        )
+    except TypeError:  # logarithms of decimals
+        return False
+    return math.isclose(two, 2.0 * one)
 
 
 def _usual_letters(written: str) -> str:
@@ -304,7 +320,15 @@ def _scaled(magnitude: Any, factor: Decimal) -> Any:
     import numpy as np
 
     def one(number: Any) -> float:
-        return float(Decimal(str(number)) * factor)
+        try:
+            plain = number if isinstance(number, int | Decimal) else repr(float(number))
+            return float(Decimal(plain) * factor)
+        except (
+            ArithmeticError,
+            TypeError,
+            ValueError,
+        ):  # as Decimal reports what it cannot read
+            raise UnitError(f"{number} is no real number") from None
 
     if hasattr(magnitude, "tocoo"):
         scaled = magnitude.tocoo(copy=True).astype(float)

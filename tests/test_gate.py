@@ -5,6 +5,7 @@
 import inspect
 import re
 from dataclasses import replace
+from fractions import Fraction
 
 import numpy as np
 import pint
@@ -332,3 +333,14 @@ def test_sweeps_have_units():
     assert sweep.fixed == {"alpha2": np.radians(60), "t_end": 0.02}
     with pytest.raises(ValueError, match=r"fixed = .*that is a length; a time"):
         replace(sweep, fixed={"alpha2": 1.0, "t_end": "20 mm"})
+
+
+def test_degrees_of_temperature_and_decibels_are_no_multiples():
+    assert in_si("20 mK", "K") == 0.02
+    for text, units in (("20 degC", "K"), ("20 °C", "K"), ("3 dB", "1")):
+        with pytest.raises(UnitError):
+            in_si(text, units)
+    assert number_of(QUANTITY(Fraction(1, 4), "mm"), "m") == 2.5e-4
+    for value in (QUANTITY(1 + 2j, "mm"), QUANTITY(20.0, "degF")):
+        with pytest.raises(UnitError):
+            number_of(value, "m")

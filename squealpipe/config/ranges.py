@@ -60,6 +60,7 @@ def units_of(task: str) -> Mapping[str, str]:
 
     A preload of a structure's sweep is a factor, not a length, and k1 of a system whatever it says.
     """
+    names: tuple[str, ...]
     if is_structure(task):
         names = ("mu", "belt_speed", "frequency_max", *OF_FRICTION)
     elif ":" in task:
