@@ -166,6 +166,15 @@ OutputElsewhere = Annotated[Path | None, Parameter(name=["--output", "-o"])]
 AsJson = Annotated[bool, Parameter(name="--json", negative="")]
 Switch = Annotated[bool, Parameter(negative="")]
 Force = Annotated[bool, Parameter(negative="", help="overwrite files that exist.")]
+Tolerances = Annotated[
+    list[float] | None,
+    Parameter(
+        converter=lambda _, tokens: [parse_share(each.value) for each in tokens],
+        negative="",
+        metavar="FLOAT",
+        n_tokens=1,
+    ),
+]
 Texts = Annotated[list[str] | None, Parameter(negative="")]
 
 BASELINE = Parameters()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from squealpipe.cli.arguments import Force, Output, Texts
+from squealpipe.cli.arguments import Force, Output, Texts, Time, Tolerances
 from squealpipe.cli.console import ANSWER_IS_NO, DONE
 
 if TYPE_CHECKING:
@@ -20,8 +20,8 @@ def run(
     *,
     solver: Texts = None,
     problem: Texts = None,
-    tolerance: Annotated[list[float] | None, Parameter(negative="")] = None,
-    time_limit: float | None = None,
+    tolerance: Tolerances = None,
+    time_limit: Time | None = None,
     output: Output = Path("benchmark.nc"),
     force: Force = False,
 ) -> int:

@@ -87,6 +87,11 @@ def test_an_output_that_exists_is_refused_at_once(words, tmp_path):
         (["simulate", "1", "2", "-o", "run.txt"], "end the name in .nc or .csv"),
         (["simulate", "1", "2", "--points", "100000000000000"], "Unable to allocate"),
         (["simulate", "1", "2", "-c", "nowhere.yaml"], "no configuration nowhere.yaml"),
+        (
+            ["benchmark", "--tolerance", "1e-6", "--tolerance", "1_0"],
+            "'1_0' is not a number",
+        ),
+        (["benchmark", "--time-limit", "2 mm"], "that is a length; a time is needed"),
         (["simulate", "1", "2", "--mu", "1_000"], "1_000: it is not a number"),
         (["simulate", "1", "2", "--t-end", "1_0"], "'1_0' is not a number"),
         (["simulate", "1", "2", "--mass", "1 ton"], "1000 kg or, in America, 907.18"),
