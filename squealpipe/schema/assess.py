@@ -59,6 +59,16 @@ CURES = {
 STARTS = {"": "steady sliding, pushed", "sudden_": "rest under the whole preload"}
 """Prefix of the scalars of a start, and that start."""
 
+MEAN_SQUARES = ("velocity_rms_along", "velocity_rms_across")
+MEANS = (*MEAN_SQUARES, "impact_rate", "separated_fraction", "stick_fraction")
+WITH_ERROR = ("frequency", *MEANS)
+"""Scalars of a settled motion that have a statistical error where it does not repeat."""
+
+
+def error_of(name: str) -> str:
+    """The variable that holds the statistical error of another one."""
+    return f"{name}_error"
+
 
 def _of_motion(prefix: str, start: str) -> dict[str, Variable]:
     """The scalars of what one start settles to."""
@@ -80,6 +90,16 @@ def _of_motion(prefix: str, start: str) -> dict[str, Variable]:
         "separated_fraction": real("share of the time without contact"),
         "stick_fraction": real("share of the time in stick"),
         "settled_by": real("time by which the motion had settled", "s", 1e-6),
+    }
+    scalars |= {
+        error_of(name): or_nan(
+            f"statistical error (95 %, frequency: scatter) of {name}, from {start}; "
+            "0 where the motion repeats",
+            scalars[name].units,
+            volatile=True,
+            optional=True,
+        )
+        for name in WITH_ERROR
     }
     return {f"{prefix}{name}": entry for name, entry in scalars.items()}
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from squealpipe.schema.assess import Mechanism, Verdict
+from squealpipe.schema.assess import Mechanism, Verdict, error_of
 from squealpipe.text import number, percent
 from squealpipe.units import engineering
 
@@ -31,6 +31,8 @@ FAR = 10.0
 """Distance of steady sliding from rest, over the preload, from which it is told."""
 NOT_FOUND = "none"
 """In place of a value that was not found within the range searched."""
+SEEN_ERROR = 5e-3
+"""Statistical error, over a level, that its digits would show."""
 CHEAPEST = 3
 """Cures that an answer names."""
 
@@ -164,9 +166,21 @@ def level(answer: xr.Dataset) -> str:
     )
     peak = engineering(float(answer.displacement_peak), "m")
     return (
-        f"Level{when}: {along} rms along the belt and {across} across it; "
+        f"Level{when}: {along} rms along the belt and {across} across it{_scatter(answer)}; "
         f"displacement up to {peak}, contact force up to {_force(answer)}."
     )
+
+
+def _scatter(answer: xr.Dataset) -> str:
+    """By how much the levels of a motion that does not repeat may be off, where that is seen."""
+    ways = [f"velocity_rms_{way}" for way in ("along", "across")]
+    if error_of(ways[0]) not in answer:  # of a version that did not say
+        return ""
+    values = [float(answer[way]) for way in ways]
+    errors = [float(answer[error_of(way)]) for way in ways]
+    loudest = int(np.argmax(values))
+    share = errors[loudest] / max(values[loudest], 1e-300)
+    return f" (within {percent(share)})" if share >= SEEN_ERROR else ""
 
 
 def impacts(answer: xr.Dataset) -> str:

@@ -18,6 +18,7 @@ from squealpipe.tasks.assess.settling import pushed, settle, start_at
 from squealpipe.tasks.assess.sliding import Design, Sliding
 from squealpipe.tasks.linear.maps import stability_map
 from squealpipe.validation import Angle, Tolerance
+from squealpipe.vibration.settling import FOR_NUMBERS
 
 SEARCHED = 1e-9
 """Tolerance of the runs that search boundaries, which are located far more coarsely."""
@@ -55,7 +56,7 @@ def assess(
     starts = [sudden]
     if sliding is not None:
         starts += [pushed(design, sliding), *strikes(design, sliding)]
-    settled = settle(starts, tol=tol)
+    settled = settle(starts, tol=tol, rules=FOR_NUMBERS)
     of_sudden, of_verdict = settled[0], settled[min(1, len(settled) - 1)]
     others = [each for each in settled if each.verdict is not Verdict.quiet]
     scalars, pictured = levels(design, of_verdict, sliding, tol=tol)

@@ -1,18 +1,35 @@
-"""Level, frequency and picture of a settled motion, from one more run of it."""
+"""Level, frequency and picture of a settled motion, from one more run of it.
 
+An irregular motion is run on in blocks: its numbers are means over them, with the error that their
+scatter leaves, and its spectrum is the mean of theirs (Welch's method).
+"""
+
+import math
 from typing import Any
 
 import numpy as np
+from scipy.special import stdtrit
 
 from squealpipe.codes import Regime
 from squealpipe.laws.contact import normal_force
 from squealpipe.methods.parabola import largest
 from squealpipe.methods.recurrence import repeats_after
 from squealpipe.methods.spectrum import amplitude_spectrum, highest_peaks
-from squealpipe.schema.assess import HARMONICS, LINES, SAMPLES, Verdict
+from squealpipe.schema import Outcome
+from squealpipe.schema.assess import (
+    HARMONICS,
+    LINES,
+    MEAN_SQUARES,
+    MEANS,
+    SAMPLES,
+    WITH_ERROR,
+    Verdict,
+    error_of,
+)
 from squealpipe.solvers.a1.ensemble import PEAK, Ensemble, run_ensemble
 from squealpipe.tasks.assess.settling import Settled
 from squealpipe.tasks.assess.sliding import Design, Sliding
+from squealpipe.vibration.settling import tapered
 
 PERIODS = 400.0
 """Length of the run, in periods."""
@@ -27,6 +44,10 @@ REPEATS = 1e-4
 ALIKE = 1e-2
 """Largest distance, over the motion's size, at which states one period apart are the same."""
 MOST_EVENTS = 20_000
+BLOCKS = 16
+"""Runs of :data:`PERIODS` by which an irregular motion is measured, and others at most."""
+FEWEST_MERGED = 8
+"""Blocks from which neighbours are merged: of fewer the scatter itself is too uncertain."""
 
 
 def still() -> dict[str, Any]:
@@ -41,6 +62,7 @@ def still() -> dict[str, Any]:
         "impact_rate": 0.0,
         "separated_fraction": 0.0,
         "stick_fraction": 0.0,
+        **dict.fromkeys(map(error_of, WITH_ERROR), 0.0),
     }
 
 
@@ -52,7 +74,22 @@ def levels(
     Of a motion that has died out the scalars are those of steady sliding, and there is no spectrum.
     """
     run, times = _run(design, settled.last.final, tol)
-    scalars = _scalars(design, run)
+    spectrum = _spectrum(design, [run], times)
+    strongest = spectrum["harmonic_frequency"][0]
+    periodic = settled.verdict is not Verdict.quiet and _repeats(run, times, strongest)
+    blocks = [run]
+    wanted = _blocks(design, settled, periodic)
+    while len(blocks) < wanted and blocks[-1].outcome == Outcome.converged:
+        blocks.append(_run(design, blocks[-1].final_state, tol)[0])
+    scalars = _means([_scalars(design, block) for block in blocks])
+    scalars |= {"frequency": np.nan, error_of("frequency"): 0.0}
+    if len(blocks) > 1:
+        lines = [_strongest(design, block, times) for block in blocks]
+        scalars[error_of("frequency")] = float(np.std(lines, ddof=1))
+        spectrum = _spectrum(design, blocks, times)
+        strongest = spectrum["harmonic_frequency"][0]
+    if settled.verdict is Verdict.undetermined:
+        scalars |= dict.fromkeys(map(error_of, WITH_ERROR), np.nan)
     if settled.verdict is Verdict.quiet:
         force = scalars["peak_contact_force"] if sliding is None else sliding.force
         load = design.params.k3 * design.params.preload
@@ -60,13 +97,29 @@ def levels(
             "peak_contact_force": force,
             "peak_contact_force_over_preload": force / load,
         }
-    spectrum = _spectrum(design, run, times)
-    if settled.verdict is not Verdict.quiet:
-        scalars["frequency"] = spectrum["harmonic_frequency"][0]
-        scalars["periodic"] = _repeats(run, times, scalars["frequency"])
+    else:
+        scalars |= {"frequency": strongest, "periodic": periodic}
     scalars["settled_by"] = settled.time
     scalars["verdict"] = settled.verdict
     return scalars, spectrum | _path(design, run, times)
+
+
+def _blocks(design: Design, settled: Settled, periodic: bool) -> int:
+    """How many runs a motion is measured by: what does not repeat, by as long as it took to settle.
+
+    The beat of a torus may be longer than one run.
+    """
+    if settled.irregular:
+        return BLOCKS
+    if periodic or settled.verdict in (Verdict.quiet, Verdict.undetermined):
+        return 1
+    settled_in = settled.time / (PERIODS * design.period)
+    return int(min(max(np.ceil(settled_in), 2), BLOCKS))
+
+
+def _strongest(design: Design, run: Ensemble, times: np.ndarray) -> float:
+    """Strongest line of a run, Hz."""
+    return float(_spectrum(design, [run], times)["harmonic_frequency"][0])
 
 
 def _run(design: Design, state: np.ndarray, tol: float) -> tuple[Ensemble, np.ndarray]:
@@ -81,6 +134,7 @@ def _run(design: Design, state: np.ndarray, tol: float) -> tuple[Ensemble, np.nd
         initial_state=state,
         tol=tol,
         tracked=(PEAK,),
+        sums=True,
         log_events=MOST_EVENTS,
         workers=1,
     )
@@ -88,21 +142,73 @@ def _run(design: Design, state: np.ndarray, tol: float) -> tuple[Ensemble, np.nd
 
 
 def _scalars(design: Design, run: Ensemble) -> dict[str, Any]:
-    states = run.samples[np.isfinite(run.samples[:, 0])]
-    x, y, vx, vy = states.T
-    time = max(float(run.time), float(np.finfo(float).tiny))
+    """Scalars of a run, tapered: a low line has few periods in it, whose last is cut off."""
+    known = np.isfinite(run.samples[:, 0])
+    count = int(known.sum())
+    if not count:  # a run that is lost at once, as at a pivot
+        return dict.fromkeys(still(), np.nan) | dict.fromkeys(
+            ("peak_contact_force", "peak_contact_force_over_preload"), np.nan
+        )
+    place, velocity = np.split(run.samples[known], 2, axis=1)
+    step = float(run.time) / count
+    along, across = np.sqrt(tapered(velocity**2))
+    rates = {
+        name: float(tapered(np.diff(total[known], prepend=0.0)) / step)
+        for name, total in (
+            ("impact_rate", run.sample_contacts),
+            ("separated_fraction", run.sample_separated_time),
+            ("stick_fraction", run.sample_stick_time),
+        )
+    }
     load = design.params.k3 * design.params.preload
     return {
-        "velocity_rms_along": float(np.sqrt(np.mean(vx**2))),
-        "velocity_rms_across": float(np.sqrt(np.mean(vy**2))),
-        "displacement_peak": float(largest(np.hypot(x - x.mean(), y - y.mean()))),
+        "velocity_rms_along": float(along),
+        "velocity_rms_across": float(across),
+        "displacement_peak": float(largest(np.hypot(*(place - tapered(place)).T))),
         "peak_contact_force": float(run.peak_contact_force) * load,
         "peak_contact_force_over_preload": float(run.peak_contact_force),
         "impact_speed": float(run.impact_speed),
-        "impact_rate": float(run.contacts) / time,
-        "separated_fraction": float(run.separated_time) / time,
-        "stick_fraction": float(run.stick_time) / time,
+        **rates,
     }
+
+
+def _means(blocks: list[dict[str, float]]) -> dict[str, float]:
+    """Scalars of a motion by those of its blocks, and their statistical errors.
+
+    Mean squares and shares are averaged, the largest of what is a largest value is kept.
+    """
+    found = {}
+    for name in blocks[0]:
+        values = np.array([block[name] for block in blocks])
+        if name not in MEANS:
+            found[name] = float(np.fmax.reduce(values))
+            continue
+        power = 2 if name in MEAN_SQUARES else 1
+        powers = values**power
+        mean = float(np.mean(powers)) ** (1.0 / power)
+        found[name], found[error_of(name)] = mean, 0.0
+        if values.size > 1 and mean > 0.0:
+            error = error_of_mean(powers)
+            found[error_of(name)] = error / (power * mean ** (power - 1))
+    return found
+
+
+def error_of_mean(values: np.ndarray) -> float:
+    """Half of the 95 % interval of the mean of blocks that may depend on one another.
+
+    Neighbours are merged, which leaves the error as it is where they are independent and makes it
+    larger where they are not (Flyvbjerg and Petersen, Journal of Chemical Physics 91 (1989)
+    461-466); the largest counts.
+    """
+    error, size = 0.0, len(values)
+    while size >= 2:
+        deviation = float(np.std(values, ddof=1)) / math.sqrt(size)
+        error = max(error, float(stdtrit(size - 1, 0.975)) * deviation)
+        if size < FEWEST_MERGED:
+            break
+        size //= 2
+        values = values[: 2 * size].reshape(size, 2).mean(axis=1)
+    return error
 
 
 def _force(design: Design, run: Ensemble) -> np.ndarray:
@@ -114,9 +220,13 @@ def _force(design: Design, run: Ensemble) -> np.ndarray:
     return np.where(off, 0.0, force)
 
 
-def _spectrum(design: Design, run: Ensemble, times: np.ndarray) -> dict[str, Any]:
+def _spectrum(
+    design: Design, blocks: list[Ensemble], times: np.ndarray
+) -> dict[str, Any]:
     step = float(times[1] - times[0])
-    signals = np.stack([*run.samples[:, 2:].T, _force(design, run)])
+    signals = np.stack(
+        [[*run.samples[:, 2:].T, _force(design, run)] for run in blocks], axis=1
+    )
     if not np.isfinite(signals).all():
         return {
             "frequency_resolution": np.nan,
@@ -134,8 +244,10 @@ def _spectrum(design: Design, run: Ensemble, times: np.ndarray) -> dict[str, Any
             ),
         }
     frequency, amplitude = amplitude_spectrum(signals, step, padding=PADDING)
+    amplitude = np.sqrt((amplitude**2).mean(axis=1))
     frequency = frequency / (2.0 * np.pi)
-    louder = int(signals[1].std() > signals[0].std())
+    deviation = np.sqrt((signals.var(axis=2)).mean(axis=1))
+    louder = int(deviation[1] > deviation[0])
     peaks, _ = highest_peaks(frequency, amplitude[louder], 1)
     strongest = float(peaks[0]) if peaks.size else np.nan
     resolution = 1.0 / float(times[-1])

@@ -16,6 +16,8 @@ from squealpipe.models.damped import is_undamped
 from squealpipe.schema.assess import Verdict
 from squealpipe.tasks.assess.sliding import Design, Sliding
 from squealpipe.tasks.assess.windows import Windows, run_windows
+from squealpipe.vibration.settling import FOR_VERDICTS, Agreement, Settling, agreement
+from squealpipe.vibration.verdicts import heard
 
 PUSH = 0.01
 """Push of steady sliding, over the static compression."""
@@ -23,9 +25,6 @@ FIRST = 50.0
 """Length of the first two windows, in periods."""
 MOST = 20_000.0
 """Periods after which a motion that has not settled is undetermined."""
-AGREE = 0.03
-"""Largest difference of the statistics of two windows that agree: of rms velocities relatively,
-of shares of time absolutely."""
 FADED = 0.1
 """Velocity, over that of the push, below which a motion has died out."""
 BELOW = 10.0
@@ -34,8 +33,6 @@ SHOWN = 0.5
 """Growth or decay within a window, in logarithm, from which it would be seen."""
 SEEN = 1.0
 """Decay, in logarithm, that two states cannot pretend by their phases."""
-OFTEN = 2
-"""Losses of contact within a window from which contact is lost again and again."""
 
 
 @dataclass(frozen=True)
@@ -77,11 +74,13 @@ class Settled:
     Attributes:
         last: statistics of the last window.
         time: time by which it had settled, s.
+        irregular: whether its numbers are statistics.
     """
 
     verdict: Verdict
     last: Windows
     time: float
+    irregular: bool = False
 
     @property
     def lasts(self) -> bool:
@@ -114,8 +113,14 @@ def start_at(design: Design, sliding: Sliding | None, state: np.ndarray) -> Star
     return Start(design, np.asarray(state, float), sliding, speed)
 
 
-def settle(starts: Sequence[Start], *, tol: float, most: float = MOST) -> list[Settled]:
-    """Run each start until it has settled, ``most`` periods at most."""
+def settle(
+    starts: Sequence[Start],
+    *,
+    tol: float,
+    most: float = MOST,
+    rules: Settling = FOR_VERDICTS,
+) -> list[Settled]:
+    """Run each start until it has settled by the rules, ``most`` periods at most."""
     settled: dict[int, Settled] = {}
     states = np.array([start.state for start in starts])
     length = np.array([_first_window(start, most) for start in starts])
@@ -128,13 +133,14 @@ def settle(starts: Sequence[Start], *, tol: float, most: float = MOST) -> list[S
         with (
             alone()
         ):  # how many windows follow is not known: their share would tell nothing
-            windows = run_windows(designs, states[rows], seconds, tol=tol)
+            windows = run_windows(designs, states[rows], seconds, rules, tol=tol)
         elapsed[rows] += length[rows]
         for at, row in enumerate(rows):
             now, start = windows.row(at), starts[row]
-            verdict = None
+            verdict, shown = None, Agreement.none
             if row in before:
-                verdict = _judge(start, *before[row], now, float(seconds[at]))
+                span = float(seconds[at])
+                verdict, shown = _judge(start, *before[row], now, span, rules)
                 length[row] *= 2.0
             length[row] = min(length[row], most - elapsed[row])
             if verdict is None and (elapsed[row] >= most or not now.finished):
@@ -143,7 +149,8 @@ def settle(starts: Sequence[Start], *, tol: float, most: float = MOST) -> list[S
                     verdict = Verdict.quiet  # too slowly to become small
             if verdict is not None:
                 time = float(elapsed[row] * period[row])
-                settled[row] = Settled(verdict, now, time)
+                irregular = shown is Agreement.irregular
+                settled[row] = Settled(verdict, now, time, irregular)
             before[row], states[row] = (now, float(seconds[at])), now.final
     return [settled[row] for row in range(len(starts))]
 
@@ -156,27 +163,36 @@ def _first_window(start: Start, most: float) -> float:
 
 
 def _judge(
-    start: Start, before: Windows, span: float, now: Windows, seconds: float
-) -> Verdict | None:
-    """The verdict on two successive windows; None: they have not settled."""
+    start: Start,
+    before: Windows,
+    span: float,
+    now: Windows,
+    seconds: float,
+    rules: Settling = FOR_VERDICTS,
+) -> tuple[Verdict | None, Agreement]:
+    """The verdict on two successive windows, None: they have not settled; and what they show."""
+    undecided = None, Agreement.none
     if not now.finished:
-        return None
+        return undecided
     fades = not now.nonlinear and start.rate <= 0.0
     if fades and _dies_out(start, before, span, now, seconds):
-        return Verdict.quiet
-    lost = [bool(each.separations >= OFTEN) for each in (before, now)]
-    if lost[0] != lost[1] or not _agree(before, now):
-        return None
-    if lost[1]:
-        return Verdict.hammers
+        return Verdict.quiet, Agreement.regular
+    last, verdict = (heard(int(each.separations)) for each in (before, now))
+    period = start.design.period
+    levels = before.levels(span / period), now.levels(seconds / period)
+    shown = agreement(*levels, rules)
+    if last is not verdict or shown is Agreement.none:
+        return undecided
+    if verdict is Verdict.hammers:
+        return verdict, shown
     if now.separations > 0 or now.separated > 0:
-        return None
+        return undecided
     if start.sliding is None and np.hypot(*now.rms) < FADED * start.speed:
-        return Verdict.quiet
-    shown = abs(start.rate) * seconds >= SHOWN or now.nonlinear
-    if not shown and start.rate != 0.0:
-        return None
-    return Verdict.squeals
+        return Verdict.quiet, shown
+    is_shown = abs(start.rate) * seconds >= SHOWN or now.nonlinear
+    if not is_shown and start.rate != 0.0:
+        return undecided
+    return verdict, shown
 
 
 def _dies_out(
@@ -202,13 +218,3 @@ def _decays(
     # from the middle of one window to that of the next
     decay = 0.5 * start.rate * 0.5 * (span + seconds)
     return bool(np.hypot(*now.rms) < np.hypot(*before.rms) * np.exp(decay))
-
-
-def _agree(before: Windows, now: Windows) -> bool:
-    """Whether the statistics of two windows agree."""
-    largest = np.hypot(*now.rms)
-    return bool(
-        np.abs(before.rms - now.rms).max() <= AGREE * largest
-        and abs(before.separated - now.separated) <= AGREE
-        and abs(before.stuck - now.stuck) <= AGREE
-    )

@@ -11,9 +11,8 @@ from squealpipe.parameters import TABLE
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import PEAK, REACH, Ensemble, run_ensemble
 from squealpipe.tasks.assess.sliding import Design
+from squealpipe.vibration.settling import Settling, WindowLevels, late_growth, tapered
 
-SAMPLES = 512
-"""States of a window from which its mean squares are formed."""
 NUMBERS = tuple(
     name
     for name, row in TABLE.items()
@@ -29,11 +28,13 @@ class Windows:
         final: state at the end, m and m/s.
         rms: rms of both velocities, m/s.
         peak_speed: largest speed of the samples, m/s.
-        separated, stuck: shares of the time.
+        separated, stuck: shares of the time, tapered where a perturbation is followed.
         separations, contacts: counts of losses of contact and returns.
         nonlinear: whether contact was lost, or the mass stuck or reversed.
         peak_force: largest contact force over k3 l_pre.
         finished: whether the run reached the end of its window.
+        growth, late_growth: ln of the growth of a small perturbation in the window, and of that
+            from its third to its last quarter; NaN where none was followed.
     """
 
     final: np.ndarray
@@ -47,6 +48,20 @@ class Windows:
     peak_force: np.ndarray
     impact_speed: np.ndarray
     finished: np.ndarray
+    growth: np.ndarray
+    late_growth: np.ndarray
+
+    def levels(self, periods: float) -> WindowLevels:
+        """What one run's window of some periods is compared by."""
+        return WindowLevels(
+            self.rms,
+            np.atleast_1d(self.separated),
+            np.atleast_1d(self.stuck),
+            np.atleast_1d(self.peak_force),
+            float(self.growth),
+            float(self.late_growth),
+            periods,
+        )
 
     def row(self, index: int) -> "Windows":
         """One run of it."""
@@ -54,20 +69,26 @@ class Windows:
 
 
 def run_windows(
-    designs: Sequence[Design], starts: np.ndarray, lengths: np.ndarray, *, tol: float
+    designs: Sequence[Design],
+    starts: np.ndarray,
+    lengths: np.ndarray,
+    rules: Settling,
+    *,
+    tol: float,
 ) -> Windows:
     """Run each design from its start for its length of time.
 
     Args:
         starts: (runs, 4), m and m/s.
         lengths: (runs,), s.
+        rules: which say what has to be seen of a window.
     """
     parts: dict[str, np.ndarray] = {}
     for rows in _alike(designs):
         run = _ensemble(
-            [designs[row] for row in rows], starts[rows], lengths[rows], tol
+            [designs[row] for row in rows], starts[rows], lengths[rows], rules, tol
         )
-        for name, values in vars(_statistics(run, lengths[rows])).items():
+        for name, values in vars(_statistics(run, lengths[rows], rules)).items():
             whole = parts.setdefault(
                 name, np.empty((len(designs), *values.shape[1:]), values.dtype)
             )
@@ -87,7 +108,11 @@ def _alike(designs: Sequence[Design]) -> list[np.ndarray]:
 
 
 def _ensemble(
-    designs: Sequence[Design], starts: np.ndarray, lengths: np.ndarray, tol: float
+    designs: Sequence[Design],
+    starts: np.ndarray,
+    lengths: np.ndarray,
+    rules: Settling,
+    tol: float,
 ) -> Ensemble:
     params = [design.params for design in designs]
     numbers: dict[str, Any] = {
@@ -101,28 +126,52 @@ def _ensemble(
         np.array([design.alpha1 for design in designs]),
         np.array([design.alpha2 for design in designs]),
         t_end=lengths,
-        times=lengths[:, None] * np.linspace(0.0, 1.0, SAMPLES + 1)[1:],
+        times=lengths[:, None] * np.linspace(0.0, 1.0, rules.samples + 1)[1:],
         initial_state=starts,
         tol=tol,
         tracked=(PEAK, REACH),
+        sums=rules.follows_perturbation,
+        tangent=rules.follows_perturbation,
         workers=1,
     )
 
 
-def _statistics(run: Ensemble, lengths: np.ndarray) -> Windows:
+def _statistics(run: Ensemble, lengths: np.ndarray, rules: Settling) -> Windows:
     # a run that ends early has no states from there on
     known = np.isfinite(run.samples[..., 2:])
     square = np.where(known, run.samples[..., 2:], 0.0) ** 2
+    mean = square.sum(axis=1) / np.maximum(known.sum(axis=1), 1)
+    separated, stuck = run.separated_time / lengths, run.stick_time / lengths
+    growth = late = np.full(lengths.size, np.nan)
+    finished = run.outcome == Outcome.converged
+    if rules.follows_perturbation:
+        mean[finished] = tapered(np.moveaxis(square[finished], 1, 0))
+        separated, stuck = (
+            np.where(finished, _tapered_share(spent, lengths), share)
+            for spent, share in (
+                (run.sample_separated_time, separated),
+                (run.sample_stick_time, stuck),
+            )
+        )
+        growth, late = run.log_growth, late_growth(run.sample_log_growth.T)
     return Windows(
         final=run.final_state,
-        rms=np.sqrt(square.sum(axis=1) / np.maximum(known.sum(axis=1), 1)),
+        rms=np.sqrt(mean),
         peak_speed=np.sqrt(square.sum(axis=-1).max(axis=1)),
-        separated=run.separated_time / lengths,
-        stuck=run.stick_time / lengths,
+        separated=separated,
+        stuck=stuck,
         separations=run.separations,
         contacts=run.contacts,
         nonlinear=run.separations + run.sticks + run.reversals + run.contacts > 0,
         peak_force=run.peak_contact_force,
         impact_speed=run.impact_speed,
-        finished=run.outcome == Outcome.converged,
+        finished=finished,
+        growth=growth,
+        late_growth=late,
     )
+
+
+def _tapered_share(spent: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+    """Tapered share of the time by what has added up at the samples (runs, samples), s."""
+    steps = np.diff(spent, axis=1, prepend=0.0) / (lengths[:, None] / spent.shape[1])
+    return tapered(steps.T)

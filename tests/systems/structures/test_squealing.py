@@ -1,6 +1,7 @@
 """Which unstable modes squeal, against an integrator apart and what is known without one."""
 
 import json
+import math
 import re
 
 import numpy as np
@@ -109,6 +110,72 @@ def test_below_the_critical_friction_small_motions_die_out():
     assert list(quiet.kind.values) == [Kind.steady_sliding]
     assert quiet.share.values == pytest.approx([1.0])
     assert "No mode of steady sliding is unstable." in lines(quiet)
+
+
+def of_a_pad(angles, stiffness, damping, preload, **options):
+    """A mass of two springs with dashpots beside one another, above a contact without a load."""
+    mass, *springs, contact = stiffness
+    directions = [(math.cos(angles[0]), math.sin(angles[0])),
+                  (-math.cos(angles[1]), math.sin(angles[1]))]  # fmt: skip
+    parts = [np.outer(each, each) for each in directions]
+    k, c = (
+        sum(size * part for size, part in zip(sizes, parts, strict=True))
+        for sizes in (springs, damping)
+    )
+    point = Contact("c", {1: 1.0}, {0: 1.0}, contact, contact * preload)
+    fixed = {"damping": c, "contacts": [point], "load": np.zeros(2)}
+    return Structure(mass * np.eye(2), k, **fixed, **options)
+
+
+@pytest.mark.parametrize("samples", [4, 16])
+def test_nothing_of_a_push_is_left_in_what_is_quiet(samples, recwarn):
+    """At K12 = 0 the contact force of steady sliding is k/(k + k3) of the preload.
+
+    Velocities and the largest force were those of the last window, in which starts died out.
+    """
+    pad = of_a_pad(np.radians((30.0, 60.0)), (0.45, 1e7, 1e7, 7e6), (42.4, 42.4), 5.714e-4,
+                   mu=0.1, belt_speed=2.0)  # fmt: skip
+    quiet = squealing_modes(pad, samples=samples, workers=1)
+    assert list(quiet.kind.values) == [Kind.steady_sliding]
+    for name in (
+        "velocity_rms",
+        "velocity_peak",
+        "kinetic_energy",
+        "separated_fraction",
+    ):
+        assert (quiet[name] == 0.0).all()
+    assert quiet.peak_force.values == pytest.approx(1.0 / 1.7, rel=1e-9)
+    assert not recwarn.list
+
+
+def test_nothing_of_a_transient_is_left_in_the_largest_force_of_a_cycle():
+    """Lightly damped, against an integrator apart that runs on; it was 1.5 % too large."""
+    pad = of_a_pad(np.radians((22.0, 46.0)), (0.45, 1e7, 1e7, 7e6), (8.5, 8.5), 5.714e-4,
+                   mu=0.5, belt_speed=2.0)  # fmt: skip
+    loud = squealing_modes(pad, samples=2, workers=1)
+    assert list(loud.kind.values) == [Kind.cycle]
+    at_end = loud.isel(attractor=0)
+    start = np.concatenate([at_end.displacement, at_end.velocity])
+    _, peaks, *_ = Exponentials(pad).run(start, 0.3, 0.27, 1e-5)
+    force = 7e6 * 5.714e-4
+    assert float(at_end.peak_force[0]) == pytest.approx(peaks[0] / force, rel=2e-4)
+
+
+def test_a_structure_leaves_a_cycle_that_a_second_mode_destabilizes():
+    """Against an own Runge–Kutta run from 6 to 8 s.
+
+    From the push two windows agreed at a largest force of 0.61 of the preload after 0.2 s.
+    """
+    table = "linear 0.0:0.52 0.5:0.5 1.0:0.47 2.0:0.43 4.0:0.38 10.0:0.34"
+    dashpots = 19.595917942265427, 16.970562748477143
+    pad = of_a_pad(np.radians((55.0, 30.0)), (0.32, 1.2e7, 0.9e7, 1e7), dashpots, 4e-4,
+                   mu=1.0, friction_law=table, belt_speed=-5.0 / 3.6)  # fmt: skip
+    found = squealing_modes(pad, samples=1, workers=1)
+    assert found.sizes["attractor"] == 1
+    assert found.peak_force.values == pytest.approx(0.74763, rel=2e-3)
+    truth = math.hypot(0.99924, 0.36291)
+    assert found.velocity_rms.values == pytest.approx(truth, rel=2e-3)
+    assert found.stick_fraction.values == pytest.approx(0.05689, rel=5e-3)
 
 
 def test_a_start_is_of_the_energy_that_is_stated():

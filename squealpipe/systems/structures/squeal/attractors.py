@@ -1,14 +1,11 @@
-"""SettledMotion motions told apart by their statistics."""
+"""Settled motions told apart by their statistics."""
 
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
 from squealpipe.schema.squealing import NO_ATTRACTOR
-from squealpipe.systems.structures.squeal.settling import (
-    AGREE,
-    SettledMotion,
-    difference,
-)
+from squealpipe.systems.structures.squeal.settling import SettledMotion
+from squealpipe.vibration.settling import FOR_VERDICTS, difference
 
 SCATTER = 3.0
 """Multiples of a run's own change between windows within which it may be another's motion."""
@@ -27,12 +24,8 @@ def grouped(settled: list[SettledMotion], pushes: int) -> np.ndarray:
     near = np.zeros((count, count), bool)
     for i, one in enumerate(settled):
         for j, other in enumerate(settled[:i]):
-            if one.agrees and other.agrees and one.quiet == other.quiet:
-                allowed = np.clip(
-                    SCATTER * max(one.change, other.change), AGREE, FARTHEST
-                )
-                same = one.quiet or difference(one.last, other.last) <= allowed
-                near[i, j] = near[j, i] = same
+            if one.agrees and other.agrees:
+                near[i, j] = near[j, i] = is_same(one, other)
     _, numbers = connected_components(near, directed=False)
     numbers = np.array(
         [
@@ -46,3 +39,12 @@ def grouped(settled: list[SettledMotion], pushes: int) -> np.ndarray:
         old: new for new, old in enumerate(known[np.argsort(-sizes, kind="stable")])
     }
     return np.array([order.get(number, NO_ATTRACTOR) for number in numbers], int)
+
+
+def is_same(one: SettledMotion, other: SettledMotion) -> bool:
+    """Whether two settled runs may show one motion."""
+    if one.quiet or other.quiet:
+        return one.quiet and other.quiet
+    nearest = FOR_VERDICTS.agreement
+    allowed = np.clip(SCATTER * max(one.change, other.change), nearest, FARTHEST)
+    return bool(difference(one.last.levels, other.last.levels) <= allowed)

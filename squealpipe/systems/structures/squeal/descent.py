@@ -16,15 +16,14 @@ from squealpipe.schema.squealing import ABOVE, NARROW
 from squealpipe.systems.structures.squeal.onset import FirstOnset
 from squealpipe.systems.structures.squeal.plant import PUSH, Plant
 from squealpipe.systems.structures.squeal.settling import (
-    AGREE,
     FIRST,
     GROWTH,
     LONGEST_GROWTH,
     WIDE,
     at_rest_regimes,
-    difference,
 )
 from squealpipe.systems.structures.squeal.windows import Rows, Running, run_window
+from squealpipe.vibration.settling import FOR_VERDICTS, difference
 
 SIDE_BY_SIDE = 8
 """Frictions of one turn, run together."""
@@ -163,7 +162,11 @@ def _run_on(
                 ended[row] = None
                 continue
             last = doubling + 1 == DOUBLINGS or not now.finished
-            if last or (earlier is not None and difference(earlier, now) <= AGREE):
+            allowed = FOR_VERDICTS.agreement
+            if last or (
+                earlier is not None
+                and difference(earlier.levels, now.levels) <= allowed
+            ):
                 ended[row] = now
             before[row] = now
             states[row], regimes[row] = now.final, now.regimes

@@ -1,6 +1,6 @@
 """What a push along a mode has ended in, read off the last windows of its runs."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -8,13 +8,18 @@ import numpy as np
 from squealpipe.schema import Outcome
 from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.squeal.plant import PUSH, Plant
-from squealpipe.systems.structures.squeal.settling import stays
 from squealpipe.systems.structures.squeal.smoothed import Samples
 from squealpipe.systems.structures.squeal.windows import (
     Rows,
     Running,
     run,
     strongest_line,
+)
+from squealpipe.vibration.settling import (
+    FOR_VERDICTS,
+    Agreement,
+    WindowLevels,
+    agreement,
 )
 
 NEAR = 0.1
@@ -69,6 +74,10 @@ def _died_out(plant: Plant, before: float, now: float) -> bool:
     return now < DIED_OUT * PUSH * np.sqrt(plant.energy) and now <= before
 
 
+def _agree(before: WindowLevels, now: WindowLevels) -> bool:
+    return agreement(before, now, FOR_VERDICTS) is not Agreement.none
+
+
 def exact_ends(
     plant: Plant, before: Rows, now: Rows, count: int, tol: float
 ) -> list[PushEnd]:
@@ -90,7 +99,10 @@ def exact_ends(
             _died_out(plant, float(a), float(b)) and events == 0
             for a, b, events in zip(earlier.total, rows.total, rows.events, strict=True)
         ]
-        steady = all(stays(earlier.at(place), rows.at(place)) for place in range(count))
+        steady = all(
+            _agree(earlier.at(place).levels, rows.at(place).levels)
+            for place in range(count)
+        )
         speeds = np.sqrt((rows.speed**2).mean(axis=1))
         ringing = np.array(lines[mine])
         scatter = (
@@ -122,19 +134,6 @@ def exact_ends(
     return ends
 
 
-@dataclass(frozen=True)
-class Window:
-    """Statistics of one window of one smoothed run, as :class:`Rows` has them of exact ones."""
-
-    modal: np.ndarray
-    separated: np.ndarray
-    stuck: np.ndarray
-    total: float = field(init=False)
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "total", float(np.sqrt((self.modal**2).sum())))
-
-
 def smoothed_end(
     plant: Plant, samples: Samples, width: float, belt: np.ndarray, step: float
 ) -> PushEnd:
@@ -152,10 +151,11 @@ def smoothed_end(
     slow = closed & (np.abs(samples.sliding) < width)
     half = len(modal) // 2
     before, now = (
-        Window(
+        WindowLevels(
             np.sqrt((modal[part] ** 2).mean(axis=0)),
             1.0 - closed[part].mean(axis=0),
             slow[part].mean(axis=0),
+            samples.forces[part].max(axis=0),
         )
         for part in (slice(half), slice(half, None))
     )
@@ -166,7 +166,7 @@ def smoothed_end(
     crept = (np.abs(samples.sliding[late]) * slow[late]).sum(axis=0)
     with np.errstate(invalid="ignore", divide="ignore"):
         creep = np.where(count > 0, crept / count / belt, np.nan)
-    settled = quiet or stays(before, now)
+    settled = quiet or _agree(before, now)
     return PushEnd(
         outcome=Outcome.converged if settled else Outcome.unresolved,
         frequency=np.nan if quiet else strongest_line(modal[late], step),

@@ -18,7 +18,14 @@ from squealpipe.systems.cycles.find import find_cycle
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.structures.squeal.plant import Plant
 from squealpipe.systems.structures.squeal.settling import SettledMotion
-from squealpipe.systems.structures.squeal.windows import Running, run, strongest_line
+from squealpipe.systems.structures.squeal.windows import (
+    Rows,
+    Running,
+    run,
+    statistics_of,
+    strongest_line,
+)
+from squealpipe.vibration.settling import FOR_NUMBERS, late_growth
 
 BESIDE, OFF = 7, 1e-8
 """Runs beside the motion, and how far off they start, over its extent."""
@@ -45,6 +52,12 @@ class Described:
         exponent: growth rate of the distance of neighbours, 1/s; NaN where it was not measured.
         cycle: closed by the exact map, where it is one.
         lines, amplitudes: the spectrum, Hz and √J.
+        late_growth: ln of the growth of the area that neighbours span, from the third to the last
+            quarter of the run.
+        leaves: whether the motion is about to leave what repels it: neighbours run away from it,
+            but it has not run for as long as that takes from round-off.
+        window: statistics of a run that begins where the motion has settled, so that nothing of
+            what it settled from is in them; None where it has died out.
     """
 
     kind: Kind
@@ -54,10 +67,19 @@ class Described:
     cycle: Cycle | None
     lines: np.ndarray
     amplitudes: np.ndarray
+    late_growth: float = 0.0
+    leaves: bool = False
+    window: Rows | None = None
 
 
-def described(plant: Plant, settled: SettledMotion, how: Running) -> Described:
-    """Run on from where a start has settled."""
+def described(
+    plant: Plant, settled: SettledMotion, how: Running, before: float = 0.0
+) -> Described:
+    """Run on from where a start has settled.
+
+    Args:
+        before: the late growth that was seen before it ran on for as long again.
+    """
     nothing = np.empty(0)
     if settled.quiet:
         return Described(
@@ -83,38 +105,56 @@ def described(plant: Plant, settled: SettledMotion, how: Running) -> Described:
     omega, amplitude = amplitude_spectrum(np.moveaxis(modal, -1, 1), step)
     power = np.sqrt((amplitude**2).sum(axis=1).mean(axis=0))
     frequency = strongest_line(modal[0], step)
-    grown, exponent = _apart(plant, samples, times, extent)
+    grown, exponent, late = _apart(plant, samples, times, extent)
     kind, cycle = Kind.undetermined, None
+    rules = FOR_NUMBERS
+    leaves = late > rules.still_grows and late > rules.proportional * before
     if grown >= APART:
         kind = Kind.irregular
+        leaves = exponent * float(settled.last.length) < rules.irregular
     else:
         # on a torus near returns are many, and closing each takes minutes
         if _repeats(raw, length, NEARLY):
             cycle = _closed(plant, settled, raw, frequency)
         if cycle is not None:
-            kind = Kind.cycle
+            kind, leaves = Kind.cycle, False
         elif grown <= LINEAR and not _repeats(raw, length, REPEATED):
             kind = Kind.torus
+    window = statistics_of(plant, raw, length).at(0)
+    lines = omega / (2.0 * np.pi)
+    if leaves:
+        kind = Kind.undetermined
+    resolution = 1.0 / length
     return Described(
-        kind, frequency, 1.0 / length, exponent, cycle, omega / (2.0 * np.pi), power
+        kind, frequency, resolution, exponent, cycle, lines, power, late, leaves, window
     )
 
 
 def _apart(
     plant: Plant, samples: np.ndarray, times: np.ndarray, extent: float
-) -> tuple[float, float]:
-    """By how much neighbours have run away, and how fast: medians over all of them."""
-    away = plant.sizes(samples[1:] - samples[:1]) / extent
+) -> tuple[float, float, float]:
+    """By how much neighbours have run away, how fast, and the late growth of their area.
+
+    The distance is the median over all of them. Along the motion it keeps its size for ever, which
+    hides what grows slowly beside it; an area that is spanned with that direction grows at once.
+    """
     # many periods at once: distances swing within each
     blocks = np.array_split(np.arange(len(times)), 40)
-    spread = np.array([away[:, block].max(axis=1) for block in blocks])
+    spread, areas = np.empty(len(blocks)), np.empty(len(blocks))
+    for place, block in enumerate(blocks):
+        away = plant.coordinates(samples[1:, block] - samples[:1, block]) / extent
+        gram = np.einsum("itk,jtk->tij", away, away)
+        square = np.einsum("tii->ti", gram)
+        spread[place] = np.median(np.sqrt(square.max(axis=0)))
+        # the sum of all areas of two, by the second elementary symmetric polynomial of the roots
+        area = square.sum(axis=1) ** 2 - (gram**2).sum(axis=(1, 2))
+        areas[place] = np.sqrt(max(0.5 * float(area.max()), 0.0))
     middles = np.array([times[block].mean() for block in blocks])
-    spread = np.median(spread, axis=1)
     grown = float(spread.max() / spread[0])
     far = np.flatnonzero(spread > FAR)
     grows = slice(max(int(far[0]), 3) + 1 if far.size else None)
     rate = np.polyfit(middles[grows], np.log(spread[grows] + 1e-300), 1)[0]
-    return grown, float(rate)
+    return grown, float(rate), float(late_growth(np.log(areas + 1e-300)))
 
 
 def _repeats(raw: dict[str, np.ndarray], length: float, within: float) -> bool:

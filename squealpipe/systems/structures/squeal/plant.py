@@ -175,12 +175,15 @@ class Plant:
         to_modes = modes.T @ mass
         return to_modes / np.sqrt(2.0), omega[:, None] * to_modes / np.sqrt(2.0)
 
-    def sizes(self, deviation: np.ndarray) -> np.ndarray:
-        """√E of deviations (…, 2 n), √J."""
+    def coordinates(self, deviation: np.ndarray) -> np.ndarray:
+        """Coordinates of deviations (…, 2 n) whose squares sum to E, √J."""
         kinetic, elastic = self._roots
         q, v = deviation[..., : self.size], deviation[..., self.size :]
-        square = ((v @ kinetic.T) ** 2).sum(-1) + ((q @ elastic.T) ** 2).sum(-1)
-        return np.asarray(np.sqrt(square))
+        return np.concatenate([v @ kinetic.T, q @ elastic.T], axis=-1)
+
+    def sizes(self, deviation: np.ndarray) -> np.ndarray:
+        """√E of deviations (…, 2 n), √J."""
+        return np.asarray(np.linalg.norm(self.coordinates(deviation), axis=-1))
 
     def modal_velocities(self, states: np.ndarray) -> np.ndarray:
         """Velocities of the modes at rest, (…, n); half their squares sum to kinetic energy."""

@@ -6,9 +6,8 @@ settled when its statistics in two windows agree and none of its modes still gro
 """
 
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any, Protocol
 
 import numpy as np
 
@@ -22,6 +21,7 @@ from squealpipe.systems.structures.squeal.windows import (
 )
 from squealpipe.systems.trace import TIME
 from squealpipe.units import engineering
+from squealpipe.vibration.settling import FOR_VERDICTS, Agreement, agreement, difference
 
 GROWTH = np.log(1e4)
 """What small motions grow by before statistics begin: from a hundredth to beyond all bounds."""
@@ -29,15 +29,12 @@ FIRST = 100.0
 """Length of the first window of statistics, in periods of the slowest unstable mode."""
 LONGEST_GROWTH, MOST = 4_000.0, 8_000.0
 """Most periods in which a push may grow, and of a run, if no other end is given."""
+MOST_ON = 20_000.0
+"""Most periods of a run that goes on because it leaves what it seemed to have settled to."""
 FEWEST = 4.0
 """Fewest periods of a run: the first windows are a quarter of it."""
-AGREE = 0.03
-"""Largest difference of the statistics of two windows that agree: of modal velocities over the
-total, and of shares of time."""
-STILL_GROWS = np.log(1.5)
-"""Growth of a mode's rms velocity from one window to the next that is no scatter."""
-SMALLEST = 1e-9
-"""Velocity of a mode, over the total, below which it is not looked at."""
+LATER = 100
+"""Beyond the number of any window: instants of a run that goes on are others."""
 WIDE = 5
 """Fewest runs at once: fewer are done by other code, which would have to be compiled, too."""
 
@@ -91,14 +88,54 @@ def settle(
     plant: Plant, states: np.ndarray, t_end: float | None, how: Running
 ) -> list[SettledMotion]:
     """Run all starts until each has settled, or the time has passed."""
-    growing, length, most = horizon(plant, t_end)
+    return _run(plant, states, None, horizon(plant, t_end), how)
+
+
+def settle_on(
+    plant: Plant, settled: list[SettledMotion], t_end: float | None, how: Running
+) -> list[SettledMotion]:
+    """Run on what seemed to have settled but still leaves a motion that repels it.
+
+    Windows begin with twice the longest of the last ones, after as long without statistics: what
+    was seen to grow grows there by the square of that, or more.
+    """
+    _, _, most = horizon(plant, t_end)
+    if t_end is None:
+        most *= MOST_ON / MOST
+    length = 2.0 * max(float(run.last.length) for run in settled)
+    left = most - max(run.elapsed for run in settled)
+    if left < FEWEST * length:  # without statistics, and two windows
+        return [replace(run, agrees=False) for run in settled]
+    states = np.array([run.last.final for run in settled])
+    regimes = np.array([run.last.regimes for run in settled])
+    again = _run(plant, states, regimes, (length, length, left), how.turn(LATER))
+    for run, now in zip(settled, again, strict=True):
+        now.energies = np.concatenate([run.energies, now.energies])
+        now.instants = np.concatenate([run.instants, run.elapsed + now.instants])
+        now.elapsed += run.elapsed
+    return again
+
+
+def _run(
+    plant: Plant,
+    states: np.ndarray,
+    regimes: np.ndarray | None,
+    times: tuple[float, float, float],
+    how: Running,
+) -> list[SettledMotion]:
+    """Run states until each has settled.
+
+    Args:
+        regimes: in which they start; None: what fits.
+        times: without statistics, of the first window, and of all, s.
+    """
+    growing, length, most = times
     count = len(states)
     settled: dict[int, SettledMotion] = {}
     before: list[Rows | None] = [None] * count
     energies: list[list[np.ndarray]] = [[] for _ in range(count)]
     instants: list[list[np.ndarray]] = [[] for _ in range(count)]
     states = states.copy()
-    regimes: np.ndarray | None = None
     at_rest = at_rest_regimes(plant)
     elapsed, span, turn = 0.0, growing, 0
     with alone() as show:
@@ -171,43 +208,9 @@ def _judged(
     if not now.events and (now.regimes == at_rest).all() and plant.decays:
         # nothing switched in a whole window: the motion is linear about steady sliding, and decays
         return SettledMotion(True, True, now, 0.0, 0.0)
-    if before is None or not stays(before, now):
+    if before is None:
         return None
-    return SettledMotion(False, True, now, difference(before, now), 0.0)
-
-
-class Statistics(Protocol):
-    """What windows are compared by; see :class:`Rows`."""
-
-    @property
-    def modal(self) -> np.ndarray: ...  # noqa: D102
-
-    @property
-    def total(self) -> Any: ...  # noqa: D102
-
-    @property
-    def separated(self) -> np.ndarray: ...  # noqa: D102
-
-    @property
-    def stuck(self) -> np.ndarray: ...  # noqa: D102
-
-
-def stays(before: Statistics, now: Statistics) -> bool:
-    """Whether two windows in succession agree and no mode still grows."""
-    with np.errstate(divide="ignore"):
-        grown = np.log(now.modal) - np.log(before.modal)
-    seen = before.modal > SMALLEST * now.total
-    still = bool((grown[seen] > STILL_GROWS).any())
-    return difference(before, now) <= AGREE and not still
-
-
-def difference(one: Statistics, other: Statistics) -> float:
-    """The largest difference of statistics: of velocities over the total, and of shares."""
-    total = max(float(one.total), float(other.total), np.finfo(float).tiny)
-    return float(
-        max(
-            np.abs(one.modal - other.modal).max() / total,
-            np.abs(one.separated - other.separated).max(),
-            np.abs(one.stuck - other.stuck).max(),
-        )
-    )
+    levels = before.levels, now.levels
+    if agreement(*levels, FOR_VERDICTS) is Agreement.none:
+        return None
+    return SettledMotion(False, True, now, difference(*levels), 0.0)

@@ -12,21 +12,27 @@ from squealpipe.schema.assess import Verdict
 from squealpipe.schema.inference import wilson_interval
 from squealpipe.schema.origin import recorded
 from squealpipe.schema.squealing import NO_ATTRACTOR, SQUEALING, Kind
-from squealpipe.systems.structures.squeal.attractors import grouped
+from squealpipe.systems.structures.squeal.attractors import grouped, is_same
 from squealpipe.systems.structures.squeal.hysteresis import hysteresis
 from squealpipe.systems.structures.squeal.kinds import Described, described
 from squealpipe.systems.structures.squeal.plant import PUSH, Plant
 from squealpipe.systems.structures.squeal.remedies import added_damping
-from squealpipe.systems.structures.squeal.settling import SettledMotion, settle
-from squealpipe.systems.structures.squeal.windows import Running
+from squealpipe.systems.structures.squeal.settling import (
+    SettledMotion,
+    at_rest_regimes,
+    settle,
+    settle_on,
+)
+from squealpipe.systems.structures.squeal.windows import Rows, Running, still
 from squealpipe.validation import Natural, Positive, Seed, Tolerance, Workers
+from squealpipe.vibration.verdicts import heard
 
 LINES = 1024
 """Lines of the spectra that are kept."""
+RUN_ON = 4
+"""How often a motion that seemed to have settled runs on for longer than before."""
 CLOSE = 0.02
 """Distance of a frequency to that of an unstable mode within which it is that mode's."""
-AGAIN = 2
-"""Returns to contact from which contact is lost again and again."""
 
 
 @recorded(
@@ -88,14 +94,10 @@ def squealing_modes(
     how = Running(tol, seed, workers)
     starts = np.concatenate([pushes, drawn])
     settled = [] if plant.obstacle else settle(plant, starts, t_end, how)
-    numbers = grouped(settled, len(pushes))
+    settled, numbers, modes = _attractors(plant, settled, len(pushes), t_end, how)
     if plant.obstacle:
         numbers = np.full(len(starts), NO_ATTRACTOR)
-    members = [
-        [run for run, at in zip(settled, numbers, strict=True) if at == number]
-        for number in range(numbers.max(initial=NO_ATTRACTOR) + 1)
-    ]
-    modes = [described(plant, runs[0], how) for runs in members]
+    members = _members(settled, numbers) if settled else []
     of_mode = _of_modes(plant, settled, numbers, modes)
     of_attractor = _of_attractors(plant, members, modes)
     shares = _shares(numbers[len(pushes) :], len(members))
@@ -182,6 +184,59 @@ def _of_whole(plant: Plant) -> dict[str, Any]:
     }
 
 
+def _attractors(
+    plant: Plant,
+    settled: list[SettledMotion],
+    pushes: int,
+    t_end: float | None,
+    how: Running,
+) -> tuple[list[SettledMotion], np.ndarray, list[Described]]:
+    """Settled runs, the number of the attractor of each, and all attractors.
+
+    Runs whose motion leaves what repels it, as a cycle that a second mode destabilizes, go on: of
+    each motion one first, the others where that one has left.
+    """
+    known: dict[int, Described] = {}
+
+    def of(run: SettledMotion) -> Described:
+        if id(run) not in known:
+            known[id(run)] = described(plant, run, how)
+        return known[id(run)]
+
+    for turn in range(RUN_ON + 1):
+        numbers = grouped(settled, pushes)
+        members = _members(settled, numbers)
+        modes = [of(runs[0]) for runs in members]
+        if turn == RUN_ON or not any(mode.leaves for mode in modes):
+            break
+        for runs, mode in zip(members, modes, strict=True):
+            if not mode.leaves:
+                continue
+            (first,) = settle_on(plant, runs[:1], t_end, how)
+            going = [first]
+            if first.agrees:
+                known[id(first)] = described(plant, first, how, mode.late_growth)
+            if not first.agrees or not is_same(runs[0], first):
+                going += settle_on(plant, runs[1:], t_end, how) if runs[1:] else []
+            for old, new in zip(runs, going, strict=False):
+                place = next(at for at, run in enumerate(settled) if run is old)
+                settled[place] = new
+    return settled, numbers, modes
+
+
+def _members(
+    settled: list[SettledMotion], numbers: np.ndarray
+) -> list[list[SettledMotion]]:
+    """Runs of each attractor, the longest first."""
+    return [
+        sorted(
+            (run for run, at in zip(settled, numbers, strict=True) if at == number),
+            key=lambda run: -run.elapsed,
+        )
+        for number in range(numbers.max(initial=NO_ATTRACTOR) + 1)
+    ]
+
+
 def _of_modes(
     plant: Plant,
     settled: list[SettledMotion],
@@ -217,13 +272,7 @@ def _of_attractors(
     """Levels, shares of time, frequencies and multipliers; statistics are means over all runs."""
     count = len(members)
     shape = count, len(plant.contacts)  # also where no start has settled
-    rows = [
-        {
-            name: np.mean([getattr(run.last, name) for run in runs], axis=0)
-            for name in ("modal", "speed", "separated", "stuck")
-        }
-        for runs in members
-    ]
+    rows = [_window(plant, *each) for each in zip(members, found, strict=True)]
     frequency = np.array([each.frequency for each in found])
     near = [nearest(plant, each) for each in frequency]
     multipliers = np.full((count, 2 * plant.size), np.nan, complex)
@@ -234,26 +283,17 @@ def _of_attractors(
             multipliers[place] = values
             trivial = np.abs(values - 1.0).argmin()
             largest[place] = np.abs(np.delete(values, trivial)).max()
-    force = np.array(
-        [np.max([run.last.force for run in runs], axis=0) for runs in members]
-    ).reshape(shape)
+    force = _table(rows, "force", shape)
     # a contact that is open in steady sliding has no force to compare with
     at_rest = np.where(plant.spectrum.state.force > 0, plant.pressed, np.nan)
-    landings = np.array(
-        [
-            np.mean([run.last.landings / run.last.length for run in runs], axis=0)
-            for runs in members
-        ]
-    ).reshape(shape)
+    landings = _table(rows, "landings", shape)
+    landings = landings / np.array([row.length for row in rows]).reshape(-1, 1)
     lines, spectra = _spectra(found)
-    states = np.array([runs[0].last.final for runs in members], float)
+    states = np.array([row.final for row in rows], float)
     states = states.reshape(count, 2 * plant.size)
-    lost = [
-        max(int(run.last.landings.max()) for run in runs) >= AGAIN for runs in members
-    ]
     motion = [
-        Verdict.quiet if runs[0].quiet else (Verdict.squeals, Verdict.hammers)[loses]
-        for runs, loses in zip(members, lost, strict=True)
+        heard(int(row.landings.max()), quiet=runs[0].quiet)
+        for runs, row in zip(members, rows, strict=True)
     ]
     moves = np.array([not runs[0].quiet for runs in members], bool)
     modes = plant.frequencies[near] if count else np.empty(0)
@@ -276,10 +316,8 @@ def _of_attractors(
         "multiplier_imag": multipliers.imag,
         "divergence_rate": np.array([each.exponent for each in found]),
         "velocity_rms": np.sqrt((speed**2).mean(axis=1)),
-        "velocity_peak": np.array(
-            [max(float(run.last.peak_speed) for run in runs) for runs in members]
-        ),
-        "kinetic_energy": np.array([0.5 * (row["modal"] ** 2).sum() for row in rows]),
+        "velocity_peak": np.array([float(row.peak_speed) for row in rows]),
+        "kinetic_energy": np.array([0.5 * row.total**2 for row in rows]),
         "contact_velocity_rms": speed,
         "separated_fraction": _table(rows, "separated", shape),
         "stick_fraction": _table(rows, "stuck", shape),
@@ -303,8 +341,24 @@ def _of_attractors(
     }
 
 
-def _table(rows: list[dict[str, Any]], name: str, shape: tuple[int, int]) -> np.ndarray:
-    return np.array([row[name] for row in rows], float).reshape(shape)
+def _window(plant: Plant, runs: list[SettledMotion], found: Described) -> Rows:
+    """The window of an attractor: of a run after it had settled, or of all of an irregular one.
+
+    The last windows in which runs settled may begin with the end of a transient, which scatter
+    hides in an irregular motion alone.
+    """
+    if found.window is None:
+        return still(plant, at_rest_regimes(plant))
+    if found.kind in (Kind.cycle, Kind.torus):
+        return found.window
+    parts = [vars(run.last) for run in runs]
+    return Rows(
+        **{name: np.stack([part[name] for part in parts]) for name in parts[0]}
+    ).mean()
+
+
+def _table(rows: list[Rows], name: str, shape: tuple[int, int]) -> np.ndarray:
+    return np.array([getattr(row, name) for row in rows], float).reshape(shape)
 
 
 def nearest(plant: Plant, frequency: float) -> int:

@@ -13,6 +13,7 @@ from squealpipe.methods.spectrum import amplitude_spectrum, strongest_lines
 from squealpipe.schema import Outcome
 from squealpipe.systems.integrate import LARGEST, RunOptions, integrate
 from squealpipe.systems.structures.squeal.plant import Plant
+from squealpipe.vibration.settling import WindowLevels
 
 SAMPLES = 2048
 """Instants of a window."""
@@ -86,6 +87,49 @@ class Rows:
         """rms of the velocities of all modes, √J."""
         return np.asarray(np.sqrt((self.modal**2).sum(-1)))
 
+    @property
+    def levels(self) -> WindowLevels:
+        """What the window of one run is compared by."""
+        return WindowLevels(self.modal, self.separated, self.stuck, self.force)
+
+    def mean(self) -> Self:
+        """One run in place of several of one motion: means, and the largest of what is largest."""
+        values = {
+            name: value.mean(axis=0, dtype=float)
+            if name in ("modal", "speed", "separated", "stuck", "landings")
+            else value.max(axis=0)
+            if name in ("force", "peak_speed")
+            else value[0]
+            for name, value in vars(self).items()
+        }
+        return type(self)(**values)
+
+
+def still(plant: Plant, regimes: np.ndarray) -> Rows:
+    """The window of steady sliding, where nothing of the push is left.
+
+    Args:
+        regimes: of each component there.
+    """
+    contacts = np.zeros(len(plant.contacts))
+    return Rows(
+        final=plant.sliding,
+        regimes=regimes,
+        modal=np.zeros(plant.size),
+        speed=contacts,
+        peak_speed=np.zeros(()),
+        separated=contacts,
+        stuck=contacts,
+        landings=contacts,
+        force=plant.spectrum.state.force,
+        events=np.zeros((), int),
+        steps=np.zeros((), int),
+        kinetic=np.zeros(BLOCKS),
+        block_ends=np.arange(1, BLOCKS + 1) / BLOCKS,
+        finished=np.array(True),
+        length=np.ones(()),
+    )
+
 
 def run(
     plant: Plant,
@@ -141,6 +185,12 @@ def run_window(
     times = np.append(times, length)
     options = {} if regimes is None else {"regime": regimes}
     raw = run(plant, states, times, how, frictions, **options)
+    return statistics_of(plant, raw, length)
+
+
+def statistics_of(plant: Plant, raw: dict[str, np.ndarray], length: float) -> Rows:
+    """Statistics of windows by the raw results of their runs, whose last sample is their end."""
+    size = len(raw["final"])
     samples = raw["samples"][:, :-1]
     modal = plant.modal_velocities(samples)
     speed = plant.contact_speeds(samples)
@@ -155,7 +205,6 @@ def run_window(
         [raw["counts"][:, kinds.index(f"{name}_contact")] for name in plant.contacts], 1
     )
     with np.errstate(invalid="ignore"):
-        size = len(states)
         return Rows(
             final=raw["final"],
             regimes=raw["sample_regimes"][:, -1].copy(),  # as a start of the next
@@ -168,7 +217,9 @@ def run_window(
             force=raw["extremes"][..., 1],
             events=raw["counts"].sum(1),
             steps=raw["steps"],
-            kinetic=kinetic.reshape(size, BLOCKS, -1).mean(-1),
+            kinetic=np.stack(
+                [part.mean(1) for part in np.array_split(kinetic, BLOCKS, axis=1)], 1
+            ),
             block_ends=np.tile(length * np.arange(1, BLOCKS + 1) / BLOCKS, (size, 1)),
             finished=raw["outcome"] == Outcome.converged,
             length=np.full(size, length),

@@ -1,0 +1,1 @@
+"""What a vibration settles to, decided once for pads and for structures."""
