@@ -1,6 +1,8 @@
 """The plan in words: rules, keys and sources, figures, and the time that they took before."""
 
 import json
+import os
+from dataclasses import replace
 
 import pytest
 
@@ -9,6 +11,7 @@ from squealpipe.execution.explain import (
     Explanation,
     PlannedJob,
     WorkflowError,
+    _changing,
     explain,
     snakemake_command,
 )
@@ -47,6 +50,7 @@ def test_plan_names_figures_and_time():
     ]
     plan = Explanation(jobs=jobs, cores=2)
     assert plan.figures == ["fig01", "fig07"]
+    assert Explanation(jobs=[replace(jobs[1], changing=["fig08"])]).figures == ["fig08"]
     assert plan.seconds == 10.0, "no less than the longest job"
     assert plan.estimate() == (
         "about 10 s on 2 cores, from recorded times; not counted, never run: draw_model"
@@ -54,6 +58,27 @@ def test_plan_names_figures_and_time():
     assert jobs[2].why() == "missing; follows map_validity"
     assert json.loads(json.dumps(plan.as_dict()))["jobs"][0]["rule"] == "map_validity"
     assert "not known" in Explanation(jobs=[jobs[2]]).estimate()
+
+
+def test_of_the_figures_that_a_rule_draws_those_change_that_an_edit_reaches(tmp_path):
+    """A module of one of them is edited, or a dataset of one is pending; the rule draws both."""
+    (tmp_path / "figures").mkdir()
+    for name in ("one.py", "two.py", "figures/one.png", "figures/two.png"):
+        (tmp_path / name).touch()
+        os.utime(tmp_path / name, (1000.0, 1000.0))
+    outputs = {
+        f"figures/{name}.png": {
+            "reads": [f"data/{name}.nc"],
+            "imports": [str(tmp_path / f"{name}.py")],
+        }
+        for name in ("one", "two")
+    }
+    assert _changing(tmp_path, outputs, {"data/one.nc"}) == ["one"]
+    assert _changing(tmp_path, outputs, set()) is None, "what is drawn with all of them"
+    os.utime(tmp_path / "two.py", (2000.0, 2000.0))
+    assert _changing(tmp_path, outputs, set()) == ["two"]
+    (tmp_path / "figures/one.png").unlink()
+    assert _changing(tmp_path, outputs, set()) == ["one", "two"]
 
 
 def test_times_come_from_snakemakes_records(tmp_path):

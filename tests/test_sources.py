@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from squealpipe.rerun.key import STARTED, key_behind, rule_key, sources, state_key
+from squealpipe.rerun.key import STARTED, key_behind, rule_key, sources, state_key, used
 from squealpipe.rerun.sources import PACKAGE, closure, read_source
 
 
@@ -160,3 +160,26 @@ def test_result_of_code_that_changed_meanwhile_is_not_published(tmp_path, monkey
     monkeypatch.setenv(STARTED, "0")
     monkeypatch.setattr(time, "time", lambda: 1.0)
     state_key(picture, "0" * 16)
+
+
+def test_a_law_counts_where_it_is_named(tmp_path):
+    """All laws are imported with one of them; those that nothing names decide nothing."""
+    laws = {"coulomb", "exponential", "hyperbolic", "dashpot", "linear"}
+
+    def counted(text, part):
+        path = tmp_path / f"script{len(list(tmp_path.iterdir()))}.py"
+        path.write_text(f"from squealpipe.models import a1\n{text}")
+        code = sources(path)
+        assert laws <= {each.stem for each in code}
+        return {each.stem for each in used(part, code)} & laws
+
+    assert counted("", {}) == {"coulomb", "linear"}
+    named_here = {"parameters": {"friction_law": "hyperbolic"}}
+    assert counted("", named_here) == {"coulomb", "linear", "hyperbolic"}
+    assert counted("", {"vary": ["contact_law=linear,dashpot"]}) >= {"dashpot"}
+    assert "exponential" in counted("for law in ('exponential',):\n    pass", {})
+    assert "dashpot" not in counted("def f(p):\n    return p.law == 'dashpot'", {})
+    robustness = PACKAGE / "tasks/propensity/robustness.py"
+    assert {"exponential", "hyperbolic"} <= {
+        each.stem for each in used({}, [robustness, *closure(robustness)])
+    }

@@ -27,6 +27,7 @@ def explain(
     from rich.table import Table
 
     from squealpipe.execution.explain import explain as plan_of
+    from squealpipe.rerun.sources import PACKAGE
 
     with working("explain"):
         plan = plan_of(config or [], quick=quick)
@@ -46,7 +47,8 @@ def explain(
         grid.add_row(job.rule, escape(job.why()), time)
     Console().print(grid)
     print(
-        f"figures that change: {', '.join(plan.figures) or 'none'}\n{plan.estimate()}"
+        f"figures that change: {', '.join(plan.figures) or 'none'}\n{plan.estimate()}\n"
+        f"code: that of {PACKAGE}"
     )
     return DONE
 

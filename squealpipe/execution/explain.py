@@ -11,7 +11,7 @@ import shlex
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -44,6 +44,7 @@ class PlannedJob:
         reasons: why, in words, for instance ``parameters.mu: 0.3 → 0.4``.
         follows: rules whose new results it reads.
         seconds: duration of its last run, or None if it never ran.
+        changing: its figures that change, beside which the rule draws others. None: all.
     """
 
     rule: str
@@ -51,6 +52,14 @@ class PlannedJob:
     reasons: list[str]
     follows: list[str]
     seconds: float | None = None
+    changing: list[str] | None = None
+
+    @property
+    def figures(self) -> list[str]:
+        """Figures that the rule draws and that change."""
+        drawn = (FIGURE.search(path) for path in self.outputs)
+        names = sorted({match[1] for match in drawn if match})
+        return names if self.changing is None else self.changing
 
     def why(self) -> str:
         """Reasons as one phrase."""
@@ -75,8 +84,7 @@ class Explanation:
     @property
     def figures(self) -> list[str]:
         """Figures that would be drawn again."""
-        found = (FIGURE.search(path) for job in self.jobs for path in job.outputs)
-        return sorted({match[1] for match in found if match})
+        return sorted({name for job in self.jobs for name in job.figures})
 
     @property
     def seconds(self) -> float:
@@ -156,6 +164,9 @@ def explain(
                 reasons=reasons,
                 follows=follows,
                 seconds=seconds,
+                changing=_changing(
+                    there, {path: made[path] for path in outputs}, pending
+                ),
             )
         )
     return Explanation(
@@ -225,6 +236,31 @@ def _changes(path: Path, made: Mapping[str, Any]) -> list[str]:
         for key in new
         if old.get(key) != new[key]
     ]
+
+
+def _changing(
+    there: Path, outputs: Mapping[str, Mapping[str, Any]], pending: Container[str]
+) -> list[str] | None:
+    """Return the figures among some outputs that change: a rule draws all those of one topic.
+
+    A figure changes if it is missing, if a dataset that it reads is pending, or if a module that it
+    imports is younger. None if the rule draws no figures, or none of these is why it runs.
+    """
+    changing = set()
+    for path, made in outputs.items():
+        if not (match := FIGURE.search(path)):
+            return None
+        file = there / path
+        if (
+            not file.exists()
+            or any(each in pending for each in made["reads"])
+            or any(
+                Path(source).stat().st_mtime > file.stat().st_mtime
+                for source in made["imports"]
+            )
+        ):
+            changing.add(match[1])
+    return sorted(changing) or None
 
 
 def _changed_code(output: Path, sources: list[str]) -> str:

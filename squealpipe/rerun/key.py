@@ -18,7 +18,13 @@ from typing import Any
 
 import yaml
 
-from squealpipe.rerun.sources import INPUT_FILES, PACKAGE, closure, read_source
+from squealpipe.rerun.sources import (
+    INPUT_FILES,
+    PACKAGE,
+    closure,
+    law_files,
+    read_source,
+)
 
 PARTS = ("data", "figures", "report")
 """Folders of a run that hold results."""
@@ -67,6 +73,19 @@ def sources(*scripts: Path) -> list[Path]:
     return [path for path in found if path.name not in WATCHERS]
 
 
+def used(part: Mapping[str, Any], code: Iterable[Path]) -> list[Path]:
+    """Return the files that decide a rule's results: of laws those that something names.
+
+    A module imports all laws with one of them. A law counts where the slice of the configuration
+    names it, or a module that hands its name on: the default's, and what a task tries besides.
+    """
+    code, laws = list(code), law_files()
+    named = set(re.findall(r"\w+", canonical(part)))
+    for path in code:
+        named |= read_source(path).laws
+    return [path for path in code if path not in laws or laws[path] in named]
+
+
 def rule_key(
     part: Mapping[str, Any],
     code: Iterable[Path],
@@ -83,7 +102,7 @@ def rule_key(
         path.relative_to(root).as_posix() if path.is_relative_to(root) else path.name: (
             read_source(path).code
         )
-        for path in code
+        for path in used(part, code)
     }
     files = {name: digest(Path(name).read_bytes()) for name in files_named_in(part)}
     # keys of a sweep in the order given, which is that of its dimensions

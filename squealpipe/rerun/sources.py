@@ -20,11 +20,20 @@ WORKFLOW = (PACKAGE / "workflow").resolve()
 """Rules, scripts and configurations: in a checkout a folder of its own, in a wheel within."""
 
 
+LAWS = ("friction_laws", "contact_laws")
+"""Folders of one module for each law; all are imported where one of them is."""
+
+
 class Source(NamedTuple):
-    """What one file imports and reads from the package, and the digest of its code."""
+    """What one file imports and reads from the package, and the digest of its code.
+
+    Attributes:
+        laws: names of laws that it hands on; to compare a name with one is no use of that law.
+    """
 
     imports: frozenset[Path]
     code: str
+    laws: frozenset[str] = frozenset()
 
 
 def closure(script: str | Path) -> list[Path]:
@@ -57,15 +66,29 @@ def read_source(path: Path) -> Source:
     files = {file for name in module.imports for file in _files(name)}
     if path.is_relative_to(PACKAGE):
         files |= {file for each in module.inputs for file in path.parent.glob(each)}
-    return Source(frozenset(files), module.code)
+    return Source(frozenset(files), module.code, frozenset(module.laws))
+
+
+@cache
+def law_files() -> dict[Path, str]:
+    """Return the modules of single laws, each with the law's name."""
+    return {
+        path: path.stem
+        for folder in LAWS
+        for path in sorted(PACKAGE.glob(f"laws/{folder}/*.py"))
+        if path.stem != "__init__"
+    }
 
 
 class _Module(NamedTuple):
-    """What was read of a module: package modules that it imports, ``INPUT_FILES``, its digest."""
+    """What was read of a module: package modules that it imports, ``INPUT_FILES``, its digest, and
+    the laws that it names.
+    """
 
     imports: list[str]
     inputs: list[str]
     code: str
+    laws: list[str]
 
 
 def _parsed(content: bytes, documented: bool) -> _Module:
@@ -87,7 +110,10 @@ def _parsed(content: bytes, documented: bool) -> _Module:
 def _memory() -> Path:
     """File in the user's cache folder, of this reader of sources and this Python alone."""
     user = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")  # noqa: PTH111
-    reader = hashlib.sha256(Path(__file__).read_bytes() + sys.version.encode())
+    names = ",".join(sorted(law_files().values()))  # looked for in every module
+    reader = hashlib.sha256(
+        Path(__file__).read_bytes() + sys.version.encode() + names.encode()
+    )
     path = Path(user, "squealpipe", f"sources-{reader.hexdigest()[:16]}.jsonl")
     with suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -108,6 +134,7 @@ def _remembered() -> dict[str, _Module]:
 
 def _parse(content: bytes, documented: bool) -> _Module:
     tree = ast.parse(content)
+    known = set(law_files().values())
     nodes = [tree, *_statements(tree.body)]
     names: set[str] = set()
     for node in nodes:
@@ -124,9 +151,22 @@ def _parse(content: bytes, documented: bool) -> _Module:
             first = node.body[0] if node.body else None
             if isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant):
                 node.body.pop(0)
+    compared = {
+        id(part)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Compare)
+        for part in ast.walk(node)
+    }
+    laws = {
+        node.value
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Constant)
+        and id(node) not in compared
+        and node.value in known
+    }
     own = sorted(name for name in names if name.partition(".")[0] == PACKAGE.name)
     code = hashlib.sha256(ast.dump(tree).encode()).hexdigest()[:16]
-    return _Module(own, inputs, code)
+    return _Module(own, inputs, code, sorted(laws))
 
 
 def _input_files(node: ast.stmt) -> Sequence[str]:

@@ -88,6 +88,20 @@ def test_edited_sources_reach_what_imports_them(planned, module):
     assert not reads & fresh
 
 
+def test_of_the_figures_of_a_rule_an_edit_of_one_reaches_that_one_alone(planned):
+    """The rule draws them all; ``explain`` lists which change."""
+    edited = str(PACKAGE / "study/figures/linear/critical_friction.py")
+    drawn = [row for row in planned if row["rule"] == "draw_linear"]
+    assert len(drawn) > 8
+    reached = [row for row in drawn if edited in row["imports"]]
+    assert {row["key"].rpartition("/")[2] for row in reached} == {
+        "critical_friction.png", "critical_friction.svg",
+    }  # fmt: skip
+    assert {path.rpartition("/")[2] for row in reached for path in row["reads"]} == {
+        "critical_friction_map.nc", "critical_damping_map.nc",
+    }  # fmt: skip
+
+
 NO_INPUTS = ("results/", ".snakemake/", ".git/")
 """What scripts read beside inputs: results and records of the workflow."""
 

@@ -85,6 +85,18 @@ ASKED = os.environ.get(PLAN)
 if workflow.is_main_process and not ASKED:
     refuse_misfits({path: KEYS[path] for path in KEYS if misjudged(path)})
 
+DRAWN = {f"{RESULTS}/figures/{name}.{ending}": name for name in READ_BY for ending in ("png", "svg")}
+"""File of a picture → the figure; a rule draws all figures of a topic."""
+
+
+def of_picture(path):
+    """What one picture is drawn from, of all that its rule reads and imports."""
+    if path not in DRAWN:
+        return {}
+    read = [str(MADE[name]["path"]) for name in READ_BY[DRAWN[path]]]
+    return {"reads": read, "imports": list(map(str, sources(declared.find_module(DRAWN[path]))))}
+
+
 # What `squealpipe explain` and `archive` ask for: what each file should be.
 if ASKED:
     Path(ASKED).write_text(
@@ -96,6 +108,7 @@ if ASKED:
                     "settings": MAKERS[path].params.get("settings", {}),
                     "sources": list(map(str, SOURCES[MAKERS[path].name])),
                     "inputs": list(map(str, MAKERS[path].input)),
+                    **of_picture(path),
                 }
                 for path, key in KEYS.items()
             }
