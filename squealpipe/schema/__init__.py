@@ -142,9 +142,15 @@ def meanings(variable: xr.DataArray | xr.Variable) -> dict[int, str]:
     return dict(zip(map(int, values), names, strict=True))
 
 
+OWN_NAMES = "own_names"
+"""Attribute of a flag variable: those of its meanings that a user's system gave."""
+
+
 @checked
 def labels(array: xr.DataArray) -> xr.DataArray:
     """A flag variable in words, for people: ``print(labels(dataset.motion))``.
+
+    Names that the user of a system gave stay as they are: ``labels(run.event_kind) == "to_right"``.
 
     Args:
         array: a variable with ``flag_values`` and ``flag_meanings``.
@@ -157,7 +163,11 @@ def labels(array: xr.DataArray) -> xr.DataArray:
         raise ValueError(
             f"array = {array.name!r}: a variable with flag_meanings is needed"
         )
-    words = {value: name.replace("_", " ") for value, name in table.items()}
+    own = str(array.attrs.get(OWN_NAMES, "")).split()
+    words = {
+        value: name if name in own else name.replace("_", " ")
+        for value, name in table.items()
+    }
     named = np.vectorize(words.get, otypes=[object])(array.values).astype(str)
     return xr.DataArray(named, array.coords, array.dims, array.name)
 
@@ -186,6 +196,7 @@ RUN_ENDS = (
     Outcome.not_finite,
     Outcome.accumulation,
     Outcome.hidden_event,
+    Outcome.discontinuity,
 )
 """Outcomes of a run in time that is to reach its end."""
 

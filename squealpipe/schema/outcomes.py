@@ -93,6 +93,11 @@ class Outcome(IntEnum):
         "round-off hides when a surface is crossed: give one with a simple root, u for u**3",
     )
 
+    discontinuity = (
+        41,
+        "an expression jumps or has a pole at the time reached: make each side a regime",
+    )
+
     def __new__(cls, number: int, remedy: str = "") -> Self:
         """An outcome from its record."""
         outcome = int.__new__(cls, number)

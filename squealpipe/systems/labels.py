@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from squealpipe.methods.taylor import layout
-from squealpipe.schema import SYSTEM, Outcome, flag_table, in_words
+from squealpipe.schema import OWN_NAMES, SYSTEM, Outcome, flag_table, in_words
 from squealpipe.schema.origin import versions
 from squealpipe.systems.tracing import TracedSystem as System
 
@@ -27,6 +27,20 @@ def flag(long_name: str, dims: Any, values: Any, table: Mapping[int, str]) -> An
     return dims, np.asarray(values, np.int16), attributes
 
 
+def named(long_name: str, dims: Any, values: Any, table: Mapping[int, str]) -> Any:
+    """A flag variable whose values, from 0 on, have the names that the system gives them."""
+    dims, values, attributes = flag(long_name, dims, values, table)
+    own = {value: name for value, name in table.items() if value >= 0}
+    return dims, values, attributes | _own(own)
+
+
+def _own(table: Mapping[int, str]) -> dict[str, str]:
+    """The attribute that holds names of a system's own, if there are any."""
+    if not table:
+        return {}
+    return {OWN_NAMES: " ".join(name.replace(" ", "_") for name in table.values())}
+
+
 def regime_flag(
     system: System, long_name: str, dims: tuple[str, ...], regimes: np.ndarray
 ) -> Any:
@@ -35,8 +49,8 @@ def regime_flag(
     if (np.asarray(regimes) < 0).any():
         names[-1] = "not_reached"  # instants after the end of a run
     if len(system.composition.names) == 1:
-        return flag(long_name, dims, np.asarray(regimes)[..., 0], names)
-    return flag(f"{long_name} of each component", (*dims, "component"), regimes, names)
+        return named(long_name, dims, np.asarray(regimes)[..., 0], names)
+    return named(f"{long_name} of each component", (*dims, "component"), regimes, names)
 
 
 def components_of(system: System) -> dict[str, Any]:
@@ -49,16 +63,17 @@ def components_of(system: System) -> dict[str, Any]:
 
 def outcome(system: System, dims: Any, values: Any) -> Any:
     """The flag variable that says how runs ended."""
-    table = flag_table(Outcome) | {
-        layout.STOPPED + i: name for i, name in enumerate(system.stops)
-    }
-    return explained("how the run ended", dims, values, table)
+    return explained(system, "how the run ended", dims, values, flag_table(Outcome))
 
 
-def explained(long_name: str, dims: Any, values: Any, table: Mapping[int, str]) -> Any:
-    """A flag variable of outcomes, with what each means and what helps."""
+def explained(
+    system: System, long_name: str, dims: Any, values: Any, table: Mapping[int, str]
+) -> Any:
+    """A flag variable of outcomes and of the system's own stops, with what each means and helps."""
+    stops = {layout.STOPPED + i: name for i, name in enumerate(system.stops)}
+    table = {**table, **stops}
     dims, values, attributes = flag(long_name, dims, values, table)
-    return dims, values, attributes | {"comment": in_words(table)}
+    return dims, values, attributes | {"comment": in_words(table)} | _own(stops)
 
 
 def attributes_of(

@@ -17,8 +17,8 @@ from squealpipe.systems.integrate import RunOptions, integrate
 from squealpipe.systems.labels import (
     attributes_of,
     components_of,
-    flag,
     labels,
+    named,
     outcome,
     regime_flag,
 )
@@ -86,8 +86,8 @@ def simulate(
     variables |= _outputs_along(system, values, times, run)
     variables["regime"] = regime_flag(system, "regime", ("time",), run.path_regimes)
     variables["event_time"] = ("event", run.times, labels("time of the event", "s"))
-    variables["event_kind"] = flag("kind of the event", "event", run.kinds, kinds)
-    variables["event_regime"] = flag("regime entered", "event", run.entered, names)
+    variables["event_kind"] = named("kind of the event", "event", run.kinds, kinds)
+    variables["event_regime"] = named("regime entered", "event", run.entered, names)
     variables["outcome"] = outcome(system, (), run.outcome)
     variables["end_time"] = ((), run.reached, labels("time reached", "s"))
     if sensitivity:

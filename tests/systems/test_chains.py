@@ -88,7 +88,7 @@ def test_ten_blocks_on_a_belt_agree_over_200_events():
     end = truth[-1][0]
     run = system.simulate(end + 1e-6, times=np.array([0.0, end]))
     names = [str(each) for each in labels(run.event_kind).values[:200]]
-    assert names == [f"block{block + 1} {what}" for _, block, what, _ in truth]
+    assert names == [f"block{block + 1}_{what}" for _, block, what, _ in truth]
     times = np.array([time for time, *_ in truth])
     assert np.abs(run.event_time.values[:200] - times).max() < 1e-8
     final = np.array([run[name].values[-1] for name in system.states])
@@ -145,7 +145,7 @@ def gear_events(p, x, v, most):
         time, which = hits[0]
         x, v = which * p["gap"], at(time)[1]
         name = "drive" if which > 0 else "coast"
-        found.append((time, f"{name} {'parts' if side else 'meets'}"))
+        found.append((time, f"{name}_{'parts' if side else 'meets'}"))
         side = 0 if side else which
     return found
 
@@ -156,7 +156,7 @@ def test_a_gear_pair_agrees_with_closed_forms_over_60_events():
     run = gear_pair.simulate(times[-1] + 1e-6)
     assert [str(each) for each in labels(run.event_kind).values] == names
     every = {
-        f"{flank} {what}" for flank in ("drive", "coast") for what in ("meets", "parts")
+        f"{flank}_{what}" for flank in ("drive", "coast") for what in ("meets", "parts")
     }
     assert set(names) == every
     np.testing.assert_allclose(run.event_time, times, rtol=0, atol=1e-8)

@@ -82,8 +82,8 @@ def test_regimes_are_told_by_component():
     run = rigid_pad.simulate(10.0, start=START)
     assert list(run.component.values) == ["leading", "trailing"]
     assert list(labels(run.event_regime).values[:2]) == [
-        "leading open",
-        "trailing open",
+        "leading_open",
+        "trailing_open",
     ]
     found = rigid_pad.ensemble(10.0, start={**START, "x": np.array([0.0, 0.1])})
     for name in ("leading", "trailing"):
@@ -130,7 +130,7 @@ def test_a_cycle_of_two_systems_side_by_side_has_the_multipliers_of_both():
         impact_oscillator.limit_cycle(**options, damping=damping)
         for damping in (0.1, 0.2)
     ]
-    assert set(labels(both.event_kind).values) == {"first impact", "second impact"}
+    assert set(labels(both.event_kind).values) == {"first_impact", "second_impact"}
     expected = [
         complex(re, im)
         for each in alone
@@ -157,7 +157,7 @@ def test_a_start_names_regimes_by_component(regime, says):
 
 def test_a_start_may_name_the_regimes_of_some_components():
     run = rigid_pad.simulate(0.0, start={"regime": {"leading": "open"}})
-    assert list(labels(run.regime[0]).values) == ["leading open", "trailing closed"]
+    assert list(labels(run.regime[0]).values) == ["leading_open", "trailing_closed"]
 
 
 def test_a_picture_shows_the_regimes_of_each_component_as_a_band():

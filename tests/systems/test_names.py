@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from squealpipe import Switch, System
+from squealpipe import Switch, System, labels
 
 
 def decays(*names, **options):
@@ -64,3 +64,33 @@ def test_a_parameter_has_no_unit_of_the_brakes_of_its_name():
 def test_a_switch_keeps_the_regimes_that_it_was_given():
     hit = Switch("hit", ("free", "held"), lambda t, s, p, r: s.x, "free")
     assert hit.leaves == ("free", "held")
+
+
+def test_names_of_a_system_are_compared_as_they_were_written():
+    turns = System(
+        "back and forth",
+        states={"x": "1"},
+        parameters={},
+        regimes={"to_right": {"speed": 1.0}, "to_left": {"speed": -1.0}},
+        field=lambda t, s, p, r: {"x": r.speed},
+        switches=[
+            Switch("hit_wall", "to_right", lambda t, s, p, r: 1.0 - s.x, "to_left"),
+            Switch("turn_back", "to_left", lambda t, s, p, r: s.x + 1.0, "to_right"),
+        ],
+        stops={"far_away": lambda t, s, p, r: 6.0 - t},
+        start={"x": 0.0, "regime": "to_right"},
+    )
+    run = turns.simulate(10.0)
+    assert labels(run.event_kind).values.tolist() == [
+        "hit_wall",
+        "turn_back",
+        "hit_wall",
+    ]
+    entered = ["to_left", "to_right", "to_left"]
+    assert labels(run.event_regime).values.tolist() == entered
+    assert (labels(run.regime) == "to_right").values[0]
+    assert labels(run.outcome).item() == "far_away"
+    assert labels(turns.ensemble(10.0).outcome).item() == "far_away"
+    # what the package says of a run stays in words
+    regimes = labels(turns.simulate(10.0, times=[0.0, 9.0]).regime)
+    assert regimes.values.tolist() == ["to_right", "not reached"]

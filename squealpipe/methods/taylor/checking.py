@@ -5,6 +5,7 @@ leads into. At its end rates, surfaces and outputs are computed from the state: 
 from their polynomials by more than the tolerance's share, the step is halved.
 """
 
+import math
 from typing import Any
 
 from squealpipe.methods.compiled import inline, part
@@ -31,6 +32,9 @@ TINY = 1e-300
 """Of a surface or output below this too few digits are left to compare."""
 HELPLESS = 1e5
 """A difference below this many tolerances that a halved step does not halve is round-off."""
+JUMP = 1e-4
+"""A rate jumps in a step across the root of a base (``bases``) if it changes there by so many sizes
+of its state, over the longest step of late."""
 FINEST = 2.0**-52
 """Share of the time reached below which there is no step."""
 
@@ -57,6 +61,8 @@ def differing(t: Any, m: Any, parameters: int) -> Any:
     for event in range(t.n_surfaces + t.n_outputs):
         if m.bent[event] and m.active[event]:
             agree &= _event_agrees(t, event, step, share) | ~m.active[event]
+    if t.shorten:
+        agree &= ~bits_below(splat(0.0), load(at + layout.ACROSS * ROW))
     return ~agree & bits_below(splat(0.0), step)
 
 
@@ -96,6 +102,17 @@ def _largest_gap(t: Any, m: Any, c: Any, lane: int) -> float:
 
 
 @part
+def _jumps(t: Any, m: Any, c: Any, lane: int) -> bool:
+    """Whether a rate jumps in a lane's step, which leads across the root of a base."""
+    reach, most = m.rows[layout.REACH, lane], 0.0
+    for variable in range(t.n_states):
+        if m.steep[variable]:
+            change = abs(m.exact[variable, lane] - c[variable, 1, lane])
+            most = max(most, change / m.sizes[variable])
+    return bool(most * reach > JUMP)
+
+
+@part
 def _event_gap(t: Any, m: Any, c: Any, lane: int, event: int) -> float:
     """Of a surface or an output, whose terms are in the scratch."""
     index, terms = t.n_variables + event, m.scratch[2, 3 * event + 1]
@@ -115,14 +132,22 @@ def believe_or_halve(t: Any, m: Any, c: Any, lane: int) -> bool:
     """Whether a lane's step stands after all; else it is halved, or its run ends."""
     rows, integers = m.rows, m.integers
     gap = _largest_gap(t, m, c, lane)
-    if gap <= 1.0 or 0.5 * rows[layout.GAP, lane] < gap < HELPLESS:
+    # the difference that a jump leaves is halved with the step, as that of round-off is
+    across = rows[layout.ACROSS, lane] > 0.0
+    jumps = across and _jumps(t, m, c, lane)
+    helpless = not across and 0.5 * rows[layout.GAP, lane] < gap < HELPLESS
+    if (gap <= 1.0 and not jumps) or helpless:
         return True
     rows[layout.GAP, lane] = gap
     rows[layout.STEPS, lane] += 1.0
     integers[layout.HIT, lane], integers[layout.OUTCOME, lane] = -1, layout.RUNNING
     step = 0.5 * rows[layout.STEP, lane]
-    if not step > FINEST * abs(rows[layout.CLOCK, lane]) or step < 1e-290:
-        integers[layout.OUTCOME, lane] = layout.NOT_FINITE
+    if gap <= 1.0:
+        integers[layout.OUTCOME, lane] = layout.DISCONTINUITY
+    elif not step > FINEST * abs(rows[layout.CLOCK, lane]) or step < 1e-290:
+        finite = gap < math.inf
+        ends = layout.DISCONTINUITY if finite else layout.NOT_FINITE
+        integers[layout.OUTCOME, lane] = ends
     elif rows[layout.STEPS, lane] >= rows[layout.MOST_STEPS, lane]:
         integers[layout.OUTCOME, lane] = layout.STEP_LIMIT
     ended = integers[layout.OUTCOME, lane] != layout.RUNNING

@@ -11,17 +11,20 @@ SHARE, ROUND_OFF = 0.1, 2e-14
 LATE_BEGINS = -2
 """What ends a step where the late part of a run begins."""
 RUNNING, CONVERGED, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE = -1, 0, 3, 4, 6
-ACCUMULATION, HIDDEN = 38, 40
+ACCUMULATION, HIDDEN, DISCONTINUITY = 38, 40, 41
 """How a run ends, by the numbers of ``schema.Outcome``."""
 STOPPED = 100
 """A stop of the system's own is this plus its number."""
 BY_EVENT, BY_TURNS = 98, 99
 """Ends of runs that were to end at the first event of a kind, or after so many turns."""
 (
-    CLOCK, CORRECTION, STEP, LONGEST, T_END, T_LATE, NEXT_SAMPLE, STEPS, MOST_STEPS, LOST,
-    DELAY, GAP, ORIGIN, FIXED_ROWS,
-) = range(14)  # fmt: skip
-"""Rows of numbers of the lanes that every system has; those of a system follow."""
+    CLOCK, CORRECTION, STEP, REACH, ACROSS, LONGEST, T_END, T_LATE, NEXT_SAMPLE, STEPS, MOST_STEPS,
+    LOST, DELAY, GAP, ORIGIN, FIXED_ROWS,
+) = range(16)  # fmt: skip
+"""Rows of numbers of the lanes that every system has; those of a system follow.
+
+``REACH`` and ``ACROSS`` follow ``STEP`` for ``shorten``: the longest step of late, and whether the
+step leads across what may be a jump."""
 JOB, OUTCOME, SAMPLE, EVENTS, LOGGED, CHAINED, HIT, LATE, REGIMES = range(9)
 """Rows of integers of the lanes; the last is the first of the regimes, one a component."""
 

@@ -18,6 +18,8 @@ from squealpipe.methods.taylor.simd import FEW, LANES, ROW, smaller, splat, stor
 from squealpipe.methods.taylor.step import reach, step_length
 
 _numba: Any = numba
+FIRST_PARAMETER = 3
+"""The row of the first parameter, after those of the steps that ``shorten`` reads and writes."""
 _SWEEPS = 19
 """Picard's iterations for a step whose length times the rate is 1: 1/19! is round-off."""
 ARRAYS = (
@@ -56,8 +58,10 @@ def _begin(t: Any, m: Any, lane: int, leg: int, unit: float) -> None:
         m.c[variable, 0, lane] = m.initial[leg, variable]
     if t.n_variables > t.n_states:
         m.c[t.n_states, 0, lane] = m.starts[leg] * unit
+    m.rows[1, lane] = abs(m.durations[leg])
+    first = FIRST_PARAMETER + t.n_parameters
     for constant in range(t.n_constants):
-        m.rows[1 + t.n_parameters + constant, lane] = m.constants[leg, constant]
+        m.rows[first + constant, lane] = m.constants[leg, constant]
 
 
 @part
@@ -99,7 +103,11 @@ def _advance(table: Any) -> int:
     t = _numba.carray(table, (1,), TABLE)[0]
     n, terms = t.n_states, t.n_terms
     m = _Memory(
-        rows=view(t.rows, (1 + t.n_parameters + t.n_constants, LANES), np.float64),
+        rows=view(
+            t.rows,
+            (FIRST_PARAMETER + t.n_parameters + t.n_constants, LANES),
+            np.float64,
+        ),
         c=view(t.series, (t.n_series, terms, LANES), np.float64),
         constants=view(t.constants, (t.n_legs, t.n_constants), np.float64),
         initial=view(t.initial, (t.n_legs, n), np.float64),
@@ -113,7 +121,8 @@ def _advance(table: Any) -> int:
     )
     sizes = view(t.sizes, (n,), np.float64)
     bent = view(t.bent, (t.n_kept - t.n_variables,), np.int64)
-    unit = m.rows[t.n_parameters, 0]
+    unit = m.rows[FIRST_PARAMETER + t.n_parameters - 1, 0]
+    parameters = t.rows + FIRST_PARAMETER * ROW
     m.lanes[:] = -1
     following, busy = 0, 0
     while True:
@@ -124,7 +133,7 @@ def _advance(table: Any) -> int:
                 busy += 1
         if busy == 0:
             return 0
-        call(t.take_step, (t.series, t.rows + ROW, t.inverses, terms))
+        call(t.take_step, (t.series, parameters, t.inverses, terms))
         length = step_length(t.series, terms, n, sizes)
         for event in range(t.n_kept - t.n_variables):
             if bent[event] or t.n_variables > n:
@@ -132,7 +141,7 @@ def _advance(table: Any) -> int:
                 length = smaller(length, reach(series, terms))
         store(t.rows, smaller(length, splat(_longest(m))))
         if t.shorten:
-            call(t.shorten, (t.series, t.rows + ROW, t.rows, terms))
+            call(t.shorten, (t.series, parameters, t.rows, terms))
         for lane in range(FEW):
             if m.lanes[lane] >= 0 and _keep(t, m, lane, unit):
                 m.lanes[lane] = -1

@@ -131,6 +131,8 @@ def _start(
         layout.CORRECTION,
         layout.STEPS,
         layout.STEP,
+        layout.REACH,
+        layout.ACROSS,
         layout.DELAY,
     ):
         rows[row, lane] = 0.0
@@ -200,7 +202,7 @@ def _cut_all(t: Any, m: Any, c: Any, special: int) -> None:
 
 @inline
 def _check(t: Any, m: Any, c: Any, parameters: int, busy: int) -> int:
-    """Halve steps until their ends can be believed; returns the lanes whose steps were."""
+    """Halve steps until their ends can be believed; returns lanes that were halved or ended."""
     store(t.rows + layout.GAP * ROW, splat(math.inf))
     wrong, halved = busy, 0
     while True:
@@ -211,9 +213,10 @@ def _check(t: Any, m: Any, c: Any, parameters: int, busy: int) -> int:
         while bits:
             lane = first_bit(bits)
             bits ^= 1 << lane
-            if believe_or_halve(t, m, c, lane):
+            stands = believe_or_halve(t, m, c, lane)
+            if stands:
                 wrong ^= 1 << lane
-            else:
+            if not stands or m.integers[layout.OUTCOME, lane] != layout.RUNNING:
                 halved |= 1 << lane
 
 

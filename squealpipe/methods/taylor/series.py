@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from squealpipe.methods.taylor import simd
+from squealpipe.methods.taylor.bases import ROOTS, Base, bases_of
 from squealpipe.methods.taylor.sums import Sums
 from squealpipe.methods.taylor.symbols import (
     FUNCTIONS,
@@ -411,10 +412,13 @@ class _SeriesWriter:
             for n in self.moving
             if n.kind in HIDDEN
         }
-        if not inner:
+        bases = bases_of(self.moving, [*self.system.rates, *self.system.events])
+        if not (inner or bases):
             return ""
-        nodes = in_order([node for node, _ in inner.values()])
-        lines = [f"stride = terms * {simd.ROW}", "h = load(row)"]
+        fixed = [n for base in bases for n in in_order([base.node]) if not n.varies]
+        fixed += [mark for base in bases for mark in base.marks]
+        nodes = in_order([*(node for node, _ in inner.values()), *fixed])
+        lines = [f"stride = terms * {simd.ROW}", "h = load(row)", "across = splat(0.0)"]
         for node in nodes:
             if node.kind == "variable":
                 code = f"load(base + {self.place[id(node)]} * stride)"
@@ -440,9 +444,64 @@ class _SeriesWriter:
                 " x = root(low * h)",
                 "h = smaller(low, h)",
             ]
-        lines.append("store(row, h)")
+        for base in bases:
+            lines += self._before_root(base)
+        lines += ["store(row, h)", f"store(row + {2 * simd.ROW}, across)"]
         head = "def shorten(base, parameters, row, terms):"
         return "\n".join([head, *(f" {line}" for line in lines)]) + "\n"
+
+    def _before_root(self, base: Base) -> Iterator[str]:
+        """Lines that keep steps before the roots of a base: see :mod:`bases`."""
+        orders = "for k in range(terms - 2, 0, -1):"
+        node, needed = base.node, " + ".join(map(self._v, base.marks))
+        yield f"s = base + {self.place[id(moving_part(node))]} * stride"
+        yield f"b = {self._at_start(node)}"
+        yield f"m = abs(b) * splat({ROOTS.room!r})"
+        yield "u = splat(0.0)"
+        yield orders
+        yield f" u = fma(u, h, abs(load(s + k * {simd.ROW})))"
+        if needed:
+            yield f"u = only({needed}, u)"
+        yield "near = u * h - m"  # not a number in other regimes, maybe
+        yield "bits = bits_below(splat(0.0), near)"
+        yield "if bits != 0:"
+        yield f" m = larger(m, {self._terms(node)} * splat({ROOTS.noise!r}))"
+        yield " down = splat(0.0) - copysign(splat(1.0), b)"
+        yield " x = h"
+        yield f" least = load(row + {simd.ROW}) * splat({base.nearest!r})"
+        yield " low = least"
+        yield f" for i in range({ROOTS.tries}):"
+        yield "  u = splat(0.0)"
+        yield f"  {orders}"
+        yield f"   u = fma(u, x, larger(load(s + k * {simd.ROW}) * down, splat(0.0)))"
+        yield "  low = larger(low, smaller(m / u, x))"
+        yield "  x = root(low * h)"
+        yield " h = smaller(low, h)"
+        if base.jumps:
+            yield " at = only(near, only(least + least - h, splat(1.0)))"
+            yield " across = larger(across, at)"
+
+    def _at_start(self, node: Symbol) -> str:
+        """Code of order 0 of a node whose moving part has a series."""
+        moving = moving_part(node)
+        if not node.varies:
+            return self._v(node)
+        if node is moving:
+            return f"load(base + {self.place[id(moving)]} * stride)"
+        return f"({' + '.join(map(self._at_start, node.arguments))})"
+
+    def _terms(self, node: Symbol) -> str:
+        """Code of the size of a base's terms: its round-off, from series that are kept anyway."""
+        a, *others = node.arguments
+        if node.kind == "*" and node.varies:
+            if not a.varies:
+                return f"abs({self._v(a)}) * {self._terms(others[0])}"
+            b = others[0]
+            first, second = (f"abs({self._at_start(n)})" for n in (a, b))
+            return f"({first} * {self._terms(b)} + {second} * {self._terms(a)})"
+        if node is not moving_part(node):
+            return f"({self._terms(a)} + {self._terms(others[0])})"
+        return f"abs({self._at_start(node)})"
 
 
 def _listed(values: Iterable[float]) -> str:

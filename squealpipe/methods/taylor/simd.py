@@ -154,6 +154,7 @@ def _of_libm(name: str) -> Callable[..., Any]:
     return generate
 
 
+_OF_LLVM = ("fma", "exp", "log", "sin", "cos", "pow", "copysign")
 _OF_LIBM = ("tanh", "sinh", "cosh", "atan", "asin")
 
 
@@ -248,7 +249,8 @@ smaller: Any = _intrinsic(
 def written(width: int) -> dict[str, Any]:
     """What generates each function of written code, by its name there."""
     return {
-        **{name: _called(name) for name in ("fma", "exp", "log", "sin", "cos", "pow")},
+        **{name: _called(name) for name in _OF_LLVM},
+        "bits_below": _bits_below,
         "root": _called("sqrt"),
         "abs": _called("fabs"),
         **{name: _of_libm(name) for name in _OF_LIBM},

@@ -42,6 +42,10 @@ SUSPECT = 1e6
 """A root that this many times the round-off would hide may be hidden by that of its terms."""
 LEAST = 0.1
 """Share of a step to which it may be shortened where round-off hides a surface at its end."""
+FADING = 0.95
+"""What a step leaves of the longest one of late; near a root of a base steps shrink by half."""
+RESOLVED = 2.0**-50
+"""Share of the time reached below which no step is shortened: the state would not move."""
 NOTHING = 1e-30
 """Below the round-off of any quantity."""
 
@@ -207,9 +211,16 @@ def take_step(t: Any, m: Any, parameters: int) -> Any:
         step = smaller(step, left - load(at + layout.CORRECTION * ROW))
         step = shorten_steps(t, m, step)
     if t.shorten:
+        reached = load(at + layout.REACH * ROW) * splat(FADING)
+        store(at + layout.REACH * ROW, larger(reached, step))
         store(at + layout.STEP * ROW, step)
         call(t.shorten, (base, parameters, at + layout.STEP * ROW, terms))
-        step = load(at + layout.STEP * ROW)
+        resolved = magnitude(load(at + layout.CLOCK * ROW)) * splat(RESOLVED)
+        short, least = load(at + layout.STEP * ROW), smaller(step, resolved)
+        across = load(at + layout.ACROSS * ROW)
+        across = choose_below(short, least, splat(1.0), across)
+        store(at + layout.ACROSS * ROW, across)
+        step = larger(short, least)
     store(at + layout.STEP * ROW, step)
     lost = step
     for variable in range(t.n_variables):

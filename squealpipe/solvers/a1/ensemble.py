@@ -156,7 +156,8 @@ class Ensemble:
         """``schema.Outcome`` of each run."""
         codes = self._raw["outcome"]
         lost = codes >= STOPPED
-        unknown = (codes == Outcome.not_finite) | (codes == Outcome.hidden_event)
+        hidden = (Outcome.not_finite, Outcome.hidden_event, Outcome.discontinuity)
+        unknown = np.isin(codes, hidden)
         if unknown.any():
             # a state that is lost next to a pivot is so by its doing, and so is the sight of it
             lost |= unknown & self._next_to_pivot()

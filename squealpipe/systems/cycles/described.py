@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.methods.taylor.layout import STOPPED
 from squealpipe.schema import Outcome, flag_table
 from squealpipe.systems.cycles.event_map import FREE
 from squealpipe.systems.cycles.solution import Cycle
@@ -18,6 +17,7 @@ from squealpipe.systems.labels import (
     explained,
     flag,
     labels,
+    named,
     regime_flag,
 )
 
@@ -78,12 +78,10 @@ def described(name: str, system: System) -> dict[str, str]:
 
 def outcome_of(system: System, dims: Any, values: Any) -> Any:
     """How a cycle was found, with the system's own stops and motions of more periods."""
-    table = flag_table(Outcome) | {
-        STOPPED + i: name for i, name in enumerate(system.stops)
-    }
+    table = flag_table(Outcome)
     more = np.unique(np.asarray(values)[np.asarray(values) > SETTLED_ON])
     table |= {int(k): f"settled_on_{int(k) - SETTLED_ON}_periods" for k in more}
-    return explained("how the cycle was found", dims, values, table)
+    return explained(system, "how the cycle was found", dims, values, table)
 
 
 def describe_columns(
@@ -131,10 +129,10 @@ def dataset(
     kinds, names = dict(enumerate(system.traced.kinds)), dict(enumerate(system.regimes))
     joint = system.joint
     found["event_time"] = ("event", times, labels("time of the event", "s"))
-    found["event_kind"] = flag(
+    found["event_kind"] = named(
         "kind of the event", "event", [e.kind for e in chosen], kinds
     )
-    found["event_regime"] = flag(
+    found["event_regime"] = named(
         "regime entered",
         "event",
         [joint.entered_by(e.after, e.switch) for e in chosen],

@@ -19,7 +19,13 @@ from squealpipe.methods.taylor.lanes import (
     drive,
     taylor_terms,
 )
-from squealpipe.methods.taylor.legs import ARRAYS, SIZES, TABLE, run_legs
+from squealpipe.methods.taylor.legs import (
+    ARRAYS,
+    FIRST_PARAMETER,
+    SIZES,
+    TABLE,
+    run_legs,
+)
 from squealpipe.methods.taylor.scalar import python_function
 from squealpipe.methods.taylor.simd import FEW, LANES
 from squealpipe.methods.taylor.symbols import derivative, parameter, symbol
@@ -252,7 +258,7 @@ class Flow:
             "shorten": code.address("shorten"),
         }
         arrays = {
-            "rows": aligned(1 + len(t.parameters) + constants, LANES),
+            "rows": aligned(FIRST_PARAMETER + len(t.parameters) + constants, LANES),
             "series": aligned(code.n_series, terms, LANES),
             "inverses": INVERSES,
             "sizes": np.zeros(t.size),
@@ -289,7 +295,8 @@ class Flow:
         column = self._known[1]
         unit = float(column[-1])
         arrays = self._work.arrays
-        arrays["rows"][1 : 1 + len(column)] = column[:, None]
+        last = FIRST_PARAMETER + len(column)
+        arrays["rows"][FIRST_PARAMETER:last] = column[:, None]
         arrays["sizes"][:] = np.minimum(
             self.system.sizes, np.maximum(np.abs(states).max(axis=0), 1e-200)
         )

@@ -129,7 +129,7 @@ def test_bands_of_regimes_are_those_of_their_contact():
     )  # fmt: skip
     run = structure.system().simulate(1e-3)
     names = labels(run.event_regime).values
-    switches = sum(name.startswith("c 2 ") for name in names)
+    switches = sum(name.startswith("c_2_") for name in names)
     assert switches
     bands = plot(run).collections
     assert [len(band.get_paths()) for band in bands] == [
