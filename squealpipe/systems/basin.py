@@ -9,7 +9,7 @@ from squealpipe.schema import flag_table
 from squealpipe.schema.systems import build
 from squealpipe.systems.grid import duration_of, outer_product
 from squealpipe.systems.labels import attributes_of, flag, labels, outcome
-from squealpipe.systems.motion import MotionKind, RepeatableRuns
+from squealpipe.systems.motion import MotionKind, RepeatableRuns, drift_tolerance
 from squealpipe.validation import Number, Tolerance, Values, Workers, checked
 
 SAME_ATTRACTOR = 1e-3
@@ -32,7 +32,10 @@ def basin(
     At *rest* every state stays within 1e-3 of its range in the whole run. On a *cycle* the motion
     repeats three times at least: with a forcing the states after so many of its periods, else the
     kinds of events, the intervals between them and the states after them; an autonomous motion
-    without events comes back to its state. All else is *unsettled*, as a torus or chaos.
+    without events comes back to its state. Nor does it drift: over the last quarter of the run no
+    state changes, at the same phase, by more than ``drift_tolerance`` of its range (1e3 ``tol``, at
+    most 1e-6; an attribute of the dataset), or by so much less than over the quarter before that
+    less than 1e-6 is still to come. All else is *unsettled*: a torus, chaos, slow decay or growth.
 
     Args:
         t_end: when they end.
@@ -84,6 +87,7 @@ def basin(
             label = labels(f"{word} {name} in the last quarter", unit)
             variables[f"{name}_{which}"] = (over, column.reshape(shape), label)
     attributes = attributes_of(system, "basin", grid.fixed, tol)
+    attributes["drift_tolerance"] = drift_tolerance(tol)
     return build("basin", variables, grid.coordinates, attributes)
 
 

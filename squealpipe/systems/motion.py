@@ -34,6 +34,30 @@ _TRIES, _AT_ONCE = 4, 256
 """Returns that are looked at, and runs whose samples are held at once."""
 
 
+def drift_tolerance(tol: float) -> float:
+    """Drift over a quarter of a run, over the ranges, that its own errors may cause.
+
+    Each of a thousand steps adds ``tol`` at most.
+    """
+    return min(1e3 * tol, REPEATED)
+
+
+def has_settled(earlier: np.ndarray, later: np.ndarray, tolerance: float) -> np.ndarray:
+    """Whether motions that nearly repeat are cycles, by their drift in the last two quarters.
+
+    A cycle that attracts is approached by ever smaller steps: what is still to come, the rest of
+    the geometric series, is within ``REPEATED``. Slow decay and growth go on as they are. Drift
+    below the tolerance is none.
+
+    Args:
+        earlier, later: largest change of a state over the third and the fourth quarter of the
+            run, over the ranges, (runs,).
+    """
+    shrinks = later < earlier
+    to_come = later**2 / np.where(shrinks, earlier - later, 1.0)
+    return (later <= tolerance) | (shrinks & (to_come <= REPEATED))
+
+
 class MotionKind(IntEnum):
     """Kind of motion in the second half of a run."""
 
@@ -134,8 +158,23 @@ class RepeatableRuns:
             )
         most = LEAST_REPEATS * MOST_PERIODS
         kept = int(np.clip(0.5 * self.duration / forcing.max(), 0, most))
-        times = self.duration - forcing[rows, None] * np.arange(kept, -1, -1)
-        states = self.run(rows, times=times)["samples"] / spans[rows, None]
+        quarter = (0.25 * self.duration / forcing[rows]).astype(int)[:, None]
+        # and a quarter and half of the run ago, for whatever number of periods repeats
+        counts = np.arange(MOST_PERIODS + 1), np.arange(2 * MOST_PERIODS + 1)
+        back = np.hstack(
+            [
+                np.tile(np.arange(kept, -1, -1), (rows.size, 1)),
+                quarter - counts[0],
+                2 * quarter - counts[1],
+            ]
+        ).clip(0)
+        times = self.duration - forcing[rows, None] * back
+        order = np.argsort(times, axis=1, kind="stable")
+        samples = self.run(rows, times=np.take_along_axis(times, order, 1))["samples"]
+        every = np.empty_like(samples)
+        np.put_along_axis(every, order[:, :, None], samples, axis=1)
+        every /= spans[rows, None]
+        states = every[:, : kept + 1]
         rounds = np.zeros(rows.size, int)
         for lag in range(kept // LEAST_REPEATS, 0, -1):
             moved = np.abs(states[:, lag:] - states[:, :-lag])
@@ -145,7 +184,17 @@ class RepeatableRuns:
                 (rounds > 0) & (rounds % lag == 0) & near[:, -1]
             )
             rounds[again] = lag
-        return np.where(rounds, rounds * forcing[rows], np.nan)
+        # so many whole cycles are in about a quarter of the run
+        off = quarter[:, 0] % np.maximum(rounds, 1)
+        row = np.arange(rows.size)
+        middle, begin = (
+            every[row, kept + 1 + off],
+            every[row, kept + 1 + MOST_PERIODS + 1 + 2 * off],
+        )
+        earlier = np.abs(middle - begin).max(axis=1, initial=0.0)
+        later = np.abs(every[:, kept] - middle).max(axis=1, initial=0.0)
+        settled = has_settled(earlier, later, drift_tolerance(self.tol))
+        return np.where((rounds > 0) & settled, rounds * forcing[rows], np.nan)
 
     def _between_events(
         self, rows: np.ndarray, most: int, spans: np.ndarray
@@ -165,7 +214,14 @@ class RepeatableRuns:
             marks = states[late] / spans[row]
             lag = repeats_after(times[late], kinds[late], REPEATED, marks)
             if lag:
-                period[i] = times[late][lag] - times[late][0]
+                # whole cycles in half of these events
+                count = (len(marks) - 1) // (2 * lag) * lag
+                begin, middle, end = marks[[0, count, 2 * count]]
+                drifts = (
+                    np.abs(b - a).max() for a, b in ((begin, middle), (middle, end))
+                )
+                if has_settled(*map(np.array, drifts), drift_tolerance(self.tol)):
+                    period[i] = times[late][lag] - times[late][0]
         return period, silent
 
     def _without_events(
@@ -206,20 +262,33 @@ class RepeatableRuns:
             )
             if not which.size:
                 break
+
+            def back_at(time: np.ndarray, width: np.ndarray, which: Any = which) -> Any:
+                """When the motions next to these times cross the plane through their states."""
+                for _ in range(3):
+                    places = time[:, None] + width[:, None] * np.linspace(-1.0, 1.0, 9)
+                    places = np.clip(places, 0.0, 0.5 * self.duration)
+                    near = at(which, places) - begin[which]
+                    heights = (near * normal[which, None]).sum(axis=2)
+                    time = _zeros(places, heights, time)
+                    width = width / 200.0
+                return time
+
             time = np.array([returns[i][number] for i in which])
-            width = window[which] / (_SAMPLES - 1)
-            for _ in range(3):
-                places = time[:, None] + width[:, None] * np.linspace(-1.0, 1.0, 9)
-                places = np.clip(places, 0.0, 0.5 * self.duration)
-                near = at(which, places) - begin[which]
-                heights = (near * normal[which, None]).sum(axis=2)
-                time = _zeros(places, heights, time)
-                width = width / 200.0
+            time = back_at(time, window[which] / (_SAMPLES - 1))
             again = time[:, None] * np.arange(1, LEAST_REPEATS + 1)
             fits = again[:, -1] <= 0.5 * self.duration
             again = np.minimum(again, 0.5 * self.duration)
             off = np.abs(at(which, again) - begin[which]).max(axis=(1, 2))
-            period[which] = np.where(fits & (off <= REPEATED), time, np.nan)
+            repeats = fits & (off <= REPEATED)
+            if repeats.any():
+                rounds = np.maximum(0.25 * self.duration // time, 1.0)
+                later = [back_at(k * rounds * time, 0.25 * time) for k in (1.0, 2.0)]
+                places = at(which, np.stack(later, axis=1))
+                moved = np.diff(np.hstack([begin[which], places]), axis=1)
+                drifts = np.abs(moved).max(axis=2)
+                repeats &= has_settled(*drifts.T, drift_tolerance(self.tol))
+            period[which] = np.where(repeats, time, np.nan)
         return period
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.systems.cycles.described import dataset
-from squealpipe.systems.cycles.find import find_cycle
+from squealpipe.systems.cycles.find import MOST_STEPS, find_cycle
 from squealpipe.systems.cycles.legs import Vector
 from squealpipe.systems.grid import call_values, scalar
 from squealpipe.validation import Natural, Positive, Values, checked
@@ -26,6 +26,7 @@ def limit_cycle(
     guess: Values | None = None,
     periods: Natural = 1,
     t_settle: Positive | None = None,
+    max_steps: Natural = MOST_STEPS,
     **parameters: Any,
 ) -> xr.Dataset:
     """A periodic motion with every event located, its stability included.
@@ -39,6 +40,7 @@ def limit_cycle(
         periods: of the forcing; without it, returns to the section, which is the event that is
             met least often.
         t_settle: s; 200 forcing periods or time scales by default.
+        max_steps: steps of the integrator in a run, after which the outcome is ``step_limit``.
         parameters: those that differ from the system's.
 
     Returns:
@@ -62,6 +64,7 @@ def limit_cycle(
         guess=guess is not None,
         periods=periods,
         t_settle=t_settle,
+        most_steps=max_steps,
     )
     return dataset(system, cycle, outcome, values, periods)
 

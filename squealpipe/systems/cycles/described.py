@@ -10,7 +10,7 @@ import xarray as xr
 
 from squealpipe.schema import Outcome, flag_table
 from squealpipe.systems.cycles.event_map import FREE
-from squealpipe.systems.cycles.solution import Cycle
+from squealpipe.systems.cycles.solution import CLOSING_TOLERANCE, Cycle
 from squealpipe.systems.labels import (
     attributes_of,
     components_of,
@@ -164,5 +164,6 @@ def dataset(
     return xr.Dataset(
         found,
         components_of(system),
-        attributes_of(system, "limit cycle", values, 1e-14),
+        attributes_of(system, "limit cycle", values, 1e-14)
+        | {"closing_tolerance": CLOSING_TOLERANCE},
     )

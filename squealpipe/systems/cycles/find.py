@@ -19,6 +19,8 @@ from squealpipe.systems.cycles.solution import Cycle
 if TYPE_CHECKING:
     from squealpipe.systems.tracing import TracedSystem as System
 
+MOST_STEPS = 1_000_000
+"""Steps after which a run is given up by default."""
 _BESIDE = 1e-9
 """Relative change of the parameters next to a change of the events."""
 _AT_CHANGE = 1e-6
@@ -35,28 +37,30 @@ def find_cycle(
     t_settle: float | None = None,
     regime: int | None = None,
     unit: float | None = None,
+    most_steps: int = MOST_STEPS,
 ) -> tuple[Cycle | None, int]:
     """A cycle from a start or near a guess, and an outcome: above 200, of that many periods more.
 
     Args:
         periods: of the forcing, or returns to the section; 0 for any number.
         unit: of time, in which a run settles and returns are looked for; by default the system's.
+        most_steps: of each run.
     """
     flow = Flow(system)
     forced = system.period is not None and flow.timed
     unit = flow.unit(values) if unit is None else unit
     if not guess:
         found = (
-            settled_forced(flow, values, state, periods, t_settle)
+            settled_forced(flow, values, state, periods, t_settle, most_steps)
             if forced
-            else settled_free(flow, values, state, periods, t_settle, unit)
+            else settled_free(flow, values, state, periods, t_settle, unit, most_steps)
         )
         return labelled(*found)
 
     def near(at: Mapping[str, float]) -> tuple[Cycle | None, int]:
         if forced:
             return near_forced(flow, at, state, regime, periods)
-        return near_free(flow, at, state, regime, unit)
+        return near_free(flow, at, state, regime, unit, most_steps)
 
     cycle, outcome = near(values)
     if outcome == Outcome.no_convergence:

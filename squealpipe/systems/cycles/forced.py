@@ -30,7 +30,7 @@ _WATCHED, _SAMPLES = 128, 16
 """Periods over which its returns are followed, and samples in each."""
 _LONGER, _EXTENSIONS = 4, 3
 """A run that still changes goes on for so many times as long, no more often than this."""
-MOST_STEPS = 100_000
+_LONG = 100_000
 """Steps of a run that is not made longer."""
 _FAR = 0.3
 """A return as far as this, over the motion's extent, is none."""
@@ -162,13 +162,14 @@ def _is_unsure(times: Vector, duration: float) -> bool:
 
 
 def _watch(
-    flow: Flow, values: Mapping[str, float], state: Vector, last: int
+    flow: Flow, values: Mapping[str, float], state: Vector, last: int, most_steps: int
 ) -> Watched | int:
     """A run of so many periods, seen in its last ones; an outcome where it ends early."""
     forcing = forcing_period(flow, values)
     number = np.arange(_WATCHED * _SAMPLES + 1)
     times = (last - _WATCHED + number / _SAMPLES) * forcing
-    run = follow(flow, values, state, float(times[-1]), times=times)
+    duration = float(times[-1])
+    run = follow(flow, values, state, duration, times=times, most_steps=most_steps)
     if run.outcome or not np.isfinite(run.path).all():
         return run.outcome or Outcome.not_finite
     return Watched(flow, values, run, forcing, last, times, run.path)
@@ -180,15 +181,16 @@ def settled_forced(
     state: Vector,
     periods: int,
     t_settle: float | None,
+    most_steps: int,
 ) -> tuple[Cycle | None, int]:
     """The cycle that a run from a state settles on, and an outcome."""
     forcing = forcing_period(flow, values)
     rounds = SETTLE if t_settle is None else max(1.0, np.ceil(t_settle / forcing))
     longer, steps = _WATCHED, 0
     for _ in range(1 + _EXTENSIONS * (t_settle is None)):
-        if steps * _LONGER > MOST_STEPS:
+        if steps * _LONGER > _LONG:
             break
-        watched = _watch(flow, values, state, int(rounds) + longer)
+        watched = _watch(flow, values, state, int(rounds) + longer, most_steps)
         if isinstance(watched, int):
             return None, watched
         hopeless: list[int] = []

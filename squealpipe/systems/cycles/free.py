@@ -24,26 +24,33 @@ from squealpipe.systems.cycles.guess import (
 )
 from squealpipe.systems.cycles.legs import LegEnd, Vector
 from squealpipe.systems.cycles.settled import (
+    ON_IT,
     QUARTERS,
     Approach,
     approach,
     distances_from_orbit,
 )
 from squealpipe.systems.cycles.solution import Cycle, scale_of
+from squealpipe.systems.motion import AT_REST
 from squealpipe.systems.record import RunRecord
 
-SETTLE_STEPS = 100_000
-"""Steps after which a run that is to settle is given up."""
 _WINDOWS = (40.0, 160.0, 640.0)
 """Times, in units, within which a return is looked for."""
-_LONGER = 2560.0
-"""The next one, of a run that comes nearer to a cycle but is far from it, or has not come back."""
+_LONGER = 4.0
+"""A run that comes nearer to a cycle but is far from it, once, or has not come back, as often as
+its steps allow, goes on for so many times as long."""
 _NEAR, _FAR = 0.05, 0.3
 """A return this close, over the motion's extent, ends the search; one this far is none."""
 _ASTRAY = 0.5
 """A cycle this far from the state that was to be near it, over the motion's extent, is another."""
 _TRIES, _SAMPLES, _COMPARED = 4, 2000, 16
+_AGAIN = 3.0
+"""A settled run is as near after two periods as after one, or less by this factor at most."""
+_MOST_EVENTS = 48
+"""Events of a cycle that is run through only once, beyond which none is sought."""
 _AT_REST = 1e-9
+_SOON = 10.0
+"""Times the time that a motion has run, within which it is at rest if it is told to come there."""
 
 
 @dataclass(frozen=True)
@@ -66,10 +73,11 @@ class Stretch:
         """Whether it returns at all, near or far; a slow cycle may be longer than the stretch."""
         return next(_returns(self, self.motion.path[0]), None) is not None
 
-    def comes_to_rest(self) -> bool:
+    def comes_to_rest(self, ran: float) -> bool:
         """Whether a motion in one regime shrinks towards a stable state of rest.
 
-        To be asked last: a smooth cycle about such a state may seem to shrink between samples.
+        It has to be there, at the rate at which it shrinks, within ten times the time that it has
+        run; a slower one may have a cycle ahead.
         """
         flow, values, path = self.flow, self.values, self.motion.path
         if len(self.motion.times):
@@ -89,7 +97,10 @@ class Stretch:
             return False
         rates = np.linalg.eigvals(flow.jacobian(values, regime, place)[:, : flow.size])
         decays = rates.real.max() < -1e-9 * np.abs(rates).max()
-        return bool(decays and (second <= first + 1e-12 * scale).all())
+        with np.errstate(divide="ignore"):
+            rate = np.log(second / np.maximum(first, 1e-300)) * 2.0 / self.times[-1]
+        shrinks = (second <= 1e-12 * scale) | (_SOON * ran * rate <= np.log(AT_REST))
+        return bool(decays and shrinks.all())
 
     def approach(self, cycle: Cycle) -> Approach:
         """How the run goes on beside a cycle."""
@@ -110,26 +121,34 @@ def settled_free(
     returns: int,
     t_settle: float | None,
     unit: float,
+    most_steps: int,
 ) -> tuple[Cycle | None, int]:
     """The cycle that a run from a state settles on, and an outcome.
 
     Args:
         returns: to its section at most; 0 for any number.
+        most_steps: of the run that settles, and of each that looks for returns after it.
     """
     settle = SETTLE * unit if t_settle is None else t_settle
-    run = follow(flow, values, state, settle, most_steps=SETTLE_STEPS)
+    run = follow(flow, values, state, settle, most_steps=most_steps)
     if run.outcome:
         return None, run.outcome
-    at_rest = False
-    for window in (*_WINDOWS, _LONGER):
-        stretch = _stretch(flow, values, run.final, int(run.regimes[-1]), window * unit)
+    at_rest, ran = False, settle
+    window: float | None = _WINDOWS[0]
+    while window is not None:
+        regime = int(run.regimes[-1])
+        stretch = _stretch(flow, values, run.final, regime, window * unit, most_steps)
+        if stretch == Outcome.step_limit and window > _WINDOWS[0]:
+            break  # it has settled on nothing for as long as that
         if isinstance(stretch, int):
             return None, stretch
-        at_rest = stretch.comes_to_rest()
+        ran += window * unit
+        at_rest = stretch.comes_to_rest(ran)
         nears = False
-        for cycle in _cycles(stretch, _NEAR if window < _WINDOWS[-1] else _FAR, []):
+        far = _NEAR if window < _WINDOWS[-1] else _FAR
+        for cycle in _cycles(stretch, far, [], settled=True):
             if _rests(cycle.extremes[:, : flow.size], 0.0):
-                return None, Outcome.equilibrium
+                continue  # where it comes to rest, if it does; the run has not
             course = stretch.approach(cycle)
             nears |= course == Approach.nears
             if course == Approach.settles:
@@ -138,9 +157,11 @@ def settled_free(
                 return (
                     (None, SETTLED_ON + number) if many else (cycle, Outcome.converged)
                 )
-        if window >= _WINDOWS[-1] and not nears and stretch.comes_back():
+        back = stretch.comes_back()
+        if window >= _WINDOWS[-1] and back and (not nears or window > _WINDOWS[-1]):
             break
         run = stretch.motion
+        window = _next_window(window, run.steps, most_steps)
     return None, Outcome.equilibrium if at_rest else Outcome.unsettled
 
 
@@ -150,21 +171,35 @@ def near_free(
     state: Vector,
     regime: int | None,
     unit: float,
+    most_steps: int,
 ) -> tuple[Cycle | None, int]:
     """A cycle near a state, and an outcome."""
     tried: list[float] = []
     at_rest = False
-    for window in _WINDOWS:
-        stretch = _stretch(flow, values, state, regime, window * unit)
+    window: float | None = _WINDOWS[0]
+    while window is not None:
+        stretch = _stretch(flow, values, state, regime, window * unit, most_steps)
+        if stretch == Outcome.step_limit and window > _WINDOWS[-1]:
+            break
         if isinstance(stretch, int):
             return None, stretch
-        at_rest = stretch.comes_to_rest()
+        at_rest = stretch.comes_to_rest(window * unit)
         for cycle in _cycles(stretch, _NEAR if window < _WINDOWS[-1] else _FAR, tried):
             if _rests(cycle.extremes[:, : flow.size], 0.0):
                 return None, Outcome.equilibrium
             if not _is_astray(cycle, state, stretch.scale):
                 return cycle, Outcome.converged
+        if window >= _WINDOWS[-1] and stretch.comes_back():
+            break
+        window = _next_window(window, stretch.motion.steps, most_steps)
     return None, Outcome.equilibrium if at_rest else Outcome.no_convergence
+
+
+def _next_window(window: float, steps: int, most_steps: int) -> float | None:
+    """The next time, in units, within which a return is looked for; None without steps for it."""
+    if window in _WINDOWS[:-1]:
+        return _WINDOWS[_WINDOWS.index(window) + 1]
+    return window * _LONGER if steps * _LONGER <= most_steps else None
 
 
 def _stretch(
@@ -173,10 +208,12 @@ def _stretch(
     state: Vector,
     regime: int | None,
     duration: float,
+    most_steps: int,
 ) -> Stretch | int:
     """A run from a state; an outcome where it ends early or at rest."""
     times = np.linspace(0.0, duration, _SAMPLES)
-    run = follow(flow, values, state, duration, regime=regime, times=times)
+    options = {"regime": regime, "times": times, "most_steps": most_steps}
+    run = follow(flow, values, state, duration, **options)
     if run.outcome or not np.isfinite(run.path).all():
         return run.outcome or Outcome.not_finite
     scale = scale_of(np.concatenate([run.path, run.states]), flow.system.sizes)
@@ -184,10 +221,16 @@ def _stretch(
     return Outcome.equilibrium if stretch.rests() else stretch
 
 
-def _cycles(stretch: Stretch, far: float, tried: list[float]) -> Iterator[Cycle]:
-    """Solutions next to near returns of a run, run through once."""
+def _cycles(
+    stretch: Stretch, far: float, tried: list[float], *, settled: bool = False
+) -> Iterator[Cycle]:
+    """Solutions next to near returns of a run, run through once.
+
+    Args:
+        settled: the run is to be on the cycle, and not only next to one at its start.
+    """
     flow, values, state = stretch.flow, stretch.values, stretch.motion.path[0]
-    for count, period, distance in _returns(stretch, state):
+    for count, period, distance in _returns(stretch, state, settled=settled):
         if distance > far:
             return
         if any(abs(period - other) < 1e-3 * period for other in tried):
@@ -238,15 +281,32 @@ def _exact_return(stretch: Stretch, state: Vector, time: float) -> float:
     return time
 
 
-def _returns(stretch: Stretch, state: Vector) -> Iterator[tuple[int, float, float]]:
-    """(events, period, distance) of near returns, the best and earliest first."""
+def _returns(
+    stretch: Stretch, state: Vector, *, settled: bool = False
+) -> Iterator[tuple[int, float, float]]:
+    """(events, period, distance) of near returns, the best and earliest first.
+
+    Args:
+        settled: leave out those after whose time the run does not come back once more, or which
+            have many events and no second time in the run. A chaotic run has such returns, and
+            Newton's method on hundreds of legs takes a minute.
+    """
     run, times, scale = stretch.motion, stretch.times, stretch.scale
     found: list[tuple[int, float, float]] = []
     if len(run.times):
         keys = np.column_stack([run.kinds, run.regimes[:-1], run.regimes[1:]])
+        off = np.abs((run.states - run.states[0]) / scale).max(axis=1)
         for count in (np.flatnonzero((keys[1:] == keys[0]).all(axis=1)) + 1).tolist():
-            distance = float(np.abs((run.states[count] - run.states[0]) / scale).max())
-            found.append((count, float(run.times[count] - run.times[0]), distance))
+            again = 2 * count
+            if settled and (
+                off[again] > _AGAIN * off[count] + ON_IT
+                if again < len(off)
+                else count > _MOST_EVENTS
+            ):
+                continue
+            found.append(
+                (count, float(run.times[count] - run.times[0]), float(off[count]))
+            )
     else:
         rate = stretch.flow.field(stretch.values, int(run.regimes[0]), state, 0.0)
         section = PhaseCondition(state, rate / scale**2)

@@ -207,7 +207,7 @@ def as_motion(cycle: Cycle, tries: int = 8) -> Cycle | None:
     while waiting:
         here = waiting.pop()
         if here.period > 0.0 and is_motion(here):
-            return here
+            return None if here.drifts else here
         shorter = []
         for equations, guess in islice(without_brief_legs(here), max(tries, 0)):
             tries -= 1

@@ -18,12 +18,16 @@ _FAMILY = 1e-6
 """A second multiplier this close to 1 may belong to a family of cycles."""
 _ASIDE = 0.02
 """Step, over the cycle's extent, after which another member is looked for."""
+CLOSING_TOLERANCE = 2e-14
+"""Closing error, over the extent, that is always round-off; more is where it is measured."""
+_NEIGHBOURS, _SPREAD = 6, 8.0
+"""Points next to a solution at which round-off is measured, and how much more it may be."""
 _NEUTRAL = 1e-9
 """Distance of a multiplier from 1 that is round-off."""
 _TURNED = 1e-2
 """By how much a cycle's derivative may map its own direction elsewhere, over its length."""
-_SAMPLES, _INSIDE = 400, 4
-"""Samples of a cycle, evenly, and in each step of the integrator."""
+_SAMPLES, _INSIDE, _MOST_STEPS = 400, 4, 3000
+"""Samples of a cycle, evenly, and in each step of the integrator, of so many steps at most."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,6 +153,34 @@ class Cycle:
             return False
         return bool(abs((beside - self.point) @ step) > 0.5 * _ASIDE**2)
 
+    @cached_property
+    def closing_round_off(self) -> float:
+        """Residual that round-off may leave.
+
+        At points a few units of the last place away the equations differ by their derivative and
+        by round-off.
+        """
+        equations, size = self.map, self.map.size
+        values, jacobian = equations.evaluate(self.point)
+        number, largest = np.arange(size), 0.0
+        for neighbour in range(1, _NEIGHBOURS + 1):
+            moved = self.point.copy()
+            moved[:size] *= 1.0 + 2.0**-50 * np.sin(number * neighbour + neighbour)
+            other = equations.evaluate(moved)[0]
+            off = other - values - jacobian @ (moved - self.point)
+            largest = max(largest, float(np.abs(off).max()))
+        return max(CLOSING_TOLERANCE, _SPREAD * largest)
+
+    @cached_property
+    def drifts(self) -> bool:
+        """Whether a period changes the motion by more than round-off, as slow decay does.
+
+        Next to a family of cycles, where a second multiplier is 1, Newton's method gets no further
+        than a motion that does not quite close. What closes to round-off is a member of a family.
+        """
+        off = np.abs(self.nontrivial - 1.0).min(initial=1.0)
+        return bool(off < _FAMILY and self.residual > self.closing_round_off)
+
     @property
     def is_stable(self) -> bool:
         """Whether small disturbances decay."""
@@ -252,16 +284,25 @@ class Cycle:
             return 0.0
         return float(self.clocks[longest] + 0.5 * self.parts.durations[longest])
 
-    @property
+    @cached_property
     def instants(self) -> Vector:
         """Times from 0 to the period that resolve the motion.
 
         Even ones, and some in each of the integrator's steps, which are short where it is fast.
+        Those of a stiff motion are short where it is slow, too: some are chosen along its path.
         """
-        path = self.parts.path
-        inside = np.outer(np.arange(_INSIDE) / _INSIDE, path.steps * path.unit)
-        steps = (self.step_begins + inside - self.phase) % self.period
-        return np.union1d(np.linspace(0.0, self.period, _SAMPLES + 1), steps)
+        path, n = self.parts.path, self.map.flow.size
+        steps = path.steps * path.unit
+        if len(steps) > _MOST_STEPS:
+            moved = np.abs(np.diff(path.series[:, :n, 0], axis=0)) / self.extent
+            along = np.append(0.0, np.cumsum(moved.max(axis=1)))
+            places = np.linspace(0.0, along[-1], _MOST_STEPS)
+            chosen = np.unique(np.searchsorted(along, places).clip(0, len(steps) - 1))
+        else:
+            chosen = np.arange(len(steps))
+        inside = np.outer(np.arange(_INSIDE) / _INSIDE, steps[chosen])
+        times = (self.step_begins[chosen] + inside - self.phase) % self.period
+        return np.union1d(np.linspace(0.0, self.period, _SAMPLES + 1), times)
 
     def followed_in(self, flow: Flow, units: Vector) -> tuple[EventMap, Vector]:
         """Its equations with other followed parameters, scaled by it, and its unknowns there."""

@@ -20,8 +20,8 @@ from squealpipe.systems.cycles.affine import derivatives as affine_derivatives
 from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.legs import Path, Vector
 
-MOST_PIECES, FINEST = 200_000, 64
-"""Pieces of all steps, and of one step, that the variational equations are solved on."""
+_TOGETHER, _FINEST = 20_000, 64
+"""Pieces of steps that are worked on at once, and most pieces of a step."""
 
 LONGEST = 1.0
 """Longest step of the variational equations times a bound of its rate."""
@@ -33,25 +33,39 @@ def leg_derivatives(flow: Flow, values: Mapping[str, float], path: Path) -> Vect
     """Of each leg's end by its start, followed parameters and the time: (legs, n, n + p)."""
     if flow.is_affine:
         return _affine(flow, values, path)
-    pieces, most = 1, max(1, min(FINEST, MOST_PIECES // len(path.steps)))
-    while True:
-        slopes = _slopes_along(flow, values, path, pieces)
-        middle = np.abs(slopes[:, : flow.size, len(_NODES) // 2]).transpose(2, 0, 1)
-        power = np.linalg.matrix_power(middle, 4).sum(axis=2).max(axis=1) ** 0.25
-        lengths = np.repeat(path.steps, pieces) * path.unit / pieces
-        with np.errstate(invalid="ignore"):
-            needed = (
-                pieces
-                * float(np.nanmax(np.abs(lengths) * power, initial=0.0))
-                / LONGEST
-            )
-        if needed <= pieces or pieces >= most or not math.isfinite(needed):
-            break
-        pieces = min(most, math.ceil(needed))
     found = np.zeros((len(path.regimes), flow.columns, flow.columns))
     found[:] = np.eye(flow.columns)
-    transfer(slopes, lengths, np.repeat(path.leg, pieces), _UP_TO, _WEIGHTS, found)
+    steps, first = len(path.steps), 0
+    while first < steps:
+        # the steps of a stiff motion need many pieces each; most motions need one
+        block = slice(first, first + _TOGETHER)
+        slopes, lengths = _slopes_along(flow, values, path, block, 1)
+        rate = _largest_rate(slopes[:, : flow.size])
+        with np.errstate(invalid="ignore"):
+            needed = float(np.nanmax(np.abs(lengths) * rate, initial=0.0)) / LONGEST
+        pieces = min(math.ceil(needed), _FINEST) if math.isfinite(needed) else 1
+        if pieces > 1:
+            size = max(_TOGETHER // pieces, 1)
+            blocks = [
+                slice(at, min(at + size, block.stop))
+                for at in range(first, min(block.stop, steps), size)
+            ]
+        else:
+            blocks = [block]
+        for each in blocks:
+            if pieces > 1:
+                slopes, lengths = _slopes_along(flow, values, path, each, pieces)
+            legs = np.repeat(path.leg[each], max(pieces, 1))
+            transfer(slopes, lengths, legs, _UP_TO, _WEIGHTS, found)
+        first = block.stop
     return found[:, : flow.size]
+
+
+def _largest_rate(slopes: Vector) -> Vector:
+    """A bound of the rate of the variational equations in each piece, from its middle."""
+    middle = np.abs(slopes[:, :, len(_NODES) // 2]).transpose(2, 0, 1)
+    power = np.linalg.matrix_power(middle, 4).sum(axis=2).max(axis=1)
+    return np.asarray(power**0.25)
 
 
 def _affine(flow: Flow, values: Mapping[str, float], path: Path) -> Vector:
@@ -80,23 +94,22 @@ def _affine(flow: Flow, values: Mapping[str, float], path: Path) -> Vector:
 
 
 def _slopes_along(
-    flow: Flow, values: Mapping[str, float], path: Path, pieces: int
-) -> Vector:
-    """∂f/∂(states, parameters, time) at the nodes of each piece of each step.
+    flow: Flow, values: Mapping[str, float], path: Path, which: slice, pieces: int
+) -> tuple[Vector, Vector]:
+    """∂f/∂(states, parameters, time) at the nodes of each piece of some steps, and their lengths.
 
     (states, columns, nodes, pieces)
     """
-    count, steps = len(_NODES), len(path.steps)
+    scaled, leg, lengths = path.scaled[which], path.leg[which], path.steps[which]
+    count, steps = len(_NODES), len(lengths)
     nodes = (np.arange(pieces) + _NODES[:, None]).ravel() / pieces
     variables = len(flow.system.traced.variables)
-    powers = nodes ** np.arange(path.series.shape[2])[:, None]
-    states = (path.scaled[:, :variables] @ powers).reshape(
-        steps, variables, count, pieces
-    )
+    powers = nodes ** np.arange(scaled.shape[2])[:, None]
+    states = (scaled[:, :variables] @ powers).reshape(steps, variables, count, pieces)
     flat = states.transpose(1, 2, 0, 3).reshape(variables, count, -1)
     joint = flow.system.joint
     of_legs = np.array([joint.constants(regime) for regime in path.regimes])
-    constants = np.repeat(of_legs[path.leg], pieces, axis=0).T
+    constants = np.repeat(of_legs[leg], pieces, axis=0).T
     numbers = flow.numbers(values, 0)[: len(flow.system.traced.parameters)]
     found = np.zeros((flow.size, flow.columns, *flat.shape[1:]))
     with np.errstate(all="ignore"):
@@ -104,4 +117,4 @@ def _slopes_along(
             flow.entries, flow.slopes(*flat, *numbers, *constants), strict=True
         ):
             found[i, j] = value
-    return found
+    return found, np.repeat(lengths, pieces) * path.unit / pieces

@@ -14,10 +14,10 @@ from squealpipe.schema.cycles import LIMIT_CYCLE
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.jobs import STATE
 from squealpipe.systems.cycles.event_map import FREE
-from squealpipe.systems.cycles.find import find_cycle
+from squealpipe.systems.cycles.find import MOST_STEPS, find_cycle
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.tasks.cycles.scene import CycleScene
-from squealpipe.validation import Angle, Positive, State, one_of
+from squealpipe.validation import Angle, Natural, Positive, State, one_of
 
 T_SETTLE = 2000.0
 """Default time, in units of √(m/min(k1, k2)), after which a run counts as settled."""
@@ -32,6 +32,7 @@ def limit_cycle(
     model: Annotated[str, one_of(["A1"])] = "A1",  # noqa: ARG001 (in the record)
     guess: State | None = None,
     t_settle: Positive | None = None,
+    max_steps: Natural = MOST_STEPS,
 ) -> xr.Dataset:
     """A periodic motion of A1 with every event located, its stability included.
 
@@ -42,8 +43,8 @@ def limit_cycle(
         alpha1, alpha2: angles, rad.
         guess: state (x, y, ẋ, ẏ) in m and m/s near the cycle, which may be unstable. Without it,
             the state that a run from rest has reached at ``t_settle``.
-        t_settle: s; default 2000 √(m/min(k1, k2)). A run that takes too many steps for it ends with
-            ``step_limit``.
+        t_settle: s; default 2000 √(m/min(k1, k2)).
+        max_steps: steps of the integrator in a run, after which the outcome is ``step_limit``.
 
     Returns:
         Dataset with period (s), extrema (m), fractions in contact and stick, Floquet multipliers
@@ -51,7 +52,7 @@ def limit_cycle(
         ``outcome`` where no cycle is found.
     """
     scene = CycleScene(params, alpha1, alpha2)
-    cycle, outcome = cycle_from(scene, guess, t_settle)
+    cycle, outcome = cycle_from(scene, guess, t_settle, max_steps)
     found = (
         blank(LIMIT_CYCLE, multiplier=4) if cycle is None else _described(scene, cycle)
     )
@@ -61,7 +62,10 @@ def limit_cycle(
 
 
 def cycle_from(
-    scene: CycleScene, guess: Any = None, t_settle: float | None = None
+    scene: CycleScene,
+    guess: Any = None,
+    t_settle: float | None = None,
+    most_steps: int = MOST_STEPS,
 ) -> tuple[Cycle | None, Outcome]:
     """A cycle near a state, or from a run from rest (without a guess), and its outcome."""
     state = (
@@ -76,6 +80,7 @@ def cycle_from(
         periods=0,
         t_settle=settle if t_settle is None else t_settle / scene.params.time_unit,
         unit=scene.slow_time,
+        most_steps=most_steps,
     )
     if outcome == Outcome.not_finite and scene.is_singular(state[:2]):
         outcome = Outcome.singular_geometry
