@@ -14,7 +14,7 @@ class Outcome(IntEnum):
     not_computed = 2, "nothing was asked of it"
     step_limit = (
         3,
-        "too many steps: shorten t_end (cycles: t_settle; branches: y_peak_max)",
+        "too many steps: shorten t_end (cycles: raise max_steps; branches: lower y_peak_max)",
     )
     event_limit = (
         4,
@@ -86,7 +86,7 @@ class Outcome(IntEnum):
     )
     unsettled = (
         39,
-        "no cycle is settled on: chaos, a torus, or slow; raise t_settle or give a guess",
+        "no cycle is settled on: chaos, a torus, or slow; raise t_settle and max_steps, or guess",
     )
     hidden_event = (
         40,

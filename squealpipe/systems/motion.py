@@ -42,7 +42,7 @@ def drift_tolerance(tol: float) -> float:
     return min(1e3 * tol, REPEATED)
 
 
-def has_settled(earlier: np.ndarray, later: np.ndarray, tolerance: float) -> np.ndarray:
+def has_settled(earlier: Any, later: Any, tolerance: float) -> Any:
     """Whether motions that nearly repeat are cycles, by their drift in the last two quarters.
 
     A cycle that attracts is approached by ever smaller steps: what is still to come, the rest of
@@ -217,10 +217,11 @@ class RepeatableRuns:
                 # whole cycles in half of these events
                 count = (len(marks) - 1) // (2 * lag) * lag
                 begin, middle, end = marks[[0, count, 2 * count]]
-                drifts = (
-                    np.abs(b - a).max() for a, b in ((begin, middle), (middle, end))
+                earlier, later = (
+                    np.abs(middle - begin).max(),
+                    np.abs(end - middle).max(),
                 )
-                if has_settled(*map(np.array, drifts), drift_tolerance(self.tol)):
+                if has_settled(earlier, later, drift_tolerance(self.tol)):
                     period[i] = times[late][lag] - times[late][0]
         return period, silent
 
@@ -286,8 +287,8 @@ class RepeatableRuns:
                 later = [back_at(k * rounds * time, 0.25 * time) for k in (1.0, 2.0)]
                 places = at(which, np.stack(later, axis=1))
                 moved = np.diff(np.hstack([begin[which], places]), axis=1)
-                drifts = np.abs(moved).max(axis=2)
-                repeats &= has_settled(*drifts.T, drift_tolerance(self.tol))
+                earlier, later = np.abs(moved).max(axis=2).T
+                repeats &= has_settled(earlier, later, drift_tolerance(self.tol))
             period[which] = np.where(repeats, time, np.nan)
         return period
 

@@ -286,7 +286,12 @@ def test_a_symmetric_cycle_loses_stability_at_a_pitchfork():
 
 @pytest.mark.parametrize(
     ("mu", "period"),
-    [(1.0, 6.663286859323), (10.0, 19.078369566), (100.0, 162.837071092)],
+    [
+        (1.0, 6.663286859323),
+        (10.0, 19.078369566),
+        (100.0, 162.837071092),
+        pytest.param(1000.0, 1614.401125808, marks=pytest.mark.release),
+    ],
 )
 def test_relaxation_oscillations_settle(mu, period):
     """Periods between two zeros of v, by DOP853 and, the last one, Radau."""
@@ -294,6 +299,21 @@ def test_relaxation_oscillations_settle(mu, period):
     assert outcome(cycle) == "converged"
     assert float(cycle.period) == pytest.approx(period, rel=1e-9)
     assert float(cycle.x_max) == pytest.approx(2.0, abs=0.02)
+
+
+def test_the_step_limit_is_an_argument():
+    """mu = 300 with t_settle = 2430 ended as step_limit with nothing to raise."""
+    assert outcome(van_der_pol.limit_cycle(mu=300.0, t_settle=2430.0)) == "converged"
+    few = van_der_pol.limit_cycle(mu=100.0, max_steps=2000)
+    assert outcome(few) == "step_limit"
+    assert "raise max_steps" in few.outcome.comment
+
+
+def test_a_guess_on_the_slow_manifold_is_near_the_cycle():
+    x, mu = 1.8, 100.0
+    cycle = van_der_pol.limit_cycle(mu=mu, guess={"x": x, "v": x / (mu * (1 - x**2))})
+    assert outcome(cycle) == "converged"
+    assert float(cycle.period) == pytest.approx(162.837071092, rel=1e-9)
 
 
 def test_a_cycle_far_longer_than_the_time_scale_is_met():
