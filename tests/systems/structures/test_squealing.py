@@ -37,6 +37,7 @@ def answer():
     return squealing_modes(two_modes(1.0), samples=12, workers=1)
 
 
+@pytest.mark.release
 def test_the_settled_motion_is_that_of_an_integrator_apart(answer):
     structure = two_modes(1.0)
     apart = Exponentials(structure)
