@@ -105,6 +105,7 @@ def test_a_quick_study_goes_beside_the_full_one(tmp_path, text, results):
     assert (str(mine) in command) == bool(text), "Snakemake takes no empty file"
 
 
+@pytest.mark.release
 def test_what_cannot_be_planned_is_one_message(tmp_path, monkeypatch):
     (tmp_path / "Snakefile").write_text("raise ValueError('broken')\n")
     monkeypatch.setattr("squealpipe.execution.explain.WORKFLOW", tmp_path)

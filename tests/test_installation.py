@@ -44,6 +44,7 @@ def run(*command, cwd):
     return done.stdout
 
 
+@pytest.mark.release
 def test_the_library_and_its_commands_work_without_what_a_study_needs(tmp_path):
     run(sys.executable, "-c", LIBRARY, cwd=tmp_path)
 

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import nbformat
+import pytest
 from nbclient import NotebookClient
 
 NOTEBOOK = Path(__file__).resolve().parents[1] / "docs/example.ipynb"
@@ -18,6 +19,7 @@ def printed(notebook):
     ]
 
 
+@pytest.mark.release
 def test_notebook_runs_and_prints_what_is_stored(tmp_path):
     stored = nbformat.read(NOTEBOOK, as_version=4)
     fresh = nbformat.read(NOTEBOOK, as_version=4)

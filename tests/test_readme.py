@@ -102,6 +102,7 @@ def test_a_first_picture_comes_first_and_the_whole_is_short():
     assert {"make reproduce", "make test"} <= set(steps)
 
 
+@pytest.mark.release
 def test_the_printed_summary_is_what_the_command_prints(tmp_path):
     printed = re.search(r"```text\n(.*?)```", README, flags=re.DOTALL)
     assert printed is not None

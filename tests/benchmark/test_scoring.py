@@ -261,6 +261,7 @@ def _dies(problem, tol):
     os._exit(5)
 
 
+@pytest.mark.release
 @pytest.mark.parametrize(
     ("solve", "words"),
     [

@@ -138,6 +138,7 @@ def test_propensity_writes_shares_and_a_picture(capsys):
     assert Path("p.png").stat().st_size > 0
 
 
+@pytest.mark.release
 def test_assess_answers_in_ten_lines_and_says_by_its_exit_code_whether_it_is_quiet(
     capsys, tmp_path
 ):

@@ -30,6 +30,7 @@ LONG = {
 SLOW = [pytest.param(name, marks=pytest.mark.release) for name in ("map", "backbone")]
 
 
+@pytest.mark.release
 @pytest.mark.parametrize("name", ["simulate", "sweep", *SLOW])
 def test_interrupt_stops_the_command_and_its_processes(name, tmp_path):
     """As a terminal sends it: to the whole group."""
@@ -153,6 +154,7 @@ def test_the_lock_of_a_killed_run_is_removed_and_said_so(tmp_path, monkeypatch):
     assert remove_stale_lock() == ""
 
 
+@pytest.mark.release
 def test_workers_end_with_a_killed_sweep(tmp_path):
     command = [sys.executable, "-m", "squealpipe", *LONG["sweep"]]
     with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.DEVNULL) as sweep:

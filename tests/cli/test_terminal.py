@@ -18,6 +18,7 @@ from squealpipe.methods.progress import alone
 SHORT = ["simulate", "5pi/6", "5pi/6", "--t-end", "5"]
 
 
+@pytest.mark.release
 def test_simulate_works_where_the_terminal_is_ascii():
     surroundings = {**os.environ, "PYTHONIOENCODING": "ascii", "LANG": "C"}
     done = subprocess.run(

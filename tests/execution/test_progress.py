@@ -43,6 +43,7 @@ def test_what_never_ran_lasts_as_long_as_what_did():
     assert remaining.left(5.0) == pytest.approx(15.0)
 
 
+@pytest.mark.release
 @pytest.mark.parametrize("works", [True, False])
 def test_a_line_for_each_rule_and_the_log_of_what_failed(works, tmp_path):
     text = WORKFLOW.replace("BROKEN", "" if works else "echo told; false;")

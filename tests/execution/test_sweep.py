@@ -142,6 +142,7 @@ def test_schema_of_a_sweep_follows_from_its_name():
         find("sweep of stability_map over colour")
 
 
+@pytest.mark.release
 def test_a_script_without_a_main_guard_can_sweep(tmp_path):
     script = tmp_path / "script.py"
     script.write_text(

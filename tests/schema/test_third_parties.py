@@ -21,6 +21,7 @@ def scene(tmp_path_factory):
     return save(run, tmp_path_factory.mktemp("cf") / "F2d.nc")
 
 
+@pytest.mark.release
 def test_the_cf_checker_wants_a_date_alone(scene):
     """Time counts from the start of a run, in s; with a date xarray would make dates of it."""
     checker = Path(sys.executable).with_name("compliance-checker")

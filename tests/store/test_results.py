@@ -105,6 +105,7 @@ def test_an_archive_with_a_dataset_of_another_or_without_one_is_refused(
         open_results("first", root=run)
 
 
+@pytest.mark.release
 def test_the_reference_opens_whatever_schemas_have_become_since():
     tree = open_results("reference", root=ROOT)
     assert tree["whirl"].attrs["schema"] == "whirl"

@@ -1,6 +1,7 @@
 """Shipped systems with components against integrators apart: a chain of blocks, a gear pair."""
 
 import numpy as np
+import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from squealpipe.systems.burridge_knopoff import burridge_knopoff
@@ -82,6 +83,7 @@ class Blocks:
         return found
 
 
+@pytest.mark.release
 def test_ten_blocks_on_a_belt_agree_over_200_events():
     system = burridge_knopoff(10)
     truth = Blocks(system).run(200)

@@ -79,6 +79,7 @@ def test_a_cycle_is_claimed_where_the_lyapunov_exponent_is_negative(force):
     assert settled == (lyapunov_exponent(force) < 0.0)
 
 
+@pytest.mark.release
 def test_chaos_has_a_positive_exponent_and_a_doubled_cycle_is_counted():
     assert lyapunov_exponent(0.3215) > 0.05
     cycle = duffing_holmes.limit_cycle(force=0.22)

@@ -261,6 +261,7 @@ def compare_with_differences(seed):
 RELEASED = [pytest.param([n], 0, marks=pytest.mark.release) for n in some(range(6, 30))]
 
 
+@pytest.mark.release
 @pytest.mark.parametrize(("seeds", "least"), [(range(6), 6), *RELEASED])
 def test_multipliers_of_random_systems_are_those_of_differences(seeds, least):
     assert sum(compare_with_differences(seed) for seed in seeds) >= least

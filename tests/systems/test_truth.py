@@ -160,6 +160,7 @@ def midpoints(low, high, n):
     return low + (high - low) * (np.arange(n) + 0.5) / n
 
 
+@pytest.mark.release
 def test_the_basin_of_the_fixed_point_has_its_exact_share():
     """0.356596 of [−2, 2] × [0, 2], the area within the unstable cycle, by 800 cells."""
     start = {"x": midpoints(-2.0, 2.0, 40), "v": midpoints(0.0, 2.0, 20)}

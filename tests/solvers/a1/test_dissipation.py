@@ -46,6 +46,7 @@ def scale_of(params):
     return params.preload / np.array([1.0, 1.0, params.time_unit, params.time_unit])
 
 
+@pytest.mark.release
 @pytest.mark.parametrize("law", LAWS)
 def test_runs_agree_with_long_double(law):
     """States, regimes and event times, through slip, stick, release, flight and contact."""

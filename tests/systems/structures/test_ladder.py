@@ -39,6 +39,7 @@ def row(ladder, method, setting=None):
     return row_of(ladder, method, setting).isel(mode=0)
 
 
+@pytest.mark.release
 def test_the_finest_run_is_that_of_an_integrator_apart(ladder):
     structure = two_modes(1.0)
     plant = Plant(structure)

@@ -326,6 +326,7 @@ def friction_from(pad, q, v, sticks, friction, normal):
     return friction
 
 
+@pytest.mark.release
 def test_the_work_of_friction_and_dashpots_is_the_change_of_energy():
     energy, work, _, sticks = energy_and_work(twelve_modes(), 2e-3, belt_speed=0.3)
     assert sticks.any()
@@ -340,6 +341,7 @@ def test_energy_is_balanced_over_ten_thousand_events():
     assert energy[-1] - energy[0] == pytest.approx(work, abs=1e-11 * energy.max())
 
 
+@pytest.mark.release
 def test_a_settled_millisecond_of_the_pad_takes_few_steps():
     """Cost that no clock tells; tests/benchmarks/bench_structures.py has times beside scipy's."""
     system, t_end = twelve_modes().system(), 20e-3

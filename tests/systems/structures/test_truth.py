@@ -88,6 +88,7 @@ def test_the_mass_on_two_springs_has_the_stability_of_a3():
     )
 
 
+@pytest.mark.release
 def test_the_elastic_pad_has_the_published_modes():
     pad = elastic_pad()
     assert pad.size == 350
@@ -112,6 +113,7 @@ def test_one_contact_keeps_the_two_modes_that_its_directions_need():
         elastic_pad(contacts=1).reduce(n_modes=1)
 
 
+@pytest.mark.release
 def test_a_reduced_pad_states_errors_that_are_true():
     pad = elastic_pad()
     reduced = pad.reduce(frequency_max=60e3)

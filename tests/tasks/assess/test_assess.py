@@ -68,6 +68,7 @@ def test_a_pad_that_hammers(hammering):
     assert float(hammering.impact_rate) == pytest.approx(truth.losses / 0.2, rel=0.01)
 
 
+@pytest.mark.release
 def test_a_pad_that_squeals_in_stick_slip(squealing):
     truth = Pad(NUMBERS, *SQUEAL).run((0, 0, 0, 0), 0.3, 0.2)
     assert int(squealing.verdict) == Verdict.squeals
@@ -140,6 +141,7 @@ def test_cures_are_sorted_by_their_change_and_within_the_ranges_tried(hammering)
     assert (farther | np.isnan(known.change_any_start)).all()
 
 
+@pytest.mark.release
 def test_without_friction_it_is_quiet_and_the_margin_is_where_it_starts():
     damped = PAD.with_(mu=0.05, mu_static=None, friction_law="coulomb")
     quiet = assess(damped, *HAMMER)

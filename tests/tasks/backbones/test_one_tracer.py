@@ -78,6 +78,7 @@ def test_a_branch_that_arrives_is_not_called_lost():
     assert float(single.omega) == pytest.approx(float(branch.omega[-1]), abs=1e-13)
 
 
+@pytest.mark.release
 def test_single_orbits_agree_with_branches_in_random_cells():
     """Unequal springs, both belt directions, any μ and k3: to the peak, and on to twice it."""
     ends = set()

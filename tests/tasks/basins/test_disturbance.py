@@ -204,6 +204,7 @@ def test_steady_sliding_is_no_saddle_beside_where_raised_friction_leads(alpha2, 
     assert np.linalg.det(found.jacobian) > 0.0
 
 
+@pytest.mark.release
 def test_laws_of_the_same_forces_have_the_same_disturbance():
     """Friction and contact as tables of many pieces, or a contact dashpot of size zero."""
     law = FORMER.with_(mu=0.1, damping1=0.05, damping2=0.02, belt_speed=2.0)

@@ -49,6 +49,7 @@ def test_regions_are_what_runs_and_eigenvalues_say(chart):
     assert set(chart.region_regime.values) == set(LinearRegime)
 
 
+@pytest.mark.release
 def test_distances_of_a_design(chart):
     """From points of the closed forms' lines, and from the boundary on a finer grid."""
     fine = np.linspace(0.0, np.pi, 61)
@@ -107,6 +108,7 @@ def test_parameters_under_their_own_names():
         )
 
 
+@pytest.mark.release
 def test_onset_of_the_whirl_and_of_its_stick():
     """Along the friction of the design the distances are those to the branch's special points."""
     params = PARAMS.with_(mu=0.15, belt_speed=-100.0, damping1=0.02, damping2=0.02)

@@ -68,6 +68,7 @@ SLOW = [
 ]
 
 
+@pytest.mark.release
 @pytest.mark.parametrize("name", [*list(SETS)[1:4], *SLOW])
 def test_the_curves_agree_with_a_uniform_map(name):
     """Every point of a map that is finer than the one the curves start from."""
@@ -90,6 +91,7 @@ def test_the_curves_agree_with_a_uniform_map(name):
     assert wrong == 0, distance
 
 
+@pytest.mark.release
 def test_the_mirrored_regions_have_one_area():
     """(α1, α2) and (π − α2, π − α1) are one system: areas agree to the error that is stated."""
     angles = np.linspace(0.0, np.pi, 31)

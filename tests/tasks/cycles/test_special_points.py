@@ -72,6 +72,7 @@ def turn_next_to_contact(params, angles, cycle):
     )
 
 
+@pytest.mark.release
 def test_grazing_points_at_random_parameters_just_touch():
     """The force at the touch, be it the least of the cycle or that of another approach."""
     generator = np.random.default_rng(8)
@@ -97,6 +98,7 @@ def test_grazing_points_at_random_parameters_just_touch():
             touched += 1
 
 
+@pytest.mark.release
 def test_special_points_do_not_depend_on_units():
     """Time 1000 √(m/k1), force 1e-6: what tells a touch from either side has another unit."""
     params, unit = FORMER.with_(
@@ -145,6 +147,7 @@ def test_special_points_do_not_depend_on_units():
         np.testing.assert_allclose(of * one, two, rtol=1e-8)
 
 
+@pytest.mark.release
 def test_a_curve_goes_through_each_located_onset_of_stick():
     """Where runs from the point itself end in reversals without end, or lack a leg."""
     slow, angles = FORMER.with_(belt_speed=1.0), (0.4 * math.pi, 0.6 * math.pi)
@@ -202,6 +205,7 @@ def test_curves_end_where_branches_have_the_special_point(
         assert float(curve.mu[end]) == pytest.approx(float(mu), abs=1e-9)
 
 
+@pytest.mark.release
 def test_a_curve_of_folds_goes_on_with_another_order_of_events():
     """Round two cusps, until it ends with what changes the order."""
     params, *angles = ONE_WAY[0], 0.4 * math.pi, 0.6 * math.pi

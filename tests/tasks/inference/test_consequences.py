@@ -159,6 +159,7 @@ def test_the_separating_share_has_converged(likely):
     )
 
 
+@pytest.mark.release
 @pytest.mark.parametrize(
     "beyond",
     [

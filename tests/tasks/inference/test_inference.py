@@ -122,6 +122,7 @@ def test_the_pulling_contact_loses_exactly_what_a1_loses():
         np.testing.assert_array_equal(contact[name].margin < 0, run.separations > 0)
 
 
+@pytest.mark.release
 def test_samples_cover_the_ranges_evenly(inference):
     for name, scale, *ends in (
         ("kappa", float, 0.3, 1.3), ("mu", float, 0.02, 0.8),
@@ -147,6 +148,7 @@ def test_shares_follow_from_verdicts(inference, tmp_path):
     assert load(save(inference, tmp_path / "inference.nc")).equals(inference)
 
 
+@pytest.mark.release
 def test_what_a_statement_excludes_alone_is_known_however_late_it_comes():
     """Stages leave out no set that one statement alone refutes."""
     points = np.random.default_rng(4).uniform(size=(4, 120))

@@ -88,6 +88,7 @@ def test_the_share_of_flutter_is_that_of_the_maps_of_its_sample(change):
     assert float(spread.share.sel(quantity="flutter")) == share
 
 
+@pytest.mark.release
 def test_dashpots_cost_no_more_than_three_times_as_much():
     given = {"distributions": FRICTION, "samples": 1024, "t_end": 10.0, "workers": 1}
 
@@ -230,6 +231,7 @@ def test_settings_differ_from_the_paper_one_at_a_time():
     assert len(set(found.values())) == len(found)
 
 
+@pytest.mark.release
 def test_feasible_sets_are_judged_by_what_was_predicted_alone():
     near = {"kappa": (0.55, 0.75), "mu": (0.2, 0.32), "length_ratio": (4.0, 16.0)}
     inferred = of_study(infer_parameters(FORMER, samples=64, tol=1e-6, **near))
