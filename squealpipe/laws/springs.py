@@ -1,5 +1,6 @@
 """The two inclined springs: exact geometry, and its linearization at x = y = 0."""
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -124,3 +125,17 @@ def linear_elastic_force(
         -(stiffness.k11 * x + stiffness.k12 * y),
         -(stiffness.k12 * x + stiffness.k22 * y),
     )
+
+
+def springs_alike(fields: Mapping[str, np.ndarray | float]) -> np.ndarray:
+    """Where (α1, α2) and (π − α2, π − α1) are the same system."""
+    pairs = [
+        np.equal(fields.get(f"{name}1", 0.0), fields.get(f"{name}2", 0.0))
+        for name in ("k", "length", "damping")
+    ]
+    return np.asarray(pairs[0] & pairs[1] & pairs[2])
+
+
+def springs_are_equal(fields: Mapping[str, np.ndarray | float]) -> bool:
+    """Whether (α1, α2) and (π − α2, π − α1) are the same system at every parameter set."""
+    return bool(springs_alike(fields).all())

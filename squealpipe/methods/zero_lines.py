@@ -42,6 +42,11 @@ SHARP = 0.5
 """Cosine of the turn at a corner that is enclosed along both tangents."""
 
 
+def _image(places: Vector, slopes: Vector) -> tuple[Vector, Vector]:
+    """Mirror images of places and of derivatives there, by (u, v) → (1 − v, 1 − u)."""
+    return 1.0 - places[:, ::-1], -slopes[:, ::-1]
+
+
 class FirstGrid(NamedTuple):
     """Points at which a function is first looked at.
 
@@ -65,6 +70,8 @@ class ZeroLines(Chords):
         residual: of the function at a point.
         touching: whether regions may touch in a point. Sharp corners are enclosed along both
             tangents then, which takes more places.
+        mirrored: whether the function is the same at (u, v) and (1 − v, 1 − u). Lines are then
+            followed in the cells on one side of the diagonal u + v = 1 and on it, and copied.
 
     Attributes:
         residual: of the points.
@@ -84,20 +91,39 @@ class ZeroLines(Chords):
         off: float = 1e-8,
         residual: float = 1e-11,
         touching: bool = False,
+        mirrored: bool = False,
     ) -> None:
         super().__init__(mark, jump)
         self.value, self._touching = value, touching
         self.off, self.most, self.residual = off, residual, np.empty(0)
         self.chords, self.error = np.empty((0, 2), int), np.empty(0)
         self.unresolved = 0.0
-        self._trace(self._on_grid((grid.coarse - 1) * grid.finer + 1, grid.coarse))
+        self._mirrored = mirrored
+        size = (grid.coarse - 1) * grid.finer + 1
+        chords, cells = self._on_grid(size, grid.coarse)
+        if not mirrored:
+            self._trace(chords)
+            return
+        below, across = (
+            side(cells.sum(axis=1), size - 2) for side in (np.less, np.equal)
+        )
+        levels = self._trace(chords[below], copies=2)
+        self._mirror()
+        # a line that crosses the diagonal is its own mirror image: as many times divided as others
+        self._trace(chords[across], levels=levels)
 
-    def _on_grid(self, size: int, coarse: int) -> Indices:
-        """Zeros on the edges of a grid as points, and the chords between them."""
+    def _on_grid(self, size: int, coarse: int) -> tuple[Indices, Indices]:
+        """Zeros on the edges of a grid as points, and the chords between them with their cells."""
         known = np.zeros((size, size))
 
         def look(rows: Indices, columns: Indices) -> tuple[Any, Any, Any]:
-            found = self.value(np.stack([rows, columns], axis=1) / (size - 1))
+            places = np.stack([rows, columns], axis=1)
+            back: Any = slice(None)
+            if self._mirrored:
+                beyond = (places.sum(axis=1) > size - 1)[:, None]
+                places = np.where(beyond, size - 1 - places[:, ::-1], places)
+                places, back = np.unique(places, axis=0, return_inverse=True)
+            found = self.value(places / (size - 1))[back]
             known[rows, columns] = found
             return found > 0.0, np.zeros(found.shape, bool), np.abs(found)
 
@@ -119,16 +145,47 @@ class ZeroLines(Chords):
         high, low = np.concatenate(up), np.concatenate(down)
         before, after = known[tuple(high.T)], known[tuple(low.T)]
         start, way = high / (size - 1), (low - high) / (size - 1)
-        found = self._roots(
+        # middles of edges in half cells, of which none is on the diagonal
+        middle = high + low
+        mine = (not self._mirrored) | (middle.sum(axis=1) < 2 * (size - 1))
+        start, way, before, after = (each[mine] for each in (start, way, before, after))
+        share, *there = self._roots(
             start, way, before / (before - after), after - before, between=True
         )
-        self._add(start + found[0][:, None] * way, way, *found[1:])
+        first = np.flatnonzero(mine)
+        place = np.empty(middle.shape)
+        slope, residual = np.empty(middle.shape), np.empty(len(middle))
+        place[first] = start + share[:, None] * way
+        slope[first] = self._slopes(place[first], way, *there)
+        residual[first] = there[0]
+        self._partner = np.full(len(middle), -1)
+        if self._mirrored:
+            number = np.full((2 * size, 2 * size), -1)
+            number[tuple(middle.T)] = np.arange(len(middle))
+            other = number[tuple((2 * (size - 1) - middle[first][:, ::-1]).T)]
+            place[other], slope[other] = _image(place[first], slope[first])
+            residual[other] = residual[first]
+            self._partner[first], self._partner[other] = other, first
+        self._append(place, slope, residual, np.full(len(place), np.nan))
         return self._joined(positive, *numbers)
+
+    def _mirror(self) -> None:
+        """Copy the chords that are kept, and their points, beyond the diagonal."""
+        new = np.arange(len(self._partner), len(self.place))
+        self._partner = np.concatenate(
+            [self._partner, len(self.place) + np.arange(len(new))]
+        )
+        place, slope = _image(self.place[new], self.slope[new])
+        self._append(place, slope, self.residual[new], self.mark[new])
+        marked = np.flatnonzero(~np.isnan(self.mark[: len(self._partner)]))
+        self.mark[self._partner[marked]] = self.mark[marked]
+        # reflected, the positive side stays on the left of a chord that is turned
+        self._keep(self._partner[self.chords][:, ::-1], self.error)
 
     def _joined(
         self, positive: NDArray[np.bool_], along: Indices, up: Indices
-    ) -> Indices:
-        """Chords across the cells, from where the sign falls along a cell's edge to its rise."""
+    ) -> tuple[Indices, Indices]:
+        """Chords from where the sign falls along a cell's edge to its rise, and their cells."""
         corners = [
             positive[:-1, :-1],
             positive[1:, :-1],
@@ -143,6 +200,7 @@ class ZeroLines(Chords):
         chords = [
             np.stack([sides[once][falls[once]], sides[once][rises[once]]], axis=1)
         ]
+        cells = [np.argwhere(once)]
         saddles = np.argwhere(falls.sum(axis=-1) == 2)
         if len(saddles):
             through = self.value((saddles + 0.5) / (len(positive) - 1)) > 0.0
@@ -150,17 +208,24 @@ class ZeroLines(Chords):
                 for side in np.flatnonzero(falls[i, j]):
                     other = (side + (1 if joins else -1)) % 4
                     chords.append(sides[i, j][[[side, other]]])
-        return np.concatenate(chords)
+                    cells.append(np.array([[i, j]]))
+        return np.concatenate(chords), np.concatenate(cells)
 
     def _add(self, places: Vector, way: Vector, value: Vector, rate: Vector) -> Indices:
         """New points of one branch, by ways across it with the rates there; their indices."""
+        slope = self._slopes(places, way, value, rate)
+        return self._append(places, slope, value, np.full(len(places), np.nan))
+
+    def _slopes(
+        self, places: Vector, way: Vector, value: Vector, rate: Vector
+    ) -> Vector:
+        """Derivatives of the function by both coordinates, from its rate along a way."""
         length = np.linalg.norm(way, axis=1)
         along, rate = way / length[:, None], rate / length
         across, rough = along[:, ::-1] * [-1.0, 1.0], np.isnan(rate)
         rate[rough] = self._change(places[rough], along[rough], value[rough])
         change = self._change(places, across, value)
-        slope = rate[:, None] * along + change[:, None] * across
-        return self._append(places, slope, value, np.full(len(places), np.nan))
+        return np.asarray(rate[:, None] * along + change[:, None] * across)
 
     def _change(self, places: Vector, way: Vector, value: Vector) -> Vector:
         """How fast the function changes along unit vectors, by a step into the square."""
@@ -176,12 +241,22 @@ class ZeroLines(Chords):
         self.mark = np.concatenate([self.mark, mark])
         return len(self.place) - len(place) + np.arange(len(place))
 
-    def _trace(self, chords: Indices) -> None:
-        """Divide chords until their areas are known."""
-        error = self.length(chords) ** 2
+    def _trace(
+        self, chords: Indices, *, copies: int = 1, levels: int | None = None
+    ) -> int:
+        """Divide chords until their areas are known; return how many times.
+
+        Args:
+            copies: how many points each new one will make.
+            levels: divide as many times at most, whatever the number of points.
+        """
+        error, level, before = self.length(chords) ** 2, 0, len(self.place)
         self.marks(chords)
-        for _ in range(MOST_DIVISIONS):
-            if not len(chords) or len(self.place) > MOST_POINTS:
+        for level in range(MOST_DIVISIONS if levels is None else levels + 1):
+            points = before + copies * (len(self.place) - before)
+            if not len(chords) or (
+                points > MOST_POINTS if levels is None else level == levels
+            ):
                 break
             error, new, *across = self._divided(chords)
             lost = ~((new >= 0.0) & (new <= 1.0)).all(axis=1) | ~across[0].any(axis=1)
@@ -216,8 +291,11 @@ class ZeroLines(Chords):
             )
             self._keep(split(around, corner), np.repeat(0.5 * error[~going & jumps], 2))
             chords = np.concatenate([chords[going], shorter])
+        else:
+            level += 1
         self._not_divided(chords)
         self._keep(chords, self.length(chords) ** 2)
+        return level
 
     def _not_divided(self, chords: Indices) -> None:
         """Take account of chords that should be shorter; the shortest ones need not."""

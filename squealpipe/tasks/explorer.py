@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from squealpipe.codes import Regime
 from squealpipe.laws.contact import normal_force
+from squealpipe.laws.springs import springs_are_equal
 from squealpipe.methods.processes import run_shared
 from squealpipe.methods.spectrum import amplitude_spectrum
 from squealpipe.models.refusals import extensions
@@ -16,6 +17,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import build
 from squealpipe.schema.dynamics.explorer import EXPLORER, HISTORIES, ORBITS
 from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.solvers.a1.scaling import PHYSICAL
 from squealpipe.solvers.a4.exact_branches import exact_branch
 from squealpipe.solvers.a4.system import ScaledSystem, scaled_system
 from squealpipe.tasks.backbones.backbone import exact_variables
@@ -59,17 +61,22 @@ def explorer_data(
         np.searchsorted(frequency * params.time_unit, HIGHEST_FREQUENCY, side="right")
     )
     count, modes = angles.size, () if extensions(params) else MODES
+    mirrored = springs_are_equal(
+        {name: getattr(params, name) for name in PHYSICAL}
+    ) and np.allclose(angles + angles[::-1], np.pi, rtol=0.0, atol=1e-13)
 
     def fill(arrays: dict[str, NDArray[Any]], first: int, stride: int) -> None:
         for row in range(first, count, stride):
-            cells = slice(row * count, (row + 1) * count)
+            # (α1, α2) and (π − α2, π − α1) swap two equal springs: one motion
+            others = angles[: count - row] if mirrored else angles
+            cells = slice(row * count, row * count + others.size)
             motions = _motions(
-                params, float(angles[row]), angles, times, samples, lines
+                params, float(angles[row]), others, times, samples, lines
             )
             for name, values in motions.items():
                 arrays[name][cells] = values
             for cell, alpha2 in enumerate(
-                angles.tolist() if modes else (), row * count
+                others.tolist() if modes else (), row * count
             ):
                 scene = scaled_system(params, float(angles[row]), alpha2)
                 for place, mode in enumerate(modes):
@@ -89,6 +96,11 @@ def explorer_data(
         jobs=count * count,
         workers=workers,
     )
+    if mirrored:
+        row, column = np.divmod(np.arange(count * count), count)
+        image = (count - 1 - column) * count + count - 1 - row
+        known = np.where(row + column < count, np.arange(count * count), image)
+        filled = {name: each[known] for name, each in filled.items()}
     maps = {
         name: each.reshape(count, count, *each.shape[1:])
         for name, each in filled.items()

@@ -62,3 +62,22 @@ def test_a_table_of_contact_is_explored():
     force = alone.normalized_contact_force.values
     assert np.ptp(force) > 0.1
     np.testing.assert_allclose(found.normalized_contact_force[1, 2], force, atol=1e-6)
+
+
+def test_mirror_images_are_copied_and_are_what_runs_give():
+    """(α1, α2), (π − α2, π − α1) swap the springs; where these differ by a hair all pairs run."""
+    angles = np.array([1 / 6, 0.5, 5 / 6]) * np.pi
+    apart = FORMER.with_(length2=FORMER.length2 * (1.0 + 1e-13))
+    copied, run = (
+        explorer_data(params, angles, workers=1, **OPTIONS)
+        for params in (FORMER, apart)
+    )
+    for name in ("x", "y", "force_spectrum", "outcome", "end"):
+        np.testing.assert_allclose(copied[name], run[name], rtol=1e-5, atol=1e-6)
+    # round-off decides the steps between the ends of a branch
+    ends = (each.omega[..., [0, -1]] for each in (copied, run))
+    np.testing.assert_allclose(*ends, rtol=1e-5)
+    image = copied.x.values[::-1, ::-1].swapaxes(0, 1)
+    np.testing.assert_array_equal(copied.x, image)
+    assert not np.array_equal(run.x, run.x.values[::-1, ::-1].swapaxes(0, 1))
+    assert np.ptp(copied.x.values[2, 1]) > 0.1

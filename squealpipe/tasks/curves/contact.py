@@ -10,6 +10,7 @@ import xarray as xr
 
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import LAWS
+from squealpipe.laws.springs import springs_are_equal
 from squealpipe.methods.chords import Vector
 from squealpipe.methods.regions import chains_of, gathered, holds, inside, loops_of
 from squealpipe.methods.zero_lines import FirstGrid, ZeroLines
@@ -51,6 +52,18 @@ class Square:
         self.options, self.model, self.runs = options, model, 0
         self.low = np.array([each[0] for each in axes.values()])
         self.width = np.array([each[-1] - each[0] for each in axes.values()])
+
+    def is_its_mirror_image(self) -> bool:
+        """Whether (u, v) and (1 − v, 1 − u) are the same motion.
+
+        (α1, α2) and (π − α2, π − α1) swap the two springs, so if these are equal they have one
+        motion, with the same friction, belt and sign of x.
+        """
+        angles = self.names == ["alpha1", "alpha2"] and springs_are_equal(
+            {name: getattr(self.params, name) for name in PHYSICAL}
+        )
+        ends = [self.low, self.low + self.width]
+        return bool(angles and np.abs(ends[0] + ends[1][::-1] - np.pi).max() < 1e-13)
 
     def values(self, places: Vector) -> Vector:
         """The two parameters at places of the square, (places, 2)."""
@@ -151,6 +164,7 @@ def contact_lines(
         FirstGrid(coarse, finer),
         jump=JUMP,
         touching=False,
+        mirrored=square.is_its_mirror_image(),
         **accuracy,
     )
 

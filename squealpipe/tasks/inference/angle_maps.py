@@ -4,10 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from squealpipe.laws.springs import springs_are_equal
 from squealpipe.parameters import HORIZON
 from squealpipe.schema import Outcome
 from squealpipe.tasks.inference.candidates import Candidates
-from squealpipe.tasks.inference.unstable_cells import midpoints, springs_are_equal
+from squealpipe.tasks.inference.unstable_cells import midpoints
 
 VISIBLE = 0.95
 """Distance of the cells from the centre of the disc of flutter, in radii: a region that is thinner

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squealpipe.codes import LinearRegime
+from squealpipe.laws.springs import springs_alike
 from squealpipe.models import a3
 from squealpipe.models.contact_system import contact_system
 from squealpipe.models.damped import damped_system, is_undamped, stability
@@ -103,20 +104,6 @@ def midpoints(number: int) -> tuple[np.ndarray, np.ndarray]:
     axis = (np.arange(number) + 0.5) * (np.pi / number)
     alpha1, alpha2 = np.meshgrid(axis, axis, indexing="ij")
     return alpha1.ravel(), alpha2.ravel()
-
-
-def springs_alike(fields: Mapping[str, np.ndarray | float]) -> np.ndarray:
-    """Where (α1, α2) and (π − α2, π − α1) are the same system."""
-    pairs = [
-        np.equal(fields.get(f"{name}1", 0.0), fields.get(f"{name}2", 0.0))
-        for name in ("k", "length", "damping")
-    ]
-    return np.asarray(pairs[0] & pairs[1] & pairs[2])
-
-
-def springs_are_equal(fields: Mapping[str, np.ndarray | float]) -> bool:
-    """Whether (α1, α2) and (π − α2, π − α1) are the same system at every parameter set."""
-    return bool(springs_alike(fields).all())
 
 
 def _along_edges(

@@ -87,8 +87,9 @@ def verdict_robustness(
             which statements that were fitted are not judged, for they hold by construction.
     """
     names = [constraint.name for constraint in CONSTRAINTS] + list(CONSEQUENCES)
-    titles, settings = map(list, zip(*variants(params), strict=True))
-    rows = _verdicts_of(settings, names, tol, workers)
+    named = list(variants(params))
+    titles = [title for title, _ in named]
+    rows = _verdicts_of([each for _, each in named], names, tol, workers)
     generator = np.random.default_rng(seed)
     speed = params.preload / params.time_unit
     for near in NEAR:

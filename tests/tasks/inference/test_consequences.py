@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from squealpipe.laws.springs import springs_are_equal
 from squealpipe.models import a3
 from squealpipe.models.contact_system import contact_system
 from squealpipe.parameters import SCENES
@@ -24,7 +25,6 @@ from squealpipe.tasks.inference.constraints import (
     _unstable_only_without_sliding,
     measure,
 )
-from squealpipe.tasks.inference.unstable_cells import springs_are_equal
 from squealpipe.tasks.linear.maps import (
     natural_frequencies,
     quasi_static_map,
