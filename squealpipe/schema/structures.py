@@ -95,6 +95,7 @@ def _modes(dims: tuple[str, ...]) -> DatasetSchema:
                 among=(
                     Outcome.converged,
                     Outcome.not_computed,
+                    Outcome.rigid_mode,
                     Outcome.no_sliding_state,
                 ),
             ),

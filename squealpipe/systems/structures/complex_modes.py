@@ -152,6 +152,9 @@ def _dataset(structure: ContactStructure, asked: Asked) -> xr.Dataset:
             {**asked.limits.as_dict(), "critical": asked.critical, **asked.fixed}
         ),
         "open_contacts": ", ".join(sorted(opened)) or "none",
+        "fixed_degrees_of_freedom": max(
+            step.spectrum.fixed for way in every for step in way.steps.values()
+        ),
         **versions(),
     }
     return build(find(name_over(dims)), modes, coords, attrs)
@@ -211,7 +214,7 @@ def _tables(ways: list[Way], frictions: list[float]) -> dict[str, list[np.ndarra
             at = np.array(columns, int)[chosen]
             for name, values in _of_modes(step.spectrum).items():
                 table[name][row, at] = values[chosen]
-            table["outcome"][row, at] = Outcome.converged
+            table["outcome"][row, at] = step.spectrum.outcomes[chosen]
         located = way.criticals(numbers)
         table["critical_mu"] = np.array([each.mu for each in located], float)
         table["onset"] = np.array([each.onset for each in located], np.int8)

@@ -5,14 +5,18 @@ rate the pair is polished (:mod:`.refinement`). Without damping s² is computed,
 of modes that do not grow have no growth at all.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import scipy.linalg as la
+import scipy.sparse as sp
 
-from squealpipe.systems.structures.pencil import Pencil
+from squealpipe.systems.structures.onset import Block, turned
+from squealpipe.systems.structures.pencil import LowRank, Pencil
 from squealpipe.systems.structures.refinement import (
     ENOUGH,
+    SURE,
     Eigenpair,
     error_of_rounding,
     error_of_rounding_of_square,
@@ -20,16 +24,59 @@ from squealpipe.systems.structures.refinement import (
     quotient,
     unit_vector,
 )
+from squealpipe.systems.structures.stiff import condensation, stiff_degrees
 
+NEARLY_DOUBLE = 1e-9
+"""Error over frequency beyond which an undamped mode is judged together with its neighbour."""
 BACKWARD = 8.0
 """Backward error of LAPACK's eigenvalues, in units of round-off of the norm of the matrix."""
 
 
 def all_modes(pencil: Pencil) -> list[Eigenpair]:
-    """An eigenpair for each complex pair and each real eigenvalue, by frequency."""
+    """An eigenpair for each complex pair and each real eigenvalue, by frequency.
+
+    Degrees of freedom that a penalty fixes, or without mass to speak of, add none (:mod:`.stiff`).
+    """
     find = _undamped if pencil.is_undamped else _damped
-    pairs = [_accurate(pencil, pair) for pair in find(pencil)]
+    pairs = [_accurate(pencil, pair) for pair in _without_stiff(pencil, find)]
+    if pencil.is_undamped:
+        pairs = _told_apart(pencil, pairs)
     return sorted(pairs, key=lambda each: (each.value.imag, each.value.real))
+
+
+def _without_stiff(
+    pencil: Pencil, find: Callable[[Pencil], list[Eigenpair]]
+) -> list[Eigenpair]:
+    """Eigenpairs of what is left when stiff degrees of freedom are condensed, in all of them."""
+    mass, _, stiffness = pencil.dense
+    stiff = stiff_degrees(mass, stiffness)
+    if not stiff.any():
+        return find(pencil)
+    right = condensation(stiffness, stiff)
+    left = condensation(stiffness.T, stiff)
+    modal = pencil.modal
+    inertia, damping, springs = (
+        sp.csr_array(right.T @ (each @ right))
+        for each in (pencil.mass, pencil.damping, pencil.stiffness)
+    )
+    condensed = Pencil(
+        inertia,
+        damping,
+        springs,
+        modal and LowRank(right.T @ modal.columns, modal.weights),
+    )
+    lowest = np.abs(stiffness.diagonal()[stiff] / mass.diagonal()[stiff]).min()
+    # what moves along with the kept ones counts, by its inertia
+    moved = np.linalg.norm(right[stiff], 2) if right.size else 0.0
+    return [
+        Eigenpair(
+            pair.value,
+            unit_vector(right @ pair.right),
+            unit_vector(left @ pair.left),
+            pair.error + abs(pair.value) ** 3 / lowest * min(moved, 1.0),
+        )
+        for pair in find(condensed)
+    ]
 
 
 def _accurate(pencil: Pencil, pair: Eigenpair) -> Eigenpair:
@@ -38,7 +85,11 @@ def _accurate(pencil: Pencil, pair: Eigenpair) -> Eigenpair:
     on_axis = pencil.is_undamped and value.real == 0  # its growth is exact
     if on_axis or error <= ENOUGH * max(abs(value.real), 1.0):
         return pair
-    better = polished(pencil, value, right, left)
+    try:
+        better = polished(pencil, value, right, left)
+    except (ValueError, RuntimeError):
+        # the pencil is singular next to a double eigenvalue, too (critical damping)
+        return pair
     # inverse iteration next to a double eigenvalue may leave for the other one
     if not better.error < error or abs(better.value - value) > max(
         10.0 * error, 1e-9 * abs(value)
@@ -75,6 +126,103 @@ def _undamped(pencil: Pencil) -> list[Eigenpair]:
     return pairs
 
 
+def _told_apart(pencil: Pencil, pairs: list[Eigenpair]) -> list[Eigenpair]:
+    """Pairs without damping, those next to a double eigenvalue as two of one subspace.
+
+    Where two modes merge both vectors are one, and the error of each by itself has no bound. The
+    2 × 2 matrix of their common subspace is as accurate as any, and half the distance of both λ is
+    a root of what it has.
+    """
+    squares = np.array([-(pair.value**2) for pair in pairs])
+    told = list(pairs)
+    waiting = {
+        place
+        for place, pair in enumerate(pairs)
+        if pair.error > NEARLY_DOUBLE * abs(pair.value) and pair.value.imag
+    }
+    while waiting:
+        place = waiting.pop()
+        distance = np.abs(squares - squares[place])
+        distance[place] = np.inf
+        other = int(distance.argmin()) if len(pairs) > 1 else place
+        if not distance[other] <= 1e-2 * abs(squares[place]):
+            continue
+        waiting.discard(other)
+        both = _of_block(pencil, pairs[place], pairs[other])
+        if both is not None and both[0].error < pairs[place].error:
+            told[place], told[other] = both
+    return told
+
+
+def _of_block(
+    pencil: Pencil, first: Eigenpair, second: Eigenpair
+) -> tuple[Eigenpair, Eigenpair] | None:
+    """Both modes from their subspace; None where it is none."""
+    right, left = (
+        # of two that are all but parallel the difference counts
+        np.linalg.qr(np.column_stack([_real(one), _real(one) - _real(other)]))[0]
+        for one, other in ((first.right, second.right), (first.left, second.left))
+    )
+    if first.value.real:
+        right, left = (
+            np.linalg.qr(np.column_stack([each.real, each.imag]))[0]
+            for each in (first.right, first.left)
+        )
+    roots = [complex(-(each.value**2)) for each in (first, second)]
+    roots = roots if roots[0].imag else [complex(each.real) for each in roots]
+    block = Block(right, left, roots, 0.0)
+    try:
+        for _ in range(3):
+            block = turned(pencil, block)
+    except RuntimeError:  # a factor is singular
+        return None
+    matrix = np.asarray(block.matrix, float)
+    mean = 0.5 * float(np.trace(matrix))
+    carried = la.svdvals(block.left.T @ (pencil.mass @ block.right))[-1]
+    moved = SURE * max(
+        pencil.rounded(1j * np.sqrt(abs(mean)), left, right)
+        for left in block.left.T
+        for right in block.right.T
+    )
+    entry = 2.0 * moved / max(carried, 1e-300)
+    half = 0.5 * (matrix[0, 0] - matrix[1, 1])
+    doubt = 2.0 * (abs(half) + abs(matrix[0, 1]) + abs(matrix[1, 0])) * entry + entry**2
+    split = 0.0 if abs(block.split) <= doubt else block.split
+    distance = np.sqrt(complex(split))
+    error = np.sqrt(abs(split) + doubt) - np.sqrt(abs(split)) + entry
+    roots = [1j * np.sqrt(complex(mean + sign * distance)) for sign in (1, -1)]
+    if mean <= 0 or not np.isfinite(error):
+        return None
+    roots = [-each if each.imag < 0 else each for each in roots]
+    pairs = []
+    for root in roots:
+        y = _null(matrix + root**2 * np.eye(2))
+        z = _null((matrix + root**2 * np.eye(2)).conj().T)
+        weighted = block.left @ la.solve(
+            (block.left.T @ (pencil.mass @ block.right)).T, z
+        )
+        pairs.append(
+            Eigenpair(
+                complex(root),
+                unit_vector((block.right @ y).astype(complex)),
+                unit_vector(weighted.astype(complex)),
+                float(error / (2 * abs(root))),
+            )
+        )
+    return pairs[0], pairs[1]
+
+
+def _null(matrix: np.ndarray) -> Any:
+    """The vector of the smallest singular value."""
+    return la.svd(matrix)[2][-1].conj()
+
+
+def _real(vector: np.ndarray) -> Any:
+    """A real vector along one that is real but for a factor."""
+    largest = vector[np.abs(vector).argmax()]
+    return unit_vector((vector * (largest.conjugate() / abs(largest))).real)
+
+
 def _of_real_square(
     pencil: Pencil, square: float, right: np.ndarray, left: np.ndarray, scale: float
 ) -> list[Eigenpair]:
@@ -83,8 +231,11 @@ def _of_real_square(
     error = _error_of_square(pencil, v, w, scale)
     if abs(square) > error:
         mass, _, stiffness = (w @ each for each in pencil.products(v))
-        square = float((stiffness / mass).real)
-        error = error**2 / scale + error_of_rounding_of_square(pencil, square, v, w)
+        refined = float((stiffness / mass).real) if mass else np.inf
+        bound = error**2 / scale + error_of_rounding_of_square(pencil, refined, v, w)
+        # where two modes merge wᴴMv is 0, and the quotient is of round-off
+        if bound < error and abs(refined - square) <= 2.0 * error:
+            square, error = refined, bound
     root = np.sqrt(abs(square))
     if abs(square) <= error:  # a rigid body
         return [Eigenpair(0j, v.astype(complex), w.astype(complex), np.sqrt(error))]

@@ -7,6 +7,7 @@ from scipy.sparse.linalg import eigsh
 
 from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.pencil import DENSE, LowRank
+from squealpipe.systems.structures.stiff import condensation, stiff_degrees
 
 FIRST = 40
 """Modes computed at first where it is not known how many there are up to a frequency."""
@@ -26,7 +27,7 @@ def modes_at_rest(
     size = structure.size
     stiffness = structure.stiffness_at_rest
     if size <= DENSE:
-        squares, modes = la.eigh(stiffness.toarray(), structure.mass.toarray())
+        squares, modes = _all(stiffness.toarray(), structure.mass.toarray())
     else:
         squares, modes = _lowest(stiffness, structure.mass, number, omega_max)
     omega = np.sqrt(np.maximum(squares, 0.0))
@@ -51,6 +52,21 @@ def modal_damping_of(
     omega, modes = modes_at_rest(structure, number, omega_max)
     ratios = np.broadcast_to(ratios, omega.shape)
     return LowRank(structure.mass @ modes, 2.0 * ratios * omega)
+
+
+def _all(stiffness: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """ω² and modes, those of stiff degrees of freedom last (:mod:`.stiff`)."""
+    stiff = stiff_degrees(mass, stiffness)
+    if not stiff.any():
+        return la.eigh(stiffness, mass)  # type: ignore[no-any-return]
+    basis = condensation(stiffness, stiff)
+    squares, modes = la.eigh(basis.T @ stiffness @ basis, basis.T @ mass @ basis)
+    # beside them the stiff ones, which move the others by inertia
+    rest = np.zeros((len(mass), stiff.sum()))
+    rest[stiff] = np.eye(stiff.sum())
+    rest[~stiff] = -la.solve(mass[np.ix_(~stiff, ~stiff)], mass[np.ix_(~stiff, stiff)])
+    high, shapes = la.eigh(rest.T @ stiffness @ rest, rest.T @ mass @ rest)
+    return np.concatenate([squares, high]), np.hstack([basis @ modes, rest @ shapes])
 
 
 def _lowest(

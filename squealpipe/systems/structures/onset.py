@@ -123,19 +123,21 @@ class _Followed:
         raise NotImplementedError
 
 
-class _Block(NamedTuple):
+class Block(NamedTuple):
     """Two modes, or one.
 
     Attributes:
         right, left: orthonormal bases, (n, 2).
         roots: λ.
         split: the square of half the distance of both; of one mode λ itself.
+        matrix: (WᵀMV)⁻¹ WᵀKV of both bases.
     """
 
     right: np.ndarray
     left: np.ndarray
     roots: list[complex]
     split: float
+    matrix: Any = None
 
 
 class _Subspace(_Followed):
@@ -153,19 +155,19 @@ class _Subspace(_Followed):
             np.linalg.qr(np.stack([v.real, v.imag], 1) if pair else v.real[:, None])[0]
             for v in (after.right, after.left)
         )
-        self.known[high] = _turned(pencil_at(high), _Block(right, left, roots, 0.0))
+        self.known[high] = turned(pencil_at(high), Block(right, left, roots, 0.0))
 
-    def _moved(self, near: float, mu: float) -> _Block | None:
+    def _moved(self, near: float, mu: float) -> Block | None:
         start = last = self.known[near]
         pencil = self.pencil_at(mu)
         for _ in range(TURNS):
-            block = _turned(pencil, last)
+            block = turned(pencil, last)
             size = abs(np.mean(block.roots))
             moved = abs(np.mean(block.roots) - np.mean(last.roots)) / size
             opened = abs(block.split - last.split) / size**2
             last = block
             if max(moved, opened) <= SETTLED:  # what is left vanishes in one more turn
-                last = _turned(pencil, last)
+                last = turned(pencil, last)
                 alike = np.linalg.svd(start.right.T @ last.right, compute_uv=False)
                 return last if alike.min() >= ALIKE else None
         return None
@@ -174,18 +176,19 @@ class _Subspace(_Followed):
         return -self.known[mu].split  # type: ignore[no-any-return]
 
 
-def _turned(pencil: Pencil, start: _Block) -> _Block:
+def turned(pencil: Pencil, start: Block) -> Block:
     """The block after one inverse iteration from both sides."""
     solve = _solver(pencil, start.roots)
     right = np.linalg.qr(solve(start.right, False))[0]
     left = np.linalg.qr(solve(start.left, True))[0]
     matrix = _projected(pencil, right, left)
     if len(matrix) == 1:
-        return _Block(right, left, [complex(matrix[0, 0])], float(matrix[0, 0]))
+        return Block(right, left, [complex(matrix[0, 0])], float(matrix[0, 0]))
     mean, half = 0.5 * np.trace(matrix), 0.5 * (matrix[0, 0] - matrix[1, 1])
     split = float(half**2 + matrix[0, 1] * matrix[1, 0])
     distance = np.sqrt(complex(split))
-    return _Block(right, left, [float(mean) + distance, float(mean) - distance], split)
+    roots = [float(mean) + distance, float(mean) - distance]
+    return Block(right, left, roots, split, matrix)
 
 
 def _projected(pencil: Pencil, right: np.ndarray, left: np.ndarray) -> Any:

@@ -7,6 +7,7 @@ single modes, M Φ diag(2 ζ ω) Φᵀ M, is no sparse matrix; it is carried as 
 from __future__ import annotations
 
 import ctypes
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -93,12 +94,18 @@ class Pencil:
 
     @cached_property
     def unit(self) -> float:
-        """A frequency of the matrices' entries, rad/s: what is 0 beside it is no frequency."""
+        """A frequency of the matrices' rows, rad/s: what is 0 beside it is no frequency.
+
+        The lowest of all rows: a penalty makes the largest entries as large as it likes.
+        """
         mass, damping, stiffness = (
-            float(np.abs(each.data).max(initial=0.0))
+            np.abs(each.diagonal())
             for each in (self.mass, self.damping, self.stiffness)
         )
-        return max(float(np.sqrt(stiffness / mass)), damping / mass)
+        for rows in (np.sqrt(stiffness / mass), damping / mass):
+            if rows.any():
+                return float(rows[rows > 0].min())
+        return 1.0
 
     @cached_property
     def dense(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -202,7 +209,10 @@ class Factors:
         self.modal: LowRank | None = None
         if pencil.is_dense:
             mass, damping, stiffness = pencil.dense
-            self._dense = la.lu_factor(s * (s * mass + damping) + stiffness)
+            with warnings.catch_warnings():
+                # that it is singular is said by its solutions
+                warnings.simplefilter("ignore", la.LinAlgWarning)
+                self._dense = la.lu_factor(s * (s * mass + damping) + stiffness)
             self._sparse = None
             return
         # without a damping matrix Q is real on the imaginary axis, and so are its factors: half the
@@ -233,7 +243,7 @@ class Factors:
     def solve(self, right: np.ndarray) -> Any:
         """Q⁻¹ b."""
         if self._sparse is None:
-            return la.lu_solve(self._dense, right)
+            return self._regular(la.lu_solve(self._dense, right))
         solution = self._solutions(right)
         if self.modal is None:
             return solution
@@ -243,13 +253,23 @@ class Factors:
     def solve_adjoint(self, right: np.ndarray) -> Any:
         """Q⁻ᴴ b."""
         if self._sparse is None:
-            return la.lu_solve(self._dense, right, trans=2)
+            return self._regular(la.lu_solve(self._dense, right, trans=2))
         solution = self._solutions(right, adjoint=True)
         if self.modal is None:
             return solution
         inner = la.solve(self._small.conj().T, self._solved.conj().T @ right)
         correction = self.modal.columns @ (self._weights.conj() * inner)
         return solution - self._solutions(correction, adjoint=True)
+
+    def _regular(self, solution: Any) -> Any:
+        """The solution, if there is one.
+
+        Raises:
+            RuntimeError: the pencil is singular here.
+        """
+        if not np.isfinite(solution).all():
+            raise RuntimeError(f"the pencil is singular at s = {self.at:g}")
+        return solution
 
     def _solutions(self, right: np.ndarray, *, adjoint: bool = False) -> Any:
         """By the sparse factors alone, without damping of single modes."""

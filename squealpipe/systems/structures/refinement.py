@@ -91,8 +91,9 @@ def _shift(
     pencil: Pencil, moved: float, right: np.ndarray, left: np.ndarray, rate: complex
 ) -> float:
     """Of an eigenvalue where wᴴ Q v changes by so much."""
-    # next to a double eigenvalue the shift is that of a square root instead
-    mass = abs(np.vdot(left, pencil.mass @ right)) or np.inf
+    # next to a double eigenvalue the shift is that of a square root instead; without damping wᴴMv
+    # vanishes there as well, so that the sizes of its terms count
+    mass = float(np.abs(left) @ (abs(pencil.mass) @ np.abs(right))) or np.inf
     curved = np.sqrt(moved / mass)
     return float(min(moved / abs(rate), curved)) if rate else float(curved)
 
@@ -117,8 +118,13 @@ def polished(
         factors = pencil.factorized(value + offset)
         before = value
         for _ in range(2):
-            right = unit_vector(factors.solve(pencil.rate(value, right)))
-            left = unit_vector(factors.solve_adjoint(pencil.rate(value, left)))
+            known = pencil.rate(value, right), pencil.rate(value, left)
+            if not all(each.any() for each in known):
+                raise RuntimeError(
+                    "the derivative of the pencil vanishes: a double eigenvalue"
+                )
+            right = unit_vector(factors.solve(known[0]))
+            left = unit_vector(factors.solve_adjoint(known[1]))
             last, (value, rate) = value, quotient(pencil, value, right, left)
             change = abs(value - last)
         if abs(value - before) <= 1e-6 * abs(value):

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from squealpipe.parameters import brief, is_finite_number
+from squealpipe.schema import Outcome
 from squealpipe.systems.structures import band, dense
 from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.linearized import pencil_about
@@ -15,6 +16,7 @@ from squealpipe.systems.structures.modes import modal_damping_of, modes_at_rest
 from squealpipe.systems.structures.pencil import DENSE, LowRank, Pencil
 from squealpipe.systems.structures.refinement import Eigenpair, error_of_forces
 from squealpipe.systems.structures.sliding import SteadySliding, steady_sliding
+from squealpipe.systems.structures.stiff import stiff_degrees
 
 BEYOND = 1.05
 """The band of so many modes ends so far beyond the frequency that they reach without friction."""
@@ -58,6 +60,24 @@ class Spectrum:
             self.pencil.is_undamped & (self.values.real == 0) & (self.values.imag > 0)
         )
         return np.where(still, 0.0, self.errors)
+
+    @property
+    def outcomes(self) -> np.ndarray:
+        """Converged, or rigid where the eigenvalue is 0 within its error: nothing holds the mode.
+
+        Digits that a rigid link of 1e20 has taken from a matrix look the same; such a mode is not
+        stable.
+        """
+        rigid = np.abs(self.values) <= self.errors
+        return np.where(rigid, Outcome.rigid_mode, Outcome.converged)
+
+    @cached_property
+    def fixed(self) -> int:
+        """Degrees of freedom that a penalty fixes, which add no mode."""
+        if not self.pencil.is_dense:
+            return 0
+        mass, _, stiffness = self.pencil.dense
+        return int(stiff_degrees(mass, stiffness).sum())
 
     @property
     def residuals(self) -> Any:

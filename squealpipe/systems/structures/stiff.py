@@ -1,0 +1,85 @@
+"""Degrees of freedom that are held by a penalty, or have next to no mass, taken out of a pencil.
+
+Programs fix a degree of freedom by a stiffness of 1e20 to 1e36 on its diagonal. In eigenvalues of
+the whole, round-off of that entry hides all others. So such rows are condensed: x = R x_a with
+R = [1; −K_bb⁻¹ K_ba], which for a penalty is x_b = 0, and for a mass that is next to nothing its
+static displacement. Rows are measured against each other one by one, never against the largest
+entry: there must be a gap that no mechanical structure has.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.linalg as la
+
+
+@dataclass(frozen=True)
+class Gap:
+    """Between what is kept and what is taken out, by K_ii/M_ii.
+
+    Attributes:
+        least: of both, where that of the stiff ones is beyond ``mechanical``. Doubled,
+            penalties near 1e20 on a stiff body stay in, and cost digits.
+        mechanical: (rad/s)²; 16 MHz, beyond the modes of a mesh of bodies.
+        alone: of both below that; only for rows whose coupling is round-off. Smaller, rigid bodies
+            on springs of almost no stiffness would be split off from what is elastic.
+        conditioned: least reciprocal condition of K_bb: a rigid link holds two rows to each other,
+            not both of them.
+    """
+
+    least: float = 1e8
+    mechanical: float = 1e16
+    alone: float = 1e12
+    conditioned: float = 1e-8
+
+
+GAP = Gap()
+
+
+def stiff_degrees(mass: np.ndarray, stiffness: np.ndarray) -> Any:
+    """Which degrees of freedom are taken out, (n,)."""
+    size = len(mass)
+    none = np.zeros(size, bool)
+    ratios = np.abs(stiffness.diagonal()) / mass.diagonal()
+    order = np.argsort(ratios, kind="stable")
+    ascending = ratios[order]
+    for place in range(1, size):
+        below, above = ascending[place - 1], ascending[place]
+        if not below > 0 or not above > GAP.least * below:
+            continue
+        stiff = none.copy()
+        stiff[order[place:]] = True
+        held = above >= GAP.mechanical or (
+            above > GAP.alone * below and _is_apart(stiffness, stiff)
+        )
+        if held and _is_regular(stiffness[np.ix_(stiff, stiff)]):
+            return stiff
+    return none
+
+
+def _is_apart(stiffness: np.ndarray, stiff: np.ndarray) -> bool:
+    """Whether stiff rows are coupled to the others, by no more than round-off of both."""
+    across = np.abs(stiffness[np.ix_(~stiff, stiff)])
+    back = np.abs(stiffness[np.ix_(stiff, ~stiff)])
+    diagonal = np.abs(stiffness.diagonal())
+    limit = np.finfo(float).eps * np.outer(diagonal[~stiff], diagonal[stiff])
+    coupled = (across > 0).any(axis=0) | (back > 0).any(axis=1)
+    return bool(coupled.all() and (across * back.T <= limit).all())
+
+
+def _is_regular(block: np.ndarray) -> bool:
+    scale = 1.0 / np.sqrt(np.abs(block.diagonal()))
+    sizes = la.svdvals(scale[:, None] * block * scale)
+    return bool(sizes[-1] > GAP.conditioned * sizes[0])
+
+
+def condensation(stiffness: np.ndarray, stiff: np.ndarray) -> np.ndarray:
+    """R, (n, kept), from the kept degrees of freedom to all, by K x = 0 in the stiff rows."""
+    kept = np.flatnonzero(~stiff)
+    basis = np.zeros((len(stiff), len(kept)))
+    basis[kept, np.arange(len(kept))] = 1.0
+    basis[stiff] = -la.solve(
+        stiffness[np.ix_(stiff, stiff)], stiffness[np.ix_(stiff, ~stiff)]
+    )
+    return basis

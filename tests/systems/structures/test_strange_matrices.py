@@ -1,0 +1,145 @@
+"""Strange everyday matrices: penalties, rigid links, no mass, other units, double roots."""
+
+import mpmath
+import numpy as np
+import pytest
+
+from squealpipe import Contact, Structure
+from squealpipe.schema import Outcome
+
+SMALL = np.array([[1e5, -3e4], [-3e4, 8e4]])
+CONTACT = Contact("p", {1: 1.0}, {0: 1.0}, 1e5, 100.0)
+
+
+def eigenvalues(modes):
+    values = modes.growth_rate.values + 2j * np.pi * modes.frequency.values
+    return values[np.lexsort((values.real.round(6), values.imag.round(6)))]
+
+
+def with_fixed(penalty, **further):
+    stiffness = np.zeros((3, 3))
+    stiffness[:2, :2] = SMALL
+    stiffness[0, 2] = stiffness[2, 0] = -2e4
+    stiffness[2, 2] = penalty
+    return Structure(np.eye(3), stiffness, contacts=[CONTACT], mu=1.0, **further)
+
+
+@pytest.mark.parametrize("penalty", [1e12, 1e16, 1e18, 1e20, 1e22, 1e28, 1e36])
+@pytest.mark.parametrize("damping", [0.0, 1e-4])
+def test_a_penalty_fixes_a_degree_of_freedom_and_changes_nothing_else(penalty, damping):
+    modes = with_fixed(penalty, modal_damping=damping).complex_modes()
+    alone = Structure(
+        np.eye(2), SMALL, contacts=[CONTACT], mu=1.0, modal_damping=damping
+    ).complex_modes()
+    near = 1e5 / penalty * 1e3 + 1e-9
+    for name in ("frequency", "growth_rate"):
+        assert modes[name].values[:2] == pytest.approx(alone[name].values, rel=near)
+    assert modes.critical_mu.values[0] == pytest.approx(
+        alone.critical_mu.values[0], abs=max(1e-9, 1e5 / penalty)
+    )
+    assert modes.unstable.values[:2].any()
+    fixed = modes.attrs["fixed_degrees_of_freedom"]
+    assert modes.sizes["mode"] == 3 - fixed
+    assert fixed == (penalty >= 1e16)
+
+
+def test_the_issues_fixed_degree_of_freedom_has_the_numbers_of_the_closed_form():
+    modes = with_fixed(1e36).complex_modes()
+    # λ² − trace λ + determinant of [[1e5, −3e4 + 1e5], [−3e4, 1.8e5]]
+    trace, determinant = 2.8e5, 1.8e10 + 3e4 * 7e4
+    square = (trace + np.sqrt(complex(trace**2 - 4 * determinant))) / 2
+    root = 1j * np.sqrt(square)
+    assert np.abs(modes.growth_rate.values) == pytest.approx(
+        2 * [abs(root.real)], rel=1e-9
+    )
+    assert modes.frequency.values == pytest.approx(
+        2 * [abs(root.imag) / (2 * np.pi)], rel=1e-12
+    )
+    assert modes.critical_mu.values == pytest.approx(2 * [5 / 6], abs=1e-10)
+
+
+@pytest.mark.parametrize("link", [1e9, 1e12, 1e14])
+def test_a_rigid_link_leaves_the_modes_that_extended_precision_has(link):
+    stiffness = np.array([[1e5, 0, -1e4], [0, 8e4, -2e4], [-1e4, -2e4, 5e4]])
+    stiffness[:2, :2] += link * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    modes = Structure(np.eye(3), stiffness).complex_modes()
+    with mpmath.workdps(40):
+        squares = sorted(
+            mpmath.eigsy(mpmath.matrix(stiffness.tolist()), eigvals_only=True)
+        )
+    expected = [float(mpmath.sqrt(each) / (2 * mpmath.pi)) for each in squares]
+    assert modes.frequency.values == pytest.approx(expected, rel=1e-9)
+    assert (modes.outcome == Outcome.converged).all()
+
+
+def test_where_a_rigid_link_has_taken_the_digits_no_mode_is_said_to_be_stable():
+    stiffness = np.array([[1e5, 0.0], [0.0, 8e4]])
+    stiffness += 1e22 * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    modes = Structure(np.eye(2), stiffness).complex_modes()
+    error = modes.growth_rate_error.values
+    value = np.hypot(modes.growth_rate.values, 2 * np.pi * modes.frequency.values)
+    lost = error > value
+    assert lost.any()
+    assert (modes.outcome.values[lost] == Outcome.rigid_mode).all()
+
+
+def test_a_mass_that_is_next_to_nothing_is_condensed():
+    stiffness = np.array([[1e5, -5e4, -1e4], [-5e4, 8e4, 0], [-1e4, 0, 5e4]])
+    modes = Structure(np.diag([1, 1e-20, 1.0]), stiffness).complex_modes()
+    condensed = (
+        stiffness[::2, ::2] - np.outer(stiffness[::2, 1], stiffness[1, ::2]) / 8e4
+    )
+    expected = np.sqrt(np.linalg.eigvalsh(condensed)) / (2 * np.pi)
+    assert modes.frequency.values == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("unit", [1e-6, 1e-3, 1e3, 1e6])
+def test_rotations_in_other_units_change_nothing(unit):
+    scale = np.diag([1.0, unit, 1.0])
+    mass = scale @ np.array([[2.0, 0.5, 0], [0.5, 3.0, 0.2], [0, 0.2, 1.0]]) @ scale
+    plain = np.array([[1e5, -5e4, -1e4], [-5e4, 8e4, 0], [-1e4, 0, 5e4]])
+    modes = Structure(mass, scale @ plain @ scale).complex_modes()
+    unscaled = np.linalg.inv(scale)
+    same = Structure(unscaled @ mass @ unscaled, plain).complex_modes()
+    assert modes.frequency.values == pytest.approx(same.frequency.values, rel=1e-11)
+
+
+def test_critical_damping_is_an_answer():
+    modes = Structure([[1.0]], [[100.0]], [[20.0]]).complex_modes()
+    assert modes.growth_rate.values == pytest.approx([-10.0] * 2, abs=1e-6)
+    assert (modes.growth_rate_error < 1e-5).all()
+    assert (modes.frequency == 0).all()
+    every = Structure(np.eye(2), SMALL, modal_damping=1.0).complex_modes()
+    roots = np.repeat(-np.sqrt(np.linalg.eigvalsh(SMALL)), 2)
+    assert np.sort(every.growth_rate.values) == pytest.approx(np.sort(roots), rel=1e-6)
+
+
+def test_a_sweep_passes_critical_damping():
+    swept = Structure([[1.0]], [[100.0]], [[10.0]]).complex_modes(
+        damping=[1.0, 1.9, 2.0, 2.1]
+    )
+    first = swept.growth_rate.isel(mode=0).values
+    assert first == pytest.approx([-5.0, -9.5, -10.0, first[-1]], abs=1e-6)
+    assert first[-1] ** 2 + 21.0 * first[-1] + 100.0 == pytest.approx(0.0, abs=1e-9)
+
+
+def test_two_free_masses_joined_by_a_dashpot_have_the_roots_of_their_difference():
+    modes = Structure(np.eye(2), np.zeros((2, 2)), [[5, -5], [-5, 5]]).complex_modes()
+    assert np.sort(modes.growth_rate.values) == pytest.approx([-10, 0, 0, 0], abs=1e-6)
+    still = modes.growth_rate.values > -1.0
+    assert (modes.outcome.values[still] == Outcome.rigid_mode).all()
+    assert not modes.unstable.any()
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e4])
+def test_at_exact_onset_the_stated_error_of_growth_is_that_of_a_double_root(scale):
+    contact = Contact("p", {1: 1.0}, {0: 1.0}, 1e5 * scale, 100.0)
+    at_onset = Structure(np.eye(2), SMALL * scale, contacts=[contact], mu=5 / 6)
+    modes = at_onset.complex_modes(mu=[5 / 6])
+    # [[1e5, a − 3e4], [−3e4, 1.8e5]] with a = 1e5 mu has the double square 1.4e5
+    angular = np.sqrt(1.4e5 * scale)
+    assert 2 * np.pi * modes.frequency.values[0] == pytest.approx(angular, rel=1e-7)
+    assert (np.abs(modes.growth_rate) <= 1e-7 * angular).all()
+    # it was larger than the frequency: 920 1/s at 375 rad/s
+    assert (modes.growth_rate_error <= 1e-6 * angular).all()
+    assert (modes.outcome == Outcome.converged).all()
