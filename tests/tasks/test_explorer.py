@@ -79,5 +79,4 @@ def test_mirror_images_are_copied_and_are_what_runs_give():
     np.testing.assert_allclose(*ends, rtol=1e-5)
     image = copied.x.values[::-1, ::-1].swapaxes(0, 1)
     np.testing.assert_array_equal(copied.x, image)
-    assert not np.array_equal(run.x, run.x.values[::-1, ::-1].swapaxes(0, 1))
     assert np.ptp(copied.x.values[2, 1]) > 0.1
