@@ -15,6 +15,7 @@ from squealpipe.benchmark.adapters.scipy import solve as reference_solver
 from squealpipe.benchmark.machine import processor, versions
 from squealpipe.benchmark.problems import Problem, all_data, references
 from squealpipe.benchmark.worker import Worker
+from squealpipe.parameters import finite_number
 from squealpipe.schema import build
 from squealpipe.schema.comparison import BENCHMARK, Reliability, Role
 
@@ -267,6 +268,8 @@ def benchmark(
         raise ValueError(
             f"problem {unknown[0]!r} is unknown; one of {'; '.join(known)}"
         )
+    tolerances = [finite_number("tolerances", each, "1") for each in tolerances]
+    time_limit = finite_number("time_limit", time_limit, "s")
     if min(tolerances) <= 0.0:
         raise ValueError(f"tolerance {min(tolerances):g}: has to be above 0")
     if not solvers and not stored:
