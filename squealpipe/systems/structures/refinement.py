@@ -153,6 +153,17 @@ def refined(pencil: Pencil, estimates: Sequence[Estimate]) -> Iterator[Eigenpair
             yield Eigenpair(value, right, left, error)
 
 
+def growing_first(pairs: Sequence[Eigenpair]) -> list[Eigenpair]:
+    """By frequency; of two that have merged the one that grows: a number would cut it off."""
+    ordered = sorted(pairs, key=lambda each: (each.value.imag, -each.value.real))
+    for place in range(1, len(ordered)):
+        first, second = ordered[place - 1].value, ordered[place].value
+        # the frequencies of both differ by round-off
+        if second.imag - first.imag <= 1e-9 * second.imag and second.real > first.real:
+            ordered[place - 1 : place + 1] = ordered[place], ordered[place - 1]
+    return ordered
+
+
 def unit_vector(vector: np.ndarray) -> Any:
     """A vector of length 1."""
     return vector / np.linalg.norm(vector)

@@ -14,9 +14,13 @@ from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.linearized import pencil_about
 from squealpipe.systems.structures.modes import modal_damping_of, modes_at_rest
 from squealpipe.systems.structures.pencil import DENSE, LowRank, Pencil
-from squealpipe.systems.structures.refinement import Eigenpair, error_of_forces
+from squealpipe.systems.structures.refinement import (
+    Eigenpair,
+    error_of_forces,
+    growing_first,
+)
 from squealpipe.systems.structures.sliding import SteadySliding, steady_sliding
-from squealpipe.systems.structures.stiff import stiff_degrees
+from squealpipe.systems.structures.stiff import beyond_gap, stiff_degrees
 
 BEYOND = 1.05
 """The band of so many modes ends so far beyond the frequency that they reach without friction."""
@@ -75,7 +79,10 @@ class Spectrum:
     def fixed(self) -> int:
         """Degrees of freedom that a penalty fixes, which add no mode."""
         if not self.pencil.is_dense:
-            return 0
+            # sparse factors are not troubled by them; they are only counted
+            return beyond_gap(
+                self.pencil.mass.diagonal(), self.pencil.stiffness.diagonal()
+            )
         mass, _, stiffness = self.pencil.dense
         return int(stiff_degrees(mass, stiffness).sum())
 
@@ -176,12 +183,12 @@ class Solver:
         omega, number = self._omega_max, self.limits.n_modes
         if number is None:
             assert omega is not None  # noqa: S101 (large structures have a limit)
-            return band.modes_in_band(pencil, omega)
+            return growing_first(band.modes_in_band(pencil, omega))
         lowest, _ = modes_at_rest(self.structure, number)
         reach = BEYOND * lowest[-1]
         while True:
             top = reach if omega is None else min(reach, omega)
-            pairs = band.modes_in_band(pencil, top)
+            pairs = growing_first(band.modes_in_band(pencil, top))
             if len(pairs) >= number or top == omega:
                 return pairs[:number]
             reach *= 1.3
@@ -193,5 +200,9 @@ class Solver:
         if self.limits.frequency_max is not None:
             chosen &= frequency <= self.limits.frequency_max
         if self.limits.n_modes is not None:
-            chosen &= np.cumsum(chosen) <= self.limits.n_modes
+            ordered = growing_first(spectrum.pairs)
+            place = {id(pair): rank for rank, pair in enumerate(ordered)}
+            rank = np.array([place[id(pair)] for pair in spectrum.pairs], int)
+            within = np.sort(rank[chosen])[: self.limits.n_modes]
+            chosen &= np.isin(rank, within)
         return chosen

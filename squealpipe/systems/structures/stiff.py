@@ -58,6 +58,14 @@ def stiff_degrees(mass: np.ndarray, stiffness: np.ndarray) -> Any:
     return none
 
 
+def beyond_gap(mass: np.ndarray, stiffness: np.ndarray) -> int:
+    """How many rows a penalty fixes, by the diagonals of both matrices alone."""
+    ratios = np.sort(np.abs(stiffness) / mass)
+    above = (ratios[1:] > GAP.least * ratios[:-1]) & (ratios[:-1] > 0)
+    places = np.flatnonzero(above & (ratios[1:] >= GAP.mechanical))
+    return len(ratios) - 1 - int(places[0]) if places.size else 0
+
+
 def _is_apart(stiffness: np.ndarray, stiff: np.ndarray) -> bool:
     """Whether stiff rows are coupled to the others, by no more than round-off of both."""
     across = np.abs(stiffness[np.ix_(~stiff, stiff)])

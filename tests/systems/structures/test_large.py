@@ -58,6 +58,42 @@ def test_modes_of_a_block_with_many_contacts_are_those_of_scipy():
     assert modes.unstable.any()
 
 
+@pytest.mark.parametrize("penalty", [1e20, 1e36])
+def test_penalties_on_a_large_structure_are_the_rows_left_out(penalty):
+    block = elastic_block((12, 5, 4), contacts=8, mu=0.6)
+    touched = {k for each in block.contacts for k in (*each.normal, *each.tangential)}
+    fixed = np.setdiff1d(np.arange(0, block.size, 40), sorted(touched))
+    kept = np.setdiff1d(np.arange(block.size), fixed)
+    diagonal = np.zeros(block.size)
+    diagonal[fixed] = penalty
+    held = block.with_(stiffness=block.stiffness + sp.diags_array(diagonal))
+    place = {int(old): new for new, old in enumerate(kept)}
+    contacts = [
+        Contact(
+            each.name,
+            {place[k]: v for k, v in each.normal.items()},
+            {place[k]: v for k, v in each.tangential.items()},
+            each.stiffness,
+            each.preload,
+        )
+        for each in block.contacts
+    ]
+    mass, stiffness = (
+        matrix[kept][:, kept] for matrix in (block.mass, block.stiffness)
+    )
+    cut = Structure(mass, stiffness, contacts=contacts, mu=0.6)
+    with_penalty, without = (
+        each.complex_modes(n_modes=8, critical=False) for each in (held, cut)
+    )
+    assert with_penalty.frequency.values == pytest.approx(
+        without.frequency.values, 1e-9
+    )
+    assert with_penalty.growth_rate.values == pytest.approx(
+        without.growth_rate.values, rel=1e-6, abs=1e-4
+    )
+    assert with_penalty.attrs["fixed_degrees_of_freedom"] == len(fixed)
+
+
 def test_steady_sliding_by_one_factorization_is_that_of_a_new_one_for_each_state():
     block = elastic_block((12, 5, 4), contacts=20)
     pull = 400.0 * block.normals[:, 3]  # one contact is pulled off

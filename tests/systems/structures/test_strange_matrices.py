@@ -143,3 +143,11 @@ def test_at_exact_onset_the_stated_error_of_growth_is_that_of_a_double_root(scal
     # it was larger than the frequency: 920 1/s at 375 rad/s
     assert (modes.growth_rate_error <= 1e-6 * angular).all()
     assert (modes.outcome == Outcome.converged).all()
+
+
+def test_a_number_of_modes_does_not_cut_off_the_one_that_grows():
+    flutter = Structure(np.eye(2), SMALL, contacts=[CONTACT], mu=1.0)
+    modes = flutter.complex_modes(n_modes=1)
+    # the two that have merged have one frequency; that which decays was kept
+    assert modes.growth_rate.values == pytest.approx([29.78648005])
+    assert modes.unstable.all()
