@@ -118,7 +118,10 @@ def test_a_checkout_with_a_package_of_its_own_says_which_was_imported(ask, tmp_p
     (tmp_path / "Snakefile").touch()
     package = tmp_path / "squealpipe"
     package.mkdir()
+    (package / "__init__.py").write_bytes((PACKAGE / "__init__.py").read_bytes())
+    snakemake_command(directory=tmp_path)  # installed from this folder
     (package / "__init__.py").touch()
+    (package / "reading.py").write_text("edited = True\n")
     with pytest.raises(WorkflowError) as caught:
         ask(directory=tmp_path)
     assert f"imported from {PACKAGE}, but" in str(caught.value)

@@ -214,12 +214,21 @@ def refuse_other_package(directory: Path) -> None:
     own = directory.absolute() / PACKAGE.name
     if not ((own / "__init__.py").is_file() and (own.parent / "Snakefile").is_file()):
         return
-    if not own.samefile(PACKAGE):
+    if not (own.samefile(PACKAGE) or _same_code(own)):
         raise WorkflowError(
             f"the package was imported from {PACKAGE}, but this folder is a checkout with one of "
             f"its own, {own}; run .venv/bin/squealpipe of this folder (make env builds it), or "
             f"write PYTHONPATH={shlex.quote(str(own.parent))} before the command"
         )
+
+
+def _same_code(package: Path) -> bool:
+    """Whether a package holds what is imported, as one that was installed from this folder."""
+    return all(
+        (there := PACKAGE / file.relative_to(package)).is_file()
+        and there.read_bytes() == file.read_bytes()
+        for file in package.rglob("*.py")
+    )
 
 
 def _changes(path: Path, made: Mapping[str, Any]) -> list[str]:
