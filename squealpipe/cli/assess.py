@@ -1,5 +1,7 @@
 """``squealpipe assess``: the answer for one brake."""
 
+import sys
+
 from squealpipe.cli.arguments import (
     DRAWN,
     Angle1,
@@ -35,15 +37,22 @@ def assess(
     """
     if output is not None:
         verdict = compute("assess", brake, alpha1, alpha2, output=output, tol=tol)
+
+        from squealpipe.study.report.answer import lines
+
+        answer(*lines(verdict))
     elif brake.picture is not None:
         raise ValueError("--picture is drawn beside a dataset; name that by --output")
     else:
-        import squealpipe
+        from squealpipe.study.report.answer import cure_lines, first_lines
+        from squealpipe.tasks.assess.assess import judge
 
         with working("assess"):
-            verdict = squealpipe.assess(brake.params, alpha1, alpha2, tol=tol)
-
-    from squealpipe.study.report.answer import lines
-
-    answer(*lines(verdict))
+            judged = judge(brake.params, alpha1, alpha2, tol=tol)
+        answer(*first_lines(judged.without_cures()))
+        # most of the time goes into the search for what stops it
+        sys.stdout.flush()
+        with working("what stops it"):
+            verdict = judged.with_cures()
+        answer(*cure_lines(verdict))
     return DONE if int(verdict.verdict) == 0 else ANSWER_IS_NO

@@ -280,11 +280,21 @@ def cure_line(cure: CureWords, answer: xr.Dataset) -> str:
 
 def lines(answer: xr.Dataset) -> Iterator[str]:
     """The answer in ten lines or fewer."""
+    yield from first_lines(answer)
+    yield from cure_lines(answer)
+
+
+def first_lines(answer: xr.Dataset) -> Iterator[str]:
+    """The answer but for what stops it."""
     yield headline(answer)
     yield cause(answer)
     yield level(answer)
     yield impacts(answer)
     yield sudden(answer)
+
+
+def cure_lines(answer: xr.Dataset) -> Iterator[str]:
+    """The three smallest changes that stop it, and what else was tried."""
     table = of_a_push(answer)
     if not table:
         yield "No single change within the ranges searched alters the verdict."

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from squealpipe.schema import Outcome, build
 from squealpipe.schema.assess import ASSESS, CURES, Mechanism, Verdict
 from squealpipe.schema.origin import recorded
 from squealpipe.tasks.assess.any_start import strikes
-from squealpipe.tasks.assess.cures import boundaries, nearest_angles
+from squealpipe.tasks.assess.cures import Boundary, boundaries, nearest_angles
 from squealpipe.tasks.assess.levels import levels
 from squealpipe.tasks.assess.settling import pushed, settle, start_at
 from squealpipe.tasks.assess.sliding import Design, Sliding
@@ -50,6 +51,68 @@ def assess(
         ``lowest_tried`` and ``highest_tried``. Outcomes: converged, unresolved (undetermined),
         no_sliding_state.
     """
+    return judge(params, alpha1, alpha2, tol=tol).with_cures()
+
+
+@dataclass(frozen=True)
+class Judged:
+    """What a brake does, before it is searched for what stops it.
+
+    Attributes:
+        verdict: of the start that decides.
+        motions: states of other motions that last.
+        facts: variables of the dataset that are known.
+        tol: tolerance of the runs.
+    """
+
+    design: Design
+    verdict: Verdict
+    motions: list[np.ndarray]
+    facts: dict[str, Any]
+    tol: float
+
+    def without_cures(self) -> xr.Dataset:
+        """The answer so far: verdict, cause, frequency and level."""
+        return self._answer({}, (np.nan, np.nan))
+
+    def with_cures(self) -> xr.Dataset:
+        """The whole answer; the search takes most of its time."""
+        coarse = max(self.tol, SEARCHED)
+        cures = boundaries(self.design, self.verdict, self.motions, tol=coarse)
+        return self._answer(
+            cures, nearest_angles(self.design, self.verdict, tol=coarse)
+        )
+
+    def _answer(
+        self, cures: dict[str, Boundary], nearest: tuple[float, float]
+    ) -> xr.Dataset:
+        names = {
+            "value": "value",
+            "quiet_from": "quiet_from",
+            "quiet_from_any_start": "quiet_from_any_start",
+            "change": "change",
+            "change_any_start": "change_any_start",
+            "lowest_tried": "lowest",
+            "highest_tried": "highest",
+        }
+        return build(
+            ASSESS,
+            {
+                **self.facts,
+                **{
+                    name: np.array([getattr(each, key) for each in cures.values()])
+                    for name, key in names.items()
+                },
+                "quiet_alpha1": nearest[0],
+                "quiet_alpha2": nearest[1],
+                "unit": np.array([CURES[name] for name in cures], str),
+            },
+            {"cure": np.array(list(cures), str), "mode": [1, 2]},
+        )
+
+
+def judge(params: Parameters, alpha1: float, alpha2: float, *, tol: float) -> Judged:
+    """Run both starts of a brake, and three strikes, until their motions have settled."""
     design = Design(params, alpha1, alpha2)
     sliding = Sliding.of(design)
     sudden = start_at(design, sliding, np.zeros(4))
@@ -61,46 +124,24 @@ def assess(
     others = [each for each in settled if each.verdict is not Verdict.quiet]
     scalars, pictured = levels(design, of_verdict, sliding, tol=tol)
     sudden_scalars, _ = levels(design, of_sudden, sliding, tol=tol)
-    coarse = max(tol, SEARCHED)
-    cures = boundaries(
-        design, of_verdict.verdict, [each.last.final for each in others[:2]], tol=coarse
-    )
-    nearest = nearest_angles(design, of_verdict.verdict, tol=coarse)
     outcome = Outcome.converged
     if of_verdict.verdict is Verdict.undetermined:
         outcome = Outcome.unresolved
     elif sliding is None:
         outcome = Outcome.no_sliding_state
-    return build(
-        ASSESS,
-        {
-            **scalars,
-            **{f"sudden_{name}": value for name, value in sudden_scalars.items()},
-            **pictured,
-            **_linear(design, sliding),
-            "quiet_unless_struck": of_verdict.verdict is Verdict.quiet and bool(others),
-            **{
-                name: np.array([getattr(found, key) for found in cures.values()])
-                for name, key in (
-                    ("value", "value"),
-                    ("quiet_from", "quiet_from"),
-                    ("quiet_from_any_start", "quiet_from_any_start"),
-                    ("change", "change"),
-                    ("change_any_start", "change_any_start"),
-                    ("lowest_tried", "lowest"),
-                    ("highest_tried", "highest"),
-                )
-            },
-            "quiet_alpha1": nearest[0],
-            "quiet_alpha2": nearest[1],
-            "unit": [CURES[name] for name in cures],
-            "alpha1": alpha1,
-            "alpha2": alpha2,
-            "preload": params.preload,
-            "outcome": outcome,
-        },
-        {"cure": list(cures), "mode": [1, 2]},
-    )
+    facts = {
+        **scalars,
+        **{f"sudden_{name}": value for name, value in sudden_scalars.items()},
+        **pictured,
+        **_linear(design, sliding),
+        "quiet_unless_struck": of_verdict.verdict is Verdict.quiet and bool(others),
+        "alpha1": alpha1,
+        "alpha2": alpha2,
+        "preload": params.preload,
+        "outcome": outcome,
+    }
+    motions = [each.last.final for each in others[:2]]
+    return Judged(design, of_verdict.verdict, motions, facts, tol)
 
 
 def _linear(design: Design, sliding: Sliding | None) -> dict[str, Any]:

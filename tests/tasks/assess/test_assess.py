@@ -7,7 +7,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from squealpipe import Parameters, Sweep, assess, load, run_sweep, save, stability_map
+from squealpipe.cli import run
 from squealpipe.schema.assess import CURES, Mechanism, Verdict
+from squealpipe.study.report.answer import first_lines
 from squealpipe.substitutes import critical_damping
 from squealpipe.tasks.assess.designs import cures_of
 from squealpipe.tasks.assess.levels import error_of_mean, levels
@@ -66,6 +68,20 @@ def test_a_pad_that_hammers(hammering):
         truth.peak_force, rel=5e-3
     )
     assert float(hammering.impact_rate) == pytest.approx(truth.losses / 0.2, rel=0.01)
+
+
+def test_the_answer_is_told_before_the_search_for_what_stops_it(
+    hammering, monkeypatch, capsys
+):
+    """An interrupted search leaves verdict, cause and level; they came with the cures."""
+
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("squealpipe.tasks.assess.assess.boundaries", interrupted)
+    numbers = [f"--{name.replace('_', '-')}={value}" for name, value in NUMBERS.items()]
+    run(["assess", "22deg", "46deg", *numbers])
+    assert capsys.readouterr().out.splitlines() == list(first_lines(hammering))
 
 
 @pytest.mark.release
