@@ -34,6 +34,10 @@ class Contact:
         preload: normal force where nᵀq = 0, N, or a text like ``0.2 kN``.
         speed: the belt's speed here over ``belt_speed``, as a radius; negative where the belt
             moves against t.
+        across: the direction across t in the plane of sliding, for ``transverse_damping``.
+        transverse_damping: Coulomb friction turns with the sliding velocity, so that small motions
+            across it are damped by μN/|V|; True has complex modes include that, exactly. Runs in
+            time have friction along t alone and refuse it.
 
     Raises:
         ValueError: names the contact and the argument.
@@ -45,6 +49,8 @@ class Contact:
     stiffness: float
     preload: float
     speed: float = 1.0
+    across: Any = None
+    transverse_damping: bool = False
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not self.name.isidentifier():
@@ -69,6 +75,17 @@ class Contact:
         if self.speed == 0:
             raise self._refusal(
                 "speed", self.speed, "the belt must move here; leave the contact out"
+            )
+
+        if not isinstance(self.transverse_damping, bool):
+            raise self._refusal(
+                "transverse_damping", self.transverse_damping, "True or False is needed"
+            )
+        if self.transverse_damping and self.across is None:
+            raise self._refusal(
+                "across",
+                None,
+                "transverse_damping needs the direction across, like across={2: 1.0}",
             )
 
     def _refusal(self, key: str, value: object, why: str) -> ValueError:
@@ -137,6 +154,32 @@ def dependent_contacts(names: Sequence[str], tangentials: np.ndarray) -> list[st
     if (share := _dependent(tangentials)) is None:
         return []
     return [name for name, part in zip(names, share, strict=True) if abs(part) > 1e-6]
+
+
+def transversals(
+    contacts: Sequence[Contact], normals: np.ndarray, tangentials: np.ndarray
+) -> np.ndarray:
+    """Directions across the sliding ones where they are damped, 0 elsewhere, (n, contacts).
+
+    Raises:
+        ValueError: one is along the normal or the tangential direction.
+    """
+    across = np.zeros_like(normals)
+    for place, each in enumerate(contacts):
+        if not each.transverse_damping:
+            continue
+        across[:, place] = each.direction("across", len(normals))
+        both = normals[:, place], tangentials[:, place]
+        # a structure reduced to few modes cannot tell three directions apart
+        if (
+            len(normals) > 3
+            and _dependent(np.stack([*both, across[:, place]], axis=1)) is not None
+        ):
+            raise ValueError(
+                f"contact {each.name}: across lies in the plane of normal and tangential; a third "
+                "direction is needed"
+            )
+    return across
 
 
 def _dependent(columns: np.ndarray) -> Any:

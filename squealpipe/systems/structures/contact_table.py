@@ -6,7 +6,7 @@ Text in any encoding, with commas, semicolons or tabs between its cells, or an E
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from squealpipe.laws.numerals import Numeral, decimal_sign, numeral, plain
 from squealpipe.laws.rows import FileRows, text_rows
@@ -17,7 +17,7 @@ from squealpipe.systems.structures.units import Scales
 from squealpipe.text import suggestion
 
 CONTACT_COLUMNS = ("name", "normal", "tangential", "stiffness", "preload")
-KNOWN = (*CONTACT_COLUMNS, "speed")
+KNOWN = (*CONTACT_COLUMNS, "speed", "across")
 HEADER = f"its first row must name the columns, like {','.join(CONTACT_COLUMNS)}"
 
 
@@ -87,13 +87,18 @@ class _Line(NamedTuple):
     ) -> Contact:
         """The contact, in SI units."""
         try:
-            directions = [
-                _direction(self.directions[key], sign, labels, size)
-                for key in ("normal", "tangential")
-            ]
-            normal, tangential = directions
-            values = self._values(sign, scales)
-            return Contact(self.name, normal, tangential, **values)
+            directions: dict[str, Any] = {
+                key: _direction(terms, sign, labels, size)
+                for key, terms in self.directions.items()
+            }
+            # who names the direction across asks for friction's damping along it
+            transverse = "across" in directions
+            return Contact(
+                self.name,
+                **directions,
+                **self._values(sign, scales),
+                transverse_damping=transverse,
+            )
         except ValueError as error:
             raise ValueError(f"{self.where}: {error}") from error
 
@@ -161,9 +166,11 @@ def _rows(path: Path) -> tuple[list[str], FileRows]:
 
 
 def _terms(where: str, row: Mapping[str, str]) -> dict[str, list[_Term]]:
-    """The terms of both directions, like ``12:1 40:-1`` or ``31.2:0,5; 31.3:1``."""
+    """The terms of each direction, like ``12:1 40:-1`` or ``31.2:0,5; 31.3:1``."""
     terms: dict[str, list[_Term]] = {}
-    for key in ("normal", "tangential"):
+    for key in ("normal", "tangential", "across"):
+        if key == "across" and not row.get(key):
+            continue
         if row[key].endswith(IS_TIME):
             raise ValueError(f"{where}: {key} = {row[key]}, like 12:1")
         text = re.sub(r"\s*:\s*", ":", row[key].strip())

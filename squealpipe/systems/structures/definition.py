@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from squealpipe.parameters import brief, finite_number, numbers_in_si
-from squealpipe.systems.structures.contact import Contact, directions
+from squealpipe.systems.structures.contact import Contact, directions, transversals
 from squealpipe.systems.structures.friction import Friction, default_mu
 from squealpipe.systems.structures.matrices import checked_mass, real_square
 from squealpipe.validation import real_array
@@ -98,6 +98,7 @@ class ContactStructure:
             if not isinstance(contact, Contact):
                 raise ValueError(f"contacts: {brief(contact)} is no Contact")  # noqa: TRY004
         self.normals, self.tangentials = directions(self.contacts, self.size)
+        self.transversals = transversals(self.contacts, self.normals, self.tangentials)
         self.friction = Friction(
             friction_law=friction_law,
             mu=default_mu(friction_law) if mu is None else finite_number("mu", mu, "1"),
@@ -204,7 +205,7 @@ class ContactStructure:
         for matrix in (self.mass, self.damping, self.stiffness):
             for part in (matrix.indptr, matrix.indices, matrix.data):
                 content.update(np.ascontiguousarray(part).tobytes())
-        for array in (self.normals, self.tangentials, self.load):
+        for array in (self.normals, self.tangentials, self.load, self.transversals):
             content.update(np.ascontiguousarray(array).tobytes())
         contacts = {
             each.name: {

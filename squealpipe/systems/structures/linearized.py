@@ -1,7 +1,8 @@
 """Small motions about steady sliding.
 
 Their pencil is M s² + (C + Σ Nᵢ μᵢ′ tᵢtᵢᵀ) s + K + Σ kᵢ (nᵢ + σᵢ μᵢ tᵢ) nᵢᵀ, both sums over closed
-contacts, with Nᵢ, σᵢ and μᵢ of the state (:mod:`.sliding`).
+contacts, with Nᵢ, σᵢ and μᵢ of the state (:mod:`.sliding`). Those with transverse damping add
+Σ (Nᵢ μᵢ/|wᵢ|) aᵢaᵢᵀ s, aᵢ across the sliding.
 """
 
 from typing import Any
@@ -29,6 +30,12 @@ def pencil_about(
     if falling.any():
         tangential = sp.csr_array(structure.tangentials * falling)
         damping = damping + tangential @ sp.csr_array(structure.tangentials).T
+    if structure.transversals.any():
+        # friction μN turns with the sliding velocity: across it, μN times its angle v/|V|
+        speeds = np.abs(structure.speeds * state.belt_speed)
+        turning = state.force * np.abs(state.drag) / speeds
+        across = sp.csr_array(structure.transversals)
+        damping = damping + across * turning @ across.T
     stiffness = structure.stiffness + contact_stiffness(structure, state.closed, acting)
     return Pencil(
         _tidy(structure.mass),

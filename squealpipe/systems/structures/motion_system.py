@@ -38,10 +38,17 @@ def system(
             {degree of freedom: coefficient}, counted from 0.
 
     Raises:
-        ValueError: too many degrees of freedom or contacts; contacts that cannot all stick at once
-            for their sliding directions are dependent; a degree of freedom that does not exist.
+        ValueError: too many degrees of freedom or contacts; transverse damping; contacts that
+            cannot all stick at once for their sliding directions are dependent; a degree of freedom
+            that does not exist.
     """
     size = structure.size
+    damped = [each.name for each in structure.contacts if each.transverse_damping]
+    if damped:
+        raise ValueError(
+            f"contact {damped[0]}: transverse_damping is a part of complex modes; in a run "
+            "friction acts along the tangential direction alone: leave it out there"
+        )
     if 2 * size > MOST_STATES:
         most = MOST_STATES // 2
         raise ValueError(

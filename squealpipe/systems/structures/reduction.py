@@ -133,6 +133,7 @@ class Kept:
         self.damping += np.diag(2.0 * ratios * self.omega)
         self.normals = modes.T @ structure.normals
         self.tangentials = modes.T @ structure.tangentials
+        self.transversals = modes.T @ structure.transversals
         self.load = modes.T @ structure.load
         self.balanced = structure.given_load is None
 
@@ -162,6 +163,8 @@ class Kept:
                 each.stiffness,
                 each.preload,
                 each.speed,
+                self.transversals[:number, place] if each.transverse_damping else None,
+                each.transverse_damping,
             )
             for place, each in enumerate(self.whole.contacts)
         ]

@@ -47,6 +47,7 @@ class SteadySliding:
         closed: which contacts are closed.
         drag: σ μ of each.
         slope: μ′ of each, s/m.
+        belt_speed: V, m/s.
         force_error: by how much rounding can have changed the force of each, N.
     """
 
@@ -56,6 +57,7 @@ class SteadySliding:
     drag: np.ndarray
     slope: np.ndarray
     force_error: np.ndarray
+    belt_speed: float
 
 
 def steady_sliding(
@@ -88,7 +90,9 @@ def steady_sliding(
         wrong = np.flatnonzero(closed != (reach > 0))
         if not wrong.size:
             force = np.where(closed, reach, 0.0)
-            return SteadySliding(displacement, force, closed, drag, slope, force_error)
+            return SteadySliding(
+                displacement, force, closed, drag, slope, force_error, belt_speed
+            )
         closed[wrong[0]] = ~closed[wrong[0]]
         # with much friction pivoting may pass the state by
         if closed.tobytes() in seen:

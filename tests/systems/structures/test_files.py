@@ -487,6 +487,15 @@ def test_a_table_of_contacts_is_read_as_spreadsheets_write_it(tmp_path, table):
     assert (edge.stiffness, edge.preload, edge.speed) == (4.0, 1.5, -2.0)
 
 
+def test_a_column_across_asks_for_the_damping_of_friction_along_it(tmp_path):
+    text = as_matrix_market(tmp_path)
+    lines = CONTACTS.splitlines()
+    table = f"{lines[0]},across\n{lines[1]},3:1\n"
+    (edge,) = structure_of(tmp_path, text, table).contacts
+    assert edge.transverse_damping
+    assert edge.across == {2: 1.0}
+
+
 def test_the_remedies_for_one_triangle_work(tmp_path):
     text = as_matrix_market(tmp_path)
     one_triangle(tmp_path)

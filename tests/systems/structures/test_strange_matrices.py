@@ -151,3 +151,42 @@ def test_a_number_of_modes_does_not_cut_off_the_one_that_grows():
     # the two that have merged have one frequency; that which decays was kept
     assert modes.growth_rate.values == pytest.approx([29.78648005])
     assert modes.unstable.all()
+
+
+def slider(damped, speed=2.0, **further):
+    """A mass on springs along, across and away from the belt, each by itself without friction."""
+    contact = Contact(
+        "p", {2: 1.0}, {0: 1.0}, 1e5, 100.0, across={1: 1.0}, transverse_damping=damped
+    )
+    stiffness = np.diag([3e5, 2e5, 4e5])
+    return Structure(
+        2.0 * np.eye(3),
+        stiffness,
+        contacts=[contact],
+        mu=0.4,
+        belt_speed=speed,
+        **further,
+    )
+
+
+@pytest.mark.parametrize("speed", [2.0, -0.5])
+def test_friction_that_turns_with_the_velocity_damps_across_as_a_difference_of_forces_does(
+    speed,
+):
+    modes = slider(damped=True, speed=speed).complex_modes()
+    force = float(modes.normal_force.squeeze())
+    # Coulomb friction in the plane is μN (w, −v)/√(w² + v²) at the velocity v across
+    step = 1e-4
+    rate = 0.4 * force * step / np.hypot(speed, step) / step
+    across = int(np.abs(modes.frequency.values - np.sqrt(1e5) / (2 * np.pi)).argmin())
+    assert modes.growth_rate.values[across] == pytest.approx(-rate / 4.0, rel=1e-6)
+    others = np.delete(modes.growth_rate.values, across)
+    assert others == pytest.approx(0.0, abs=1e-6)
+    assert (slider(damped=False, speed=speed).complex_modes().growth_rate == 0).all()
+
+
+def test_transverse_damping_needs_a_direction_across_and_is_refused_in_runs():
+    with pytest.raises(ValueError, match="needs the direction across"):
+        Contact("p", {1: 1.0}, {0: 1.0}, 1e5, 100.0, transverse_damping=True)
+    with pytest.raises(ValueError, match="leave it out there"):
+        slider(damped=True).system()
