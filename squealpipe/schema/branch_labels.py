@@ -17,6 +17,8 @@ class Label(IntEnum):
     transcritical = 8
     border_collision = 9
     """a change of the events that is neither, at which the stability jumps"""
+    family_member = 10
+    """the branch goes on at this value of the parameter alone, through a family of cycles"""
 
 
 class Meeting(IntEnum):

@@ -97,6 +97,10 @@ class Outcome(IntEnum):
         41,
         "an expression jumps or has a pole at the time reached: make each side a regime",
     )
+    period_unbounded = (
+        42,
+        "the period grows without bound: the branch ends in a homoclinic or heteroclinic orbit",
+    )
 
     def __new__(cls, number: int, remedy: str = "") -> Self:
         """An outcome from its record."""

@@ -20,11 +20,37 @@ class System(TracedSystem):  # noqa: D101 (that of the definition)
 
     simulate, ensemble, basin = simulate, ensemble, basin
 
-    def limit_cycle(self, **options: Any) -> xr.Dataset:
-        """A periodic motion; see :func:`squealpipe.systems.cycles.cycle.limit_cycle`."""
+    def limit_cycle(
+        self,
+        *,
+        start: Any = None,
+        guess: Any = None,
+        periods: int = 1,
+        t_settle: float | None = None,
+        **options: Any,
+    ) -> xr.Dataset:
+        """Find a periodic motion, every event located, with its Floquet multipliers.
+
+        A run from ``start`` settles first; near a ``guess`` Newton's method alone decides, so that
+        the motion may be unstable. Forced motions repeat after whole forcing periods, others after
+        a time of their own.
+
+        Args:
+            start: states from where to settle, where they differ from the system's start.
+            guess: states near the cycle instead; at t = 0 of the forcing.
+            periods: of the forcing; without it, returns to the rarest event.
+            t_settle: s; 200 forcing periods or time scales by default.
+            options: ``max_steps`` of a run (1,000,000), and parameters by their names.
+
+        Returns:
+            Dataset of :func:`squealpipe.systems.cycles.cycle.limit_cycle`: ``period``, extremes,
+            ``multiplier_real``, ``multiplier_imag``, ``stable``, events, the path, and ``outcome``.
+        """
         from squealpipe.systems.cycles.cycle import limit_cycle
 
-        return check(limit_cycle(self, **options))
+        options |= {"start": start, "guess": guess}
+        found = limit_cycle(self, periods=periods, t_settle=t_settle, **options)
+        return check(found)
 
     def cycle_branch(self, parameter: str, to: float, **options: Any) -> xr.Dataset:
         """A branch of cycles; see :func:`squealpipe.systems.cycles.branch.cycle_branch`."""

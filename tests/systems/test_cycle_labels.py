@@ -6,10 +6,11 @@ from numba import njit
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, fsolve
 
-from squealpipe import System
+from squealpipe import Switch, System
 from squealpipe.functions import cos
 from squealpipe.schema import Outcome, meanings
 from squealpipe.schema.branch_labels import Label
+from squealpipe.systems.cycles.event_map import EventMap
 from squealpipe.systems.cycles.find import find_cycle, labelled
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.motion import MotionKind
@@ -19,6 +20,7 @@ from tests.systems.smooth_systems import (
     duffing_holmes,
     elastic_ball,
     linear,
+    oscillator,
     pendulum,
     square_wave,
     two_oscillators,
@@ -344,3 +346,108 @@ def test_multipliers_that_round_off_has_taken_are_not_told():
     assert labelled(lost, how) == (lost, Outcome.unresolved)
     assert np.isnan(lost.multipliers).all()
     assert not lost.is_stable
+
+
+SLOPES = {"in": -8.0 / 7.0, "up": -5.0 / 7.0, "down": -5.0 / 7.0}
+chua = System(
+    "Chua's circuit",
+    states={"x": "1", "y": "1", "z": "1"},
+    parameters={"al": 8.0, "be": 100.0 / 7.0},
+    regimes={
+        name: {"slope": slope, "offset": (SLOPES["in"] - slope) * side}
+        for (name, slope), side in zip(SLOPES.items(), (0.0, 1.0, -1.0), strict=True)
+    },
+    field=lambda t, s, p, r: {
+        "x": p.al * (s.y - s.x - r.slope * s.x - r.offset),
+        "y": s.x - s.y + s.z,
+        "z": -p.be * s.y,
+    },
+    switches=[
+        Switch("rises", "in", lambda t, s, p, r: 1.0 - s.x, "up"),
+        Switch("falls", "in", lambda t, s, p, r: s.x + 1.0, "down"),
+        Switch("back", "up", lambda t, s, p, r: s.x - 1.0, "in"),
+        Switch("back_up", "down", lambda t, s, p, r: -1.0 - s.x, "in"),
+    ],
+    start={"x": 0.1, "y": 0.0, "z": 0.0},
+)
+
+
+def test_a_vertical_branch_ends_as_a_family():
+    """At one value an outer region has a centre: its cycles up to the one that touches x = 1."""
+
+    def real_part(al):
+        outer = [
+            [-al * (1.0 + SLOPES["up"]), al, 0.0],
+            [1, -1, 1],
+            [0, -100.0 / 7.0, 0],
+        ]
+        values = np.linalg.eigvals(outer)
+        return values[np.abs(values.imag) > 0.1].real.max()
+
+    centre = brentq(real_part, 6.0, 7.5, xtol=1e-14)
+    start = chua.limit_cycle(t_settle=500.0)
+    branch = chua.cycle_branch("al", 6.0, start=start)
+    assert meanings(branch.end)[int(branch.end)] == "family_member"
+    special = branch.label.values[branch.label.values > 0]
+    assert special.tolist() == [Label.family_member]
+    assert int(branch.label[-1]) == Label.family_member
+    assert int(branch.stable[-1]) == 0
+    assert float(branch.al[-1]) == pytest.approx(centre, rel=1e-11)
+    assert centre == pytest.approx(6.7976604986, rel=1e-10)
+
+
+@pytest.mark.parametrize(
+    "place", [{"x": 0.1}, {"x": 0.3, "y": -0.1}], ids=["near rest", "farther"]
+)
+def test_chaos_is_told_without_newtons_method_on_its_near_returns(place, monkeypatch):
+    """2,000 s of settling took 70 s: returns of hundreds of events that are met only once."""
+    sizes = []
+    kept = EventMap.solve
+
+    def solve(self, *options):
+        sizes.append(self.legs)
+        return kept(self, *options)
+
+    monkeypatch.setattr(EventMap, "solve", solve)
+    assert (
+        outcome(chua.limit_cycle(al=8.5, start=place, t_settle=2000.0)) == "unsettled"
+    )
+    assert max(sizes, default=0) <= 100
+
+
+def test_a_homoclinic_end_has_a_name():
+    """x″ = x − x² + μ x′ + x x′ (Kuznetsov, Elements of Applied Bifurcation Theory, ch. 6)."""
+    system = oscillator(
+        "homoclinic",
+        lambda t, x, v, p: x - x**2 + p.mu * v + x * v,
+        start={"x": 1.2, "v": 0.0},
+        mu=-0.9,
+    )
+    branch = system.cycle_branch("mu", -0.8, start=system.limit_cycle(t_settle=300.0))
+    assert meanings(branch.end)[int(branch.end)] == "period_unbounded"
+    assert (branch.label.values[:-1] == Label.regular).all()
+    # shooting along the saddle's manifolds, which meet at the value
+    assert float(branch.mu[-1]) == pytest.approx(homoclinic_value(), abs=1e-8)
+
+
+def homoclinic_value():
+    """Where the unstable and the stable manifold of x = 0 cross v = 0 at one x."""
+
+    def crossing(mu, sign):
+        rate = 0.5 * (mu + sign * np.sqrt(mu**2 + 4.0))
+        stops = lambda t, z: z[1]  # noqa: E731
+        stops.terminal, stops.direction = True, -sign
+        run = solve_ivp(
+            lambda t, z: (z[1], z[0] - z[0] ** 2 + mu * z[1] + z[0] * z[1]),
+            (0.0, sign * 100.0),
+            [1e-6, 1e-6 * rate],
+            "DOP853",
+            events=stops,
+            rtol=1e-12,
+            atol=1e-14,
+        )
+        return run.y_events[0][0][0]
+
+    return brentq(
+        lambda mu: crossing(mu, 1.0) - crossing(mu, -1.0), -0.9, -0.8, xtol=1e-12
+    )

@@ -48,7 +48,9 @@ def cycle_branch(
     It goes round folds and through changes of the order of events. Folds, pitchforks (where two
     branches cross without a symmetry: transcritical points), period doublings, torus bifurcations,
     grazings and onsets of stick are located and are points of their own, and so is a
-    ``border_collision``: any other change of the events at which the stability jumps.
+    ``border_collision``: any other change of the events at which the stability jumps. A branch that
+    goes on at one value of the parameter alone is a family of cycles: there it ends with a point
+    ``family_member``.
 
     Args:
         to: value at which the branch ends.
@@ -125,7 +127,8 @@ def in_rows(
     rows = [numbers(point.cycle) for point in points]
     for i, (row, point) in enumerate(zip(rows, points, strict=True)):
         if point.label not in {Label.regular, Label.end}:
-            row["stable"] = rows[max(i - 1, 0)]["stable"]
+            isolated = point.label != Label.family_member
+            row["stable"] = rows[max(i - 1, 0)]["stable"] if isolated else 0
         if point.label in _CORNERS:
             row |= {
                 name: row[name] * np.nan

@@ -47,6 +47,10 @@ _COARSE = 1e-6
 """Step below which a branch is taken as it is."""
 _CLOSE = 1e-5
 """Share of a step before a change of the events in which a fold is that change."""
+_VERTICAL = 1e-9
+"""Change of the parameter, over that of the cycle, where a branch is a family at one value."""
+_UNRESOLVED = 1e-8
+"""Relative distance from a homoclinic orbit in which round-off decides on multipliers."""
 _BEFORE = 1e-9
 """Share before it up to which multipliers are followed."""
 
@@ -58,6 +62,11 @@ def _changes_sign(
 ) -> bool:
     product = test(*first) * test(*last)
     return bool(np.isfinite(product) and product < 0.0)
+
+
+def _is_vertical(state: ContinuationState, cycle: Cycle) -> bool:
+    """Whether a branch goes on at one value of the parameter, through a family of cycles."""
+    return abs(float(state.tangent[-1])) <= _VERTICAL and cycle.is_family_member
 
 
 def _jumps(line: Line[Cycle], share: float, beyond: Cycle) -> bool:
@@ -108,6 +117,11 @@ class Follower:
                 else point
                 for point in self.points[-2:]
             ]
+        if end == Outcome.family_member:
+            self._clear_labels(_VERTICAL)
+            self.points[-1] = replace(self.points[-1], label=Label.family_member)
+        if end == Outcome.period_unbounded:
+            self._clear_labels(_UNRESOLVED)
         if not self.points[-1].label:
             self.points[-1] = replace(self.points[-1], label=Label.end)
         return end
@@ -116,6 +130,8 @@ class Follower:
         self, state: ContinuationState, cycle: Cycle, show: Callable[[float], None]
     ) -> Outcome:
         self.trail.add(BranchPoint(state, cycle))
+        if _is_vertical(state, cycle):
+            return Outcome.family_member  # the start is in it
         while len(self.points) < self.most:
             show(self._share())
             found = self._advance(state, cycle)
@@ -130,14 +146,31 @@ class Follower:
                 return found.end
             if found.shows:
                 self.trail.add(BranchPoint(state, cycle))
-            if self._is_at_end(self.points[-1].parameter):
-                return Outcome.converged
-            if self.trail.has_shrunk(cycle, GONE):
-                return Outcome.equilibrium
-            met = self.trail.meets()
-            if met is not None:
-                return met
+            end = self._end_at(state, cycle)
+            if end is not None:
+                return end
         return Outcome.point_limit
+
+    def _end_at(self, state: ContinuationState, cycle: Cycle) -> Outcome | None:
+        """Why the branch ends at its last point, if it does."""
+        if _is_vertical(state, cycle):
+            return Outcome.family_member
+        if self._is_at_end(self.points[-1].parameter):
+            return Outcome.converged
+        if self.trail.has_shrunk(cycle, GONE):
+            return Outcome.equilibrium
+        return self.trail.meets()
+
+    def _clear_labels(self, share: float) -> None:
+        """Take the labels from what is next to the last point's parameter, where the branch ends.
+
+        Round-off makes folds of a vertical piece, whose outermost cycle just touches a surface, and
+        pitchforks of cycles next to a homoclinic orbit.
+        """
+        here = self.points[-1].parameter
+        for i, point in enumerate(self.points):
+            if math.isclose(point.parameter, here, rel_tol=share):
+                self.points[i] = replace(point, label=Label.regular)
 
     def _share(self) -> float:
         """How much of the way to the end of the range is gone, or of the points."""

@@ -47,7 +47,9 @@ _TRIES, _SAMPLES, _COMPARED = 4, 2000, 16
 _AGAIN = 3.0
 """A settled run is as near after two periods as after one, or less by this factor at most."""
 _MOST_EVENTS = 48
-"""Events of a cycle that is run through only once, beyond which none is sought."""
+"""Events of a cycle beyond which none is sought that is run through only once, or not closely."""
+_CLOSE = 1e-3
+"""Distance of a return that is close, over the motion's extent."""
 _AT_REST = 1e-9
 _SOON = 10.0
 """Times the time that a motion has run, within which it is at rest if it is told to come there."""
@@ -298,11 +300,10 @@ def _returns(
         off = np.abs((run.states - run.states[0]) / scale).max(axis=1)
         for count in (np.flatnonzero((keys[1:] == keys[0]).all(axis=1)) + 1).tolist():
             again = 2 * count
-            if settled and (
-                off[again] > _AGAIN * off[count] + ON_IT
-                if again < len(off)
-                else count > _MOST_EVENTS
-            ):
+            once = again >= len(off)
+            if settled and not once and off[again] > _AGAIN * off[count] + ON_IT:
+                continue
+            if settled and count > _MOST_EVENTS and (once or off[count] > _CLOSE):
                 continue
             found.append(
                 (count, float(run.times[count] - run.times[0]), float(off[count]))

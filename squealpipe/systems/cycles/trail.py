@@ -20,6 +20,8 @@ _MET = 0.03
 """Distance from a cycle of a part of the period, over its extent, where a branch ends on it."""
 GONE = 1e-5
 """The same where it is not followed any further."""
+_STILL, _GROWTH = 1e-3, 1.5
+"""Relative change of the parameter over which an unbounded period grows by a factor."""
 _SAME = 1e-3
 """Distance from an older piece of the branch, over that piece, that is on it."""
 
@@ -92,6 +94,8 @@ class Trail:
         cycle = self.points[-1].cycle
         if self.has_shrunk(cycle):
             return Outcome.equilibrium
+        if self.is_unbounded:
+            return Outcome.period_unbounded
         second = float(np.abs(cycle.nontrivial - 1.0).min(initial=1.0))
         parts = [float(np.linalg.norm(cycle.after_part(n))) for n in (2, 3)]
         return (
@@ -99,6 +103,19 @@ class Trail:
             if min(parts) < _MET and second < _MET
             else Outcome.branch_lost
         )
+
+    @property
+    def is_unbounded(self) -> bool:
+        """Whether the period has grown by half while the parameter all but stood still.
+
+        Next to a homoclinic orbit it grows as the logarithm of the distance.
+        """
+        values, periods = np.array(self.shapes)[:, :2].T
+        near = np.abs(values - values[-1]) <= _STILL * abs(values[-1])
+        first = 0 if near.all() else len(near) - int(np.argmin(near[::-1]))
+        # the last points are as near to each other as round-off allows
+        rises = bool((np.diff(periods[first:]) > -1e-6 * periods[-1]).all())
+        return rises and bool(periods[-1] >= _GROWTH * periods[first])
 
     def has_shrunk(self, cycle: Cycle, share: float = _AT_REST) -> bool:
         """Whether a cycle without forcing is next to a state of rest."""

@@ -38,6 +38,8 @@ def limit_cycle(
 
     Newton's method on the legs between events, with exact derivatives. Without damping cycles come
     in families: the member nearest to the guess is returned with the outcome ``family_member``.
+    A :class:`squealpipe.System`, one of your own too, has a method of this name: its keywords are
+    ``start``, ``guess``, ``periods``, ``t_settle``, ``max_steps`` and the system's parameters.
 
     Args:
         alpha1, alpha2: angles, rad.
