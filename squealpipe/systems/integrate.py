@@ -321,6 +321,8 @@ class _Batch:
             "first_constant": t.first_constant,
             "owner": t.owner,
             "marks": t.marks,
+            "clocks": t.clocks,
+            "ticked": np.zeros((len(t.surfaces), LANES)),
             "active": active,
             "fresh": np.zeros(len(t.surfaces), np.int64),
             "beyond": np.zeros(len(t.surfaces), np.int64),

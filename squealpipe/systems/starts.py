@@ -41,7 +41,19 @@ class Starts:
         return other
 
     def _entries(self, component: int) -> list[tuple[int, list[_Asked]]]:
-        """The regimes of a component in the order in which they are tried."""
+        """The regimes of a component in the order in which they are tried.
+
+        What is below zero on a clock is chosen only if no other regime fits: nothing is beyond it.
+        """
+        found = self._entries_with(component, 1)
+        if self.traced.clocks.any() and not self.traced.starts[component]:
+            found += self._entries_with(component, 0)
+        return found
+
+    def _entries_with(
+        self, component: int, with_clocks: int
+    ) -> list[tuple[int, list[_Asked]]]:
+        """The regimes of a component, whose clocks count or do not."""
         traced, found = self.traced, []
         starts = traced.starts[component]
         n_switches = len(traced.switches)
@@ -61,6 +73,7 @@ class Starts:
                         (table >= 0)
                         & (table < n_switches)
                         & (traced.marks[regime] == 0)  # beyond these nothing is
+                        & (traced.clocks <= with_clocks)
                     )
                     asked += [(traced.surfaces[index], sign) for index in watched]
             checks = [_Asked(*numpy_function([root]), sign) for root, sign in asked]

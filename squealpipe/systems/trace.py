@@ -54,6 +54,7 @@ class Traced:
         falls, rises: (regime, surface) the switch that fires there, or −1; stops follow switches.
         owner: (surface,) the component whose regime says whether it is watched.
         marks: (regime, surface) 1 where the only switch there changes nothing.
+        clocks: (surface,) 1 of those of the time alone with a switch: nothing is beyond them.
         outputs: tracked quantities beside the states.
         starts: (regime, condition or None, equality or None) of each component.
         derived: what holds parameters alone, computed once a run: parameters after the given ones.
@@ -74,6 +75,7 @@ class Traced:
     rises: np.ndarray
     owner: np.ndarray
     marks: np.ndarray
+    clocks: np.ndarray
     switches: tuple[SwitchSymbols, ...]
     kinds: tuple[str, ...]
     outputs: tuple[Symbol, ...]

@@ -22,7 +22,7 @@ from squealpipe.systems.joint import Joint
 from squealpipe.systems.starts import Starts
 from squealpipe.systems.surfaces import simplest
 from squealpipe.systems.text import describe
-from squealpipe.systems.trace import TIME_UNIT, Traced, Tracer, long_name
+from squealpipe.systems.trace import TIME, TIME_UNIT, Traced, Tracer, long_name
 
 
 class TracedSystem(Definition):
@@ -109,6 +109,7 @@ class TracedSystem(Definition):
             rises=rises,
             owner=owner,
             marks=_marks(falls, rises, switches),
+            clocks=_clocks(surfaces, falls, rises, len(switches)),
             switches=tuple(switches),
             kinds=tuple(kinds),
             outputs=tuple(outputs),
@@ -332,6 +333,23 @@ def _marks(
         if number < len(switches):
             marks[regime, surface] = switches[number].changes_nothing_in(regime)
     return np.ascontiguousarray(marks)
+
+
+def _clocks(
+    surfaces: Sequence[Symbol], falls: np.ndarray, rises: np.ndarray, n_switches: int
+) -> np.ndarray:
+    """(surface,) 1 of those that depend on the time alone; a stop that is passed is no clock."""
+    stops = ((falls >= n_switches) | (rises >= n_switches)).any(axis=0)
+    timed = [is_clock(surface) for surface in surfaces]
+    return np.array(timed, np.int64) * ~stops
+
+
+def is_clock(surface: Symbol) -> bool:
+    """Whether a surface depends on the time alone, parameters and regimes' constants aside."""
+    moving = [
+        node.arguments[0] for node in in_order([surface]) if node.kind == "variable"
+    ]
+    return set(moving) == {TIME}
 
 
 def _indicator(regime: str) -> str:

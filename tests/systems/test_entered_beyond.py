@@ -309,7 +309,7 @@ class Sticks:
                 which = next(k for k, times in enumerate(run.t_events) if len(times))
             block, name, _ = here[which]
             name = self.switch(z, side, block, name)
-            found.append((t, f"block{block} {name}"))
+            found.append((t, f"block{block}_{name}"))
         return found, z
 
 

@@ -30,7 +30,8 @@ JOB, OUTCOME, SAMPLE, EVENTS, LOGGED, CHAINED, HIT, LATE, REGIMES = range(9)
 
 ARRAYS = (
     "rows", "integers", "series", "inverses", "sizes", "tracked", "regimes", "falls", "rises",
-    "component_of", "first_constant", "owner", "marks", "active", "fresh", "beyond", "exact",
+    "component_of", "first_constant", "owner", "marks", "clocks", "ticked", "active", "fresh",
+    "beyond", "exact",
     "steep", "bent", "share", "noise", "scratch", "initial", "parameters", "first_regime", "limits",
     "final", "extremes", "logs", "counts", "firsts", "durations", "ends", "summary", "sample_times",
     "samples", "sample_regimes", "sample_sums", "sample_extremes", "between", "event_times",

@@ -171,6 +171,7 @@ def _start(
         rows[entered_row(t) + component, lane] = 0.0
         put_into(t, m, lane, component, m.first_regime[job, component])
     settle(t, lane)
+    m.ticked[:, lane] = -math.inf
     watch(t, m, c, lane, 0.0)
 
 
@@ -341,6 +342,8 @@ def _advance(table: Any) -> int:
         first_constant=view(t.first_constant, (t.n_components + 1,), np.int64),
         owner=view(t.owner, (t.n_surfaces,), np.int64),
         marks=view(t.marks, (t.n_regimes, t.n_surfaces), np.int64),
+        clocks=view(t.clocks, (t.n_surfaces,), np.int64),
+        ticked=view(t.ticked, (t.n_surfaces, LANES), np.float64),
         active=view(t.active, (n_events,), np.int64),
         fresh=view(t.fresh, (t.n_surfaces,), np.int64),
         beyond=view(t.beyond, (t.n_surfaces,), np.int64),

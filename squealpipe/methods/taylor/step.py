@@ -250,11 +250,16 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
             continue
         root = 0.0
         if not m.beyond[surface] & bit:
+            fresh = (m.fresh[surface] & bit) != 0
+            at_once = m.marks[regime, surface] == 0
+            if m.clocks[surface]:
+                ticked = m.ticked[surface, lane] == m.rows[layout.CLOCK, lane]
+                at_once = at_once and fresh and not ticked
             watch = Watch(
                 falls >= 0,
                 rises >= 0,
-                (m.fresh[surface] & bit) != 0,
-                m.marks[regime, surface] == 0,
+                fresh,
+                at_once,
                 m.noise[surface, 0, lane],
                 m.noise[surface, 1, lane],
             )

@@ -13,6 +13,8 @@ SLACK = 1e-13
 """A surface lies within this of zero where round-off hides its sign, over the terms that cancel."""
 NOISE = 1e-15
 """Round-off of a surface's polynomial and of its rate, likewise."""
+SAME_TICK = 1e-6
+"""A clock that fired less than this share of its unit of time before has not come round again."""
 CHAIN = 64
 """Switches of a component without progress in time that end a run."""
 
@@ -49,12 +51,24 @@ def gauge(t: Any, lane: int, width: int) -> None:
 
 
 @part
+def _watch_clock(m: Any, lane: int, surface: int, gauged: Any) -> None:
+    """Whether a clock ticks just now, and whether that tick has been carried out already."""
+    height, terms, rate = gauged[0], gauged[1], gauged[2]
+    if abs(height) <= SLACK * terms:
+        m.fresh[surface] |= 1 << lane
+        now = m.rows[layout.CLOCK, lane]
+        if (now - m.ticked[surface, lane]) * rate <= SAME_TICK * terms:
+            m.ticked[surface, lane] = now
+
+
+@part
 def watch(t: Any, m: Any, c: Any, lane: int, span: float) -> None:
     """Which surfaces a lane watches in its regimes, and where they start.
 
     One that the state is beyond fires at once. Within the tolerance of zero it starts from there,
     and fires if it goes on. A surface with a switch on both sides has nothing beyond it, nor has
-    one whose switch changes nothing.
+    one whose switch changes nothing, nor a clock. A clock's tick at this very instant counts, but
+    once: what it leads to may lead back.
     """
     bit, keep = 1 << lane, ~(1 << lane)
     z, sizes, out = m.scratch[0], m.scratch[1], m.scratch[2]
@@ -83,6 +97,9 @@ def watch(t: Any, m: Any, c: Any, lane: int, span: float) -> None:
             continue
         m.active[surface] |= bit
         height, terms = out[3 * surface], out[3 * surface + 1]
+        if m.clocks[surface]:
+            _watch_clock(m, lane, surface, out[3 * surface : 3 * surface + 3])
+            continue
         passed = falls != rises and (height < 0.0) == falls
         passed = passed and m.marks[regime, surface] == 0
         if passed and abs(height) > max(SLACK, located) * terms:
@@ -170,6 +187,10 @@ def _switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
     regime, kind = int(out[0]), int(out[1])
     for variable in range(t.n_states):
         after[variable] = out[2 + variable]
+    for surface in range(t.n_surfaces):
+        now = integers[layout.REGIMES + m.owner[surface], lane]
+        if m.falls[now, surface] == which or m.rises[now, surface] == which:
+            m.ticked[surface, lane] = clock
     component = m.component_of[regime]
     before = integers[layout.REGIMES + component, lane]
     at_once = 0

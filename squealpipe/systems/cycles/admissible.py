@@ -67,6 +67,9 @@ def margins(cycle: Cycle) -> dict[Margin, float]:
         held = joint.holds(entry.before)
         for watched, sign in ((joint.falls, 1.0), (joint.rises, -1.0)):
             for s in np.flatnonzero(watched(event.before) >= 0):
+                if t.clocks[s]:
+                    found |= _next_tick(cycle, leg, int(s), sign)
+                    continue
                 fresh = entry.surface == s or held[s]
                 begin = _LATE * duration if fresh else 0.0
                 inside = [
@@ -96,6 +99,22 @@ def margins(cycle: Cycle) -> dict[Margin, float]:
         found[Margin(MarginKind.length, leg, FREE)] = duration / cycle.period
         found |= _conditions(cycle, leg)
     return found
+
+
+def _next_tick(
+    cycle: Cycle, leg: int, surface: int, sign: float
+) -> dict[Margin, float]:
+    """How far a leg's end is from a tick of a clock, whose surface may be below zero before."""
+    path, event = cycle.parts.path, cycle.map.events[leg]
+    index = len(cycle.map.flow.system.traced.variables) + surface
+    first, last = (sign * float(end[leg]) for end in path.ends_of(index))
+    entered_by_it = cycle.map.events[leg - 1].surface == surface
+    tops = [sign * turn.value for turn in path.turns[index] if turn.leg == leg]
+    above = max([*tops, *[first] * (not entered_by_it)], default=-1.0) > 0.0
+    if surface == event.surface or not above:
+        return {}
+    size = max(float(np.abs(path.series[:, index, 0]).max(initial=0.0)), 1e-300)
+    return {Margin(MarginKind.edge, leg, surface): last / size}
 
 
 def _conditions(cycle: Cycle, leg: int) -> dict[Margin, float]:

@@ -110,7 +110,9 @@ def marked_at_once(
             there = flow.crossing(
                 values, event.switch, event.surface, regimes, state, time
             )
-            event = event._replace(at_once=there.is_beyond(state, flow.system.sizes))
+            beyond = there.is_beyond(state, flow.system.sizes)
+            is_clock = flow.system.traced.clocks[event.surface] != 0
+            event = event._replace(at_once=beyond and not is_clock)
         found.append(event)
     return tuple(found)
 
