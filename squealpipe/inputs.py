@@ -16,7 +16,14 @@ from squealpipe.parameters import (
     brief,
 )
 from squealpipe.text import as_number
-from squealpipe.units import UnitError, has_unit, holds_units, in_si, number_of
+from squealpipe.units import (
+    UnitError,
+    has_unit,
+    holds_units,
+    in_si,
+    is_quantity,
+    number_of,
+)
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _IN_PI = re.compile(rf"([+-]?)({_NUMBER})?\s*\*?\s*(?:pi|π)(?:/({_NUMBER}))?")
@@ -202,4 +209,15 @@ def _quantity(name: str, value: Any, units: Mapping[str, str]) -> Any:
     if isinstance(value, str) and unit == "rad":
         written = has_unit(value) or re.search("pi|π", value, re.IGNORECASE)
         return parse_angle(value) if written else value
+    if unit == "rad" and is_quantity(value) and str(value.units) == "degree":
+        degrees = number_of(value, "deg")
+        # as of a text: radians of the double, though those of the decimal may be another
+        several = getattr(degrees, "tolist", lambda: degrees)()
+        return _radians(several)
     return number_of(value, unit, KEYS_THAT_TAKE)
+
+
+def _radians(degrees: Any) -> Any:
+    if isinstance(degrees, list):
+        return [_radians(each) for each in degrees]
+    return math.radians(degrees)

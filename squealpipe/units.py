@@ -271,7 +271,8 @@ def number_of(value: Any, units: str, keys: Mapping[str, str] | None = None) -> 
     """A number in SI from a text with a unit or a quantity of pint; else the value as it is.
 
     Text that is a plain number, or does not begin with one, is left for the caller to refuse.
-    Arrays and lists, of quantities too, become arrays and lists of numbers.
+    Arrays and lists, of quantities too, become arrays and lists of numbers. So do arrays of xarray
+    that state another unit of the same kind; what states one of another kind is left.
 
     Args:
         units: CF unit of the result, or any that pint knows.
@@ -281,8 +282,11 @@ def number_of(value: Any, units: str, keys: Mapping[str, str] | None = None) -> 
     """
     if isinstance(value, str):
         return in_si(value, units, keys) if _BEYOND_A_NUMBER.match(value) else value
-    if _is_quantity(value):
+    if is_quantity(value):
         return _scaled(value.magnitude, _factor(f"{value.units:D}", units, keys))
+    stated = getattr(value, "attrs", {}).get("units", units)
+    if stated != units and conversion(str(stated), units) is not None:
+        return _scaled(value.values, _factor(str(stated), units, keys))
     if holds_units(value):
         if not isinstance(value, list | tuple):
             raise UnitError(NOT_OF_PINT)
@@ -301,8 +305,8 @@ def holds_units(value: Any) -> bool:
     of_others = hasattr(value, "value") and (
         hasattr(value, "unit") or hasattr(value, "units")
     )
-    in_array = _is_quantity(getattr(value, "data", None))  # of xarray
-    return _is_quantity(value) or in_array or of_others
+    in_array = is_quantity(getattr(value, "data", None))  # of xarray
+    return is_quantity(value) or in_array or of_others
 
 
 def refuse_units(value: Any) -> None:
@@ -311,7 +315,8 @@ def refuse_units(value: Any) -> None:
         raise UnitError("a plain number is needed, for no unit is declared for it")
 
 
-def _is_quantity(value: Any) -> bool:
+def is_quantity(value: Any) -> bool:
+    """Whether a value is a quantity of pint."""
     return hasattr(value, "magnitude") and hasattr(value, "dimensionality")
 
 

@@ -344,3 +344,28 @@ def test_degrees_of_temperature_and_decibels_are_no_multiples():
     for value in (QUANTITY(1 + 2j, "mm"), QUANTITY(20.0, "degF")):
         with pytest.raises(UnitError):
             number_of(value, "m")
+
+
+def test_arrays_of_xarray_have_the_unit_that_they_state():
+    angles = xr.DataArray([10.0, 20.0], dims="a", attrs={"units": "degree"})
+    start = {"x": xr.DataArray([1.0, 2.0], dims="a", attrs={"units": "mm"})}
+    times = xr.DataArray([0.0, 0.5], dims="t", attrs={"units": "ms"})
+    run = simulate(PAD, angles[0], angles[1], t_end=1e-3, times=times)
+    assert run.time.values.tolist() == [0.0, 5e-4]
+    assert float(run.alpha1) == pytest.approx(np.radians(10.0), rel=1e-15)
+    many = OSCILLATOR.ensemble(1e-3, start=start, workers=1)
+    assert many.x0.values.tolist() == [1e-3, 2e-3]
+    # what the package gave is taken as it is
+    again = OSCILLATOR.ensemble(
+        1e-3, start={"x": many.x0}, gap=many.x0 + 1.0, workers=1
+    )
+    assert again.x0.identical(many.x0)
+
+
+def test_degrees_are_one_angle_however_they_are_written():
+    for number in (30.0, 22.0, 17.3):
+        runs = [
+            simulate(PAD, angle, 0.2, t_end=1e-4).alpha1.item()
+            for angle in (f"{number} deg", QUANTITY(number, "deg"), np.radians(number))
+        ]
+        assert len({*runs}) == 1
