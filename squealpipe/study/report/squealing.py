@@ -85,9 +85,8 @@ def headline(answer: xr.Dataset) -> str:
 
 def _peak_force(motion: xr.Dataset) -> str:
     """The largest normal force, over the preload and in newtons as far as both are known."""
-    ratio = float(
-        motion.peak_force.max()
-    )  # NaN of contacts that are open at rest is left out
+    # NaN of contacts that are open at rest is left out
+    ratio = float(motion.peak_force.max())
     newtons = ""
     if "peak_normal_force" in motion:
         newtons = engineering(float(motion.peak_normal_force.max()), "N")
@@ -145,7 +144,7 @@ def _named(mode: xr.Dataset, prefix: str = "") -> str:
         float(mode[f"{prefix}{name}"]) for name in ("frequency", "growth_rate")
     )
     off, apart = (
-        float(mode.get(f"mode_{name}_error", 0.0))
+        0.0 if prefix else float(mode.get(f"mode_{name}_error", 0.0))
         for name in ("frequency", "growth_rate")
     )
     told = engineering(frequency, "Hz", 4), number(growth)

@@ -25,7 +25,7 @@ from squealpipe.systems.structures.definition import ContactStructure, ReducedFr
 from squealpipe.systems.structures.dense import all_modes
 from squealpipe.systems.structures.linearized import pencil_about
 from squealpipe.systems.structures.modes import modes_at_rest
-from squealpipe.systems.structures.pencil import DENSE
+from squealpipe.systems.structures.pencil import DENSE, one_thread
 from squealpipe.systems.structures.sliding import (
     NoSlidingError,
     acting_directions,
@@ -241,7 +241,9 @@ class Search:
         """
         number, most = fewest, self.whole.size if most is None else most
         while number <= most:
-            if self._meets_with_larger(number, tol):
+            with one_thread():  # of small matrices threads cost more than they save
+                meets = self._meets_with_larger(number, tol)
+            if meets:
                 return number
             report(lambda number=number, most=most: number / most)  # type: ignore[misc]
             number += (
