@@ -143,7 +143,9 @@ PARAMETER_INFERENCE = DatasetSchema(
         "share_low": _limit("lower", "share", READING),
         "share_high": _limit("upper", "share", READING),
         "share_cut_alone": Variable(
-            "share of the samples that this statement alone excludes", dims=BY_READING
+            "share of the samples that this statement alone excludes, of the first sixteenth; of "
+            "growth, which is judged last, of all",
+            dims=BY_READING,
         ),
         "criterion": text("what was checked", *STATEMENT),
         "baseline_kappa": Variable("k3/k1 of the study"),

@@ -190,8 +190,9 @@ def contact_boundary(
     where the largest y stays below l_pre, in runs in which the contact spring pulls, too, which
     are the same until then. So the boundary is made of arcs, on each of which one maximum of y is
     the first to touch, and corners, where two touch at once; where a maximum comes at t_end,
-    y(t_end) goes on in its place. Over both angles to 200 √(m/k1) it ends ``unresolved``, in 19 s
-    where a refined map takes 3 s; to 25 √(m/k1) both take about as long.
+    y(t_end) goes on in its place. Over both angles to 200 √(m/k1) it ends ``unresolved``, in 10 s
+    where a refined map takes 3 s; to 25 √(m/k1) both take about as long. Between angles that add
+    up to π, equal springs have lines that are their own mirror image: half of them is followed.
 
     Args:
         params: physical parameters.
