@@ -6,6 +6,7 @@ of modes that do not grow have no growth at all.
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,7 @@ from squealpipe.systems.structures.refinement import (
     quotient,
     unit_vector,
 )
-from squealpipe.systems.structures.stiff import condensation, stiff_degrees
+from squealpipe.systems.structures.stiff import GAP, condensation, stiff_degrees
 
 NEARLY_DOUBLE = 1e-9
 """Error over frequency beyond which an undamped mode is judged together with its neighbour."""
@@ -37,7 +38,7 @@ def all_modes(pencil: Pencil) -> list[Eigenpair]:
 
     Degrees of freedom that a penalty fixes, or without mass to speak of, add none (:mod:`.stiff`).
     """
-    find = _undamped if pencil.is_undamped else _damped
+    find = _undamped if pencil.is_undamped else _damped_slowly
     pairs = [_accurate(pencil, pair) for pair in _without_stiff(pencil, find)]
     if pencil.is_undamped:
         pairs = _told_apart(pencil, pairs)
@@ -48,8 +49,8 @@ def _without_stiff(
     pencil: Pencil, find: Callable[[Pencil], list[Eigenpair]]
 ) -> list[Eigenpair]:
     """Eigenpairs of what is left when stiff degrees of freedom are condensed, in all of them."""
-    mass, _, stiffness = pencil.dense
-    stiff = stiff_degrees(mass, stiffness)
+    mass, whole, stiffness = pencil.dense
+    stiff = stiff_degrees(mass, stiffness, whole)
     if not stiff.any():
         return find(pencil)
     right = condensation(stiffness, stiff)
@@ -266,6 +267,30 @@ def _checked(
     error = _error_of_square(pencil, v, w, scale)
     spread = min(error / (2 * abs(value)), np.sqrt(error))
     return Eigenpair(complex(value), v, w, float(spread))
+
+
+def _damped_slowly(pencil: Pencil) -> list[Eigenpair]:
+    """Those of a damped pencil, without those of rows that a dashpot holds and next to no mass.
+
+    Their decay, damping over mass, would be the norm that round-off counts by. A larger mass there
+    changes the other eigenvalues a little; they are estimates then, which are polished.
+    """
+    mass, damping, _ = pencil.dense
+    rates = np.abs(damping.diagonal()) / mass.diagonal()
+    ascending = np.sort(np.maximum(rates, pencil.unit))
+    gaps = np.flatnonzero(ascending[1:] > 1e8 * ascending[:-1])
+    if not gaps.size:
+        return _damped(pencil)
+    # far from all that is kept, and near enough for round-off not to count
+    cap = 1e5 * max(ascending[gaps[0]], np.sqrt(GAP.least) * pencil.unit)
+    fast = rates > cap
+    added = np.where(fast, mass.diagonal() * (rates / cap), 0.0)
+    lifted = replace(pencil, mass=sp.csr_array(pencil.mass + sp.diags_array(added)))
+    return [
+        pair._replace(error=max(pair.error, abs(pair.value) ** 2 / cap))
+        for pair in _damped(lifted)
+        if abs(pair.value) < 1e-2 * cap
+    ]
 
 
 def _damped(pencil: Pencil) -> list[Eigenpair]:

@@ -83,8 +83,8 @@ class Spectrum:
             return beyond_gap(
                 self.pencil.mass.diagonal(), self.pencil.stiffness.diagonal()
             )
-        mass, _, stiffness = self.pencil.dense
-        return int(stiff_degrees(mass, stiffness).sum())
+        mass, damping, stiffness = self.pencil.dense
+        return int(stiff_degrees(mass, stiffness, damping).sum())
 
     @property
     def residuals(self) -> Any:

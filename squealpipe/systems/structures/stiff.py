@@ -37,8 +37,13 @@ class Gap:
 GAP = Gap()
 
 
-def stiff_degrees(mass: np.ndarray, stiffness: np.ndarray) -> Any:
-    """Which degrees of freedom are taken out, (n,)."""
+def stiff_degrees(
+    mass: np.ndarray, stiffness: np.ndarray, damping: np.ndarray | None = None
+) -> Any:
+    """Which degrees of freedom are taken out, (n,).
+
+    A row without mass to speak of, on a dashpot, follows the others late: it is not taken out.
+    """
     size = len(mass)
     none = np.zeros(size, bool)
     ratios = np.abs(stiffness.diagonal()) / mass.diagonal()
@@ -53,9 +58,20 @@ def stiff_degrees(mass: np.ndarray, stiffness: np.ndarray) -> Any:
         held = above >= GAP.mechanical or (
             above > GAP.alone * below and _is_apart(stiffness, stiff)
         )
-        if held and _is_regular(stiffness[np.ix_(stiff, stiff)]):
+        late = damping is not None and _is_late(damping, stiffness, stiff, below)
+        if held and not late and _is_regular(stiffness[np.ix_(stiff, stiff)]):
             return stiff
     return none
+
+
+def _is_late(
+    damping: np.ndarray, stiffness: np.ndarray, stiff: np.ndarray, below: float
+) -> bool:
+    """Whether dampers of stiff rows count beside their springs at the kept rows' frequencies."""
+    largest = np.maximum(np.abs(damping).max(axis=0), np.abs(damping).max(axis=1))
+    springs = np.abs(stiffness.diagonal())
+    # an eighth digit is what polishing needs, and penalties are beyond by far
+    return bool((largest * np.sqrt(below) > 1e-8 * springs)[stiff].any())
 
 
 def beyond_gap(mass: np.ndarray, stiffness: np.ndarray) -> int:
@@ -87,7 +103,9 @@ def condensation(stiffness: np.ndarray, stiff: np.ndarray) -> np.ndarray:
     kept = np.flatnonzero(~stiff)
     basis = np.zeros((len(stiff), len(kept)))
     basis[kept, np.arange(len(kept))] = 1.0
-    basis[stiff] = -la.solve(
-        stiffness[np.ix_(stiff, stiff)], stiffness[np.ix_(stiff, ~stiff)]
-    )
+    # penalties differ by any factor: with a unit diagonal none of them is lost
+    scale = 1.0 / np.sqrt(np.abs(stiffness.diagonal()[stiff]))
+    block = scale[:, None] * stiffness[np.ix_(stiff, stiff)] * scale
+    across = scale[:, None] * stiffness[np.ix_(stiff, ~stiff)]
+    basis[stiff] = -scale[:, None] * la.solve(block, across)
     return basis

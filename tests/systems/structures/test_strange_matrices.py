@@ -190,3 +190,27 @@ def test_transverse_damping_needs_a_direction_across_and_is_refused_in_runs():
         Contact("p", {1: 1.0}, {0: 1.0}, 1e5, 100.0, transverse_damping=True)
     with pytest.raises(ValueError, match="leave it out there"):
         slider(damped=True).system()
+
+
+def test_penalties_of_any_size_stand_beside_each_other():
+    stiffness = np.diag([0.0, 0.0, 1e20, 1e36])
+    stiffness[:2, :2] = SMALL
+    stiffness[2, 3] = stiffness[3, 2] = stiffness[0, 3] = stiffness[3, 0] = -2e4
+    modes = Structure(np.eye(4), stiffness).complex_modes()
+    expected = np.sqrt(np.linalg.eigvalsh(SMALL)) / (2 * np.pi)
+    assert modes.frequency.values == pytest.approx(expected, rel=1e-12)
+    assert modes.attrs["fixed_degrees_of_freedom"] == 2
+
+
+@pytest.mark.parametrize("mass", [1e-9, 1e-14])
+def test_a_row_without_mass_to_speak_of_on_a_dashpot_follows_late(mass):
+    stiffness = np.array([[1e5, -5e4], [-5e4, 8e4]])
+    modes = Structure(
+        np.diag([1.0, mass]), stiffness, np.diag([0.0, 200.0])
+    ).complex_modes()
+    # (s² + 1e5) (200 s + 8e4) − 2.5e9 = 0 without that mass
+    roots = np.roots([200.0, 8e4, 200.0 * 1e5, 8e9 - 2.5e9])
+    pair = roots[roots.imag > 0][0]
+    place = int(modes.frequency.values.argmax())
+    assert modes.frequency.values[place] == pytest.approx(pair.imag / (2 * np.pi), 1e-6)
+    assert modes.growth_rate.values[place] == pytest.approx(pair.real, rel=1e-6)
