@@ -34,6 +34,8 @@ from squealpipe.config.ranges import parse_range
 if TYPE_CHECKING:
     import xarray as xr
 
+AUDIBLE = 20e3
+"""Frequency up to which modes are shown where no limit is given, Hz: beyond are those of a mesh."""
 LISTED = 20
 """Unstable modes that are printed."""
 
@@ -59,7 +61,7 @@ def modes(
         file: structure, a YAML file that names its matrices and contacts (see the gallery).
         mu: friction, a number or first:last:count; that of the file by default.
         belt_speed: likewise, m/s.
-        frequency_max: highest frequency of the modes, Hz.
+        frequency_max: highest frequency of the modes, Hz; 20 kHz where neither limit is given.
         n_modes: number of modes; one of these two limits is needed beyond 1000 degrees of freedom.
         critical: locate where modes turn unstable; --no-critical leaves that out, which is most of
             the work for a structure of more than 1000 degrees of freedom.
@@ -84,6 +86,7 @@ def modes(
     refuse_existing(output, force=files.force)
 
     from squealpipe.systems.structures import complex_modes as library
+    from squealpipe.systems.structures.modes import highest_frequency
 
     def complex_modes(structure: Any, **options: Any) -> xr.Dataset:
         points = math.prod(
@@ -92,6 +95,14 @@ def modes(
         told = library.cost_beforehand(structure, points, options.get("n_modes"))
         if told is not None:
             say(told)
+        if not {"frequency_max", "n_modes"} & options.keys():
+            highest = highest_frequency(structure)
+            if highest is not None and highest > AUDIBLE:
+                options["frequency_max"] = AUDIBLE
+                say(
+                    f"modes up to {AUDIBLE / 1e3:g} kHz; the highest is at "
+                    f"{highest / 1e3:.4g} kHz: --frequency-max shows more"
+                )
         return library.complex_modes(structure, **options)
 
     dataset = _compute(complex_modes, file, asked, output, files)

@@ -38,6 +38,16 @@ def modes_at_rest(
     return omega[:number], (modes * np.sign(peaks))[:, :number]
 
 
+def highest_frequency(structure: ContactStructure) -> float | None:
+    """Hz, at rest and without what a penalty fixes; None of a large structure."""
+    if structure.size > DENSE:
+        return None
+    stiffness, mass = structure.stiffness_at_rest.toarray(), structure.mass.toarray()
+    omega, _ = modes_at_rest(structure)
+    kept = structure.size - int(stiff_degrees(mass, stiffness).sum())
+    return float(omega[kept - 1] / (2 * np.pi))
+
+
 def modal_damping_of(
     structure: ContactStructure,
     number: int | None = None,

@@ -2,6 +2,7 @@
 
 import gzip
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -522,6 +523,21 @@ def test_the_command_writes_what_python_computes(tmp_path, monkeypatch, capsys):
     assert np.array_equal(written.growth_rate, computed.growth_rate)
     assert written.mu.dims == ("mu",)
     assert (tmp_path / "modes.png").stat().st_size > 10000
+
+
+def test_the_terminal_shows_modes_up_to_20_khz_and_says_so(
+    tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    np.save("M.npy", np.eye(3))
+    np.save("K.npy", np.diag([1e8, 4e8, 1e13]))  # the last at 503 kHz, of a mesh
+    Path("pad.yaml").write_text("mass: M.npy\nstiffness: K.npy\n")
+    assert run(["modes", "pad.yaml", "-o", "modes.nc"]) == 0
+    assert "up to 20 kHz; the highest is at 503.3 kHz" in capsys.readouterr().out
+    assert load("modes.nc").sizes["mode"] == 2
+    more = ["--frequency-max", "1 MHz", "-o", "all.nc"]
+    assert run(["modes", "pad.yaml", *more]) == 0
+    assert load("all.nc").sizes["mode"] == 3
 
 
 def test_modes_over_factors_are_a_command_and_a_task_of_sweeps(tmp_path, monkeypatch):
