@@ -146,7 +146,7 @@ def integrate(
     Raises:
         ValueError: where the system's unit of time is none.
     """
-    batch = _Batch(system, values, t_end, options, tol)
+    batch = _Batch(system.for_exponents(values), values, t_end, options, tol)
     loop()  # compiled before processes share the work
     arrays = run_shared(batch.run, batch.shapes(), jobs=len(t_end), workers=workers)
     return batch.named(arrays)

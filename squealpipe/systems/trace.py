@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from types import MappingProxyType
 from typing import Any, Self
 
 import numpy as np
@@ -173,15 +174,22 @@ class Tracer:
     """Calls the functions of one system on symbols."""
 
     def __init__(
-        self, states: Sequence[str], parameters: Iterable[str], composition: Composition
+        self,
+        states: Sequence[str],
+        parameters: Iterable[str],
+        composition: Composition,
+        known: Mapping[str, float] = MappingProxyType({}),
     ) -> None:
+        """Parameters whose values are ``known`` are numbers."""
         self.states = tuple(states)
         self.composition = composition
         self.regimes = list(composition.regimes)
         self.time, *state = variables(TIME, *self.states)
         self.variables = tuple(state)
         self.s = Names("the state", dict(zip(self.states, state, strict=True)))
-        self.p = Names("the system", {name: parameter(name) for name in parameters})
+        symbols = {name: parameter(name) for name in parameters}
+        symbols |= {name: symbol(value) for name, value in known.items()}
+        self.p = Names("the system", symbols)
         self._names = [self._constants_of(k) for k in range(len(composition.names))]
         self.first_constant = np.cumsum([0, *map(len, self._names)])
         self.constants = tuple(

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import replace
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any, Self
 
 import numpy as np
@@ -26,7 +27,13 @@ from squealpipe.systems.trace import TIME, TIME_UNIT, Traced, Tracer, long_name
 
 
 class TracedSystem(Definition):
-    """A definition with what its functions became."""
+    """A definition with what its functions became.
+
+    Attributes:
+        known: parameters that functions see as numbers.
+    """
+
+    known: Mapping[str, float] = MappingProxyType({})
 
     def _rates(self, tracer: Tracer) -> list[Symbol]:
         if not isinstance(self.field, Mapping):
@@ -57,7 +64,7 @@ class TracedSystem(Definition):
         return [found[name] for name in self.units]
 
     def _trace(self) -> Traced:
-        tracer = Tracer(self.states, self.parameters, self.composition)
+        tracer = Tracer(self.states, self.parameters, self.composition, self.known)
         rates = self._rates(tracer)
         kinds: list[str] = []
         leaves = [self._leaves(tracer, switch) for switch in self.switches]
@@ -278,6 +285,52 @@ class TracedSystem(Definition):
         for name in ("text", "joint"):
             other.__dict__.pop(name, None)
         return other
+
+    @cached_property
+    def exponents(self) -> tuple[str, ...]:
+        """Parameters that something is raised to: x**a is exp(a log x), which has no value at 0."""
+        t = self.traced
+        found = set()
+        for node in in_order([*t.rates, *t.surfaces, *t.outputs]):
+            if node.kind == "exp" and node.arguments[0].kind == "*":
+                a, b = node.arguments[0].arguments
+                if a.kind == "parameter" and b.kind == "log":
+                    found.add(a.arguments[0])
+        return tuple(sorted(found & set(self.parameters)))
+
+    def retrace(self) -> None:
+        """Trace the functions again, with the parameters that are known as numbers."""
+        self.traced, self.form = self._trace(), self
+
+    def for_exponents(self, values: Mapping[str, Any]) -> Self:
+        """The system for these values: with whole exponents, which all runs share, as numbers."""
+        if not self.exponents or self.form is not self:
+            return self
+        unique = ((name, np.unique(values[name])) for name in self.exponents)
+        known = {
+            name: float(each[0])
+            for name, each in unique
+            if each.size == 1 and each[0] >= 1.0 and each[0] % 1.0 == 0.0
+        }
+        if not known:
+            return self
+        made: dict[Any, Self] = self.__dict__.setdefault("_with_known", {})
+        key = tuple(known.items())
+        if key not in made:
+            other = copy(self)
+            for name in (
+                "integrated",
+                "derived",
+                "at_switches",
+                "text",
+                "joint",
+                "starts",
+            ):
+                other.__dict__.pop(name, None)
+            other.known = known
+            other.retrace()
+            made[key] = other
+        return made[key]
 
     @cached_property
     def integrated(self) -> Traced:

@@ -76,3 +76,22 @@ def test_logs_of_states_are_exact():
         start={"x": 1.0},
     )
     assert float(falls.simulate(1.0).x[-1]) == 1.0
+
+
+@pytest.mark.parametrize("exponent", [1.0, 2.0, 3.0])
+def test_a_whole_exponent_that_is_a_parameter_may_have_any_base(exponent):
+    system = System(
+        "power",
+        states={"x": "1", "y": "1"},
+        parameters={"a": 1.0},
+        regimes={"only": {}},
+        field=lambda t, s, p, r: {"x": 1.0, "y": s.x**p.a},
+        start={"x": 0.0, "y": 0.0},
+    )
+    for start in (0.0, -1.0):
+        run = system.simulate(2.0, start={"x": start}, a=exponent)
+        end = [each ** (exponent + 1.0) for each in (start + 2.0, start)]
+        assert float(run.y[-1]) == pytest.approx((end[0] - end[1]) / (exponent + 1.0))
+    # other exponents keep their logarithm
+    run = system.simulate(2.0, start={"x": 1.0}, a=1.5)
+    assert float(run.y[-1]) == pytest.approx((3.0**2.5 - 1.0) / 2.5, rel=1e-12)
