@@ -161,7 +161,7 @@ def _named(mode: xr.Dataset, prefix: str = "") -> str:
 def _what_would_do(answer: xr.Dataset) -> str:
     """How to get a verdict."""
     enough, size = int(answer.modes_that_would_do), int(answer.degrees_of_freedom)
-    band = "or look at a narrower band with a smaller frequency_max"
+    band = "look at a narrower band with a smaller frequency_max"
     if not enough:
         return f"No number of modes was found that would do; {band}."
     whole = " (all there are)" if enough == size else ""

@@ -1,15 +1,19 @@
 """A reduced structure against eigenvalues of the whole, assembled here and solved by SciPy."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import scipy.linalg as la
 
 from squealpipe import Contact, Structure, plot, squealing_modes
+from squealpipe.cli.signatures import in_options
 from squealpipe.schema.assess import Verdict
 from squealpipe.structures import elastic_pad
 from squealpipe.study.report.squealing import lines
 from squealpipe.systems.structures.agreement import Truth
 from squealpipe.systems.structures.reduction import Search, fewest_modes
+from squealpipe.systems.structures.squeal.attractors import grouped
 
 
 def chain(links, *, mu=0.5, offset=0.0):
@@ -244,3 +248,24 @@ def test_a_reduced_structure_agrees_with_the_whole_or_says_that_it_does_not(seed
     wrong, decided, unstable = judge(seed, *((100, 16) if small else ()))
     assert not wrong
     assert decided or unstable  # what grows above all modes kept is not decided
+
+
+def test_remedies_are_in_the_words_of_the_terminal():
+    assert (
+        in_options("12 modes would do: n_modes=12.")
+        == "12 modes would do: --n-modes 12."
+    )
+    assert in_options("give frequency_max (Hz)") == "give --frequency-max (Hz)"
+    assert in_options("t_end = 1e-05: 4 periods") == "--t-end 1e-05: 4 periods"
+
+
+def test_motions_as_near_as_two_windows_of_one_are_one_attractor():
+    """Runs 2.5 % apart were two, though windows of one motion may differ by 3 %."""
+
+    def run(loss):
+        last = SimpleNamespace(
+            modal=np.array([1.0, 0.1]), total=1.005, separated=np.array([loss]), stuck=np.zeros(1)
+        )  # fmt: skip
+        return SimpleNamespace(agrees=True, quiet=False, change=1e-3, last=last)
+
+    assert grouped([run(0.3), run(0.325), run(0.5)], 0).tolist() == [0, 0, 1]
