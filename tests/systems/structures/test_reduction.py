@@ -263,9 +263,10 @@ def test_motions_as_near_as_two_windows_of_one_are_one_attractor():
     """Runs 2.5 % apart were two, though windows of one motion may differ by 3 %."""
 
     def run(loss):
-        last = SimpleNamespace(
-            modal=np.array([1.0, 0.1]), total=1.005, separated=np.array([loss]), stuck=np.zeros(1)
+        levels = SimpleNamespace(
+            velocities=np.array([1.0, 0.1]), total=1.005, separated=np.array([loss]), stuck=np.zeros(1)
         )  # fmt: skip
+        last = SimpleNamespace(levels=levels)
         return SimpleNamespace(agrees=True, quiet=False, change=1e-3, last=last)
 
     assert grouped([run(0.3), run(0.325), run(0.5)], 0).tolist() == [0, 0, 1]
