@@ -264,8 +264,11 @@ def test_motions_as_near_as_two_windows_of_one_are_one_attractor():
 
     def run(loss):
         levels = SimpleNamespace(
-            velocities=np.array([1.0, 0.1]), total=1.005, separated=np.array([loss]), stuck=np.zeros(1)
-        )  # fmt: skip
+            velocities=np.array([1.0, 0.1]),
+            total=1.005,
+            separated=np.array([loss]),
+            stuck=np.zeros(1),
+        )
         last = SimpleNamespace(levels=levels)
         return SimpleNamespace(agrees=True, quiet=False, change=1e-3, last=last)
 
