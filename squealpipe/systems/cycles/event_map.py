@@ -22,7 +22,7 @@ from squealpipe.systems.cycles.variational import leg_derivatives
 
 _KEPT = 8
 """Points whose legs are kept."""
-_LONG_CHAIN = 150
+LONG_CHAIN = 150
 """Unknowns from which on a Newton step is taken by sparse elimination."""
 FREE = -1
 """Number of the switch of what changes nothing: the section of a cycle without events, a touch."""
@@ -267,7 +267,7 @@ def _newton_step(jacobian: Vector, values: Vector) -> Vector:
     hundreds of unknowns take a second. NaN where a long chain has none.
     """
     rows, columns = jacobian.shape
-    if rows != columns or rows < _LONG_CHAIN:
+    if rows != columns or rows < LONG_CHAIN:
         return np.asarray(np.linalg.lstsq(jacobian, values, rcond=1e-10)[0])
     try:
         return np.asarray(

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from squealpipe.systems.cycles.event_map import FREE, EventMap, Parts
+from squealpipe.systems.cycles.event_map import FREE, LONG_CHAIN, EventMap, Parts
 from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.legs import LegEnd, Vector
 
@@ -147,11 +147,15 @@ class Cycle:
         jacobian = self.map.evaluate(self.point)[1][:, : self.map.size]
         direction = np.linalg.svd(jacobian)[2][-1]
         step = np.zeros_like(self.point)
-        step[: self.map.size] = _ASIDE * direction
-        beside = self.map.solve(self.point + step)
-        if beside is None:
-            return False
-        return bool(abs((beside - self.point) @ step) > 0.5 * _ASIDE**2)
+        for length in (_ASIDE, -_ASIDE, 0.1 * _ASIDE):
+            # one may lead where Newton's method fails, though there are members
+            step[: self.map.size] = length * direction
+            beside = self.map.solve(self.point + step)
+            if beside is not None:
+                moved = float((beside - self.point) @ step)
+                if abs(moved) > 0.5 * length**2:
+                    return True
+        return False
 
     @cached_property
     def closing_round_off(self) -> float:
@@ -177,7 +181,10 @@ class Cycle:
 
         Next to a family of cycles, where a second multiplier is 1, Newton's method gets no further
         than a motion that does not quite close. What closes to round-off is a member of a family.
+        Of long chains of legs it is taken without the smallest correction, and does not tell.
         """
+        if self.map.size >= LONG_CHAIN:
+            return False
         off = np.abs(self.nontrivial - 1.0).min(initial=1.0)
         return bool(off < _FAMILY and self.residual > self.closing_round_off)
 
