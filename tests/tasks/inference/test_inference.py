@@ -240,8 +240,8 @@ def test_the_study_meets_every_statement_and_no_simple_numbers_meet_them_by_far_
     margin, holds = judge(sets, exact=True)
     meets = (holds == Holds.yes).all(axis=1)
     assert meets.size == 13_104
-    # the growth of a few chaotic runs is decided by round-off
-    assert meets.sum() == pytest.approx(576, abs=6)
+    # a chaotic run that grows from one start and not from another is undecided
+    assert meets.sum() == 568
     study = Parameters()
     chosen = study.kappa, study.mu, study.length1 / study.preload, study.speed_ratio
     is_study = np.isclose(np.stack(list(groups.values()), axis=1), chosen).all(axis=1)
