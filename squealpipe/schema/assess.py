@@ -193,6 +193,15 @@ ASSESS = DatasetSchema(
             "lower end of the range that was searched", dims=("cure",)
         ),
         "highest_tried": or_nan("upper end of that range", dims=("cure",)),
+        "snaps_from": or_nan(
+            "nearest value at which steady sliding of a quiet brake snaps to another place",
+            dims=("cure",),
+            rtol=2e-3,
+            optional=True,
+        ),
+        "snap_distance": or_nan(
+            "distance between both places", "m", ("cure",), rtol=2e-2, optional=True
+        ),
         **ONE_PAIR,
         "preload": Variable("precompression l_pre of the contact spring", "m"),
         "outcome": outcome(

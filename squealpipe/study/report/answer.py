@@ -298,6 +298,7 @@ def cure_lines(answer: xr.Dataset) -> Iterator[str]:
     table = of_a_push(answer)
     if not table:
         yield "No single change within the ranges searched alters the verdict."
+        yield from _snap_line(answer)
         return
     yield f"{stops(answer)}, the smallest change first:"
     for cure in table[:CHEAPEST]:
@@ -309,6 +310,28 @@ def cure_lines(answer: xr.Dataset) -> Iterator[str]:
     told += [f"no answer within the range searched: {', '.join(vain)}"] if vain else []
     if told:
         yield f"  {'; '.join(told)}"
+    yield from _snap_line(answer)
+
+
+def _snap_line(answer: xr.Dataset) -> Iterator[str]:
+    """The limits at which the pad jumps and may be as quiet elsewhere, if there are any."""
+    if snaps := snap_throughs(answer):
+        yield f"Steady sliding snaps to another place at {', '.join(snaps)}"
+
+
+def snap_throughs(answer: xr.Dataset) -> list[str]:
+    """Where steady sliding of a quiet brake snaps to another place, which may be quiet too."""
+    if "snaps_from" not in answer:
+        return []  # of version 1.0.0
+    told = []
+    for name in map(str, answer.cure.values):
+        cure = answer.sel(cure=name)
+        value = float(cure.snaps_from)
+        if math.isfinite(value):
+            unit = str(cure.unit.item())
+            far = engineering(float(cure.snap_distance), "m", 2)
+            told.append(f"{NAMES[name]} {_value(name, value, unit)} ({far} away)")
+    return told
 
 
 def _is_neutral(answer: xr.Dataset) -> bool:

@@ -155,13 +155,14 @@ def _bounded(run: Evidence) -> dict[str, Any]:
 
 def _contact_points(run: Evidence) -> dict[str, Any]:
     pads = run["contact_points"]
+    samples = json.loads(pads.attrs["arguments"])["samples"]
     loud: dict[str, Any] = {}
     for count in ("4", "8"):
         pad = pads.sel(design=count)
         loud |= {
             f"points{count}_onset": pad.critical_mu,
             f"points{count}_kilohertz": pad.dominant_frequency / 1e3,
-            f"points{count}_share": 100 * pad.share,
+            f"points{count}_starts": round(samples * float(pad.share)),
             f"points{count}_common": pad.common_frequency / 1e3,
             f"points{count}_lag": pad.lag[int(pad.contacts) - 1],
             f"points{count}_least": 100 * pad.separated_fraction.min(),
@@ -169,7 +170,7 @@ def _contact_points(run: Evidence) -> dict[str, Any]:
         }
     return {
         **loud,
-        "points_samples": json.loads(pads.attrs["arguments"])["samples"],
+        "points_samples": samples,
         "points_modes": pads.n_modes.max(),
         "points_growth_error": 100 * pads.growth_rate_error.max(),
     }

@@ -87,6 +87,7 @@ def scene(name: str, told: xr.Dataset, started: xr.Dataset) -> dict[str, Any]:
         "not_cures": [
             {"words": words, "tried": tried} for words, tried in answer.not_cures(told)
         ],
+        "snaps": answer.snap_throughs(told),
         "nearest": _nearest(told),
         "numbers": _numbers(told),
         "start": _from_start(started),

@@ -94,6 +94,8 @@ class Judged:
             "change_any_start": "change_any_start",
             "lowest_tried": "lowest",
             "highest_tried": "highest",
+            "snaps_from": "snaps_from",
+            "snap_distance": "snap_distance",
         }
         return build(
             ASSESS,

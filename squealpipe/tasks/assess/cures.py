@@ -13,6 +13,7 @@ from squealpipe.tasks.assess.designs import FARTHEST, STEP, Cure, cures_of
 from squealpipe.tasks.assess.search import LOCATED, Side, nearer, search, sides_of
 from squealpipe.tasks.assess.settling import pushed, settle
 from squealpipe.tasks.assess.sliding import Design, Sliding
+from squealpipe.tasks.assess.snap_through import SnapThrough, snap_throughs
 
 RAYS = 24
 """Directions in which the nearest quiet pair of angles is looked for."""
@@ -28,6 +29,8 @@ class Boundary(NamedTuple):
     change_any_start: float
     lowest: float
     highest: float
+    snaps_from: float
+    snap_distance: float
 
 
 def boundaries(
@@ -52,6 +55,7 @@ def boundaries(
         lead(sides, nearest, tol=tol)
     follow = partial(dies_out_always, tol=tol, kinds=1)
     anywhere = any_start(cures, sides, nearest, quiet, always, test, follow)
+    snaps = snap_throughs(cures, nearest) if quiet else {}
     located = {}
     for name, cure in cures.items():
         ends = [*cure.below, cure.value, *cure.above]
@@ -64,6 +68,7 @@ def boundaries(
             _change(name, cure.value, second),
             min(ends),
             max(ends),
+            *snaps.get(name, SnapThrough()),
         )
     return dict(
         sorted(
