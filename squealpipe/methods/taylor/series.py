@@ -204,7 +204,7 @@ class _SeriesWriter:
         self.order = "v"
         body += ["for k in range(1, terms - 1):"]
         inner = [f"r = k * {simd.ROW}", "inverse = number(inverses + 8 * k)"]
-        for level in range(max(self.level.values()) + 1):
+        for level in range(max(self.level.values(), default=-1) + 1):
             here = [node for node in self.moving if self.level[id(node)] == level]
             inner += self._sums([node for node in here if _is_sum(node)])
             for node in self.sums.written(here):
