@@ -13,7 +13,7 @@ import numpy as np
 from squealpipe import Switch, System, labels
 from squealpipe.functions import sin
 
-T = 1e-4  # of the clock, s
+T = 1e-4  # period of the clock, s
 
 
 def converter(name, rates):

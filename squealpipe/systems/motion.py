@@ -35,19 +35,19 @@ _TRIES, _AT_ONCE = 4, 256
 
 
 def drift_tolerance(tol: float) -> float:
-    """Drift over a quarter of a run, over the ranges, that its own errors may cause.
+    """Return the drift in a quarter of a run, over the ranges, that errors of its steps may cause.
 
-    Each of a thousand steps adds ``tol`` at most.
+    A thousand steps are counted, each of which adds ``tol`` at most.
     """
     return min(1e3 * tol, REPEATED)
 
 
 def has_settled(earlier: Any, later: Any, tolerance: float) -> Any:
-    """Whether motions that nearly repeat are cycles, by their drift in the last two quarters.
+    """Tell which motions that nearly repeat are cycles, by their drift in the last two quarters.
 
     A cycle that attracts is approached by ever smaller steps: what is still to come, the rest of
-    the geometric series, is within ``REPEATED``. Slow decay and growth go on as they are. Drift
-    below the tolerance is none.
+    the geometric series, is within ``REPEATED``. Slow decay and growth go on at their pace. Drift
+    below the tolerance counts as none.
 
     Args:
         earlier, later: largest change of a state over the third and the fourth quarter of the
@@ -159,7 +159,7 @@ class RepeatableRuns:
         most = LEAST_REPEATS * MOST_PERIODS
         kept = int(np.clip(0.5 * self.duration / forcing.max(), 0, most))
         quarter = (0.25 * self.duration / forcing[rows]).astype(int)[:, None]
-        # and a quarter and half of the run ago, for whatever number of periods repeats
+        # also a quarter and half of the run earlier, for every number of periods that may repeat
         counts = np.arange(MOST_PERIODS + 1), np.arange(2 * MOST_PERIODS + 1)
         back = np.hstack(
             [
@@ -184,7 +184,7 @@ class RepeatableRuns:
                 (rounds > 0) & (rounds % lag == 0) & near[:, -1]
             )
             rounds[again] = lag
-        # so many whole cycles are in about a quarter of the run
+        # a whole number of cycles fits into about a quarter of the run
         off = quarter[:, 0] % np.maximum(rounds, 1)
         row = np.arange(rows.size)
         middle, begin = (
@@ -265,7 +265,7 @@ class RepeatableRuns:
                 break
 
             def back_at(time: np.ndarray, width: np.ndarray, which: Any = which) -> Any:
-                """When the motions next to these times cross the plane through their states."""
+                """Return when motions cross the plane through their states, next to these times."""
                 for _ in range(3):
                     places = time[:, None] + width[:, None] * np.linspace(-1.0, 1.0, 9)
                     places = np.clip(places, 0.0, 0.5 * self.duration)

@@ -1,1 +1,1 @@
-"""What a vibration settles to, decided once for pads and for structures."""
+"""Decide what a vibration settles to, by one set of rules for pads and structures."""

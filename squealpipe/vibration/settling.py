@@ -1,4 +1,4 @@
-"""When a motion has settled: two windows of its run in succession tell the same.
+"""Decide when a motion has settled: when two successive windows of its run agree.
 
 Idea: a run is looked at in windows that double in length. Equal levels in two of them are not
 enough: a component may still grow far beneath the loudest one, and what decays slowly is no part of
@@ -25,56 +25,56 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Settling:
-    """Thresholds of settling; twice the value of each does what its comment says."""
+    """Thresholds of settling; each comment says what another value would do."""
 
     agreement: float
-    """Largest difference of two windows: of velocities over all of them together, of shares of time
-    absolutely. Twice as much: numbers are off by up to twice as much."""
+    """Largest difference of two windows that agree: of velocities over their total, of shares of
+    time as they are. Twice as much: numbers are off by up to twice as much."""
     peak_agreement: float = math.inf
-    """Likewise of the largest force, and of each velocity and share, relatively. Without it a
-    decaying component enters that force long after it has left the mean squares."""
+    """Largest relative difference of the largest force, and of each velocity and share. Without it
+    a decaying component enters that force long after it has left the mean squares."""
     least: float = 0.005
-    """Velocity over all, and share of time, whose relative difference counts; smaller ones differ
-    over this. Half as much: sampling noise of what hardly moves keeps it from settling."""
+    """Smallest denominator of a relative difference: velocity over the total, or share of time.
+    Half as much: sampling noise of what hardly moves keeps it from settling."""
     irregular_agreement: float = 0.03
     """Agreement of statistics of an irregular motion, whose scatter is stated beside its numbers.
     Half as much is not reached within the longest run by intermittent motions."""
     shortest: float = 0.0
-    """Periods of the later window at least. Growth that takes ten times as long is not seen."""
+    """Fewest periods of the later window. Growth that takes ten times as long is not seen."""
     still_grows: float = 0.05
-    """ln of a perturbation's growth from the third to the last quarter of a window that is no swing
-    within a period. Twice as much: growth half as slow passes."""
+    """ln of a perturbation's growth from the third to the last quarter of a window; less may be a
+    swing within a period. Twice as much: growth that is twice as fast is not seen."""
     proportional: float = 1.2
-    """Growth over that in the window before, which is half as long, up to which it is that of a
-    shear, as of undamped motion: it stays the same there; exponential growth doubles at least."""
+    """Late growth over that of the window before, which is half as long. Up to this it is the shear
+    of an undamped motion, the same in both; exponential growth at least doubles it."""
     irregular: float = 15.0
-    """ln of the growth in each of two windows by which round-off becomes motion. Half as much: the
-    first swings of what leaves a cycle pass for its statistics."""
+    """ln of the growth in each of two windows from which a motion is irregular: round-off becomes
+    motion. Half as much: first swings away from a cycle pass for statistics."""
     mode_grows: float = math.log(1.5)
-    """ln of the growth of one component from one window to the next, where no perturbation is
-    followed. Scatter of irregular motions is below it."""
+    """ln of the growth from one window to the next by which a component still grows, where no
+    perturbation is followed. Scatter of irregular motions is below it."""
     smallest: float = 1e-9
-    """Velocity of a component, over all, below which it is round-off."""
+    """Velocity of a component, over the total, below which it is round-off."""
     samples: int = 512
     """Instants of a window; fewer than two in a period miss none of the statistics by more than
     the agreement, since they are not in step with it."""
 
     @property
     def follows_perturbation(self) -> bool:
-        """Whether a perturbation has to be followed."""
+        """Tell whether a perturbation has to be followed."""
         return math.isfinite(self.peak_agreement)
 
 
 FOR_VERDICTS = Settling(agreement=0.03)
-"""Enough to tell the kind of motion: thousands of designs are judged so."""
+"""Rules that suffice for the kind of motion; thousands of designs are judged by them."""
 FOR_NUMBERS = Settling(
     agreement=0.005, peak_agreement=0.005, shortest=400.0, samples=4096
 )
-"""For levels that are printed: they stay within 1 % however long the run goes on."""
+"""Rules for levels that are printed to about 1 %."""
 
 
 class Agreement(IntEnum):
-    """What two windows in succession show."""
+    """Kind of motion that two successive windows show, none if they disagree."""
 
     none = 0
     regular = 1
@@ -83,15 +83,15 @@ class Agreement(IntEnum):
 
 @dataclass(frozen=True)
 class WindowLevels:
-    """What windows are compared by.
+    """Statistics by which windows are compared.
 
     Attributes:
         velocities: rms of each component or mode, in one unit.
         separated, stuck: shares of the time, of each contact.
         peaks: largest force of each contact.
         growth: ln of the growth of a small perturbation; NaN where none was followed.
-        late_growth: of that, from the third to the last quarter.
-        periods: length.
+        late_growth: ln of its growth from the third to the last quarter.
+        periods: length of the window, in periods.
     """
 
     velocities: np.ndarray
@@ -109,7 +109,7 @@ class WindowLevels:
 
 
 def agreement(before: WindowLevels, now: WindowLevels, rules: Settling) -> Agreement:
-    """What two windows in succession show by the rules."""
+    """Return what two successive windows show by the rules."""
     if now.periods < rules.shortest:
         return Agreement.none
     if not rules.follows_perturbation:
@@ -135,7 +135,7 @@ def agreement(before: WindowLevels, now: WindowLevels, rules: Settling) -> Agree
 
 
 def difference(one: WindowLevels, other: WindowLevels) -> float:
-    """The largest difference of two windows: of velocities over the total, and of shares."""
+    """Return the largest difference of two windows: of velocities over the total, and of shares."""
     total = max(one.total, other.total, np.finfo(float).tiny)
     return float(
         max(
@@ -147,13 +147,13 @@ def difference(one: WindowLevels, other: WindowLevels) -> float:
 
 
 def _differ(one: np.ndarray, other: np.ndarray, least: float) -> float:
-    """The largest relative difference, of values below the least over that."""
+    """Return the largest relative difference, over ``least`` where both values are below it."""
     size = np.maximum(np.maximum(np.abs(one), np.abs(other)), least)
     return float(np.max(np.abs(one - other) / np.where(size > 0.0, size, 1.0)))
 
 
 def _component_grows(before: WindowLevels, now: WindowLevels, rules: Settling) -> bool:
-    """Whether the rms velocity of a component grows from one window to the next."""
+    """Tell whether the rms velocity of a component grows from one window to the next."""
     seen = before.velocities > rules.smallest * now.total
     with np.errstate(divide="ignore", invalid="ignore"):
         grown = np.log(now.velocities[seen] / before.velocities[seen])

@@ -1,19 +1,16 @@
-"""What is heard of a settled motion."""
+"""Verdict on a settled motion: quiet, squeals or hammers."""
 
 from squealpipe.schema.assess import Verdict
-
-OFTEN = 2
-"""Losses of contact, or returns to it, within a window from which contact is lost again and again:
-one may be the last of a transient."""
 
 
 def heard(losses: int, *, quiet: bool = False) -> Verdict:
     """Return the verdict on a settled motion by its losses of contact within a window.
 
     Args:
-        losses: of the contact that is lost most often, or returns to it.
+        losses: how often the contact that is lost most often is lost, or comes back.
         quiet: whether the motion has died out.
     """
     if quiet:
         return Verdict.quiet
-    return Verdict.hammers if losses >= OFTEN else Verdict.squeals
+    # a single loss may be the last one of a transient
+    return Verdict.hammers if losses >= 2 else Verdict.squeals

@@ -104,7 +104,7 @@ def margins(cycle: Cycle) -> dict[Margin, float]:
 def _next_tick(
     cycle: Cycle, leg: int, surface: int, sign: float
 ) -> dict[Margin, float]:
-    """How far a leg's end is from a tick of a clock, whose surface may be below zero before."""
+    """Return how far a leg's end is from a clock's tick, if its surface was above zero before."""
     path, event = cycle.parts.path, cycle.map.events[leg]
     index = len(cycle.map.flow.system.traced.variables) + surface
     first, last = (sign * float(end[leg]) for end in path.ends_of(index))

@@ -29,7 +29,7 @@ _DIFFERENCE = 1e-7
 _NEAR = 1e-4
 """Margin of a start below which it is taken for the one that vanishes."""
 _SAME = 1e-6
-"""By how much extremes change, or a margin is below zero, where a leg has only just vanished."""
+"""Largest change of extremes, or negative margin, where a leg has only just vanished."""
 _NO_MARGIN = Margin(MarginKind.length, -1, FREE)
 RETURNS = {Label.fold: 0.0, Label.period_doubling: np.pi, Label.torus: np.nan}
 """By which angle a disturbance is turned in a period; NaN where it is an unknown."""
@@ -216,11 +216,11 @@ def _real(vector: Vector) -> Vector:
 
 
 def _without_vanished_legs(cycle: Cycle) -> Cycle:
-    """The same cycle without the legs that have just vanished.
+    """Return the same cycle without the legs that have just vanished.
 
     At a touch round-off decides whether the run has a pair of events there. With the pair, the
-    speeds of both and the leg between them are all zero along the curve, and either may be taken
-    for an end of it.
+    speeds of both and the length of the leg between them stay zero along the curve, and might be
+    taken for its end.
     """
     for equations, guess in without_brief_legs(cycle):
         point = equations.solve(guess)

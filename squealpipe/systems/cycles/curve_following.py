@@ -128,8 +128,8 @@ class _Way:
             abs(self.curve.least_margin(point)[0]) <= MARGIN_ROUND_OFF
             for point in (first, last)
         ):
-            # the cycles are at a change of their events, where the branch turns, all along: the
-            # return map has no derivative there, and round-off would decide on its multipliers
+            # all along the curve the branch turns where the events change: the return map has no
+            # derivative there, and round-off would decide its multipliers
             return found
         for label, test in self.curve.tests().items():
             if test(first) * test(last) < 0.0:

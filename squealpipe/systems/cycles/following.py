@@ -50,7 +50,7 @@ _CLOSE = 1e-5
 _VERTICAL = 1e-9
 """Change of the parameter, over that of the cycle, where a branch is a family at one value."""
 _UNRESOLVED = 1e-8
-"""Relative distance from a homoclinic orbit in which round-off decides on multipliers."""
+"""Relative distance from a homoclinic orbit within which round-off decides the multipliers."""
 _BEFORE = 1e-9
 """Share before it up to which multipliers are followed."""
 
@@ -65,7 +65,7 @@ def _changes_sign(
 
 
 def _is_vertical(state: ContinuationState, cycle: Cycle) -> bool:
-    """Whether a branch goes on at one value of the parameter, through a family of cycles."""
+    """Tell whether a branch goes on at one value of the parameter, through a family of cycles."""
     return abs(float(state.tangent[-1])) <= _VERTICAL and cycle.is_family_member
 
 
@@ -131,7 +131,7 @@ class Follower:
     ) -> Outcome:
         self.trail.add(BranchPoint(state, cycle))
         if _is_vertical(state, cycle):
-            return Outcome.family_member  # the start is in it
+            return Outcome.family_member  # the start is in the family
         while len(self.points) < self.most:
             show(self._share())
             found = self._advance(state, cycle)
@@ -152,7 +152,7 @@ class Follower:
         return Outcome.point_limit
 
     def _end_at(self, state: ContinuationState, cycle: Cycle) -> Outcome | None:
-        """Why the branch ends at its last point, if it does."""
+        """Return why the branch ends at its last point, None if it does not."""
         if _is_vertical(state, cycle):
             return Outcome.family_member
         if self._is_at_end(self.points[-1].parameter):
@@ -162,10 +162,10 @@ class Follower:
         return self.trail.meets()
 
     def _clear_labels(self, share: float) -> None:
-        """Take the labels from what is next to the last point's parameter, where the branch ends.
+        """Remove the labels of points whose parameter is next to the last one's.
 
-        Round-off makes folds of a vertical piece, whose outermost cycle just touches a surface, and
-        pitchforks of cycles next to a homoclinic orbit.
+        Round-off turns a vertical piece, whose outermost cycle just touches a surface, into folds,
+        and cycles next to a homoclinic orbit into pitchforks.
         """
         here = self.points[-1].parameter
         for i, point in enumerate(self.points):

@@ -37,22 +37,22 @@ from squealpipe.systems.record import RunRecord
 _WINDOWS = (40.0, 160.0, 640.0)
 """Times, in units, within which a return is looked for."""
 _LONGER = 4.0
-"""A run that comes nearer to a cycle but is far from it, once, or has not come back, as often as
-its steps allow, goes on for so many times as long."""
+"""Factor by which a run goes on: once, if it comes nearer to a cycle but is still far from it; as
+often as its steps allow, if it has not come back."""
 _NEAR, _FAR = 0.05, 0.3
 """A return this close, over the motion's extent, ends the search; one this far is none."""
 _ASTRAY = 0.5
 """A cycle this far from the state that was to be near it, over the motion's extent, is another."""
 _TRIES, _SAMPLES, _COMPARED = 4, 2000, 16
 _AGAIN = 3.0
-"""A settled run is as near after two periods as after one, or less by this factor at most."""
+"""Factor by which a settled run may be farther off after two periods than after one."""
 _MOST_EVENTS = 48
-"""Events of a cycle beyond which none is sought that is run through only once, or not closely."""
+"""A cycle of more events is sought only if the run goes through it twice and returns closely."""
 _CLOSE = 1e-3
-"""Distance of a return that is close, over the motion's extent."""
+"""Largest distance of a close return, over the motion's extent."""
 _AT_REST = 1e-9
 _SOON = 10.0
-"""Times the time that a motion has run, within which it is at rest if it is told to come there."""
+"""A motion comes to rest only if it will be there within so many times as long as it has run."""
 
 
 @dataclass(frozen=True)
@@ -198,7 +198,7 @@ def near_free(
 
 
 def _next_window(window: float, steps: int, most_steps: int) -> float | None:
-    """The next time, in units, within which a return is looked for; None without steps for it."""
+    """Return the next time, in units, to look for a return in; None if steps do not suffice."""
     if window in _WINDOWS[:-1]:
         return _WINDOWS[_WINDOWS.index(window) + 1]
     return window * _LONGER if steps * _LONGER <= most_steps else None

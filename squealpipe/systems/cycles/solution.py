@@ -19,9 +19,9 @@ _FAMILY = 1e-6
 _ASIDE = 0.02
 """Step, over the cycle's extent, after which another member is looked for."""
 CLOSING_TOLERANCE = 2e-14
-"""Closing error, over the extent, that is always round-off; more is where it is measured."""
+"""Closing error, over the extent, that is always round-off; larger ones are checked."""
 _NEIGHBOURS, _SPREAD = 6, 8.0
-"""Points next to a solution at which round-off is measured, and how much more it may be."""
+"""Points next to a solution at which round-off is measured, and how many times that is allowed."""
 _NEUTRAL = 1e-9
 """Distance of a multiplier from 1 that is round-off."""
 _TURNED = 1e-2
@@ -159,10 +159,10 @@ class Cycle:
 
     @cached_property
     def closing_round_off(self) -> float:
-        """Residual that round-off may leave.
+        """Largest residual that round-off may leave.
 
-        At points a few units of the last place away the equations differ by their derivative and
-        by round-off.
+        It is measured at points a few units in the last place away: what their residuals differ
+        by beyond the derivative is round-off.
         """
         equations, size = self.map, self.map.size
         values, jacobian = equations.evaluate(self.point)
@@ -177,7 +177,7 @@ class Cycle:
 
     @cached_property
     def drifts(self) -> bool:
-        """Whether a period changes the motion by more than round-off, as slow decay does.
+        """Tell whether a period changes the motion by more than round-off, as slow decay does.
 
         Next to a family of cycles, where a second multiplier is 1, Newton's method gets no further
         than a motion that does not quite close. What closes to round-off is a member of a family.

@@ -21,7 +21,7 @@ _MET = 0.03
 GONE = 1e-5
 """The same where it is not followed any further."""
 _STILL, _GROWTH = 1e-3, 1.5
-"""Relative change of the parameter over which an unbounded period grows by a factor."""
+"""A period that grows by the factor while the parameter changes by less than this is unbounded."""
 _SAME = 1e-3
 """Distance from an older piece of the branch, over that piece, that is on it."""
 
@@ -106,14 +106,14 @@ class Trail:
 
     @property
     def is_unbounded(self) -> bool:
-        """Whether the period has grown by half while the parameter all but stood still.
+        """Tell whether the period has grown by half while the parameter all but stood still.
 
-        Next to a homoclinic orbit it grows as the logarithm of the distance.
+        Next to a homoclinic orbit the period grows as the logarithm of the distance.
         """
         values, periods = np.array(self.shapes)[:, :2].T
         near = np.abs(values - values[-1]) <= _STILL * abs(values[-1])
         first = 0 if near.all() else len(near) - int(np.argmin(near[::-1]))
-        # the last points are as near to each other as round-off allows
+        # the last points are so close that round-off makes their periods fall a little
         rises = bool((np.diff(periods[first:]) > -1e-6 * periods[-1]).all())
         return rises and bool(periods[-1] >= _GROWTH * periods[first])
 

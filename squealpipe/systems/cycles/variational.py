@@ -21,7 +21,7 @@ from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.legs import Path, Vector
 
 _TOGETHER, _FINEST = 20_000, 64
-"""Pieces of steps that are worked on at once, and most pieces of a step."""
+"""Most pieces of steps that are computed at once, and most pieces of one step."""
 
 LONGEST = 1.0
 """Longest step of the variational equations times a bound of its rate."""
@@ -37,32 +37,28 @@ def leg_derivatives(flow: Flow, values: Mapping[str, float], path: Path) -> Vect
     found[:] = np.eye(flow.columns)
     steps, first = len(path.steps), 0
     while first < steps:
-        # the steps of a stiff motion need many pieces each; most motions need one
-        block = slice(first, first + _TOGETHER)
+        # a step of a stiff motion needs many pieces; that of most motions needs one
+        block = slice(first, min(first + _TOGETHER, steps))
         slopes, lengths = _slopes_along(flow, values, path, block, 1)
         rate = _largest_rate(slopes[:, : flow.size])
         with np.errstate(invalid="ignore"):
             needed = float(np.nanmax(np.abs(lengths) * rate, initial=0.0)) / LONGEST
-        pieces = min(math.ceil(needed), _FINEST) if math.isfinite(needed) else 1
-        if pieces > 1:
-            size = max(_TOGETHER // pieces, 1)
-            blocks = [
-                slice(at, min(at + size, block.stop))
-                for at in range(first, min(block.stop, steps), size)
-            ]
-        else:
-            blocks = [block]
-        for each in blocks:
+        pieces = 1
+        if math.isfinite(needed):
+            pieces = max(1, min(math.ceil(needed), _FINEST))
+        size = _TOGETHER // pieces
+        for at in range(first, block.stop, size):
+            part = slice(at, min(at + size, block.stop))
             if pieces > 1:
-                slopes, lengths = _slopes_along(flow, values, path, each, pieces)
-            legs = np.repeat(path.leg[each], max(pieces, 1))
+                slopes, lengths = _slopes_along(flow, values, path, part, pieces)
+            legs = np.repeat(path.leg[part], pieces)
             transfer(slopes, lengths, legs, _UP_TO, _WEIGHTS, found)
         first = block.stop
     return found[:, : flow.size]
 
 
 def _largest_rate(slopes: Vector) -> Vector:
-    """A bound of the rate of the variational equations in each piece, from its middle."""
+    """Return a bound of the rate of the variational equations in each piece, from its middle."""
     middle = np.abs(slopes[:, :, len(_NODES) // 2]).transpose(2, 0, 1)
     power = np.linalg.matrix_power(middle, 4).sum(axis=2).max(axis=1)
     return np.asarray(power**0.25)
@@ -96,7 +92,7 @@ def _affine(flow: Flow, values: Mapping[str, float], path: Path) -> Vector:
 def _slopes_along(
     flow: Flow, values: Mapping[str, float], path: Path, which: slice, pieces: int
 ) -> tuple[Vector, Vector]:
-    """∂f/∂(states, parameters, time) at the nodes of each piece of some steps, and their lengths.
+    """Return ∂f/∂(states, parameters, time) at the nodes of pieces of steps, and their lengths.
 
     (states, columns, nodes, pieces)
     """

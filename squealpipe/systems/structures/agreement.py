@@ -1,10 +1,10 @@
-"""How far the modes of a reduced structure agree with those of the whole.
+"""Agreement of the modes of a reduced structure with those of the whole.
 
 Each mode of the reduced structure is paired with one of the whole, so that the relative distances
-of their eigenvalues sum to the least. An unstable mode of the whole whose partner does not grow, or
-rings elsewhere, is missing in the reduced one; a growth rate that differs from its partner's by
-more than itself has no known sign. Where either occurs, runs of the reduced structure say nothing
-about the whole.
+of their eigenvalues have the smallest sum. An unstable mode of the whole whose partner does not
+grow, or has another frequency, is missing in the reduced one; a growth rate that differs from its
+partner's by more than its own size has no known sign. Where either occurs, runs of the reduced
+structure say nothing about the whole.
 """
 
 from collections.abc import Callable
@@ -17,13 +17,6 @@ from scipy.optimize import linear_sum_assignment
 from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.refinement import polished
 from squealpipe.systems.structures.spectrum import Limits, Solver, Spectrum
-
-SMALLEST_GROWTH = 0.01
-"""Growth below this share of the frequency is judged by the frequency."""
-ELSEWHERE = 0.1
-"""Relative distance of frequencies beyond which two modes are not the same one."""
-MARGIN = 1.1
-"""Pairs are sought up to so far beyond the band, for a mode just beyond it has a partner too."""
 
 
 class Errors(NamedTuple):
@@ -46,7 +39,7 @@ class Truth:
         values: eigenvalues, 1/s, those up to a tenth beyond the band; all of a dense structure.
         grows: which grow beyond their own error.
         limit: end of the band, rad/s; infinite without one.
-        spectrum: that they are of, for more of them.
+        spectrum: the spectrum that holds them, whose pencil refines others.
     """
 
     values: np.ndarray
@@ -56,36 +49,37 @@ class Truth:
 
     @classmethod
     def of(cls, whole: ContactStructure, frequency_max: float | None) -> Self:
-        """Compute them at the structure's own friction and belt speed.
+        """Compute the modes at the structure's own friction and belt speed.
 
         Args:
             frequency_max: the end of the band, Hz; None: all of a dense structure.
         """
-        reach = None if frequency_max is None else MARGIN * frequency_max
+        # a mode just beyond the band may be the partner of one within it
+        reach = None if frequency_max is None else 1.1 * frequency_max
         spectrum = Solver(whole, Limits(reach), whole.belt_speed).at(whole.mu)
         return cls.from_spectrum(spectrum, frequency_max)
 
     @classmethod
     def from_spectrum(cls, spectrum: Spectrum, frequency_max: float | None) -> Self:
-        """Modes that are known already."""
+        """Take the modes from a spectrum that is known already."""
         limit = np.inf if frequency_max is None else 2.0 * np.pi * frequency_max
         grows = spectrum.values.real > spectrum.growth_errors
         return cls(spectrum.values, grows, limit, spectrum)
 
     @property
     def within(self) -> np.ndarray:
-        """Which are within the band."""
+        """Mask of the modes within the band."""
         return np.asarray(self.values.imag <= self.limit)
 
     @property
     def decays(self) -> bool:
-        """Whether all of these decay beyond their error."""
+        """Tell whether every mode within the band decays by more than its error."""
         decaying = self.values.real < -self.spectrum.growth_errors
         return bool(decaying[self.within].all())
 
     @property
     def is_all(self) -> bool:
-        """Whether these are all modes there are."""
+        """Tell whether these are all modes of the structure."""
         return self.spectrum.pencil.is_dense
 
     @property
@@ -105,9 +99,10 @@ class Agreement:
         growth_errors: of each mode's growth rate, 1/s; NaN likewise.
         missing: unstable modes of the whole within the band that the reduced structure lacks, as
             eigenvalues, 1/s, the fastest first.
-        unsure: places of modes that grow in the reduced structure by less than their error.
+        unsure: places of modes that grow in the reduced structure by less than their error, or
+            whose partner in the whole is not known.
         errors: the largest relative ones, over the unstable modes of the whole.
-        decays: whether every mode of the whole within the band dies out.
+        decays: whether every mode of the whole within the band decays.
     """
 
     frequency_errors: np.ndarray
@@ -119,12 +114,12 @@ class Agreement:
 
     @property
     def holds(self) -> bool:
-        """Whether the same modes grow in both structures."""
+        """Tell whether the same modes grow in both structures."""
         return not self.missing.size and not self.unsure.size
 
 
 def exact(spectrum: Spectrum) -> Agreement:
-    """The agreement of a structure that is not reduced with itself."""
+    """Return the agreement of a structure that is not reduced with itself."""
     nothing = np.zeros(len(spectrum.values))
     decays = bool((spectrum.values.real < -spectrum.growth_errors).all())
     return Agreement(
@@ -182,7 +177,8 @@ def compared(
         nearest = (
             values[place] if place >= 0 else values[np.abs(values - value).argmin()]
         )
-        scale = max(abs(value.real), SMALLEST_GROWTH * size)
+        # a tiny growth rate is judged by the frequency
+        scale = max(abs(value.real), 0.01 * size)
         errors = Errors(
             max(errors.frequency, float(abs(nearest.imag - value.imag) / size)),
             max(errors.growth, float(abs(nearest.real - value.real) / scale)),
@@ -199,17 +195,17 @@ def compared(
 
 
 def _far(partners: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Which pairs are of two frequencies, or of one mode alone."""
+    """Mask of pairs that are not one mode: frequencies a tenth apart, or no partner."""
     size = np.maximum(np.abs(values.imag), np.abs(partners.imag))
     size = np.where(size > 0, size, np.abs(values))
     with np.errstate(invalid="ignore"):
-        return np.asarray(~(np.abs(partners.imag - values.imag) <= ELSEWHERE * size))
+        return np.asarray(~(np.abs(partners.imag - values.imag) <= 0.1 * size))
 
 
 def refined(
     truth: Truth, spectrum: Spectrum, modes: np.ndarray
 ) -> Callable[[int], complex | None]:
-    """Return what refines a mode of the reduced structure to one of the whole.
+    """Return the function that refines a mode of the reduced structure to one of the whole.
 
     Args:
         spectrum: of the reduced structure.
@@ -232,7 +228,7 @@ def refined(
 
 
 def summary(agreement: Agreement) -> dict[str, Any]:
-    """What a reduced structure's record says of its errors."""
+    """Return the part of a reduced structure's record that states its errors."""
     return {
         "frequency_error": agreement.errors.frequency,
         "growth_rate_error": agreement.errors.growth,

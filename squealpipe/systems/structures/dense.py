@@ -27,8 +27,6 @@ from squealpipe.systems.structures.refinement import (
 )
 from squealpipe.systems.structures.stiff import GAP, condensation, stiff_degrees
 
-NEARLY_DOUBLE = 1e-9
-"""Error over frequency beyond which an undamped mode is judged together with its neighbour."""
 BACKWARD = 8.0
 """Backward error of LAPACK's eigenvalues, in units of round-off of the norm of the matrix."""
 
@@ -36,7 +34,7 @@ BACKWARD = 8.0
 def all_modes(pencil: Pencil) -> list[Eigenpair]:
     """An eigenpair for each complex pair and each real eigenvalue, by frequency.
 
-    Degrees of freedom that a penalty fixes, or without mass to speak of, add none (:mod:`.stiff`).
+    Degrees of freedom that a penalty fixes, or with next to no mass, add none (:mod:`.stiff`).
     """
     find = _undamped if pencil.is_undamped else _damped_slowly
     pairs = [_accurate(pencil, pair) for pair in _without_stiff(pencil, find)]
@@ -48,7 +46,7 @@ def all_modes(pencil: Pencil) -> list[Eigenpair]:
 def _without_stiff(
     pencil: Pencil, find: Callable[[Pencil], list[Eigenpair]]
 ) -> list[Eigenpair]:
-    """Eigenpairs of what is left when stiff degrees of freedom are condensed, in all of them."""
+    """Find the eigenpairs with stiff degrees of freedom condensed, and expand them to all."""
     mass, whole, stiffness = pencil.dense
     stiff = stiff_degrees(mass, stiffness, whole)
     if not stiff.any():
@@ -67,7 +65,7 @@ def _without_stiff(
         modal and LowRank(right.T @ modal.columns, modal.weights),
     )
     lowest = np.abs(stiffness.diagonal()[stiff] / mass.diagonal()[stiff]).min()
-    # what moves along with the kept ones counts, by its inertia
+    # inertia of the condensed rows that move along with the kept ones
     moved = np.linalg.norm(right[stiff], 2) if right.size else 0.0
     return [
         Eigenpair(
@@ -128,18 +126,19 @@ def _undamped(pencil: Pencil) -> list[Eigenpair]:
 
 
 def _told_apart(pencil: Pencil, pairs: list[Eigenpair]) -> list[Eigenpair]:
-    """Pairs without damping, those next to a double eigenvalue as two of one subspace.
+    """Replace undamped pairs next to a double eigenvalue by those of their common subspace.
 
-    Where two modes merge both vectors are one, and the error of each by itself has no bound. The
-    2 × 2 matrix of their common subspace is as accurate as any, and half the distance of both λ is
-    a root of what it has.
+    Where two modes merge their vectors become one, and the error of each alone has no bound. The
+    2 × 2 matrix of their common subspace stays accurate, and half the distance of both eigenvalues
+    is the square root of a number that its entries give.
     """
     squares = np.array([-(pair.value**2) for pair in pairs])
     told = list(pairs)
     waiting = {
         place
         for place, pair in enumerate(pairs)
-        if pair.error > NEARLY_DOUBLE * abs(pair.value) and pair.value.imag
+        # less of an error comes from round-off alone, not from a near neighbour
+        if pair.error > 1e-9 * abs(pair.value) and pair.value.imag
     }
     while waiting:
         place = waiting.pop()
@@ -158,9 +157,9 @@ def _told_apart(pencil: Pencil, pairs: list[Eigenpair]) -> list[Eigenpair]:
 def _of_block(
     pencil: Pencil, first: Eigenpair, second: Eigenpair
 ) -> tuple[Eigenpair, Eigenpair] | None:
-    """Both modes from their subspace; None where it is none."""
+    """Return both modes from their common subspace; None where they span none."""
     right, left = (
-        # of two that are all but parallel the difference counts
+        # where both are all but parallel, their difference spans the second direction
         np.linalg.qr(np.column_stack([_real(one), _real(one) - _real(other)]))[0]
         for one, other in ((first.right, second.right), (first.left, second.left))
     )
@@ -214,12 +213,12 @@ def _of_block(
 
 
 def _null(matrix: np.ndarray) -> Any:
-    """The vector of the smallest singular value."""
+    """Return the vector of the smallest singular value."""
     return la.svd(matrix)[2][-1].conj()
 
 
 def _real(vector: np.ndarray) -> Any:
-    """A real vector along one that is real but for a factor."""
+    """Return the real vector that a complex one is a multiple of."""
     largest = vector[np.abs(vector).argmax()]
     return unit_vector((vector * (largest.conjugate() / abs(largest))).real)
 
@@ -234,7 +233,7 @@ def _of_real_square(
         mass, _, stiffness = (w @ each for each in pencil.products(v))
         refined = float((stiffness / mass).real) if mass else np.inf
         bound = error**2 / scale + error_of_rounding_of_square(pencil, refined, v, w)
-        # where two modes merge wᴴMv is 0, and the quotient is of round-off
+        # where two modes merge wᴴMv is 0, and the quotient is all round-off
         if bound < error and abs(refined - square) <= 2.0 * error:
             square, error = refined, bound
     root = np.sqrt(abs(square))
@@ -270,10 +269,10 @@ def _checked(
 
 
 def _damped_slowly(pencil: Pencil) -> list[Eigenpair]:
-    """Those of a damped pencil, without those of rows that a dashpot holds and next to no mass.
+    """Find the eigenpairs of a damped pencil but for those of nearly massless rows on dashpots.
 
-    Their decay, damping over mass, would be the norm that round-off counts by. A larger mass there
-    changes the other eigenvalues a little; they are estimates then, which are polished.
+    Their decay rate, damping over mass, would set the norm to which round-off is relative. So such
+    rows get more mass, which changes the other eigenvalues a little; polishing mends that.
     """
     mass, damping, _ = pencil.dense
     rates = np.abs(damping.diagonal()) / mass.diagonal()

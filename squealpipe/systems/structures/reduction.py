@@ -37,11 +37,9 @@ from squealpipe.systems.structures.spectrum import Limits, Solver, check_frequen
 AND_LARGER = 3
 """Larger numbers of modes that must do as well: convergence is not monotonic."""
 FIRST = 64
-"""Modes computed at first of a large structure, and numbers up to which each is tried."""
-COARSER = 8
-"""Beyond, numbers grow by this part of themselves: trying each takes minutes."""
+"""Modes computed at first of a large structure; up to here every number is tried."""
 GROWS = 1e-9
-"""Growth over the modulus of an eigenvalue above which it is no round-off of the search."""
+"""Growth over the modulus of an eigenvalue below which the search takes it for round-off."""
 
 
 @takes_units
@@ -105,7 +103,10 @@ def reduce(
 
 
 def fewest_modes(structure: ContactStructure) -> int:
-    """One for each contact; its two directions are apart in two coordinates at least."""
+    """Return the fewest modes: one for each contact, and two where there are any.
+
+    A contact's two directions cannot differ in a single coordinate.
+    """
     return min(
         max(len(structure.contacts), 2 if structure.contacts else 1), structure.size
     )
@@ -138,7 +139,7 @@ class Kept:
         self.balanced = structure.given_load is None
 
     def parallel_contact(self, number: int) -> str | None:
-        """The first contact that has no two directions in the lowest of these modes."""
+        """Name the first contact whose two directions are one in the lowest of these modes."""
         for place, each in enumerate(self.whole.contacts):
             normal, along = (
                 self.normals[:number, place],
@@ -149,7 +150,7 @@ class Kept:
         return None
 
     def dependent(self, number: int) -> list[str]:
-        """Contacts whose sliding directions are dependent in the lowest of these modes."""
+        """Name the contacts whose sliding directions are dependent in the lowest of these modes."""
         names = [each.name for each in self.whole.contacts]
         return dependent_contacts(names, self.tangentials[:number])
 
@@ -188,7 +189,7 @@ class Kept:
         return np.array([each.value for each in pairs])
 
     def quick_values(self, number: int, added: float = 0.0) -> np.ndarray:
-        """These eigenvalues, s with Im s ≥ 0, without their last digits and their vectors.
+        """Return these eigenvalues, s with Im s ≥ 0, less accurately and without vectors.
 
         Args:
             added: damping ratio of every mode, beside its own.
@@ -219,7 +220,7 @@ class Kept:
 
 
 class Search:
-    """Numbers of modes kept, judged by the whole structure's unstable modes.
+    """Search for a number of modes by the unstable modes of the whole structure.
 
     Args:
         frequency_max: the end of the band, Hz, or None.
@@ -234,21 +235,20 @@ class Search:
     def smallest(
         self, fewest: int, tol: float = 1e-2, most: int | None = None
     ) -> int | None:
-        """The smallest number that meets the tolerance with the next three; None if none does.
+        """Return the smallest number that meets the tolerance, as do the next three; None if none.
 
         Args:
             most: numbers up to there are tried; None: all.
         """
         number, most = fewest, self.whole.size if most is None else most
         while number <= most:
-            with one_thread():  # of small matrices threads cost more than they save
+            with one_thread():  # with small matrices threads cost more than they save
                 meets = self._meets_with_larger(number, tol)
             if meets:
                 return number
             report(lambda number=number, most=most: number / most)  # type: ignore[misc]
-            number += (
-                1 if number < FIRST else max(1, min(number // COARSER, most - number))
-            )
+            # beyond, by an eighth at a time: trying every number takes minutes
+            number += 1 if number < FIRST else max(1, min(number // 8, most - number))
         return None
 
     def _meets_with_larger(self, number: int, tol: float) -> bool:
@@ -263,21 +263,21 @@ class Search:
             return False
         try:
             values = kept.quick_values(number)
-        except NoSlidingError:  # of these modes alone
+        except NoSlidingError:  # in these modes, not in the whole
             return False
         grows = values.real > GROWS * np.abs(values)
         agreement = compared(self.truth, values, grows)
         return agreement.holds and max(agreement.errors) <= tol
 
     def _reaches(self, number: int) -> bool:
-        """Whether the unstable modes of the whole are not far above all that are kept."""
+        """Tell whether the modes kept reach half the highest unstable frequency of the whole."""
         if number == self.whole.size:
             return True
         highest = np.abs(self.truth.unstable.imag).max(initial=0.0)
         return bool(self.kept.omega[number - 1] >= 0.5 * highest)
 
     def _loses_stick(self, number: int) -> bool:
-        """Whether sliding directions that are independent in the whole are not in these modes."""
+        """Tell whether directions of sliding, independent in the whole, are dependent here."""
         return self._all_can_stick and bool(self._at_least(number).dependent(number))
 
     @cached_property
@@ -291,7 +291,11 @@ class Search:
         return self.kept
 
     def structure(self, number: int) -> ContactStructure:
-        """The structure of so many modes with its record."""
+        """Return the structure of so many modes with its record.
+
+        Raises:
+            ValueError: a contact has no two directions in these modes; says how many suffice.
+        """
         kept = self._at_least(number)
         if name := kept.parallel_contact(number):
             enough = next(
@@ -317,13 +321,13 @@ class Search:
 
 
 def dependent_of(structure: ContactStructure) -> list[str]:
-    """Contacts of a structure that cannot all stick at once."""
+    """Name the contacts of a structure that cannot all stick at once."""
     names = [each.name for each in structure.contacts]
     return dependent_contacts(names, structure.tangentials)
 
 
 def conflict_in_stick(structure: ContactStructure) -> str | None:
-    """Why the structure cannot be run because of contacts that stick together, and what helps."""
+    """Say which contacts cannot stick at once, so that nothing can be run, and what helps."""
     names = dependent_of(structure)
     if not names:
         return None
@@ -348,7 +352,7 @@ def conflict_in_stick(structure: ContactStructure) -> str | None:
 
 
 def agreement_of(truth: Truth, spectrum: Any, modes: np.ndarray) -> Agreement:
-    """How the modes of a reduced structure agree with those of the whole.
+    """Return how the modes of a reduced structure agree with those of the whole.
 
     Args:
         spectrum: of the reduced structure.
@@ -359,7 +363,7 @@ def agreement_of(truth: Truth, spectrum: Any, modes: np.ndarray) -> Agreement:
 
 
 def modes_that_would_do(structure: ContactStructure, truth: Truth) -> int | None:
-    """More modes than a reduced structure has in which it agrees with the whole within 1 %."""
+    """Return a larger number of modes that agrees with the whole within 1 %, None if none does."""
     origin = structure.reduced_from
     if origin is None:
         return None
@@ -370,14 +374,14 @@ def modes_that_would_do(structure: ContactStructure, truth: Truth) -> int | None
 def fitted(
     structure: ContactStructure, frequency_max: float | None, most: int
 ) -> ContactStructure:
-    """The structure of the fewest modes that agree with it within 1 %, or of the most there may be.
+    """Reduce to the fewest modes that agree within 1 %, or to ``most`` where none do.
 
     Args:
         frequency_max: unstable modes up to there count, Hz; needed beyond 1000 degrees of freedom.
         most: number of modes that may be kept, no smaller than that of contacts.
     """
     if structure.size > DENSE and frequency_max is None:
-        return reduce(structure)  # says what is needed
+        return reduce(structure)  # raises: a band is needed
     search = Search(structure, Truth.of(structure, frequency_max), frequency_max)
     number = search.smallest(fewest_modes(structure), most=most)
     return search.structure(most if number is None else number)

@@ -1,7 +1,7 @@
-"""Degrees of freedom that are held by a penalty, or have next to no mass, taken out of a pencil.
+"""Take degrees of freedom that a penalty holds, or that have next to no mass, out of a pencil.
 
-Programs fix a degree of freedom by a stiffness of 1e20 to 1e36 on its diagonal. In eigenvalues of
-the whole, round-off of that entry hides all others. So such rows are condensed: x = R x_a with
+Programs fix a degree of freedom by a stiffness of 1e20 to 1e36 on its diagonal. Round-off of
+that entry would hide all other eigenvalues. So such rows are condensed: x = R x_a with
 R = [1; −K_bb⁻¹ K_ba], which for a penalty is x_b = 0, and for a mass that is next to nothing its
 static displacement. Rows are measured against each other one by one, never against the largest
 entry: there must be a gap that no mechanical structure has.
@@ -16,16 +16,17 @@ import scipy.linalg as la
 
 @dataclass(frozen=True)
 class Gap:
-    """Between what is kept and what is taken out, by K_ii/M_ii.
+    """Thresholds of the gap in K_ii/M_ii between the rows that are kept and those taken out.
 
     Attributes:
-        least: of both, where that of the stiff ones is beyond ``mechanical``. Doubled,
+        least: smallest ratio of both sides, where the stiff side is beyond ``mechanical``. Doubled,
             penalties near 1e20 on a stiff body stay in, and cost digits.
-        mechanical: (rad/s)²; 16 MHz, beyond the modes of a mesh of bodies.
-        alone: of both below that; only for rows whose coupling is round-off. Smaller, rigid bodies
-            on springs of almost no stiffness would be split off from what is elastic.
-        conditioned: least reciprocal condition of K_bb: a rigid link holds two rows to each other,
-            not both of them.
+        mechanical: (rad/s)², 16 MHz; the modes of a mesh of bodies are below.
+        alone: smallest ratio of both sides where the stiff side is below ``mechanical``, for rows
+            whose coupling is round-off. If it were smaller, rigid bodies on springs of almost no
+            stiffness would be split off from what is elastic.
+        conditioned: smallest reciprocal condition of K_bb. A rigid link holds two rows to each
+            other but to nothing else, and is not condensed.
     """
 
     least: float = 1e8
@@ -40,9 +41,9 @@ GAP = Gap()
 def stiff_degrees(
     mass: np.ndarray, stiffness: np.ndarray, damping: np.ndarray | None = None
 ) -> Any:
-    """Which degrees of freedom are taken out, (n,).
+    """Return a mask of the degrees of freedom that are taken out, (n,).
 
-    A row without mass to speak of, on a dashpot, follows the others late: it is not taken out.
+    A row with next to no mass on a dashpot lags behind the others: it is not taken out.
     """
     size = len(mass)
     none = np.zeros(size, bool)
@@ -67,15 +68,15 @@ def stiff_degrees(
 def _is_late(
     damping: np.ndarray, stiffness: np.ndarray, stiff: np.ndarray, below: float
 ) -> bool:
-    """Whether dampers of stiff rows count beside their springs at the kept rows' frequencies."""
+    """Tell whether dampers of stiff rows matter at the kept rows' frequencies."""
     largest = np.maximum(np.abs(damping).max(axis=0), np.abs(damping).max(axis=1))
     springs = np.abs(stiffness.diagonal())
-    # an eighth digit is what polishing needs, and penalties are beyond by far
+    # polishing needs eight digits; the springs of penalties exceed their dampers by far more
     return bool((largest * np.sqrt(below) > 1e-8 * springs)[stiff].any())
 
 
 def beyond_gap(mass: np.ndarray, stiffness: np.ndarray) -> int:
-    """How many rows a penalty fixes, by the diagonals of both matrices alone."""
+    """Count the rows that a penalty fixes, by the diagonals of both matrices alone."""
     ratios = np.sort(np.abs(stiffness) / mass)
     above = (ratios[1:] > GAP.least * ratios[:-1]) & (ratios[:-1] > 0)
     places = np.flatnonzero(above & (ratios[1:] >= GAP.mechanical))
@@ -83,7 +84,7 @@ def beyond_gap(mass: np.ndarray, stiffness: np.ndarray) -> int:
 
 
 def _is_apart(stiffness: np.ndarray, stiff: np.ndarray) -> bool:
-    """Whether stiff rows are coupled to the others, by no more than round-off of both."""
+    """Tell whether stiff rows are coupled to the others, and by no more than round-off."""
     across = np.abs(stiffness[np.ix_(~stiff, stiff)])
     back = np.abs(stiffness[np.ix_(stiff, ~stiff)])
     diagonal = np.abs(stiffness.diagonal())
@@ -99,7 +100,7 @@ def _is_regular(block: np.ndarray) -> bool:
 
 
 def condensation(stiffness: np.ndarray, stiff: np.ndarray) -> np.ndarray:
-    """R, (n, kept), from the kept degrees of freedom to all, by K x = 0 in the stiff rows."""
+    """Return R, (n, kept), which maps kept degrees of freedom to all by K x = 0 in stiff rows."""
     kept = np.flatnonzero(~stiff)
     basis = np.zeros((len(stiff), len(kept)))
     basis[kept, np.arange(len(kept))] = 1.0

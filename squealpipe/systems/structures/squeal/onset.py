@@ -36,9 +36,9 @@ class FirstOnset:
 
 
 def confirmed_onset(plant: Plant) -> FirstOnset | Outcome:
-    """Where steady sliding turns unstable, if the whole structure does so within 1 % of it.
+    """Return where steady sliding turns unstable, if the whole structure does so within 1 % of it.
 
-    It is sought in the modes that are run. Unresolved where the whole structure disagrees.
+    It is sought in the modes that are run, and unresolved where the whole structure disagrees.
     """
     found = first_onset(plant)
     if plant.structure.reduced_from is None or found is Outcome.unresolved:

@@ -32,7 +32,7 @@ PUSH = 0.01
 def carried(
     structure: ContactStructure, frequency_max: float | None = None
 ) -> ContactStructure:
-    """A structure of as few modes as answer, and no more than a system can carry.
+    """Return a structure of as few modes as give the answer, and no more than a run can have.
 
     Args:
         frequency_max: unstable modes up to there count, Hz; None: as it was reduced, or all.
@@ -47,7 +47,7 @@ def carried(
     origin = structure.reduced_from or ReducedFrom(structure, frequency_max)
     whole, band = origin.whole, origin.frequency_max
     if len(whole.contacts) > MOST_COMPONENTS:
-        # nothing is run: what can be said is said of the structure itself
+        # nothing will be run: the modes of the structure itself are reported
         return (
             structure if structure.size <= DENSE else reduce(whole, frequency_max=band)
         )
@@ -88,7 +88,7 @@ class Plant:
 
     @cached_property
     def obstacle(self) -> str | None:
-        """Why it cannot be run, and what helps; None if it can."""
+        """Reason why the structure cannot be run, with a remedy; None if it can."""
         count = len(self.structure.contacts)
         if count > MOST_COMPONENTS:
             return f"{count} contacts are more than the {MOST_COMPONENTS} that runs can have"
@@ -100,7 +100,7 @@ class Plant:
 
     @cached_property
     def agreement(self) -> Agreement:
-        """How far its modes agree with those of the structure that it was reduced from."""
+        """Agreement of its modes with those of the structure that it was reduced from."""
         if self.truth is None or self.structure.modes is None:
             return exact(self.spectrum)
         return agreement_of(self.truth, self.spectrum, self.structure.modes)
@@ -115,7 +115,7 @@ class Plant:
 
     @cached_property
     def enough(self) -> int | None:
-        """How many modes would agree with the whole where these do not; None if none are known."""
+        """Number of modes that would agree with the whole where these do not; None if not known."""
         if self.truth is None or self.agreement.holds:
             return None
         return modes_that_would_do(self.structure, self.truth)

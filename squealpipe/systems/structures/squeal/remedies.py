@@ -1,4 +1,4 @@
-"""How much more damping stops what grows."""
+"""Find how much more damping stops the modes that grow."""
 
 import math
 from collections.abc import Callable
@@ -19,23 +19,17 @@ TRIED = np.geomspace(1e-4, MOST_DAMPING, 24)
 """Ratios between which stability is taken to change once at most."""
 
 
-SMALL = 32
-"""Degrees of freedom up to which eigenvalues are computed to their last digits."""
-CLOSE = 0.01
-"""Share of the ratio by which the whole structure may need more or less damping."""
-
-
 def added_damping(plant: Plant) -> tuple[float, Outcome]:
-    """The smallest ratio of damping, added to every mode at rest, from which no mode grows.
+    """Return the smallest ratio of damping, added to every mode at rest, from which no mode grows.
 
     Damping may destabilize before it stabilizes: from this ratio to the largest tried nothing
     grows. It is found in the modes that are run, and confirmed in the whole structure: there modes
-    grow with 1 % less, and none with 1 % more. Where that fails a whole structure of dense matrices
-    is searched itself.
+    grow with 1 % less, and none with 1 % more. Where that fails, the whole structure is searched if
+    its matrices are dense and no band limits its modes.
 
     Returns:
-        0 where nothing grows without it, NaN where the largest does not suffice (``not_reached``)
-        or where it is not known (``unresolved``).
+        The ratio and its outcome: 0 where nothing grows without it, NaN where the largest does not
+        suffice (``not_reached``) or where it is not known (``unresolved``).
     """
     ratio = _searched(plant.structure)
     origin = plant.structure.reduced_from
@@ -48,7 +42,7 @@ def added_damping(plant: Plant) -> tuple[float, Outcome]:
 
 
 def _confirmed(plant: Plant, ratio: float) -> bool:
-    """Whether the whole structure grows with a little less damping, and not with a little more."""
+    """Tell whether modes of the whole grow with 1 % less damping, and none with 1 % more."""
     origin, truth = plant.structure.reduced_from, plant.truth
     assert origin is not None and truth is not None  # noqa: S101, PT018
     grows_now = bool(truth.unstable.size)
@@ -64,17 +58,18 @@ def _confirmed(plant: Plant, ratio: float) -> bool:
 
     if not math.isfinite(ratio):
         return grows(MOST_DAMPING)
-    return grows((1.0 - CLOSE) * ratio) and not grows((1.0 + CLOSE) * ratio)
+    return grows(0.99 * ratio) and not grows(1.01 * ratio)
 
 
 def _searched(structure: ContactStructure) -> float:
-    """The ratio that one structure needs by itself, NaN if the largest does not suffice."""
+    """Return the ratio that one structure needs by itself, NaN if the largest does not suffice."""
     now = _spectrum(structure)
     if not (now.values.real > now.growth_errors).any():
         return 0.0
     growth = _growth_over_ratio(structure)
     tried, above = TRIED[::-1].tolist(), math.nan
-    for ratio in [*tried, 0.0]:  # from the largest down to the first at which one grows
+    # from the largest down to the first at which a mode grows
+    for ratio in [*tried, 0.0]:
         if ratio == 0.0 or growth(ratio) > 0:
             break
         above = ratio
@@ -84,10 +79,10 @@ def _searched(structure: ContactStructure) -> float:
 
 
 def _growth_over_ratio(structure: ContactStructure) -> Callable[[float], float]:
-    """The largest growth rate, 1/s, as a function of the ratio of damping that is added."""
+    """Return the largest growth rate, 1/s, as a function of the ratio of damping added."""
     # in coordinates of its modes what damps it already is in its matrix, and ratios are free
     kept = Kept(structure, structure.size)
-    if structure.size > SMALL:
+    if structure.size > 32:  # eigenvalues to their last digits would take too long
         return lambda ratio: float(kept.quick_values(structure.size, ratio).real.max())
     modal = kept.reduced(structure.size)
     return lambda ratio: float(
