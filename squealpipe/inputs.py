@@ -45,7 +45,7 @@ UNITS = UNITS_OF_INPUTS | {
 STATE, STATES = ("x", "y", "vx", "vy"), ("initial_state", "guess", "start")
 """What a state consists of, and the arguments that are states."""
 BY_NAME = ("distributions", "design", "to", "vary", "fixed")
-"""Arguments that may hold values by the name of what they are for."""
+"""Arguments that may be mappings from names of parameters to values."""
 _OF_PARTS = frozenset({*BY_NAME, *STATES, *ANGLES})
 """Further arguments that may hold texts with units."""
 
@@ -95,10 +95,10 @@ def parse_number(text: str, units: str | None = None) -> float:
 
 
 def reader(name: str, units: Mapping[str, str] = UNITS) -> Callable[[str], float]:
-    """What reads a text as a value of a parameter, an angle or an option.
+    """Return the function that reads a text as a parameter, an angle or an option.
 
     Args:
-        units: CF unit by name; what is not there has none.
+        units: CF unit by name; other names have no unit.
     """
     if name in ANGLES and units is UNITS:
         return parse_angle

@@ -82,7 +82,7 @@ AMBIGUOUS = {
     "cwt|hundredweight": "45.36 kg or, in Britain, 50.8 kg; write it in kg",
     "[gG]rad": "a degree or a 400th of a turn; write deg, or gon",
 }
-"""Patterns of words for units that mean two things to people → both, and the remedy."""
+"""Pattern of a word that means two units → both of them, with a remedy."""
 USUAL = (
     *(
         "g",
@@ -103,7 +103,7 @@ USUAL = (
     ),
     *("kPa", "MPa", "GPa", "bar", "Hz", "kHz", "rad", "deg", "rpm", "newton", "meter"),
 )
-"""Units that are meant where one is written in other letters, like KN."""
+"""Units that a word in other capital and small letters stands for, like kN for KN."""
 
 _ABROAD = (
     dict.fromkeys(("km/t", "km/tim", "km/std", "km/u", "км/ч"), "km/h")
@@ -174,7 +174,7 @@ def in_si(text: str, units: str, keys: Mapping[str, str] | None = None) -> float
 
 
 def _factor(written: str, units: str, keys: Mapping[str, str] | None) -> Decimal:
-    """What a number in one unit is multiplied by to be one in another.
+    """Return the factor that converts a number from one unit to another.
 
     Raises:
         UnitError: the unit is unknown, ambiguous or of another kind.
@@ -199,14 +199,14 @@ def _factor(written: str, units: str, keys: Mapping[str, str] | None) -> Decimal
         raise UnitError(_wrong_kind(unit, units, keys))
     if not (_is_multiple(unit) and _is_multiple(target)):
         raise UnitError(
-            f"{written.strip()} counts from another zero or in logarithms; convert it"
+            f"{written.strip()} has a zero of its own or is logarithmic; convert it"
         )
     factor: Decimal = _registry().Quantity(Decimal(1), unit).to(target).magnitude
     return factor * Decimal(_turns_of(unit, target) or 1.0)
 
 
 def _is_multiple(unit: Any) -> bool:
-    """Whether twice the number is twice as much: not of °C, nor of decibels."""
+    """Tell whether twice the number is twice as much, which °C and decibels are not."""
     try:
         one, two = (
             float(_registry().Quantity(Decimal(n), unit).to_base_units().magnitude)
@@ -295,7 +295,7 @@ def number_of(value: Any, units: str, keys: Mapping[str, str] | None = None) -> 
 
 
 def holds_units(value: Any) -> bool:
-    """Whether a value is a quantity or a text with a unit, or a list or array that holds one."""
+    """Tell whether a value is a quantity or a text with a unit, or a list or array with one."""
     if isinstance(value, str):
         return _BEYOND_A_NUMBER.match(value) is not None
     if isinstance(value, list | tuple):
@@ -312,11 +312,11 @@ def holds_units(value: Any) -> bool:
 def refuse_units(value: Any) -> None:
     """Raise if a value that has no declared unit has one."""
     if holds_units(value):
-        raise UnitError("a plain number is needed, for no unit is declared for it")
+        raise UnitError("a plain number is needed: no unit is declared for it")
 
 
 def is_quantity(value: Any) -> bool:
-    """Whether a value is a quantity of pint."""
+    """Tell whether a value is a quantity of pint."""
     return hasattr(value, "magnitude") and hasattr(value, "dimensionality")
 
 
@@ -451,7 +451,7 @@ def _unit(text: str) -> Any:
 
 
 def _measures(unit: Any, units: str) -> bool:
-    """Whether a unit measures what another, a CF unit, does."""
+    """Tell whether a unit measures the same as a CF unit."""
     target = _unit(units)
     if unit.dimensionality != target.dimensionality:
         return False

@@ -1,4 +1,4 @@
-"""Our engine beside its peers: it runs, and they are asked anew only on demand."""
+"""Benchmark of our engine, which runs, beside peers, which run again only on demand."""
 
 from collections.abc import Sequence
 
@@ -17,14 +17,14 @@ def benchmark_beside_peers(
     tolerances: Sequence[float] = TOLERANCES,
     run_peers: bool = False,
 ) -> xr.Dataset:
-    """Dataset ``benchmark`` of our engine, run here, and of peers, whose answers are shipped.
+    """Return dataset ``benchmark`` of our engine, run here, and of peers, by shipped answers.
 
     A peer's answers say nothing new when a study is computed again, and take most of its time.
 
     Args:
-        solvers: names, or FILE.py:FUNCTION. Without shipped answers a solver runs here; one that
-            is not installed is left out then.
-        run_peers: ask all of them anew.
+        solvers: names, or FILE.py:FUNCTION. A solver without shipped answers runs here, or is left
+            out if it is not installed.
+        run_peers: run all of them here.
 
     Raises:
         ValueError: answers are not shipped at one of the tolerances, or a solver is unknown.

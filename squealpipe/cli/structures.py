@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 AUDIBLE = 20e3
-"""Frequency up to which modes are shown where no limit is given, Hz: beyond are those of a mesh."""
+"""Frequency up to which modes are shown where no limit is given, Hz; higher ones are not heard."""
 LISTED = 20
 """Unstable modes that are printed."""
 

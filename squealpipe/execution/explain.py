@@ -223,7 +223,7 @@ def refuse_other_package(directory: Path) -> None:
 
 
 def _same_code(package: Path) -> bool:
-    """Whether a package holds what is imported, as one that was installed from this folder."""
+    """Tell whether a package has the code that is imported, as if installed from this folder."""
     return all(
         (there := PACKAGE / file.relative_to(package)).is_file()
         and there.read_bytes() == file.read_bytes()
@@ -250,7 +250,7 @@ def _changes(path: Path, made: Mapping[str, Any]) -> list[str]:
 def _changing(
     there: Path, outputs: Mapping[str, Mapping[str, Any]], pending: Container[str]
 ) -> list[str] | None:
-    """Return the figures among some outputs that change: a rule draws all those of one topic.
+    """Return the figures that change, among all that a rule draws for one topic.
 
     A figure changes if it is missing, if a dataset that it reads is pending, or if a module that it
     imports is younger. None if the rule draws no figures, or none of these is why it runs.

@@ -49,8 +49,8 @@ EVERY = 5.0
 MOST = 2000
 """Finished runs that are held in memory."""
 BATCH, BATCH_TIME = 32, 0.5
-"""Runs that a process gets at once, so that short ones are not lost in handing them over, and the
-time that they may take, s: an interruption loses what is under way."""
+"""Most runs that a process gets at once, since handing over each short run alone costs more than
+the run; and most time that they take, s, since an interruption loses runs under way."""
 
 
 @checked
@@ -60,7 +60,7 @@ def _gate(
     vary: Mapping[str, Line],
     fixed: Mapping[str, Any],
 ) -> tuple[Mapping[str, Any], Mapping[str, Any]]:
-    """What varies and what is fixed, in SI; types of all fields of a sweep are checked."""
+    """Return what varies and what is fixed, in SI; the types of all fields are checked."""
     return vary, fixed
 
 
@@ -290,7 +290,7 @@ def _runs(sweep: Sweep, workers: int | None, first: int) -> Iterator[Run]:
 
 
 def _batch(sweep: Sweep, points: Sequence[Sequence[float]]) -> tuple[list[Run], float]:
-    """Some runs, and how long they took, s."""
+    """Run several points; return their results and the time they took, s."""
     started = time.monotonic()
     runs = [_arrays(sweep, point, 1) for point in points]
     return runs, time.monotonic() - started

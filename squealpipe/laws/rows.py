@@ -43,7 +43,8 @@ class FileRow(NamedTuple):
 class FileRows(NamedTuple):
     """Rows of a file, what separates their cells, its comments, and cells of doubtful text.
 
-    Excel keeps numbers without thousands; a text like ``1.000`` in a sheet may be one or thousand.
+    Excel stores numbers without separators of thousands; a text like ``1.000`` in a sheet may be
+    one or a thousand.
     """
 
     rows: list[FileRow]

@@ -18,7 +18,7 @@ TIMES = (datetime.date, datetime.time, datetime.timedelta)
 IS_TIME = (
     " (a date or time to Excel; format the column as text, then write the cell again)"
 )
-"""What stands behind cells like 2:1 and 1.2 that Excel took for something else."""
+"""Words appended to cells like 2:1 or 1.2 that Excel took for a time or a date."""
 
 
 def sheet(path: Path, is_header: Callable[[Sequence[str]], object]) -> FileRows:

@@ -128,7 +128,7 @@ def linear_elastic_force(
 
 
 def springs_alike(fields: Mapping[str, np.ndarray | float]) -> np.ndarray:
-    """Where (α1, α2) and (π − α2, π − α1) are the same system."""
+    """Return where (α1, α2) and (π − α2, π − α1) are the same system."""
     pairs = [
         np.equal(fields.get(f"{name}1", 0.0), fields.get(f"{name}2", 0.0))
         for name in ("k", "length", "damping")
@@ -137,5 +137,5 @@ def springs_alike(fields: Mapping[str, np.ndarray | float]) -> np.ndarray:
 
 
 def springs_are_equal(fields: Mapping[str, np.ndarray | float]) -> bool:
-    """Whether (α1, α2) and (π − α2, π − α1) are the same system at every parameter set."""
+    """Tell whether (α1, α2) and (π − α2, π − α1) are the same system at every parameter set."""
     return bool(springs_alike(fields).all())

@@ -153,7 +153,7 @@ def circle_arcs(
 
 
 def reached_arcs(p: Any, centre: Any, radius: Any, points: int) -> list[np.ndarray]:
-    """The same of many circles, two arcs (circles, points); NaN of one that is not reached.
+    """Return two arcs of each of many circles, (circles, points); NaN of those not reached.
 
     Args:
         p, centre, radius: numbers or arrays (circles, 1).

@@ -74,10 +74,10 @@ def sources(*scripts: Path) -> list[Path]:
 
 
 def used(part: Mapping[str, Any], code: Iterable[Path]) -> list[Path]:
-    """Return the files that decide a rule's results: of laws those that something names.
+    """Return the files that decide a rule's results: all but the laws that nothing names.
 
-    A module imports all laws with one of them. A law counts where the slice of the configuration
-    names it, or a module that hands its name on: the default's, and what a task tries besides.
+    Where a module imports one law it imports all. A law counts only if the slice of the
+    configuration names it, or a module passes its name on, as for a default.
     """
     code, laws = list(code), law_files()
     named = set(re.findall(r"\w+", canonical(part)))

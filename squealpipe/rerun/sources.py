@@ -21,14 +21,14 @@ WORKFLOW = (PACKAGE / "workflow").resolve()
 
 
 LAWS = ("friction_laws", "contact_laws")
-"""Folders of one module for each law; all are imported where one of them is."""
+"""Folders with one module for each law; where one is imported, all are."""
 
 
 class Source(NamedTuple):
-    """What one file imports and reads from the package, and the digest of its code.
+    """Package modules that a file imports and reads, and the digest of its code.
 
     Attributes:
-        laws: names of laws that it hands on; to compare a name with one is no use of that law.
+        laws: names of laws that it passes on; a name that is only compared does not count.
     """
 
     imports: frozenset[Path]
@@ -81,9 +81,7 @@ def law_files() -> dict[Path, str]:
 
 
 class _Module(NamedTuple):
-    """What was read of a module: package modules that it imports, ``INPUT_FILES``, its digest, and
-    the laws that it names.
-    """
+    """Facts read from a module: its imports, ``INPUT_FILES``, digest, and the laws it names."""
 
     imports: list[str]
     inputs: list[str]
@@ -92,9 +90,9 @@ class _Module(NamedTuple):
 
 
 def _parsed(content: bytes, documented: bool) -> _Module:
-    """Parse a module, or remember what was found in the same text before.
+    """Parse a module, or recall what the same text gave before.
 
-    Syntax trees of all modules take as long as all else that a dry run does.
+    Parsing all modules takes as long as the rest of a dry run.
     """
     key = hashlib.sha256(content + bytes(documented)).hexdigest()[:32]
     known = _remembered()
@@ -122,7 +120,7 @@ def _memory() -> Path:
 
 @cache
 def _remembered() -> dict[str, _Module]:
-    """Digest of a text → what was found in it."""
+    """Return what was found in texts that were parsed before, by their digest."""
     known = {}
     with suppress(OSError):
         for line in _memory().read_text(encoding="utf-8").splitlines():

@@ -22,10 +22,10 @@ def solve(
     longest: float = math.inf,
     compiled: bool = False,
 ) -> Any:
-    """Times, kinds, state, evaluations.
+    """Return times, kinds, state, evaluations.
 
     Args:
-        longest: longest step, as a share of the run: two crossings in one step are seen by none.
+        longest: longest step, as a share of the run; two crossings within one step go unseen.
         compiled: compile the field to machine code; the solver around it stays Python.
     """
 

@@ -51,7 +51,7 @@ def judge_growth(sizes: Any) -> np.ndarray:
 
 
 def growth_fails(sizes: Any) -> np.ndarray:
-    """Whether a window that is known says already that a run does not grow by the rule.
+    """Tell whether a window that is known already rules out growth by the rule.
 
     Args:
         sizes: (…, ``WINDOWS``), NaN of windows that were not run.

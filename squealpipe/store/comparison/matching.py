@@ -77,7 +77,7 @@ def align(a: xr.Dataset, b: xr.Dataset, schema: DatasetSchema | None = None) -> 
 def _judged_part(
     a: xr.Dataset, b: xr.Dataset, schema: DatasetSchema
 ) -> tuple[xr.Dataset, xr.Dataset, list[str]]:
-    """Both datasets at the entries that a comparison judges, and notes of the others."""
+    """Return both datasets at the entries that a comparison judges, and notes on the others."""
     notes = []
     for dim, (name, value) in schema.judged.items():
         if not all(name in each.variables for each in (a, b)):

@@ -31,8 +31,6 @@ FAR = 10.0
 """Distance of steady sliding from rest, over the preload, from which it is told."""
 NOT_FOUND = "none"
 """In place of a value that was not found within the range searched."""
-SEEN_ERROR = 5e-3
-"""Statistical error, over a level, that its digits would show."""
 CHEAPEST = 3
 """Cures that an answer names."""
 
@@ -172,7 +170,7 @@ def level(answer: xr.Dataset) -> str:
 
 
 def _scatter(answer: xr.Dataset) -> str:
-    """By how much the levels of a motion that does not repeat may be off, where that is seen."""
+    """Return the statistical error of the levels in words, if their digits would show it."""
     ways = [f"velocity_rms_{way}" for way in ("along", "across")]
     if error_of(ways[0]) not in answer:  # of a version that did not say
         return ""
@@ -180,7 +178,7 @@ def _scatter(answer: xr.Dataset) -> str:
     errors = [float(answer[error_of(way)]) for way in ways]
     loudest = int(np.argmax(values))
     share = errors[loudest] / max(values[loudest], 1e-300)
-    return f" (within {percent(share)})" if share >= SEEN_ERROR else ""
+    return f" (within {percent(share)})" if share >= 5e-3 else ""
 
 
 def impacts(answer: xr.Dataset) -> str:
@@ -217,10 +215,10 @@ def cures(answer: xr.Dataset) -> list[CureWords]:
 
 
 def of_a_push(answer: xr.Dataset) -> list[CureWords]:
-    """The cures by which a small push begins or ceases to die out, the smallest change first.
+    """Return the cures that decide whether a small push dies out, the smallest change first.
 
-    The change is the one that is told first: that to the value which is safe from any start. Cures
-    of which no such value was found follow.
+    They are ordered by the change that is printed first, to the value that is safe from any start.
+    Cures without such a value follow.
     """
 
     def order(name: str) -> tuple[bool, float]:
@@ -257,7 +255,7 @@ def not_cures(answer: xr.Dataset) -> list[tuple[str, str]]:
 
 
 def cure_line(cure: CureWords, answer: xr.Dataset) -> str:
-    """One cure in a line: first the value that is safe from any start, where the two differ.
+    """Return a cure in one line, with the value that is safe from any start first.
 
     A value from which a small push dies out does not stop a pad that a blow or a sudden start
     makes hammer.
@@ -285,7 +283,7 @@ def lines(answer: xr.Dataset) -> Iterator[str]:
 
 
 def first_lines(answer: xr.Dataset) -> Iterator[str]:
-    """The answer but for what stops it."""
+    """Yield the lines of the answer but for what stops it."""
     yield headline(answer)
     yield cause(answer)
     yield level(answer)
@@ -294,7 +292,7 @@ def first_lines(answer: xr.Dataset) -> Iterator[str]:
 
 
 def cure_lines(answer: xr.Dataset) -> Iterator[str]:
-    """The three smallest changes that stop it, and what else was tried."""
+    """Yield the three smallest changes that stop it, and what else was tried."""
     table = of_a_push(answer)
     if not table:
         yield "No single change within the ranges searched alters the verdict."

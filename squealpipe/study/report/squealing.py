@@ -39,7 +39,7 @@ def headline(answer: xr.Dataset) -> str:
     """The verdict in one sentence."""
     verdict = Verdict(int(answer.verdict))
     if answer.attrs.get("not_run"):
-        return f"Undetermined: nothing was run, for {answer.attrs['not_run']}."
+        return f"Undetermined: nothing was run, because {answer.attrs['not_run']}."
     if not agrees(answer):
         return f"Undetermined: {_disagreement(answer)}. {_what_would_do(answer)}"
     if verdict is Verdict.quiet:
@@ -95,11 +95,11 @@ def _peak_force(motion: xr.Dataset) -> str:
             f"the peak force is {newtons}" if newtons else "the peak force is not known"
         )
     told = f"the peak force is {number(ratio, 2)} times the preload of its contact"
-    return f"{told}, the largest of all {newtons}" if newtons else told
+    return f"{told}, and the largest force {newtons}" if newtons else told
 
 
 def agrees(answer: xr.Dataset) -> bool:
-    """Whether the modes that grow in what was run are those of the whole structure."""
+    """Tell whether the modes that grow in what was run are those of the whole structure."""
     return bool(answer.get("same_modes_grow", True))
 
 
@@ -110,7 +110,7 @@ def frequency_max(answer: xr.Dataset) -> float:
 
 
 def _within(answer: xr.Dataset) -> str:
-    """How far up small motions were looked at, where that was limited."""
+    """Return a sentence on the band of modes that was examined, if it was limited."""
     limit = frequency_max(answer)
     if not np.isfinite(limit):
         return ""
@@ -118,7 +118,7 @@ def _within(answer: xr.Dataset) -> str:
 
 
 def _disagreement(answer: xr.Dataset) -> str:
-    """Which modes of the whole structure the modes that are run do not stand for."""
+    """Name the modes in which what was run and the whole structure disagree."""
     kept = f"the {int(answer.n_modes)} modes kept"
     parts = []
     if count := answer.sizes.get("missing", 0):
@@ -132,9 +132,7 @@ def _disagreement(answer: xr.Dataset) -> str:
     unsure = answer.isel(mode=~answer.mode_is_sure.values)
     if unsure.sizes["mode"]:
         names = ", ".join(f"mode {int(each)}" for each in unsure.mode.values[:LISTED])
-        parts.append(
-            f"whether {names} of {kept} grows is within the error of its growth rate"
-        )
+        parts.append(f"the errors leave open whether {names} of {kept} grows")
     return "; and ".join(parts)
 
 
@@ -159,7 +157,7 @@ def _named(mode: xr.Dataset, prefix: str = "") -> str:
 
 
 def _what_would_do(answer: xr.Dataset) -> str:
-    """How to get a verdict."""
+    """Say how to get a verdict."""
     enough, size = int(answer.modes_that_would_do), int(answer.degrees_of_freedom)
     band = "look at a narrower band with a smaller frequency_max"
     if not enough:
@@ -270,7 +268,7 @@ def attractors(answer: xr.Dataset) -> Iterator[str]:
         return
     size = answer.sizes["sample"]
     if not agrees(answer):
-        yield f"What follows is of the {int(answer.n_modes)} modes kept, not of the structure:"
+        yield f"The rest describes the {int(answer.n_modes)} modes kept, not the structure:"
     for place in range(min(answer.sizes["attractor"], LISTED)):
         one = answer.isel(attractor=place)
         share = (
@@ -302,7 +300,7 @@ def attractors(answer: xr.Dataset) -> Iterator[str]:
 
 
 def onset(answer: xr.Dataset, of_whole: float | None = None) -> Iterator[str]:
-    """Where squeal begins and where it dies as friction falls, if it was followed.
+    """Say where squeal begins and where it dies as friction falls, if it was followed.
 
     Args:
         of_whole: critical friction of the whole structure, where it is known: it is told, and the

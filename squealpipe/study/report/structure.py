@@ -172,7 +172,7 @@ def stops(modes: xr.Dataset, answer: xr.Dataset) -> list[str]:
 
 
 def _unresolved(answer: xr.Dataset) -> bool:
-    """Whether the added damping is not known."""
+    """Tell whether the added damping is not known."""
     outcome = answer.get("added_damping_outcome", Outcome.converged)
     return Outcome(int(outcome)) is Outcome.unresolved
 

@@ -56,12 +56,12 @@ def assess(
 
 @dataclass(frozen=True)
 class Judged:
-    """What a brake does, before it is searched for what stops it.
+    """Verdict on a brake and its motions, before the search for what stops it.
 
     Attributes:
-        verdict: of the start that decides.
+        verdict: what the start that decides ends in.
         motions: states of other motions that last.
-        facts: variables of the dataset that are known.
+        facts: variables of the dataset that are known already.
         tol: tolerance of the runs.
     """
 

@@ -45,9 +45,7 @@ ALIKE = 1e-2
 """Largest distance, over the motion's size, at which states one period apart are the same."""
 MOST_EVENTS = 20_000
 BLOCKS = 16
-"""Runs of :data:`PERIODS` by which an irregular motion is measured, and others at most."""
-FEWEST_MERGED = 8
-"""Blocks from which neighbours are merged: of fewer the scatter itself is too uncertain."""
+"""Runs of :data:`PERIODS` that measure an irregular motion; a torus gets no more."""
 
 
 def still() -> dict[str, Any]:
@@ -105,9 +103,9 @@ def levels(
 
 
 def _blocks(design: Design, settled: Settled, periodic: bool) -> int:
-    """How many runs a motion is measured by: what does not repeat, by as long as it took to settle.
+    """Return how many runs measure a motion.
 
-    The beat of a torus may be longer than one run.
+    A torus is measured for as long as it took to settle: its beat may be longer than one run.
     """
     if settled.irregular:
         return BLOCKS
@@ -194,17 +192,17 @@ def _means(blocks: list[dict[str, float]]) -> dict[str, float]:
 
 
 def error_of_mean(values: np.ndarray) -> float:
-    """Half of the 95 % interval of the mean of blocks that may depend on one another.
+    """Return half of the 95 % interval of the mean of blocks that may depend on one another.
 
-    Neighbours are merged, which leaves the error as it is where they are independent and makes it
-    larger where they are not (Flyvbjerg and Petersen, Journal of Chemical Physics 91 (1989)
+    Neighbours are merged, which keeps the error where they are independent and makes it larger
+    where they are not (Flyvbjerg and Petersen, Journal of Chemical Physics 91 (1989)
     461-466); the largest counts.
     """
     error, size = 0.0, len(values)
     while size >= 2:
         deviation = float(np.std(values, ddof=1)) / math.sqrt(size)
         error = max(error, float(stdtrit(size - 1, 0.975)) * deviation)
-        if size < FEWEST_MERGED:
+        if size < 8:  # the scatter of fewer blocks is too uncertain itself
             break
         size //= 2
         values = values[: 2 * size].reshape(size, 2).mean(axis=1)

@@ -52,7 +52,7 @@ class Windows:
     late_growth: np.ndarray
 
     def levels(self, periods: float) -> WindowLevels:
-        """What one run's window of some periods is compared by."""
+        """Return the statistics by which one run's window of some periods is compared."""
         return WindowLevels(
             self.rms,
             np.atleast_1d(self.separated),

@@ -54,7 +54,7 @@ class Square:
         self.width = np.array([each[-1] - each[0] for each in axes.values()])
 
     def is_its_mirror_image(self) -> bool:
-        """Whether (u, v) and (1 − v, 1 − u) are the same motion.
+        """Tell whether (u, v) and (1 − v, 1 − u) are the same motion.
 
         (α1, α2) and (π − α2, π − α1) swap the two springs, so if these are equal they have one
         motion, with the same friction, belt and sign of x.

@@ -70,7 +70,7 @@ class Candidates:
         return replace(self, fields=fields, model=reading.a1_model)
 
     def subset(self, rows: np.ndarray) -> Self:
-        """Some of the sets."""
+        """Return some of the sets."""
         state = np.asarray(self.initial_state, float)
         return replace(
             self,
@@ -79,7 +79,7 @@ class Candidates:
         )
 
     def moved(self, x: float, y: float) -> Self:
-        """The same sets, started from somewhere else by this displacement over l_pre."""
+        """Return the same sets with their starts displaced by (x, y) l_pre."""
         preload = np.asarray(self.fields["preload"])[:, None]
         apart = preload * np.array([x, y, 0.0, 0.0])
         return replace(self, initial_state=np.asarray(self.initial_state) + apart)
@@ -206,7 +206,7 @@ class Candidates:
         return self.unstable_cells(INSIDE)
 
     def unstable_cells(self, inside: float) -> list[Unstable]:
-        """The same, at this distance from the centre of the disc of flutter, in radii."""
+        """Return unstable cells at this distance, in radii, from the centre of the flutter disc."""
         if self.extended:
             return [unstable_cells(params, inside=inside) for params in self.extended]
         fields = {**self.fields, "drag": self.drag}

@@ -38,8 +38,8 @@ from squealpipe.tasks.inference.candidates import Candidates, StatementMargin
 class Stage(IntEnum):
     """Statements that are judged together; cheap ones, and those that refute most, come first.
 
-    Milliseconds of one set, and what is left of 100: contact 0.2, 55 to 85; level 0.1, 75; bound
-    0.2, 95; black 1.6, 25 to 45; maps 3.3, 85; growth 4 to 9, 0 to 85.
+    Milliseconds for one set, and how many of 100 sets are left: contact 0.2, 55 to 85; level 0.1,
+    75; bound 0.2, 95; black 1.6, 25 to 45; maps 3.3, 85; growth 4 to 9, 0 to 85.
     """
 
     linear = 0
@@ -68,18 +68,18 @@ class Constraint(NamedTuple):
 
 @dataclass(frozen=True)
 class SeveralStarts:
-    """How a statement is judged whose measure depends on round-off.
+    """Judge a statement whose measure depends on round-off from several starts.
 
-    A chaotic run of 6,000 √(m/k1) forgets its start: its size in a window is chance then, and with
-    it a verdict near the threshold, which another processor's last bit turns. Such a statement
+    A chaotic run of 6,000 √(m/k1) forgets its start. Its size in a window is then chance, and so is
+    a verdict near the threshold: the last bit of another processor may change it. Such a statement
     holds or fails only if it does from several starts that nobody can tell apart.
 
     Attributes:
         apart: displacement of the others from the first, over l_pre.
         directions: of the displacement, (x, y), so that there are five starts with the first one.
             All have both components, since some scenes keep motions along one axis to it.
-        alike: if two starts give the same margin but for this share of it, the motion is regular,
-            or what is chance in it does not reach the threshold: no third one is asked.
+        alike: if the margins of two starts differ by less than this share, no third one is run: the
+            motion is regular, or chance does not carry it over the threshold.
         near: margin below which starts are compared even if the motion is short and regular.
     """
 
@@ -191,7 +191,7 @@ def compared_near_the_threshold(check: Check) -> Check:
 def _agreed(
     check: Check, candidates: Candidates, first: StatementMargin, rows: np.ndarray
 ) -> StatementMargin:
-    """The margins of the first start, NaN where other starts of these rows judge otherwise."""
+    """Return the margins of the first start, NaN where other starts of these rows disagree."""
     if not rows.size:
         return first
     some, margin = candidates.subset(rows), first.margin.copy()

@@ -59,7 +59,7 @@ def unstable_cells(params: Parameters, *, inside: float = INSIDE) -> Unstable:
 def unstable_along_edges(
     fields: Mapping[str, np.ndarray], *, inside: float = INSIDE
 ) -> list[Unstable]:
-    """The same of many sets without dashpots, whose friction does not depend on speed.
+    """Find unstable cells of many sets without dashpots, whose friction does not depend on speed.
 
     Args:
         fields: parameters by name, and ``drag``, (sets,).
@@ -109,11 +109,10 @@ def midpoints(number: int) -> tuple[np.ndarray, np.ndarray]:
 def _along_edges(
     p: Any, mirrored: np.ndarray, inside: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Angles, rad, that are unstable if any are, undamped, and which of them there are.
+    """Return angles, rad, among which some are unstable if any are, and which of them exist.
 
-    Flutter is searched at ``RIM`` directions, just inside of its disc in the plane of Z. For
-    divergence, outside of a circle that ends at |Z| = k1 + k2, the search goes along the middle
-    between the two.
+    Without damping, flutter is sought in ``RIM`` directions, just inside its disc in the plane of
+    Z. Divergence, which lies outside a circle and within |Z| = k1 + k2, is sought midway between.
 
     Args:
         p: parameters, each (sets, 1).

@@ -152,7 +152,8 @@ def test_too_many_contacts_are_told_with_the_modes():
     answer = squealing_modes(pad, samples=2)
     said = lines(answer)
     assert said[0] == (
-        "Undetermined: nothing was run, for 17 contacts are more than the 16 that runs can have."
+        "Undetermined: nothing was run, because 17 contacts are more than the 16 that runs can "
+        "have."
     )
     assert len(answer.growth_rate) == len(growing(pad, 0.02)) == len(said) - 1
 

@@ -30,7 +30,7 @@ ACROSS = 2
 
 
 def caption(benchmark: xr.Dataset) -> str:
-    """What is shown, where each solver ran, and which were left out."""
+    """Caption: what is shown, where each solver ran, and which were left out."""
     missing = left_out(benchmark)
     return (
         f"{SHOWN} {where_solvers_ran(benchmark)} Not installed and left out: "
@@ -42,7 +42,7 @@ CAPTION = caption
 
 
 def where_solvers_ran(benchmark: xr.Dataset) -> str:
-    """Which answers are shipped, with packages and processors, and on which one the others ran."""
+    """Say which answers are shipped, with packages and processors, and where the others ran."""
     if "shipped" not in benchmark or not (benchmark.shipped == 1).any():
         return "All solvers ran with this study."
     stored = benchmark.isel(solver=(benchmark.shipped == 1).values)

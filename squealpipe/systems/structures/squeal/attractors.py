@@ -10,8 +10,8 @@ from squealpipe.vibration.settling import FOR_VERDICTS, difference
 SCATTER = 3.0
 """Multiples of a run's own change between windows within which it may be another's motion."""
 FARTHEST = 0.06
-"""Difference of statistics from which two runs are never near; up to that by which two windows of
-one motion may differ they always are."""
+"""Difference of statistics above which two runs never count as one motion. They always do up to the
+difference that two windows of one motion may have."""
 
 
 def grouped(settled: list[SettledMotion], pushes: int) -> np.ndarray:
@@ -42,7 +42,7 @@ def grouped(settled: list[SettledMotion], pushes: int) -> np.ndarray:
 
 
 def is_same(one: SettledMotion, other: SettledMotion) -> bool:
-    """Whether two settled runs may show one motion."""
+    """Tell whether two settled runs may show one motion."""
     if one.quiet or other.quiet:
         return one.quiet and other.quiet
     nearest = FOR_VERDICTS.agreement

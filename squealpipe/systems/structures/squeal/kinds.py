@@ -54,8 +54,8 @@ class Described:
         lines, amplitudes: the spectrum, Hz and √J.
         late_growth: ln of the growth of the area that neighbours span, from the third to the last
             quarter of the run.
-        leaves: whether the motion is about to leave what repels it: neighbours run away from it,
-            but it has not run for as long as that takes from round-off.
+        leaves: whether the motion is about to leave what repels it: neighbours run away, but the
+            run is too short for that to grow from round-off.
         window: statistics of a run that begins where the motion has settled, so that nothing of
             what it settled from is in them; None where it has died out.
     """
@@ -78,7 +78,7 @@ def described(
     """Run on from where a start has settled.
 
     Args:
-        before: the late growth that was seen before it ran on for as long again.
+        before: the late growth that an earlier, shorter run showed.
     """
     nothing = np.empty(0)
     if settled.quiet:
@@ -133,10 +133,10 @@ def described(
 def _apart(
     plant: Plant, samples: np.ndarray, times: np.ndarray, extent: float
 ) -> tuple[float, float, float]:
-    """By how much neighbours have run away, how fast, and the late growth of their area.
+    """Return how far neighbours have run away, how fast, and the late growth of their area.
 
-    The distance is the median over all of them. Along the motion it keeps its size for ever, which
-    hides what grows slowly beside it; an area that is spanned with that direction grows at once.
+    The distance is the median over all neighbours. Its part along the motion keeps its size, which
+    hides what grows slowly beside it; an area spanned with that direction shows it at once.
     """
     # many periods at once: distances swing within each
     blocks = np.array_split(np.arange(len(times)), 40)

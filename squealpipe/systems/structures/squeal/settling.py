@@ -33,8 +33,6 @@ MOST_ON = 20_000.0
 """Most periods of a run that goes on because it leaves what it seemed to have settled to."""
 FEWEST = 4.0
 """Fewest periods of a run: the first windows are a quarter of it."""
-LATER = 100
-"""Beyond the number of any window: instants of a run that goes on are others."""
 WIDE = 5
 """Fewest runs at once: fewer are done by other code, which would have to be compiled, too."""
 
@@ -94,10 +92,10 @@ def settle(
 def settle_on(
     plant: Plant, settled: list[SettledMotion], t_end: float | None, how: Running
 ) -> list[SettledMotion]:
-    """Run on what seemed to have settled but still leaves a motion that repels it.
+    """Continue runs that seemed to have settled but still leave a motion that repels them.
 
-    Windows begin with twice the longest of the last ones, after as long without statistics: what
-    was seen to grow grows there by the square of that, or more.
+    The first window has twice the length of the longest last one, and comes after as long without
+    statistics: what was seen to grow by a factor grows there by its square or more.
     """
     _, _, most = horizon(plant, t_end)
     if t_end is None:
@@ -108,7 +106,8 @@ def settle_on(
         return [replace(run, agrees=False) for run in settled]
     states = np.array([run.last.final for run in settled])
     regimes = np.array([run.last.regimes for run in settled])
-    again = _run(plant, states, regimes, (length, length, left), how.turn(LATER))
+    later = how.turn(100)  # beyond the number of any window: its instants are others
+    again = _run(plant, states, regimes, (length, length, left), later)
     for run, now in zip(settled, again, strict=True):
         now.energies = np.concatenate([run.energies, now.energies])
         now.instants = np.concatenate([run.instants, run.elapsed + now.instants])
@@ -126,8 +125,8 @@ def _run(
     """Run states until each has settled.
 
     Args:
-        regimes: in which they start; None: what fits.
-        times: without statistics, of the first window, and of all, s.
+        regimes: those in which they start; None: whatever fits the states.
+        times: lengths of the run without statistics, of the first window, and of all, s.
     """
     growing, length, most = times
     count = len(states)
@@ -171,7 +170,7 @@ def _run(
 def _so_far(
     plant: Plant, settled: dict[int, SettledMotion], count: int, elapsed: float
 ) -> str:
-    """What starts have settled to until now, in a line."""
+    """Say in a line what starts have settled to so far."""
     omega = plant.rest[0]
     ends: Counter[str] = Counter()
     for motion in settled.values():

@@ -30,7 +30,7 @@ from squealpipe.vibration.verdicts import heard
 LINES = 1024
 """Lines of the spectra that are kept."""
 RUN_ON = 4
-"""How often a motion that seemed to have settled runs on for longer than before."""
+"""Most times that a run is continued because it leaves what it seemed to have settled to."""
 CLOSE = 0.02
 """Distance of a frequency to that of an unstable mode within which it is that mode's."""
 
@@ -143,11 +143,11 @@ def squealing_modes(
 def _verdict(
     plant: Plant, first: int, modes: list[Described], motions: np.ndarray
 ) -> Verdict:
-    """What the push along the least stable mode says of the whole structure.
+    """Return what the push along the least stable mode tells about the whole structure.
 
     Args:
-        first: attractor that it ends in.
-        motions: of each attractor, a verdict.
+        first: attractor that the push ends in.
+        motions: verdict on each attractor.
     """
     # a push lasts where nothing damps it, in the modes that are run and in the whole
     decided = plant.unstable.size or (plant.decays and plant.agreement.decays)
@@ -159,7 +159,7 @@ def _verdict(
 
 
 def _of_whole(plant: Plant) -> dict[str, Any]:
-    """How far the modes that are run agree with those of the whole structure."""
+    """Return variables on how far the modes run agree with those of the whole structure."""
     agreement, origin = plant.agreement, plant.structure.reduced_from
     unstable = plant.unstable
     return {
@@ -191,7 +191,7 @@ def _attractors(
     t_end: float | None,
     how: Running,
 ) -> tuple[list[SettledMotion], np.ndarray, list[Described]]:
-    """Settled runs, the number of the attractor of each, and all attractors.
+    """Return settled runs, the number of the attractor of each, and all attractors.
 
     Runs whose motion leaves what repels it, as a cycle that a second mode destabilizes, go on: of
     each motion one first, the others where that one has left.
@@ -342,10 +342,10 @@ def _of_attractors(
 
 
 def _window(plant: Plant, runs: list[SettledMotion], found: Described) -> Rows:
-    """The window of an attractor: of a run after it had settled, or of all of an irregular one.
+    """Return the window of an attractor: of one run after settling, or of all irregular ones.
 
-    The last windows in which runs settled may begin with the end of a transient, which scatter
-    hides in an irregular motion alone.
+    The last window of a run may begin with the end of a transient. Only in an irregular motion does
+    scatter hide that.
     """
     if found.window is None:
         return still(plant, at_rest_regimes(plant))

@@ -89,11 +89,11 @@ class Rows:
 
     @property
     def levels(self) -> WindowLevels:
-        """What the window of one run is compared by."""
+        """Statistics by which the window of one run is compared."""
         return WindowLevels(self.modal, self.separated, self.stuck, self.force)
 
     def mean(self) -> Self:
-        """One run in place of several of one motion: means, and the largest of what is largest."""
+        """Merge runs of one motion into one: means, and the largest of largest values."""
         values = {
             name: value.mean(axis=0, dtype=float)
             if name in ("modal", "speed", "separated", "stuck", "landings")
