@@ -50,7 +50,7 @@ def modes_over_friction(structure: Structure, section: Mapping[str, Any]) -> xr.
 
 
 def _band(structure: Structure, frequency_max: float | None) -> float | None:
-    """The end of the band, Hz; none of a small structure, which is run as it is."""
+    """Return the end of the band, Hz; None for a small structure, which is run as it is."""
     return None if structure.size <= MOST_MODES else frequency_max
 
 

@@ -20,16 +20,16 @@ from squealpipe.methods.taylor.symbols import Symbol
 
 @dataclass(frozen=True)
 class RootSettings:
-    """How near steps go to the root of a base.
+    """Thresholds of steps next to the root of a base.
 
     Attributes:
         room: share of the way to zero that a step may lead; half of it costs twice as many steps.
-        nearest: least step before a jump or a pole, over the longest one of late; two jumps closer
-            together are seen as none, and below 1e-14 a series of 20 orders overflows.
-        nearest_kink: likewise before a kink, which is off by its square.
-        noise: round-off of a base, over its terms, that a step across is to exceed; below it the
-            base may be exactly zero, and its power not a number.
-        tries: tries to make such a step long.
+        nearest: shortest step before a jump or a pole, over the longest recent one. Two jumps
+            closer together go unseen; below 1e-14 a series of 20 orders overflows.
+        nearest_kink: shortest step before a kink, whose error is its square.
+        noise: value of a base, over its terms, that a step across must leave behind; a smaller one
+            may be exactly zero, and its power not a number.
+        tries: how often such a step is lengthened.
     """
 
     room: float = 0.9
@@ -58,7 +58,7 @@ class Base:
 
     @property
     def nearest(self) -> float:
-        """The least step before its root, over the longest one of late."""
+        """Shortest step before its root, over the longest recent one."""
         return ROOTS.nearest if self.jumps else ROOTS.nearest_kink
 
 
@@ -105,7 +105,7 @@ def _marks(roots: Sequence[Symbol]) -> dict[int, tuple[Symbol, ...]]:
 
 
 def is_positive(node: Symbol) -> bool:
-    """Whether a symbol is above zero for every value of what it holds, as 1 + u² is."""
+    """Tell whether a symbol is above zero for all values of its variables, as 1 + u² is."""
     if node.kind in {"exp", "cosh"}:
         return True
     if node.kind == "number":
@@ -121,7 +121,7 @@ def is_positive(node: Symbol) -> bool:
 
 
 def _is_no_less(node: Symbol) -> bool:
-    """Whether a symbol is zero or above it for every value of what it holds."""
+    """Tell whether a symbol is nowhere below zero for all values of its variables."""
     if is_positive(node):
         return True
     if node.kind in {"number", "+", "*"}:

@@ -84,11 +84,11 @@ def complex_modes(
 
 
 def cost_beforehand(structure: Any, points: int, n_modes: int | None) -> str | None:
-    """What complex modes of a large structure take, in a sentence; None where that is a minute.
+    """Return time and memory that complex modes take, in words; None below 2 min and 4 GB.
 
     Args:
         points: combinations of friction, belt speed and further factors.
-        n_modes: how many modes; None: not known, 40 are taken.
+        n_modes: how many modes; None: not known, and 40 are assumed.
     """
     number = n_modes or 40
     # measured: factors of a compact body of hexahedra have 31 to 58 n^(4/3) entries, of a plate a
@@ -102,8 +102,8 @@ def cost_beforehand(structure: Any, points: int, n_modes: int | None) -> str | N
     time = f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
     return (
         f"{structure.size:,} degrees of freedom: about {time} and {memory / 1e9:.2g} GB for "
-        f"{number} modes of a compact body at {points} value{'s' if points > 1 else ''} of what is "
-        "varied, on one core, a quarter of both for a plate; several times as long where critical "
+        f"{number} modes of a compact body at {points} point{'s' if points > 1 else ''} of what is "
+        "varied, on one core; a quarter of both for a plate; several times as long if critical "
         "frictions are sought"
     )
 

@@ -35,9 +35,9 @@ class Contact:
         speed: the belt's speed here over ``belt_speed``, as a radius; negative where the belt
             moves against t.
         across: the direction across t in the plane of sliding, for ``transverse_damping``.
-        transverse_damping: Coulomb friction turns with the sliding velocity, so that small motions
-            across it are damped by μN/|V|; True has complex modes include that, exactly. Runs in
-            time have friction along t alone and refuse it.
+        transverse_damping: whether complex modes include that friction turns with the sliding
+            velocity, which damps small motions across it by μN/|V|. Runs in time, which have
+            friction along t alone, refuse it.
 
     Raises:
         ValueError: names the contact and the argument.
@@ -142,12 +142,12 @@ def directions(contacts: Sequence[Contact], size: int) -> tuple[np.ndarray, np.n
 
 
 def are_parallel(one: np.ndarray, other: np.ndarray) -> bool:
-    """Whether two directions are one, up to its sign."""
+    """Tell whether two directions are the same but for sign and length."""
     return _dependent(np.stack([one, other], axis=1)) is not None
 
 
 def dependent_contacts(names: Sequence[str], tangentials: np.ndarray) -> list[str]:
-    """Contacts of whose sliding directions, (n, contacts), one follows from the others.
+    """Name contacts whose sliding directions, (n, contacts), are linearly dependent.
 
     If they all stick at once, their friction forces cannot be told apart.
     """
@@ -159,10 +159,10 @@ def dependent_contacts(names: Sequence[str], tangentials: np.ndarray) -> list[st
 def transversals(
     contacts: Sequence[Contact], normals: np.ndarray, tangentials: np.ndarray
 ) -> np.ndarray:
-    """Directions across the sliding ones where they are damped, 0 elsewhere, (n, contacts).
+    """Return the directions across sliding that are damped, 0 of other contacts, (n, contacts).
 
     Raises:
-        ValueError: one is along the normal or the tangential direction.
+        ValueError: one lies in the plane of the normal and the tangential direction.
     """
     across = np.zeros_like(normals)
     for place, each in enumerate(contacts):
@@ -187,8 +187,8 @@ def _dependent(columns: np.ndarray) -> Any:
     if not columns.size:
         return None
     lengths = np.linalg.norm(columns, axis=0)  # 0 in modes with a node at the contact
-    # the triangle of QR has the same singular values and rows: columns of a large structure are
-    # long, and the square factor of a full decomposition would be as large as a dense matrix
+    # the triangle of QR has the same singular values and rows; a full decomposition of the long
+    # columns of a large structure would have a square factor, as large as a dense matrix
     triangle = np.linalg.qr(columns / np.where(lengths > 0, lengths, 1.0), mode="r")
     _, sizes, rows = np.linalg.svd(triangle, full_matrices=True)
     if columns.shape[1] <= columns.shape[0] and sizes[-1] > DEPENDENT:

@@ -67,7 +67,7 @@ class _Term(NamedTuple):
 
 
 class _Line(NamedTuple):
-    """A row of the table, before it is known what its commas and points are."""
+    """A row of the table, before it is known which of comma and point is the decimal sign."""
 
     where: str
     name: str
@@ -75,7 +75,7 @@ class _Line(NamedTuple):
     numerals: dict[str, Numeral]
 
     def written(self) -> Iterator[tuple[str, str]]:
-        """Where each number stands, and its text."""
+        """Yield where each number stands, and its text."""
         for key, terms in self.directions.items():
             for term in terms:
                 yield f"{self.where}: {key}", term.coefficient.text

@@ -18,7 +18,7 @@ OF_SLIDING = {"mu", "belt_speed", "friction_law", "mu_static", "friction_speed"}
 
 
 class ReducedFrom(NamedTuple):
-    """What a reduced structure was made of.
+    """Origin of a reduced structure.
 
     Attributes:
         whole: the structure of all degrees of freedom.
@@ -116,7 +116,7 @@ class ContactStructure:
         self.record: dict[str, Any] = {}
         """Of a reduced structure: how many modes were kept, and their errors."""
         self.reduced_from: ReducedFrom | None = None
-        """Of a reduced structure: what it was made of."""
+        """Of a reduced structure: its origin."""
 
     @property
     def mu(self) -> float:
@@ -167,10 +167,10 @@ class ContactStructure:
         )
 
     def with_(self, **changes: Any) -> Self:
-        """The same structure with other arguments.
+        """Return the structure with other arguments.
 
-        A reduced structure stays one of the same whole if friction or the belt alone changes; with
-        other matrices, contacts or loads it is one of its own.
+        A reduced structure keeps its origin if only friction or the belt changes; with other
+        matrices, contacts or loads it has none.
         """
         other = type(self)(**{**self.arguments, **changes})
         if self.reduced_from is not None and set(changes) <= OF_SLIDING:

@@ -37,7 +37,7 @@ KEYS = (
 )
 TRIANGLES = ("mirror", "keep")
 NOTHING = 1e-13
-"""Entries below this share of their rows' own scale are round-off."""
+"""Entries below this share of the scale of their rows are round-off."""
 
 
 def read(path: str | PathLike[str], form: type[Form]) -> Form:
@@ -176,8 +176,8 @@ def _completed(matrix: Any, path: Path, given: Labelled, triangle: str | None) -
         ValueError: only one is there, or only a part of the other, and nobody says what is meant.
     """
     off = sp.coo_array(matrix - sp.diags_array(matrix.diagonal()))
-    # assembly leaves round-off where there is nothing, on either side; a row is measured by itself,
-    # for a penalty or a rotation in other units makes single rows larger by any factor
+    # assembly leaves round-off where there is nothing, on either side; each row has its own scale,
+    # since a penalty or a rotation in other units makes single rows larger by any factor
     sizes, diagonal = abs(off), np.abs(matrix.diagonal())
     largest = np.maximum(
         sizes.max(axis=0).toarray().ravel(), sizes.max(axis=1).toarray().ravel()

@@ -11,7 +11,7 @@ from squealpipe.parameters import brief
 from squealpipe.systems.structures.pencil import DENSE
 
 SYMMETRIC = 1e-10
-"""Asymmetry of a mass up to which it is round-off, over the geometric mean of both diagonals."""
+"""Largest asymmetry of a mass that is round-off, over the geometric mean of both diagonals."""
 
 
 def real_square(name: str, given: Any, size: int | None = None) -> sp.csr_array:

@@ -1,8 +1,8 @@
 """Matrix Market files: scipy reads them, and their lines are checked first.
 
 The reader of scipy skips what it does not know: a comma in a number, the exponent of ``1.5D+03``,
-what stands behind an entry, of integers all from the first sign that is no digit on (``3e2`` is 3);
-and of a file that says ``symmetric`` but holds both triangles it adds up both.
+what stands behind an entry, and in integers all that follows the first sign that is no digit
+(``3e2`` is 3). If a file says ``symmetric`` but holds both triangles, it adds them up.
 """
 
 import io
@@ -53,7 +53,7 @@ def read_matrix_market(path: Path) -> Any:
 
 
 def _parted(content: bytes) -> tuple[bytes, bytes]:
-    """The first line as scipy takes it, where integers are called real, and what follows."""
+    """Return the first line as scipy reads it, with integers called real, and the rest."""
     first, end, body = content.lstrip().partition(b"\n")
     first = re.sub(rb"(?i)^%%matrixmarket", b"%%MatrixMarket", first)
     return re.sub(rb"(?i)\b(unsigned-)?integer\b", b"real", first) + end, body
@@ -91,7 +91,7 @@ def _check_entries(content: bytes, stated: int, form: str, field: str) -> None:
 
 
 def _is_table(content: bytes, stated: int, width: int, *, places: bool) -> bool:
-    """Whether all lines below that of sizes are entries, as many as stated, in plain numbers."""
+    """Tell whether the lines below the sizes are as many entries as stated, in plain numbers."""
     start = 0
     while content.startswith((b"%", b"\n", b"\r"), start):
         start = content.find(b"\n", start) + 1

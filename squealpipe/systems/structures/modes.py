@@ -39,7 +39,7 @@ def modes_at_rest(
 
 
 def highest_frequency(structure: ContactStructure) -> float | None:
-    """Hz, at rest and without what a penalty fixes; None of a large structure."""
+    """Return the highest frequency at rest without what a penalty fixes, Hz; None if large."""
     if structure.size > DENSE:
         return None
     stiffness, mass = structure.stiffness_at_rest.toarray(), structure.mass.toarray()
@@ -71,7 +71,7 @@ def _all(stiffness: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarra
         return la.eigh(stiffness, mass)  # type: ignore[no-any-return]
     basis = condensation(stiffness, stiff)
     squares, modes = la.eigh(basis.T @ stiffness @ basis, basis.T @ mass @ basis)
-    # beside them the stiff ones, which move the others by inertia
+    # then the stiff ones, whose motion moves the others by inertia
     rest = np.zeros((len(mass), stiff.sum()))
     rest[stiff] = np.eye(stiff.sum())
     rest[~stiff] = -la.solve(mass[np.ix_(~stiff, ~stiff)], mass[np.ix_(~stiff, stiff)])

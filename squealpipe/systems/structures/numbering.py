@@ -62,8 +62,8 @@ class Way:
 
     Attributes:
         top: first number that no mode has, of this way or of those before.
-        between: whether frictions between those asked for are computed, by which modes keep their
-            numbers for sure and critical frictions are located.
+        between: whether frictions between those asked for are computed, too: they keep the numbers
+            of modes right and locate critical frictions.
         steps: by friction, those between the frictions asked for included.
         reasons: why there is no steady sliding at some.
     """

@@ -94,9 +94,9 @@ class Pencil:
 
     @cached_property
     def unit(self) -> float:
-        """A frequency of the matrices' rows, rad/s: what is 0 beside it is no frequency.
+        """Lowest frequency of the matrices' rows, rad/s: what is round-off beside it counts as 0.
 
-        The lowest of all rows: a penalty makes the largest entries as large as it likes.
+        The highest would be that of a penalty, which may be as large as it likes.
         """
         mass, damping, stiffness = (
             np.abs(each.diagonal())
@@ -210,7 +210,7 @@ class Factors:
         if pencil.is_dense:
             mass, damping, stiffness = pencil.dense
             with warnings.catch_warnings():
-                # that it is singular is said by its solutions
+                # a singular matrix shows in its solutions
                 warnings.simplefilter("ignore", la.LinAlgWarning)
                 self._dense = la.lu_factor(s * (s * mass + damping) + stiffness)
             self._sparse = None
@@ -262,7 +262,7 @@ class Factors:
         return solution - self._solutions(correction, adjoint=True)
 
     def _regular(self, solution: Any) -> Any:
-        """The solution, if there is one.
+        """Return the solution, if there is one.
 
         Raises:
             RuntimeError: the pencil is singular here.
@@ -272,7 +272,7 @@ class Factors:
         return solution
 
     def _solutions(self, right: np.ndarray, *, adjoint: bool = False) -> Any:
-        """By the sparse factors alone, without damping of single modes."""
+        """Solve by the sparse factors alone, without damping of single modes."""
         trans = "H" if adjoint else "N"
         factors: Any = self._sparse
         if not self._is_real:
@@ -293,7 +293,7 @@ def one_thread() -> Iterator[None]:
     library = ctypes.CDLL(_superlu.__file__)
     names = "scipy_openblas_{}_num_threads", "openblas_{}_num_threads"
     name = next((each for each in names if hasattr(library, each.format("set"))), None)
-    if name is None:  # another BLAS: it keeps its own ways
+    if name is None:  # another BLAS keeps its number of threads
         yield
         return
     before = getattr(library, name.format("get"))()

@@ -227,7 +227,7 @@ def _numbers(path: Path) -> np.ndarray:
 
 
 def _numbers_by_line(content: bytes) -> np.ndarray:
-    """Likewise, with comments, or with the line that is wrong."""
+    """Read lines of numbers and comments one by one, to say which line is wrong."""
     rows = []
     text = content.decode("utf-8", errors="replace")
     for number, line in enumerate(io.StringIO(text, newline=None), 1):
@@ -267,7 +267,7 @@ def _of_triplets(rows: np.ndarray, size: int = 0) -> Any:
 
 
 def _npz(path: Path, key: str, variable: str | None) -> Any:
-    """One sparse matrix of scipy.sparse, or one of several arrays by its name."""
+    """Read one sparse matrix of scipy.sparse, or one of several arrays by its name."""
     with np.load(path, allow_pickle=False) as file:
         if "format" not in file.files:
             return file[_chosen(file.files, key, variable)]
@@ -306,7 +306,7 @@ def _number(values: np.ndarray) -> np.ndarray:
 
 
 def _chosen(names: list[str], key: str, variable: str | None) -> str:
-    """The variable that is named; else the only one, or the one called mass or M, and so on."""
+    """Return the variable asked for, else the only one, else one with a usual name (mass, M)."""
     if variable is None and len(names) == 1:
         return names[0]
     if variable in names:

@@ -91,8 +91,8 @@ def _shift(
     pencil: Pencil, moved: float, right: np.ndarray, left: np.ndarray, rate: complex
 ) -> float:
     """Of an eigenvalue where wᴴ Q v changes by so much."""
-    # next to a double eigenvalue the shift is that of a square root instead; without damping wᴴMv
-    # vanishes there as well, so that the sizes of its terms count
+    # next to a double eigenvalue the shift is a square root instead; without damping wᴴMv vanishes
+    # there as well, and the sizes of its terms stand in for it
     mass = float(np.abs(left) @ (abs(pencil.mass) @ np.abs(right))) or np.inf
     curved = np.sqrt(moved / mass)
     return float(min(moved / abs(rate), curved)) if rate else float(curved)
@@ -154,7 +154,10 @@ def refined(pencil: Pencil, estimates: Sequence[Estimate]) -> Iterator[Eigenpair
 
 
 def growing_first(pairs: Sequence[Eigenpair]) -> list[Eigenpair]:
-    """By frequency; of two that have merged the one that grows: a number would cut it off."""
+    """Sort by frequency; of two that have merged the growing one comes first.
+
+    A limit on the number of modes would else cut it off.
+    """
     ordered = sorted(pairs, key=lambda each: (each.value.imag, -each.value.real))
     for place in range(1, len(ordered)):
         first, second = ordered[place - 1].value, ordered[place].value

@@ -177,8 +177,8 @@ def changes(
 class _Held:
     """Factors of K + Σ k n nᵀ, the structure with all its contacts closed and without friction.
 
-    Contacts that are open, and friction, change that matrix by a product of few columns, so that
-    every state of the contacts at every friction is solved with one factorization (Woodbury).
+    Open contacts and friction change that matrix by a product of few columns, so that one
+    factorization solves every state of the contacts at every friction (Woodbury).
     """
 
     def __init__(self, structure: ContactStructure) -> None:
@@ -241,7 +241,7 @@ def _solver(
 
 
 _HELD: WeakKeyDictionary[ContactStructure, _Held] = WeakKeyDictionary()
-"""Factors of large structures, as long as these live."""
+"""Factors of large structures, kept as long as these live."""
 
 
 def _balance(
@@ -268,8 +268,8 @@ def _balance(
             change = solve(unbalanced(solution))
             solution = solution + change
         missed = np.abs(unbalanced(solution))
-        # each row by its own forces: a penalty or a rigid link makes single rows larger by any
-        # factor; load and preloads may cancel each other but for round-off
+        # each row has its own scale, since a penalty or a rigid link makes single rows larger by
+        # any factor; load and preloads may cancel each other but for round-off
         carried = abs(matrix) @ np.abs(solution) + np.abs(structure.load)
         carried += np.abs(acting) @ np.abs(structure.preloads * closed)
         forces, changes_of_forces = (

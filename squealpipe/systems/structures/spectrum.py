@@ -67,17 +67,17 @@ class Spectrum:
 
     @property
     def outcomes(self) -> np.ndarray:
-        """Converged, or rigid where the eigenvalue is 0 within its error: nothing holds the mode.
+        """Outcome of each mode: converged, or rigid where the eigenvalue is 0 within its error.
 
-        Digits that a rigid link of 1e20 has taken from a matrix look the same; such a mode is not
-        stable.
+        Nothing holds a rigid mode, or a rigid link of 1e20 has taken the digits from the matrix,
+        which looks the same. Neither is called stable.
         """
         rigid = np.abs(self.values) <= self.errors
         return np.where(rigid, Outcome.rigid_mode, Outcome.converged)
 
     @cached_property
     def fixed(self) -> int:
-        """Degrees of freedom that a penalty fixes, which add no mode."""
+        """Number of degrees of freedom that a penalty fixes, which add no mode."""
         if not self.pencil.is_dense:
             # sparse factors are not troubled by them; they are only counted
             return beyond_gap(

@@ -86,11 +86,11 @@ if workflow.is_main_process and not ASKED:
     refuse_misfits({path: KEYS[path] for path in KEYS if misjudged(path)})
 
 DRAWN = {f"{RESULTS}/figures/{name}.{ending}": name for name in READ_BY for ending in ("png", "svg")}
-"""File of a picture → the figure; a rule draws all figures of a topic."""
+"""File of a picture → its figure, where a rule draws all figures of a topic."""
 
 
 def of_picture(path):
-    """What one picture is drawn from, of all that its rule reads and imports."""
+    """Return what one picture is drawn from, of all that its rule reads and imports."""
     if path not in DRAWN:
         return {}
     read = [str(MADE[name]["path"]) for name in READ_BY[DRAWN[path]]]
