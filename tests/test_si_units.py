@@ -27,7 +27,13 @@ WITH_DASHPOTS = {
 }
 
 
-@pytest.mark.parametrize("name", CALLS)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.release] * (name == "assess"))  # 20 s
+        for name in CALLS
+    ],
+)
 def test_answers_scale(name):
     """As long as no chaos magnifies the last digits, which these horizons leave no time for."""
     share = 0.01 if name in WITH_DASHPOTS else 0.0

@@ -61,8 +61,10 @@ class Contact:
             name = f"contact {self.name}: {key}"
             value = finite_number(name, getattr(self, key), units)
             object.__setattr__(self, key, value)
-        for key in ("normal", "tangential"):
+        for key in ("normal", "tangential", "across"):
             direction = getattr(self, key)
+            if direction is None:
+                continue
             each = (
                 [*direction.values()] if isinstance(direction, Mapping) else direction
             )
