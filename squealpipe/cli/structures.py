@@ -64,7 +64,8 @@ def modes(
         frequency_max: highest frequency of the modes, Hz; 20 kHz where neither limit is given.
         n_modes: number of modes; one of these two limits is needed beyond 1000 degrees of freedom.
         critical: locate where modes turn unstable; --no-critical leaves that out, which is most of
-            the work for a structure of more than 1000 degrees of freedom.
+            the work for a structure of more than 1000 degrees of freedom. There they are sought in
+            a reduced structure and confirmed in the whole.
         vary: a further factor with its value or values; repeat for more. preload=0.5:2:7 and
             contact_stiffness=0.5,1,2 multiply those of all contacts, p1_preload and p1_stiffness
             those of a contact p1, mass, damping and stiffness the matrices; modal_damping,
@@ -88,7 +89,10 @@ def modes(
     from squealpipe.systems.structures import complex_modes as library
     from squealpipe.systems.structures.modes import highest_frequency
 
+    shown = "modes"
+
     def complex_modes(structure: Any, **options: Any) -> xr.Dataset:
+        nonlocal shown
         points = math.prod(
             len(each) for each in options.values() if isinstance(each, list)
         )
@@ -99,16 +103,18 @@ def modes(
             highest = highest_frequency(structure)
             if highest is not None and highest > AUDIBLE:
                 options["frequency_max"] = AUDIBLE
+                shown = f"modes up to {AUDIBLE / 1e3:g} kHz"
                 say(
-                    f"modes up to {AUDIBLE / 1e3:g} kHz; the highest is at "
-                    f"{highest / 1e3:.4g} kHz: --frequency-max shows more"
+                    f"{shown}; the highest is at {highest / 1e3:.4g} kHz. Whether modes above "
+                    "grow is not examined: --frequency-max shows them"
                 )
         return library.complex_modes(structure, **options)
 
     dataset = _compute(complex_modes, file, asked, output, files)
     unstable = dataset.unstable
     ever = unstable.any([dim for dim in unstable.dims if dim != "mode"])
-    answer(f"{int(ever.sum())} of {ever.size} modes are unstable somewhere")
+    beyond = "" if shown == "modes" else "; those above were not examined"
+    answer(f"{int(ever.sum())} of {ever.size} {shown} are unstable somewhere{beyond}")
     for number in dataset.mode.values[ever.values][:LISTED]:
         answer(_line(dataset.sel(mode=number)))
     return DONE

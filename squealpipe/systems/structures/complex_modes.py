@@ -14,6 +14,7 @@ from squealpipe.schema import Outcome, build, find
 from squealpipe.schema.origin import versions
 from squealpipe.schema.structures import name_over
 from squealpipe.systems.structures.band import COMPLETE
+from squealpipe.systems.structures.confirming import ConfirmedWay
 from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.factors import Asked, asked_of, with_factors
 from squealpipe.systems.structures.numbering import Way
@@ -21,7 +22,7 @@ from squealpipe.systems.structures.pencil import DENSE, one_thread
 from squealpipe.systems.structures.sliding import NoSlidingError
 from squealpipe.systems.structures.spectrum import ALL, Solver, Spectrum
 
-STEPS, STEPS_IF_LARGE = 9, 3
+STEPS = 9
 """Frictions on the way from none to one friction."""
 FLOATS = ("growth_rate", "growth_rate_error", "frequency", "damping_ratio", "residual")
 
@@ -46,7 +47,11 @@ def complex_modes(
         n_modes: so many modes, by frequency. One of both is needed beyond 1000 degrees of freedom;
             with neither, all modes are computed.
         critical: whether ``critical_mu`` is sought, by following modes along friction: most of the
-            work for a large structure. Without it ``onset`` is ``not_sought``.
+            work for a large structure. Without it ``onset`` is ``not_sought``. Beyond 1000 degrees
+            of freedom modes are followed in a subspace, which has those of the whole at the
+            frictions asked for, and each ``critical_mu`` is located anew in the whole: where that
+            does not confirm it, ``onset`` is ``not_followed``. That a mode is ``stable`` is known
+            of the whole at the frictions asked for, and of the subspace between them.
         factors: further ones, a number or a 1-D array each: ``mu_static``, ``friction_speed`` (m/s)
             or ``modal_damping`` in place of the structure's; factors of what it has, namely of all
             contacts' ``preload`` and ``contact_stiffness``, of one contact's by its name
@@ -104,7 +109,7 @@ def cost_beforehand(structure: Any, points: int, n_modes: int | None) -> str | N
         f"{structure.size:,} degrees of freedom: about {time} and {memory / 1e9:.2g} GB for "
         f"{number} modes of a compact body at {points} point{'s' if points > 1 else ''} of what is "
         "varied, on one core; a quarter of both for a plate; several times as long if critical "
-        "frictions are sought"
+        "frictions are sought, which are confirmed one by one"
     )
 
 
@@ -163,10 +168,11 @@ def _dataset(structure: ContactStructure, asked: Asked) -> xr.Dataset:
 def _ways(structure: ContactStructure, asked: Asked) -> np.ndarray:
     """Modes along friction at each combination of factors, (belt speed, further ones)."""
     frictions = np.atleast_1d(asked.mu)
+    path = frictions
     if asked.critical and not asked.mu.ndim and structure.contacts and asked.mu > 0:
         # one friction alone: on the way to it from none, modes are followed all the same
-        few = STEPS if structure.size <= DENSE else STEPS_IF_LARGE
-        frictions = np.linspace(0.0, float(asked.mu), few)
+        path = np.linspace(0.0, float(asked.mu), STEPS)
+    in_subspace = asked.critical and structure.size > DENSE
     grid = {"belt_speed": np.atleast_1d(asked.belt_speed), **asked.varied}
     shape = tuple(map(len, grid.values()))
     ways = np.empty(shape, object)
@@ -178,8 +184,13 @@ def _ways(structure: ContactStructure, asked: Asked) -> np.ndarray:
         }
         speed = at.pop("belt_speed")
         solver = Solver(with_factors(structure, at), asked.limits, speed)
-        way = Way(solver, top, asked.critical)
-        way.follow(frictions.tolist(), _neighbour(ways, place))
+        way: Way
+        if in_subspace:
+            way = ConfirmedWay(solver, top, path=path.tolist())
+            way.follow(frictions.tolist(), _neighbour(ways, place))
+        else:
+            way = Way(solver, top, asked.critical)
+            way.follow(path.tolist(), _neighbour(ways, place))
         ways[place], top = way, way.top
     return ways
 

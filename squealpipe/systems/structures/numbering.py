@@ -2,14 +2,14 @@
 
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 import numpy as np
 
 from squealpipe.methods.progress import with_progress
 from squealpipe.schema.structures import Onset
 from squealpipe.systems.structures.following import followed, successors
-from squealpipe.systems.structures.onset import onset
+from squealpipe.systems.structures.onset import Crossing, onset
 from squealpipe.systems.structures.refinement import Eigenpair
 from squealpipe.systems.structures.sliding import NoSlidingError, changes
 from squealpipe.systems.structures.spectrum import Solver, Spectrum
@@ -49,11 +49,13 @@ class Critical(NamedTuple):
         mu: friction, NaN if there is none.
         onset: why.
         partner: the mode that it meets by frequency, if there is one.
+        crossing: what was found there.
     """
 
     mu: float
     onset: Onset
     partner: int | None = None
+    crossing: Crossing | None = None
 
 
 @dataclass
@@ -73,9 +75,11 @@ class Way:
     between: bool = True
     steps: dict[float, Step] = field(default_factory=dict)
     reasons: list[str] = field(default_factory=list)
-    _onsets: dict[tuple[int, float, float], float | None] = field(default_factory=dict)
+    _onsets: dict[tuple[int, float, float], Crossing | None] = field(
+        default_factory=dict
+    )
 
-    def follow(self, frictions: list[float], after: Self | None) -> None:
+    def follow(self, frictions: list[float], after: "Way | None") -> None:
         """Number the modes at these frictions, ascending; the first as those of another way."""
         last: float | None = None
         for mu in with_progress(frictions):
@@ -90,7 +94,7 @@ class Way:
                 self._go(last, mu)
             last = mu
 
-    def _first_numbers(self, spectrum: Spectrum, after: Self | None) -> np.ndarray:
+    def _first_numbers(self, spectrum: Spectrum, after: "Way | None") -> np.ndarray:
         if after is None or not after.steps:
             nowhere = np.full(0, -1)
             return self._carried(nowhere, nowhere, len(spectrum.pairs))
@@ -146,9 +150,9 @@ class Way:
             within = after.numbers[self.solver.selected(after.spectrum)]
             for number in map(int, within):
                 pair = before.pair(number)
-                if pair is None or self._grown(before, number) is not None:
+                if pair is None or self.grown(before, number) is not None:
                     continue
-                grown = self._grown(after, number)
+                grown = self.grown(after, number)
                 if grown is None:
                     continue
                 if self._onset(number, (low, pair), (high, grown)) is None:
@@ -160,14 +164,14 @@ class Way:
         number: int,
         stable: tuple[float, Eigenpair],
         grown: tuple[float, Eigenpair],
-    ) -> float | None:
+    ) -> Crossing | None:
         """Where a mode turns unstable between two frictions; None where it cannot be followed."""
         key = number, stable[0], grown[0]
         if key not in self._onsets:
             self._onsets[key] = onset(self.solver.pencil, stable, grown)
         return self._onsets[key]
 
-    def _grown(self, step: Step, number: int) -> Eigenpair | None:
+    def grown(self, step: Step, number: int) -> Eigenpair | None:
         """The mode if it grows, or the one that it has merged with; None if neither does."""
         pair, twin = step.pair(number), self._twin(step, number)
         if pair is None or not (pair.value.real > pair.error or twin is not None):
@@ -190,7 +194,7 @@ class Way:
         """Where growth of each of these modes leaves zero, and with which other it meets."""
         if not self.between:
             return [Critical(np.nan, Onset.not_sought) for _ in numbers]
-        criticals = {number: self._critical(number) for number in numbers}
+        criticals = {number: self.critical(number) for number in numbers}
         # where damping lets one of two that meet grow alone, the other has met it all the same
         meeting = [
             number for number in numbers if criticals[number].partner is not None
@@ -201,13 +205,14 @@ class Way:
                 criticals[partner] = criticals[partner]._replace(partner=number)
         return list(criticals.values())
 
-    def _critical(self, number: int) -> Critical:
+    def critical(self, number: int) -> Critical:
+        """Where growth of one mode leaves zero."""
         last: tuple[float, Eigenpair] | None = None
         for mu, step in self.steps.items():
             pair = step.pair(number)
             if pair is None:
                 continue
-            grown = self._grown(step, number)
+            grown = self.grown(step, number)
             if grown is None:
                 last = mu, pair
                 continue
@@ -218,7 +223,7 @@ class Way:
                 return Critical(np.nan, Onset.not_followed)
             twin = self._twin(step, number)
             partner = self._nearest(step, number) if twin is None else twin
-            return Critical(located, Onset.located, partner)
+            return Critical(located.mu, Onset.located, partner, located)
         return Critical(np.nan, Onset.stable)
 
     def _twin(self, step: Step, number: int) -> int | None:

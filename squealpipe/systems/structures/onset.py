@@ -4,6 +4,9 @@ Without damping two modes merge: their eigenvalues there depend on friction by a
 the 2 × 2 matrix of both, λ of K v = λ M v on their common subspace, is smooth, and its discriminant
 passes through zero. With damping the growth of one mode itself passes through zero. Where a contact
 opens or closes the matrices jump, and a mode may turn unstable there.
+
+What was found in a subspace of a large structure is confirmed in the whole: there the same measure
+is followed from the vectors of the subspace, and its zero is located again.
 """
 
 from collections.abc import Callable
@@ -14,8 +17,13 @@ import scipy.sparse as sp
 from scipy.optimize import brentq
 from scipy.sparse.linalg import splu
 
-from squealpipe.systems.structures.pencil import Pencil
-from squealpipe.systems.structures.refinement import SLOW, Eigenpair, polished
+from squealpipe.systems.structures.pencil import FEW_ENTRIES, Pencil
+from squealpipe.systems.structures.refinement import (
+    SLOW,
+    Eigenpair,
+    polished,
+    unit_vector,
+)
 from squealpipe.systems.structures.sliding import LOCATED
 
 NARROW = 2.0**-6
@@ -32,14 +40,35 @@ ALIKE = 0.5
 """Cosine of the angle between shapes up to which they may be those of one mode."""
 HALVINGS = 12
 """How often a step in friction is halved where shapes change more."""
+AROUND = 1e-3, 1e-2, 1e-1, 1.0
+"""Shares of a step in friction about what was found in a subspace, where the whole is measured."""
+
+
+class Crossing(NamedTuple):
+    """Where a mode turns unstable.
+
+    Attributes:
+        mu: friction.
+        low, high: ends of the step in friction that was searched.
+        before, after: the mode there, stable and unstable.
+        known: what the measure knows of the mode at the friction nearest to ``mu``, a block or a
+            pair; None where a contact opens or closes.
+    """
+
+    mu: float
+    low: float
+    high: float
+    before: Eigenpair
+    after: Eigenpair
+    known: Any = None
 
 
 def onset(
     pencil_at: Callable[[float], Pencil],
     stable: tuple[float, Eigenpair],
     unstable: tuple[float, Eigenpair],
-) -> float | None:
-    """The friction between both at which the mode turns unstable.
+) -> Crossing | None:
+    """Where between two frictions the mode turns unstable.
 
     Args:
         pencil_at: pencil of a friction.
@@ -50,22 +79,86 @@ def onset(
     """
     (low, before), (high, after) = stable, unstable
     if high - low <= LOCATED:  # a contact opens or closes between both
-        return high
+        return Crossing(high, low, high, before, after)
+    measure: _Followed
     if pencil_at(high).is_undamped and pencil_at(low).is_undamped:
-        measure: Callable[[float], float] = _Subspace(pencil_at, high, after)
+        measure = _Subspace(pencil_at, {high: turned(pencil_at(high), _block(after))})
     else:
-        measure = _Growth(pencil_at, before, after, (low, high))
-    measured: dict[float, float] = {}
-
-    def at(mu: float) -> float:
-        if mu not in measured:
-            measured[mu] = measure(mu)
-        return measured[mu]
-
+        measure = _Growth(pencil_at, {low: before, high: after})
     try:
-        return _zero(at, low, high)
+        mu = _zero(measure, low, high)
     except RuntimeError:  # factors are singular: the mode has become another one
         return None
+    if mu is None:
+        return None
+    return Crossing(mu, low, high, before, after, measure.nearest(mu))
+
+
+def confirmed(
+    pencil_at: Callable[[float], Pencil], found: Crossing, basis: np.ndarray
+) -> float | None:
+    """Where the whole structure turns unstable near what was found in a subspace.
+
+    Args:
+        pencil_at: pencil of the whole structure at a friction.
+        basis: of the subspace, (n, m).
+
+    Returns:
+        None where the whole does not turn unstable there, or the mode is lost.
+    """
+    size = found.high - found.low
+    try:
+        measure = _measure_of_whole(pencil_at, found, basis)
+        for share in AROUND:
+            lower = max(found.mu - share * size, found.low)
+            upper = min(found.mu + share * size, found.high)
+            if measure(upper) > 0 >= measure(lower):
+                return _between(measure, lower, upper)
+    except RuntimeError:  # the mode has become another one
+        return None
+    return None
+
+
+def _measure_of_whole(
+    pencil_at: Callable[[float], Pencil], found: Crossing, basis: np.ndarray
+) -> "_Followed":
+    """The measure of the mode, known next to where it turned unstable in a subspace."""
+    # not at the zero itself, where the root of a mode at rest vanishes
+    start = min(found.mu + AROUND[0] * (found.high - found.low), found.high)
+    pencil = pencil_at(start)
+    if isinstance(found.known, Block):
+        right, left = (
+            np.linalg.qr(basis @ each)[0]
+            for each in (found.known.right, found.known.left)
+        )
+        block = settled(pencil, found.known._replace(right=right, left=left))
+        if block is None:
+            raise RuntimeError("the subspace is none of the whole")
+        return _Subspace(pencil_at, {start: block})
+    pair = _polished_as(pencil, found.known, basis)
+    return _Growth(pencil_at, {start: pair})
+
+
+def grows(pencil: Pencil, pair: Eigenpair, basis: np.ndarray) -> bool | None:
+    """Whether the mode of a subspace grows in the whole; None if it is none there."""
+    try:
+        whole = _polished_as(pencil, pair, basis)
+    except RuntimeError:
+        return None
+    return bool(whole.value.real > whole.error)
+
+
+def _polished_as(pencil: Pencil, pair: Eigenpair, basis: np.ndarray) -> Eigenpair:
+    """The mode of the whole that a mode of a subspace stands for.
+
+    Raises:
+        RuntimeError: there is none.
+    """
+    right, left = (unit_vector(basis @ each) for each in (pair.right, pair.left))
+    whole = polished(pencil, pair.value, right, left)
+    if abs(np.vdot(right, whole.right)) < ALIKE:
+        raise RuntimeError("the mode has become another one")
+    return whole
 
 
 def _zero(measure: Callable[[float], float], low: float, high: float) -> float | None:
@@ -82,6 +175,13 @@ def _zero(measure: Callable[[float], float], low: float, high: float) -> float |
         upper, step = lower, 1.5 * step
     if not measure(lower) <= 0:
         return None
+    return _between(measure, lower, upper)
+
+
+def _between(
+    measure: Callable[[float], float], lower: float, upper: float
+) -> float | None:
+    """The zero between two frictions of which the measure is positive at the upper one."""
     zero = brentq(measure, lower, upper, xtol=LOCATED, rtol=4 * np.finfo(float).eps)
     # the measure jumps where the mode has become another one on the way
     largest = max(abs(measure(lower)), abs(measure(upper)))
@@ -94,8 +194,14 @@ class _Followed:
     Where the step is too large to know what has become of it, the middle comes first.
     """
 
-    def __init__(self) -> None:
-        self.known: dict[float, Any] = {}
+    def __init__(
+        self, pencil_at: Callable[[float], Pencil], known: dict[float, Any]
+    ) -> None:
+        self.pencil_at, self.known = pencil_at, known
+
+    def nearest(self, mu: float) -> Any:
+        """What is known at the nearest friction."""
+        return self.known[min(self.known, key=lambda each: abs(each - mu))]
 
     def __call__(self, mu: float) -> float:
         self._reach(mu, HALVINGS)
@@ -143,37 +249,42 @@ class Block(NamedTuple):
 class _Subspace(_Followed):
     """Positive where the modes of a subspace grow, without damping; smooth in friction."""
 
-    def __init__(
-        self, pencil_at: Callable[[float], Pencil], high: float, after: Eigenpair
-    ) -> None:
-        super().__init__()
-        self.pencil_at = pencil_at
-        square = -(after.value**2)
-        pair = after.value.imag != 0
-        roots = [square, square.conjugate()] if pair else [complex(square.real)]
-        right, left = (
-            np.linalg.qr(np.stack([v.real, v.imag], 1) if pair else v.real[:, None])[0]
-            for v in (after.right, after.left)
-        )
-        self.known[high] = turned(pencil_at(high), Block(right, left, roots, 0.0))
-
     def _moved(self, near: float, mu: float) -> Block | None:
-        start = last = self.known[near]
-        pencil = self.pencil_at(mu)
-        for _ in range(TURNS):
-            block = turned(pencil, last)
-            size = abs(np.mean(block.roots))
-            moved = abs(np.mean(block.roots) - np.mean(last.roots)) / size
-            opened = abs(block.split - last.split) / size**2
-            last = block
-            if max(moved, opened) <= SETTLED:  # what is left vanishes in one more turn
-                last = turned(pencil, last)
-                alike = np.linalg.svd(start.right.T @ last.right, compute_uv=False)
-                return last if alike.min() >= ALIKE else None
-        return None
+        start = self.known[near]
+        reached = settled(self.pencil_at(mu), start)
+        if reached is None:
+            return None
+        alike = np.linalg.svd(start.right.T @ reached.right, compute_uv=False)
+        return reached if alike.min() >= ALIKE else None
 
     def _measure(self, mu: float) -> float:
         return -self.known[mu].split  # type: ignore[no-any-return]
+
+
+def _block(pair: Eigenpair) -> Block:
+    """A mode without damping and the one that it has merged with, if it has."""
+    square = -(pair.value**2)
+    merged = pair.value.imag != 0
+    roots = [square, square.conjugate()] if merged else [complex(square.real)]
+    right, left = (
+        np.linalg.qr(np.stack([v.real, v.imag], 1) if merged else v.real[:, None])[0]
+        for v in (pair.right, pair.left)
+    )
+    return Block(right, left, roots, 0.0)
+
+
+def settled(pencil: Pencil, start: Block) -> Block | None:
+    """The block after as many inverse iterations as it takes; None if they do not end."""
+    last = start
+    for _ in range(TURNS):
+        block = turned(pencil, last)
+        size = abs(np.mean(block.roots))
+        moved = abs(np.mean(block.roots) - np.mean(last.roots)) / size
+        opened = abs(block.split - last.split) / size**2
+        last = block
+        if max(moved, opened) <= SETTLED:  # what is left vanishes in one more turn
+            return turned(pencil, last)
+    return None
 
 
 def turned(pencil: Pencil, start: Block) -> Block:
@@ -214,8 +325,10 @@ def _solver(
     aside = ASIDE * max(float(abs(np.mean(roots))), (SLOW * pencil.unit) ** 2)
     is_pair = roots[0].imag != 0
     shifts = [roots[0]] if is_pair else [root.real for root in roots]
+    # as of other factors: the pattern is symmetric
+    order = {} if pencil.is_dense else FEW_ENTRIES
     factors = [
-        splu(sp.csc_array(pencil.stiffness - (shift + aside) * pencil.mass))
+        splu(sp.csc_array(pencil.stiffness - (shift + aside) * pencil.mass), **order)
         for shift in shifts
     ]
 
@@ -237,17 +350,6 @@ def _solver(
 
 class _Growth(_Followed):
     """Growth rate of a mode."""
-
-    def __init__(
-        self,
-        pencil_at: Callable[[float], Pencil],
-        before: Eigenpair,
-        after: Eigenpair,
-        ends: tuple[float, float],
-    ) -> None:
-        super().__init__()
-        self.pencil_at = pencil_at
-        self.known = dict(zip(ends, (before, after), strict=True))
 
     def _moved(self, near: float, mu: float) -> Eigenpair | None:
         guess = self.known[near]

@@ -23,6 +23,12 @@ from scipy.sparse.linalg._dsolve import _superlu
 DENSE = 1000
 """Degrees of freedom up to which all eigenvalues are computed by dense algebra."""
 LONG = np.clongdouble
+FEW_ENTRIES: dict[str, Any] = {
+    "permc_spec": "MMD_AT_PLUS_A",
+    "diag_pivot_thresh": 0.01,
+    "options": {"SymmetricMode": True},
+}
+"""Sparse factors of a symmetric pattern off its eigenvalues: pivots on the diagonal will do."""
 
 
 @dataclass(frozen=True)
@@ -225,12 +231,7 @@ class Factors:
         )
         # the pattern is symmetric and pivots on the diagonal are good enough for shifts off the
         # eigenvalues; each solution is held against its residual by who uses it
-        self._sparse = splu(
-            matrix,
-            permc_spec="MMD_AT_PLUS_A",
-            diag_pivot_thresh=0.01,
-            options={"SymmetricMode": True},
-        )
+        self._sparse = splu(matrix, **FEW_ENTRIES)
         if pencil.modal is not None:
             # Woodbury's formula: (Q + s U d Uᵀ)⁻¹ by solutions with Q and a small matrix
             self.modal = pencil.modal

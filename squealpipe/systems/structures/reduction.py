@@ -16,11 +16,7 @@ from squealpipe.systems.structures.agreement import (
     refined,
     summary,
 )
-from squealpipe.systems.structures.contact import (
-    Contact,
-    are_parallel,
-    dependent_contacts,
-)
+from squealpipe.systems.structures.contact import are_parallel, dependent_contacts
 from squealpipe.systems.structures.definition import ContactStructure, ReducedFrom
 from squealpipe.systems.structures.dense import all_modes
 from squealpipe.systems.structures.linearized import pencil_about
@@ -33,6 +29,7 @@ from squealpipe.systems.structures.sliding import (
     steady_sliding,
 )
 from squealpipe.systems.structures.spectrum import Limits, Solver, check_frequency
+from squealpipe.systems.structures.subspace import in_coordinates
 
 AND_LARGER = 3
 """Larger numbers of modes that must do as well: convergence is not monotonic."""
@@ -156,29 +153,16 @@ class Kept:
 
     def reduced(self, number: int) -> ContactStructure:
         """The structure of the lowest of these modes."""
-        contacts = [
-            Contact(
-                each.name,
-                self.normals[:number, place],
-                self.tangentials[:number, place],
-                each.stiffness,
-                each.preload,
-                each.speed,
-                self.transversals[:number, place] if each.transverse_damping else None,
-                each.transverse_damping,
-            )
-            for place, each in enumerate(self.whole.contacts)
-        ]
-        return type(self.whole)(
-            **{
-                **self.whole.arguments,
-                "mass": np.eye(number),
-                "stiffness": self.stiffness[:number, :number],
-                "damping": self.damping[:number, :number],
-                "modal_damping": 0.0,
-                "contacts": contacts,
-                "load": None if self.balanced else self.load[:number],
-            }
+        return in_coordinates(
+            self.whole,
+            self.stiffness[:number, :number],
+            self.damping[:number, :number],
+            (
+                self.normals[:number],
+                self.tangentials[:number],
+                self.transversals[:number],
+            ),
+            None if self.balanced else self.load[:number],
         )
 
     def values(self, number: int) -> np.ndarray:

@@ -222,6 +222,30 @@ class _Held:
         return solve
 
 
+def static_answers(structure: ContactStructure) -> np.ndarray:
+    """Displacements of a large structure with closed contacts by its load and contact forces.
+
+    Returns:
+        (n, 1 + 2 contacts): those of the load, of normal and of tangential unit forces; none where
+        nothing holds the structure.
+    """
+    try:
+        held = _held(structure)
+        answers = np.column_stack(
+            [held.factors.solve(structure.load), held.of_normals, held.of_tangentials]
+        )
+    except RuntimeError:  # the factor is exactly singular
+        return np.empty((structure.size, 0))
+    return answers[:, np.isfinite(answers).all(axis=0)]
+
+
+def _held(structure: ContactStructure) -> _Held:
+    held = _HELD.get(structure)
+    if held is None:
+        held = _HELD[structure] = _Held(structure)
+    return held
+
+
 def _solver(
     structure: ContactStructure, closed: np.ndarray, drag: np.ndarray
 ) -> Callable[[np.ndarray], np.ndarray]:
@@ -231,10 +255,7 @@ def _solver(
         RuntimeError: it is singular.
     """
     if structure.size > DENSE and structure.contacts:
-        held = _HELD.get(structure)
-        if held is None:
-            held = _HELD[structure] = _Held(structure)
-        return held.solver(closed, drag)
+        return _held(structure).solver(closed, drag)
     acting = acting_directions(structure, closed, drag)
     matrix = structure.stiffness + contact_stiffness(structure, closed, acting)
     return splu(sp.csc_array(matrix)).solve  # type: ignore[no-any-return]
