@@ -5,10 +5,11 @@ from itertools import product
 
 import numpy as np
 import pytest
+from scipy.stats import binomtest
 
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.reading import READINGS
-from squealpipe.schema.inference import Holds, of_study, wilson_interval
+from squealpipe.schema.inference import CONFIDENCE, Holds, of_study, wilson_interval
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.store import load, save
 from squealpipe.tasks.inference.candidates import Candidates, sets_of
@@ -180,6 +181,12 @@ def test_wilsons_interval_as_in_closed_form():
         (middle - half, middle + half), rel=1e-12
     )
     assert np.isnan(wilson_interval(0, 0)).all()
+
+
+@pytest.mark.parametrize(("count", "size"), [(0, 16), (3, 7), (129, 1024), (9, 9)])
+def test_wilsons_interval_is_that_of_scipy_to_the_last_digit(count, size):
+    interval = binomtest(count, size).proportion_ci(CONFIDENCE, method="wilson")
+    assert wilson_interval(count, size) == (interval.low, interval.high)
 
 
 def test_samples_and_maps_are_judged_alike():
