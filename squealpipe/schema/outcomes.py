@@ -14,7 +14,7 @@ class Outcome(IntEnum):
     not_computed = 2, "nothing was asked of it"
     step_limit = (
         3,
-        "too many steps: shorten t_end (cycles: raise max_steps; branches: lower y_peak_max)",
+        "too many steps: shorten t_end, or raise max_steps (branches: lower y_peak_max)",
     )
     event_limit = (
         4,

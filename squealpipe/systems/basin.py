@@ -8,9 +8,10 @@ import xarray as xr
 from squealpipe.schema import flag_table
 from squealpipe.schema.systems import build
 from squealpipe.systems.grid import duration_of, outer_product
+from squealpipe.systems.integrate import MOST_STEPS
 from squealpipe.systems.labels import attributes_of, flag, labels, outcome
 from squealpipe.systems.motion import MotionKind, RepeatableRuns, drift_tolerance
-from squealpipe.validation import Number, Tolerance, Values, Workers, checked
+from squealpipe.validation import Natural, Number, Tolerance, Values, Workers, checked
 
 SAME_ATTRACTOR = 1e-3
 """Extremes of one attractor from two starts differ by less, over those of all attractors."""
@@ -24,6 +25,7 @@ def basin(
     t_start: Number = 0.0,
     start: Values,
     tol: Tolerance = 1e-12,
+    max_steps: Natural = MOST_STEPS,
     workers: Workers = None,
     **parameters: Any,
 ) -> xr.Dataset:
@@ -41,6 +43,7 @@ def basin(
         t_end: when they end.
         t_start: when they begin: of a forced system another basin for each phase of its forcing.
         start: states that differ from the system's start, numbers or 1-D arrays, and ``regime``.
+        max_steps: steps of a run, after which its outcome is ``step_limit``.
         parameters: those that differ from the system's, numbers or 1-D arrays.
 
     Returns:
@@ -57,6 +60,7 @@ def basin(
         tol,
         grid.regime,
         workers,
+        max_steps,
     )
     whole = ensemble.run(slice(None), late=0.75)
     motion, period = ensemble.judged(whole)

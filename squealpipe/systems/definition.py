@@ -43,7 +43,16 @@ MOST_STATES, MOST_SURFACES, MOST_REGIMES = 64, 64, 256
 ARGUMENTS = frozenset(
     (
         *("t_end", "t_start", "times", "start", "tol", "sensitivity", "t_late"),
-        *("horizon", "workers", "guess", "periods", "t_settle", "to", "n_points"),
+        *(
+            "horizon",
+            "workers",
+            "max_steps",
+            "guess",
+            "periods",
+            "t_settle",
+            "to",
+            "n_points",
+        ),
         *("parameter", "parameters", "label", "run", "regime", "self", "system"),
     )
 )

@@ -19,7 +19,8 @@ from squealpipe.systems.tracing import TracedSystem as System
 
 LARGEST = "largest "
 
-MOST_STEPS, MOST_EVENTS = 1e7, 1e7
+MOST_STEPS, MOST_EVENTS = 10_000_000, 10_000_000
+"""Of a run, by default."""
 
 
 def symbolic(system: System) -> HybridSystem:

@@ -20,7 +20,7 @@ from squealpipe.methods.recurrence import (
     repeats_after,
 )
 from squealpipe.schema import Outcome
-from squealpipe.systems.integrate import RunOptions, integrate
+from squealpipe.systems.integrate import MOST_STEPS, RunOptions, integrate
 
 AT_REST = 1e-3
 """A motion rests whose states stay this close together, over their ranges in the whole run."""
@@ -75,6 +75,7 @@ class RepeatableRuns:
         duration: of each run; times here count from its begin.
         t_start: what the system's functions take for the time there.
         regime: in which all start; by default what fits each.
+        max_steps: of each run.
     """
 
     system: Any
@@ -84,6 +85,7 @@ class RepeatableRuns:
     tol: float
     regime: str | None
     workers: int | None
+    max_steps: int = MOST_STEPS
 
     def run(
         self, rows: Any, share: float = 1.0, late: float = 1.0, **options: Any
@@ -96,6 +98,7 @@ class RepeatableRuns:
             "regime": self.regime,
             "t_late": late * self.duration,
             "t_start": self.t_start,
+            "most_steps": self.max_steps,
         } | options
         return integrate(
             self.system,

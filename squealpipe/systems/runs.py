@@ -13,7 +13,7 @@ from squealpipe.parameters import brief
 from squealpipe.schema.systems import build
 from squealpipe.systems.cycles.sensitivity import sensitivities
 from squealpipe.systems.grid import call_values, duration_of, outer_product, scalar
-from squealpipe.systems.integrate import RunOptions, integrate
+from squealpipe.systems.integrate import MOST_STEPS, RunOptions, integrate
 from squealpipe.systems.labels import (
     attributes_of,
     components_of,
@@ -24,7 +24,15 @@ from squealpipe.systems.labels import (
 )
 from squealpipe.systems.record import RunRecord, single_run
 from squealpipe.systems.trace import TIME
-from squealpipe.validation import Number, Tolerance, Values, Vector, Workers, checked
+from squealpipe.validation import (
+    Natural,
+    Number,
+    Tolerance,
+    Values,
+    Vector,
+    Workers,
+    checked,
+)
 
 SAMPLES_PER_STEP, MOST_SAMPLES = 4, 20_001
 
@@ -38,6 +46,7 @@ def simulate(
     times: Vector | None = None,
     start: Values | None = None,
     tol: Tolerance = 1e-12,
+    max_steps: Natural = MOST_STEPS,
     sensitivity: Sequence[str] = (),
     **parameters: Any,
 ) -> xr.Dataset:
@@ -49,6 +58,7 @@ def simulate(
         times: instants, ascending; by default four a step of the integrator, evenly spaced.
         start: states that differ from the system's start, and ``regime`` if it is to be given.
         tol: tolerance of the Taylor integrator, relative to the states' sizes.
+        max_steps: steps of the integrator in a run, after which its outcome is ``step_limit``.
         sensitivity: names of parameters, and ``<state>0`` of starts, by which derivatives are
             taken, through all events.
         parameters: those that differ from the system's.
@@ -62,7 +72,9 @@ def simulate(
         n: scalar(n, v) for n, v in call_values(system, start, parameters).items()
     }
     duration = duration_of(t_start, t_end)
-    options = RunOptions(regime=(start or {}).get("regime"), t_start=t_start)
+    options = RunOptions(
+        regime=(start or {}).get("regime"), t_start=t_start, most_steps=max_steps
+    )
     if times is None:
         steps = single_run(system, values, duration, options, tol=tol, room=0).steps
         times = np.linspace(
@@ -130,6 +142,7 @@ def ensemble(
     start: Values | None = None,
     t_late: Number | None = None,
     tol: Tolerance = 1e-12,
+    max_steps: Natural = MOST_STEPS,
     horizon: bool = False,
     workers: Workers = None,
     **parameters: Any,
@@ -142,6 +155,7 @@ def ensemble(
         start: states that differ from the system's start, and ``regime`` if it is to be given; an
             array of ``x`` has dimension ``x0``.
         t_late: from when the ``late_…`` extremes are kept; after four fifths by default.
+        max_steps: steps of the integrator in a run, after which its outcome is ``step_limit``.
         horizon: with the growth of a perturbation and the horizon of predictability.
         workers: processes; None takes all cores. The result is the same bit for bit.
         parameters: those that differ from the system's.
@@ -163,7 +177,13 @@ def ensemble(
         system,
         grid.values,
         np.full(size, duration),
-        RunOptions(regime=grid.regime, t_late=late, tangent=horizon, t_start=t_start),
+        RunOptions(
+            regime=grid.regime,
+            t_late=late,
+            tangent=horizon,
+            t_start=t_start,
+            most_steps=max_steps,
+        ),
         tol=tol,
         workers=workers,
     )

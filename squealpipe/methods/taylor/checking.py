@@ -15,6 +15,7 @@ from squealpipe.methods.taylor.roots import evaluate, evaluate_twice
 from squealpipe.methods.taylor.simd import (
     ROW,
     bits_below,
+    first_bit,
     fma,
     larger,
     load,
@@ -36,7 +37,8 @@ JUMP = 1e-4
 """A rate jumps in a step across the root of a base (``bases``) if it changes there by so many sizes
 of its state, over the longest step of late."""
 FINEST = 2.0**-52
-"""Share of the time reached below which there is no step."""
+"""Share of the time reached below which there is no step, and of the whole run below which steps
+that move nothing lead nowhere."""
 
 
 @inline
@@ -73,6 +75,41 @@ def _event_agrees(t: Any, event: int, step: Any, share: float) -> Any:
     gap = magnitude(at_end(series, t.n_terms, step) - exact)
     size = larger(magnitude(load(series)), magnitude(exact))
     return bits_below(gap, size * splat(share))
+
+
+@inline
+def end_stalled(t: Any, m: Any, c: Any, busy: int) -> int:
+    """End the runs whose steps have shrunk without end; returns their lanes.
+
+    The step has moved no variable, so that all later ones are like it, and the run would take more
+    than 2⁵² of them. So it is where a numerator vanishes with its base, as in Painlevé's problem.
+    """
+    short = splat(FINEST) * load(t.rows + layout.T_END * ROW)
+    bits = bits_below(load(t.rows + layout.STEP * ROW), short) & busy
+    ended = 0
+    while bits:
+        lane = first_bit(bits)
+        bits ^= 1 << lane
+        if _stands_still(t, m, c, lane):
+            m.integers[layout.OUTCOME, lane] = layout.DISCONTINUITY
+            ended |= 1 << lane
+    return ended
+
+
+@part
+def _stands_still(t: Any, m: Any, c: Any, lane: int) -> bool:
+    """Whether a lane runs on after a step that has moved no variable; the next one is the same."""
+    hit, outcome = m.integers[layout.HIT, lane], m.integers[layout.OUTCOME, lane]
+    if hit != -1 or outcome != layout.RUNNING:
+        return False
+    for variable in range(t.n_variables):
+        start, end = c[variable, 0, lane], m.rows[layout.FIXED_ROWS + variable, lane]
+        if start != end:
+            return False
+    fresh = False  # the next step of a surface that starts from zero is another
+    for surface in range(t.n_surfaces):
+        fresh |= m.fresh[surface] & (1 << lane) != 0
+    return not fresh
 
 
 @part

@@ -14,7 +14,7 @@ import numpy as np
 
 from squealpipe.methods.compiled import inline, part
 from squealpipe.methods.taylor import layout
-from squealpipe.methods.taylor.checking import believe_or_halve, differing
+from squealpipe.methods.taylor.checking import believe_or_halve, differing, end_stalled
 from squealpipe.methods.taylor.lanes import call, compile_advance, view
 from squealpipe.methods.taylor.observation import (
     clear_extremes,
@@ -298,6 +298,7 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
         _cut_all(t, m, c, special)
         if t.verify:
             special |= _check(t, m, c, parameters, busy)
+        special |= end_stalled(t, m, c, busy)
         # before the samples, which count on to the next one that is due
         _gather_extremes(t, m, c, busy)
         while due:
