@@ -193,3 +193,25 @@ def test_a_start_beyond_a_clock_waits_for_its_next_tick():
     assert run.event_time.values[0] == pytest.approx(PERIOD, rel=1e-12)
     late = toggled().simulate(1.5, t_start=0.3)
     assert late.event_time.values == pytest.approx([1.25], abs=1e-12)
+
+
+@pytest.mark.parametrize("t_start", [0.0, 0.3, 1.0])
+def test_a_tick_that_only_marks_the_start_counts_too(t_start):
+    marked = System(
+        "marked",
+        states={"x": "1"},
+        parameters={},
+        regimes={"only": {}},
+        field=lambda t, s, p, r: {"x": -s.x},
+        switches=[
+            Switch("tick", "only", lambda t, s, p, r: -sin(2.0 * np.pi * t), "only")
+        ],
+        start={"x": 1.0},
+        period=lambda p: 1.0,
+    )
+    run = marked.simulate(3.5, t_start=t_start)
+    expected = np.arange(np.ceil(t_start), 4.0)
+    assert run.event_time.values == pytest.approx(expected, abs=1e-12)
+    assert labels(run.outcome).item() == "converged"
+    found = marked.ensemble(3.5, t_start=t_start, start={"x": np.array([1.0, 2.0])})
+    assert found.count_tick.values.tolist() == [len(expected)] * 2

@@ -254,7 +254,7 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
             at_once = m.marks[regime, surface] == 0
             if m.clocks[surface]:
                 ticked = m.ticked[surface, lane] == m.rows[layout.CLOCK, lane]
-                at_once = at_once and fresh and not ticked
+                at_once = fresh and not ticked  # of a marker, too
             watch = Watch(
                 falls >= 0,
                 rises >= 0,

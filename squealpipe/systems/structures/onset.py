@@ -173,7 +173,11 @@ def _zero(measure: Callable[[float], float], low: float, high: float) -> float |
         if measure(lower) <= 0 or lower == low:
             break
         upper, step = lower, 1.5 * step
-    if not measure(lower) <= 0:
+    at_lower = measure(lower)
+    # a friction that is the critical one itself leaves a round-off of either sign
+    if 0 < at_lower * (upper - lower) <= LOCATED * (measure(upper) - at_lower):
+        return float(lower)
+    if not at_lower <= 0:
         return None
     return _between(measure, lower, upper)
 

@@ -75,3 +75,14 @@ def test_a_mode_that_damping_lets_grow_alone_and_the_other_name_each_other():
     ).complex_modes(mu=[0.0, 0.5, 0.9])
     assert np.isfinite(modes.critical_mu).sum() == 1
     assert list(modes.merges_with.values) == [2, 1]
+
+
+@pytest.mark.parametrize("beside", [-1e-13, 0.0, 1e-13])
+def test_the_critical_friction_itself_may_be_among_those_asked_for(beside):
+    # K + k(n + μt)nᵀ = [[10, 10μ − 3], [−3, 18]]: both of its eigenvalues are 14 at μ = 5/6
+    contact = Contact("c", {1: 1.0}, {0: 1.0}, stiffness=10.0, preload=1.0)
+    structure = Structure(np.eye(2), [[10.0, -3.0], [-3.0, 8.0]], contacts=[contact])
+    critical = np.nextafter(5 / 6, 1) + beside
+    modes = structure.complex_modes(mu=[0.0, critical, 1.0])
+    assert (modes.onset == Onset.located).all()
+    assert modes.critical_mu.values == pytest.approx(np.full(2, 5 / 6), abs=1e-11)
