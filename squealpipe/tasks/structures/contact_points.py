@@ -16,7 +16,7 @@ from squealpipe.schema.squealing import NO_ATTRACTOR
 from squealpipe.systems.structures.elastic_pad import YOUNG, elastic_pad
 from squealpipe.systems.structures.squeal.plant import Plant
 from squealpipe.systems.structures.squeal.settling import WIDE
-from squealpipe.systems.structures.squeal.squealing_modes import squealing_modes
+from squealpipe.systems.structures.squeal.squealing_modes import squealing_of
 from squealpipe.systems.structures.squeal.windows import Running, run
 
 STIFFER = 100.0
@@ -101,8 +101,9 @@ def _pad(
         # what only dies out needs no fast modes, whose steps are short
         pad = pad.reduce(n_modes=min(max(count, FEW), pad.size))
     onsets = modes.critical_mu.values[np.isfinite(modes.critical_mu.values)]
-    answer = squealing_modes(
-        pad, samples=how.samples, t_end=how.t_end, tol=how.tol, workers=workers
+    plant = Plant(pad)  # its system is traced and compiled once for both
+    answer = squealing_of(
+        plant, samples=how.samples, t_end=how.t_end, tol=how.tol, workers=workers
     )
     growing = answer.sizes["mode"]
     ends = answer.dominant_frequency.values
@@ -125,11 +126,11 @@ def _pad(
         else Outcome.converged,
     }
     places = np.linspace(0.0, 1.0, count) if count > 1 else np.array([0.5])
-    return values | _of_motion(pad, answer, places, most, how.tol)
+    return values | _of_motion(plant, answer, places, most, how.tol)
 
 
 def _of_motion(
-    pad: Any, answer: xr.Dataset, places: np.ndarray, most: int, tol: float
+    plant: Plant, answer: xr.Dataset, places: np.ndarray, most: int, tol: float
 ) -> dict[str, Any]:
     """What a small push ends in: level, and contact by contact."""
     count = len(places)
@@ -156,7 +157,7 @@ def _of_motion(
     if not moves:
         return values
     one = answer.isel(attractor=end)
-    force = _forces(pad, one, tol)
+    force = _forces(plant, one, tol)
     line = np.exp(-2j * np.pi * np.arange(force.shape[1]) / EACH)
     phase = np.angle((force - force.mean(axis=1, keepdims=True)) @ line)
     delays = (phase[0] - phase) / (2.0 * np.pi) % 1.0
@@ -175,9 +176,9 @@ def _of_motion(
     }
 
 
-def _forces(pad: Any, motion: xr.Dataset, tol: float) -> np.ndarray:
+def _forces(plant: Plant, motion: xr.Dataset, tol: float) -> np.ndarray:
     """Normal forces over preloads of a settled motion, (contact, instant)."""
-    plant = Plant(pad)
+    pad = plant.structure
     start = np.concatenate([motion.displacement.values, motion.velocity.values])
     times = np.arange(LONG * EACH) / (EACH * float(motion.dominant_frequency))
     # several at once run in code that is compiled already

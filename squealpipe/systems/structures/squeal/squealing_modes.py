@@ -24,7 +24,7 @@ from squealpipe.systems.structures.squeal.settling import (
     settle_on,
 )
 from squealpipe.systems.structures.squeal.windows import Rows, Running, still
-from squealpipe.validation import Natural, Positive, Seed, Tolerance, Workers
+from squealpipe.validation import Natural, Positive, Seed, Tolerance, Workers, checked
 from squealpipe.vibration.verdicts import heard
 
 LINES = 1024
@@ -86,7 +86,32 @@ def squealing_modes(
     Raises:
         ValueError: there is no steady sliding; no contact; or a structure that is too large.
     """
-    plant = Plant(structure)
+    return squealing_of(
+        Plant(structure),
+        samples=samples,
+        t_end=t_end,
+        seed=seed,
+        onset=onset,
+        tol=tol,
+        workers=workers,
+    )
+
+
+@checked
+def squealing_of(
+    plant: Any,
+    *,
+    samples: Natural,
+    t_end: Positive | None,
+    seed: Seed = 0,
+    onset: bool = False,
+    tol: Tolerance,
+    workers: Workers,
+) -> xr.Dataset:
+    """Return what :func:`squealing_modes` does, of a plant whose system the caller goes on using.
+
+    Tracing its system and writing its code takes seconds with eight contacts.
+    """
     pushes = [plant.pushed(place, PUSH) for place in plant.unstable]
     if not pushes:  # nothing grows: a push along the mode that decays slowest
         pushes = [plant.pushed(int(plant.spectrum.values.real.argmax()), PUSH)]
