@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from squealpipe import limit_cycle
 from squealpipe.functions import sin
+from squealpipe.parameters import Parameters
 from squealpipe.schema import meanings
 from squealpipe.systems.cycles.solution import CLOSING_TOLERANCE
 from squealpipe.systems.motion import AT_REST, MotionKind
@@ -110,3 +112,11 @@ def test_forced_and_bouncing_motions_drift_too():
 def test_a_weak_attraction_is_a_cycle_on_it_and_slow_growth_beside_it():
     assert label(van_der_pol, mu=1e-7) == "converged"
     assert label(van_der_pol, mu=1e-11, start={"x": 1.5}) == "unsettled"
+
+
+@pytest.mark.release
+def test_a_long_chain_of_legs_closes_by_the_rule_of_short_ones():
+    """A1 at (1.2, 1.2) with k3 = 1000, of 68 legs, was a member of a family closing to 2e-11."""
+    found = limit_cycle(Parameters(k3=1e3), 1.2, 1.2, guess=(0.1, 1.01, 0.0, 0.0))
+    assert meanings(found.outcome)[int(found.outcome)] == "family_member"
+    assert float(found.residual) < 1e-12

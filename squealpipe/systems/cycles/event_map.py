@@ -234,10 +234,13 @@ class EventMap:
         row[self.size :] += crossing.height_by
         return crossing.height / size, row / size
 
-    def solve(self, guess: Vector, most: int = 20) -> Vector | None:
+    def solve(
+        self, guess: Vector, most: int = 20, *, smallest: bool = False
+    ) -> Vector | None:
         """Newton's method at fixed parameters; None where it does not converge.
 
-        Where cycles come in families the smallest correction is taken.
+        Where cycles come in families the smallest correction is taken, of long chains of legs if
+        ``smallest`` is given.
         """
         z, best, previous = guess.copy(), None, np.inf
         for _ in range(most):
@@ -251,7 +254,7 @@ class EventMap:
                 best, previous = z.copy(), residual
             if stagnates or residual < 1e-14:
                 break
-            step = _newton_step(jacobian[:, : self.size], -values)
+            step = _newton_step(jacobian[:, : self.size], -values, smallest)
             if not np.isfinite(step).all():
                 return None
             z[: self.size] += step * min(
@@ -260,14 +263,14 @@ class EventMap:
         return best if previous < 1e-9 else None
 
 
-def _newton_step(jacobian: Vector, values: Vector) -> Vector:
-    """The smallest solution of a Newton step, or of a long chain of legs the one that there is.
+def _newton_step(jacobian: Vector, values: Vector, smallest: bool) -> Vector:
+    """The smallest solution of a Newton step, or any of a long chain of legs unless asked.
 
     Each leg knows its neighbours alone: a sparse LU takes milliseconds where singular values of
     hundreds of unknowns take a second. NaN where a long chain has none.
     """
     rows, columns = jacobian.shape
-    if rows != columns or rows < LONG_CHAIN:
+    if smallest or rows != columns or rows < LONG_CHAIN:
         return np.asarray(np.linalg.lstsq(jacobian, values, rcond=1e-10)[0])
     try:
         return np.asarray(

@@ -209,7 +209,8 @@ def as_motion(cycle: Cycle, tries: int = 8) -> Cycle | None:
     while waiting:
         here = waiting.pop()
         if here.period > 0.0 and is_motion(here):
-            return None if here.drifts else here
+            closed = here.closed()
+            return None if closed.drifts else closed
         shorter = []
         for equations, guess in islice(without_brief_legs(here), max(tries, 0)):
             tries -= 1

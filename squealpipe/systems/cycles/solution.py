@@ -22,6 +22,8 @@ CLOSING_TOLERANCE = 2e-14
 """Closing error, over the extent, that is always round-off; larger ones are checked."""
 _NEIGHBOURS, _SPREAD = 6, 8.0
 """Points next to a solution at which round-off is measured, and how many times that is allowed."""
+_CLOSING_STEPS = 4
+"""Newton steps by which a long chain of legs is closed."""
 _NEUTRAL = 1e-9
 """Distance of a multiplier from 1 that is round-off."""
 _TURNED = 1e-2
@@ -181,12 +183,20 @@ class Cycle:
 
         Next to a family of cycles, where a second multiplier is 1, Newton's method gets no further
         than a motion that does not quite close. What closes to round-off is a member of a family.
-        Of long chains of legs it is taken without the smallest correction, and does not tell.
         """
-        if self.map.size >= LONG_CHAIN:
-            return False
         off = np.abs(self.nontrivial - 1.0).min(initial=1.0)
         return bool(off < _FAMILY and self.residual > self.closing_round_off)
+
+    def closed(self) -> Cycle:
+        """The same, closed as well as it can be.
+
+        Of a long chain of legs Newton's method does not take the smallest correction, without which
+        closing errors next to a family are not those of the motion.
+        """
+        if self.map.size < LONG_CHAIN or not self.drifts:
+            return self
+        point = self.map.solve(self.point, _CLOSING_STEPS, smallest=True)
+        return self if point is None else Cycle.at(self.map, point)
 
     @property
     def is_stable(self) -> bool:
