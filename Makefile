@@ -33,15 +33,12 @@ TINY := -q all --cores 2 --configfile workflow/config/tiny.yaml
 HERE := $(if $(SQUEALPIPE_TINY),$(SQUEALPIPE_TINY)/study/squealpipe/results/tiny,results/tiny)
 AVX2 := tests/processors avx2
 
-# On any x86-64 the C library's fma is software, a hundred times slower: laws, models, methods and linear
-# tasks there, and of the engine what runs in two minutes: events, an ensemble, cycles, a backbone.
-GENERIC := tests/laws tests/models tests/methods tests/tasks/linear tests/systems/test_truth.py \
-  tests/systems/test_cycles.py::test_flip_of_the_impact_oscillator \
-  tests/tasks/backbones/test_backbone.py::test_a_period_doubling_just_above_grazing_is_found
+# On any x86-64 the C library's fma is software, a hundred times slower: there tests/generic.txt, laws, models,
+# methods, linear tasks and at least one test of every other folder.
 test-processors: dev  ## the tests of each change, and the tiny study, as on other processors
 	$(AVX2) $(LOOP) & $(AVX2) $(ORBITS) && wait $$!
 	$(AVX2) $(TESTS)
-	tests/processors generic $(TESTS) $(GENERIC)
+	tests/processors generic $(TESTS) @tests/generic.txt
 	$(if $(SQUEALPIPE_TINY),,$(BIN)/snakemake $(TINY))
 	$(AVX2) $(BIN)/snakemake $$(cd $(HERE) && find data -name '*.nc' | sed 's|^|results/avx2/|') \
 	  $(TINY) --config results=results/avx2
