@@ -11,6 +11,9 @@ if TYPE_CHECKING:
     from squealpipe.store.provenance import produce
     from squealpipe.store.whole_files import StoreError
 
+INPUT_FILES = ("netcdf.py", "provenance.py", "whole_files.py")
+"""What is imported by name: a result depends on them all the same."""
+
 __all__ = ["StoreError", "load", "produce", "save"]
 
 _MODULES = {
