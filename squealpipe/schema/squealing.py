@@ -16,6 +16,7 @@ from squealpipe.schema import (
 )
 from squealpipe.schema.agreement import Listing
 from squealpipe.schema.assess import Verdict
+from squealpipe.schema.meshes import MESH, MESH_COORDINATES
 
 NO_ATTRACTOR = -1
 MOST_MODES = 32
@@ -86,6 +87,7 @@ SQUEALING = DatasetSchema(
         "contact": text("name of the contact", "contact"),
         "sample": count("number of the random start", *_SAMPLE),
         "pole": count("mode of steady sliding, by frequency", *_POLE),
+        **MESH_COORDINATES,
     },
     variables={
         "verdict": flag(
@@ -132,6 +134,7 @@ SQUEALING = DatasetSchema(
             optional=True,
         ),
         "degrees_of_freedom": count("of the whole structure", optional=True),
+        **MESH,
         "frequency_max": _of_whole("end of the band that was compared, NaN: all", "Hz"),
         "ends_in": count(
             "attractor of a start of 1 % along this mode, -1: undetermined", *_MODE

@@ -13,6 +13,7 @@ from squealpipe.schema import (
     outcome,
     whether,
 )
+from squealpipe.schema.meshes import MESH, MESH_COORDINATES
 
 NAME = "complex_modes"
 FACTORS = {
@@ -72,6 +73,7 @@ def _modes(dims: tuple[str, ...]) -> DatasetSchema:
             "contact": Variable(
                 "name of the contact", dims=("contact",), dtype="U", optional=True
             ),
+            **MESH_COORDINATES,
         },
         variables={
             "growth_rate": or_nan(
@@ -120,6 +122,7 @@ def _modes(dims: tuple[str, ...]) -> DatasetSchema:
                 contact,
                 optional=True,
             ),
+            **MESH,
         },
     )
 

@@ -17,6 +17,7 @@ from squealpipe.systems.structures.band import COMPLETE
 from squealpipe.systems.structures.confirming import ConfirmedWay
 from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.factors import Asked, asked_of, with_factors
+from squealpipe.systems.structures.meshes.datasets import mesh_variables
 from squealpipe.systems.structures.numbering import Way
 from squealpipe.systems.structures.pencil import DENSE, one_thread
 from squealpipe.systems.structures.sliding import NoSlidingError
@@ -133,6 +134,8 @@ def _dataset(structure: ContactStructure, asked: Asked) -> xr.Dataset:
     if names := [contact.name for contact in structure.contacts]:
         coords["contact"] = names
         tables["normal_force"] = _forces(every, rows, len(names))
+    of_mesh, mesh_coordinates = mesh_variables(structure)
+    coords |= mesh_coordinates
     scalar = not frictions.ndim, not speeds.ndim
     modes = {
         name: _over(arrays, ways.shape, *scalar) for name, arrays in tables.items()
@@ -162,7 +165,7 @@ def _dataset(structure: ContactStructure, asked: Asked) -> xr.Dataset:
         ),
         **versions(),
     }
-    return build(find(name_over(dims)), modes, coords, attrs)
+    return build(find(name_over(dims)), modes | of_mesh, coords, attrs)
 
 
 def _ways(structure: ContactStructure, asked: Asked) -> np.ndarray:

@@ -11,6 +11,7 @@ from squealpipe.parameters import brief, finite_number, numbers_in_si
 from squealpipe.systems.structures.contact import Contact, directions, transversals
 from squealpipe.systems.structures.friction import Friction, default_mu
 from squealpipe.systems.structures.matrices import checked_mass, real_square
+from squealpipe.systems.structures.meshes.structure_mesh import StructureMesh
 from squealpipe.validation import real_array
 
 OF_SLIDING = {"mu", "belt_speed", "friction_law", "mu_static", "friction_speed"}
@@ -50,6 +51,7 @@ class ContactStructure:
         belt_speed: V, m/s; its sign is the direction.
         friction_law, mu_static, friction_speed: as in ``Parameters``.
         load: f, (n,), N; None: −Σ nᵢ preloadᵢ, which balances the preloads at rest; 0: none.
+        mesh: nodes, facets and what each degree of freedom is, for names and pictures.
 
     Raises:
         ValueError: matrices that do not fit each other, a mass that is not positive definite,
@@ -70,6 +72,7 @@ class ContactStructure:
         mu_static: float | None = None,
         friction_speed: float = 1.0,
         load: Any = None,
+        mesh: StructureMesh | None = None,
     ) -> None:
         mass, stiffness, damping = (
             numbers_in_si(name, matrix, units)
@@ -111,6 +114,8 @@ class ContactStructure:
         )
         self.given_load = numbers_in_si("load", load, "N")
         self.load = self._load(self.given_load)
+        self.mesh = _fitting(mesh, self.size)
+        """Nodes, facets and degrees of freedom; of a reduced structure those of the whole."""
         self.modes: np.ndarray | None = None
         """Of a reduced structure, (n of the whole, n): amplitudes → displacements."""
         self.record: dict[str, Any] = {}
@@ -175,7 +180,7 @@ class ContactStructure:
         other = type(self)(**{**self.arguments, **changes})
         if self.reduced_from is not None and set(changes) <= OF_SLIDING:
             origin = self.reduced_from
-            other.modes = self.modes
+            other.modes, other.mesh = self.modes, self.mesh
             other.reduced_from = ReducedFrom(
                 origin.whole.with_(**changes), origin.frequency_max
             )
@@ -197,6 +202,7 @@ class ContactStructure:
             "mu_static": friction.mu_static,
             "friction_speed": friction.friction_speed,
             "load": self.given_load,
+            "mesh": self.mesh if self.modes is None else None,
         }
 
     def as_dict(self) -> dict[str, Any]:
@@ -226,6 +232,16 @@ class ContactStructure:
             "mu_static": self.friction.mu_static,
             "friction_speed": self.friction.friction_speed,
         }
+
+
+def _fitting(mesh: StructureMesh | None, size: int) -> StructureMesh | None:
+    """Return the mesh if it has the degrees of freedom of the matrices."""
+    if mesh is not None and len(mesh.degree_of_freedom) != size:
+        raise ValueError(
+            f"mesh: it says what {len(mesh.degree_of_freedom)} degrees of freedom are, but the "
+            f"matrices have {size}"
+        )
+    return mesh
 
 
 def _ratios(given: Any, size: int) -> np.ndarray:

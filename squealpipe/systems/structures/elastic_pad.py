@@ -7,6 +7,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from squealpipe.systems.structures.contact import Contact
+from squealpipe.systems.structures.meshes.structure_mesh import StructureMesh
 from squealpipe.systems.structures.structure import Structure
 from squealpipe.validation import Natural, NotNegative, Number, Positive, checked
 
@@ -110,9 +111,15 @@ def elastic_pad(
                 preload=preload / contacts,
             )
         )
+    freedoms = np.empty((basis.N, 2), int)
+    for direction, places in enumerate(basis.nodal_dofs, 1):
+        freedoms[places] = np.column_stack(
+            [np.arange(len(x)), np.full(len(x), direction)]
+        )
     return Structure(
         mass,
         stiffness + sp.diags_array(springs),
+        mesh=StructureMesh(mesh.p.T, mesh.t.T, freedoms),
         modal_damping=modal_damping,
         contacts=points,
         mu=mu,

@@ -292,7 +292,7 @@ class Search:
                 f"kept; keep more (n_modes={enough} suffices)"
             )
         reduced = kept.reduced(number)
-        reduced.modes = kept.modes[:, :number]
+        reduced.modes, reduced.mesh = kept.modes[:, :number], self.whole.mesh
         reduced.reduced_from = ReducedFrom(self.whole, self.frequency_max, self.truth)
         spectrum = Solver(reduced, Limits(), reduced.belt_speed).at(reduced.mu)
         agreement = agreement_of(self.truth, spectrum, reduced.modes)

@@ -58,6 +58,7 @@ def in_coordinates(
             "modal_damping": 0.0,
             "contacts": contacts,
             "load": load,
+            "mesh": None,
         }
     )
 

@@ -12,6 +12,7 @@ from squealpipe.schema.assess import Verdict
 from squealpipe.schema.inference import wilson_interval
 from squealpipe.schema.origin import recorded
 from squealpipe.schema.squealing import NO_ATTRACTOR, SQUEALING, Kind
+from squealpipe.systems.structures.meshes.datasets import mesh_variables
 from squealpipe.systems.structures.squeal.attractors import grouped, is_same
 from squealpipe.systems.structures.squeal.hysteresis import hysteresis
 from squealpipe.systems.structures.squeal.kinds import Described, described
@@ -133,6 +134,7 @@ def squealing_of(
     loud = [place for place, each in enumerate(modes) if not members[place][0].quiet]
     drawn_in = set(numbers[len(pushes) :].tolist())
     damping, damping_outcome = added_damping(plant)
+    of_mesh, mesh_coordinates = mesh_variables(plant.structure)
     return build(
         SQUEALING,
         {
@@ -153,6 +155,7 @@ def squealing_of(
             "added_damping": damping,
             "added_damping_outcome": damping_outcome,
             **_of_whole(plant),
+            **of_mesh,
         },
         {
             "mode": plant.numbers[plant.unstable],
@@ -160,6 +163,7 @@ def squealing_of(
             "contact": plant.contacts,
             "sample": np.arange(samples),
             "pole": plant.numbers,
+            **mesh_coordinates,
         },
         {"not_run": plant.obstacle or ""},
     )
