@@ -5,6 +5,7 @@ import inspect
 import pytest
 
 from squealpipe.study.figures import declared
+from squealpipe.study.figures.model import fig01
 from squealpipe.study.report.sections import FIGURES, OWN, STRUCTURE
 
 NAMES = [f"simulate/F2{letter}" for letter in "abcd"]
@@ -12,11 +13,10 @@ NAMES = [f"simulate/F2{letter}" for letter in "abcd"]
 
 @pytest.mark.parametrize("name", [*FIGURES, *OWN, *STRUCTURE])
 def test_every_figure_of_the_report_can_be_drawn_from_what_it_declares(name):
-    module = declared._import(name)
-    takes = inspect.signature(module.draw)
-    takes.bind(*declared.reads(name))
-    assert declared.reads(name) == module.READS
-    for text in (module.CAPTION, module.ALT):
+    figure = declared.registered(name)
+    inspect.signature(figure.draw).bind(*declared.reads(name))
+    assert declared.reads(name) == figure.reads
+    for text in (figure.caption, figure.alt):
         if callable(text):
             inspect.signature(text).bind(*declared.reads(name))
         else:
@@ -27,7 +27,7 @@ def test_no_module_is_left_without_a_place():
     declaring = {
         path.stem
         for path in declared.FOLDER.glob("*/*.py")
-        if "\nREADS = " in path.read_text()
+        if "\n@report_figure(" in path.read_text()
     }
     assert declaring == {*FIGURES, *OWN, *STRUCTURE}
 
@@ -41,15 +41,19 @@ def test_a_wildcard_stands_for_all_that_match_and_plain_names_keep_their_order()
     assert declared.arguments("fig02", {name: name for name in NAMES}) == NAMES
 
 
-def test_what_is_missing_is_said():
+def test_what_is_missing_is_said(monkeypatch):
     assert declared.datasets_of("fig02", NAMES[:3]) is None
     with pytest.raises(
         ValueError, match="the figure fig02 reads the dataset simulate/F2d"
     ):
         declared.arguments("fig02", dict.fromkeys(NAMES[:3]))
-    with pytest.raises(ValueError, match="has no READS"):
+    with pytest.raises(ValueError, match="declares no figure; decorate"):
         declared.reads("backbone_panels")
-    with pytest.raises(ValueError, match="has no CAPTION"):
+    with pytest.raises(ValueError, match="registers no figure; decorate"):
         declared.texts("backbone_panels", {})
+    without_caption = declared.ReportFigure((), " ", "Springs.", fig01.draw)
+    monkeypatch.setitem(declared._registered, "fig01", without_caption)
+    with pytest.raises(ValueError, match="the caption of the figure fig01 is empty"):
+        declared.texts("fig01", {})
     with pytest.raises(ValueError, match="0 modules"):
         declared.topic("unknown")

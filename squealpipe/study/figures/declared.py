@@ -1,14 +1,15 @@
-"""What figures declare: a figure is one module ``figures/<topic>/<name>.py``.
+"""Figures of reports: what each reads, shows and says, in one record that it registers.
 
-It holds ``READS``, the names of its datasets; ``draw``, which takes them in that order; and
-``CAPTION`` and ``ALT``, each a text or a function of the same datasets. A name in ``READS`` with
-a wildcard (``backbone/F10_*``) stands for all datasets that match, as a mapping by name.
+A figure is one module ``figures/<topic>/<name>.py`` whose function ``draw`` is decorated with
+:func:`report_figure`. The workflow asks often which datasets a figure reads, and must not wait for
+Matplotlib and SciPy each time; so :func:`reads` takes them from the module's source.
 """
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import cache
 from importlib import import_module
@@ -19,13 +20,59 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 FOLDER = Path(__file__).resolve().parent
-WILDCARDS = frozenset("*?[")
 
 Item = TypeVar("Item")
+Draw = TypeVar("Draw", bound=Callable[..., "Figure"])
+
+
+@dataclass(frozen=True)
+class ReportFigure:
+    """A figure of a report.
+
+    Attributes:
+        reads: names of its datasets (``"whirl"``, ``"simulate/F3"``). A name with a wildcard
+            (``"backbone/F10_*"``) stands for all datasets that match, as a mapping by name.
+        caption: what to see in it: a text, or a function of the same datasets.
+        alt: what it looks like, for those who cannot see it: a text, or such a function.
+        draw: takes the datasets in the order of ``reads``, returns a Matplotlib figure.
+    """
+
+    reads: tuple[str, ...]
+    caption: str | Callable[..., str]
+    alt: str | Callable[..., str]
+    draw: Callable[..., Figure]
+
+
+_registered: dict[str, ReportFigure] = {}
+
+
+def report_figure(
+    *,
+    reads: tuple[str, ...],
+    caption: str | Callable[..., str],
+    alt: str | Callable[..., str],
+) -> Callable[[Draw], Draw]:
+    """Register the decorated function as the figure that its module is named after.
+
+    Args:
+        reads, caption, alt: as in :class:`ReportFigure`; ``reads`` written out as a tuple of
+            texts, since it is read from the source, too.
+    """
+
+    def register(draw: Draw) -> Draw:
+        name = draw.__module__.rpartition(".")[2]
+        _registered[name] = ReportFigure(reads, caption, alt, draw)
+        return draw
+
+    return register
 
 
 def find_module(name: str) -> Path:
-    """The module of a figure."""
+    """Return the path of a figure's module.
+
+    Raises:
+        ValueError: if no module, or more than one, has this name.
+    """
     files = list(FOLDER.glob(f"*/{name}.py"))
     if len(files) != 1:
         raise ValueError(
@@ -36,68 +83,110 @@ def find_module(name: str) -> Path:
 
 @cache
 def reads(name: str) -> tuple[str, ...]:
-    """``READS`` of a figure's module, read without importing it: the workflow asks often."""
+    """Return the names of the datasets that a figure reads, without importing its module.
+
+    Raises:
+        ValueError: if no function of the module is decorated with ``report_figure``, or its
+            ``reads`` is not written out.
+    """
     path = find_module(name)
-    for node in ast.parse(path.read_bytes()).body:
-        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "READS":
-            found = ast.literal_eval(node.value)
-            if isinstance(found, tuple) and all(
-                isinstance(entry, str) for entry in found
-            ):
-                return found
+    for node in ast.walk(ast.parse(path.read_bytes())):
+        if isinstance(node, ast.Call) and ast.unparse(node.func) == "report_figure":
+            for keyword in node.keywords:
+                if keyword.arg == "reads":
+                    return _tuple_of_texts(path, keyword.value)
     raise ValueError(
-        f"{path} has no READS; give the names of its datasets as a tuple of texts"
+        f"{path} declares no figure; decorate its function draw with "
+        "@report_figure(reads=…, caption=…, alt=…)"
+    )
+
+
+def _tuple_of_texts(path: Path, expression: ast.expr) -> tuple[str, ...]:
+    try:
+        value = ast.literal_eval(expression)
+    except ValueError:
+        value = None
+    if isinstance(value, tuple) and all(isinstance(name, str) for name in value):
+        return value
+    raise ValueError(
+        f"{path}: reads = {ast.unparse(expression)}; write the names of the datasets out, as a "
+        "tuple of texts"
     )
 
 
 def datasets_of(name: str, known: Iterable[str]) -> list[str] | None:
-    """Names of the known datasets that a figure reads; None where one that it needs is missing."""
+    """Return the known datasets that a figure reads, or None where one that it needs is missing."""
     names = list(known)
-    matches = [_matches(entry, names) for entry in reads(name)]
+    matches = [_matches(pattern, names) for pattern in reads(name)]
     return [match for matched in matches for match in matched] if all(matches) else None
 
 
 def arguments(name: str, datasets: Mapping[str, Item]) -> list[Item | dict[str, Item]]:
-    """The datasets of a figure in the order in which it declares them."""
+    """Return the datasets of a figure in the order in which its function takes them.
+
+    Raises:
+        ValueError: if a dataset that it reads is missing.
+    """
     ordered: list[Item | dict[str, Item]] = []
-    for entry in reads(name):
-        matched = {match: datasets[match] for match in _matches(entry, datasets)}
+    for pattern in reads(name):
+        matched = {match: datasets[match] for match in _matches(pattern, datasets)}
         if not matched:
             raise ValueError(
-                f"the figure {name} reads the dataset {entry}, which is not there"
+                f"the figure {name} reads the dataset {pattern}, which is missing"
             )
-        ordered.append(matched if WILDCARDS & set(entry) else matched[entry])
+        has_wildcard = any(character in pattern for character in "*?[")
+        ordered.append(matched if has_wildcard else matched[pattern])
     return ordered
 
 
 def draw(name: str, datasets: Mapping[str, Any]) -> Figure:
-    """Draw a figure from the datasets that it declares."""
-    figure: Figure = _import(name).draw(*arguments(name, datasets))
-    return figure
+    """Draw a figure from datasets by name."""
+    return registered(name).draw(*arguments(name, datasets))
 
 
 def texts(name: str, datasets: Mapping[str, Any]) -> tuple[str, str]:
-    """Caption and alternative text of a figure."""
-    module, written = _import(name), []
-    for constant in ("CAPTION", "ALT"):
-        text = getattr(module, constant, "")
-        text = text(*arguments(name, datasets)) if callable(text) else text
-        if not isinstance(text, str) or not text.strip():
-            raise ValueError(
-                f"{module.__name__} has no {constant}; give a text or a function of its datasets"
-            )
-        written.append(text.strip())
-    return written[0], written[1]
+    """Return the caption and the alternative text of a figure.
+
+    Raises:
+        ValueError: if one of them is empty.
+    """
+    figure = registered(name)
+    return (
+        _text(name, "caption", figure.caption, datasets),
+        _text(name, "alt", figure.alt, datasets),
+    )
+
+
+def _text(
+    name: str, field: str, text: str | Callable[..., str], datasets: Mapping[str, Any]
+) -> str:
+    written = text(*arguments(name, datasets)) if callable(text) else text
+    if not written.strip():
+        raise ValueError(
+            f"the {field} of the figure {name} is empty; give a text or a function of its datasets"
+        )
+    return written.strip()
 
 
 def topic(name: str) -> str:
-    """Folder of a figure's module: figures of one topic are drawn by one rule."""
+    """Return the folder of a figure's module: figures of one topic are drawn by one rule."""
     return find_module(name).parent.name
 
 
-def _matches(entry: str, known: Iterable[str]) -> list[str]:
-    return [name for name in known if name == entry or fnmatchcase(name, entry)]
+def registered(name: str) -> ReportFigure:
+    """Return the record of a figure; its module is imported if it is not yet.
+
+    Raises:
+        ValueError: if the module registers no figure.
+    """
+    module = import_module(f"{__package__}.{topic(name)}.{name}")
+    if name not in _registered:
+        raise ValueError(
+            f"{module.__name__} registers no figure; decorate its function draw with "
+            "@report_figure(reads=…, caption=…, alt=…)"
+        )
+    return _registered[name]
 
 
-def _import(name: str) -> Any:
-    return import_module(f"{__package__}.{topic(name)}.{name}")
+def _matches(pattern: str, known: Iterable[str]) -> list[str]:
+    return [name for name in known if name == pattern or fnmatchcase(name, pattern)]

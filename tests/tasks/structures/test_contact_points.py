@@ -46,7 +46,7 @@ def test_one_point_and_a_stiff_pad_are_quiet_as_their_eigenvalues_say(pads, tmp_
     assert "every pad is quiet" in {
         text.get_text() for axes in beyond_the_point.draw(read).axes for text in axes.texts
     }  # fmt: skip
-    assert "quiet: 1; 2, stiff" in beyond_the_point.CAPTION(read)
+    assert "quiet: 1; 2, stiff" in beyond_the_point.caption(read)
 
 
 def test_a_stiff_pad_is_a_rigid_body_on_its_springs():

@@ -9,17 +9,20 @@ from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
 from squealpipe.plotting.origin import scene_name
+from squealpipe.study.figures.declared import report_figure
 
-READS = ("a1_beside_a4",)
-CAPTION = (
-    "Model A1 started on periodic motions of A4 (grey), with both springs of the length L. Left: y "
-    "over the first periods; right: amplitude spectrum of y over 32 periods."
-)
-ALT = "Rows of two panels: time histories of y of both models, and their spectra."
 KINDS = {"period": "y", "order": "spectrum"}
 LOOKS = ((style.RED, "-"), (style.ORANGE, "--"), (style.GREEN, "-."), (style.BLUE, ":"))
 
 
+@report_figure(
+    reads=("a1_beside_a4",),
+    caption=(
+        "Model A1 started on periodic motions of A4 (grey), with both springs of the length L. "
+        "Left: y over the first periods; right: amplitude spectrum of y over 32 periods."
+    ),
+    alt="Rows of two panels: time histories of y of both models, and their spectra.",
+)
 def draw(beside: xr.Dataset) -> Figure:
     """One row for each scene, from dataset ``a1_beside_a4``."""
     scenes = beside.scene.values

@@ -10,14 +10,13 @@ from matplotlib.ticker import MaxNLocator
 
 from squealpipe.plotting.cycles import joined
 from squealpipe.plotting.style import BLACK, GREEN, PURPLE, Y_COLOUR
+from squealpipe.study.figures.declared import report_figure
 from squealpipe.study.figures.panels.backbone_panels import (
     STABLE_TO_ROUND_OFF,
     draw_scenes,
     key,
 )
 
-READS = ("backbone/[a-z]*", "doubled_branch/*")
-ALT = "Panels of largest y and amplitude of x over frequency, with insets of doubled branches."
 SHOWN = 1.25
 """Largest y of a doubled branch shown, over that of the backbone."""
 
@@ -37,9 +36,11 @@ def caption(
     )
 
 
-CAPTION = caption
-
-
+@report_figure(
+    reads=("backbone/[a-z]*", "doubled_branch/*"),
+    caption=caption,
+    alt="Panels of largest y and amplitude of x over frequency, with insets of doubled branches.",
+)
 def draw(
     branches: Mapping[str, xr.Dataset], doubled: Mapping[str, xr.Dataset]
 ) -> Figure:

@@ -5,10 +5,8 @@ from collections.abc import Mapping
 import xarray as xr
 from matplotlib.figure import Figure
 
+from squealpipe.study.figures.declared import report_figure
 from squealpipe.study.figures.panels.backbone_panels import draw_scenes, key
-
-READS = ("backbone/F1[012]_*",)
-ALT = "Three rows of two panels: largest y and amplitude of x over frequency near each mode."
 
 
 def caption(branches: Mapping[str, xr.Dataset]) -> str:
@@ -19,9 +17,11 @@ def caption(branches: Mapping[str, xr.Dataset]) -> str:
     )
 
 
-CAPTION = caption
-
-
+@report_figure(
+    reads=("backbone/F1[012]_*",),
+    caption=caption,
+    alt="Three rows of two panels: largest y and amplitude of x over frequency near each mode.",
+)
 def draw(branches: Mapping[str, xr.Dataset]) -> Figure:
     """Three rows; see ``parts.backbone_panels.draw_scenes``."""
     return draw_scenes(branches, 6.2)

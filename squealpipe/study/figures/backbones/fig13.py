@@ -5,10 +5,8 @@ from collections.abc import Mapping
 import xarray as xr
 from matplotlib.figure import Figure
 
-from squealpipe.study.figures.panels.backbone_panels import SCENE_ALT, draw_scenes, key
-
-READS = ("backbone/F13_*",)
-ALT = SCENE_ALT
+from squealpipe.study.figures.declared import report_figure
+from squealpipe.study.figures.panels.backbone_panels import draw_scenes, key
 
 
 def caption(branches: Mapping[str, xr.Dataset]) -> str:
@@ -19,9 +17,11 @@ def caption(branches: Mapping[str, xr.Dataset]) -> str:
     )
 
 
-CAPTION = caption
-
-
+@report_figure(
+    reads=("backbone/F13_*",),
+    caption=caption,
+    alt="Two panels of largest y and amplitude of x over frequency, one for each mode.",
+)
 def draw(branches: Mapping[str, xr.Dataset]) -> Figure:
     """One row; see ``parts.backbone_panels.draw_scenes``."""
     return draw_scenes(branches, 2.9)

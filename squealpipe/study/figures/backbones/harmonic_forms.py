@@ -8,19 +8,22 @@ from matplotlib.figure import Figure
 from squealpipe.plotting import style
 from squealpipe.plotting.origin import scene_name
 from squealpipe.schema.backbones import Form
+from squealpipe.study.figures.declared import report_figure
 
-READS = ("harmonic_forms",)
-CAPTION = (
-    "The paper's harmonic balance, Eqs. (28) to (36), started at the exact orbits. (a) Frequencies "
-    "found with Eq. (34) corrected (K₁₂a + K₂₂b) and as printed (K₁₁a + K₁₂b), beside the exact "
-    "ones. (b) There is no phase condition: spread of the largest y over the phases of the start, "
-    "against the samples N; circled where Γ lacks full rank."
-)
 DECADES = 1.5
 """Decades from which an axis has labels enough at the powers of ten."""
-ALT = "Frequencies found by two forms against exact ones, and spread of y over the samples."
 
 
+@report_figure(
+    reads=("harmonic_forms",),
+    caption=(
+        "The paper's harmonic balance, Eqs. (28) to (36), started at the exact orbits. (a) "
+        "Frequencies found with Eq. (34) corrected (K₁₂a + K₂₂b) and as printed (K₁₁a + K₁₂b), "
+        "beside the exact ones. (b) There is no phase condition: spread of the largest y over the "
+        "phases of the start, against the samples N; circled where Γ lacks full rank."
+    ),
+    alt="Frequencies found by two forms against exact ones, and spread of y over the samples.",
+)
 def draw(forms: xr.Dataset) -> Figure:
     """Two panels from dataset ``harmonic_forms``."""
     figure, axes = style.new_figure(style.PAGE, 3.2, ncols=2, width_ratios=[1.3, 1])

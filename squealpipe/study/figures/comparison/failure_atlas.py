@@ -10,18 +10,8 @@ from matplotlib.figure import Figure
 from squealpipe.plotting import style
 from squealpipe.plotting.work_precision import rule_table
 from squealpipe.schema.comparison import Reliability
+from squealpipe.study.figures.declared import report_figure
 from squealpipe.text import number
-
-READS = ("benchmark", "failure_atlas")
-CAPTION = (
-    "(a) Integrators on problems with events: each cell is divided by "
-    "tolerance, the loosest on the left; numbers count missed (−) and spurious (+) events at their "
-    "worst; empty: not asked. Chattering and the run beyond the horizon have no answer: a flag is "
-    "right there. (b) Methods for frequencies and stability on hard scenes: verdict "
-    "and error against a reference of sixty digits or 128 harmonics. The last columns count silent "
-    "errors. Ours are in bold."
-)
-ALT = "Two tables of coloured verdicts, methods in rows and problems in columns."
 
 _COLOURS = [style.WHITE, (style.BLUE, 0.25), style.ORANGE, style.RED]
 """The worse, the darker: greyscale tells them apart."""
@@ -36,6 +26,18 @@ _ROW, _HEADS = 0.2, 1.2
 """Heights of a row, and of the names of the columns, inches."""
 
 
+@report_figure(
+    reads=("benchmark", "failure_atlas"),
+    caption=(
+        "(a) Integrators on problems with events: each cell is divided by "
+        "tolerance, the loosest on the left; numbers count missed (−) and spurious (+) events at "
+        "their worst; empty: not asked. Chattering and the run beyond the horizon have no answer: "
+        "a flag is right there. (b) Methods for frequencies and stability on hard scenes: verdict "
+        "and error against a reference of sixty digits or 128 harmonics. The last columns count "
+        "silent errors. Ours are in bold."
+    ),
+    alt="Two tables of coloured verdicts, methods in rows and problems in columns.",
+)
 def draw(benchmark: xr.Dataset, atlas: xr.Dataset) -> Figure:
     """Both tables, from datasets ``benchmark`` and ``failure_atlas``."""
     heights = [_ROW * each.sizes["solver"] + _HEADS for each in (benchmark, atlas)]

@@ -6,16 +6,13 @@ from matplotlib.figure import Figure
 from squealpipe.plotting import style
 from squealpipe.plotting.work_precision import foot
 from squealpipe.schema.ladder import Level
+from squealpipe.study.figures.declared import report_figure
 
-READS = ("model_ladder",)
 MAPS = (
     "The cheapest level of the model ladder whose answer is within the tolerance of A1's and whose "
     "own assumptions hold, over both spring angles (a level that only drops stick counts where "
     "the belt is reached): (a) is contact lost, (b) dominant frequency of y, (c) peak contact "
     "force, (d) largest displacement, within the map's horizon."
-)
-ALT = (
-    "Four maps over both spring angles, coloured by the cheapest adequate model level."
 )
 
 
@@ -32,8 +29,6 @@ def caption(ladder: xr.Dataset) -> str:
         f"{cost:.0f} % of the CPU time of always running A1."
     )
 
-
-CAPTION = caption
 
 QUESTION_NAMES = {
     "contact_lost": "contact lost?",
@@ -55,6 +50,13 @@ def colour_of(level: Level) -> str:
     return str(getattr(style, level.colour))
 
 
+@report_figure(
+    reads=("model_ladder",),
+    caption=caption,
+    alt=(
+        "Four maps over both spring angles, coloured by the cheapest adequate model level."
+    ),
+)
 def draw(ladder: xr.Dataset) -> Figure:
     """One map for each question, from dataset ``model_ladder``."""
     figure, axes = style.new_figure(style.PAGE, 6.4, nrows=2, ncols=2)

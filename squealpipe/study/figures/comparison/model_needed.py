@@ -12,9 +12,8 @@ from squealpipe.study.figures.comparison.model_ladder import (
     colour_of,
     shares_of_a3,
 )
+from squealpipe.study.figures.declared import report_figure
 
-READS = ("model_ladder",)
-ALT = "Five bars, each divided among model levels by the share of angles they suffice for."
 BEFOREHAND = "contact lost?\n(beforehand)"
 _LABELLED = 0.04
 """Share of a bar from which its number fits inside."""
@@ -36,9 +35,11 @@ def caption(ladder: xr.Dataset) -> str:
     )
 
 
-CAPTION = caption
-
-
+@report_figure(
+    reads=("model_ladder",),
+    caption=caption,
+    alt="Five bars, each divided among model levels by the share of angles they suffice for.",
+)
 def draw(ladder: xr.Dataset) -> Figure:
     """The bars, from dataset ``model_ladder``."""
     lost, *others = ladder.question.values.tolist()

@@ -12,11 +12,10 @@ from squealpipe.study.figures.comparison.work_precision_benchmark import (
     medians,
     where_solvers_ran,
 )
+from squealpipe.study.figures.declared import report_figure
 
-READS = ("benchmark",)
 OF_A1 = "A1: "
 """How the names of the model's own problems begin."""
-ALT = "Two charts, CPU time and evaluations of every integrator against its error."
 TITLES = {"cpu_ratio": "CPU time", "evaluations": "evaluations of the field"}
 LABELS = {"cpu_ratio": "CPU time over that of DOP853 at 10⁻⁸", "evaluations": "calls"}
 
@@ -43,9 +42,11 @@ def caption(benchmark: xr.Dataset) -> str:
     )
 
 
-CAPTION = caption
-
-
+@report_figure(
+    reads=("benchmark",),
+    caption=caption,
+    alt="Two charts, CPU time and evaluations of every integrator against its error.",
+)
 def draw(benchmark: xr.Dataset) -> Figure:
     """One panel for each cost, from dataset ``benchmark``."""
     figure, axes = new_figure(PAGE, 3.8, ncols=2, sharex=True)

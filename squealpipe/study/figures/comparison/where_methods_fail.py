@@ -10,16 +10,8 @@ from squealpipe.plotting import style
 from squealpipe.plotting.work_precision import rule_table
 from squealpipe.schema.comparison import Reliability
 from squealpipe.study.figures.comparison.work_precision_benchmark import knowable
+from squealpipe.study.figures.declared import report_figure
 
-READS = ("benchmark",)
-CAPTION = (
-    "How often an integrator is silently wrong: wrong answers that nothing was said of, over all "
-    "answers at tolerances from 10⁻⁶ to 10⁻¹², by what makes a problem hard. White: all right; "
-    "light: some wrong or without an answer, and said so; the darker the red, the more are "
-    "silently wrong; a dash: cannot be asked. Problems without "
-    "an answer are left out. Ours is in bold."
-)
-ALT = "A table of integrators in rows and classes of problems in columns; red cells are failures."
 _RED = np.array([213, 94, 0]) / 255
 _SAID = np.array([0.86, 0.93, 0.97])
 _LEAST = 0.25
@@ -56,6 +48,19 @@ def substitutes(benchmark: xr.Dataset) -> list[str]:
     ]
 
 
+@report_figure(
+    reads=("benchmark",),
+    caption=(
+        "How often an integrator is silently wrong: wrong answers that nothing was said of, over "
+        "all answers at tolerances from 10⁻⁶ to 10⁻¹², by what makes a problem hard. White: all "
+        "right; light: some wrong or without an answer, and said so; the darker the red, the more "
+        "are silently wrong; a dash: cannot be asked. Problems without "
+        "an answer are left out. Ours is in bold."
+    ),
+    alt=(
+        "A table of integrators in rows and classes of problems in columns; red cells are failures."
+    ),
+)
 def draw(benchmark: xr.Dataset) -> Figure:
     """The table, from dataset ``benchmark``."""
     table = answers(benchmark).transpose("solver", "group")

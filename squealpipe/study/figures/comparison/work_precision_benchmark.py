@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from squealpipe.plotting.style import PAGE, new_figure, panel_letter
 from squealpipe.plotting.work_precision import draw_methods, foot
 from squealpipe.schema.comparison import Role
+from squealpipe.study.figures.declared import report_figure
 
-READS = ("benchmark",)
 SHOWN = (
     "Error of the final state and of event times, over the growth of a perturbation, against two "
     "costs: evaluations of the field, which do not depend on machine or language, and CPU time "
@@ -22,7 +22,6 @@ SHOWN = (
     "events or its error. Grey band: Pareto front of the filled points; red ring: the setting "
     "that our maps use. Machine and versions are named below the panels."
 )
-ALT = "Small charts of error against evaluations and CPU time, two for each class of problems."
 OUR_TOLERANCE = 1e-12
 COSTS = {"evaluations": "evaluations", "cpu_ratio": "CPU time"}
 ACROSS = 2
@@ -36,9 +35,6 @@ def caption(benchmark: xr.Dataset) -> str:
         f"{SHOWN} {where_solvers_ran(benchmark)} Not installed and left out: "
         f"{', '.join(missing) or 'none'}."
     )
-
-
-CAPTION = caption
 
 
 def where_solvers_ran(benchmark: xr.Dataset) -> str:
@@ -75,6 +71,11 @@ def knowable(benchmark: xr.Dataset) -> xr.DataArray:
     return known
 
 
+@report_figure(
+    reads=("benchmark",),
+    caption=caption,
+    alt="Small charts of error against evaluations and CPU time, two for each class of problems.",
+)
 def draw(benchmark: xr.Dataset) -> Figure:
     """The charts, from dataset ``benchmark``."""
     known = benchmark.isel(problem=knowable(benchmark).values)

@@ -6,20 +6,23 @@ from matplotlib.figure import Figure
 from squealpipe.plotting.style import PAGE, new_figure
 from squealpipe.plotting.work_precision import draw_methods, foot
 from squealpipe.schema.comparison import Reliability
+from squealpipe.study.figures.declared import report_figure
 
-READS = ("work_precision_frequencies",)
-CAPTION = (
-    "Harmonic balance on model A4: median error of ω at equal peak of y against exact orbits, over "
-    "the wall time of a point; points of a line run over N_h or σ. The exact orbit itself is shown "
-    "with the velocity left after half a period. Crossed out: off by more than 1 %, which "
-    "no setting mends. Grey band: Pareto front of the others; red rings: our settings. Machine and "
-    "versions are named below."
-)
-ALT = "Chart of frequency error against time for forms of harmonic balance."
 WRONG = 0.01
 """Relative error of ω from which it belongs to another motion."""
 
 
+@report_figure(
+    reads=("work_precision_frequencies",),
+    caption=(
+        "Harmonic balance on model A4: median error of ω at equal peak of y against exact orbits, "
+        "over the wall time of a point; points of a line run over N_h or σ. The exact orbit itself "
+        "is shown with the velocity left after half a period. Crossed out: off by more than 1 %, "
+        "which no setting mends. Grey band: Pareto front of the others; red rings: our settings. "
+        "Machine and versions are named below."
+    ),
+    alt="Chart of frequency error against time for forms of harmonic balance.",
+)
 def draw(frequencies: xr.Dataset) -> Figure:
     """The chart, from dataset ``work_precision_frequencies``."""
     figure, axes = new_figure(PAGE, 3.4)

@@ -9,8 +9,7 @@ from squealpipe.plotting import style
 from squealpipe.plotting.contact_points import draw_onsets
 from squealpipe.schema.assess import Verdict
 from squealpipe.schema.contact_points import MOST_FRICTION
-
-READS = ("contact_points",)
+from squealpipe.study.figures.declared import report_figure
 
 
 def _quiet(pads: xr.Dataset) -> str:
@@ -18,7 +17,7 @@ def _quiet(pads: xr.Dataset) -> str:
     return "; ".join(map(str, quiet)) or "none"
 
 
-def CAPTION(pads: xr.Dataset) -> str:  # noqa: N802
+def caption(pads: xr.Dataset) -> str:
     """What to see, with the pads that are quiet."""
     return (
         "An elastic pad on several contact points of equal total stiffness and preload, and a "
@@ -30,12 +29,14 @@ def CAPTION(pads: xr.Dataset) -> str:  # noqa: N802
     )
 
 
-ALT = (
-    "Critical friction by pad; share of time without contact over the pad's length; open and "
-    "closed contact points over time."
+@report_figure(
+    reads=("contact_points",),
+    caption=caption,
+    alt=(
+        "Critical friction by pad; share of time without contact over the pad's length; open and "
+        "closed contact points over time."
+    ),
 )
-
-
 def draw(pads: xr.Dataset) -> Figure:
     """Critical friction, contact loss along the pad, and its timing in the last two that sound."""
     loud = np.flatnonzero(np.isfinite(pads.dominant_frequency.values))

@@ -10,25 +10,28 @@ from matplotlib.figure import Figure
 from squealpipe.plotting import style
 from squealpipe.plotting.cycles import key_entries, largest, trace_branch
 from squealpipe.plotting.origin import angle_pair, parameter, scene_title
+from squealpipe.study.figures.declared import report_figure
 
-READS = (
-    "cycles/branch_F3_down",
-    "cycles/branch_F3_up",
-    "cycles/branch_flutter",
-    "cycles/extremes",
-)
-CAPTION = (
-    "Limit cycles of the full model with dashpots over the friction coefficient: largest |x| of "
-    "the cycle, one panel for each spring arrangement in which cycles or different ends of long "
-    "runs were found. Full blue lines: stable; dashed orange: unstable, if there are any; marks: "
-    "located special points. Grey dots: largest |x| in the last fifth of long runs from starts "
-    "near and far, cycles and states of rest alike."
-)
-ALT = "Charts of largest |x| over friction: branches of cycles as lines, ends of runs as dots."
 AT_REST = 0.5
 """Range of late |x|, in l_pre, below which all long runs of a scene end alike."""
 
 
+@report_figure(
+    reads=(
+        "cycles/branch_F3_down",
+        "cycles/branch_F3_up",
+        "cycles/branch_flutter",
+        "cycles/extremes",
+    ),
+    caption=(
+        "Limit cycles of the full model with dashpots over the friction coefficient: largest |x| "
+        "of the cycle, one panel for each spring arrangement in which cycles or different ends of "
+        "long runs were found. Full blue lines: stable; dashed orange: unstable, if there are any; "
+        "marks: located special points. Grey dots: largest |x| in the last fifth of long runs from "
+        "starts near and far, cycles and states of rest alike."
+    ),
+    alt="Charts of largest |x| over friction: branches of cycles as lines, ends of runs as dots.",
+)
 def draw(
     down: xr.Dataset, up: xr.Dataset, flutter: xr.Dataset, extremes: xr.Dataset
 ) -> Figure:

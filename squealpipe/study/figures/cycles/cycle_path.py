@@ -6,16 +6,19 @@ from matplotlib.figure import Figure
 from squealpipe.plotting import style
 from squealpipe.plotting.cycles import draw_regimes, key_entries
 from squealpipe.plotting.origin import parameter
+from squealpipe.study.figures.declared import report_figure
 
-READS = ("cycles/limit_F3",)
-CAPTION = (
-    "The limit cycle of the scene of Fig. 3 with dashpots, at the study's friction, if there is "
-    "one. (a) Path of the mass; the line is l_pre, above which contact is lost. (b) Velocity along "
-    "the belt over one period; the dashed line is belt speed. Colours: the regime."
+
+@report_figure(
+    reads=("cycles/limit_F3",),
+    caption=(
+        "The limit cycle of the scene of Fig. 3 with dashpots, at the study's friction, if there "
+        "is one. (a) Path of the mass; the line is l_pre, above which contact is lost. (b) "
+        "Velocity along the belt over one period; the dashed line is belt speed. Colours: the "
+        "regime."
+    ),
+    alt="Left, the path of the cycle, to scale; right, its velocity; both coloured by regime.",
 )
-ALT = "Left, the path of the cycle, to scale; right, its velocity; both coloured by regime."
-
-
 def draw(cycle: xr.Dataset) -> Figure:
     """Two panels."""
     figure, axes = style.new_figure(style.PAGE, 3.0, ncols=2)

@@ -5,17 +5,20 @@ from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
 from squealpipe.plotting.cycles import key_entries, trace_branch
+from squealpipe.study.figures.declared import report_figure
 
-READS = ("impact_branch",)
-CAPTION = (
-    "A system beside the brake: cycles of a forced linear oscillator that hits a stop at x = 1 m, "
-    "of one forcing period, as one branch over the forcing's frequency: how far each goes away "
-    "from the stop. Full blue lines: stable; dashed orange: unstable; marks: located special "
-    "points. At a grazing the cycle touches the stop with no speed, so it hits it on one side only."
+
+@report_figure(
+    reads=("impact_branch",),
+    caption=(
+        "A system beside the brake: cycles of a forced linear oscillator that hits a stop at x = 1 "
+        "m, of one forcing period, as one branch over the forcing's frequency: how far each goes "
+        "away from the stop. Full blue lines: stable; dashed orange: unstable; marks: located "
+        "special points. At a grazing the cycle touches the stop with no speed, so it hits it on "
+        "one side only."
+    ),
+    alt="A chart of the largest distance from the stop over frequency: one line in two looks.",
 )
-ALT = "A chart of the largest distance from the stop over frequency: one line in two looks."
-
-
 def draw(branch: xr.Dataset) -> Figure:
     """One panel."""
     figure, axes = style.new_figure(style.COLUMN, 3.0)

@@ -9,15 +9,18 @@ from squealpipe.plotting import style
 from squealpipe.plotting.mechanism import draw_mechanism
 from squealpipe.plotting.origin import parameter
 from squealpipe.plotting.run import draw_force
+from squealpipe.study.figures.declared import report_figure
 
-READS = ("simulate/F2a", "simulate/F2b", "simulate/F2c", "simulate/F2d")
-CAPTION = (
-    "Contact force of model A1 over its preload, started at rest, in the four spring arrangements "
-    "of the paper, each drawn beside its panel. Red strips below zero: contact is lost."
+
+@report_figure(
+    reads=("simulate/F2a", "simulate/F2b", "simulate/F2c", "simulate/F2d"),
+    caption=(
+        "Contact force of model A1 over its preload, started at rest, in the four spring "
+        "arrangements of the paper, each drawn beside its panel. Red strips below zero: contact is "
+        "lost."
+    ),
+    alt="Four histories of the contact force with their springs; red strips mark lost contact.",
 )
-ALT = "Four histories of the contact force with their springs; red strips mark lost contact."
-
-
 def draw(*runs: xr.Dataset) -> Figure:
     """Four panels in the order of the paper."""
     figure, axes = style.new_figure(

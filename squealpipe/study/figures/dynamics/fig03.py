@@ -6,16 +6,9 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
+from squealpipe.study.figures.declared import report_figure
 from squealpipe.study.figures.dynamics.fig02 import inset_mechanism
 
-READS = ("*simulate/F3*",)
-CAPTION = (
-    "Displacements of model A1, started at rest at α₁ = 0.4π, α₂ = 0.6π: (a) x, along the belt, "
-    "and (b) y, away from it. Dotted: l_pre, above which contact is lost. (c) x much longer, as "
-    "the study reads the paper (orange) and, where that differs, with friction of one sign in all "
-    "models (black)."
-)
-ALT = "Time histories of x and y with the springs, and below them x over a much longer time."
 WIDTH = 4.4
 """Inches: on page one it is beside Fig. 7, where the text of a wider one would be too small."""
 TITLES = {
@@ -28,6 +21,16 @@ READINGS = (
 )
 
 
+@report_figure(
+    reads=("*simulate/F3*",),
+    caption=(
+        "Displacements of model A1, started at rest at α₁ = 0.4π, α₂ = 0.6π: (a) x, along the "
+        "belt, and (b) y, away from it. Dotted: l_pre, above which contact is lost. (c) x much "
+        "longer, as the study reads the paper (orange) and, where that differs, with friction of "
+        "one sign in all models (black)."
+    ),
+    alt="Time histories of x and y with the springs, and below them x over a much longer time.",
+)
 def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
     """Two panels, and a third one where the study has long runs."""
     run = runs["simulate/F3"]

@@ -8,16 +8,18 @@ from matplotlib.figure import Figure
 
 from squealpipe.plotting.mechanism import SPRING_COLOURS, displaced_springs
 from squealpipe.plotting.style import GREY, LIGHT, PAGE, RED, new_figure
+from squealpipe.study.figures.declared import report_figure
 
-READS = ("simulate/F4",)
-CAPTION = (
-    "Orbit of model A1, started at rest at α₁ = 0.2π, α₂ = 0.8π, coloured by time, with both "
-    "springs drawn at the start (grey) and at the end of the run. Dotted: l_pre, above which "
-    "contact is lost."
+
+@report_figure(
+    reads=("simulate/F4",),
+    caption=(
+        "Orbit of model A1, started at rest at α₁ = 0.2π, α₂ = 0.8π, coloured by time, with both "
+        "springs drawn at the start (grey) and at the end of the run. Dotted: l_pre, above which "
+        "contact is lost."
+    ),
+    alt="Path of the mass in the x–y plane, coloured by time, with the springs at two instants.",
 )
-ALT = "Path of the mass in the x–y plane, coloured by time, with the springs at two instants."
-
-
 def draw(run: xr.Dataset) -> Figure:
     """The plane of motion, to scale."""
     figure, axes = new_figure(PAGE, 3.9)

@@ -6,18 +6,20 @@ from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
 from squealpipe.plotting.run import draw_force
+from squealpipe.study.figures.declared import report_figure
 from squealpipe.study.figures.dynamics.fig02 import inset_mechanism
 from squealpipe.text import number
 
-READS = ("simulate/F5a", "simulate/F5b")
-CAPTION = (
-    "Contact force of model A1 over its preload, started at rest with both springs along the belt: "
-    "α₁ = α₂ = π (line) and α₁ = α₂ = 0 (circles). Their largest difference stands above the "
-    "panel. Red strips below zero: contact is lost in the run of the line."
+
+@report_figure(
+    reads=("simulate/F5a", "simulate/F5b"),
+    caption=(
+        "Contact force of model A1 over its preload, started at rest with both springs along the "
+        "belt: α₁ = α₂ = π (line) and α₁ = α₂ = 0 (circles). Their largest difference stands above "
+        "the panel. Red strips below zero: contact is lost in the run of the line."
+    ),
+    alt="A history of the contact force, with circles for the second run; red strips off the belt.",
 )
-ALT = "A history of the contact force, with circles for the second run; red strips off the belt."
-
-
 def draw(first: xr.Dataset, second: xr.Dataset) -> Figure:
     """One panel, line and circles."""
     figure, axes = style.new_figure(style.PAGE, 2.5)

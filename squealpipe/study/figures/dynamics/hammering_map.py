@@ -9,21 +9,23 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogLocator, MaxNLocator
 
 from squealpipe.plotting import plot, style
+from squealpipe.study.figures.declared import report_figure
 from squealpipe.study.figures.linear.linear_overlay import mark_scene
 from squealpipe.text import number
 
-READS = ("hammering_map",)
-CAPTION = (
-    "What model A1 does over both spring angles, started at rest. (a) Kind of motion in the "
-    "second half of the run; dots: another kind in its last quarter. (b) Returns to the belt per "
-    "unit of time. (c) Share of the time off the belt. (d) Largest contact force over the preload. "
-    "The cross is the configuration of Fig. 3."
-)
-ALT = (
-    "Four maps over both angles: motion, impacts per time, time separated, peak force."
-)
 
-
+@report_figure(
+    reads=("hammering_map",),
+    caption=(
+        "What model A1 does over both spring angles, started at rest. (a) Kind of motion in the "
+        "second half of the run; dots: another kind in its last quarter. (b) Returns to the belt "
+        "per unit of time. (c) Share of the time off the belt. (d) Largest contact force over the "
+        "preload. The cross is the configuration of Fig. 3."
+    ),
+    alt=(
+        "Four maps over both angles: motion, impacts per time, time separated, peak force."
+    ),
+)
 def draw(hammering: xr.Dataset) -> Figure:
     """Four maps."""
     figure, axes = style.new_figure(style.PAGE, 6.0, text=1.36, nrows=2, ncols=2)

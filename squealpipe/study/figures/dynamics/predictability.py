@@ -8,21 +8,24 @@ from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
 from squealpipe.schema import meanings
+from squealpipe.study.figures.declared import report_figure
 from squealpipe.text import number
 
-READS = ("hammering_map",)
 DASHES = ("-", (0, (5, 1)), (0, (1, 1)), "-.", (0, (3, 1, 1, 1, 1, 1)))
 """Looks of lines that differ in greyscale too."""
-CAPTION = (
-    "How far ahead model A1 can be computed. (a) Time at which an error of the integrator's "
-    "tolerance has grown to l_pre/1000, from the tangent map through all events; white: not within "
-    "the time run. Beyond it only statistics mean something. (b) Share of the cells of each kind "
-    "of motion in which a perturbation grows less than that over the run; cells are counted in "
-    "the key; dashed: growth by the square of time."
+
+
+@report_figure(
+    reads=("hammering_map",),
+    caption=(
+        "How far ahead model A1 can be computed. (a) Time at which an error of the integrator's "
+        "tolerance has grown to l_pre/1000, from the tangent map through all events; white: not "
+        "within the time run. Beyond it only statistics mean something. (b) Share of the cells of "
+        "each kind of motion in which a perturbation grows less than that over the run; cells are "
+        "counted in the key; dashed: growth by the square of time."
+    ),
+    alt="Left, a map of the predictability horizon; right, shares of the growth by kind of motion.",
 )
-ALT = "Left, a map of the predictability horizon; right, shares of the growth by kind of motion."
-
-
 def draw(hammering: xr.Dataset) -> Figure:
     """A map of the horizon and the distribution of the growth."""
     figure, axes = style.new_figure(style.PAGE, 3.2, ncols=2)

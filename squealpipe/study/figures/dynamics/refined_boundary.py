@@ -8,17 +8,8 @@ from matplotlib.patches import Rectangle
 from scipy.ndimage import uniform_filter
 
 from squealpipe.plotting import style
+from squealpipe.study.figures.declared import report_figure
 
-READS = ("refined_validity_map", "validity_boundary")
-CAPTION = (
-    "Where model A1 keeps contact (grey), at high resolution. (a) In colour the cells that were "
-    "run along the boundaries and where a thin region may hide: around late separations and where "
-    "little contact force is left; lone points of the coarse grid are not shown, and all other "
-    "cells inherit their neighbour's answer. (b) The window with most of the boundary, all cells "
-    "that were run in colour; above it how many of a random sample of the others were wrong. The "
-    "black line is the boundary as curves, traced apart from this map."
-)
-ALT = "A map of kept contact with the cells that were run in colour, and a magnified part of it."
 TONES = {
     style.WHITE: "contact lost",
     style.LIGHT: "contact kept",
@@ -29,6 +20,18 @@ WINDOW = 0.12
 """Side of the window of panel (b) over that of the map."""
 
 
+@report_figure(
+    reads=("refined_validity_map", "validity_boundary"),
+    caption=(
+        "Where model A1 keeps contact (grey), at high resolution. (a) In colour the cells that "
+        "were run along the boundaries and where a thin region may hide: around late separations "
+        "and where little contact force is left; lone points of the coarse grid are not shown, and "
+        "all other cells inherit their neighbour's answer. (b) The window with most of the "
+        "boundary, all cells that were run in colour; above it how many of a random sample of the "
+        "others were wrong. The black line is the boundary as curves, traced apart from this map."
+    ),
+    alt="A map of kept contact with the cells that were run in colour, and a magnified part of it.",
+)
 def draw(refined: xr.Dataset, boundary: xr.Dataset) -> Figure:
     """A map and a magnified part of it, with the boundary as curves."""
     figure, axes = style.new_figure(style.PAGE, 3.9, ncols=2)

@@ -15,10 +15,10 @@ from squealpipe.plotting import style
 from squealpipe.plotting.cycles import key_entries
 from squealpipe.plotting.origin import scene_title, time_unit
 from squealpipe.schema.curves import ChartLine
+from squealpipe.study.figures.declared import report_figure
 from squealpipe.study.figures.linear.fig07 import KINDS
 from squealpipe.text import number
 
-READS = ("angle_chart", "friction_chart/*")
 LOOKS: dict[ChartLine, tuple[str, dict[str, Any]]] = {
     ChartLine.contact_lost: ("contact is lost", {"color": style.BLACK}),
     ChartLine.flutter: ("A3 flutters", {"color": style.BLUE, "linestyle": "--"}),
@@ -28,7 +28,6 @@ LOOKS: dict[ChartLine, tuple[str, dict[str, Any]]] = {
 }
 SEEN = 1e-3
 """Share of a chart below which a kind is not seen in print."""
-ALT = "Charts over both angles and over κ and μ with lines, regions, and crosses at the scenes."
 
 
 def caption(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> str:
@@ -47,9 +46,6 @@ def caption(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> str:
         "angles of scenes, with the study's own values as a cross. "
         f"{cycles if ChartLine.whirl in known else ''}"
     ).strip()
-
-
-CAPTION = caption
 
 
 def distances(
@@ -72,6 +68,11 @@ def _known(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> list[ChartLi
     ]
 
 
+@report_figure(
+    reads=("angle_chart", "friction_chart/*"),
+    caption=caption,
+    alt="Charts over both angles and over κ and μ with lines, regions, and crosses at the scenes.",
+)
 def draw(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> Figure:
     """One panel for each chart."""
     names = sorted(scenes)

@@ -11,10 +11,8 @@ from squealpipe.plotting import style
 from squealpipe.plotting.origin import time_unit
 from squealpipe.schema import meanings
 from squealpipe.schema.dynamics.extremes import largest_size
+from squealpipe.study.figures.declared import report_figure
 from squealpipe.text import number
-
-READS = ("simulate/whirl", "whirl")
-ALT = "Left, x over time; right, a log–log chart of its final size over belt speed with two lines."
 
 
 def caption(_: xr.Dataset, sizes: xr.Dataset) -> str:
@@ -34,9 +32,14 @@ def caption(_: xr.Dataset, sizes: xr.Dataset) -> str:
     )
 
 
-CAPTION = caption
-
-
+@report_figure(
+    reads=("simulate/whirl", "whirl"),
+    caption=caption,
+    alt=(
+        "Left, x over time; right, a log–log chart of its final size over belt speed with two "
+        "lines."
+    ),
+)
 def draw(run: xr.Dataset, sizes: xr.Dataset) -> Figure:
     """Two panels."""
     figure, axes = style.new_figure(style.PAGE, 2.9, ncols=2, width_ratios=(1.3, 1))

@@ -8,10 +8,9 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from squealpipe.plotting import style
 from squealpipe.schema.inference import in_order, in_words, of_study
+from squealpipe.study.figures.declared import report_figure
 from squealpipe.text import number
 
-READS = ("parameter_inference",)
-ALT = "Three scatter plots of feasible parameters and two bar charts over the paper's statements."
 PANELS = (
     ("friction, stiffness", "kappa", "mu", "κ = k₃/k", "μ"),
     (
@@ -56,9 +55,13 @@ def caption(inference: xr.Dataset) -> str:
     )
 
 
-CAPTION = caption
-
-
+@report_figure(
+    reads=("parameter_inference",),
+    caption=caption,
+    alt=(
+        "Three scatter plots of feasible parameters and two bar charts over the paper's statements."
+    ),
+)
 def draw(inference: xr.Dataset) -> Figure:
     """Five panels, from dataset ``parameter_inference``."""
     inference = in_order(inference)

@@ -7,16 +7,15 @@ from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
 from squealpipe.plotting.origin import angle_pair, parameter
+from squealpipe.study.figures.declared import report_figure
 from squealpipe.text import number
 
-READS = ("critical_friction_map", "critical_damping_map")
 LARGEST = 1.5
 """Upper end of the colours of (a)."""
 UNREACHED = 10.0
 """A critical friction above it is none: no brake has as much, and round-off decides its digits."""
 ALIKE = 1e-9
 """Share of critical frictions by which round-off alone makes them differ."""
-ALT = "Two maps over both spring angles and one over both dashpots, of the critical friction."
 
 
 def caption(angles: xr.Dataset, dashpots: xr.Dataset) -> str:
@@ -33,9 +32,11 @@ def caption(angles: xr.Dataset, dashpots: xr.Dataset) -> str:
     )
 
 
-CAPTION = caption
-
-
+@report_figure(
+    reads=("critical_friction_map", "critical_damping_map"),
+    caption=caption,
+    alt="Two maps over both spring angles and one over both dashpots, of the critical friction.",
+)
 def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:
     """Three maps."""
     figure, axes = style.new_figure(style.PAGE, 3.1, ncols=3)

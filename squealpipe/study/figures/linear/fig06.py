@@ -8,9 +8,9 @@ from squealpipe.parameters import direction_of
 from squealpipe.plotting import style
 from squealpipe.plotting.origin import parameter
 from squealpipe.schema.linear import BoundaryCurve
+from squealpipe.study.figures.declared import report_figure
 from squealpipe.study.figures.linear.linear_overlay import draw_boundaries, mark_scene
 
-READS = ("stability_map", "quasi_static_map", "stability_boundaries")
 CAPTION_ALONG_X = (
     "Quasi-static sliding (A2) and linear stability (A3) over both spring angles. White: sliding "
     "is possible; grey: it is not; black: the linear model is unstable. Sliding is judged (a) by "
@@ -22,7 +22,6 @@ TONES = {
     style.LIGHT: "sliding not possible",
     style.BLACK: "linearly unstable",
 }
-ALT = "Two maps over both spring angles in white, grey and black, one for each reading of Eq. (11)."
 
 
 def caption(stability: xr.Dataset, _: xr.Dataset, __: xr.Dataset) -> str:
@@ -32,9 +31,14 @@ def caption(stability: xr.Dataset, _: xr.Dataset, __: xr.Dataset) -> str:
     return f"{CAPTION_ALONG_X} The belt runs along −x: μ counts as negative in (b), not in (a)."
 
 
-CAPTION = caption
-
-
+@report_figure(
+    reads=("stability_map", "quasi_static_map", "stability_boundaries"),
+    caption=caption,
+    alt=(
+        "Two maps over both spring angles in white, grey and black, one for each reading of Eq. "
+        "(11)."
+    ),
+)
 def draw(
     stability: xr.Dataset, quasi_static: xr.Dataset, boundaries: xr.Dataset
 ) -> Figure:

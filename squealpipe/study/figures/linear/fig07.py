@@ -10,16 +10,15 @@ from matplotlib.patches import Patch
 
 from squealpipe.plotting import style
 from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD
+from squealpipe.study.figures.declared import report_figure
 from squealpipe.study.figures.linear.linear_overlay import mark_scene
 
-READS = ("[cv]*alidity_[bdm]*",)
 KINDS = (
     (style.WHITE, "A3 stable, A1 loses contact"),
     (style.ORANGE, "A3 unstable, A1 loses contact"),
     (style.LIGHT, "A3 stable, contact kept"),
     (style.BLACK, "A3 unstable, contact kept"),
 )
-ALT = "Maps over both angles in white, orange, grey and black, with the boundary of kept contact."
 LINES, DISTANCE = "validity_boundary", "validity_distance/F3"
 BLUE_LINES = (
     "the boundary of kept contact as curves; the share of all angles that it encloses, and the "
@@ -57,9 +56,6 @@ def _inside(found: Mapping[str, xr.Dataset], kind: str) -> str:
     share = 100.0 * float(boundary.kept_share)
     error = 100.0 * float(boundary.kept_share_error)
     return f"{share:.2f} ± {error:.1g} % and {np.degrees(float(scene.distance)):.2g}°"
-
-
-CAPTION = caption
 
 
 def kinds_of_cells(validity: xr.Dataset) -> np.ndarray:
@@ -103,6 +99,13 @@ def key() -> list[Patch]:
     return patches
 
 
+@report_figure(
+    reads=("[cv]*alidity_[bdm]*",),
+    caption=caption,
+    alt=(
+        "Maps over both angles in white, orange, grey and black, with the boundary of kept contact."
+    ),
+)
 def draw(found: Mapping[str, xr.Dataset]) -> Figure:
     """One map, and beside it that of friction of one sign if the study has it.
 

@@ -1,14 +1,23 @@
 """Fig. 9: the second natural frequency over both spring angles."""
 
-from functools import partial
+import xarray as xr
+from matplotlib.figure import Figure
 
-from squealpipe.study.figures.panels.frequency_map import CAPTION as KEY
-from squealpipe.study.figures.panels.frequency_map import draw_mode
+from squealpipe.study.figures.declared import report_figure
+from squealpipe.study.figures.panels.frequency_map import LINES_AND_HATCHING, draw_mode
 
-READS = ("natural_frequencies",)
-CAPTION = (
-    "Second natural frequency ω₂ of model A4 (a) in contact, Eq. (22b), and (b) separated, "
-    f"Eq. (25b). {KEY}"
+
+@report_figure(
+    reads=("natural_frequencies",),
+    caption=(
+        "Second natural frequency ω₂ of model A4 (a) in contact, Eq. (22b), and (b) separated, "
+        f"Eq. (25b). {LINES_AND_HATCHING}"
+    ),
+    alt=(
+        "Two maps of the second natural frequency over both spring angles, in contact and "
+        "separated."
+    ),
 )
-ALT = "Two maps of the second natural frequency over both spring angles, in contact and separated."
-draw = partial(draw_mode, mode=2)
+def draw(frequencies: xr.Dataset) -> Figure:
+    """Draw the second frequency in contact and separated, with one colour scale."""
+    return draw_mode(frequencies, mode=2)

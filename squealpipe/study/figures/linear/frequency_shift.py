@@ -7,20 +7,23 @@ from matplotlib.figure import Figure
 
 from squealpipe.plotting.style import PAGE, draw_map, new_figure, panel_letter
 from squealpipe.schema import Outcome
+from squealpipe.study.figures.declared import report_figure
 from squealpipe.study.figures.panels.frequency_map import HATCH, isoline, outline
 from squealpipe.text import number
 
-READS = ("natural_frequencies",)
-CAPTION = (
-    "Natural frequencies separated minus in contact, paired by their order: (a) ω₁, (b) ω₂. Blue: "
-    "the frequency falls when contact is lost; red: it rises, on a scale of its own; black lines "
-    "lie between the two. Hatched: flutter in contact."
-)
 NO_SHIFT = 1e-9
 """A shift below this is none: where K12 = 0 one frequency does not depend on contact."""
-ALT = "Two maps over both angles of the frequency shift between contact states, in blue and red."
 
 
+@report_figure(
+    reads=("natural_frequencies",),
+    caption=(
+        "Natural frequencies separated minus in contact, paired by their order: (a) ω₁, (b) ω₂. "
+        "Blue: the frequency falls when contact is lost; red: it rises, on a scale of its own; "
+        "black lines lie between the two. Hatched: flutter in contact."
+    ),
+    alt="Two maps over both angles of the frequency shift between contact states, in blue and red.",
+)
 def draw(frequencies: xr.Dataset) -> Figure:
     """Both modes, from dataset ``natural_frequencies``."""
     figure, axes = new_figure(PAGE, 3.3, ncols=2)

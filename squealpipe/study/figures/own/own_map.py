@@ -20,15 +20,8 @@ from squealpipe.plotting.style import (
     patches,
 )
 from squealpipe.schema.assess import Verdict
+from squealpipe.study.figures.declared import report_figure
 
-READS = ("verdict_map", "assess/*")
-CAPTION = (
-    "What becomes of steady sliding after a small push, over both spring angles (in degrees; "
-    "alpha1 is counted from +x, the way the belt runs, alpha2 from −x). Crosses: the scenes whose "
-    "angles lie in the map; arrows lead from each to the nearest angles at which its verdict "
-    "changes between quiet and noise. Undetermined: not settled in 1,600 periods."
-)
-ALT = "A map over both spring angles in white, orange, red and grey with crosses and arrows."
 TONES = {
     Verdict.quiet: (WHITE, "quiet"),
     Verdict.squeals: (ORANGE, "squeals"),
@@ -37,6 +30,16 @@ TONES = {
 }
 
 
+@report_figure(
+    reads=("verdict_map", "assess/*"),
+    caption=(
+        "What becomes of steady sliding after a small push, over both spring angles (in degrees; "
+        "alpha1 is counted from +x, the way the belt runs, alpha2 from −x). Crosses: the scenes "
+        "whose angles lie in the map; arrows lead from each to the nearest angles at which its "
+        "verdict changes between quiet and noise. Undetermined: not settled in 1,600 periods."
+    ),
+    alt="A map over both spring angles in white, orange, red and grey with crosses and arrows.",
+)
 def draw(verdicts: xr.Dataset, answers: Mapping[str, xr.Dataset]) -> Figure:
     """The map with the scenes."""
     figure, axes = new_figure(0.62 * PAGE, 4.1)

@@ -13,19 +13,23 @@ from squealpipe.parameters import direction_of, law_in_words
 from squealpipe.plotting.mechanism import SPRING_COLOURS, arrow, displaced_springs
 from squealpipe.plotting.origin import parameter
 from squealpipe.plotting.style import GREY, PAGE, RED, new_figure, panel_letters, write
+from squealpipe.study.figures.declared import report_figure
 from squealpipe.text import number
 from squealpipe.units import engineering
 
-READS = ("own/*",)
-CAPTION = (
-    "The model of each scene, springs drawn to scale at their angles. Blue: spring 1; orange: "
-    "spring 2; black dots: fixed ends; arcs: α₁ is counted from +x, α₂ from −x; grey line: the "
-    "belt, which runs along the red arrow; the contact spring between mass and belt is too short "
-    "to be seen at this scale."
+
+@report_figure(
+    reads=("own/*",),
+    caption=(
+        "The model of each scene, springs drawn to scale at their angles. Blue: spring 1; orange: "
+        "spring 2; black dots: fixed ends; arcs: α₁ is counted from +x, α₂ from −x; grey line: the "
+        "belt, which runs along the red arrow; the contact spring between mass and belt is too "
+        "short to be seen at this scale."
+    ),
+    alt=(
+        "A drawing of the mass on two inclined springs above the belt for each scene, with numbers."
+    ),
 )
-ALT = "A drawing of the mass on two inclined springs above the belt for each scene, with numbers."
-
-
 def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
     """One panel for each scene, from datasets ``own/<scene>``."""
     columns = min(len(runs), 3)

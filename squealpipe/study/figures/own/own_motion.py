@@ -9,21 +9,24 @@ from matplotlib.figure import Figure
 from squealpipe.plotting import style
 from squealpipe.plotting.axis_units import in_units
 from squealpipe.plotting.run import draw_force, draw_orbit
+from squealpipe.study.figures.declared import report_figure
 
-READS = ("own/*",)
-CAPTION = (
-    "The first moments of each scene from the start in the configuration (at rest under the whole "
-    "preload if none is given), not settled. Left: contact force over its preload; red strips "
-    "below zero: contact is lost. Right: path of the mass over the whole run, with its end as a "
-    "dot; dotted: contact is lost above."
-)
-ALT = "For each scene the beginning of the contact force over time, and the path of the mass."
 SHOWN = 0.1
 """Share of the run whose force is drawn at least."""
 EVENTS = 8
 """Events that are drawn if the run has them."""
 
 
+@report_figure(
+    reads=("own/*",),
+    caption=(
+        "The first moments of each scene from the start in the configuration (at rest under the "
+        "whole preload if none is given), not settled. Left: contact force over its preload; red "
+        "strips below zero: contact is lost. Right: path of the mass over the whole run, with its "
+        "end as a dot; dotted: contact is lost above."
+    ),
+    alt="For each scene the beginning of the contact force over time, and the path of the mass.",
+)
 def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
     """Two panels for each scene, from datasets ``own/<scene>``."""
     figure, axes = style.new_figure(

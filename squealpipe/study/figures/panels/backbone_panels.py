@@ -17,10 +17,6 @@ QUANTITIES = (
     ("x_amplitude", style.X_COLOUR, "amplitude of x"),
     ("y_peak", style.Y_COLOUR, "largest y"),
 )
-SCENE_ALT = (
-    "Two panels of largest y and amplitude of x over frequency, one for each mode."
-)
-
 STABLE_TO_ROUND_OFF = 2.0 + 1e-6
 
 

@@ -11,12 +11,11 @@ from matplotlib.patheffects import withStroke
 from squealpipe.plotting import style
 from squealpipe.schema import Outcome
 
-CAPTION = (
+LINES_AND_HATCHING = (
     "Dashed: α₁ + α₂ = nπ, where det K = 0; dotted: α₁ + α₂ = nπ/2, n odd. Hatched: flutter, a "
     "complex pair, of which the common frequency is shown."
 )
-"""What the lines mean."""
-
+"""Key for captions: what the lines and the hatching mean."""
 
 (HATCH,) = style.patches(
     [(style.WHITE, "flutter: common frequency")], hatch=style.HATCH

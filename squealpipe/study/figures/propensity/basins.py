@@ -5,16 +5,18 @@ from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
 from squealpipe.plotting.origin import scene_title
+from squealpipe.study.figures.declared import report_figure
 
-READS = ("basin/F2d", "basin/F3")
-CAPTION = (
-    "Kind of motion that starts from r = 0 with a velocity lead to. (a) Scene of Fig. 2(d), "
-    "(b) scene of Fig. 3. Each label is that of the second half of the run; white: its quarters "
-    "have different ones, so the run has not settled."
+
+@report_figure(
+    reads=("basin/F2d", "basin/F3"),
+    caption=(
+        "Kind of motion that starts from r = 0 with a velocity lead to. (a) Scene of Fig. 2(d), "
+        "(b) scene of Fig. 3. Each label is that of the second half of the run; white: its "
+        "quarters have different ones, so the run has not settled."
+    ),
+    alt="Two maps over the velocity at the start, coloured by the kind of motion.",
 )
-ALT = "Two maps over the velocity at the start, coloured by the kind of motion."
-
-
 def draw(kept: xr.Dataset, growing: xr.Dataset) -> Figure:
     """Two maps."""
     figure, axes = style.new_figure(style.PAGE, 3.5, ncols=2)

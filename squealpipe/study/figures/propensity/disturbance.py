@@ -8,21 +8,24 @@ from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
 from squealpipe.plotting.origin import scene_title
+from squealpipe.study.figures.declared import report_figure
 
-READS = ("disturbance/*",)
 MARKS = list(zip(style.PALETTE, "osv^DP", strict=True))
 """Colour and marker by scene."""
-CAPTION = (
-    "Smallest disturbance of steady sliding that leads to (a) loss of contact, (b) the whirl, over "
-    "the number of random directions tried, by scene. Crosses: after the local search from each of "
-    "the best directions, the lowest of them the result. Dashed: contact loss by the linear motion "
-    "about the steady state, in closed form. Scenes without a line have no steady sliding, or one "
-    "that is unstable, or no disturbance within the bound does it. The norm is "
-    "√((x² + y²)/l_pre² + (ẋ² + ẏ²)/(l_pre ω)²) with ω² = (k1 + k2)/(2m)."
+
+
+@report_figure(
+    reads=("disturbance/*",),
+    caption=(
+        "Smallest disturbance of steady sliding that leads to (a) loss of contact, (b) the whirl, "
+        "over the number of random directions tried, by scene. Crosses: after the local search "
+        "from each of the best directions, the lowest of them the result. Dashed: contact loss by "
+        "the linear motion about the steady state, in closed form. Scenes without a line have no "
+        "steady sliding, or one that is unstable, or no disturbance within the bound does it. The "
+        "norm is √((x² + y²)/l_pre² + (ẋ² + ẏ²)/(l_pre ω)²) with ω² = (k1 + k2)/(2m)."
+    ),
+    alt="Two panels of falling lines over the number of directions, with crosses below their ends.",
 )
-ALT = "Two panels of falling lines over the number of directions, with crosses below their ends."
-
-
 def draw(found: Mapping[str, xr.Dataset]) -> Figure:
     """Two panels."""
     figure, axes = style.new_figure(style.PAGE, 3.0, ncols=2)

@@ -7,19 +7,21 @@ from matplotlib.figure import Figure
 
 from squealpipe.plotting.style import BLACK, BLUE, PAGE, RED, new_figure, write
 from squealpipe.schema.inference import DAMPED_GRID, in_order, in_words
+from squealpipe.study.figures.declared import report_figure
 
-READS = ("verdict_robustness",)
-CAPTION = (
-    "The paper's statements in settings that it leaves out, by the criteria of the inference. "
-    "Blue: the statement holds; red: it fails; numbers: share in % of random starts, or of the "
-    "feasible parameters, in which it holds, with half its 95 % interval; grey: not judged. "
-    "R is the reaction force. With dashpots, or friction that depends on speed, coupled modes and "
-    f"unstable cells are looked for on a grid of {DAMPED_GRID} × {DAMPED_GRID} angles; ω₁ is "
-    "without damping."
+
+@report_figure(
+    reads=("verdict_robustness",),
+    caption=(
+        "The paper's statements in settings that it leaves out, by the criteria of the inference. "
+        "Blue: the statement holds; red: it fails; numbers: share in % of random starts, or of the "
+        "feasible parameters, in which it holds, with half its 95 % interval; grey: not judged. "
+        "R is the reaction force. With dashpots, or friction that depends on speed, coupled modes "
+        f"and unstable cells are looked for on a grid of {DAMPED_GRID} × {DAMPED_GRID} angles; ω₁ "
+        "is without damping."
+    ),
+    alt="A table of settings by statements, blue where a statement holds and red where it fails.",
 )
-ALT = "A table of settings by statements, blue where a statement holds and red where it fails."
-
-
 def draw(reach: xr.Dataset) -> Figure:
     """One table."""
     reach = in_order(reach)

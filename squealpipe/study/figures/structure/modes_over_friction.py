@@ -4,15 +4,17 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from squealpipe.plotting import modes as plotting
+from squealpipe.study.figures.declared import report_figure
 
-READS = ("structure/modes",)
-CAPTION = (
-    "Frequency (above) and growth rate (below) of the complex modes over friction, of the whole "
-    "structure. Red: unstable; diamonds: where growth leaves zero."
+
+@report_figure(
+    reads=("structure/modes",),
+    caption=(
+        "Frequency (above) and growth rate (below) of the complex modes over friction, of the "
+        "whole structure. Red: unstable; diamonds: where growth leaves zero."
+    ),
+    alt="Two panels over friction: frequencies that meet, and growth rates that leave zero there.",
 )
-ALT = "Two panels over friction: frequencies that meet, and growth rates that leave zero there."
-
-
 def draw(modes: xr.Dataset) -> Figure:
     """Two panels from the dataset ``structure/modes``."""
     return plotting.figure(modes)
