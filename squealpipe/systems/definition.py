@@ -26,8 +26,8 @@ from squealpipe.units import holds_units
 from squealpipe.validation import Identifier, Number, Positive, Word, checked, needed
 
 Size = Annotated[
-    str | tuple[str, Positive],
-    needed("a unit, or (unit, typical size greater than 0), is"),
+    str | tuple[str, Positive | Function],
+    needed("a unit, or (unit, typical size greater than 0, or a function), is"),
 ]
 Output = Annotated[tuple[str, Function], needed("(unit, function) is")]
 StartValue = Annotated[
@@ -64,8 +64,8 @@ class Definition:
 
     Args:
         name: for titles and files.
-        states: name → unit, or (unit, typical size); error control and round-off are relative to
-            the size, 1 if none is given.
+        states: name → unit, or (unit, typical size), a number or a function of the parameters;
+            error control and round-off are relative to the size, 1 if none is given.
         parameters: name → default.
         regimes: name → constants ``r`` that field and surfaces read; the same names in each.
         components: in place of ``regimes``, ``switches`` and ``starts_in``: name → what has regimes
@@ -113,9 +113,10 @@ class Definition:
             key: value if isinstance(value, str) else value[0]
             for key, value in states.items()
         }
-        self.sizes = np.array(
-            [1.0 if isinstance(v, str) else float(v[1]) for v in states.values()]
-        )
+        self.typical_sizes = {
+            key: 1.0 if isinstance(value, str) else value[1]
+            for key, value in states.items()
+        }
         self.parameters = dict(parameters)
         self.field = field
         self.start = {
@@ -135,6 +136,12 @@ class Definition:
                 value = function(Names("the system", self.parameters))
                 if not is_finite_number(value):
                     raise ValueError(f"{what} gives {value!r}; a number is needed")
+        for state, size in zip(self.units, self.sizes_in(self.parameters), strict=True):
+            if not (is_finite_number(size) and size > 0.0):
+                raise ValueError(
+                    f"the typical size of state {state!r} is {size:g}; a number greater than 0 "
+                    "is needed"
+                )
         self.traced = self._trace()
         self.form = self
 
@@ -146,6 +153,19 @@ class Definition:
     def states(self) -> tuple[str, ...]:
         """Names of the states."""
         return tuple(self.units)
+
+    def sizes_in(self, values: Mapping[str, Any]) -> np.ndarray:
+        """Return the typical sizes of the states, (states,) or, of many runs, (runs, states).
+
+        Args:
+            values: each parameter, a number or an array (runs,).
+        """
+        sizes = self.typical_sizes.values()
+        if not any(map(callable, sizes)):
+            return np.array([*sizes], float)
+        parameters = Names("the system", {n: values[n] for n in self.parameters})
+        found = [each(parameters) if callable(each) else each for each in sizes]
+        return np.stack(np.broadcast_arrays(*found), axis=-1).astype(float)
 
     @cached_property
     def start_names(self) -> dict[str, str]:

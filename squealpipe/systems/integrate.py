@@ -89,7 +89,7 @@ class RunOptions:
         log_events: room for the events of each run.
         logged: kinds of events that are logged, by default all, as a record of one run needs.
         most_steps, most_events: of each run.
-        unit_sizes: of the states; by default the system's.
+        unit_sizes: typical sizes of the states, by default the system's.
         t_start: what the system's functions take for the time where a run begins; all other
             times count from there.
     """
@@ -145,7 +145,7 @@ def integrate(
         ``event_times``, ``event_kinds``, ``event_regimes``, ``event_states``.
 
     Raises:
-        ValueError: where the system's unit of time is none.
+        ValueError: the system's unit of time, or a state's typical size, is not a positive number.
     """
     batch = _Batch(system.for_exponents(values), values, t_end, options, tol)
     loop()  # compiled before processes share the work
@@ -168,6 +168,7 @@ class _Batch:
         self.size = len(t_end)
         self.unit = unit = _time_units(system, values, t_end)
         self.initial = _table(self.size, *(values[name] for name in system.states))
+        self.sizes = _state_sizes(system, values, self.size, options.unit_sizes)
         derive, names = system.derived
         known = {**values, TIME_UNIT: unit}
         derived = derive(*(known[name] for name in names))
@@ -305,14 +306,14 @@ class _Batch:
         width = max(3 * n_events, len(t.variables), len(t.all_constants)) + 2
         integers = np.full((layout.REGIMES + t.n_components, LANES), -1, np.int64)
         integers[layout.OUTCOME] = 0  # every lane asks for a job
-        unit_sizes = options.unit_sizes
         share = max(layout.SHARE * self.tol, layout.ROUND_OFF)
         return {
             "rows": lanes.aligned(counts["n_rows"], LANES),
             "integers": integers,
             "series": lanes.aligned(self.code.n_series, counts["n_terms"], LANES),
             "inverses": lanes.INVERSES,
-            "sizes": self.system.sizes if unit_sizes is None else unit_sizes,
+            "sizes": self.sizes,
+            "units": lanes.aligned(t.size, LANES),
             "tracked": np.array(self.watched, np.int64),
             "points": self.points,
             "regimes": t.regimes,
@@ -412,6 +413,26 @@ def _time_units(
             f"{system.name}: time_scale = {unit.min()}: it is not a unit of time"
         )
     return unit
+
+
+def _state_sizes(
+    system: System,
+    values: Mapping[str, np.ndarray],
+    size: int,
+    given: np.ndarray | None,
+) -> np.ndarray:
+    """Return the typical size of each state in each run, (runs, states)."""
+    with np.errstate(all="ignore"):
+        sizes = system.sizes_in(values) if given is None else given
+        rows = np.broadcast_to(sizes, (size, len(system.states))).copy()
+        fits = (rows > 0.0) & np.isfinite(1.0 / rows) & np.isfinite(rows)
+    if not fits.all():
+        run, state = np.argwhere(~fits)[0]
+        raise ValueError(
+            f"{system.name}: the typical size of {system.states[state]} is "
+            f"{rows[run, state]:g}: a positive, finite number is needed"
+        )
+    return rows
 
 
 def _table(size: int, *columns: Any) -> np.ndarray:

@@ -50,13 +50,13 @@ def differing(t: Any, m: Any, parameters: int) -> Any:
     size = splat(1.0)
     for variable in range(t.n_states):
         start = magnitude(load(base + variable * terms * ROW))
-        size = larger(start * splat(1.0 / m.sizes[variable]), size)
+        size = larger(start * load(t.units + variable * ROW), size)
     size = size * splat(share)
     agree = bits_below(splat(0.0), splat(1.0))
     for variable in range(t.n_states):
         if m.steep[variable]:
             slope = slope_at_end(base + variable * terms * ROW, terms, step)
-            unit = step * splat(1.0 / m.sizes[variable])
+            unit = step * load(t.units + variable * ROW)
             gap = magnitude(load(t.exact + variable * ROW) - slope) * unit
             limit = fma(magnitude(slope) * unit, splat(RATES), size)
             agree &= bits_below(gap, limit)
@@ -118,11 +118,11 @@ def _largest_gap(t: Any, m: Any, c: Any, lane: int) -> float:
     step, share = m.rows[layout.STEP, lane], m.share[0]
     size, most = 1.0, 0.0
     for variable in range(t.n_states):
-        size = max(size, abs(c[variable, 0, lane]) / m.sizes[variable])
+        size = max(size, abs(c[variable, 0, lane]) * m.units[variable, lane])
     for variable in range(t.n_states):
         if m.steep[variable]:
             _, slope, _ = evaluate_twice(c, variable, lane, step)
-            unit = step / m.sizes[variable]
+            unit = step * m.units[variable, lane]
             limit = size * share + abs(slope) * unit * RATES
             ratio = abs(m.exact[variable, lane] - slope) * unit / limit
             most = ratio if not ratio <= most else most
@@ -145,7 +145,7 @@ def _jumps(t: Any, m: Any, c: Any, lane: int) -> bool:
     for variable in range(t.n_states):
         if m.steep[variable]:
             change = abs(m.exact[variable, lane] - c[variable, 1, lane])
-            most = max(most, change / m.sizes[variable])
+            most = max(most, change * m.units[variable, lane])
     return bool(most * reach > JUMP)
 
 

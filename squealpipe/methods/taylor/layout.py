@@ -29,7 +29,8 @@ JOB, OUTCOME, SAMPLE, EVENTS, LOGGED, CHAINED, HIT, LATE, REGIMES = range(9)
 """Rows of integers of the lanes; the last is the first of the regimes, one a component."""
 
 ARRAYS = (
-    "rows", "integers", "series", "inverses", "sizes", "tracked", "regimes", "falls", "rises",
+    "rows", "integers", "series", "inverses", "sizes", "units", "tracked", "regimes", "falls",
+    "rises",
     "component_of", "first_constant", "owner", "marks", "clocks", "ticked", "active", "fresh",
     "beyond", "exact",
     "steep", "bent", "share", "noise", "scratch", "initial", "parameters", "first_regime", "limits",

@@ -23,7 +23,7 @@ FIRST_PARAMETER = 3
 _SWEEPS = 19
 """Picard's iterations for a step whose length times the rate is 1: 1/19! is round-off."""
 ARRAYS = (
-    "rows", "series", "inverses", "sizes", "bent", "constants", "initial", "starts", "durations",
+    "rows", "series", "inverses", "units", "bent", "constants", "initial", "starts", "durations",
     "kept", "steps", "counts", "lanes",
 )  # fmt: skip
 SIZES = (
@@ -119,7 +119,6 @@ def _advance(table: Any) -> int:
         lanes=view(t.lanes, (FEW,), np.int64),
         clocks=view(t.lanes + 8 * FEW, (FEW,), np.float64),
     )
-    sizes = view(t.sizes, (n,), np.float64)
     bent = view(t.bent, (t.n_kept - t.n_variables,), np.int64)
     unit = m.rows[FIRST_PARAMETER + t.n_parameters - 1, 0]
     parameters = t.rows + FIRST_PARAMETER * ROW
@@ -134,7 +133,7 @@ def _advance(table: Any) -> int:
         if busy == 0:
             return 0
         call(t.take_step, (t.series, parameters, t.inverses, terms))
-        length = step_length(t.series, terms, n, sizes)
+        length = step_length(t.series, terms, n, t.units)
         for event in range(t.n_kept - t.n_variables):
             if bent[event] or t.n_variables > n:
                 series = t.series + (t.n_variables + event) * terms * ROW

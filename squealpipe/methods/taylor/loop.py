@@ -76,8 +76,8 @@ def _grow_all(t: Any, m: Any, tangent_row: int, busy: int) -> None:
     """Look at perturbations that have grown or shrunk a thousandfold, or passed what is lost."""
     square = splat(0.0)
     for variable in range(t.n_states):
-        part = load(t.rows + (tangent_row + variable) * ROW) * splat(
-            1.0 / m.sizes[variable]
+        part = load(t.rows + (tangent_row + variable) * ROW) * load(
+            t.units + variable * ROW
         )
         square = square + part * part
     usual = bits_below(splat(1e-6), square) & bits_below(square, splat(1e6))
@@ -151,7 +151,10 @@ def _start(
     c[: t.n_variables, :, lane] = 0.0
     for variable in range(t.n_states):
         c[variable, 0, lane] = m.initial[job, variable]
-        rows[tangent_row + variable, lane] = m.sizes[variable] / math.sqrt(t.n_states)
+        m.units[variable, lane] = 1.0 / m.sizes[job, variable]
+        rows[tangent_row + variable, lane] = m.sizes[job, variable] / math.sqrt(
+            t.n_states
+        )
     if t.n_variables > t.n_states:
         c[t.n_states, 0, lane] = rows[layout.ORIGIN, lane]
     for index in range(t.n_tracked):
@@ -334,7 +337,8 @@ def _advance(table: Any) -> int:
     m = layout.Memory(
         rows=view(t.rows, (t.n_rows, LANES), np.float64),
         integers=view(t.integers, (layout.REGIMES + t.n_components, LANES), np.int64),
-        sizes=view(t.sizes, (size,), np.float64),
+        sizes=view(t.sizes, (t.n_jobs, size), np.float64),
+        units=view(t.units, (size, LANES), np.float64),
         tracked=view(t.tracked, (t.n_tracked, 2), np.int64),
         regimes=view(t.regimes, (t.n_regimes, t.n_table), np.float64),
         falls=view(t.falls, (t.n_regimes, t.n_surfaces), np.int64),

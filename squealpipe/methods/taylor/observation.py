@@ -246,7 +246,7 @@ def log_norm(t: Any, m: Any, lane: int, tangent_row: int) -> float:
     """ln of the size of a lane's perturbation."""
     square = 0.0
     for variable in range(t.n_states):
-        square += (m.rows[tangent_row + variable, lane] / m.sizes[variable]) ** 2
+        square += (m.rows[tangent_row + variable, lane] * m.units[variable, lane]) ** 2
     return -math.inf if square == 0.0 else 0.5 * math.log(square)
 
 

@@ -51,11 +51,15 @@ NOTHING = 1e-30
 
 
 @inline
-def step_length(base: int, terms: int, n_states: int, sizes: Any) -> Any:
-    """Lengths of the next steps from the last two orders (Jorba and Zou 2005; Biscani 2021)."""
+def step_length(base: int, terms: int, n_states: int, units: int) -> Any:
+    """Lengths of the next steps from the last two orders (Jorba and Zou 2005; Biscani 2021).
+
+    Args:
+        units: address of the rows of one over the states' typical sizes.
+    """
     size, last, previous = splat(1.0), splat(1e-300), splat(1e-300)
     for variable in range(n_states):
-        series, unit = base + variable * terms * ROW, splat(1.0 / sizes[variable])
+        series, unit = base + variable * terms * ROW, load(units + variable * ROW)
         size = larger(magnitude(load(series)) * unit, size)
         last = larger(magnitude(load(series + (terms - 1) * ROW)) * unit, last)
         previous = larger(magnitude(load(series + (terms - 2) * ROW)) * unit, previous)
@@ -199,7 +203,7 @@ def take_step(t: Any, m: Any, parameters: int) -> Any:
     """Ends of all lanes' steps; returns the lanes that need a look of their own."""
     terms, base, at = t.n_terms, t.series, t.rows
     step = smaller(
-        step_length(base, terms, t.n_states, m.sizes), load(at + layout.LONGEST * ROW)
+        step_length(base, terms, t.n_states, t.units), load(at + layout.LONGEST * ROW)
     )
     if t.n_variables > t.n_states:
         for each in range(t.n_surfaces + t.n_tracked - t.n_states):

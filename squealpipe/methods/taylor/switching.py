@@ -84,8 +84,9 @@ def watch(t: Any, m: Any, c: Any, lane: int, span: float) -> None:
         m.noise[surface, 0, lane] = NOISE * out[3 * surface + 1]
         m.noise[surface, 1, lane] = located * out[3 * surface + 2]
     # a state is known to round-off of its typical size, however small it has become
+    job = m.integers[layout.JOB, lane]
     for variable in range(t.n_states):
-        sizes[variable] = max(sizes[variable], m.sizes[variable])
+        sizes[variable] = max(sizes[variable], m.sizes[job, variable])
     gauge(t, lane, m.scratch.shape[1])
     for surface in range(t.n_surfaces):
         m.active[surface] &= keep

@@ -261,7 +261,7 @@ class Flow:
             "rows": aligned(FIRST_PARAMETER + len(t.parameters) + constants, LANES),
             "series": aligned(code.n_series, terms, LANES),
             "inverses": INVERSES,
-            "sizes": np.zeros(t.size),
+            "units": aligned(t.size, LANES),
             "bent": np.append(symbolic(self.system).bent, 0),
             "constants": np.zeros((legs, max(1, constants))),
             "initial": np.zeros((legs, t.size)),
@@ -297,9 +297,10 @@ class Flow:
         arrays = self._work.arrays
         last = FIRST_PARAMETER + len(column)
         arrays["rows"][FIRST_PARAMETER:last] = column[:, None]
-        arrays["sizes"][:] = np.minimum(
-            self.system.sizes, np.maximum(np.abs(states).max(axis=0), 1e-200)
+        sizes = np.minimum(
+            self.system.sizes_in(values), np.maximum(np.abs(states).max(axis=0), 1e-200)
         )
+        arrays["units"][:] = 1.0 / sizes[:, None]
         arrays["initial"][:] = states
         for row, regime in zip(arrays["constants"], regimes, strict=True):
             constants = self._constants_of(regime, column)

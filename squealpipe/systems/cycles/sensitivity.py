@@ -97,7 +97,7 @@ def sensitivities(
             along = crossing.height_by_state @ total
             along[columns] += crossing.height_by
             delays[i] = -along / crossing.speed
-            beyond = crossing.is_beyond(path.ends[leg], system.sizes)
+            beyond = crossing.is_beyond(path.ends[leg], system.sizes_in(values))
             if lengths[leg] == 0.0 and beyond:
                 delays[i] = delays[i - 1] if i else 0.0
             total = crossing.after_by_state @ total + np.outer(crossing.jump, delays[i])

@@ -208,7 +208,9 @@ class Cycle:
     def extent(self) -> Vector:
         """Units of the states by how far they move in it."""
         n = self.map.flow.size
-        return scale_of(self.extremes[:, :n], self.map.flow.system.sizes)
+        return scale_of(
+            self.extremes[:, :n], self.map.flow.system.sizes_in(self.parts.values)
+        )
 
     @cached_property
     def extremes(self) -> Vector:

@@ -81,7 +81,7 @@ def _affine(flow: Flow, values: Mapping[str, float], path: Path) -> Vector:
         found[leg] = affine_derivatives(
             partial(many, flow.rates),
             partial(many, flow.rates_by),
-            flow.system.sizes,
+            flow.system.sizes_in(values),
             units,
             starts[leg],
             float(path.durations[leg]),

@@ -150,7 +150,21 @@ def brake(  # noqa: C901 (one short function for each force and surface)
     def free(t: Any, s: Any, p: Any, r: Any) -> Any:
         return s.y - p.preload
 
-    states = {"x": "m", "y": "m", "vx": "m/s", "vy": "m/s"}
+    def time(p: Any) -> Any:
+        return (p.mass / p.k1) ** 0.5
+
+    def length(p: Any) -> Any:
+        return p.preload
+
+    def speed(p: Any) -> Any:
+        return p.preload / time(p)
+
+    states = {
+        "x": ("m", length),
+        "y": ("m", length),
+        "vx": ("m/s", speed),
+        "vy": ("m/s", speed),
+    }
     reach = ("m2", lambda t, s, p, r: s.x * s.x + s.y * s.y)
     made = System(
         "brake",
@@ -167,7 +181,7 @@ def brake(  # noqa: C901 (one short function for each force and surface)
         starts_in=laws.starts(free, rises, limit, pull),
         outputs={"contact_force": ("N", force), "reach": reach},
         stops={} if rules.linear_springs else {"pivot1": pivot(0), "pivot2": pivot(1)},
-        time_scale=lambda p: (p.mass / p.k1) ** 0.5,
+        time_scale=time,
     )
     _FORMS[traced] = made
     return made
