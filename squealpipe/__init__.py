@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from squealpipe.store.tables import convert
     from squealpipe.systems.components import Component, Switch
     from squealpipe.systems.structures.contact import Contact
+    from squealpipe.systems.structures.meshes.faces import Face, Rotation
     from squealpipe.systems.structures.squeal.ladder import squeal_ladder
     from squealpipe.systems.structures.squeal.squealing_modes import squealing_modes
     from squealpipe.systems.structures.structure import Structure
@@ -60,7 +61,9 @@ __all__ = [
     "SCENES",
     "Component",
     "Contact",
+    "Face",
     "Parameters",
+    "Rotation",
     "Scene",
     "Structure",
     "Sweep",

@@ -66,6 +66,7 @@ NEEDED = {
     "when": abs,
     "regimes": {"a": {}},
     "mass": np.eye(2),
+    "surface": "PAD",
     "states": {"x": "m"},
     "field": lambda t, s, p, r: {"x": -s.x},
     "figure": 1,
@@ -87,6 +88,7 @@ NEEDED = {
 """Valid values of the arguments that some function needs."""
 OF_ITS_OWN = {
     "Contact": {"stiffness": 1.0},
+    "Face": {"stiffness": 1.0, "pressure": 1.0},
     "Switch": {"to": "a"},
     "System": {"parameters": {}},
     "cycle_curve": {"start": xr.Dataset()},

@@ -2,6 +2,7 @@
 
 from squealpipe.systems.structures.contact import Contact
 from squealpipe.systems.structures.elastic_pad import elastic_pad
+from squealpipe.systems.structures.meshes.faces import Face, Rotation
 from squealpipe.systems.structures.structure import Structure
 
-__all__ = ["Contact", "Structure", "elastic_pad"]
+__all__ = ["Contact", "Face", "Rotation", "Structure", "elastic_pad"]

@@ -11,6 +11,7 @@ from squealpipe.parameters import brief, finite_number, numbers_in_si
 from squealpipe.systems.structures.contact import Contact, directions, transversals
 from squealpipe.systems.structures.friction import Friction, default_mu
 from squealpipe.systems.structures.matrices import checked_mass, real_square
+from squealpipe.systems.structures.meshes.faces import Rotation
 from squealpipe.systems.structures.meshes.structure_mesh import StructureMesh
 from squealpipe.validation import real_array
 
@@ -48,10 +49,12 @@ class ContactStructure:
             meant, beyond those up to the largest frequency asked for, or as many as ratios.
         contacts: :class:`Contact` each.
         mu: coefficient of friction, 0.5 by default; with a table a factor of it, 1 by default.
-        belt_speed: V, m/s; its sign is the direction.
+        belt_speed: V, m/s, 2 by default; its sign is the direction. With a rotation it is Ω, rad/s,
+            that of the rotation by default, and ``speed`` of a contact is its radius in m.
         friction_law, mu_static, friction_speed: as in ``Parameters``.
         load: f, (n,), N; None: −Σ nᵢ preloadᵢ, which balances the preloads at rest; 0: none.
         mesh: nodes, facets and what each degree of freedom is, for names and pictures.
+        rotation: of the body that rubs, about an axis.
 
     Raises:
         ValueError: matrices that do not fit each other, a mass that is not positive definite,
@@ -67,12 +70,13 @@ class ContactStructure:
         modal_damping: float | Sequence[float] = 0.0,
         contacts: Sequence[Contact] = (),
         mu: float | None = None,
-        belt_speed: float = 2.0,
+        belt_speed: float | None = None,
         friction_law: Any = "coulomb",
         mu_static: float | None = None,
         friction_speed: float = 1.0,
         load: Any = None,
         mesh: StructureMesh | None = None,
+        rotation: Rotation | None = None,
     ) -> None:
         mass, stiffness, damping = (
             numbers_in_si(name, matrix, units)
@@ -91,7 +95,14 @@ class ContactStructure:
             nothing if damping is None else real_square("damping", damping, self.size)
         )
         self.modal_damping = _ratios(modal_damping, self.size)
-        self.belt_speed = finite_number("belt_speed", belt_speed, "m s-1")
+        if rotation is not None and not isinstance(rotation, Rotation):
+            raise ValueError(f"rotation = {brief(rotation)}: a Rotation is needed")
+        self.rotation = rotation
+        """Rotation of the body that rubs; None where a belt runs straight on."""
+        if belt_speed is None:
+            belt_speed = 2.0 if rotation is None else rotation.speed
+        unit = "m s-1" if rotation is None else "rad s-1"
+        self.belt_speed = finite_number("belt_speed", belt_speed, unit)
         if not isinstance(contacts, Sequence):
             raise ValueError(  # noqa: TRY004 (of all arguments mistakes are values)
                 f"contacts = {brief(contacts)}: a list of Contact is needed"
@@ -203,6 +214,7 @@ class ContactStructure:
             "friction_speed": friction.friction_speed,
             "load": self.given_load,
             "mesh": self.mesh if self.modes is None else None,
+            "rotation": self.rotation,
         }
 
     def as_dict(self) -> dict[str, Any]:
@@ -231,11 +243,14 @@ class ContactStructure:
             "friction_law": self.friction.friction_law,
             "mu_static": self.friction.mu_static,
             "friction_speed": self.friction.friction_speed,
+            **({} if self.rotation is None else {"rotation": self.rotation.as_dict()}),
         }
 
 
 def _fitting(mesh: StructureMesh | None, size: int) -> StructureMesh | None:
     """Return the mesh if it has the degrees of freedom of the matrices."""
+    if mesh is not None and not isinstance(mesh, StructureMesh):
+        raise ValueError(f"mesh = {brief(mesh)}: a StructureMesh is needed")
     if mesh is not None and len(mesh.degree_of_freedom) != size:
         raise ValueError(
             f"mesh: it says what {len(mesh.degree_of_freedom)} degrees of freedom are, but the "
