@@ -152,7 +152,7 @@ def _draw(axes: Axes, dataset: xr.Dataset, variable: str | None) -> None:
 
 
 def _first_drawable(dataset: xr.Dataset) -> str | None:
-    """Of another program's file, the first variable of numbers over one or two dimensions."""
+    """Return the first numeric variable over one or two dimensions of another program's file."""
     return next(
         (
             str(name)

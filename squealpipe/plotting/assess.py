@@ -11,10 +11,6 @@ from squealpipe.schema import meanings
 from squealpipe.schema.assess import Verdict
 from squealpipe.units import shown_in
 
-PICTURED = 6.0
-"""Multiples of the strongest line that the spectrum shows."""
-DIED = "the motion\ndies out"
-
 
 def figure(answer: xr.Dataset) -> Figure:
     """Three panels."""
@@ -96,7 +92,9 @@ def draw_settled_spectrum(axes: Axes, answer: xr.Dataset) -> None:
     strongest = float(answer.frequency)
     factor, unit = shown_in(strongest, "Hz")
     frequency = answer.line_frequency.values
-    shown = frequency <= PICTURED * strongest
+    # the spectrum ends at six times the frequency of its strongest line
+    shown_multiples = 6.0
+    shown = frequency <= shown_multiples * strongest
     for name, colour, words in (
         ("along", style.X_COLOUR, "along the belt"),
         ("across", style.Y_COLOUR, "across it"),
@@ -107,7 +105,7 @@ def draw_settled_spectrum(axes: Axes, answer: xr.Dataset) -> None:
     axes.plot(factor * strongest, top, "v", color=style.RED, markersize=4)
     axes.set(
         ylim=(1e-4 * top, 5.0 * top),
-        xlim=(0.0, factor * PICTURED * strongest),
+        xlim=(0.0, factor * shown_multiples * strongest),
         xlabel=f"frequency ({unit})",
         ylabel="velocity (m/s)",
     )
@@ -115,9 +113,9 @@ def draw_settled_spectrum(axes: Axes, answer: xr.Dataset) -> None:
 
 
 def _says_quiet(axes: Axes, answer: xr.Dataset) -> bool:
-    """Whether there is no motion to be drawn, which the panel then says."""
+    """Write into the panel that there is no motion to draw; return whether that is so."""
     if int(answer.verdict) == Verdict.quiet:
-        style.say_instead(axes, DIED)
+        style.say_instead(axes, "the motion\ndies out")
         return True
     if not np.isfinite(answer.path_x.values).all():
         style.say_instead(axes, "the run ended early")

@@ -31,7 +31,6 @@ from squealpipe.units import conversion, shown_in
 
 READABLE = {"m": "m", "s": "s", "N": "N", "Hz": "Hz", "m/s": "m s-1", "N/m": "N m-1"}
 """Unit of an axis → CF unit, of those for which a readable one is chosen."""
-_LABEL = re.compile(r"^(.*?)\s*\(([^()]+)\)$", re.DOTALL)
 
 
 def in_units(figure: Figure, wanted: Sequence[str], dataset: xr.Dataset) -> None:
@@ -52,7 +51,8 @@ def in_units(figure: Figure, wanted: Sequence[str], dataset: xr.Dataset) -> None
                 )
     left, seen = set(wanted), set()
     for axis in (each for axes in figure.axes for each in _axes_of(axes)):
-        match = _LABEL.match(axis.get_label_text())
+        # an axis label ends with its unit in parentheses: "contact force (N)"
+        match = re.match(r"^(.*?)\s*\(([^()]+)\)$", axis.get_label_text(), re.DOTALL)
         if match is None:
             continue
         words, unit = match.groups()

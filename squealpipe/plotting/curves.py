@@ -8,11 +8,6 @@ from squealpipe.plotting import style
 from squealpipe.plotting.quantities import label
 from squealpipe.schema import meanings
 
-KINDS = ("line", "boundary")
-"""Variables that say of a point which curve it is on, where a dataset has several kinds."""
-NUMBERS = ("segment", "curve")
-"""Variables that number the curves of a kind, where there are several."""
-
 
 def draw_curves(axes: Axes, curves: xr.Dataset) -> None:
     """Each kind of curve in a colour of its own, designs as crosses; or that there is none."""
@@ -23,8 +18,12 @@ def draw_curves(axes: Axes, curves: xr.Dataset) -> None:
     names = curves.parameter.values if "parameter" in curves else followed
     x, y = (curves[str(name)] for name in names)
     one = xr.zeros_like(x, dtype=int)
-    number = next((curves[name] for name in NUMBERS if name in curves), one).values
-    kind = next((curves[name] for name in KINDS if name in curves), one)
+    # variables that number the pieces of one curve
+    number = next(
+        (curves[name] for name in ("segment", "curve") if name in curves), one
+    ).values
+    # variables that tell which curve a point lies on, in datasets of several curves
+    kind = next((curves[name] for name in ("line", "boundary") if name in curves), one)
     words = meanings(kind) or {0: curves.attrs.get("curve", "boundary of kept contact")}
     for colour, code in zip(
         style.PALETTE * len(words), np.unique(kind.values), strict=False

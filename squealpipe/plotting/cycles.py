@@ -21,8 +21,6 @@ MARKS = {
     "stick_onset": ("v", style.GREEN, "stick just begins or ends"),
 }
 """Special points of a branch: marker, colour, words."""
-ALONG = " along the branch"
-"""How the long name of the parameter ends that a branch is followed in."""
 
 
 def draw_backbone(axes: Axes, branch: xr.Dataset) -> None:
@@ -97,7 +95,7 @@ def draw_branch(axes: Axes, branch: xr.Dataset) -> None:
     ]
     trace_branch(axes, followed.values, largest(branch, state), branch)
     units = branch[f"{state}_max"].units
-    words, name = label(followed).replace(ALONG, ""), str(followed.name)
+    words, name = label(followed).replace(" along the branch", ""), str(followed.name)
     if name in TABLE:
         words = words.replace(name, style.symbol(name), 1)
     axes.set(xlabel=words, ylabel=f"largest |{state}| ({units})")
@@ -156,7 +154,7 @@ def joined(chosen: np.ndarray) -> np.ndarray:
 
 
 def say_why_empty(axes: Axes, motions: xr.Dataset) -> bool:
-    """Whether there is no cycle or point of a branch, and then why, in its panel."""
+    """Write into the panel why no cycle or branch was found; return whether it is empty."""
     branch = "point" in motions.sizes
     if motions.sizes["point" if branch else "sample"]:
         return False

@@ -13,12 +13,9 @@ from squealpipe.schema.squealing import JUST_ABOVE
 from squealpipe.text import number
 from squealpipe.units import engineering
 
-COLOURS = (style.BLUE, style.ORANGE, style.PURPLE)
-"""Of the attractors that were followed, in turn."""
-
 
 def has_tracks(answer: xr.Dataset) -> bool:
-    """Whether motions were followed in friction."""
+    """Return whether the dataset holds motions followed over falling friction."""
     return "track_mu" in answer and bool(answer.sizes["track"])
 
 
@@ -34,7 +31,8 @@ def draw_hysteresis(axes: Axes, answer: xr.Dataset) -> None:
             axes.axvline(
                 friction, color=style.BLACK, linewidth=0.8, linestyle=line, label=label
             )
-    colours = cycle(COLOURS)
+    attractor_colours = (style.BLUE, style.ORANGE, style.PURPLE)
+    colours = cycle(attractor_colours)
     unstable: str | None = "unstable cycle"
     for place in range(answer.sizes["track"]):
         one = answer.isel(track=place)

@@ -13,8 +13,6 @@ from squealpipe.plotting.quantities import label
 from squealpipe.units import shown_in
 
 GROWTH = "growth rate (1/s)"
-DEEPEST = 1.5
-"""Fastest decay shown, over the fastest growth."""
 
 
 def draw_modes(axes: Axes, modes: xr.Dataset) -> None:
@@ -110,5 +108,7 @@ def frequency_unit(frequencies: np.ndarray) -> tuple[float, str]:
 def show_what_grows(axes: Axes, growth: np.ndarray) -> None:
     """Cut off decay that is much faster than the growth, which would not be seen beside it."""
     largest, fastest = float(np.nanmax(growth)), -float(np.nanmin(growth))
-    if 0 < DEEPEST * largest < fastest:
-        axes.set_ylim(-DEEPEST * largest, 1.15 * largest)
+    # decay deeper than this, over the fastest growth, would flatten the curves of growth
+    deepest = 1.5
+    if 0 < deepest * largest < fastest:
+        axes.set_ylim(-deepest * largest, 1.15 * largest)

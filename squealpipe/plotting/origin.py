@@ -1,4 +1,4 @@
-"""What a stored dataset says about the run that made it."""
+"""Parameters and scene that a stored dataset records of the run that made it."""
 
 import json
 import math

@@ -11,8 +11,6 @@ from squealpipe.parameters import TABLE
 from squealpipe.plotting import style
 from squealpipe.schema import SYSTEM, meanings
 
-UNITS = {"s-1": "1/s", "rad s-1": "rad/s", "m s-1": "m/s"}
-"""Units of CF as axes show them."""
 SHOWN: dict[str, tuple[str, Mapping[str, object]]] = {
     "validity_map": ("first_separation_time", {}),
     "refined_validity_map": ("separates", {}),
@@ -62,7 +60,7 @@ def shown(dataset: xr.Dataset) -> xr.DataArray | None:
 
 
 def counts(dataset: xr.Dataset) -> list[str]:
-    """What the variable shown holds, in words."""
+    """Describe the values of the drawn variable in one line of text."""
     variable = shown(dataset)
     assert variable is not None, dataset.attrs  # noqa: S101 (maps of the command line are in SHOWN)
     if table := meanings(variable):
@@ -185,8 +183,10 @@ def _words(variable: xr.DataArray) -> str:
 
 
 def label(variable: xr.DataArray) -> str:
-    """What a variable is, with its unit, for an axis."""
-    unit = UNITS.get(unit := str(variable.attrs.get("units", "1")), unit)
+    """Return a variable's long name with its unit, as an axis label."""
+    # units of the CF convention as axes write them
+    written = {"s-1": "1/s", "rad s-1": "rad/s", "m s-1": "m/s"}
+    unit = written.get(unit := str(variable.attrs.get("units", "1")), unit)
     name = str(variable.name)
     words = _words(variable)
     if name in style.ANGLES or (words == name and name in TABLE):

@@ -24,19 +24,11 @@ from squealpipe.schema.dynamics.intervals import intervals
 Window = tuple[float, float]
 """First and last instant that are shown, s."""
 
-FORCE = r"$N\,/\,(k_3\,l_\mathrm{pre})$"
-PADDING = 8
-"""How much finer the spectrum's grid is than the resolution of the run."""
-LARGEST_SPRINGS = 5.0
-"""Length of the springs over the extent of a path beside which they are drawn."""
-PERIODS, MANY = 12, 3.0
-"""Periods of a run's end that are shown beside all of it, and how many times longer it then is."""
-PIXEL = 0.8
-"""Line width, points: a pixel from 90 dots per inch on."""
-UNEVEN = 1e-6
-"""Difference of the steps between samples, over a step, from which they are not uniform."""
-LOUD = 0.01
-"""Amplitude over the largest one above which the spectrum is drawn."""
+FORCE_LABEL = r"$N\,/\,(k_3\,l_\mathrm{pre})$"
+SPECTRUM_PADDING = 8
+"""Frequencies computed for each that the run resolves: smooth peaks, and no cost that is felt."""
+LAST_PERIODS = 12
+"""Periods at the end of a long run that get panels of their own."""
 
 
 def figure(run: xr.Dataset) -> Figure:
@@ -49,7 +41,7 @@ def figure(run: xr.Dataset) -> Figure:
         (draw_spectrum, "spectrum of the contact force"),
     ]
     if end is not None:
-        last = f"last {PERIODS} periods"
+        last = f"last {LAST_PERIODS} periods"
         panels[1:1] = [(partial(draw_force, window=end), f"contact force, {last}")]
         panels[3:3] = [(partial(draw_displacements, window=end), last)]
     rows = len(panels) // 2
@@ -66,7 +58,7 @@ def figure(run: xr.Dataset) -> Figure:
 
 
 def last_periods(run: xr.Dataset) -> Window | None:
-    """The last :data:`PERIODS` periods of a run that has many more, s; None of a shorter one.
+    """Return start and end (s) of the last periods of a long run, or None for a short one.
 
     A period is that of the strongest line of y in the second half of the run.
     """
@@ -76,14 +68,20 @@ def last_periods(run: xr.Dataset) -> Window | None:
         return None
     time, y = run.time.values[late], run.y.values[late]
     steps = np.diff(time)
-    if np.ptp(steps) > UNEVEN * steps[0]:
+    if not _uniform(steps):
         return None
     omega, _ = highest_peaks(
-        *amplitude_spectrum(y, float(steps[0]), padding=PADDING), 1
+        *amplitude_spectrum(y, float(steps[0]), padding=SPECTRUM_PADDING), 1
     )
-    length = PERIODS * 2.0 * np.pi / omega[0] if omega.size else np.inf
+    length = LAST_PERIODS * 2.0 * np.pi / omega[0] if omega.size else np.inf
     end = float(time[-1])
-    return (end - length, end) if MANY * length < end else None
+    # a run only a little longer than its end needs no second panel
+    return (end - length, end) if 3.0 * length < end else None
+
+
+def _uniform(steps: np.ndarray) -> bool:
+    # a spectrum needs equal steps; 1e-6 is far above the round-off of stored times
+    return bool(np.ptp(steps) <= 1e-6 * steps[0])
 
 
 def draw_force(axes: Axes, run: xr.Dataset, window: Window | None = None) -> None:
@@ -103,18 +101,19 @@ def draw_force(axes: Axes, run: xr.Dataset, window: Window | None = None) -> Non
     axes.plot(time, force, color=style.BLUE)
     apart = np.clip(intervals(run, Regime.separated), time[0], time[-1])
     apart = apart[apart[:, 1] > apart[:, 0]]
+    # points: one pixel at 90 dots per inch, so that dense oscillations stay apart
     axes.broken_barh(
         list(zip(apart[:, 0], np.diff(apart)[:, 0], strict=True)),
         (-0.05 * top, 0.05 * top),
         color=style.RED,
-        linewidth=PIXEL,
+        linewidth=0.8,
         antialiased=False,
         label="separated",
     )
     axes.axhline(0.0, color=style.GREY, linewidth=0.5)
     limits = (float(time[0]), float(time[-1])) if window is None else window
     axes.set(xlim=limits, ylim=(-0.065 * top, top))
-    axes.set(xlabel="t (s)", ylabel=FORCE)
+    axes.set(xlabel="t (s)", ylabel=FORCE_LABEL)
 
 
 def draw_displacements(
@@ -145,7 +144,8 @@ def draw_orbit(axes: Axes, run: xr.Dataset) -> None:
     path = path[:, np.isfinite(path[0])]
     x, y = path[:, -1]
     lengths = (float(run.length1), float(run.length2))
-    if max(lengths) < LARGEST_SPRINGS * np.hypot(*np.ptp(path, axis=1)):
+    # springs much longer than the path would shrink it to a dot
+    if max(lengths) < 5.0 * np.hypot(*np.ptp(path, axis=1)):
         width = 0.05 * min(lengths)
         springs = displaced_springs(
             x, y, float(run.alpha1), float(run.alpha2), lengths, width
@@ -173,7 +173,7 @@ def draw_spectrum(axes: Axes, dataset: xr.Dataset) -> None:
     else:
         kept = np.isfinite(dataset.x.values)
         steps = np.diff(dataset.time.values[kept])
-        if np.ptp(steps) > UNEVEN * steps[0]:
+        if not _uniform(steps):
             style.say_instead(axes, "no spectrum:\nthe samples are not uniform in time")
             return
         force = dataset.normalized_contact_force.values[kept]
@@ -181,11 +181,13 @@ def draw_spectrum(axes: Axes, dataset: xr.Dataset) -> None:
             style.say_instead(axes, "no contact in\nthe second half")
             return
         frequency, amplitude = amplitude_spectrum(
-            force, float(steps[0]), padding=PADDING
+            force, float(steps[0]), padding=SPECTRUM_PADDING
         )
-    lines = strongest_lines(frequency, amplitude, 3, PADDING * float(frequency[1]))
+    lines = strongest_lines(
+        frequency, amplitude, 3, SPECTRUM_PADDING * float(frequency[1])
+    )
     if _draw_lines(axes, frequency, amplitude, lines):
-        axes.set(xlabel="ω (rad/s)", ylabel=f"amplitude of {FORCE}")
+        axes.set(xlabel="ω (rad/s)", ylabel=f"amplitude of {FORCE_LABEL}")
 
 
 def draw_spectrum_in_hertz(axes: Axes, spectrum: xr.Dataset) -> None:
@@ -203,7 +205,8 @@ def _draw_lines(
     lines: tuple[np.ndarray, np.ndarray],
 ) -> bool:
     """A spectrum with its strongest lines, where it has any."""
-    loud = np.flatnonzero(amplitude > LOUD * amplitude.max(initial=0.0))
+    # lines below 1 % of the strongest are left out of the drawn range
+    loud = np.flatnonzero(amplitude > 0.01 * amplitude.max(initial=0.0))
     if not loud.size:
         style.say_instead(axes, "the contact force does not oscillate")
         return False
@@ -214,7 +217,7 @@ def _draw_lines(
 
 
 def _too_short(axes: Axes, run: xr.Dataset) -> bool:
-    """Whether the run ended before anything can be seen, which the panel then says."""
+    """Write into the panel that the run is too short to draw; return whether that is so."""
     reached = int(np.isfinite(run.x.values).sum())
     if reached >= FEWEST:
         return False

@@ -1,4 +1,4 @@
-"""What methods say of a structure's squeal: accuracy against cost, and how much they creep."""
+"""Accuracy of methods for a structure's squeal against their cost, and how much each creeps."""
 
 from typing import Any
 
@@ -19,8 +19,6 @@ ERRORS = {
 """Quantity → title of its panel, and label of its axis."""
 LEAST = 1e-7
 """Smallest error that is drawn."""
-BESIDE = [(-4, 3, "right"), (4, 3, "left"), (0, 5, "center"), (0, -9, "center")]
-"""Where each method writes its settings beside its points: x, y in points, and the side."""
 
 
 def draw_level(axes: Axes, ladder: xr.Dataset) -> None:
@@ -50,8 +48,17 @@ def draw_error(axes: Axes, ladder: xr.Dataset, quantity: str) -> None:
     room = max(right / left, 10.0) ** 0.08
     axes.set_xlim(left / room, right * room)
     axes.axvspan(left / room, known, color=style.LIGHT, alpha=0.35, zorder=0, lw=0)
+    # offset in points (x, y) and alignment of the settings beside a method's markers, in turn
+    label_offsets = [
+        (-4, 3, "right"),
+        (4, 3, "left"),
+        (0, 5, "center"),
+        (0, -9, "center"),
+    ]
     for place in np.flatnonzero(np.isfinite(shown.values)):
-        x, y, side = BESIDE[names.index(str(ladder.method.values[place])) % len(BESIDE)]
+        x, y, side = label_offsets[
+            names.index(str(ladder.method.values[place])) % len(label_offsets)
+        ]
         words = str(ladder.setting.values[place]).removesuffix(" modes").split(", ")
         axes.annotate(
             ", ".join(dict.fromkeys(words)),  # equal widths once

@@ -1,4 +1,4 @@
-"""What eigenvalues name and what becomes of it: growth over frequency, bars of attractors."""
+"""Pictures of a structure's squeal: growth of the modes over frequency, bars of its attractors."""
 
 from typing import Any
 
@@ -15,33 +15,31 @@ from squealpipe.schema import meanings
 from squealpipe.text import number
 from squealpipe.units import engineering
 
-MOST = 6
-"""Attractors drawn, those of most random starts."""
-FEWEST = 2
-"""Attractors for which there is room at least."""
-HEIGHT = 0.8
-"""Of the bars of one attractor together."""
-
-
-BELOW = 2.2
-"""Height of the panel over friction, inches."""
+BARS_HEIGHT = 0.8
+"""Height of all bars of one attractor together, over the distance between attractors."""
 
 
 def figure(answer: xr.Dataset) -> Figure:
-    """Growth over frequency; then share, level and contact loss of each attractor.
+    """Draw growth over frequency; then share, level and contact loss of each attractor.
 
-    Below, where they were followed, motions over friction.
+    A panel below shows motions over falling friction, if the dataset has them.
     """
-    shown = answer.isel(attractor=slice(MOST))
+    # six attractors fit; they are sorted by the number of random starts that settle on them
+    shown = answer.isel(attractor=slice(6))
     count = max(shown.sizes["attractor"], 1)
     height = 2.6 + 0.12 * count * shown.sizes["contact"] * (count > 1)
     height, ratios = min(height, 6.0), [1.7, 1.0, 1.0, 1.2]
     followed = has_tracks(answer)
+    over_friction = 2.2  # inches: height of the panel over friction
     layout: dict[str, Any] = (
-        {"nrows": 2, "height_ratios": [height, BELOW]} if followed else {}
+        {"nrows": 2, "height_ratios": [height, over_friction]} if followed else {}
     )
     made, axes = style.new_figure(
-        style.PAGE, height + BELOW * followed, ncols=4, width_ratios=ratios, **layout
+        style.PAGE,
+        height + over_friction * followed,
+        ncols=4,
+        width_ratios=ratios,
+        **layout,
     )
     made.get_layout_engine().set(w_pad=0.08)  # type: ignore[union-attr, call-arg]
     poles, shares, levels, losses = axes[0]
@@ -157,9 +155,9 @@ def _losses(axes: Axes, answer: xr.Dataset) -> None:
     """Share of time without contact, a bar for each contact from the first one down."""
     names = answer.contact.values.tolist()
     separated = answer.separated_fraction.values
-    step = HEIGHT / len(names)
+    step = BARS_HEIGHT / len(names)
     for place, name in enumerate(names):
-        at = np.arange(len(separated)) + (place + 0.5) * step - 0.5 * HEIGHT
+        at = np.arange(len(separated)) + (place + 0.5) * step - 0.5 * BARS_HEIGHT
         axes.barh(at, separated[:, place], 0.8 * step, color=style.ORANGE, **_EDGE)
         for row, value in zip(at, separated[:, place], strict=True):
             axes.annotate(
@@ -170,7 +168,8 @@ def _losses(axes: Axes, answer: xr.Dataset) -> None:
                 va="center",
                 fontsize=min(7.0, 60.0 * step),
             )
-    room = max(0.0, 0.5 * (FEWEST - len(separated)))
+    # a single attractor gets the room of two, or its bar would fill the panel
+    room = max(0.0, 0.5 * (2 - len(separated)))
     axes.set_ylim(len(separated) - 0.5 + room, -0.5 - room)
     axes.set(
         xlabel="share of time", xlim=(0, 1.15 * max(separated.max(initial=0), 0.1))
@@ -184,11 +183,11 @@ def _bars(axes: Axes, values: np.ndarray, **error: Any) -> None:
     axes.barh(
         np.arange(len(values)),
         values,
-        0.6 * HEIGHT,
+        0.6 * BARS_HEIGHT,
         color=style.BLUE,
         ecolor=style.BLACK,
         **_EDGE,
         **error,
     )
-    room = max(0.0, 0.5 * (FEWEST - len(values)))
+    room = max(0.0, 0.5 * (2 - len(values)))
     axes.set_ylim(len(values) - 0.5 + room, -0.5 - room)

@@ -34,8 +34,6 @@ BLUE, ORANGE, GREEN, RED, PURPLE, GREY = PALETTE
 X_COLOUR, Y_COLOUR = ORANGE, BLUE
 """Displacements along the belt and away from it, everywhere."""
 
-LEAST_SHARE = 0.72
-"""Least size of the texts of a picture that shrinks, over that of the house: 6 points."""
 SMALL = 1e-3
 """Largest number on an axis whose labels are written with a power of ten."""
 
@@ -44,8 +42,6 @@ WHITE, LIGHT, BLACK = "#FFFFFF", "#BDBDBD", "#1A1A1A"
 HALO = [withStroke(linewidth=2, foreground="white")]
 """Around words and marks on a map."""
 HATCH = "//////"
-GREEK = {"alpha": "α", "mu": "μ", "sigma": "σ"}
-SUBSCRIPTS = str.maketrans("0123s", "₀₁₂₃ₛ")
 
 ANGLES = ("alpha1", "alpha2")
 REGIME_COLOURS = {
@@ -140,8 +136,10 @@ def symbol(name: str) -> str:
     """A parameter or an angle by its symbol: k₁, μ, α₂, l_pre."""
     known = TABLE[name].symbol if name in TABLE else f"{name[:-1]}_{name[-1]}"
     head, _, foot = known.replace('"', "").partition("_")
-    below = foot.translate(SUBSCRIPTS) if len(foot) < 2 else f"_{foot}"
-    return GREEK.get(head, head) + below
+    subscripts = str.maketrans("0123s", "₀₁₂₃ₛ")
+    below = foot.translate(subscripts) if len(foot) < 2 else f"_{foot}"
+    greek = {"alpha": "α", "mu": "μ", "sigma": "σ"}
+    return greek.get(head, head) + below
 
 
 def symbols(text: str) -> str:
@@ -267,16 +265,17 @@ def _resize(figure: Figure, size: tuple[float, float]) -> None:
     """
     width, height = figure.get_size_inches()
     share = min(1.0, size[0] / width, size[1] / height)
-    if share < LEAST_SHARE and len(figure.axes) > 1:
+    smallest = 0.72  # 6 of 8 points: smaller text cannot be read in print
+    if share < smallest and len(figure.axes) > 1:
         asked, needed = (
             "mmx".join(str(math.ceil(25.4 * side - 1e-6)) for side in sides) + "mm"
-            for sides in (size, (LEAST_SHARE * width, LEAST_SHARE * height))
+            for sides in (size, (smallest * width, smallest * height))
         )
         raise ValueError(
             f"figure size {asked}: too small for {len(figure.axes)} panels; give {needed} or "
             "more, or draw one quantity with `squealpipe plot FILE --variable NAME`"
         )
-    share = max(share, LEAST_SHARE)
+    share = max(share, smallest)
     for words in figure.findobj(Text):
         words.set_fontsize(share * words.get_fontsize())  # type: ignore[attr-defined]
     for axes in figure.axes:

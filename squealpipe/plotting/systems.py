@@ -13,15 +13,6 @@ from squealpipe.plotting.quantities import draw_quantity, label
 from squealpipe.plotting.style import BLUE, GREY, PALETTE, say_instead
 from squealpipe.schema import meanings
 
-FEW_EVENTS = 60
-"""Events up to which each is marked."""
-MOST_NAMED = 10
-"""States that a legend names beside regimes."""
-MOST_LISTED = 6
-"""States that an axis lists one by one."""
-DASHES = ("-", "--", ":")
-"""Of states whose colour others have."""
-
 
 def draw_states(axes: Axes, run: xr.Dataset) -> None:
     """The states that have the first one's unit over time, events as thin lines."""
@@ -30,25 +21,28 @@ def draw_states(axes: Axes, run: xr.Dataset) -> None:
     if np.isfinite(alike[0].values).sum() < 2:
         say_instead(axes, "the run ended before its second sample")
         return
-    if run.sizes["event"] <= FEW_EVENTS:
+    # more marks than this would hide the lines
+    if run.sizes["event"] <= 60:
         for instant in run.event_time.values:
             axes.axvline(instant, color=GREY, linewidth=0.4)
+    dashes = ("-", "--", ":")
     for place, state in enumerate(alike):
         turn, colour = divmod(place, len(PALETTE))
         axes.plot(
             run.time, state, color=PALETTE[colour], label=str(state.name),
-            linestyle=DASHES[turn % len(DASHES)],
+            linestyle=dashes[turn % len(dashes)],
         )  # fmt: skip
     names = [str(state.name) for state in alike]
     title = ", ".join(names)
-    if len(names) > MOST_LISTED:
+    if len(names) > 6:
         title = f"{names[0]} to {names[-1]}"
     axes.set(xlabel=label(run.time), ylabel=f"{title} ({states[0].units})")
     patches = _draw_regimes(axes, run) if "component" in run.dims else []
     lines = axes.get_lines()[-len(alike) :]
     if patches:
+        # a longer legend would be larger than the picture
         axes.legend(
-            handles=[*lines[:MOST_NAMED], *patches],
+            handles=[*lines[:10], *patches],
             loc="lower center",
             bbox_to_anchor=(0.5, 1.0),
             ncols=5,

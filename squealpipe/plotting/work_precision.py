@@ -1,4 +1,4 @@
-"""What all work–precision charts share: marks of the methods, Pareto front, and the machine."""
+"""Parts of every work–precision chart: marks of the methods, Pareto front, name of the machine."""
 
 import json
 from collections.abc import Sequence
@@ -13,18 +13,19 @@ from matplotlib.ticker import FormatStrFormatter, LogLocator
 from squealpipe.plotting import style
 from squealpipe.schema.comparison import Reliability, Role
 
-_COLOURS = (
-    *(style.BLACK, style.BLUE, style.GREEN, style.ORANGE),
-    *(style.RED, style.PURPLE, style.GREY),
-)
 MARKS = [
     (colour, marker, dash)
     for markers, dash in (("os^vDP*", "-"), ("x+<>dhp", ":"))
-    for colour, marker in zip(_COLOURS, markers, strict=True)
+    for colour, marker in zip(
+        (
+            *(style.BLACK, style.BLUE, style.GREEN, style.ORANGE),
+            *(style.RED, style.PURPLE, style.GREY),
+        ),
+        markers,
+        strict=True,
+    )
 ]
 """How each method is drawn."""
-_FEW_DECADES = 100.0
-"""Ratio of costs below which decades alone would leave an axis with hardly a label."""
 SMALLEST = 1e-17
 """Errors below are drawn here: they are zero to the reference's last digit."""
 
@@ -75,7 +76,8 @@ def draw_methods(
     axes.plot(error[ours], values[ours], "o", label=ring, **circle)
     axes.set(xscale="log", yscale="log")
     axes.minorticks_off()
-    if values[fine].max() < _FEW_DECADES * values[fine].min():
+    # over less than two decades, powers of ten alone leave an axis almost without labels
+    if values[fine].max() < 100.0 * values[fine].min():
         axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axes.yaxis.set_major_formatter(FormatStrFormatter("%g"))
     axes.grid(visible=True, lw=0.3, color="#DDDDDD")

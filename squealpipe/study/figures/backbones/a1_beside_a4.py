@@ -11,9 +11,6 @@ from squealpipe.plotting import style
 from squealpipe.plotting.origin import scene_name
 from squealpipe.study.figures.declared import report_figure
 
-KINDS = {"period": "y", "order": "spectrum"}
-LOOKS = ((style.RED, "-"), (style.ORANGE, "--"), (style.GREEN, "-."), (style.BLUE, ":"))
-
 
 @report_figure(
     reads=("a1_beside_a4",),
@@ -30,9 +27,10 @@ def draw(beside: xr.Dataset) -> Figure:
         style.PAGE, 0.5 + 1.4 * len(scenes), text=1.36, nrows=len(scenes), ncols=2
     )
     letters = iter("abcdefghijklmnopqrst")
+    columns = {"period": "y", "order": "spectrum"}
     for row, scene in zip(axes, scenes, strict=True):
         part = beside.sel(scene=scene)
-        for panel, (axis, kind) in zip(row, KINDS.items(), strict=True):
+        for panel, (axis, kind) in zip(row, columns.items(), strict=True):
             _draw(panel, part, axis)
             title = f"{scene_name(beside, str(scene))}: {kind}"
             style.panel_letter(panel, next(letters), title)
@@ -50,8 +48,14 @@ def _draw(panel: Axes, part: xr.Dataset, axis: str) -> None:
     panel.plot(
         part[axis], part[f"{kind}_a4"], color=style.GREY, lw=2.6, alpha=0.6, label="A4"
     )
+    looks = (
+        (style.RED, "-"),
+        (style.ORANGE, "--"),
+        (style.GREEN, "-."),
+        (style.BLUE, ":"),
+    )
     for ratio, (colour, dash) in zip(
-        part.length_ratio.values, cycle(LOOKS), strict=False
+        part.length_ratio.values, cycle(looks), strict=False
     ):
         one = part.sel(length_ratio=ratio)
         label = f"A1, L = {ratio:g} $l_\\mathrm{{pre}}$"

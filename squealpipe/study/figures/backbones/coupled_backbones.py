@@ -17,14 +17,11 @@ from squealpipe.study.figures.panels.backbone_panels import (
     key,
 )
 
-SHOWN = 1.25
-"""Largest y of a doubled branch shown, over that of the backbone."""
-
 
 def caption(
     branches: Mapping[str, xr.Dataset], doubled: Mapping[str, xr.Dataset]
 ) -> str:
-    """What is shown, and what the marks mean."""
+    """Describe the panels, and the marks that are drawn."""
     insets = (
         " Insets, where mode 1 has period doublings (black circles): largest y of the branches of "
         "doubled period in green and purple, at twice their frequency."
@@ -62,7 +59,8 @@ def draw(
 def _draw_doubled(panel: Axes, simple: xr.Dataset, doubled: list[xr.Dataset]) -> None:
     inset = panel.inset_axes((0.5, 0.44, 0.48, 0.5))
     inset.margins(0.12)
-    top = SHOWN * float(simple.y_peak.max())
+    # the inset ends a little above the backbone, where doubled branches go on
+    top = 1.25 * float(simple.y_peak.max())
     for branch, colour in zip(doubled, (GREEN, PURPLE), strict=False):
         shown = branch.isel(point=branch.y_largest.values <= top)
         _line(inset, shown, shown.y_largest.values, 2, colour)

@@ -10,7 +10,7 @@ from squealpipe.study.figures.panels.backbone_panels import draw_scenes, key
 
 
 def caption(branches: Mapping[str, xr.Dataset]) -> str:
-    """What is shown, and what the marks mean."""
+    """Describe the rows, and the marks that are drawn."""
     return (
         "Periodic motions of model A4 over the frequency, one row for each of Figs. 10, 11 and "
         f"12, with the mode of the lower frequency on the left. {key(branches)}"

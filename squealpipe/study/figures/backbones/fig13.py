@@ -10,7 +10,7 @@ from squealpipe.study.figures.panels.backbone_panels import draw_scenes, key
 
 
 def caption(branches: Mapping[str, xr.Dataset]) -> str:
-    """What is shown, and what the marks mean."""
+    """Describe the panels, and the marks that are drawn."""
     return (
         "Periodic motions of model A4 at (5π/6, 5π/6) over the frequency, (a) near ω₁ and (b) "
         f"near ω₂. {key(branches)}"

@@ -1,4 +1,4 @@
-"""What the paper's own form of harmonic balance finds, against the exact orbits."""
+"""The paper's own form of harmonic balance against the exact orbits."""
 
 import numpy as np
 import xarray as xr
@@ -9,9 +9,6 @@ from squealpipe.plotting import style
 from squealpipe.plotting.origin import scene_name
 from squealpipe.schema.backbones import Form
 from squealpipe.study.figures.declared import report_figure
-
-DECADES = 1.5
-"""Decades from which an axis has labels enough at the powers of ten."""
 
 
 @report_figure(
@@ -73,6 +70,7 @@ def _spread(panel: Axes, forms: xr.Dataset) -> None:
         forms.samples.values[[0, 3, 4, 5]], forms.samples.values[[0, 3, 4, 5]]
     )
     panel.xaxis.minorticks_off()
-    if np.ptp(np.log10(panel.get_ylim())) > DECADES:
+    # over more than this, powers of ten label the axis well enough
+    if np.ptp(np.log10(panel.get_ylim())) > 1.5:
         panel.yaxis.minorticks_off()
     panel.legend(loc="lower left")

@@ -8,21 +8,20 @@ from squealpipe.plotting.work_precision import foot
 from squealpipe.schema.ladder import Level
 from squealpipe.study.figures.declared import report_figure
 
-MAPS = (
-    "The cheapest level of the model ladder whose answer is within the tolerance of A1's and whose "
-    "own assumptions hold, over both spring angles (a level that only drops stick counts where "
-    "the belt is reached): (a) is contact lost, (b) dominant frequency of y, (c) peak contact "
-    "force, (d) largest displacement, within the map's horizon."
-)
-
 
 def caption(ladder: xr.Dataset) -> str:
-    """What is shown, and what choosing without that knowledge saves."""
+    """Describe the maps, and the cost that a choice beforehand saves."""
     hindsight, _ = shares_of_a3(ladder)
     below = 100 * float((ladder.chosen < Level.a1).mean())
     cost = 100 * float(ladder.chosen_cpu_time / ladder.always_cpu_time)
+    maps = (
+        "The cheapest level of the model ladder whose answer is within the tolerance of A1's and "
+        "whose own assumptions hold, over both spring angles (a level that only drops stick counts "
+        "where the belt is reached): (a) is contact lost, (b) dominant frequency of y, (c) peak "
+        "contact force, (d) largest displacement, within the map's horizon."
+    )
     return (
-        f"{MAPS} This is hindsight; A3 would have done for (a) in {hindsight:.0f} % of the cells. "
+        f"{maps} This is hindsight; A3 would have done for (a) in {hindsight:.0f} % of the cells. "
         "choose_model has to know beforehand that A3 is right, as it does where the linear "
         f"motion stays clear of l_pre by a margin, in {below:.0f} %; it runs A1 in the others, "
         f"answers wrongly in {int(ladder.chosen_wrong.sum())} of {ladder.chosen.size}, and takes "

@@ -1,4 +1,4 @@
-"""How much model a scene needs, at a glance: a bar for each question."""
+"""The cheapest sufficient model level at a glance: a bar for each question."""
 
 import numpy as np
 import xarray as xr
@@ -14,13 +14,9 @@ from squealpipe.study.figures.comparison.model_ladder import (
 )
 from squealpipe.study.figures.declared import report_figure
 
-BEFOREHAND = "contact lost?\n(beforehand)"
-_LABELLED = 0.04
-"""Share of a bar from which its number fits inside."""
-
 
 def caption(ladder: xr.Dataset) -> str:
-    """What is shown, and why two bars speak of one question."""
+    """Describe the bars, and why two of them answer one question."""
     hindsight, beforehand = shares_of_a3(ladder)
     cost = 100 * float(ladder.chosen_cpu_time / ladder.always_cpu_time)
     return (
@@ -45,7 +41,7 @@ def draw(ladder: xr.Dataset) -> Figure:
     lost, *others = ladder.question.values.tolist()
     bars = {
         QUESTION_NAMES[lost]: ladder.cheapest.sel(question=lost),
-        BEFOREHAND: ladder.chosen,
+        "contact lost?\n(beforehand)": ladder.chosen,
     }
     for question in others:
         bars[QUESTION_NAMES[question]] = ladder.cheapest.sel(question=question)
@@ -62,7 +58,8 @@ def draw(ladder: xr.Dataset) -> Figure:
             share = float((cells == level).mean())
             colour = colour_of(level)
             panel.barh(row, 100 * share, left=left, color=colour, ec="white", lw=0.8)
-            if share >= _LABELLED:
+            # a number does not fit inside a narrower part of a bar
+            if share >= 0.04:
                 dark = np.dot(to_rgb(colour), (0.299, 0.587, 0.114)) < 0.5
                 ink = style.WHITE if dark else style.BLACK
                 middle, words = left + 50 * share, f"{100 * share:.0f}"

@@ -14,21 +14,16 @@ from squealpipe.study.figures.comparison.work_precision_benchmark import (
 )
 from squealpipe.study.figures.declared import report_figure
 
-OF_A1 = "A1: "
-"""How the names of the model's own problems begin."""
-TITLES = {"cpu_ratio": "CPU time", "evaluations": "evaluations of the field"}
-LABELS = {"cpu_ratio": "CPU time over that of DOP853 at 10⁻⁸", "evaluations": "calls"}
-
 
 def scenes_of_a1(benchmark: xr.Dataset) -> xr.Dataset:
     """The problems of model A1 that have an answer: every method can be asked all of them."""
-    of_a1 = benchmark.problem.str.startswith(OF_A1) & knowable(benchmark)
+    of_a1 = benchmark.problem.str.startswith("A1: ") & knowable(benchmark)
     chosen: xr.Dataset = benchmark.isel(problem=of_a1.values)
     return chosen
 
 
 def caption(benchmark: xr.Dataset) -> str:
-    """What is shown, and on how many scenes."""
+    """Describe the charts, and count the scenes behind them."""
     return (
         f"Median error and cost over {scenes_of_a1(benchmark).sizes['problem']} hard scenes of "
         "A1, the same for all integrators; left and low is better. A line runs from a tolerance "
@@ -53,11 +48,16 @@ def draw(benchmark: xr.Dataset) -> Figure:
     scenes = scenes_of_a1(benchmark)
     runs = medians(scenes)
     methods = benchmark.solver.values.tolist()
+    titles = {"cpu_ratio": "CPU time", "evaluations": "evaluations of the field"}
+    labels = {
+        "cpu_ratio": "CPU time over that of DOP853 at 10⁻⁸",
+        "evaluations": "calls",
+    }
     for panel, letter, cost in zip(axes[0], "ab", sorted(COSTS), strict=True):
         draw_methods(panel, runs, cost, 1.0, methods)
         _draw_spread(panel, scenes, runs, cost)
-        panel.set(xlabel="median error over growth", ylabel=LABELS[cost])
-        panel_letter(panel, letter, TITLES[cost])
+        panel.set(xlabel="median error over growth", ylabel=labels[cost])
+        panel_letter(panel, letter, titles[cost])
     figure.legend(
         *axes[0, 0].get_legend_handles_labels(),
         loc="outside lower center",

@@ -12,11 +12,6 @@ from squealpipe.schema.comparison import Reliability
 from squealpipe.study.figures.comparison.work_precision_benchmark import knowable
 from squealpipe.study.figures.declared import report_figure
 
-_RED = np.array([213, 94, 0]) / 255
-_SAID = np.array([0.86, 0.93, 0.97])
-_LEAST = 0.25
-"""Strength of the red where a single answer is silently wrong."""
-
 
 def answers(benchmark: xr.Dataset) -> xr.Dataset:
     """``asked``, ``right`` and ``silent``: numbers of answers over class and solver."""
@@ -67,10 +62,14 @@ def draw(benchmark: xr.Dataset) -> Figure:
     asked, right, silent = (table[n].values for n in ("asked", "right", "silent"))
     share = silent / np.maximum(asked, 1)
     colours = np.ones((*asked.shape, 3))
-    colours[(right < asked) & (silent == 0)] = _SAID
-    strength = (_LEAST + (1.0 - _LEAST) * share)[..., None]
+    light_blue = np.array([0.86, 0.93, 0.97])
+    colours[(right < asked) & (silent == 0)] = light_blue
+    # strength of the red where a single answer is silently wrong: weaker is not seen
+    faintest = 0.25
+    strength = (faintest + (1.0 - faintest) * share)[..., None]
     red = silent > 0
-    colours[red] = (1.0 - strength[red]) + strength[red] * _RED
+    vermilion = np.array([213, 94, 0]) / 255
+    colours[red] = (1.0 - strength[red]) + strength[red] * vermilion
     rows, columns = asked.shape
     figure, axes = style.new_figure(style.PAGE, 0.21 * rows + 1.1)
     panel = axes[0, 0]

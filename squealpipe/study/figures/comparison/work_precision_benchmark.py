@@ -11,28 +11,25 @@ from squealpipe.plotting.work_precision import draw_methods, foot
 from squealpipe.schema.comparison import Role
 from squealpipe.study.figures.declared import report_figure
 
-SHOWN = (
-    "Error of the final state and of event times, over the growth of a perturbation, against two "
-    "costs: evaluations of the field, which do not depend on machine or language, and CPU time "
-    "over that of DOP853 at a tolerance of 10⁻⁸. Medians over the problems of a class that a "
-    "method can be asked; no answer, or an error above 1, counts as 1. Points of a line run over "
-    "the tolerance, the same for all solvers; a Taylor step of order p counts as p + 1 "
-    "evaluations, a Moreau–Jean step as one. Filled: right on every problem of the class; "
-    "hollow: not on all, and said so; crossed out: silently wrong on at least one, by its "
-    "events or its error. Grey band: Pareto front of the filled points; red ring: the setting "
-    "that our maps use. Machine and versions are named below the panels."
-)
-OUR_TOLERANCE = 1e-12
 COSTS = {"evaluations": "evaluations", "cpu_ratio": "CPU time"}
-ACROSS = 2
-"""Classes beside one another."""
 
 
 def caption(benchmark: xr.Dataset) -> str:
     """Caption: what is shown, where each solver ran, and which were left out."""
     missing = left_out(benchmark)
+    shown = (
+        "Error of the final state and of event times, over the growth of a perturbation, against "
+        "two costs: evaluations of the field, which do not depend on machine or language, and CPU "
+        "time over that of DOP853 at a tolerance of 10⁻⁸. Medians over the problems of a class "
+        "that a method can be asked; no answer, or an error above 1, counts as 1. Points of a line "
+        "run over the tolerance, the same for all solvers; a Taylor step of order p counts as p + "
+        "1 evaluations, a Moreau–Jean step as one. Filled: right on every problem of the class; "
+        "hollow: not on all, and said so; crossed out: silently wrong on at least one, by its "
+        "events or its error. Grey band: Pareto front of the filled points; red ring: the setting "
+        "that our maps use. Machine and versions are named below the panels."
+    )
     return (
-        f"{SHOWN} {where_solvers_ran(benchmark)} Not installed and left out: "
+        f"{shown} {where_solvers_ran(benchmark)} Not installed and left out: "
         f"{', '.join(missing) or 'none'}."
     )
 
@@ -80,9 +77,10 @@ def draw(benchmark: xr.Dataset) -> Figure:
     """The charts, from dataset ``benchmark``."""
     known = benchmark.isel(problem=knowable(benchmark).values)
     groups = list(dict.fromkeys(known.group.values.tolist()))
-    rows, width = -(-len(groups) // ACROSS), len(COSTS)
+    classes_in_a_row = 2
+    rows, width = -(-len(groups) // classes_in_a_row), len(COSTS)
     figure, axes = new_figure(
-        PAGE, 1.4 * rows + 1.2, nrows=rows, ncols=ACROSS * width, sharex=True
+        PAGE, 1.4 * rows + 1.2, nrows=rows, ncols=classes_in_a_row * width, sharex=True
     )
     methods = benchmark.solver.values.tolist()
     panels = axes.reshape(-1, width)
@@ -117,7 +115,8 @@ def medians(benchmark: xr.Dataset) -> xr.Dataset:
     runs = asked.median("problem")
     runs["worth"] = benchmark.verdict.max("problem")
     runs = runs.stack(run=("solver", "tol"))
-    ours = (runs.solver == "squealpipe") & (runs.tol == OUR_TOLERANCE)
+    # the ring marks the package's default tolerance
+    ours = (runs.solver == "squealpipe") & (runs.tol == 1e-12)
     role = np.where(ours, Role.our_setting, Role.public)
     plain = runs.drop_vars(["run", "solver", "tol"])
     return plain.assign(method=("run", runs.solver.values), role=("run", role))

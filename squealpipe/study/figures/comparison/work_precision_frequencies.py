@@ -8,9 +8,6 @@ from squealpipe.plotting.work_precision import draw_methods, foot
 from squealpipe.schema.comparison import Reliability
 from squealpipe.study.figures.declared import report_figure
 
-WRONG = 0.01
-"""Relative error of ω from which it belongs to another motion."""
-
 
 @report_figure(
     reads=("work_precision_frequencies",),
@@ -28,7 +25,8 @@ def draw(frequencies: xr.Dataset) -> Figure:
     figure, axes = new_figure(PAGE, 3.4)
     methods = list(dict.fromkeys(frequencies.method.values.tolist()))
     panel = axes[0, 0]
-    wrong = frequencies.error > WRONG
+    # a frequency off by more than 1 % belongs to another motion
+    wrong = frequencies.error > 0.01
     worth = wrong * (Reliability.silently_wrong - Reliability.right) + Reliability.right
     draw_methods(panel, frequencies.assign(worth=worth), "wall_time", 1e3, methods)
     panel.set(xlabel="error of ω, relative", ylabel="wall time per point (ms)")

@@ -18,7 +18,7 @@ def _quiet(pads: xr.Dataset) -> str:
 
 
 def caption(pads: xr.Dataset) -> str:
-    """What to see, with the pads that are quiet."""
+    """Describe the panels, and name the pads that are quiet."""
     return (
         "An elastic pad on several contact points of equal total stiffness and preload, and a "
         "stiff one. (a) Friction at which the first mode turns unstable; dashed: friction of the "

@@ -12,9 +12,6 @@ from squealpipe.plotting.cycles import key_entries, largest, trace_branch
 from squealpipe.plotting.origin import angle_pair, parameter, scene_title
 from squealpipe.study.figures.declared import report_figure
 
-AT_REST = 0.5
-"""Range of late |x|, in l_pre, below which all long runs of a scene end alike."""
-
 
 @report_figure(
     reads=(
@@ -48,10 +45,11 @@ def draw(
         "F2d": (scene_title("F2d"), ()),
     }
     sizes = {name: extremes.late_max_x.sel(scene=name).values / unit for name in panels}
+    # in l_pre; where late |x| of all long runs agrees within it, they settle on the same motion
     moving = [
         name
         for name, (_, branches) in panels.items()
-        if np.ptp(sizes[name]) > AT_REST
+        if np.ptp(sizes[name]) > 0.5
         or any(branch.sizes["point"] for branch in branches)
     ] or ["F3"]
     figure, axes = style.new_figure(style.PAGE, 3.1, ncols=len(moving))

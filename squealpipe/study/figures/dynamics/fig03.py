@@ -9,17 +9,6 @@ from squealpipe.plotting import style
 from squealpipe.study.figures.declared import report_figure
 from squealpipe.study.figures.dynamics.fig02 import inset_mechanism
 
-WIDTH = 4.4
-"""Inches: on page one it is beside Fig. 7, where the text of a wider one would be too small."""
-TITLES = {
-    "x": "x, along the belt",
-    "y": r"y, away from the belt (dotted: $l_\mathrm{pre}$)",
-}
-READINGS = (
-    ("simulate/F3_long", style.X_COLOUR, "as printed"),
-    ("corrected/simulate/F3_long", style.BLACK, "one sign"),
-)
-
 
 @report_figure(
     reads=("*simulate/F3*",),
@@ -34,18 +23,27 @@ READINGS = (
 def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
     """Two panels, and a third one where the study has long runs."""
     run = runs["simulate/F3"]
+    readings = (
+        ("simulate/F3_long", style.X_COLOUR, "as printed"),
+        ("corrected/simulate/F3_long", style.BLACK, "one sign"),
+    )
     long = [
-        (runs[name], colour, words) for name, colour, words in READINGS if name in runs
+        (runs[name], colour, words) for name, colour, words in readings if name in runs
     ]
     rows = 2 + bool(long)
-    figure, axes = style.new_figure(WIDTH, 1.5 * rows, nrows=rows)
+    # inches: on page one it stands beside Fig. 7, where a wider one would be scaled down too far
+    figure, axes = style.new_figure(4.4, 1.5 * rows, nrows=rows)
+    titles = {
+        "x": "x, along the belt",
+        "y": r"y, away from the belt (dotted: $l_\mathrm{pre}$)",
+    }
     for panel, letter, name, colour in zip(
         axes[:2, 0], "ab", ("x", "y"), (style.X_COLOUR, style.Y_COLOUR), strict=True
     ):
         panel.plot(run.time, run[name], color=colour, linewidth=0.7)
         panel.axhline(0.0, color=style.GREY, linewidth=0.5)
         panel.set(ylabel=f"{name} (m)", xlim=(0.0, float(run.time[-1])))
-        style.panel_letter(panel, letter, TITLES[name])
+        style.panel_letter(panel, letter, titles[name])
     axes[1, 0].axhline(float(run.preload), color="black", ls=":", lw=0.8)
     for other, colour, words in long:
         axes[2, 0].plot(other.time, other.x, color=colour, linewidth=0.4, label=words)

@@ -1,4 +1,4 @@
-"""How long a run of model A1 can be computed point by point."""
+"""Predictability of model A1: the time for which a run can be computed point by point."""
 
 from itertools import cycle
 
@@ -10,9 +10,6 @@ from squealpipe.plotting import style
 from squealpipe.schema import meanings
 from squealpipe.study.figures.declared import report_figure
 from squealpipe.text import number
-
-DASHES = ("-", (0, (5, 1)), (0, (1, 1)), "-.", (0, (3, 1, 1, 1, 1, 1)))
-"""Looks of lines that differ in greyscale too."""
 
 
 @report_figure(
@@ -44,7 +41,9 @@ def draw(hammering: xr.Dataset) -> Figure:
     growth = hammering.lyapunov_exponent.values * t_end
     names = meanings(hammering.motion)
     panel = axes[0, 1]
-    for code, dash in zip(np.unique(hammering.motion.values).tolist(), cycle(DASHES)):
+    # distinct in greyscale, too
+    dashes = ("-", (0, (5, 1)), (0, (1, 1)), "-.", (0, (3, 1, 1, 1, 1, 1)))
+    for code, dash in zip(np.unique(hammering.motion.values).tolist(), cycle(dashes)):
         chosen = growth[hammering.motion.values == code]
         label = f"{style.flag_words(names[code])} ({chosen.size})"
         panel.ecdf(

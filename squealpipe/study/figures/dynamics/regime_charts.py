@@ -26,12 +26,10 @@ LOOKS: dict[ChartLine, tuple[str, dict[str, Any]]] = {
     ChartLine.whirl: ("the whirl is born", {"color": style.RED, "linestyle": "-."}),
     ChartLine.stick: ("its stick begins", {"color": style.PURPLE}),
 }
-SEEN = 1e-3
-"""Share of a chart below which a kind is not seen in print."""
 
 
 def caption(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> str:
-    """What the lines mean."""
+    """Explain the lines that are drawn."""
     horizon = number(float(angles.t_end) / time_unit(angles))
     known = _known(angles, scenes)
     dashpots = json.loads(angles.attrs["config"]).get("cycles.damping", 0.0)
@@ -105,8 +103,9 @@ def draw(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> Figure:
         panel.remove()
     handles, _ = key_entries(panels[: 1 + len(names)])
     charts = [angles, *scenes.values()]
+    # a region of less than 0.1 % of the chart is not visible in print
     shown = [
-        max((_kinds(each) == k).mean() for each in charts) > SEEN
+        max((_kinds(each) == k).mean() for each in charts) > 1e-3
         for k in range(len(KINDS))
     ]
     tones = style.patches(

@@ -16,7 +16,7 @@ from squealpipe.text import number
 
 
 def caption(_: xr.Dataset, sizes: xr.Dataset) -> str:
-    """What is shown; the marks of a fit and of late changes where there are any."""
+    """Describe the panels; explain the fit and the late changes where there are any."""
     below = np.abs(sizes.belt_speed.values).min() < float(sizes.fit_range[0])
     fitted = (
         " Only where the mass whirls: a full line, fit of the same form, over the speeds that it "

@@ -11,26 +11,6 @@ from squealpipe.schema.inference import in_order, in_words, of_study
 from squealpipe.study.figures.declared import report_figure
 from squealpipe.text import number
 
-PANELS = (
-    ("friction, stiffness", "kappa", "mu", "κ = k₃/k", "μ"),
-    (
-        "stiffness, length",
-        "length_ratio",
-        "kappa",
-        r"λ = $L/l_\mathrm{pre}$",
-        "κ = k₃/k",
-    ),
-    (
-        "belt speed, length",
-        "length_ratio",
-        "speed_ratio",
-        r"λ = $L/l_\mathrm{pre}$",
-        r"v = $V/(l_\mathrm{pre}\sqrt{k/m})$",
-    ),
-)
-LOGARITHMIC = ("length_ratio", "speed_ratio")
-LEAST = 1e-3
-"""Where the bars of shares begin, per cent: below one sample of 20,480."""
 LOOKS = (
     ("as printed", style.GREEN, "s"),
     ("along +x", style.BLUE, "o"),
@@ -40,7 +20,7 @@ LOOKS = (
 
 
 def caption(inference: xr.Dataset) -> str:
-    """What the marks mean, and which readings have none."""
+    """Explain the marks, and name the readings without a feasible set."""
     counts = in_order(inference).feasible_count.values
     pairs = zip(LOOKS, counts, strict=True)
     empty = " or ".join(label for (label, *_), count in pairs if not count)
@@ -69,8 +49,25 @@ def draw(inference: xr.Dataset) -> Figure:
     figure.clear()
     grid = figure.add_gridspec(2, 1, height_ratios=(1.15, 1))
     upper, lower = figure.add_subfigure(grid[0]), figure.add_subfigure(grid[1])
+    panels = (
+        ("friction, stiffness", "kappa", "mu", "κ = k₃/k", "μ"),
+        (
+            "stiffness, length",
+            "length_ratio",
+            "kappa",
+            r"λ = $L/l_\mathrm{pre}$",
+            "κ = k₃/k",
+        ),
+        (
+            "belt speed, length",
+            "length_ratio",
+            "speed_ratio",
+            r"λ = $L/l_\mathrm{pre}$",
+            r"v = $V/(l_\mathrm{pre}\sqrt{k/m})$",
+        ),
+    )
     for panel, letter, (title, *names) in zip(
-        upper.subplots(1, 3), "abc", PANELS, strict=True
+        upper.subplots(1, 3), "abc", panels, strict=True
     ):
         _scatter(panel, inference, *names)
         style.panel_letter(panel, letter, title)
@@ -89,7 +86,8 @@ def draw(inference: xr.Dataset) -> Figure:
     shares.set_yticks(places, map(in_words, inference.statement.values))
     shares.invert_yaxis()
     # readings differ by powers of ten, and one without any would look like one with few
-    shares.set(xlabel="share of the samples, %", xscale="log", xlim=(LEAST, 100.0))
+    # per cent: below one sample of 20,480
+    shares.set(xlabel="share of the samples, %", xscale="log", xlim=(1e-3, 100.0))
     shares.xaxis.set_major_formatter("{x:g}")
     lower.legend(
         *shares.get_legend_handles_labels(), loc="outside lower center", ncols=3
@@ -132,7 +130,7 @@ def _scatter(
         (x, panel.xaxis, panel.set_xscale, panel.set_xlim),
         (y, panel.yaxis, panel.set_yscale, panel.set_ylim),
     ):
-        if name in LOGARITHMIC:
+        if name in ("length_ratio", "speed_ratio"):
             scale("log")
             axis.set_major_locator(
                 LogLocator(subs=(1.0, 2.0, 5.0) if name == x else (1.0,))

@@ -12,14 +12,10 @@ from squealpipe.text import number
 
 LARGEST = 1.5
 """Upper end of the colours of (a)."""
-UNREACHED = 10.0
-"""A critical friction above it is none: no brake has as much, and round-off decides its digits."""
-ALIKE = 1e-9
-"""Share of critical frictions by which round-off alone makes them differ."""
 
 
 def caption(angles: xr.Dataset, dashpots: xr.Dataset) -> str:
-    """What is shown, with the dashpots and the angles of the maps."""
+    """Describe the maps, with their dashpots and angles."""
     c1, c2 = (number(parameter(angles, f"damping{i}")) for i in (1, 2))
     return (
         "Friction coefficient of Coulomb's law at which steady sliding on a linear contact spring "
@@ -79,12 +75,15 @@ def _draw_plane(figure: Figure, plane: Axes, dashpots: xr.Dataset) -> None:
     """The critical friction over both dashpots, or that none is reached."""
     c1, c2 = dashpots.damping1.values, dashpots.damping2.values
     values = dashpots.critical_mu.values
-    reached = values[values < UNREACHED]
+    # no brake has a friction coefficient of 10; beyond it round-off decides the digits
+    unreached = 10.0
+    reached = values[values < unreached]
     if not reached.size:
-        style.say_instead(plane, f"above {UNREACHED:g}\neverywhere")
+        style.say_instead(plane, f"above {unreached:g}\neverywhere")
         return
     low, high = np.percentile(reached, [0, 98])
-    if reached.max() - low < ALIKE * high:
+    # round-off alone makes them differ by less
+    if reached.max() - low < 1e-9 * high:
         style.say_instead(plane, f"{number(high)}\nwith any dashpots")
         return
     mesh = plane.pcolormesh(

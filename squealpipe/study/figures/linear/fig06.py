@@ -11,12 +11,6 @@ from squealpipe.schema.linear import BoundaryCurve
 from squealpipe.study.figures.declared import report_figure
 from squealpipe.study.figures.linear.linear_overlay import draw_boundaries, mark_scene
 
-CAPTION_ALONG_X = (
-    "Quasi-static sliding (A2) and linear stability (A3) over both spring angles. White: sliding "
-    "is possible; grey: it is not; black: the linear model is unstable. Sliding is judged (a) by "
-    "Eq. (11) as printed, μ < K₁₁/K₁₂, and (b) by the sign of the reaction force, μK₁₂ < K₁₁. "
-    "Lines are the exact boundaries; the cross is the configuration of Fig. 3."
-)
 TONES = {
     style.WHITE: "sliding possible",
     style.LIGHT: "sliding not possible",
@@ -25,10 +19,17 @@ TONES = {
 
 
 def caption(stability: xr.Dataset, _: xr.Dataset, __: xr.Dataset) -> str:
-    """What the tones mean; how the signs are read where the belt runs along −x."""
+    """Explain the tones, and the sign of friction where the belt runs along −x."""
+    along_x = (
+        "Quasi-static sliding (A2) and linear stability (A3) over both spring angles. White: "
+        "sliding is possible; grey: it is not; black: the linear model is unstable. Sliding is "
+        "judged (a) by Eq. (11) as printed, μ < K₁₁/K₁₂, and (b) by the sign of the reaction "
+        "force, μK₁₂ < K₁₁. Lines are the exact boundaries; the cross is the configuration of Fig. "
+        "3."
+    )
     if direction_of(parameter(stability, "belt_speed")) > 0:
-        return CAPTION_ALONG_X
-    return f"{CAPTION_ALONG_X} The belt runs along −x: μ counts as negative in (b), not in (a)."
+        return along_x
+    return f"{along_x} The belt runs along −x: μ counts as negative in (b), not in (a)."
 
 
 @report_figure(

@@ -19,16 +19,11 @@ KINDS = (
     (style.LIGHT, "A3 stable, contact kept"),
     (style.BLACK, "A3 unstable, contact kept"),
 )
-LINES, DISTANCE = "validity_boundary", "validity_distance/F3"
-BLUE_LINES = (
-    "the boundary of kept contact as curves; the share of all angles that it encloses, and the "
-    "distance of the cross from it:"
-)
 TITLES = {"": "as printed", "corrected/": "one sign in all models"}
 
 
 def caption(found: Mapping[str, xr.Dataset]) -> str:
-    """What the tones mean, with the numbers of cells."""
+    """Explain the tones, with the numbers of cells."""
     maps = _maps(found)
     several = "; ".join(
         f"({letter}) {TITLES[_kind(name)]}"
@@ -36,9 +31,15 @@ def caption(found: Mapping[str, xr.Dataset]) -> str:
     )
     growing = _listed(np.count_nonzero(grows(validity)) for validity in maps.values())
     lines = [
-        _inside(found, _kind(name)) for name in maps if f"{_kind(name)}{LINES}" in found
+        _inside(found, _kind(name))
+        for name in maps
+        if f"{_kind(name)}validity_boundary" in found
     ]
-    blue = f" Blue: {BLUE_LINES} {_listed(lines)}." if lines else ""
+    blue_lines = (
+        "the boundary of kept contact as curves; the share of all angles that it encloses, and the "
+        "distance of the cross from it:"
+    )
+    blue = f" Blue: {blue_lines} {_listed(lines)}." if lines else ""
     return (
         f"Where the linear model A3 is valid{f': {several}' if len(maps) > 1 else ''}. White: A1, "
         "started at rest, loses contact although A3 is stable; orange: it does and A3 is unstable. "
@@ -51,8 +52,11 @@ def caption(found: Mapping[str, xr.Dataset]) -> str:
 
 
 def _inside(found: Mapping[str, xr.Dataset], kind: str) -> str:
-    """What the boundary encloses, and how far the scene is from it."""
-    boundary, scene = found[f"{kind}{LINES}"], found[f"{kind}{DISTANCE}"]
+    """Return the share that the boundary encloses and the distance of the scene, as text."""
+    boundary, scene = (
+        found[f"{kind}validity_boundary"],
+        found[f"{kind}validity_distance/F3"],
+    )
     share = 100.0 * float(boundary.kept_share)
     error = 100.0 * float(boundary.kept_share_error)
     return f"{share:.2f} ± {error:.1g} % and {np.degrees(float(scene.distance)):.2g}°"
@@ -93,7 +97,7 @@ def draw_kinds(
 
 
 def key() -> list[Patch]:
-    """What the tones mean."""
+    """Return the legend entries of the four tones."""
     patches = style.patches(KINDS)
     patches[1].set_hatch(style.HATCH)
     return patches
@@ -121,7 +125,9 @@ def draw(found: Mapping[str, xr.Dataset]) -> Figure:
     figure, axes = style.new_figure(*size, text=1.36, ncols=len(names))
     counts = []
     for panel, letter, name in zip(axes[0], "ab", names, strict=False):
-        kinds = draw_kinds(panel, maps[name], found.get(f"{_kind(name)}{LINES}"))
+        kinds = draw_kinds(
+            panel, maps[name], found.get(f"{_kind(name)}validity_boundary")
+        )
         mark_scene(panel, "F3")
         counts.append(np.bincount(kinds.ravel(), minlength=len(KINDS)))
         words = TITLES[_kind(name)].removesuffix(" in all models")

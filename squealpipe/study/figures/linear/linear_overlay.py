@@ -12,27 +12,26 @@ from squealpipe.plotting.origin import scene_title
 from squealpipe.plotting.style import BLUE, GREEN, GREY, ORANGE, RED
 from squealpipe.schema.linear import BoundaryCurve
 
-LINES: dict[BoundaryCurve, tuple[str, dict[str, Any]]] = {
-    BoundaryCurve.flutter: ("flutter boundary", {"color": BLUE, "linestyle": "-"}),
-    BoundaryCurve.divergence: (
-        "divergence boundary",
-        {"color": ORANGE, "linestyle": (0, (4, 1))},
-    ),
-    BoundaryCurve.reaction_changes_sign: (
-        "K₁₁ = μK₁₂",
-        {"color": GREEN, "linestyle": (0, (1, 1))},
-    ),
-    BoundaryCurve.no_coupling: ("K₁₂ = 0", {"color": GREY, "linestyle": "-."}),
-}
-
 
 def draw_boundaries(
     axes: Axes, boundaries: xr.Dataset, kinds: Iterable[BoundaryCurve]
 ) -> None:
     """Exact curves over a map of 0 … π; curves that leave it come in again by periodicity."""
     alpha1, alpha2 = boundaries.alpha1.values, boundaries.alpha2.values
+    looks: dict[BoundaryCurve, tuple[str, dict[str, Any]]] = {
+        BoundaryCurve.flutter: ("flutter boundary", {"color": BLUE, "linestyle": "-"}),
+        BoundaryCurve.divergence: (
+            "divergence boundary",
+            {"color": ORANGE, "linestyle": (0, (4, 1))},
+        ),
+        BoundaryCurve.reaction_changes_sign: (
+            "K₁₁ = μK₁₂",
+            {"color": GREEN, "linestyle": (0, (1, 1))},
+        ),
+        BoundaryCurve.no_coupling: ("K₁₂ = 0", {"color": GREY, "linestyle": "-."}),
+    }
     for kind in kinds:
-        label, look = LINES[kind]
+        label, look = looks[kind]
         for segment in np.unique(
             boundaries.segment.values[boundaries.boundary.values == kind]
         ):

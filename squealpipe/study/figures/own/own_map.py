@@ -1,4 +1,4 @@
-"""Whether the brake squeals or hammers over both spring angles, and the nearest quiet ones."""
+"""A map of squeal and hammering over both spring angles, and the nearest quiet angles."""
 
 from collections.abc import Mapping
 

@@ -11,11 +11,6 @@ from squealpipe.plotting.axis_units import in_units
 from squealpipe.plotting.run import draw_force, draw_orbit
 from squealpipe.study.figures.declared import report_figure
 
-SHOWN = 0.1
-"""Share of the run whose force is drawn at least."""
-EVENTS = 8
-"""Events that are drawn if the run has them."""
-
 
 @report_figure(
     reads=("own/*",),
@@ -33,7 +28,8 @@ def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
         0.75 * style.PAGE, 0.2 + 2.0 * len(runs), nrows=len(runs), ncols=2
     )
     for (history, path), (name, run) in zip(axes, runs.items(), strict=True):
-        shown = [SHOWN * float(run.time[-1]), *run.event_time.values[:EVENTS]]
+        # the first tenth of the run, or its first eight events if they take longer
+        shown = [0.1 * float(run.time[-1]), *run.event_time.values[:8]]
         draw_force(history, run.sel(time=slice(0.0, float(np.max(shown)))))
         draw_orbit(path, run)
         history.set_title(name.removeprefix("own/"), loc="left", fontweight="bold")

@@ -1,1 +1,1 @@
-"""What several figures share: style, axes, panels."""
+"""Panels, axes and keys that several figures share."""

@@ -11,17 +11,11 @@ from squealpipe.plotting import style
 from squealpipe.plotting.cycles import joined, key_entries, say_why_empty
 from squealpipe.plotting.origin import angle_pair, parameter
 
-CROSSES = 24
-"""Points of the harmonic balance that are drawn, evenly spaced along the branch."""
-QUANTITIES = (
-    ("x_amplitude", style.X_COLOUR, "amplitude of x"),
-    ("y_peak", style.Y_COLOUR, "largest y"),
-)
 STABLE_TO_ROUND_OFF = 2.0 + 1e-6
 
 
 def key(branches: Mapping[str, xr.Dataset]) -> str:
-    """What the marks mean that are drawn, for captions."""
+    """Return the sentence of a caption that explains the marks that are drawn."""
     exact = [each for name, each in branches.items() if not name.endswith("_hbm")]
     looks = []
     if any((_unstable(each) & ~_overtakes(each)).any() for each in exact):
@@ -82,7 +76,11 @@ def draw_branch(
     unstable, overtakes = _unstable(exact), _overtakes(exact)
     omega = exact.omega.values
     shown = _evenly(series)
-    for name, colour, label in QUANTITIES:
+    quantities = (
+        ("x_amplitude", style.X_COLOUR, "amplitude of x"),
+        ("y_peak", style.Y_COLOUR, "largest y"),
+    )
+    for name, colour, label in quantities:
         values = exact[name].values
         for chosen, shade, dash, words in (
             (~unstable & ~overtakes, colour, "-", label),
@@ -105,10 +103,12 @@ def draw_branch(
 
 def _evenly(series: xr.Dataset) -> np.ndarray:
     """Indices of points at even distances along the branch in the picture."""
-    if series.sizes["point"] <= CROSSES:
+    # more crosses than this hide the exact line beneath them
+    crosses = 24
+    if series.sizes["point"] <= crosses:
         return np.arange(series.sizes["point"])
     parts = [series[name].values for name in ("omega", "x_amplitude", "y_peak")]
     steps = np.sqrt(sum((np.diff(part) / (np.ptp(part) or 1.0)) ** 2 for part in parts))
     length = np.concatenate([[0.0], np.cumsum(steps)])
-    wanted = np.linspace(0.0, length[-1], CROSSES)
+    wanted = np.linspace(0.0, length[-1], crosses)
     return np.unique(np.searchsorted(length, wanted).clip(0, len(length) - 1))

@@ -69,7 +69,9 @@ def draw_mode(frequencies: xr.Dataset, mode: int) -> Figure:
 def _on_diagonal(
     frequencies: xr.Dataset, values: np.ndarray, levels: np.ndarray
 ) -> list[tuple[float, float]]:
-    """Where isolines cross the diagonal in the upper half, away from gaps: labels lie apart."""
+    """Return where isolines cross the upper half of the diagonal away from gaps: labels there do
+    not overlap.
+    """
     angles, along = frequencies.alpha1.values, np.diagonal(values)
     near = len(along) // 15
     return [

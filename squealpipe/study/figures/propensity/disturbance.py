@@ -10,9 +10,6 @@ from squealpipe.plotting import style
 from squealpipe.plotting.origin import scene_title
 from squealpipe.study.figures.declared import report_figure
 
-MARKS = list(zip(style.PALETTE, "osv^DP", strict=True))
-"""Colour and marker by scene."""
-
 
 @report_figure(
     reads=("disturbance/*",),
@@ -30,7 +27,10 @@ def draw(found: Mapping[str, xr.Dataset]) -> Figure:
     """Two panels."""
     figure, axes = style.new_figure(style.PAGE, 3.0, ncols=2)
     scenes = sorted({name.split("/")[1].partition("_")[0] for name in found})
-    marks = dict(zip(scenes, MARKS, strict=False))
+    # colour and marker of each scene
+    marks = dict(
+        zip(scenes, list(zip(style.PALETTE, "osv^DP", strict=True)), strict=False)
+    )
     handles = {}
     for letter, panel, goal, title in zip(
         "ab",

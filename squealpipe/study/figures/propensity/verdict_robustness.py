@@ -1,4 +1,4 @@
-"""How far each verdict carries: statements by settings."""
+"""Robustness of each verdict: a table of settings by statements."""
 
 import numpy as np
 import xarray as xr

@@ -1,4 +1,4 @@
-"""What eigenvalues name, and what becomes of it."""
+"""Unstable modes of a structure, and the vibration that each grows into."""
 
 import xarray as xr
 from matplotlib.figure import Figure
