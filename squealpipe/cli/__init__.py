@@ -25,6 +25,7 @@ from squealpipe.cli.console import (
 )
 from squealpipe.cli.files import convert, plot, spectrum
 from squealpipe.cli.inputs import read_brake
+from squealpipe.cli.listen import listen
 from squealpipe.cli.maps import basin, disturbance, map_angles, refine
 from squealpipe.cli.models import choose, infer, propensity
 from squealpipe.cli.motions import backbone, branch, cycle, simulate
@@ -61,6 +62,7 @@ COMMANDS: dict[str, Callable[..., int]] = {
     "refine": refine,
     "plot": plot,
     "spectrum": spectrum,
+    "listen": listen,
     "convert": convert,
     "init": init,
     "run": run_study,

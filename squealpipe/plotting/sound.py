@@ -1,0 +1,387 @@
+"""Make the settled part of a run audible: 48 kHz, 16 bit, looped without a click.
+
+Idea: a loop is a stretch of the motion whose end is cross-faded into what came before its
+beginning. Its length is the lag at which the motion resembles itself most, so a periodic motion is
+repeated after a whole number of periods, and its cross-fade changes nothing. The less both ends
+resemble one another the more the sum of both would be too quiet; so it is divided by the rms that
+their correlation ρ leaves, √((1 − w)² + w² + 2 ρ w (1 − w)).
+
+Source: Fink, Holters and Zölzer, Signal-matched power-complementary cross-fading and dry-wet
+mixing, DAFx-16 (2016). The loop is resampled as what it is, one period of a periodic signal
+(`scipy.signal.resample`), so that nothing above half the rate of the file is folded down.
+Invariant: pitch is right to half a sample of a loop. Cost: some Fourier transforms of as many
+samples as are heard.
+"""
+
+import io
+import json
+import math
+import struct
+import wave
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from scipy.interpolate import make_interp_spline
+from scipy.signal import correlate, resample
+
+from squealpipe.codes import Regime
+from squealpipe.methods.parabola import vertex
+from squealpipe.methods.spectrum import (
+    FEWEST,
+    amplitude_spectrum,
+    step_of,
+    strongest_lines,
+)
+from squealpipe.store.whole_files import whole_file
+from squealpipe.text import number
+from squealpipe.units import engineering
+from squealpipe.vibration.settling import WindowLevels, difference
+
+RATE = 48_000
+"""Samples of a file in a second."""
+INFO = {"title": b"INAM", "comment": b"ICMT", "software": b"ISFT"}
+"""Chunks of a RIFF file's list of metadata."""
+
+
+@dataclass(frozen=True)
+class Listening:
+    """Thresholds of what is heard; each comment says what another value would do."""
+
+    peak: float = -3.0
+    """Largest sample, dB of full scale. 0 clips in players that resample."""
+    level_agreement: float = 0.12
+    """Largest difference of the levels of both halves of a settled part, over the level: 1 dB,
+    which nobody hears. Twice as much: motions that still grow or die out are looped."""
+    tails: tuple[float, ...] = (0.5, 0.75)
+    """Shares of a run after which it may have settled, tried in turn. Earlier ones let in the
+    transient, which changes the level little but the pitch."""
+    fewest_periods: float = 5.0
+    """Periods of the strongest line in a settled part. Half as many: no line, only drift."""
+    quiet: float = 1e-3
+    """Rms velocity over the largest of the run, and 1000 times that over the belt's speed, below
+    which a motion has died out (60 dB). A tenth: round-off is amplified to a tone."""
+    audible: float = 1e-2
+    """Lines this far below the strongest (40 dB) count as heard. A tenth: kinks at stick demand
+    rates far beyond what an ear resolves."""
+    samples_per_period: float = 4.0
+    """Samples in a period of the highest line that is heard. Half as many is the least that holds
+    the line at all, and its amplitude is lost between samples."""
+    finest: int = 64
+    """Factor by which a run is sampled more finely at most when it is integrated again."""
+    hearing: tuple[float, float] = (20.0, 20e3)
+    """Frequencies that an ear hears, Hz."""
+    comfortable: tuple[float, float] = (100.0, 8e3)
+    """Frequencies to which a remedy leads, Hz."""
+    repeats: float = 0.999
+    """Correlation of both ends of a loop from which the motion repeats. Below it a short loop has
+    a beat of its own, which is said."""
+    fade: float = 0.005
+    """Length of the fades at both ends of a file, s. Without them a player clicks there."""
+
+
+LISTENING = Listening()
+
+
+class TooCoarseError(ValueError):
+    """A run is sampled too coarsely to be heard."""
+
+
+@dataclass(frozen=True)
+class Sound:
+    """A loop of the velocity of a settled motion.
+
+    Attributes:
+        loop: (n,) samples of the loop at 48 kHz, −1 to 1.
+        component: words for what moves.
+        frequency: strongest line of the velocity, Hz.
+        speed: how many times faster than in reality it is played.
+        correlation: of both ends of the loop; 1 where the motion repeats.
+    """
+
+    loop: np.ndarray
+    component: str
+    frequency: float
+    speed: float
+    correlation: float
+
+    def samples(self, seconds: float) -> np.ndarray:
+        """Return the loop repeated for some time, faded in and out, (n,) of 16 bit."""
+        count = max(round(seconds * RATE), 2)
+        played = np.resize(self.loop, count)
+        edge = min(round(LISTENING.fade * RATE), count // 2)
+        ramp = np.sin(0.5 * np.pi * (np.arange(edge) + 0.5) / edge) ** 2
+        played[:edge] *= ramp
+        played[-edge:] *= ramp[::-1]
+        top = 10 ** (LISTENING.peak / 20) / max(float(np.abs(played).max()), 1e-300)
+        return np.round(32767 * top * played).astype("<i2")
+
+    def told(self) -> str:
+        """Say in a line what is heard, and at which speed."""
+        line = f"velocity {self.component}, strongest line {engineering(self.frequency, 'Hz', 4)}"
+        if self.speed != 1.0:
+            faster = self.speed > 1.0
+            factor = number(self.speed if faster else 1.0 / self.speed)
+            heard = engineering(self.frequency * self.speed, "Hz", 4)
+            line += (
+                f", played {factor} times {'faster' if faster else 'slower'} than in reality: "
+                f"heard at {heard}"
+            )
+        length = self.loop.size / RATE
+        if self.correlation < LISTENING.repeats:
+            line += f"; it does not repeat, and is cross-faded every {engineering(length, 's', 2)}"
+        return line
+
+    def wav(self, seconds: float) -> bytes:
+        """Return the contents of a wav file, whose metadata say what is heard."""
+        content = io.BytesIO()
+        with wave.open(content, "wb") as file:
+            file.setnchannels(1)
+            file.setsampwidth(2)
+            file.setframerate(RATE)
+            file.writeframes(self.samples(seconds).tobytes())
+        facts = {
+            "title": f"Velocity {self.component}",
+            "comment": self.told(),
+            "software": "squealpipe",
+        }
+        return _with_facts(content.getvalue(), facts)
+
+
+def write_wav(sound: Sound, path: Path, seconds: float = 3.0) -> None:
+    """Write a sound to a wav file, whole or not at all."""
+    with whole_file(path) as temporary:
+        temporary.write_bytes(sound.wav(seconds))
+
+
+def _with_facts(riff: bytes, facts: dict[str, str]) -> bytes:
+    """Return a RIFF file with a list of metadata, which Python's writer does not know."""
+    listed = b"INFO"
+    for name, words in facts.items():
+        text = words.replace("−", "-").encode("latin-1", "replace") + b"\0"
+        listed += (
+            INFO[name] + struct.pack("<I", len(text)) + text + b"\0" * (len(text) % 2)
+        )
+    riff += b"LIST" + struct.pack("<I", len(listed)) + listed
+    return b"RIFF" + struct.pack("<I", len(riff) - 8) + riff[8:]
+
+
+def sound(
+    run: xr.Dataset,
+    *,
+    at: str | None = None,
+    seconds: float = 3.0,
+    speed: float = 1.0,
+    again: Callable[[np.ndarray], xr.Dataset] | None = None,
+) -> Sound:
+    """Make the settled part of a run audible.
+
+    Args:
+        run: dataset ``simulation``.
+        at: ``x`` or ``y``; by default the one with the larger rms velocity.
+        seconds: length that the sound will be repeated to, s; a loop is no longer.
+        speed: how many times faster than in reality it is played.
+        again: integrates the run again, given instants (n,), s; used where the run is sampled too
+            coarsely.
+
+    Raises:
+        TooCoarseError: the run is sampled too coarsely, and cannot be integrated again.
+        ValueError: it is no run, too short, quiet, has not settled or is beyond hearing; with a
+            remedy.
+    """
+    if not (math.isfinite(seconds) and seconds > 0):
+        raise ValueError(f"seconds = {seconds!r}: a time above 0 is needed")
+    if not (math.isfinite(speed) and speed > 0):
+        raise ValueError(f"speed = {speed!r}: a factor above 0 is needed")
+    time, velocities = _velocities(run)
+    begin = _settled_from(run, time, velocities)
+    time, kept = time[begin:], {name: v[begin:] for name, v in velocities.items()}
+    name = _component(kept, at)
+    step = (time[-1] - time[0]) / (time.size - 1)
+    for _ in range(int(math.log2(LISTENING.finest)) // 2 + 1):
+        missing = _missing(time, kept)
+        if missing is None:
+            break
+        if again is None:
+            raise TooCoarseError(missing)
+        step /= 4.0
+        count = math.ceil((time[-1] - time[0]) / step) + 1
+        time, kept = _velocities(again(np.linspace(time[0], time[-1], count)))
+    else:
+        raise TooCoarseError(missing)
+    signal = kept[name] - kept[name].mean()
+    frequency = _strongest(signal, step_of(time))
+    periods = frequency * (time[-1] - time[0])
+    if not periods >= LISTENING.fewest_periods:
+        raise ValueError(
+            "the settled part of the run is too short to be heard: "
+            f"{number(periods, 2) if math.isfinite(periods) else 'fewer than 3'} periods of its "
+            f"strongest line, {LISTENING.fewest_periods:g} are needed; run it longer (--t-end)"
+        )
+    _check_audible(frequency, speed)
+    loop, correlation = _loop(signal, step_of(time), seconds * speed, speed)
+    return Sound(loop, WORDS[name], frequency, speed, correlation)
+
+
+WORDS = {"x": "along the belt (x)", "y": "across the belt (y)"}
+"""Component → words."""
+
+
+def _velocities(run: xr.Dataset) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Instants (n,) that a run reached, s, and the velocities of its components (n,), m/s."""
+    if run.attrs.get("schema") != "simulation":
+        raise ValueError(
+            f"{run.attrs.get('schema', 'the file')} is no run that can be heard; give what "
+            "`squealpipe simulate` writes"
+        )
+    reached = np.isfinite(run.x.values)
+    if reached.sum() < 8 * FEWEST:
+        raise ValueError(
+            f"the run is too short to be heard: {reached.sum()} samples; run it longer (--t-end)"
+        )
+    velocities = {"x": run.vx.values[reached], "y": run.vy.values[reached]}
+    return run.time.values[reached], velocities
+
+
+def _component(velocities: dict[str, np.ndarray], at: str | None) -> str:
+    """Return the component that is asked for, or that with the larger rms."""
+    if at is None:
+        return max(velocities, key=lambda name: float(velocities[name].std()))
+    if at not in velocities:
+        raise ValueError(f"at = {at!r}: the run has {', '.join(velocities)}")
+    return at
+
+
+def _settled_from(
+    run: xr.Dataset, time: np.ndarray, velocities: dict[str, np.ndarray]
+) -> int:
+    """Return the first sample after which levels stay what they are.
+
+    Raises:
+        ValueError: the motion has died out, or has not settled.
+    """
+    moving = np.stack(list(velocities.values()), axis=1)
+    last = moving[3 * len(moving) // 4 :]
+    level = float(np.sqrt(last.var(axis=0).sum()))
+    belt = abs(_belt_speed(run))
+    least = LISTENING.quiet * max(float(np.abs(moving).max()), 1e-3 * belt)
+    if not level > least:
+        raise ValueError(
+            "nothing is heard: the motion has died out, its rms velocity is "
+            f"{engineering(level, 'm s-1', 2)} in the last quarter of the run"
+        )
+    regimes = run.regime.values[: len(moving)]
+    for share in LISTENING.tails:
+        begin = int(share * len(moving))
+        halves = np.array_split(np.arange(begin, len(moving)), 2)
+        before, now = (_levels(moving[half], regimes[half]) for half in halves)
+        if difference(before, now) <= LISTENING.level_agreement:
+            return begin
+    changes = 100.0 * difference(before, now)
+    raise ValueError(
+        f"the motion has not settled: its level changes by {changes:.0f} % within the last part "
+        f"of the run, {engineering(float(time[-1]), 's', 3)} long; run it longer (--t-end)"
+    )
+
+
+def _levels(velocities: np.ndarray, regimes: np.ndarray) -> WindowLevels:
+    separated, stuck = (
+        np.array([(regimes == each).mean()])
+        for each in (Regime.separated, Regime.stick)
+    )
+    rms = velocities.std(axis=0)
+    return WindowLevels(rms, separated, stuck, peaks=np.zeros(1))
+
+
+def _belt_speed(run: xr.Dataset) -> float:
+    stated = json.loads(run.attrs.get("parameters", "{}"))
+    return float(stated.get("belt_speed", 0.0))
+
+
+def _missing(time: np.ndarray, velocities: dict[str, np.ndarray]) -> str | None:
+    """Return what is missing in the samples of a run to be heard; None if nothing is."""
+    try:
+        step = step_of(time)
+    except ValueError as error:
+        return str(error)
+    needed = 0.0
+    for values in velocities.values():
+        omega, amplitude = amplitude_spectrum(values, step)
+        loud = omega[amplitude > LISTENING.audible * amplitude.max()]
+        needed = max(
+            needed, LISTENING.samples_per_period * float(loud.max(initial=0.0))
+        )
+    needed /= 2.0 * math.pi
+    if 1.0 / step >= needed:
+        return None
+    # what is between the samples may lie higher still
+    points = math.ceil(2.0 * needed * time[-1])
+    return (
+        f"the run is sampled too coarsely to be heard: {engineering(1.0 / step, 'Hz', 3)}, and its "
+        f"lines reach {engineering(needed / LISTENING.samples_per_period, 'Hz', 3)}; simulate it "
+        f"with --points {points} or more"
+    )
+
+
+def _strongest(signal: np.ndarray, step: float) -> float:
+    omega, amplitude = amplitude_spectrum(signal, step, padding=4)
+    lines, _ = strongest_lines(
+        omega, amplitude, 1, 2.0 * math.pi / (step * signal.size)
+    )
+    return float(lines[0]) / (2.0 * math.pi) if lines.size else math.nan
+
+
+def _check_audible(frequency: float, speed: float) -> None:
+    """Refuse a pitch that no ear hears."""
+    low, high = LISTENING.hearing
+    heard = frequency * speed
+    if low <= heard <= high:
+        return
+    # the gentlest power of ten that leads where one hears well
+    below, above = (math.log10(limit / frequency) for limit in LISTENING.comfortable)
+    power = max(math.ceil(below), 0) if heard < low else min(math.floor(above), 0)
+    remedy = f"--fast {10**power:g}" if power >= 0 else f"--slow {10**-power:g}"
+    if power == 0:
+        remedy = "neither --fast nor --slow"
+    side = "below" if heard < low else "beyond"
+    raise ValueError(
+        f"the strongest line would be played at {engineering(heard, 'Hz', 3)}, {side} hearing "
+        f"({low:g} Hz to {high / 1e3:g} kHz); give {remedy}"
+    )
+
+
+def _loop(
+    signal: np.ndarray, step: float, longest: float, speed: float
+) -> tuple[np.ndarray, float]:
+    """Return a loop of a signal at the rate of the file, and the correlation of its ends.
+
+    Args:
+        signal: (n,) without its mean.
+        step: between its samples, s.
+        longest: length that a loop may have, s.
+    """
+    # lag and cross-fade together: of the lags tried the longest is three quarters
+    signal = signal[-max(math.ceil(longest / 0.75 / step), 4 * FEWEST) :]
+    count = signal.size
+    lags = np.arange(count // 2, 3 * count // 4 + 1)
+    products = correlate(signal, signal, method="fft")[count - 1 + lags]
+    squares = np.concatenate([[0.0], np.cumsum(signal**2)])
+    ends = squares[count - lags] * (squares[-1] - squares[lags])
+    alike = products / np.sqrt(np.maximum(ends, 1e-300))
+    best = int(np.argmax(alike[1:-1])) + 1
+    shift, _ = vertex(*(alike[best + k] for k in (-1, 0, 1)))
+    lag = float(lags[best] + np.clip(shift, -1.0, 1.0))
+    fade = count - 1 - lag
+    curve = make_interp_spline(np.arange(count), signal, k=5)
+    places = fade + lag * np.arange(2 * count) / (2 * count)
+    weight = np.clip((places - lag) / fade, 0.0, 1.0)
+    weight = weight**2 * (3.0 - 2.0 * weight)
+    before = curve(np.maximum(places - lag, 0.0))
+    correlation = float(np.clip(alike[best], -0.5, 1.0))
+    power = (1 - weight) ** 2 + weight**2 + 2 * correlation * weight * (1 - weight)
+    looped = ((1.0 - weight) * curve(places) + weight * before) / np.sqrt(power)
+    number_ = max(round(lag * step / speed * RATE), 2)
+    played = resample(looped - looped.mean(), number_)
+    return np.asarray(played / np.abs(played).max()), correlation
