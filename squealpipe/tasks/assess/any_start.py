@@ -11,8 +11,9 @@ import numpy as np
 from squealpipe.schema.assess import KICKS
 from squealpipe.tasks.assess.designs import Cure
 from squealpipe.tasks.assess.search import Side, Test, bisect, nearer, thinned
-from squealpipe.tasks.assess.settling import MOST, Start, settle, start_at
+from squealpipe.tasks.assess.settling import MOST, settle, start_at
 from squealpipe.tasks.assess.sliding import Design, Sliding
+from squealpipe.vibration.settled_runs import Start
 
 LOCATED_ANY = 1e-2
 """To which the boundary of any start is located: of the value, or rad."""

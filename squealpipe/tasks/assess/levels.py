@@ -27,8 +27,8 @@ from squealpipe.schema.assess import (
     error_of,
 )
 from squealpipe.solvers.a1.ensemble import PEAK, Ensemble, run_ensemble
-from squealpipe.tasks.assess.settling import Settled
 from squealpipe.tasks.assess.sliding import Design, Sliding
+from squealpipe.vibration.settled_runs import SettledRun
 from squealpipe.vibration.settling import tapered
 
 PERIODS = 400.0
@@ -65,7 +65,7 @@ def still() -> dict[str, Any]:
 
 
 def levels(
-    design: Design, settled: Settled, sliding: Sliding | None, *, tol: float
+    design: Design, settled: SettledRun, sliding: Sliding | None, *, tol: float
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Scalars of a settled motion, and its spectrum and path.
 
@@ -97,12 +97,12 @@ def levels(
         }
     else:
         scalars |= {"frequency": strongest, "periodic": periodic}
-    scalars["settled_by"] = settled.time
+    scalars["settled_by"] = settled.elapsed
     scalars["verdict"] = settled.verdict
     return scalars, spectrum | _path(design, run, times)
 
 
-def _blocks(design: Design, settled: Settled, periodic: bool) -> int:
+def _blocks(design: Design, settled: SettledRun, periodic: bool) -> int:
     """Return how many runs measure a motion.
 
     A torus is measured for as long as it took to settle: its beat may be longer than one run.
@@ -111,7 +111,7 @@ def _blocks(design: Design, settled: Settled, periodic: bool) -> int:
         return BLOCKS
     if periodic or settled.verdict in (Verdict.quiet, Verdict.undetermined):
         return 1
-    settled_in = settled.time / (PERIODS * design.period)
+    settled_in = settled.elapsed / (PERIODS * design.period)
     return int(min(max(np.ceil(settled_in), 2), BLOCKS))
 
 

@@ -12,9 +12,10 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.assess import VERDICT_MAP, Mechanism, Verdict
 from squealpipe.schema.origin import recorded
-from squealpipe.tasks.assess.settling import Start, pushed, settle, start_at
+from squealpipe.tasks.assess.settling import pushed, settle, start_at
 from squealpipe.tasks.assess.sliding import Design, Sliding
 from squealpipe.validation import Angles, Tolerance, Workers
+from squealpipe.vibration.settled_runs import Start
 
 MOST = 1600.0
 """Periods after which a cell that has not settled is undetermined."""

@@ -1,7 +1,6 @@
 """Windows of runs of many designs at once, and the statistics of each."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,61 +10,14 @@ from squealpipe.parameters import TABLE
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import PEAK, REACH, Ensemble, run_ensemble
 from squealpipe.tasks.assess.sliding import Design
-from squealpipe.vibration.settling import Settling, WindowLevels, late_growth, tapered
+from squealpipe.vibration.settling import Settling, late_growth, tapered
+from squealpipe.vibration.windows import Windows, joined
 
 NUMBERS = tuple(
     name
     for name, row in TABLE.items()
     if row.enters_a1 and row.allowed != "law" and name != "mu_static"
 )
-
-
-@dataclass(frozen=True)
-class Windows:
-    """Statistics of one window of each run, rows first.
-
-    Attributes:
-        final: state at the end, m and m/s.
-        rms: rms of both velocities, m/s.
-        peak_speed: largest speed of the samples, m/s.
-        separated, stuck: shares of the time, tapered where a perturbation is followed.
-        separations, contacts: counts of losses of contact and returns.
-        nonlinear: whether contact was lost, or the mass stuck or reversed.
-        peak_force: largest contact force over k3 l_pre.
-        finished: whether the run reached the end of its window.
-        growth, late_growth: ln of the growth of a small perturbation in the window, and of that
-            from its third to its last quarter; NaN where none was followed.
-    """
-
-    final: np.ndarray
-    rms: np.ndarray
-    peak_speed: np.ndarray
-    separated: np.ndarray
-    stuck: np.ndarray
-    separations: np.ndarray
-    contacts: np.ndarray
-    nonlinear: np.ndarray
-    peak_force: np.ndarray
-    impact_speed: np.ndarray
-    finished: np.ndarray
-    growth: np.ndarray
-    late_growth: np.ndarray
-
-    def levels(self, periods: float) -> WindowLevels:
-        """Return the statistics by which one run's window of some periods is compared."""
-        return WindowLevels(
-            self.rms,
-            np.atleast_1d(self.separated),
-            np.atleast_1d(self.stuck),
-            np.atleast_1d(self.peak_force),
-            float(self.growth),
-            float(self.late_growth),
-            periods,
-        )
-
-    def row(self, index: int) -> "Windows":
-        """One run of it."""
-        return Windows(**{name: value[index] for name, value in vars(self).items()})
 
 
 def run_windows(
@@ -83,17 +35,13 @@ def run_windows(
         lengths: (runs,), s.
         rules: which say what has to be seen of a window.
     """
-    parts: dict[str, np.ndarray] = {}
+    parts = []
     for rows in _alike(designs):
         run = _ensemble(
             [designs[row] for row in rows], starts[rows], lengths[rows], rules, tol
         )
-        for name, values in vars(_statistics(run, lengths[rows], rules)).items():
-            whole = parts.setdefault(
-                name, np.empty((len(designs), *values.shape[1:]), values.dtype)
-            )
-            whole[rows] = values
-    return Windows(**parts)
+        parts.append((rows, _statistics(run, lengths[rows], rules)))
+    return joined(parts)
 
 
 def _alike(designs: Sequence[Design]) -> list[np.ndarray]:
@@ -156,16 +104,16 @@ def _statistics(run: Ensemble, lengths: np.ndarray, rules: Settling) -> Windows:
         growth, late = run.log_growth, late_growth(run.sample_log_growth.T)
     return Windows(
         final=run.final_state,
-        rms=np.sqrt(mean),
-        peak_speed=np.sqrt(square.sum(axis=-1).max(axis=1)),
-        separated=separated,
-        stuck=stuck,
-        separations=run.separations,
-        contacts=run.contacts,
-        nonlinear=run.separations + run.sticks + run.reversals + run.contacts > 0,
-        peak_force=run.peak_contact_force,
-        impact_speed=run.impact_speed,
+        regimes=np.zeros((lengths.size, 1), int),
+        velocities=np.sqrt(mean),
+        largest_velocity=np.sqrt(square.sum(axis=-1).max(axis=1)),
+        separated=separated[:, None],
+        stuck=stuck[:, None],
+        separations=run.separations[:, None],
+        forces=run.peak_contact_force[:, None],
+        switched=run.separations + run.sticks + run.reversals + run.contacts > 0,
         finished=finished,
+        length=lengths,
         growth=growth,
         late_growth=late,
     )

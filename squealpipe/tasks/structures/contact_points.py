@@ -15,9 +15,8 @@ from squealpipe.schema.origin import versions
 from squealpipe.schema.squealing import NO_ATTRACTOR
 from squealpipe.systems.structures.elastic_pad import YOUNG, elastic_pad
 from squealpipe.systems.structures.squeal.plant import Plant
-from squealpipe.systems.structures.squeal.settling import WIDE
 from squealpipe.systems.structures.squeal.squealing_modes import squealing_of
-from squealpipe.systems.structures.squeal.windows import Running, run
+from squealpipe.systems.structures.squeal.windows import WIDE, Running, run
 
 STIFFER = 100.0
 """Modulus of the stiff pad, over that of friction material."""

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.sparse.csgraph import connected_components
 
 from squealpipe.schema.squealing import NO_ATTRACTOR
-from squealpipe.systems.structures.squeal.settling import SettledMotion
+from squealpipe.vibration.settled_runs import SettledRun
 from squealpipe.vibration.settling import FOR_VERDICTS, difference
 
 SCATTER = 3.0
@@ -14,7 +14,7 @@ FARTHEST = 0.06
 difference that two windows of one motion may have."""
 
 
-def grouped(settled: list[SettledMotion], pushes: int) -> np.ndarray:
+def grouped(settled: list[SettledRun], pushes: int) -> np.ndarray:
     """The number of the attractor of each run, those of most random starts first; −1: not settled.
 
     The first ``pushes`` runs are no random starts. Runs that have died out are
@@ -41,10 +41,10 @@ def grouped(settled: list[SettledMotion], pushes: int) -> np.ndarray:
     return np.array([order.get(number, NO_ATTRACTOR) for number in numbers], int)
 
 
-def is_same(one: SettledMotion, other: SettledMotion) -> bool:
+def is_same(one: SettledRun, other: SettledRun) -> bool:
     """Tell whether two settled runs may show one motion."""
     if one.quiet or other.quiet:
         return one.quiet and other.quiet
     nearest = FOR_VERDICTS.agreement
     allowed = np.clip(SCATTER * max(one.change, other.change), nearest, FARTHEST)
-    return bool(difference(one.last.levels, other.last.levels) <= allowed)
+    return bool(difference(one.last.levels(1.0), other.last.levels(1.0)) <= allowed)

@@ -7,7 +7,7 @@ but the end of the motion itself, is what is found.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -19,11 +19,15 @@ from squealpipe.systems.structures.squeal.settling import (
     FIRST,
     GROWTH,
     LONGEST_GROWTH,
-    WIDE,
-    at_rest_regimes,
+    start_at,
 )
-from squealpipe.systems.structures.squeal.windows import Rows, Running, run_window
-from squealpipe.vibration.settling import FOR_VERDICTS, difference
+from squealpipe.systems.structures.squeal.windows import (
+    Running,
+    StructureWindows,
+    run_windows,
+)
+from squealpipe.vibration.settled_runs import Horizon, settle
+from squealpipe.vibration.settling import FOR_VERDICTS
 
 SIDE_BY_SIDE = 8
 """Frictions of one turn, run together."""
@@ -93,7 +97,7 @@ def followed_down(plant: Plant, start: TrackState, onset: float, how: Running) -
     track = Track([start])
     # down to just below the onset first: there most motions die
     for turn, frictions in enumerate(_turns(track, onset)):
-        rows = _run_on(plant, track.lasts, frictions, onset, how.turn(turn))
+        rows = _run_on(plant, track.lasts, frictions, how.turn(turn))
         for mu, row in zip(frictions.tolist(), rows, strict=True):
             if row is None:
                 track.dies = mu
@@ -132,45 +136,36 @@ def _turns(track: Track, onset: float) -> Iterator[np.ndarray]:
 
 
 def _run_on(
-    plant: Plant, start: TrackState, frictions: np.ndarray, onset: float, how: Running
-) -> list[Rows | None]:
-    """What a motion becomes at other frictions; None where it dies out."""
-    count = len(frictions)
-    states = np.tile(start.state, (count, 1))
-    regimes = np.tile(start.regimes, (count, 1))
-    at_rest = at_rest_regimes(plant)
-    ended: dict[int, Rows | None] = {}
-    before: list[Rows | None] = [None] * count
-    for doubling in range(DOUBLINGS):
-        rows = [row for row in range(count) if row not in ended]
-        if not rows:
-            break
-        wide = np.array([*rows, *rows * WIDE])[: max(len(rows), WIDE)]
-        window = run_window(
-            plant,
-            states[wide],
-            FIRST * 2.0**doubling / plant.slowest,
-            how.turn(doubling),
-            regimes[wide],
-            frictions[wide],
+    plant: Plant, start: TrackState, frictions: np.ndarray, how: Running
+) -> list[StructureWindows | None]:
+    """Return what a motion becomes at other frictions; None where it dies out."""
+    first = FIRST / plant.slowest
+    subjects = [Plant(plant.structure.with_(mu=mu)) for mu in frictions.tolist()]
+    starts = [
+        replace(start_at(each, start.state), period=1.0 / plant.slowest)
+        for each in subjects
+    ]
+
+    def advance(
+        rows: list[int],
+        states: np.ndarray,
+        regimes: np.ndarray | None,
+        seconds: np.ndarray,
+        turn: int,
+    ) -> StructureWindows:
+        return run_windows(
+            plant, states, seconds, how.turn(turn), regimes, frictions[rows]
         )
-        for place, row in enumerate(rows):
-            now, earlier = window.at(place), before[row]
-            # nothing switches below the onset: a linear motion that decays
-            slides = not now.events and (now.regimes == at_rest).all()
-            if slides and frictions[row] < onset:
-                ended[row] = None
-                continue
-            last = doubling + 1 == DOUBLINGS or not now.finished
-            allowed = FOR_VERDICTS.agreement
-            if last or (
-                earlier is not None
-                and difference(earlier.levels, now.levels) <= allowed
-            ):
-                ended[row] = now
-            before[row] = now
-            states[row], regimes[row] = now.final, now.regimes
-    return [ended[row] for row in range(count)]
+
+    unit = np.full(len(starts), first)
+    ended = settle(
+        starts,
+        advance,
+        Horizon(unit, 2.0 * unit, (2.0**DOUBLINGS - 1.0) * unit),
+        FOR_VERDICTS,
+        regimes=np.tile(start.regimes, (len(starts), 1)),
+    )
+    return [None if run.quiet else run.last for run in ended]
 
 
 def just_above(onset: FirstOnset, plant: Plant, how: Running) -> TrackState | None:
@@ -179,25 +174,25 @@ def just_above(onset: FirstOnset, plant: Plant, how: Running) -> TrackState | No
     place = int(above.unstable[0])
     period = 1.0 / above.slowest
     rate = float(above.spectrum.values[place].real)
-    frictions = np.full(WIDE, ABOVE * onset.mu)
-    window = run_window(
+    frictions = np.full(1, ABOVE * onset.mu)
+    window = run_windows(
         plant,
-        np.tile(above.pushed(place, PUSH), (WIDE, 1)),
+        np.tile(above.pushed(place, PUSH), (1, 1)),
         min(GROWTH / rate, LONGEST_GROWTH * period),
         how,
         frictions=frictions,
-    ).at(0)
+    ).row(0)
     if not window.finished:
         return None
     begun = TrackState(ABOVE * onset.mu, window.final, window.regimes, 0.0, 0.0)
-    (row,) = _run_on(plant, begun, frictions[:1], onset.mu, how)
+    (row,) = _run_on(plant, begun, frictions[:1], how)
     # where nothing switches it still grows
     return state_of(plant, begun.mu, row) if row is not None and row.events else None
 
 
-def state_of(plant: Plant, mu: float, row: Rows) -> TrackState:
+def state_of(plant: Plant, mu: float, row: StructureWindows) -> TrackState:
     """A settled motion at a friction."""
-    strongest = int(np.argmax(row.modal))
+    strongest = int(np.argmax(row.velocities))
     return TrackState(
         mu,
         row.final,

@@ -10,8 +10,8 @@ from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.squeal.plant import PUSH, Plant
 from squealpipe.systems.structures.squeal.smoothed import Samples
 from squealpipe.systems.structures.squeal.windows import (
-    Rows,
     Running,
+    StructureWindows,
     run,
     strongest_line,
 )
@@ -79,7 +79,11 @@ def _agree(before: WindowLevels, now: WindowLevels) -> bool:
 
 
 def exact_ends(
-    plant: Plant, before: Rows, now: Rows, count: int, tol: float
+    plant: Plant,
+    before: StructureWindows,
+    now: StructureWindows,
+    count: int,
+    tol: float,
 ) -> list[PushEnd]:
     """Of each push, over the starts that belong to it; the frequency from a run behind."""
     step = 1.0 / (FINEST * plant.fastest)
@@ -93,14 +97,14 @@ def exact_ends(
     ends = []
     for first in range(0, len(lines), count):
         mine = slice(first, first + count)
-        rows, earlier = now.at(mine), before.at(mine)
+        rows, earlier = now.row(mine), before.row(mine)
         finished = rows.finished.all() and earlier.finished.all()
         calm = [
             _died_out(plant, float(a), float(b)) and events == 0
             for a, b, events in zip(earlier.total, rows.total, rows.events, strict=True)
         ]
         steady = all(
-            _agree(earlier.at(place).levels, rows.at(place).levels)
+            _agree(earlier.row(place).levels(1.0), rows.row(place).levels(1.0))
             for place in range(count)
         )
         speeds = np.sqrt((rows.speed**2).mean(axis=1))
@@ -126,7 +130,7 @@ def exact_ends(
                 separated=rows.separated.mean(axis=0),
                 stuck=rows.stuck.mean(axis=0),
                 creep=np.where(rows.stuck.any(axis=0), 0.0, np.nan),
-                force=rows.force.max(axis=0) / plant.pressed,
+                force=rows.forces.max(axis=0) / plant.pressed,
                 quiet=quiet,
                 scatter=(0.0, 0.0, 0.0) if quiet else scatter,
             )

@@ -18,8 +18,8 @@ from squealpipe.systems.structures.squeal.descent import (
 from squealpipe.systems.structures.squeal.fold import add_fold
 from squealpipe.systems.structures.squeal.onset import FirstOnset, confirmed_onset
 from squealpipe.systems.structures.squeal.plant import Plant
-from squealpipe.systems.structures.squeal.settling import SettledMotion
 from squealpipe.systems.structures.squeal.windows import Running
+from squealpipe.vibration.settled_runs import SettledRun
 
 FOLLOWED = 3
 """Attractors that are followed at most, those of most random starts."""
@@ -27,9 +27,7 @@ ALIKE = 0.05
 """Largest difference of levels at which two tracks that end at one friction are one motion."""
 
 
-def hysteresis(
-    plant: Plant, settled: list[SettledMotion], how: Running
-) -> dict[str, Any]:
+def hysteresis(plant: Plant, settled: list[SettledRun], how: Running) -> dict[str, Any]:
     """Variables of the onset and of tracks: motions followed down in friction until they die.
 
     Args:

@@ -17,14 +17,14 @@ from squealpipe.schema.squealing import Kind
 from squealpipe.systems.cycles.find import find_cycle
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.structures.squeal.plant import Plant
-from squealpipe.systems.structures.squeal.settling import SettledMotion
 from squealpipe.systems.structures.squeal.windows import (
-    Rows,
     Running,
+    StructureWindows,
     run,
     statistics_of,
     strongest_line,
 )
+from squealpipe.vibration.settled_runs import SettledRun
 from squealpipe.vibration.settling import FOR_NUMBERS, late_growth
 
 BESIDE, OFF = 7, 1e-8
@@ -69,11 +69,11 @@ class Described:
     amplitudes: np.ndarray
     late_growth: float = 0.0
     leaves: bool = False
-    window: Rows | None = None
+    window: StructureWindows | None = None
 
 
 def described(
-    plant: Plant, settled: SettledMotion, how: Running, before: float = 0.0
+    plant: Plant, settled: SettledRun, how: Running, before: float = 0.0
 ) -> Described:
     """Run on from where a start has settled.
 
@@ -120,7 +120,7 @@ def described(
             kind, leaves = Kind.cycle, False
         elif grown <= LINEAR and not _repeats(raw, length, REPEATED):
             kind = Kind.torus
-    window = statistics_of(plant, raw, length).at(0)
+    window = statistics_of(plant, raw, length).row(0)
     lines = omega / (2.0 * np.pi)
     if leaves:
         kind = Kind.undetermined
@@ -190,7 +190,7 @@ def stable_cycle(
 
 
 def _closed(
-    plant: Plant, settled: SettledMotion, raw: dict[str, np.ndarray], frequency: float
+    plant: Plant, settled: SettledRun, raw: dict[str, np.ndarray], frequency: float
 ) -> Cycle | None:
     """The stable cycle through the end of the run, if the exact map finds it there."""
     if raw["outcome"][0] != Outcome.converged or not np.isfinite(frequency):

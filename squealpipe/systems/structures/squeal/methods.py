@@ -30,9 +30,13 @@ from squealpipe.systems.structures.squeal.ends import (
     without_mode,
 )
 from squealpipe.systems.structures.squeal.plant import PUSH, Plant
-from squealpipe.systems.structures.squeal.settling import WIDE
 from squealpipe.systems.structures.squeal.smoothed import Smoothed
-from squealpipe.systems.structures.squeal.windows import Rows, Running, run_window
+from squealpipe.systems.structures.squeal.windows import (
+    WIDE,
+    Running,
+    StructureWindows,
+    run_windows,
+)
 
 APART = 0.05
 """By how much the next of several pushes is larger, over the first."""
@@ -138,10 +142,12 @@ def exact_told(
         ]
     )
 
-    def go(span: float, states: np.ndarray, regimes: Any, seed: int) -> Rows:
-        return run_window(plant, states, span, Running(tol, seed, 1), regimes)
+    def go(
+        span: float, states: np.ndarray, regimes: Any, seed: int
+    ) -> StructureWindows:
+        return run_windows(plant, states, span, Running(tol, seed, 1), regimes)
 
-    def ask() -> list[Rows]:
+    def ask() -> list[StructureWindows]:
         rows = [go(horizon.growing, starts, None, 0)]
         for seed in (1, 2):
             rows.append(go(horizon.window, rows[-1].final, rows[-1].regimes, seed))

@@ -7,6 +7,7 @@ import numpy as np
 import scipy.linalg as la
 from scipy.optimize import linear_sum_assignment
 
+from squealpipe.laws.friction_laws import COULOMB
 from squealpipe.schema.squealing import MOST_MODES
 from squealpipe.systems.components import MOST_COMPONENTS
 from squealpipe.systems.structures.agreement import Agreement, Truth, exact
@@ -24,6 +25,7 @@ from squealpipe.systems.structures.reduction import (
 )
 from squealpipe.systems.structures.spectrum import Limits, Solver, Spectrum
 from squealpipe.systems.system import System
+from squealpipe.systems.trace import TIME
 
 PUSH = 0.01
 """Push along a mode, over the deformation whose energy is that of the preload."""
@@ -130,6 +132,15 @@ class Plant:
         """As a system, whose states are displacements, then velocities."""
         return system(self.structure)
 
+    @cached_property
+    def regimes_at_rest(self) -> np.ndarray:
+        """Regime of each component in steady sliding."""
+        system = self.system
+        values = dict(zip(system.states, self.sliding[:, None], strict=True))
+        parameters = {name: np.full(1, at) for name, at in system.parameters.items()}
+        named = {**values, **parameters, TIME: np.zeros(1)}
+        return np.asarray(system.first_regimes(named, 1)[0])
+
     @property
     def contacts(self) -> list[str]:
         """Names."""
@@ -146,6 +157,18 @@ class Plant:
     def decays(self) -> bool:
         """Whether small motions about steady sliding die out."""
         return bool((self.spectrum.values.real < -self.spectrum.growth_errors).all())
+
+    @property
+    def rate(self) -> float:
+        """Growth rate of small motions, 1/s; 0 where its sign is not known."""
+        if not self.unstable.size and not self.decays:
+            return 0.0
+        return float(self.spectrum.values.real.max())
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether motions during which no contact switches are linear: friction is constant."""
+        return self.structure.friction.friction_law == COULOMB
 
     @cached_property
     def rest(self) -> tuple[np.ndarray, np.ndarray]:

@@ -1,30 +1,28 @@
-"""What starts settle to: windows of growing length, until two in succession agree.
+"""Starts of a structure, and what they settle to.
 
-The first is as long as the slowest unstable mode needs to grow from a small push to the nonlinear,
-so that none of it enters a number. The others grow to twice their length each time. A run has
-settled when its statistics in two windows agree and none of its modes still grows.
+The first window is as long as the slowest unstable mode needs to grow from a small push to the
+nonlinear, so that none of it enters a number.
 """
 
 from collections import Counter
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
-from squealpipe.methods.progress import alone, partial_answer
-from squealpipe.systems.structures.squeal.plant import Plant
-from squealpipe.systems.structures.squeal.windows import (
-    BLOCKS,
-    Rows,
-    Running,
-    run_window,
-)
-from squealpipe.systems.trace import TIME
+from squealpipe.methods.progress import partial_answer
+from squealpipe.schema.assess import Verdict
+from squealpipe.systems.structures.squeal.plant import PUSH, Plant
+from squealpipe.systems.structures.squeal.windows import BLOCKS, Running, run_windows
 from squealpipe.units import engineering
-from squealpipe.vibration.settling import FOR_VERDICTS, Agreement, agreement, difference
+from squealpipe.vibration.settled_runs import Horizon, SettledRun, Start
+from squealpipe.vibration.settled_runs import settle as settle_runs
+from squealpipe.vibration.settling import FOR_VERDICTS
 
 GROWTH = np.log(1e4)
-"""What small motions grow by before statistics begin: from a hundredth to beyond all bounds."""
+"""Growth of a small push before statistics start (ln; from 1 % of the static deformation to
+saturation)."""
 FIRST = 100.0
 """Length of the first window of statistics, in periods of the slowest unstable mode."""
 LONGEST_GROWTH, MOST = 4_000.0, 8_000.0
@@ -33,35 +31,20 @@ MOST_ON = 20_000.0
 """Most periods of a run that goes on because it leaves what it seemed to have settled to."""
 FEWEST = 4.0
 """Fewest periods of a run: the first windows are a quarter of it."""
-WIDE = 5
-"""Fewest runs at once: fewer are done by other code, which would have to be compiled, too."""
 
 
-@dataclass
-class SettledMotion:
-    """What one start has settled to.
-
-    Attributes:
-        quiet: whether it has died out to steady sliding.
-        agrees: whether it has settled at all.
-        last: statistics of the last window.
-        change: the largest difference to the window before.
-        elapsed: time run, s.
-        energies, instants: kinetic energy over time, by blocks, J and s.
-    """
-
-    quiet: bool
-    agrees: bool
-    last: Rows
-    change: float
-    elapsed: float
-    energies: np.ndarray = field(default_factory=lambda: np.empty(0))
-    instants: np.ndarray = field(default_factory=lambda: np.empty(0))
-
-    def arrival(self) -> float:
-        """When the kinetic energy first came to half of what it settles to, s."""
-        reached = self.energies >= 0.5 * self.energies[-BLOCKS:].mean()
-        return float(self.instants[reached.argmax()])
+def arrival(run: SettledRun) -> float:
+    """Return when the kinetic energy first came to half of what it settles to, s."""
+    energies = np.concatenate([window.kinetic for window in run.windows])
+    ends = np.cumsum([0.0, *(float(window.length) for window in run.windows)])
+    instants = np.concatenate(
+        [
+            end + window.block_ends
+            for end, window in zip(ends, run.windows, strict=False)
+        ]
+    )
+    reached = energies >= 0.5 * energies[-BLOCKS:].mean()
+    return float(instants[reached.argmax()])
 
 
 def horizon(plant: Plant, t_end: float | None) -> tuple[float, float, float]:
@@ -82,16 +65,31 @@ def horizon(plant: Plant, t_end: float | None) -> tuple[float, float, float]:
     return growing, min(first, 0.25 * most), most
 
 
+def start_at(plant: Plant, state: np.ndarray) -> Start:
+    """Return a start of a structure, at a state (2 n,)."""
+    return Start(
+        subject=plant,
+        state=state,
+        sliding=plant.sliding,
+        period=1.0 / plant.slowest,
+        speed=PUSH * float(np.sqrt(2.0 * plant.energy)),
+        rate=plant.rate,
+        is_linear=plant.is_linear,
+        measure=lambda away: float(np.sqrt(2.0) * plant.sizes(away)),
+    )
+
+
 def settle(
     plant: Plant, states: np.ndarray, t_end: float | None, how: Running
-) -> list[SettledMotion]:
+) -> list[SettledRun]:
     """Run all starts until each has settled, or the time has passed."""
-    return _run(plant, states, None, horizon(plant, t_end), how)
+    starts = [start_at(plant, state) for state in states]
+    return _settle(starts, horizon(plant, t_end), how)
 
 
 def settle_on(
-    plant: Plant, settled: list[SettledMotion], t_end: float | None, how: Running
-) -> list[SettledMotion]:
+    plant: Plant, settled: list[SettledRun], t_end: float | None, how: Running
+) -> list[SettledRun]:
     """Continue runs that seemed to have settled but still leave a motion that repels them.
 
     The first window has twice the length of the longest last one, and comes after as long without
@@ -103,72 +101,56 @@ def settle_on(
     length = 2.0 * max(float(run.last.length) for run in settled)
     left = most - max(run.elapsed for run in settled)
     if left < FEWEST * length:  # without statistics, and two windows
-        return [replace(run, agrees=False) for run in settled]
-    states = np.array([run.last.final for run in settled])
+        return [replace(run, verdict=Verdict.undetermined) for run in settled]
+    starts = [start_at(plant, run.last.final) for run in settled]
     regimes = np.array([run.last.regimes for run in settled])
     later = how.turn(100)  # beyond the number of any window: its instants are others
-    again = _run(plant, states, regimes, (length, length, left), later)
-    for run, now in zip(settled, again, strict=True):
-        now.energies = np.concatenate([run.energies, now.energies])
-        now.instants = np.concatenate([run.instants, run.elapsed + now.instants])
-        now.elapsed += run.elapsed
-    return again
+    again = _settle(starts, (length, length, left), later, regimes)
+    return [
+        replace(
+            now, windows=[*run.windows, *now.windows], elapsed=run.elapsed + now.elapsed
+        )
+        for run, now in zip(settled, again, strict=True)
+    ]
 
 
-def _run(
-    plant: Plant,
-    states: np.ndarray,
-    regimes: np.ndarray | None,
+def _settle(
+    starts: Sequence[Start],
     times: tuple[float, float, float],
     how: Running,
-) -> list[SettledMotion]:
-    """Run states until each has settled.
+    regimes: np.ndarray | None = None,
+) -> list[SettledRun]:
+    """Run starts of one structure until each has settled.
 
     Args:
-        regimes: those in which they start; None: whatever fits the states.
         times: lengths of the run without statistics, of the first window, and of all, s.
     """
-    growing, length, most = times
-    count = len(states)
-    settled: dict[int, SettledMotion] = {}
-    before: list[Rows | None] = [None] * count
-    energies: list[list[np.ndarray]] = [[] for _ in range(count)]
-    instants: list[list[np.ndarray]] = [[] for _ in range(count)]
-    states = states.copy()
-    at_rest = at_rest_regimes(plant)
-    elapsed, span, turn = 0.0, growing, 0
-    with alone() as show:
-        while rows := [row for row in range(count) if row not in settled]:
-            show(1.0 - len(rows) / count * (1.0 - elapsed / most))
-            wide = np.array([*rows, *rows * WIDE])[: max(len(rows), WIDE)]
-            started_in = None if regimes is None else regimes[wide]
-            window = run_window(plant, states[wide], span, how.turn(turn), started_in)
-            if regimes is None:
-                regimes = np.zeros((count, window.regimes.shape[1]), np.int64)
-            for place, row in enumerate(rows):
-                now = window.at(place)
-                energies[row].append(now.kinetic)
-                instants[row].append(elapsed + now.block_ends)
-                found = _judged(plant, before[row], now, at_rest)
-                late = elapsed + span >= (1.0 - 1e-9) * most
-                if found is None and (late or not now.finished):
-                    found = SettledMotion(False, False, now, np.inf, 0.0)
-                if found is not None:
-                    found.elapsed = elapsed + span
-                    found.energies = np.concatenate(energies[row])
-                    found.instants = np.concatenate(instants[row])
-                    settled[row] = found
-                before[row] = now if turn else None  # what grows is no statistics
-                states[row], regimes[row] = now.final, now.regimes
-            elapsed += span
-            partial_answer(partial(_so_far, plant, settled, count, elapsed))
-            span = min(length * 2.0**turn, most - elapsed)
-            turn += 1
-    return [settled[row] for row in range(count)]
+    plant: Plant = starts[0].subject
+
+    def advance(
+        rows: list[int],
+        states: np.ndarray,
+        begun: np.ndarray | None,
+        seconds: np.ndarray,
+        turn: int,
+    ) -> object:
+        return run_windows(plant, states, seconds, how.turn(turn), begun)
+
+    growing, first, most = (np.full(len(starts), time) for time in times)
+    lengths = Horizon(growing, first, most, grows_first=True)
+
+    def told(settled: dict[int, SettledRun], elapsed: np.ndarray) -> None:
+        partial_answer(
+            partial(_so_far, plant, settled, len(starts), float(elapsed.max()))
+        )
+
+    return settle_runs(
+        starts, advance, lengths, FOR_VERDICTS, regimes=regimes, told=told
+    )
 
 
 def _so_far(
-    plant: Plant, settled: dict[int, SettledMotion], count: int, elapsed: float
+    plant: Plant, settled: dict[int, SettledRun], count: int, elapsed: float
 ) -> str:
     """Say in a line what starts have settled to so far."""
     omega = plant.rest[0]
@@ -179,7 +161,7 @@ def _so_far(
         elif motion.quiet:
             ends["steady sliding"] += 1
         else:
-            mode = int(motion.last.modal.argmax())
+            mode = int(motion.last.velocities.argmax())
             ends[f"near {engineering(omega[mode] / (2 * np.pi), 'Hz')}"] += 1
     told = ", ".join(f"{number} {where}" for where, number in ends.most_common())
     done = sum(motion.agrees for motion in settled.values())
@@ -187,29 +169,3 @@ def _so_far(
         f"after {engineering(elapsed, 's')}: {done} of {count} starts have settled"
         + (f" ({told})" if told else "")
     )
-
-
-def at_rest_regimes(plant: Plant) -> np.ndarray:
-    """The regime of each component in steady sliding."""
-    system = plant.system
-    values = dict(zip(system.states, plant.sliding[:, None], strict=True))
-    parameters = {name: np.full(1, value) for name, value in system.parameters.items()}
-    named = {**values, **parameters, TIME: np.zeros(1)}
-    return np.asarray(system.first_regimes(named, 1)[0])
-
-
-def _judged(
-    plant: Plant, before: Rows | None, now: Rows, at_rest: np.ndarray
-) -> SettledMotion | None:
-    """What two windows in succession show; None: nothing yet."""
-    if not now.finished:
-        return None
-    if not now.events and (now.regimes == at_rest).all() and plant.decays:
-        # nothing switched in a whole window: the motion is linear about steady sliding, and decays
-        return SettledMotion(True, True, now, 0.0, 0.0)
-    if before is None:
-        return None
-    levels = before.levels, now.levels
-    if agreement(*levels, FOR_VERDICTS) is Agreement.none:
-        return None
-    return SettledMotion(False, True, now, difference(*levels), 0.0)

@@ -18,14 +18,14 @@ from squealpipe.systems.structures.squeal.hysteresis import hysteresis
 from squealpipe.systems.structures.squeal.kinds import Described, described
 from squealpipe.systems.structures.squeal.plant import PUSH, Plant
 from squealpipe.systems.structures.squeal.remedies import added_damping
-from squealpipe.systems.structures.squeal.settling import (
-    SettledMotion,
-    at_rest_regimes,
-    settle,
-    settle_on,
+from squealpipe.systems.structures.squeal.settling import arrival, settle, settle_on
+from squealpipe.systems.structures.squeal.windows import (
+    Running,
+    StructureWindows,
+    still,
 )
-from squealpipe.systems.structures.squeal.windows import Rows, Running, still
 from squealpipe.validation import Natural, Positive, Seed, Tolerance, Workers, checked
+from squealpipe.vibration.settled_runs import SettledRun
 from squealpipe.vibration.verdicts import heard
 
 LINES = 1024
@@ -215,11 +215,11 @@ def _of_whole(plant: Plant) -> dict[str, Any]:
 
 def _attractors(
     plant: Plant,
-    settled: list[SettledMotion],
+    settled: list[SettledRun],
     pushes: int,
     t_end: float | None,
     how: Running,
-) -> tuple[list[SettledMotion], np.ndarray, list[Described]]:
+) -> tuple[list[SettledRun], np.ndarray, list[Described]]:
     """Return settled runs, the number of the attractor of each, and all attractors.
 
     Runs whose motion leaves what repels it, as a cycle that a second mode destabilizes, go on: of
@@ -227,7 +227,7 @@ def _attractors(
     """
     known: dict[int, Described] = {}
 
-    def of(run: SettledMotion) -> Described:
+    def of(run: SettledRun) -> Described:
         if id(run) not in known:
             known[id(run)] = described(plant, run, how)
         return known[id(run)]
@@ -253,9 +253,7 @@ def _attractors(
     return settled, numbers, modes
 
 
-def _members(
-    settled: list[SettledMotion], numbers: np.ndarray
-) -> list[list[SettledMotion]]:
+def _members(settled: list[SettledRun], numbers: np.ndarray) -> list[list[SettledRun]]:
     """Runs of each attractor, the longest first."""
     return [
         sorted(
@@ -267,10 +265,7 @@ def _members(
 
 
 def _of_modes(
-    plant: Plant,
-    settled: list[SettledMotion],
-    numbers: np.ndarray,
-    found: list[Described],
+    plant: Plant, settled: list[SettledRun], numbers: np.ndarray, found: list[Described]
 ) -> dict[str, Any]:
     """What becomes of each unstable mode."""
     count = len(plant.unstable)
@@ -282,7 +277,7 @@ def _of_modes(
             away = np.abs(found[number].frequency - frequency)
             squeals[place] = away.argmin() == place
     times = [
-        run.arrival() if run.agrees and not run.quiet else np.nan
+        arrival(run) if run.agrees and not run.quiet else np.nan
         for run in settled[:count]
     ] or [np.nan] * count
     return {
@@ -296,7 +291,7 @@ def _of_modes(
 
 
 def _of_attractors(
-    plant: Plant, members: list[list[SettledMotion]], found: list[Described]
+    plant: Plant, members: list[list[SettledRun]], found: list[Described]
 ) -> dict[str, Any]:
     """Levels, shares of time, frequencies and multipliers; statistics are means over all runs."""
     count = len(members)
@@ -312,7 +307,7 @@ def _of_attractors(
             multipliers[place] = values
             trivial = np.abs(values - 1.0).argmin()
             largest[place] = np.abs(np.delete(values, trivial)).max()
-    force = _table(rows, "force", shape)
+    force = _table(rows, "forces", shape)
     # a contact that is open in steady sliding has no force to compare with
     at_rest = np.where(plant.spectrum.state.force > 0, plant.pressed, np.nan)
     landings = _table(rows, "landings", shape)
@@ -321,7 +316,7 @@ def _of_attractors(
     states = np.array([row.final for row in rows], float)
     states = states.reshape(count, 2 * plant.size)
     motion = [
-        heard(int(row.landings.max()), quiet=runs[0].quiet)
+        heard(row.losses, quiet=runs[0].quiet)
         for runs, row in zip(members, rows, strict=True)
     ]
     moves = np.array([not runs[0].quiet for runs in members], bool)
@@ -370,23 +365,25 @@ def _of_attractors(
     }
 
 
-def _window(plant: Plant, runs: list[SettledMotion], found: Described) -> Rows:
+def _window(plant: Plant, runs: list[SettledRun], found: Described) -> StructureWindows:
     """Return the window of an attractor: of one run after settling, or of all irregular ones.
 
     The last window of a run may begin with the end of a transient. Only in an irregular motion does
     scatter hide that.
     """
     if found.window is None:
-        return still(plant, at_rest_regimes(plant))
+        return still(plant)
     if found.kind in (Kind.cycle, Kind.torus):
         return found.window
     parts = [vars(run.last) for run in runs]
-    return Rows(
+    return StructureWindows(
         **{name: np.stack([part[name] for part in parts]) for name in parts[0]}
     ).mean()
 
 
-def _table(rows: list[Rows], name: str, shape: tuple[int, int]) -> np.ndarray:
+def _table(
+    rows: list[StructureWindows], name: str, shape: tuple[int, int]
+) -> np.ndarray:
     return np.array([getattr(row, name) for row in rows], float).reshape(shape)
 
 

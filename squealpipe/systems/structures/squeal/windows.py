@@ -13,12 +13,14 @@ from squealpipe.methods.spectrum import amplitude_spectrum, strongest_lines
 from squealpipe.schema import Outcome
 from squealpipe.systems.integrate import LARGEST, RunOptions, integrate
 from squealpipe.systems.structures.squeal.plant import Plant
-from squealpipe.vibration.settling import WindowLevels
+from squealpipe.vibration.windows import Windows
 
 SAMPLES = 2048
 """Instants of a window."""
 PADDING = 4
 """Lines of a spectrum beside those of its samples."""
+WIDE = 5
+"""Fewest runs at once."""
 BLOCKS = 64
 """Parts of a window whose kinetic energy is kept."""
 
@@ -42,92 +44,67 @@ class Running:
         return replace(self, seed=self.seed + number)
 
 
-@dataclass(frozen=True)
-class Rows:
-    """Statistics of one window of some runs, rows first.
+@dataclass(frozen=True, kw_only=True)
+class StructureWindows(Windows):
+    """Windows of a structure; velocities are those of the modes at rest, √J.
 
     Attributes:
-        final, regimes: state and regime of each component at the end.
-        modal: rms velocity of each mode at rest, √J.
         speed: rms speed of vibration of each contact, m/s.
         peak_speed: the largest of the samples.
-        separated, stuck: shares of the time, of each contact.
         landings: returns to contact, of each.
-        force: largest force of each, N.
         events: all of them.
         steps: of the integrator.
         kinetic: mean kinetic energy of each block, J.
         block_ends: of each block from the window's begin, s.
-        finished: whether the run reached the end of its window.
-        length: of the window, s.
     """
 
-    final: np.ndarray
-    regimes: np.ndarray
-    modal: np.ndarray
     speed: np.ndarray
     peak_speed: np.ndarray
-    separated: np.ndarray
-    stuck: np.ndarray
     landings: np.ndarray
-    force: np.ndarray
     events: np.ndarray
     steps: np.ndarray
     kinetic: np.ndarray
     block_ends: np.ndarray
-    finished: np.ndarray
-    length: np.ndarray
-
-    def at(self, rows: Any) -> Self:
-        """Some of the runs, or one."""
-        return type(self)(**{name: value[rows] for name, value in vars(self).items()})
-
-    @property
-    def total(self) -> np.ndarray:
-        """rms of the velocities of all modes, √J."""
-        return np.asarray(np.sqrt((self.modal**2).sum(-1)))
-
-    @property
-    def levels(self) -> WindowLevels:
-        """Statistics by which the window of one run is compared."""
-        return WindowLevels(self.modal, self.separated, self.stuck, self.force)
 
     def mean(self) -> Self:
         """Merge runs of one motion into one: means, and the largest of largest values."""
+        means = "velocities", "speed", "separated", "stuck", "landings", "separations"
+        largest = "forces", "peak_speed", "largest_velocity"
         values = {
             name: value.mean(axis=0, dtype=float)
-            if name in ("modal", "speed", "separated", "stuck", "landings")
+            if name in means
             else value.max(axis=0)
-            if name in ("force", "peak_speed")
+            if name in largest
             else value[0]
             for name, value in vars(self).items()
         }
         return type(self)(**values)
 
 
-def still(plant: Plant, regimes: np.ndarray) -> Rows:
-    """The window of steady sliding, where nothing of the push is left.
-
-    Args:
-        regimes: of each component there.
-    """
+def still(plant: Plant) -> StructureWindows:
+    """Return the window of steady sliding, where nothing of the push is left."""
     contacts = np.zeros(len(plant.contacts))
-    return Rows(
+    return StructureWindows(
         final=plant.sliding,
-        regimes=regimes,
-        modal=np.zeros(plant.size),
+        regimes=plant.regimes_at_rest,
+        velocities=np.zeros(plant.size),
+        largest_velocity=np.zeros(()),
         speed=contacts,
         peak_speed=np.zeros(()),
         separated=contacts,
         stuck=contacts,
+        separations=contacts,
         landings=contacts,
-        force=plant.spectrum.state.force,
+        forces=plant.spectrum.state.force,
+        switched=np.array(False),
         events=np.zeros((), int),
         steps=np.zeros((), int),
         kinetic=np.zeros(BLOCKS),
         block_ends=np.arange(1, BLOCKS + 1) / BLOCKS,
         finished=np.array(True),
         length=np.ones(()),
+        growth=np.array(np.nan),
+        late_growth=np.array(np.nan),
     )
 
 
@@ -166,63 +143,84 @@ def run(
     )
 
 
-def run_window(
+def run_windows(
     plant: Plant,
     states: np.ndarray,
-    length: float,
+    lengths: np.ndarray | float,
     how: Running,
     regimes: np.ndarray | None = None,
     frictions: np.ndarray | None = None,
-) -> Rows:
-    """Run for a length of time, s.
+) -> StructureWindows:
+    """Run states on, each for its length of time, s.
 
     Args:
+        lengths: (runs,), or one for all.
         regimes: of each component in which each run starts; None: what fits.
         frictions: of each run; None: that of the structure.
     """
+    count = len(states)
+    lengths = np.broadcast_to(np.asarray(lengths, float), (count,))
+    # fewer are done by other code, which would have to be compiled, too
+    wide = np.array([*range(count), *[*range(count)] * WIDE])[: max(count, WIDE)]
     part = np.random.default_rng(how.seed).random(SAMPLES)
-    times = length * (np.arange(SAMPLES) + part) / SAMPLES
-    times = np.append(times, length)
-    options = {} if regimes is None else {"regime": regimes}
-    raw = run(plant, states, times, how, frictions, **options)
-    return statistics_of(plant, raw, length)
+    times = np.append((np.arange(SAMPLES) + part) / SAMPLES, 1.0)
+    options = {} if regimes is None else {"regime": regimes[wide]}
+    frictions = None if frictions is None else frictions[wide]
+    raw = run(
+        plant, states[wide], lengths[wide, None] * times, how, frictions, **options
+    )
+    return statistics_of(plant, raw, lengths[wide]).row(slice(count))
 
 
-def statistics_of(plant: Plant, raw: dict[str, np.ndarray], length: float) -> Rows:
+def statistics_of(
+    plant: Plant, raw: dict[str, np.ndarray], lengths: np.ndarray | float
+) -> StructureWindows:
     """Statistics of windows by the raw results of their runs, whose last sample is their end."""
     size = len(raw["final"])
+    lengths = np.broadcast_to(np.asarray(lengths, float), (size,))
     samples = raw["samples"][:, :-1]
     modal = plant.modal_velocities(samples)
     speed = plant.contact_speeds(samples)
-    kinetic = 0.5 * (modal**2).sum(-1)
-    shares = raw["durations"] / length
+    square = (modal**2).sum(-1)
+    shares = raw["durations"] / lengths[:, None]
     separated, stuck = (
         np.stack([shares[:, places].sum(1) for places in _regimes(plant, word)], 1)
         for word in ("separated", "stick")
     )
     kinds = plant.system.traced.kinds
-    landings = np.stack(
-        [raw["counts"][:, kinds.index(f"{name}_contact")] for name in plant.contacts], 1
+    landings, separations = (
+        np.stack(
+            [raw["counts"][:, kinds.index(f"{name}_{e}")] for name in plant.contacts], 1
+        )
+        for e in ("contact", "separation")
     )
+    events, regimes = raw["counts"].sum(1), raw["sample_regimes"][:, -1].copy()
+    moved = (regimes != plant.regimes_at_rest).any(axis=1)
     with np.errstate(invalid="ignore"):
-        return Rows(
+        return StructureWindows(
             final=raw["final"],
-            regimes=raw["sample_regimes"][:, -1].copy(),  # as a start of the next
-            modal=np.sqrt((modal**2).mean(1)),
+            regimes=regimes,
+            velocities=np.sqrt((modal**2).mean(1)),
+            largest_velocity=np.sqrt(square.max(axis=1)),
             speed=np.sqrt((speed**2).mean(1)),
             peak_speed=speed.max(axis=(1, 2)),
             separated=separated,
             stuck=stuck,
+            separations=separations,
             landings=landings,
-            force=raw["extremes"][..., 1],
-            events=raw["counts"].sum(1),
+            forces=raw["extremes"][..., 1],
+            switched=(events > 0) | moved,
+            events=events,
             steps=raw["steps"],
             kinetic=np.stack(
-                [part.mean(1) for part in np.array_split(kinetic, BLOCKS, axis=1)], 1
+                [0.5 * part.mean(1) for part in np.array_split(square, BLOCKS, axis=1)],
+                axis=1,
             ),
-            block_ends=np.tile(length * np.arange(1, BLOCKS + 1) / BLOCKS, (size, 1)),
+            block_ends=lengths[:, None] * np.arange(1, BLOCKS + 1) / BLOCKS,
             finished=raw["outcome"] == Outcome.converged,
-            length=np.full(size, length),
+            length=lengths,
+            growth=np.full(size, np.nan),
+            late_growth=np.full(size, np.nan),
         )
 
 

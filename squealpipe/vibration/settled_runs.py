@@ -1,0 +1,278 @@
+"""Run starts until they have settled, and say what each has settled to.
+
+Idea: the horizon is no setting. Windows follow one another and grow to twice their length each
+time, until two in succession show the same verdict and agree by the rules of
+:mod:`squealpipe.vibration.settling`. Near an onset motions grow or decay slowly: a window that is
+too short to show this settles nothing. A motion is quiet only where it has become small, or decays
+as fast as small motions do; where forces are linear, a window in which no contact switches is such
+a decay at any size.
+
+Invariant: what moves does not matter here. Pads and structures hand over starts with the growth
+rate of their small motions, and a callable that integrates some of them on for a length of time.
+Cost: that of the runs; a motion that takes n periods to settle is run for 2 n at most.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from squealpipe.methods.progress import alone
+from squealpipe.schema.assess import Verdict
+from squealpipe.vibration.settling import Agreement, Settling, agreement, difference
+from squealpipe.vibration.verdicts import heard
+from squealpipe.vibration.windows import Windows
+
+
+@dataclass(frozen=True)
+class Quietness:
+    """Thresholds of what has died out; each comment says what another value would do."""
+
+    faded: float = 0.1
+    """Velocity over that of the push below which a motion has died out. Half as much: motions that
+    decay slowly are run longer; the verdict is the same."""
+    stays_small: float = 10.0
+    """Velocity over that of the push up to which motions are small: undamped ones that stay below
+    are quiet. Twice as much: a small cycle without events may be called quiet."""
+    shown: float = 0.5
+    """Growth or decay in a window, in logarithm, from which it would be seen. Half as much: what
+    grows slowly may pass for settled."""
+    seen: float = 1.0
+    """Decay, in logarithm, that two states cannot pretend by their phases. Half as much: a beat may
+    pass for a decay."""
+    decay_share: float = 0.5
+    """Share of the decay of small motions that a motion has to show. At 1 beats would hide it."""
+
+
+QUIETNESS = Quietness()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Start:
+    """A start, and what is known of small motions about its steady sliding.
+
+    Attributes:
+        subject: what moves, for the callable that runs it.
+        state: where it starts, (states,).
+        sliding: state of steady sliding; None if there is none.
+        period: unit of the lengths of its windows, s.
+        speed: largest velocity of small motions of the size of the push, in the unit of the
+            windows' velocities; of an undamped subject that of this start.
+        rate: growth rate of small motions, 1/s; 0 where no run would show growth or decay.
+        is_linear: whether motions during which no contact switches decay as small ones do.
+        measure: size of a deviation (states,) as a velocity.
+    """
+
+    subject: Any
+    state: np.ndarray
+    sliding: np.ndarray | None
+    period: float
+    speed: float
+    rate: float
+    is_linear: bool = False
+    measure: Callable[[np.ndarray], float] = field(repr=False)
+
+    def distance(self, state: np.ndarray) -> float:
+        """Return how far a state is from steady sliding, as a velocity."""
+        return self.measure(state if self.sliding is None else state - self.sliding)
+
+
+@dataclass(frozen=True)
+class SettledRun:
+    """What one start has settled to.
+
+    Attributes:
+        verdict: on the motion; undetermined where it has not settled.
+        last: statistics of the last window.
+        elapsed: time run, s.
+        irregular: whether its numbers are statistics.
+        change: largest difference of the last window to the one before; infinite where they do not
+            agree.
+        windows: all of them.
+    """
+
+    verdict: Verdict
+    last: Any
+    elapsed: float
+    irregular: bool = False
+    change: float = 0.0
+    windows: Sequence[Any] = ()
+
+    @property
+    def quiet(self) -> bool:
+        """Whether it has died out to steady sliding."""
+        return self.verdict is Verdict.quiet
+
+    @property
+    def agrees(self) -> bool:
+        """Whether it has settled at all."""
+        return self.verdict is not Verdict.undetermined
+
+    @property
+    def lasts(self) -> bool:
+        """Whether a motion is known to last, or has at least not lost its events by the horizon.
+
+        What slides in contact by then, and has only not become small, dies out with small motions.
+        """
+        if self.verdict is Verdict.undetermined:
+            return bool(self.last.switched or not self.last.finished)
+        return not self.quiet
+
+
+@dataclass(frozen=True)
+class Horizon:
+    """Lengths of windows, (runs,) each, s.
+
+    Attributes:
+        first, second: lengths of the first two windows; later ones double.
+        most: time after which a motion that has not settled is undetermined.
+        grows_first: whether the first window is but the time in which a push grows, so that no
+            statistics of it are compared.
+    """
+
+    first: np.ndarray
+    second: np.ndarray
+    most: np.ndarray
+    grows_first: bool = False
+
+
+Advance = Callable[[list[int], np.ndarray, "np.ndarray | None", np.ndarray, int], Any]
+"""Run some starts on: their numbers, states (runs, states), regimes (runs, components; None: what
+fits), lengths of time (runs,), and the number of the window; returns :class:`Windows`."""
+Told = Callable[[dict[int, SettledRun], np.ndarray], None]
+
+
+def settle(
+    starts: Sequence[Start],
+    advance: Advance,
+    horizon: Horizon,
+    rules: Settling,
+    *,
+    regimes: np.ndarray | None = None,
+    told: Told | None = None,
+) -> list[SettledRun]:
+    """Run starts side by side until each has settled by the rules, or the time has passed.
+
+    Args:
+        regimes: those in which they start, (runs, components); None: what fits.
+        told: takes what has settled so far and the times run, after each window.
+    """
+    count = len(starts)
+    settled: dict[int, SettledRun] = {}
+    states = np.array([start.state for start in starts])
+    elapsed = np.zeros(count)
+    length = np.array(horizon.first, float)
+    windows: list[list[Windows]] = [[] for _ in range(count)]
+    turn = 0
+    with alone() as show:
+        while rows := [row for row in range(count) if row not in settled]:
+            share = float((elapsed[rows] / horizon.most[rows]).mean())
+            show(1.0 - len(rows) / count * (1.0 - share))
+            begun = None if regimes is None else regimes[rows]
+            ran = advance(rows, states[rows], begun, length[rows], turn)
+            if regimes is None:
+                regimes = np.zeros((count, ran.regimes.shape[1]), ran.regimes.dtype)
+            elapsed[rows] += length[rows]
+            for place, row in enumerate(rows):
+                now = ran.row(place)
+                compared = len(windows[row]) > (1 if horizon.grows_first else 0)
+                before = windows[row][-1] if compared else None
+                windows[row].append(now)
+                late = elapsed[row] >= (1.0 - 1e-9) * horizon.most[row]
+                run = _settled(starts[row], before, now, rules)
+                if run is None and (late or not now.finished):
+                    run = _unsettled(starts[row], before, now)
+                if run is not None:
+                    verdict, irregular, change = run
+                    settled[row] = SettledRun(
+                        verdict,
+                        now,
+                        float(elapsed[row]),
+                        irregular,
+                        change,
+                        windows[row],
+                    )
+                states[row], regimes[row] = now.final, now.regimes
+            length = horizon.second.astype(float) if turn == 0 else 2.0 * length
+            length = np.minimum(length, horizon.most - elapsed)
+            turn += 1
+            if told is not None:
+                told(settled, elapsed)
+    return [settled[row] for row in range(count)]
+
+
+End = tuple[Verdict, bool, float]
+"""Verdict, whether the motion is irregular, and its largest change."""
+
+
+def _settled(
+    start: Start, before: Windows | None, now: Windows, rules: Settling
+) -> End | None:
+    """Return what two windows in succession show; None if they show nothing yet."""
+    if not now.finished:
+        return None
+    if start.is_linear and start.rate < 0.0 and not now.switched:
+        return Verdict.quiet, False, 0.0
+    if before is None:
+        return None
+    fades = not now.switched and start.rate <= 0.0
+    if fades and _dies_out(start, before, now):
+        return Verdict.quiet, False, 0.0
+    levels = before.levels(start.period), now.levels(start.period)
+    shown = agreement(*levels, rules)
+    verdict = heard(now.losses)
+    if heard(before.losses) is not verdict or shown is Agreement.none:
+        return None
+    end = verdict, shown is Agreement.irregular, difference(*levels)
+    if verdict is Verdict.hammers:
+        return end
+    if _lost_in_part(now):
+        return None
+    faded = QUIETNESS.faded * start.speed
+    if start.sliding is None and now.total < faded:
+        return Verdict.quiet, *end[1:]
+    is_shown = abs(start.rate) * float(now.length) >= QUIETNESS.shown or now.switched
+    return end if is_shown or start.rate == 0.0 else None
+
+
+def _unsettled(start: Start, before: Windows | None, now: Windows) -> End:
+    """Return what a motion is that has not settled within its horizon."""
+    if now.finished and before is not None and _decays(start, before, now):
+        return Verdict.quiet, False, 0.0  # too slowly to become small
+    return Verdict.undetermined, False, np.inf
+
+
+def _lost_in_part(now: Windows) -> bool:
+    """Tell whether contact is lost for a part of the window, or at all contacts.
+
+    A single contact of many may stay open in a settled motion.
+    """
+    in_part = (now.separated > 0.0) & (now.separated < 1.0)
+    return bool(now.losses or in_part.any() or (now.separated == 1.0).all())
+
+
+def _dies_out(start: Start, before: Windows, now: Windows) -> bool:
+    """Tell whether a motion without events is small and decays as small motions do."""
+    largest = float(now.largest_velocity)
+    if largest > QUIETNESS.stays_small * start.speed:
+        # a long window may begin loud: a part of the decay within it has to be seen
+        decay = QUIETNESS.decay_share * start.rate * float(now.length)
+        left = min(QUIETNESS.stays_small * start.speed, largest * np.exp(decay))
+        return bool(decay < -QUIETNESS.seen and start.distance(now.final) < left)
+    if largest < QUIETNESS.faded * start.speed or start.rate == 0.0:
+        return True
+    return _decays(start, before, now)
+
+
+def _decays(start: Start, before: Windows, now: Windows) -> bool:
+    """Tell whether two windows without events show a part of the decay of small motions."""
+    if start.rate >= 0.0 or before.switched or now.switched:
+        return False
+    # from the middle of one window to that of the next
+    apart = 0.5 * float(before.length + now.length)
+    return bool(
+        now.total < before.total * np.exp(QUIETNESS.decay_share * start.rate * apart)
+    )
