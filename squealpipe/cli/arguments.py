@@ -51,6 +51,17 @@ Numbers = Annotated[
     _signed(partial(parse_range, one=parse_share), "RANGE", negative=""),
 ]
 """A number, a list of them or first:last:count."""
+
+
+def _parse_friction(text: str) -> list[float] | dict[str, list[float]]:
+    """A range of the friction of a structure, or ``lining=0:0.6:13`` of one contact or face."""
+    name, equals, values = text.rpartition("=")
+    numbers = parse_range(values, one=parse_share)
+    return {name.strip(): numbers} if equals else numbers
+
+
+Frictions = Annotated[Any, _signed(_parse_friction, "[NAME=]RANGE", negative="")]
+"""Friction of a structure, or of one of its contacts or faces."""
 Ranges = Annotated[list[str], Parameter(metavar="NAME=RANGE", negative="")]
 Whole = Annotated[int, Parameter(converter=_whole, metavar="INT", n_tokens=1)]
 

@@ -10,7 +10,7 @@ from squealpipe.cli.arguments import (
     FILES,
     Files,
     Frequency,
-    Numbers,
+    Frictions,
     Output,
     Ranges,
     Speeds,
@@ -44,7 +44,7 @@ def modes(
     file: Path,
     /,
     *,
-    mu: Numbers = None,
+    mu: Frictions = None,
     belt_speed: Speeds = None,
     frequency_max: Frequency = None,
     n_modes: Whole | None = None,
@@ -59,7 +59,9 @@ def modes(
 
     Args:
         file: structure, a YAML file that names its matrices and contacts (see the gallery).
-        mu: friction, a number or first:last:count; that of the file by default.
+        mu: friction, a number or first:last:count; that of the file by default. It is that of the
+            contacts that have none of their own; lining=0:0.6:13 is that of one contact or of a
+            face, the contacts lining_1, lining_2, ….
         belt_speed: likewise, m/s.
         frequency_max: highest frequency of the modes, Hz; 20 kHz where neither limit is given.
         n_modes: number of modes; one of these two limits is needed beyond 1000 degrees of freedom.
@@ -72,7 +74,7 @@ def modes(
             mu_static and friction_speed replace those of the file.
     """
     asked: dict[str, Any] = {
-        "mu": _one_or_more(mu),
+        "mu": _friction(mu),
         "belt_speed": _one_or_more(belt_speed),
         "frequency_max": frequency_max,
         "n_modes": n_modes,
@@ -93,9 +95,8 @@ def modes(
 
     def complex_modes(structure: Any, **options: Any) -> xr.Dataset:
         nonlocal shown
-        points = math.prod(
-            len(each) for each in options.values() if isinstance(each, list)
-        )
+        values = [*options.values(), *_values_of(options.get("mu"))]
+        points = math.prod(len(each) for each in values if isinstance(each, list))
         told = library.cost_beforehand(structure, points, options.get("n_modes"))
         if told is not None:
             say(told)
@@ -146,16 +147,32 @@ def _one_or_more(values: list[float] | None) -> Any:
     return values[0] if values is not None and len(values) == 1 else values
 
 
+def _friction(given: Any) -> Any:
+    if isinstance(given, dict):
+        return {name: _one_or_more(values) for name, values in given.items()}
+    return _one_or_more(given)
+
+
+def _values_of(mu: Any) -> list[Any]:
+    """The values of a contact's or face's friction."""
+    return list(mu.values()) if isinstance(mu, dict) else []
+
+
 def _line(mode: Any) -> str:
     """A mode where it grows fastest, and its critical friction."""
     fastest = mode.growth_rate.where(mode.unstable).argmax(...)
     at = mode.isel(fastest)
-    critical = at.critical_mu.item()
-    onset = f", from mu = {critical:.6g} on" if critical == critical else ""
-    return (
+    words = (
         f"mode {int(mode.mode)}: {at.frequency.item():.6g} Hz, growth rate "
-        f"{at.growth_rate.item():.6g} 1/s at mu = {at.mu.item():g}{onset}"
+        f"{at.growth_rate.item():.6g} 1/s"
     )
+    if "critical_scale" in at:  # every contact has its own friction
+        scale = at.critical_scale.item()
+        return words + (f", from {scale:.6g} mu on" if scale == scale else "")
+    critical, of = at.critical_mu.item(), mode.attrs.get("mu_of")
+    name = f"mu of {of}" if of else "mu"
+    onset = f", from {name} = {critical:.6g} on" if critical == critical else ""
+    return f"{words} at {name} = {at.mu.item():g}{onset}"
 
 
 @options_of("squealing_modes")

@@ -66,7 +66,13 @@ def _modes(dims: tuple[str, ...]) -> DatasetSchema:
         coordinates={
             "mode": count("mode, by ascending frequency at the first friction", "mode"),
             **{
-                key: Variable(words, unit, (key,) if key in dims else ())
+                key: Variable(
+                    words,
+                    unit,
+                    (key,) if key in dims else (),
+                    # absent where every contact has its own
+                    optional=key == "mu" and key not in dims,
+                )
                 for key, (words, unit) in FACTORS.items()
             },
             **{key: _factor(key) for key in dims if key not in FACTORS},
@@ -106,6 +112,13 @@ def _modes(dims: tuple[str, ...]) -> DatasetSchema:
                 "1",
                 (*along, "mode"),
                 rtol=1e-8,
+            ),
+            "critical_scale": or_nan(
+                "smallest factor of all coefficients of friction at which growth leaves zero",
+                "1",
+                (*along, "mode"),
+                rtol=1e-8,
+                optional=True,
             ),
             "onset": flag(
                 "why the critical friction is what it is", Onset, *along, "mode"

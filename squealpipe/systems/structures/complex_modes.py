@@ -42,7 +42,10 @@ def complex_modes(
     """Complex modes about steady sliding.
 
     Args:
-        mu: friction; an ascending array of it is a dimension. None: the structure's.
+        mu: friction of the contacts that have none of their own; an ascending array of it is a
+            dimension. None: the structure's. A mapping like ``{"lining": [0.2, 0.4]}`` varies that
+            of one contact or of one face, the contacts ``lining_1``, ``lining_2``, …; where every
+            contact has its own and nothing is varied, ``critical_scale`` is of all together.
         belt_speed: likewise, m/s.
         frequency_max: modes up to there, Hz.
         n_modes: so many modes, by frequency. One of both is needed beyond 1000 degrees of freedom;
@@ -64,11 +67,13 @@ def complex_modes(
         ``growth_rate`` (1/s), ``frequency`` (Hz), ``damping_ratio``, ``unstable`` (growth above its
         error), ``residual``, ``outcome``. By mode ``critical_mu``: the smallest friction in the
         range given (from 0 to ``mu`` for one) at which growth leaves zero, NaN with the reason in
-        ``onset``, and ``merges_with``: the mode whose frequency it meets or, with damping, comes
-        near where one of both turns unstable; of several the first, so that a third mode may name
-        one of two that name each other. A mode is a pair of eigenvalues, or one real eigenvalue; it
-        keeps its number along ``mu``, and from one value of a factor to the next, by its shape.
-        ``normal_force`` by contact is 0 where one is open; open contacts are left out.
+        ``onset``; in its place ``critical_scale``, the factor of all coefficients (from 0 to 1),
+        where every contact has its own; and ``merges_with``: the mode whose frequency it meets
+        or, with damping, comes near where one of both turns unstable; of several the first, so that
+        a third mode may name one of two that name each other. A mode is a pair of eigenvalues, or
+        one real eigenvalue; it keeps its number along ``mu``, and from one value of a factor to the
+        next, by its shape. ``normal_force`` by contact is 0 where one is open; open contacts are
+        left out.
 
     Raises:
         ValueError: an argument; there is no steady sliding anywhere.
@@ -131,6 +136,12 @@ def _dataset(structure: ContactStructure, asked: Asked) -> xr.Dataset:
         "belt_speed": speeds,
         **varied,
     }
+    if asked.friction.is_factor:
+        del coords["mu"]
+        tables["critical_scale"] = tables["critical_mu"]
+        tables["critical_mu"] = [
+            np.full_like(each, np.nan) for each in tables["critical_scale"]
+        ]
     if names := [contact.name for contact in structure.contacts]:
         coords["contact"] = names
         tables["normal_force"] = _forces(every, rows, len(names))
@@ -140,7 +151,11 @@ def _dataset(structure: ContactStructure, asked: Asked) -> xr.Dataset:
     modes = {
         name: _over(arrays, ways.shape, *scalar) for name, arrays in tables.items()
     }
-    dims = tuple(name for name in ("mu", "belt_speed", *varied) if coords[name].ndim)
+    dims = tuple(
+        name
+        for name in ("mu", "belt_speed", *varied)
+        if name in coords and coords[name].ndim
+    )
     opened = {
         contact.name
         for contact, force in zip(
@@ -159,6 +174,7 @@ def _dataset(structure: ContactStructure, asked: Asked) -> xr.Dataset:
         "arguments": json.dumps(
             {**asked.limits.as_dict(), "critical": asked.critical, **asked.fixed}
         ),
+        **({"mu_of": asked.friction.name} if asked.friction.name else {}),
         "open_contacts": ", ".join(sorted(opened)) or "none",
         "fixed_degrees_of_freedom": max(
             step.spectrum.fixed for way in every for step in way.steps.values()
@@ -186,7 +202,8 @@ def _ways(structure: ContactStructure, asked: Asked) -> np.ndarray:
             for (name, values), index in zip(grid.items(), place, strict=True)
         }
         speed = at.pop("belt_speed")
-        solver = Solver(with_factors(structure, at), asked.limits, speed)
+        changed = with_factors(structure, at)
+        solver = Solver(changed, asked.limits, speed, asked.friction)
         way: Way
         if in_subspace:
             way = ConfirmedWay(solver, top, path=path.tolist())

@@ -67,7 +67,8 @@ class ConfirmedWay(Way):
         # hundreds of contacts: what is stiffest is left out, and the whole has the last word anyway
         self.basis = basis[:, :DENSE]
         small = projected(whole, self.solver.modal, self.basis)
-        solver = Solver(small, self.solver.limits, self.solver.belt_speed)
+        outer = self.solver
+        solver = Solver(small, outer.limits, outer.belt_speed, outer.varied)
         self.within = Way(solver)
         path = sorted({*self.path, *(each.mu for each in spectra)})
         self.within.follow(path, None)
@@ -167,7 +168,7 @@ class ConfirmedWay(Way):
         low = max(crossing.low - BESIDE_A_CHANGE, 0.0)
         high = crossing.high + BESIDE_A_CHANGE
         try:
-            passed = changes(solver.structure, low, high, solver.belt_speed)
+            passed = changes(solver.sliding, low, high)
         except NoSlidingError:
             return None
         if len(passed) != 1:

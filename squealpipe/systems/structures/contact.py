@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from squealpipe.parameters import (
+    TABLE,
     brief,
     finite_number,
     is_finite_number,
@@ -34,6 +35,11 @@ class Contact:
         preload: normal force where nᵀq = 0, N, or a text like ``0.2 kN``.
         speed: the belt's speed here over ``belt_speed``, as a radius; negative where the belt
             moves against t.
+        mu: its own coefficient of friction, with a table a factor of it; None: the structure's.
+        friction_law: a law of its own, as of the structure; None: the structure's. A table without
+            a ``mu`` is taken as it is.
+        mu_static: its own limit of stick. None: the structure's, or where the contact has a ``mu``
+            or ``friction_law`` of its own, the coefficient at speed 0.
         across: the direction across t in the plane of sliding, for ``transverse_damping``.
         transverse_damping: whether complex modes include that friction turns with the sliding
             velocity, which damps small motions across it by μN/|V|. Runs in time, which have
@@ -51,6 +57,9 @@ class Contact:
     speed: float = 1.0
     across: Any = None
     transverse_damping: bool = False
+    mu: float | None = None
+    friction_law: Any = None
+    mu_static: float | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not self.name.isidentifier():
@@ -61,6 +70,7 @@ class Contact:
             name = f"contact {self.name}: {key}"
             value = finite_number(name, getattr(self, key), units)
             object.__setattr__(self, key, value)
+        self._check_friction()
         for key in ("normal", "tangential", "across"):
             direction = getattr(self, key)
             if direction is None:
@@ -89,6 +99,15 @@ class Contact:
                 None,
                 "transverse_damping needs the direction across, like across={2: 1.0}",
             )
+
+    def _check_friction(self) -> None:
+        for key in ("mu", "friction_law", "mu_static"):
+            if (own := getattr(self, key)) is not None:
+                try:
+                    value = TABLE[key].check(key, own)
+                except ValueError as error:
+                    raise ValueError(f"contact {self.name}: {error}") from None
+                object.__setattr__(self, key, value)
 
     def _refusal(self, key: str, value: object, why: str) -> ValueError:
         return ValueError(f"contact {self.name}: {key} = {brief(value)}: {why}")

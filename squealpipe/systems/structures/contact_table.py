@@ -1,4 +1,4 @@
-"""A table of contacts: name, normal, tangential, stiffness, preload and speed by column.
+"""A table of contacts: name, normal, tangential, stiffness, preload, speed and mu by column.
 
 Text in any encoding, with commas, semicolons or tabs between its cells, or an Excel sheet.
 """
@@ -17,7 +17,7 @@ from squealpipe.systems.structures.units import Scales
 from squealpipe.text import suggestion
 
 CONTACT_COLUMNS = ("name", "normal", "tangential", "stiffness", "preload")
-KNOWN = (*CONTACT_COLUMNS, "speed", "across")
+KNOWN = (*CONTACT_COLUMNS, "speed", "mu", "mu_static", "across")
 HEADER = f"its first row must name the columns, like {','.join(CONTACT_COLUMNS)}"
 
 
@@ -103,7 +103,7 @@ class _Line(NamedTuple):
             raise ValueError(f"{self.where}: {error}") from error
 
     def _values(self, sign: str, scales: Scales) -> dict[str, float]:
-        factors = {"stiffness": scales.stiffness, "preload": scales.force, "speed": 1.0}
+        factors = {"stiffness": scales.stiffness, "preload": scales.force}
         values = {}
         for key, each in self.numerals.items():
             text = plain(each.text, sign)
@@ -111,12 +111,18 @@ class _Line(NamedTuple):
             values[key] = (
                 finite_number(key, f"{text} {each.unit}", UNITS[key])
                 if each.unit
-                else finite_number(key, float(text), UNITS[key]) * factors[key]
+                else finite_number(key, float(text), UNITS[key]) * factors.get(key, 1.0)
             )
         return values
 
 
-UNITS = {"stiffness": "N m-1", "preload": "N", "speed": "1"}
+UNITS = {
+    "stiffness": "N m-1",
+    "preload": "N",
+    "speed": "1",
+    "mu": "1",
+    "mu_static": "1",
+}
 """Columns of numbers → CF unit."""
 
 

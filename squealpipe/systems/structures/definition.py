@@ -9,7 +9,12 @@ import scipy.sparse as sp
 
 from squealpipe.parameters import brief, finite_number, numbers_in_si
 from squealpipe.systems.structures.contact import Contact, directions, transversals
-from squealpipe.systems.structures.friction import Friction, default_mu
+from squealpipe.systems.structures.friction import (
+    Friction,
+    default_mu,
+    friction_of,
+    has_own_mu,
+)
 from squealpipe.systems.structures.matrices import checked_mass, real_square
 from squealpipe.systems.structures.meshes.faces import Rotation
 from squealpipe.systems.structures.meshes.structure_mesh import StructureMesh
@@ -48,7 +53,8 @@ class ContactStructure:
             those of (M, K + Σ kᵢ nᵢnᵢᵀ), without friction. Up to 1000 degrees of freedom all are
             meant, beyond those up to the largest frequency asked for, or as many as ratios.
         contacts: :class:`Contact` each.
-        mu: coefficient of friction, 0.5 by default; with a table a factor of it, 1 by default.
+        mu: coefficient of friction of the contacts that have none of their own, 0.5 by default;
+            with a table a factor of it, 1 by default.
         belt_speed: V, m/s, 2 by default; its sign is the direction. With a rotation it is Ω, rad/s,
             that of the rotation by default, and ``speed`` of a contact is its radius in m.
         friction_law, mu_static, friction_speed: as in ``Parameters``.
@@ -123,6 +129,10 @@ class ContactStructure:
             ),
             friction_speed=finite_number("friction_speed", friction_speed, "m s-1"),
         )
+        self.frictions = tuple(
+            friction_of(each, self.friction) for each in self.contacts
+        )
+        """Of each contact: its own law and coefficients, or the structure's."""
         self.given_load = numbers_in_si("load", load, "N")
         self.load = self._load(self.given_load)
         self.mesh = _fitting(mesh, self.size)
@@ -136,8 +146,32 @@ class ContactStructure:
 
     @property
     def mu(self) -> float:
-        """Coefficient of friction."""
+        """Coefficient of friction of the contacts that have none of their own."""
         return self.friction.mu
+
+    @property
+    def has_own_mu(self) -> np.ndarray:
+        """Mask of the contacts whose coefficient is not the structure's, (contacts,)."""
+        return np.array([has_own_mu(each) for each in self.contacts], bool)
+
+    @property
+    def mu_of_contacts(self) -> np.ndarray:
+        """Coefficient of each contact, its own or the structure's, (contacts,)."""
+        return np.array([each.mu for each in self.frictions])
+
+    @property
+    def mu_static_of_contacts(self) -> np.ndarray:
+        """Largest friction over normal force in stick, of each contact, (contacts,)."""
+        return np.array([each.static_mu for each in self.frictions])
+
+    @property
+    def largest_mu(self) -> float:
+        """The largest structure's ``mu`` that limits of stick allow; infinite without any."""
+        own = self.has_own_mu
+        free = [
+            each for each, is_own in zip(self.frictions, own, strict=True) if not is_own
+        ]
+        return min((each.largest_mu for each in [self.friction, *free]), default=np.inf)
 
     @property
     def preloads(self) -> np.ndarray:
@@ -230,6 +264,11 @@ class ContactStructure:
                 "stiffness": each.stiffness,
                 "preload": each.preload,
                 "speed": each.speed,
+            }
+            | {
+                key: getattr(each, key)
+                for key in ("mu", "friction_law", "mu_static")
+                if getattr(each, key) is not None
             }
             for each in self.contacts
         }

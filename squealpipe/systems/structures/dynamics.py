@@ -19,7 +19,7 @@ from squealpipe.laws import friction_laws
 from squealpipe.laws.friction import slip_force, stick_limit
 from squealpipe.laws.tables import is_table
 from squealpipe.systems.structures.definition import ContactStructure
-from squealpipe.systems.structures.friction import Friction
+from squealpipe.systems.structures.friction import Friction, has_own_mu
 from squealpipe.systems.structures.modes import modal_damping_of
 
 ROUND_OFF = 1e-15
@@ -125,17 +125,20 @@ class Motion:
     @cached_property
     def limits(self) -> list[Any]:
         """The largest friction that holds each contact, N."""
-        law = friction_at(self.structure.friction, self.p)
-        return [stick_limit(force, law) for force in self.pressing]
+        return [
+            stick_limit(force, friction_at(self.structure, place, self.p))
+            for place, force in enumerate(self.pressing)
+        ]
 
     @cached_property
     def slip_friction(self) -> list[Any]:
         """T of each contact that slips, N; 0 in stick."""
         forces = []
-        for regime, force, speed in zip(
+        contacts = zip(
             self.regimes, self.normal_forces, self.sliding_speeds, strict=True
-        ):
-            law = friction_at(self.structure.friction, self.p, regime)
+        )
+        for place, (regime, force, speed) in enumerate(contacts):
+            law = friction_at(self.structure, place, self.p, regime)
             coefficient = law.factor * friction_laws.coefficient(
                 regime.direction * speed, law
             )
@@ -239,18 +242,40 @@ def reads_speed(friction: Friction) -> bool:
     return law is not None and "friction_speed" in law.PARAMETERS
 
 
-def friction_at(friction: Friction, p: Any, regime: Any = None) -> Any:
-    """What friction laws read, from parameters and, of a table, the piece of a regime."""
+def coefficients_of(structure: ContactStructure, place: int) -> dict[str, float]:
+    """Return the parameters ``mu`` and ``mu_static`` of one contact by their names in a system.
+
+    Those of a contact's own begin with its name, like ``p1_mu``.
+    """
+    contact, friction = structure.contacts[place], structure.frictions[place]
+    name = f"{contact.name}_mu" if has_own_mu(contact) else "mu"
+    parameters = {name: friction.mu}
+    if friction.mu_static is not None:
+        is_own = contact.mu_static is not None
+        parameters[f"{contact.name}_mu_static" if is_own else "mu_static"] = (
+            friction.mu_static
+        )
+    return parameters
+
+
+def friction_at(
+    structure: ContactStructure, place: int, p: Any, regime: Any = None
+) -> Any:
+    """What friction laws read of a contact: parameters and, of a table, the piece of a regime."""
+    friction = structure.frictions[place]
     law = law_in_use(friction)
-    static = p.mu_static if friction.mu_static is not None else None
-    q = SimpleNamespace(mu=p.mu, mu_static=static, friction_law=law, factor=1.0)
+    mu, static, *_ = [
+        *(getattr(p, name) for name in coefficients_of(structure, place)),
+        None,
+    ]
+    q = SimpleNamespace(mu=mu, mu_static=static, friction_law=law, factor=1.0)
     q.friction_speed = (
         p.friction_speed if reads_speed(friction) else friction.friction_speed
     )
     q.static_mu = friction_laws.static_coefficient(q)
     if is_table(law):
-        q.factor = p.mu
-        q.static_mu = q.static_mu if static is not None else p.mu * q.static_mu
+        q.factor = mu
+        q.static_mu = q.static_mu if static is not None else mu * q.static_mu
         if regime is not None:
             coefficients = (regime.mu_c0, regime.mu_c1, regime.mu_c2, regime.mu_c3)
             q.friction_law = friction_laws.FrictionPiece(regime.mu_start, coefficients)

@@ -11,6 +11,7 @@ from squealpipe.schema.structures import ARGUMENTS, OF_CONTACT, SCALED
 from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.pencil import DENSE
 from squealpipe.systems.structures.spectrum import Limits, check_frequency
+from squealpipe.systems.structures.varied_friction import VariedFriction, varied_by
 from squealpipe.text import suggestion
 from squealpipe.validation import real_array
 
@@ -23,6 +24,7 @@ class Asked:
 
     Attributes:
         mu, belt_speed: a number or a 1-D array each.
+        friction: what ``mu`` stands for.
         varied: further factors that are arrays.
         fixed: those that are numbers.
         critical: whether critical frictions are sought.
@@ -33,6 +35,7 @@ class Asked:
     belt_speed: np.ndarray
     varied: dict[str, np.ndarray]
     fixed: dict[str, float]
+    friction: VariedFriction
     critical: bool = True
 
 
@@ -53,7 +56,8 @@ def asked_of(
         raise ValueError(f"critical = {brief(critical)}: True or False is needed")  # noqa: TRY004
     further = dict(factors)
     mu, belt_speed = further.pop("mu", None), further.pop("belt_speed", None)
-    frictions = real_line("mu", structure.mu if mu is None else mu)
+    friction, written = varied_by(structure, mu)
+    frictions = real_line("mu", written)
     if (frictions < 0).any():
         raise ValueError(f"mu = {brief(mu)}: numbers of 0 or greater are needed")
     if frictions.ndim and (np.diff(frictions) <= 0).any():
@@ -66,6 +70,7 @@ def asked_of(
         real_line("belt_speed", speeds),
         {name: values for name, values in checked.items() if values.ndim},
         {name: float(values) for name, values in checked.items() if not values.ndim},
+        friction,
         critical,
     )
 

@@ -44,15 +44,16 @@ def read(path: str | PathLike[str], form: type[Form]) -> Form:
     """A structure from its file.
 
     The file has the keys ``mass`` and ``stiffness``, and where needed ``damping``: names of matrix
-    files beside it, or ``{file: NAME, variable: NAME}``; ``contacts``, a table (text or .xlsx)
-    with the columns name, normal, tangential, stiffness, preload and optionally speed, where a
-    direction is ``12:1 40:-1``, degrees of freedom counted from 1, or ``31.2:1``, node and
-    direction, where the matrix file has them; ``mu``, ``belt_speed``, ``friction_law``,
-    ``mu_static``, ``friction_speed``, ``modal_damping`` and ``load`` (a file with one number a
-    line, or 0) as of :class:`Structure`; ``units`` (``m-kg-s``; all numbers of a file with
-    ``mm-t-s`` are in mm, t, s and N and become SI's; a rotation then counts as the displacement at
-    an arm of one unit of length); ``triangle``: ``mirror`` where a file has one triangle of a
-    symmetric matrix, ``keep`` where it is meant as it is.
+    files beside it, or ``{file: NAME, variable: NAME}``; ``contacts``, a table (text or .xlsx) with
+    the columns name, normal, tangential, stiffness, preload and optionally speed, ``mu`` and
+    ``mu_static`` (of that contact; an empty cell leaves it to the structure), where a direction is
+    ``12:1 40:-1``, degrees of freedom counted from 1, or ``31.2:1``, node and direction, where the
+    matrix file has them; ``mu``, ``belt_speed``, ``friction_law``, ``mu_static``,
+    ``friction_speed``, ``modal_damping`` and ``load`` (a file with one number a line, or 0) as of
+    :class:`Structure`; ``units`` (``m-kg-s``; all numbers of a file with ``mm-t-s`` are in mm, t, s
+    and N and become SI's; a rotation then counts as the displacement at an arm of one unit of
+    length); ``triangle``: ``mirror`` where a file has one triangle of a symmetric matrix, ``keep``
+    where it is meant as it is.
 
     Args:
         path: the YAML file; names in it are relative to its folder.

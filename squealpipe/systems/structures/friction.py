@@ -1,12 +1,15 @@
-"""The friction of all contacts of a structure, by the laws of :mod:`squealpipe.laws`."""
+"""The friction of the contacts of a structure, by the laws of :mod:`squealpipe.laws`."""
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from squealpipe.laws.friction_laws import LAWS, coefficient, slope
 from squealpipe.laws.tables import is_table
 from squealpipe.parameters import TABLE
+
+if TYPE_CHECKING:
+    from squealpipe.systems.structures.contact import Contact
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,3 +73,39 @@ def default_mu(friction_law: object) -> float:
     """``mu`` where none is given: 1, a factor, with a table."""
     law = TABLE["friction_law"].check("friction_law", friction_law)
     return 1.0 if is_table(law) else 0.5
+
+
+def has_own_mu(contact: "Contact") -> bool:
+    """Tell whether the structure's ``mu`` is not that of the contact: a table of its own has 1."""
+    return contact.mu is not None or is_table(contact.friction_law)
+
+
+def friction_of(contact: "Contact", common: Friction) -> Friction:
+    """Friction of one contact: what it does not say itself is the structure's.
+
+    Raises:
+        ValueError: names the contact and the argument.
+    """
+    law = contact.friction_law
+    mu, mu_static = contact.mu, contact.mu_static
+    if mu is None and is_table(law):
+        mu = 1.0
+    if mu is None and law is not None and is_table(common.friction_law):
+        raise ValueError(
+            f"contact {contact.name}: friction_law = {law!r} needs a mu of its own, since the "
+            "structure's mu is a factor of a table"
+        )
+    if mu is None and law is None and mu_static is None:
+        return common
+    try:
+        return Friction(
+            friction_law=common.friction_law if law is None else law,
+            mu=common.mu if mu is None else mu,
+            mu_static=mu_static,
+            # the speeds of a table or of a law in Python are in m/s
+            friction_speed=1.0
+            if law is not None and law not in LAWS
+            else common.friction_speed,
+        )
+    except ValueError as error:
+        raise ValueError(f"contact {contact.name}: {error}") from None

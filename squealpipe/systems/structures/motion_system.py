@@ -12,7 +12,13 @@ from squealpipe.systems.belt_contact import FIRST, SLIP, BeltContact, Surface, n
 from squealpipe.systems.components import MOST_COMPONENTS, Component, Switch
 from squealpipe.systems.definition import MOST_STATES
 from squealpipe.systems.structures.definition import ContactStructure
-from squealpipe.systems.structures.dynamics import Motion, Numbers, reads_speed, total
+from squealpipe.systems.structures.dynamics import (
+    Motion,
+    Numbers,
+    coefficients_of,
+    reads_speed,
+    total,
+)
 from squealpipe.systems.structures.modes import modes_at_rest
 from squealpipe.systems.structures.reduction import conflict_in_stick
 from squealpipe.systems.system import System
@@ -28,7 +34,8 @@ def system(
 
     States are ``q1``…, ``v1``…: amplitudes of the modes of a reduced structure, else displacements.
     Parameters are ``mu``, ``belt_speed``, ``preload`` (a factor of all, and of the load that
-    balances them) and what the friction law reads. Each contact is a component with the regimes
+    balances them) and what the friction law reads; ``<contact>_mu`` and ``<contact>_mu_static`` are
+    those of a contact of its own. Each contact is a component with the regimes
     ``slip_slower``, ``slip_faster`` (than the belt), ``stick`` and ``separated``, in pieces where
     friction is a table; its outputs are ``<contact>_normal_force``, N, and ``<contact>_speed``,
     the speed of sliding, m/s.
@@ -97,7 +104,9 @@ def _parameters(structure: ContactStructure) -> dict[str, float]:
     parameters = {"mu": friction.mu, "belt_speed": structure.belt_speed, "preload": 1.0}
     if friction.mu_static is not None:
         parameters["mu_static"] = friction.mu_static
-    if reads_speed(friction):
+    for place in range(len(structure.contacts)):
+        parameters |= coefficients_of(structure, place)
+    if any(map(reads_speed, (friction, *structure.frictions))):
         parameters["friction_speed"] = friction.friction_speed
     return parameters
 
@@ -205,7 +214,7 @@ class _Contact:
     def __init__(self, equations: Equations, place: int, force: float) -> None:
         self.equations, self.place, self.force = equations, place, force
         structure = equations.structure
-        friction, name = structure.friction, structure.contacts[place].name
+        friction, name = structure.frictions[place], structure.contacts[place].name
         pieces: list[dict[str, float]] = [{}]
         if is_table(friction.friction_law):
             pieces = pieces_of(friction.friction_law).constants("mu")

@@ -112,7 +112,7 @@ class Way:
             self.steps[high] = Step(spectrum, numbers)
             return
         try:
-            passed = changes(solver.structure, low, high, solver.belt_speed)
+            passed = changes(solver.sliding, low, high)
         except NoSlidingError:
             passed = []
         stations = [*(mu for pair in passed for mu in pair), high]

@@ -61,23 +61,35 @@ class SteadySliding:
 
 
 def steady_sliding(
-    structure: ContactStructure, mu: float, belt_speed: float
+    structure: ContactStructure, mu: float | np.ndarray, belt_speed: float
 ) -> SteadySliding:
     """The state in which all closed contacts slide along with the belt.
+
+    Args:
+        mu: coefficient of the contacts that have none of their own, or of each, (contacts,).
 
     Raises:
         NoSlidingError: a belt at rest; a structure that nothing holds; or contacts of which none
             can be open or closed (as where friction jams).
     """
-    friction = replace(structure.friction, mu=mu)
+    if not np.ndim(mu):
+        mu = np.where(structure.has_own_mu, structure.mu_of_contacts, mu)
     speeds = structure.speeds * belt_speed
     if belt_speed == 0 and structure.contacts:
         raise NoSlidingError(
             "belt_speed = 0: contacts slide only on a belt that moves; choose another"
         )
     sizes = np.abs(speeds)
-    drag = np.sign(speeds) * [float(friction.coefficient(size)) for size in sizes]
-    slope = np.array([float(friction.slope(size)) for size in sizes])
+    laws = [
+        law if law.mu == each else replace(law, mu=float(each))
+        for law, each in zip(structure.frictions, np.asarray(mu), strict=True)
+    ]
+    drag = np.sign(speeds) * [
+        float(law.coefficient(size)) for law, size in zip(laws, sizes, strict=True)
+    ]
+    slope = np.array(
+        [float(law.slope(size)) for law, size in zip(laws, sizes, strict=True)]
+    )
     closed: Any = np.ones(len(speeds), bool)
     seen: set[bytes] = set()
     # contacts change one at a time, the first in order: such pivoting ends or comes back
@@ -104,9 +116,14 @@ def steady_sliding(
         else "a search among the states of the contacts did not end"
     )
     raise NoSlidingError(
-        f"no steady sliding at mu = {mu:g}, belt_speed = {belt_speed:g}: {reason}; check preloads "
-        "and load"
+        f"no steady sliding at mu = {_range(mu)}, belt_speed = {belt_speed:g}: {reason}; check "
+        "preloads and load"
     )
+
+
+def _range(values: Any) -> str:
+    low, high = np.min(values), np.max(values)
+    return f"{low:g}" if low == high else f"{low:g} to {high:g}"
 
 
 def _sought(structure: ContactStructure, drag: np.ndarray) -> np.ndarray | None:
@@ -144,9 +161,12 @@ def _sought(structure: ContactStructure, drag: np.ndarray) -> np.ndarray | None:
 
 
 def changes(
-    structure: ContactStructure, low: float, high: float, belt_speed: float
+    sliding: Callable[[float], SteadySliding], low: float, high: float
 ) -> list[tuple[float, float]]:
     """Where contacts open or close on the way from one friction to another.
+
+    Args:
+        sliding: steady sliding at a friction.
 
     Returns:
         The last friction with the contacts of before and the first with others, for each change
@@ -157,7 +177,7 @@ def changes(
     """
 
     def closed_at(mu: float) -> np.ndarray:
-        return steady_sliding(structure, mu, belt_speed).closed
+        return sliding(mu).closed
 
     passed: list[tuple[float, float]] = []
     closed, last = closed_at(low), closed_at(high)

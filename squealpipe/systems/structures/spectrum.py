@@ -21,6 +21,7 @@ from squealpipe.systems.structures.refinement import (
 )
 from squealpipe.systems.structures.sliding import SteadySliding, steady_sliding
 from squealpipe.systems.structures.stiff import beyond_gap, stiff_degrees
+from squealpipe.systems.structures.varied_friction import VariedFriction
 
 BEYOND = 1.05
 """The band of so many modes ends so far beyond the frequency that they reach without friction."""
@@ -130,11 +131,17 @@ def check_frequency(frequency_max: float | None) -> None:
 
 @dataclass
 class Solver:
-    """Modes of one structure at any friction, one belt speed after another; remembers them."""
+    """Modes of one structure at any friction and one belt speed; remembers them.
+
+    Attributes:
+        varied: what the friction stands for; None: the structure's ``mu``.
+        modal: damping of single modes.
+    """
 
     structure: ContactStructure
     limits: Limits
     belt_speed: float
+    varied: VariedFriction | None = None
     modal: LowRank | None = None
     _known: dict[float, Spectrum] = field(default_factory=dict)
 
@@ -155,10 +162,19 @@ class Solver:
         frequency = self.limits.frequency_max
         return None if self.is_dense or frequency is None else 2 * np.pi * frequency
 
+    def sliding(self, mu: float) -> SteadySliding:
+        """Steady sliding at this friction.
+
+        Raises:
+            NoSlidingError: there is none.
+        """
+        varied = self.varied or VariedFriction.common(self.structure)
+        coefficients = varied.of_contacts(self.structure, mu)
+        return steady_sliding(self.structure, coefficients, self.belt_speed)
+
     def pencil(self, mu: float) -> Pencil:
         """Of small motions at this friction."""
-        state = steady_sliding(self.structure, mu, self.belt_speed)
-        return pencil_about(self.structure, state, self.modal)
+        return pencil_about(self.structure, self.sliding(mu), self.modal)
 
     def at(self, mu: float) -> Spectrum:
         """All modes of a dense structure, those within the limits of a sparse one.
@@ -168,7 +184,7 @@ class Solver:
             IncompleteError: a band could not be shown to be complete.
         """
         if mu not in self._known:
-            state = steady_sliding(self.structure, mu, self.belt_speed)
+            state = self.sliding(mu)
             pencil = pencil_about(self.structure, state, self.modal)
             find: Callable[[Pencil], list[Eigenpair]]
             find = dense.all_modes if self.is_dense else self._within

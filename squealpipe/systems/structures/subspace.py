@@ -7,11 +7,11 @@ those frictions; in between they are near.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import scipy.linalg as la
 
-from squealpipe.systems.structures.contact import Contact
 from squealpipe.systems.structures.definition import ContactStructure
 from squealpipe.systems.structures.modes import modes_at_rest
 from squealpipe.systems.structures.pencil import LowRank
@@ -37,15 +37,11 @@ def in_coordinates(
     """
     normals, tangentials, transversals = directions
     contacts = [
-        Contact(
-            each.name,
-            normals[:, place],
-            tangentials[:, place],
-            each.stiffness,
-            each.preload,
-            each.speed,
-            transversals[:, place] if each.transverse_damping else None,
-            each.transverse_damping,
+        replace(
+            each,
+            normal=normals[:, place],
+            tangential=tangentials[:, place],
+            across=transversals[:, place] if each.transverse_damping else None,
         )
         for place, each in enumerate(whole.contacts)
     ]

@@ -50,7 +50,7 @@ def confirmed_onset(plant: Plant) -> FirstOnset | Outcome:
         except NoSlidingError:
             return False
 
-    most = min(BEYOND * plant.structure.mu, plant.structure.friction.largest_mu)
+    most = min(BEYOND * plant.structure.mu, plant.structure.largest_mu)
     if isinstance(found, FirstOnset):
         agrees = grows(ABOVE * found.mu) and not grows(BELOW * found.mu)
     elif found is Outcome.already_unstable:
@@ -67,7 +67,7 @@ def first_onset(plant: Plant) -> FirstOnset | Outcome:
     what its limit of stick allows, no mode turns unstable. Unresolved: it could not be located.
     """
     structure, modes = plant.structure, plant.modes
-    most = structure.friction.largest_mu
+    most = structure.largest_mu
     if (modes.onset == Onset.unstable_throughout).any():
         return Outcome.already_unstable
     if not plant.unstable.size:

@@ -55,7 +55,7 @@ class Smoothed:
         self.plant = plant
         structure = plant.structure
         self.numbers = Numbers.of(structure)
-        self.size, self.friction = plant.size, structure.friction
+        self.size, self.frictions = plant.size, structure.frictions
         self.stiffnesses, self.preloads = structure.stiffnesses, structure.preloads
         self.belt = structure.speeds * structure.belt_speed
         self.friction_width = friction_width
@@ -80,7 +80,12 @@ class Smoothed:
         numbers, q, v = self.numbers, state[: self.size], state[self.size :]
         pressing, speed = self.pressing(q), self.sliding(v)
         normal = self.forces(pressing)
-        coefficient = self.friction.coefficient(np.abs(speed))
+        coefficient = np.array(
+            [
+                law.coefficient(each)
+                for law, each in zip(self.frictions, np.abs(speed), strict=True)
+            ]
+        )
         drag = coefficient * normal * np.tanh(speed / self.friction_width)
         # the springs of closed contacts are part of the stiffness
         lifted = normal + self.preloads - pressing

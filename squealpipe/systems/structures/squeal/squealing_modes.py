@@ -85,8 +85,14 @@ def squealing_modes(
         ``squeals_below_critical`` and ``hysteresis``.
 
     Raises:
-        ValueError: there is no steady sliding; no contact; or a structure that is too large.
+        ValueError: there is no steady sliding; no contact; a structure that is too large; or
+            ``onset`` where every contact has a ``mu`` of its own.
     """
+    if onset and structure.contacts and structure.has_own_mu.all():
+        raise ValueError(
+            "onset = True lowers the structure's mu, but every contact has one of its own; leave "
+            "mu out of those that are to change, and give it to the structure"
+        )
     return squealing_of(
         Plant(structure),
         samples=samples,
