@@ -31,7 +31,7 @@ class LinearRegime(IntEnum):
 
 
 class SpecialPoint(IntEnum):
-    """What happens at a special point of a branch of periodic orbits."""
+    """Event at a special point of a branch of periodic orbits."""
 
     period_doubling = 0
     index_two = 1

@@ -26,8 +26,6 @@ from squealpipe.units import (
 )
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
-_IN_PI = re.compile(rf"([+-]?)({_NUMBER})?\s*\*?\s*(?:pi|π)(?:/({_NUMBER}))?")
-_IN_UNITS = re.compile(rf"({_NUMBER})\s*(deg|°|rad)?")
 ANGLE_FORMS = "write 0.4pi, 2pi/5, 72deg or radians"
 ANGLES = ("alpha1", "alpha2")
 UNITS = UNITS_OF_INPUTS | {
@@ -68,11 +66,15 @@ def parse_angle(text: str) -> float:
 
 
 def _angle_in(text: str) -> float | None:
-    if match := _IN_PI.fullmatch(text):
+    # 0.4pi, 2π/5, pi
+    if match := re.fullmatch(
+        rf"([+-]?)({_NUMBER})?\s*\*?\s*(?:pi|π)(?:/({_NUMBER}))?", text
+    ):
         sign, head, below = match.groups("1")
         above = float(head) * (-1 if sign == "-" else 1) * math.pi
         return above / float(below) if float(below) else None
-    if not (match := _IN_UNITS.fullmatch(text)):
+    # 72deg, 72°, 1.2 rad, 1.2
+    if not (match := re.fullmatch(rf"({_NUMBER})\s*(deg|°|rad)?", text)):
         return None
     value = float(match[1])
     return math.radians(value) if match[2] in {"deg", "°"} else value

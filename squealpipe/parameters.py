@@ -26,15 +26,13 @@ from squealpipe.units import engineering, number_of
 FULL_TURN = 2 * math.pi * (1 + 1e-9)
 """Largest angle, rad; beyond it one meant degrees, or slipped."""
 BEYOND_A_TURN = "more than a full turn; angles are in rad, from −2π to 2π"
-MOST_KNOTS = 24
-"""Knots of a table that are told in words; of a longer one the first and last of these."""
 HORIZON = 200.0
 """Default horizon of maps and questions, in units of √(m/k1)."""
 
 
 @dataclass(frozen=True)
 class Row:
-    """What the project knows about one parameter; everything else derives from it.
+    """One parameter: units, symbol, meaning, allowed values. Everything else derives from it.
 
     Attributes:
         symbol: symbol as Typst mathematics.
@@ -127,7 +125,7 @@ def direction_of(belt_speed: Any) -> Any:
 
 
 def is_finite_number(value: object) -> bool:
-    """Whether a value is a real number that a double holds; truth values and text are not."""
+    """Return whether a value is a real number that a double holds; no truth value or text."""
     if not isinstance(value, Real) or isinstance(value, bool):
         return False
     try:
@@ -137,7 +135,7 @@ def is_finite_number(value: object) -> bool:
 
 
 def is_whole_number(value: object) -> bool:
-    """Whether a value is an integer; truth values and floats are not."""
+    """Return whether a value is an integer; truth values and floats are not."""
     return isinstance(value, Integral) and is_finite_number(value)
 
 
@@ -154,14 +152,16 @@ def law_in_words(law: str, units: tuple[str, str] = ("1", "1")) -> str:
     Args:
         units: CF units of the knots and values of a table, which are told in readable ones.
     """
+    # a longer table is told by its first and last knots
+    most_knots = 24
     if is_table(law):
         pairs = [
             f"{engineering(value, units[1], 4)} at {engineering(knot, units[0], 4)}"
             for knot, value in zip(*knots_of(law), strict=True)
         ]
-        left_out = len(pairs) - MOST_KNOTS
+        left_out = len(pairs) - most_knots
         if left_out > 0:
-            pairs[MOST_KNOTS // 2 : -(MOST_KNOTS // 2)] = [f"… {left_out} more …"]
+            pairs[most_knots // 2 : -(most_knots // 2)] = [f"… {left_out} more …"]
         return f"table, {law.split(maxsplit=1)[0]}: {', '.join(pairs)}"
     return law if law.isidentifier() else "Python file"
 

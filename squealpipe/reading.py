@@ -1,4 +1,4 @@
-"""How the paper's sign of friction is read: which belt direction each model takes.
+"""Readings of the paper's sign of friction: the belt direction that each model takes.
 
 Eq. (4) as printed, with μ(V_r) = μ sgn(V_r) and V_r = ẋ − V, pushes a mass slower than the belt
 along −x. Eqs. (6)–(20), from which the linear models and A4 follow, drag it along +x. A study

@@ -1,4 +1,4 @@
-"""What engineers know of a brake in place of its parameters: a force, a ratio, stiffnesses.
+"""Inputs that engineers know in place of parameters: a force, a ratio, stiffnesses.
 
 Each is turned into the parameters that it stands for, in SI; these alone enter datasets and ids,
 so a brake is the same run however it was written.
@@ -47,8 +47,6 @@ SUBSTITUTES = {
 """Inputs that are one number; ``stiffness`` has three, :data:`STIFFNESS`."""
 STIFFNESS = ("along", "across", "coupling")
 """Stiffness along the belt, across it (without the contact), and the coupling of both, N/m."""
-OF_STIFFNESS = ("k1", "k2")
-"""Parameters that ``stiffness`` stands for, beside both angles."""
 
 
 class Springs(NamedTuple):
@@ -67,7 +65,8 @@ def critical_damping(k: float, mass: float) -> float:
 def stands_for(name: str) -> tuple[str, ...]:
     """The parameters that an input stands for; none if it is a parameter itself."""
     if name == "stiffness":
-        return OF_STIFFNESS
+        # stiffnesses along and across the belt stand for both springs, beside the angles
+        return ("k1", "k2")
     return SUBSTITUTES[name].stands_for if name in SUBSTITUTES else ()
 
 
@@ -161,7 +160,7 @@ def equal_springs(along: float, across: float, coupling: float = 0.0) -> Springs
 
 
 def became(inputs: Mapping[str, Any], parameter: Callable[[str], float]) -> list[str]:
-    """What each input became, in words, like ``preload_force = 4 kN: preload = 0.5714 mm``.
+    """Tell what each input became, like ``preload_force = 4 kN: preload = 0.5714 mm``.
 
     Args:
         inputs: substitutes by name, in SI.

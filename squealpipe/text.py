@@ -6,34 +6,6 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-WORDS = {
-    "callable_type": "a function is needed",
-    "sequence_str": "a list of names is needed",
-    "model_type": "keys and values are needed, like `points: 31`",
-    "dict_type": "names and values are needed, like `name: [0.3, 0.9]`",
-    "tuple_type": "a list is needed, like [0.3, 0.9]",
-    "list_type": "a list is needed, like [0.3, 0.9]",
-    "float_type": "a number is needed",
-    "int_type": "a whole number is needed",
-    "bool_type": "true or false is needed",
-    "mapping_type": "a mapping of names to values is needed",
-    "is_instance_of": "it must be {class}",
-    "dataclass_exact_type": "{class_name}(...) are needed",
-    "string_type": "text is needed",
-    "string_pattern_mismatch": "only letters, digits and . _ / - are allowed",
-    "finite_number": "a finite number is needed",
-    "greater_than": "it must be greater than {gt:g}",
-    "less_than": "it must be less than {lt:g}",
-    "greater_than_equal": "it must be {ge:g} or greater",
-    "less_than_equal": "it must be {le:g} or less",
-    "literal_error": "choose from {expected}",
-    "too_short": "{min_length} or more items are needed",
-    "too_long": "at most {max_length} items are allowed",
-    "missing": "this key is needed",
-}
-"""What is allowed, by the kind of fault that pydantic names."""
-
-
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 """Digits and sign of an exponent in plain text."""
 LONGEST_PLAIN = 6
@@ -41,11 +13,39 @@ LONGEST_PLAIN = 6
 
 
 def in_words(fault: Mapping[str, Any]) -> str:
-    """What is allowed instead of what pydantic found; words of our own errors stay."""
+    """Return a fault that pydantic found as a sentence about what is allowed; words of our own
+    errors stay.
+    """
     message = str(fault["msg"]).removeprefix("Value error, ")
     if fault["type"] == "value_error":
         return message
-    known = WORDS.get(fault["type"], message[0].lower() + message[1:])
+    # what is allowed, by the kind of fault that pydantic names
+    needs = {
+        "callable_type": "a function is needed",
+        "sequence_str": "a list of names is needed",
+        "model_type": "keys and values are needed, like `points: 31`",
+        "dict_type": "names and values are needed, like `name: [0.3, 0.9]`",
+        "tuple_type": "a list is needed, like [0.3, 0.9]",
+        "list_type": "a list is needed, like [0.3, 0.9]",
+        "float_type": "a number is needed",
+        "int_type": "a whole number is needed",
+        "bool_type": "true or false is needed",
+        "mapping_type": "a mapping of names to values is needed",
+        "is_instance_of": "it must be {class}",
+        "dataclass_exact_type": "{class_name}(...) are needed",
+        "string_type": "text is needed",
+        "string_pattern_mismatch": "only letters, digits and . _ / - are allowed",
+        "finite_number": "a finite number is needed",
+        "greater_than": "it must be greater than {gt:g}",
+        "less_than": "it must be less than {lt:g}",
+        "greater_than_equal": "it must be {ge:g} or greater",
+        "less_than_equal": "it must be {le:g} or less",
+        "literal_error": "choose from {expected}",
+        "too_short": "{min_length} or more items are needed",
+        "too_long": "at most {max_length} items are allowed",
+        "missing": "this key is needed",
+    }
+    known = needs.get(fault["type"], message[0].lower() + message[1:])
     return known.format(**fault.get("ctx", {}))
 
 

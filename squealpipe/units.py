@@ -32,19 +32,6 @@ QUANTITIES = {
     "1": ("a number without a unit, or in %", "30 %"),
 }
 """CF unit → what it measures, and an example of how people write it; others are read, too."""
-SHOWN_IN: dict[str, tuple[tuple[float, str, float], ...]] = {
-    "m": ((1.0, "m", 0.1), (1e3, "mm", 1e-4), (1e6, "µm", 0.0)),
-    "s": ((1.0, "s", 1.0), (1e3, "ms", 0.0)),
-    "N": ((1e-3, "kN", 1e3), (1.0, "N", 0.0)),
-    "N m-1": ((1e-6, "kN/mm", 1e6), (1e-3, "N/mm", 1e4), (1.0, "N/m", 0.0)),
-    "m s-1": ((1.0, "m/s", 0.1), (1e3, "mm/s", 0.0)),
-    "Pa": ((1e-6, "MPa", 1e6), (1e-5, "bar", 1e4), (1.0, "Pa", 0.0)),
-    "m2": ((1.0, "m²", 0.1), (1e4, "cm²", 0.0)),
-    "Hz": ((1e-3, "kHz", 1e3), (1.0, "Hz", 0.0)),
-}
-"""CF unit → factor, unit as people write it, and the least value so written; largest first."""
-PLAIN = ("percent", "permille", "ppm", "dimensionless")
-"""Units of numbers without one; pint takes angles for such numbers too."""
 TURNS = (
     "degree",
     "radian",
@@ -58,31 +45,6 @@ TURNS = (
 """Units of angles, which pint takes for plain numbers."""
 TURNING, CYCLES = (*TURNS, "revolution"), ("hertz",)
 """What names of units of angular frequencies hold, rpm among them, and of frequencies."""
-SPELLINGS = (
-    "newton_second = newton * second = Ns",
-    "newton_meter = newton * meter = Nm",
-    "newton_millimeter = newton * millimeter = Nmm",
-    "kilopond = kilogram_force = kp",
-    "kilometer_in_an_hour = kilometer / hour = kmh = kmph",
-    "@alias pound = lbm",
-)
-"""Units as engineers write them that pint does not know, or takes for others.
-
-To pint Nm is a number (of yarn) and a metre, and kmph a thousand miles per hour.
-"""
-AMBIGUOUS = {
-    r"[kM]?tons?": "1000 kg or, in America, 907.18 kg; write t, or short_ton",
-    r"[kM]?tons?_force|force_[kM]?tons?": (
-        "9.807 kN or, in America, 8.896 kN; write tf, or 2000 lbf"
-    ),
-    "Mm": "a million metres; write mm, or km",
-    "Ms": "a million seconds; write ms, or s",
-    "gr": "a gram or a grain; write g, or grain",
-    "mt": "a metric ton or a thousandth of one; write t, or kg",
-    "cwt|hundredweight": "45.36 kg or, in Britain, 50.8 kg; write it in kg",
-    "[gG]rad": "a degree or a 400th of a turn; write deg, or gon",
-}
-"""Pattern of a word that means two units → both of them, with a remedy."""
 USUAL = (
     *(
         "g",
@@ -105,27 +67,11 @@ USUAL = (
 )
 """Units that a word in other capital and small letters stands for, like kN for KN."""
 
-_ABROAD = (
-    dict.fromkeys(("km/t", "km/tim", "km/std", "km/u", "км/ч"), "km/h")
-    | {"m/sek": "m/s", "м/с": "m/s", "мм/с": "mm/s", "кН": "kN", "Н": "N"}
-    | {"мкм": "µm", "мм": "mm", "м": "m"}
-)
-"""Units in other languages; to pint km/t is one of a kilometre and a ton."""
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?"
 _QUANTITY = re.compile(
     rf"({NUMBER})\s*((?:\b1\s*/\s*)?[^\d\s.,;:+#_-][^,;:#]*)", re.ASCII
 )
-_COMMA = re.compile(r"([+-]?\d*),(\d+)\s*(\D.*)?", re.ASCII)
 _BEYOND_A_NUMBER = re.compile(rf"\s*(?!{NUMBER}\s*$)[-+−]?\.?\d", re.ASCII)
-_POWER = re.compile(r"(?<=[^\W\d])(-?\d)")
-_LONGEST = 60
-"""Characters of the longest text that is read as a quantity."""
-
-
-NOT_OF_PINT = (
-    "a quantity of another library than pint, or an array of quantities; write a text with its "
-    "unit, like '2 mm', or a plain number"
-)
 
 
 class UnitError(ValueError):
@@ -133,7 +79,7 @@ class UnitError(ValueError):
 
 
 def has_unit(text: object) -> bool:
-    """Whether something is a text of a number and something after it, as a unit is."""
+    """Return whether a text is a number with something after it, as a unit is."""
     if not isinstance(text, str):
         return False
     try:
@@ -144,12 +90,12 @@ def has_unit(text: object) -> bool:
 
 
 def is_unit(text: str) -> bool:
-    """Whether pint knows a unit."""
+    """Return whether pint knows a unit."""
     return _unit(text) is not None
 
 
 def is_long_name(text: str) -> bool:
-    """Whether a word is a unit in full, like point or rod, which may be no unit at all."""
+    """Return whether a word is a unit in full, like point or rod, and so perhaps no unit at all."""
     return str(_unit(text)) == text.lower()
 
 
@@ -165,10 +111,11 @@ def in_si(text: str, units: str, keys: Mapping[str, str] | None = None) -> float
     """
     what, example = kind_and_example(units)
     tidy = _tidy(text)
-    if match := _COMMA.fullmatch(tidy):
+    if match := re.compile(r"([+-]?\d*),(\d+)\s*(\D.*)?", re.ASCII).fullmatch(tidy):
         raise UnitError(_without_comma(*match.groups("")))
     match = _QUANTITY.fullmatch(tidy)
-    if match is None or len(tidy) > _LONGEST:
+    # a longer text is a sentence, no quantity; pint would take seconds to refuse it
+    if match is None or len(tidy) > 60:
         raise UnitError(f"{what} is needed, like {example}")
     return float(Decimal(match[1]) * _factor(match[2], units, keys))
 
@@ -180,8 +127,21 @@ def _factor(written: str, units: str, keys: Mapping[str, str] | None) -> Decimal
         UnitError: the unit is unknown, ambiguous or of another kind.
     """
     what, example = kind_and_example(units)
+    # pattern of a word that means two units → both of them, with a remedy
+    ambiguous = {
+        r"[kM]?tons?": "1000 kg or, in America, 907.18 kg; write t, or short_ton",
+        r"[kM]?tons?_force|force_[kM]?tons?": (
+            "9.807 kN or, in America, 8.896 kN; write tf, or 2000 lbf"
+        ),
+        "Mm": "a million metres; write mm, or km",
+        "Ms": "a million seconds; write ms, or s",
+        "gr": "a gram or a grain; write g, or grain",
+        "mt": "a metric ton or a thousandth of one; write t, or kg",
+        "cwt|hundredweight": "45.36 kg or, in Britain, 50.8 kg; write it in kg",
+        "[gG]rad": "a degree or a 400th of a turn; write deg, or gon",
+    }
     for word in re.findall(r"[^\W\d]+", written):
-        for pattern, readings in AMBIGUOUS.items():
+        for pattern, readings in ambiguous.items():
             if re.fullmatch(pattern, word):
                 raise UnitError(f"{word} is {readings}")
     unit, target = _unit(written), _unit(units)
@@ -227,7 +187,7 @@ def _usual_letters(written: str) -> str:
 
 
 def conversion(unit: str, other: str) -> float | None:
-    """How many of another unit one unit is; None where they measure different things.
+    """Return how many of another unit one unit is, or None where they measure different things.
 
     An angular frequency is 2π times a frequency. A rate in 1/s, such as a growth rate, is neither.
     """
@@ -289,7 +249,10 @@ def number_of(value: Any, units: str, keys: Mapping[str, str] | None = None) -> 
         return _scaled(value.values, _factor(str(stated), units, keys))
     if holds_units(value):
         if not isinstance(value, list | tuple):
-            raise UnitError(NOT_OF_PINT)
+            raise UnitError(
+                "a quantity of another library than pint, or an array of quantities; write a text "
+                "with its unit, like '2 mm', or a plain number"
+            )
         return [number_of(each, units, keys) for each in value]
     return value
 
@@ -349,7 +312,19 @@ def _scaled(magnitude: Any, factor: Decimal) -> Any:
 
 def shown_in(largest: float, units: str) -> tuple[float, str]:
     """Factor and unit in which people write values of a CF unit up to a largest one."""
-    choices = SHOWN_IN.get(units, ()) if largest else ()  # 0 m/s, not 0 mm/s
+    # for each CF unit: factor, unit as people write it, and the least value so written; largest
+    # first
+    scales: dict[str, tuple[tuple[float, str, float], ...]] = {
+        "m": ((1.0, "m", 0.1), (1e3, "mm", 1e-4), (1e6, "µm", 0.0)),
+        "s": ((1.0, "s", 1.0), (1e3, "ms", 0.0)),
+        "N": ((1e-3, "kN", 1e3), (1.0, "N", 0.0)),
+        "N m-1": ((1e-6, "kN/mm", 1e6), (1e-3, "N/mm", 1e4), (1.0, "N/m", 0.0)),
+        "m s-1": ((1.0, "m/s", 0.1), (1e3, "mm/s", 0.0)),
+        "Pa": ((1e-6, "MPa", 1e6), (1e-5, "bar", 1e4), (1.0, "Pa", 0.0)),
+        "m2": ((1.0, "m²", 0.1), (1e4, "cm²", 0.0)),
+        "Hz": ((1e-3, "kHz", 1e3), (1.0, "Hz", 0.0)),
+    }
+    choices = scales.get(units, ()) if largest else ()  # 0 m/s, not 0 mm/s
     for factor, name, least in choices:
         if abs(largest) >= least:
             return factor, name
@@ -379,7 +354,7 @@ def plain_unit(units: str) -> str:
 
 
 def kind_and_example(units: str) -> tuple[str, str]:
-    """What a CF unit measures, and an example of how people write it."""
+    """Return the quantity that a CF unit measures, and an example of how people write it."""
     units = "1" if units in {"", "-"} else units
     plain = plain_unit(units)
     return QUANTITIES.get(units, (f"a value in {plain}", f"1 {plain}"))
@@ -392,13 +367,13 @@ def with_unit(value: float, units: str, digits: int = 4) -> str:
 
 
 def engineering(value: float, units: str, digits: int = 3) -> str:
-    """The same for sentences and tables: 10 kN/mm, 829 Hz, 2.6·10⁻¹⁵ m."""
+    """Write a quantity for sentences and tables: 10 kN/mm, 829 Hz, 2.6·10⁻¹⁵ m."""
     factor, name = shown_in(value, units)
     return f"{number(value * factor, digits)} {name}".rstrip()
 
 
 def _without_comma(head: str, tail: str, unit: str) -> str:
-    """What to write instead of a number with a comma."""
+    """Suggest a number without the comma that was written."""
     point = f"{head or 0}.{tail} {unit}".rstrip()
     if len(tail) != 3 or head.lstrip("+-") in {"", "0"}:  # separates no thousands
         return f"write a decimal point: {point}"
@@ -426,7 +401,17 @@ def _registry() -> Any:
     import pint
 
     registry: Any = pint.UnitRegistry(non_int_type=Decimal)
-    for words in SPELLINGS:
+    # Engineers' spellings that pint does not know, or takes for others: to pint Nm is a number
+    # (of yarn) times a metre, and kmph a thousand miles per hour.
+    spellings = (
+        "newton_second = newton * second = Ns",
+        "newton_meter = newton * meter = Nm",
+        "newton_millimeter = newton * millimeter = Nmm",
+        "kilopond = kilogram_force = kp",
+        "kilometer_in_an_hour = kilometer / hour = kmh = kmph",
+        "@alias pound = lbm",
+    )
+    for words in spellings:
         registry.define(words)
     return registry
 
@@ -440,12 +425,19 @@ def _unit(text: str) -> Any:
 
     # the tokenizer and evaluator below pint fail in their own ways on what is no expression
     failures = (PintError, ValueError, TypeError, AttributeError, AssertionError)
+    # units in other languages; to pint km/t is one of a kilometre and a ton
+    abroad = (
+        dict.fromkeys(("km/t", "km/tim", "km/std", "km/u", "км/ч"), "km/h")
+        | {"m/sek": "m/s", "м/с": "m/s", "мм/с": "mm/s", "кН": "kN", "Н": "N"}
+        | {"мкм": "µm", "мм": "mm", "м": "m"}
+    )
     try:
-        text = _ABROAD.get(text, text)
+        text = abroad.get(text, text)
         if text in {"", "-"}:  # as states have it that have no unit
             text = "1"
         text = text.replace("U/min", "rpm")  # German; U is an enzyme's unit to pint
-        return _registry().parse_units(_POWER.sub(r"**\1", text))  # m s-1, cm2
+        # m s-1, cm2: CF writes powers without a sign
+        return _registry().parse_units(re.sub(r"(?<=[^\W\d])(-?\d)", r"**\1", text))
     except (*failures, ArithmeticError, SyntaxError, tokenize.TokenError, LookupError):
         return None
 
@@ -459,7 +451,8 @@ def _measures(unit: Any, units: str) -> bool:
         if _names_any(target, TURNS):
             return str(unit) in TURNS
         ratio = "/" in str(unit) and not _names_any(unit, TURNING)  # as N/kN
-        return ratio or str(unit) in PLAIN
+        # pint takes angles for plain numbers, too
+        return ratio or str(unit) in ("percent", "permille", "ppm", "dimensionless")
     if units == "Hz":  # not rad/s, nor a rate in 1/s
         return _names_any(unit, CYCLES)
     per_second = _registry().parse_units("1/s").dimensionality
@@ -472,7 +465,7 @@ def _cf_unit(unit: Any, candidates: Any) -> str | None:
 
 
 def _wrong_kind(unit: Any, units: str, keys: Mapping[str, str] | None) -> str:
-    """What a unit measures, what is needed, and which inputs take what was written."""
+    """Explain what a unit measures, what is needed, and which inputs take what was written."""
     kind = _cf_unit(unit, QUANTITIES)
     is_kind = f"that is {QUANTITIES[kind][0]}" if kind else f"{unit} does not fit"
     if kind is None and _is_rotation(unit):

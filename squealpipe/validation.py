@@ -30,16 +30,6 @@ from squealpipe.units import refuse_units
 Given = ParamSpec("Given")
 Result = TypeVar("Result")
 
-KINDS = {
-    "U": "text",
-    "S": "bytes",
-    "b": "truth values",
-    "c": "complex numbers",
-    "M": "dates",
-    "m": "durations",
-}
-"""What else than numbers people give, by NumPy's letter."""
-
 
 def checked(
     function: Callable[Given, Result], units: Mapping[str, str] = UNITS
@@ -117,9 +107,18 @@ def _reals(values: Any, *, infinite: bool = False) -> np.ndarray:
         array = np.asarray(values)
     except (ValueError, TypeError, OverflowError) as error:
         raise ValueError("rows of one length are needed") from error
+    # what people give instead of numbers, by NumPy's letter for the type
+    kinds = {
+        "U": "text",
+        "S": "bytes",
+        "b": "truth values",
+        "c": "complex numbers",
+        "M": "dates",
+        "m": "durations",
+    }
     if array.dtype.kind not in "fiu":
         raise ValueError(
-            f"numbers are needed, not {KINDS.get(array.dtype.kind, 'objects')}"
+            f"numbers are needed, not {kinds.get(array.dtype.kind, 'objects')}"
         )
     array = array.astype(float)
     bad = np.isnan(array) if infinite else ~np.isfinite(array)

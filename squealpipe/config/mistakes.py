@@ -11,8 +11,6 @@ from pydantic import BaseModel, ValidationError
 from squealpipe.parameters import SYMBOLS, brief
 from squealpipe.text import in_words, nearest
 
-NUMBER_AS_TEXT = re.compile(r"\s*[-+]?[\d.]+([eE][-+]?\d+)?\s*")
-
 
 class ConfigError(ValueError):
     """The configuration has mistakes; the message lists all of them."""
@@ -79,5 +77,7 @@ def _section(annotation: Any) -> type[BaseModel] | None:
 def _remedy(value: object) -> str:
     if isinstance(value, str) and ("pi" in value or "π" in value):
         return "; write angles as plain numbers, in multiples of π"
-    number = isinstance(value, str) and NUMBER_AS_TEXT.fullmatch(value)
+    number = isinstance(value, str) and re.fullmatch(
+        r"\s*[-+]?[\d.]+([eE][-+]?\d+)?\s*", value
+    )
     return "; write numbers without quotes" if number else ""

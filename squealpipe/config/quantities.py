@@ -16,9 +16,6 @@ from squealpipe.inputs import parse_angle
 from squealpipe.parameters import KEYS_THAT_TAKE, Parameters
 from squealpipe.units import has_unit, number_of
 
-UNIT_PATTERN = r"^\s*[-+−]?(\d|\.\d).*[^\d\s.].*$"
-"""JSON schema of a text with a unit: it begins as a number and goes on."""
-
 
 @dataclass(frozen=True)
 class In:
@@ -45,7 +42,8 @@ class In:
     ) -> dict[str, Any]:
         text = {"type": "string"}
         if self.units != "rad":  # pi/4 has no number before it
-            text["pattern"] = UNIT_PATTERN
+            # JSON schema of a text with a unit: it begins as a number and goes on
+            text["pattern"] = r"^\s*[-+−]?(\d|\.\d).*[^\d\s.].*$"
         return {"anyOf": [handler(schema), text]}
 
     def _read(self, value: Any, info: ValidationInfo) -> Any:

@@ -1,4 +1,4 @@
-"""What people write for angles, numbers, ranges and whole sweeps, on the command line and in YAML.
+"""Angles, numbers, ranges and whole sweeps as people write them, on the command line and in YAML.
 
 Both are read into one canonical form, so a sweep has one meaning wherever it stands.
 """
@@ -20,11 +20,6 @@ from squealpipe.units import UnitError, has_unit
 PHYSICAL = tuple(TABLE)
 NUMBERS = tuple(name for name, row in TABLE.items() if row.allowed != "law")
 """Parameters that are numbers, so that they can be swept."""
-WHOLE = ("mode",)
-"""Options that are swept over whole numbers."""
-
-MOST_VALUES = 100_000
-"""A range of more values is a slip of the pen."""
 
 
 def parse_range(text: str, one: Callable[[str], float] = parse_number) -> list[float]:
@@ -43,9 +38,11 @@ def parse_range(text: str, one: Callable[[str], float] = parse_number) -> list[f
             f"{text!r} is not a range; write first:last:count or first:last:count:log"
         )
     first, last, count = one(parts[0]), one(parts[1]), int(parts[2])
-    if not 2 <= count <= MOST_VALUES:
+    # a range of more values is a slip of the pen
+    most_values = 100_000
+    if not 2 <= count <= most_values:
         raise ValueError(
-            f"{text!r} asks for {count} values; ask for 2 to {MOST_VALUES}, or give one value"
+            f"{text!r} asks for {count} values; ask for 2 to {most_values}, or give one value"
         )
     steps = [index / (count - 1) for index in range(count)]
     if spacing == "linear":
@@ -88,7 +85,8 @@ def read_values(name: str, given: object, task: str = "") -> list[float]:
     else:
         items = given if isinstance(given, Sequence) else [given]
         values = [one(_as_text(item)) for item in items]
-    if name not in WHOLE:
+    # a mode is a whole number
+    if name != "mode":
         return values
     broken = [value for value in values if not value.is_integer()]
     if broken:
@@ -128,7 +126,7 @@ def read_fixed(name: str, given: object, task: str = "") -> Any:
 
 
 def is_structure(task: str) -> bool:
-    """Whether a task is of a structure in a file, ``FILE.yaml:TASK``."""
+    """Return whether a task belongs to a structure in a file, ``FILE.yaml:TASK``."""
     return task.rpartition(":")[0].endswith((".yaml", ".yml"))
 
 

@@ -80,7 +80,7 @@ class _ParametersBase(Section):
 
     @model_validator(mode="after")
     def _together(self) -> _ParametersBase:
-        """What stands for parameters is replaced, and what they demand of one another."""
+        """Replace inputs that stand for parameters, and check parameters against one another."""
         if self.substitutes:
             check_together(sorted({*self.model_fields_set, *self.substitutes}))
             values = stood_for(self.substitutes, lambda name: getattr(self, name))
@@ -102,7 +102,7 @@ class _ParametersBase(Section):
         }
 
     def became(self) -> list[str]:
-        """What each input that stands for parameters became, in words."""
+        """Tell what each input that stands for parameters became."""
         return became(self.substitutes, lambda name: getattr(self, name))
 
     @model_serializer(mode="wrap")
@@ -333,7 +333,9 @@ class Distribution(Section):
 
 
 class RobustnessSection(Section):
-    """How far verdicts carry, and propensities over uncertain parameters; angles over π."""
+    """Settings of the robustness of verdicts, and of propensities over uncertain parameters; angles
+    over π.
+    """
 
     random_starts: Annotated[int, Field(ge=2, le=100_000), WHOLE] = 200
     basin_points: Annotated[int, Field(ge=2, le=2001), WHOLE] = 41

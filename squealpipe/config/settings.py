@@ -28,16 +28,6 @@ from squealpipe.rerun.key import PARTS
 from squealpipe.rerun.sources import WORKFLOW
 from squealpipe.substitutes import rivals, stands_for
 
-KINDS = dict(
-    zip(
-        PARTS,
-        ((".nc",), (".png", ".svg"), (".html", ".pdf", ".json", ".xlsx")),
-        strict=True,
-    )
-)
-"""Endings of the files in each folder of results."""
-OTHERS = {"logs", "parts", "archive", "deposit"}
-
 PAPER = WORKFLOW / "config/paper.yaml"
 """The paper's study, over which other configurations are laid."""
 
@@ -211,12 +201,25 @@ def check_results_folder(results: str) -> None:
             raise ConfigError(
                 [f"results = {results!r}: {part} leads into the archive {inside[0]}"]
             )
+    # endings of the files in each folder of results
+    endings = dict(
+        zip(
+            PARTS,
+            ((".nc",), (".png", ".svg"), (".html", ".pdf", ".json", ".xlsx")),
+            strict=True,
+        )
+    )
     for path in below:
         *above, name = path.relative_to(folder).parts
         hidden = any(part.startswith(".") for part in (*above, name))
-        if path.is_dir() or hidden or name == "README.md" or OTHERS.intersection(above):
+        if (
+            path.is_dir()
+            or hidden
+            or name == "README.md"
+            or {"logs", "parts", "archive", "deposit"}.intersection(above)
+        ):
             continue
-        if not any(path.suffix in KINDS.get(part, ()) for part in above):
+        if not any(path.suffix in endings.get(part, ()) for part in above):
             what = f"it holds {path}, which is not a result; a run needs a folder of its own"
             raise ConfigError(
                 [f"results = {results!r}: {what}, for instance results/mine"]

@@ -29,7 +29,7 @@ def stick_limit(normal_force: Any, p: Any) -> Any:
 
 
 def slides(speed: Any, p: Any) -> Any:
-    """Whether the mass keeps sliding in one sense: its speed along the belt stays below |V|.
+    """Return whether the mass keeps sliding in one sense: its speed along the belt stays below |V|.
 
     Args:
         speed: largest sgn(V) ẋ of a motion, m/s; of a motion that is symmetric

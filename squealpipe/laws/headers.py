@@ -16,19 +16,13 @@ from squealpipe.units import USUAL, UnitError, in_si, is_long_name, is_unit, pla
 UNITS = {"speed": "m s-1", "coefficient": "1", "compression": "m", "force": "N"}
 """Column → CF unit in which its values are stored, and meant where none is written."""
 
-_BRACKETS = re.compile(r"(.*?)\s*/?\s*[\[({<]\s*(.*?)\s*[\])}>]\s*(.*)", re.DOTALL)
-_BEHIND = re.compile(r"(.+?)(\s+in\s+|\s*/\s*)(.+)")
 _LAST_WORDS = (
     re.compile(r"(.+?)[\s_,:;=/-]+([^\W\d_]+_[^\W\d_]+)"),  # speed_mm_s
     re.compile(r"(.+?)[\s_,:;=/-]+([^\s_,:;=]+)"),
 )
 _NAMES = ("c", "in")
 """Last words of names that are hardly the speed of light, or inches."""
-_WORD = re.compile(r"(?<![\d.,]\s)(?<![\w.,/^])[^\W\d][^\s,;:=()\[\]{}]*")
-"""A word without a number before it: in ``preload 4 kN`` there is no unit of a column."""
 NO_UNIT = {"", "-", "–", "—", "1", "/"}
-_SHOWN = {"\t": "<tab>", " ": "  "}
-"""Separators as a message shows them."""
 
 
 def cell_at(cells: Sequence[str], at: int) -> str:
@@ -51,7 +45,7 @@ def header_row(
     columns: tuple[str, str],
     is_header: Callable[[Sequence[str]], list[int]],
 ) -> int:
-    """Which row is the header: that with the name of the knots over a number."""
+    """Return the index of the header: the row with the name of the knots over a number."""
     cells = [row.cells for row in table.rows]
     candidates = {
         number: at for number, row in enumerate(cells) if (at := is_header(row))
@@ -67,8 +61,9 @@ def header_row(
     if candidates:
         return max(candidates)
     first = next((number for number, row in enumerate(cells) if _is_data(row)), None)
+    separators_shown = {"\t": "<tab>", " ": "  "}
     if not cells or first == 0:
-        example = _SHOWN.get(table.separator, table.separator).join(columns)
+        example = separators_shown.get(table.separator, table.separator).join(columns)
         raise ValueError(f"{path} has no header; write a first row like {example}")
     if first is None:
         first = len(cells)
@@ -76,7 +71,7 @@ def header_row(
 
 
 def _is_data(row: Sequence[str]) -> bool:
-    """Whether a row is one of numbers: its first cell with content is one."""
+    """Return whether a row holds numbers: its first cell with content is one."""
     return numeral(next(filter(None, row), "")) is not None
 
 
@@ -122,7 +117,10 @@ def _split(name: str, units: str) -> tuple[str, str]:
     Args:
         units: CF unit of the column: one that fits may be set apart by a blank alone.
     """
-    if match := _BRACKETS.fullmatch(name):
+    # speed [km/h], speed / (km/h), speed {km/h}
+    if match := re.compile(
+        r"(.*?)\s*/?\s*[\[({<]\s*(.*?)\s*[\])}>]\s*(.*)", re.DOTALL
+    ).fullmatch(name):
         unit = match[2].removeprefix("in ").strip("[]() ")
         return match[1] or match[3], _known(unit, units)
     for form in _LAST_WORDS:  # MATLAB writes speed_km_h_
@@ -130,7 +128,8 @@ def _split(name: str, units: str) -> tuple[str, str]:
             unit = _known(match[2].replace("_", "/"), units)
             if _fits(unit, units):
                 return match[1].removesuffix(" in").rstrip(" /"), unit
-    if match := _BEHIND.fullmatch(name):
+    # speed in km/h, speed / km/h
+    if match := re.fullmatch(r"(.+?)(\s+in\s+|\s*/\s*)(.+)", name):
         unit = _bare(match[3])
         if is_unit(unit) or "in" in match[2] or unit in NO_UNIT:
             return match[1], unit
@@ -154,7 +153,7 @@ def _fits(unit: str, units: str) -> bool:
 
 
 def named(header: Sequence[str], name: str, units: str) -> list[int]:
-    """Where a name stands in a header, with or without its unit."""
+    """Return the columns of a header that have a name, with or without its unit."""
     wanted = name.casefold().strip()
     return [
         at
@@ -169,7 +168,7 @@ def places(
     columns: tuple[str, str],
     chosen: tuple[str | None, str | None],
 ) -> list[Place]:
-    """Where the columns of knots and values are."""
+    """Return the columns of the knots and of the values."""
     filled = [at for at, name in enumerate(header) if name]
     options = (f"{columns[0]}_column", "value_column")
     where = [
@@ -229,7 +228,7 @@ def _refuse_other_unit(path: Path, head: str, column: str) -> None:
 
 
 def _unit_too(column: str) -> str:
-    """What a column needs that is renamed and is not in SI."""
+    """Say that a column that is renamed, and not in SI, needs its unit in the new name, too."""
     unit = plain_unit(UNITS[column])
     return f" (what is not in {unit} needs its unit behind the name)" if unit else ""
 
@@ -245,7 +244,10 @@ def refuse_units_elsewhere(path: Path, place: Place, lines: Iterable[FileLine]) 
         return
     usual = plain_unit(units)
     for number, line in lines:
-        for word in _WORD.findall(line):
+        # a word without a number before it: in "preload 4 kN" there is no unit of a column
+        for word in re.findall(
+            r"(?<![\d.,]\s)(?<![\w.,/^])[^\W\d][^\s,;:=()\[\]{}]*", line
+        ):
             if word in (usual, *_NAMES) or is_long_name(word) or not _fits(word, units):
                 continue
             raise ValueError(

@@ -11,7 +11,6 @@ from typing import NamedTuple
 _SIGNS = str.maketrans("−–⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "---0123456789")
 _BLANKS = "\u0020\u00a0\u2009\u202f"
 """Between thousands: blanks of four widths."""
-_BY_BLANKS = re.compile(rf"[+-]?\d{{1,3}}([{_BLANKS}'’]\d{{3}})+(?!\d)")
 _TIMES_TEN = re.compile(
     r"(?<=[\d.,])\s*[×·*x]\s*10\s*(?:\^|\*\*)?\s*\(?([+-]?\d{1,3})\)?"
 )
@@ -21,8 +20,6 @@ _CELL = re.compile(
 )
 _PLAIN = re.compile(r"[+-]?(\d+(\.\d*|,\d+)?|[.,]\d+)", re.ASCII)
 MAY_BE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}([.,])\d{3}", re.ASCII)
-_ONE_DIGIT = re.compile(r"[+-]?\d[.,]", re.ASCII)
-"""Before the exponent of 1.000E+03, whose point is a decimal one."""
 _GROUPED = {
     # thousands, and in India hundreds of thousands; with a decimal sign behind, or several groups
     "point": re.compile(
@@ -31,7 +28,6 @@ _GROUPED = {
     ),
     "comma": re.compile(r"[+-]?(?=.*,|.*\..*\.)\d{1,3}(\.\d{3})+(,\d*)?", re.ASCII),
 }
-_OTHER = {"point": ",", "comma": "."}
 
 
 class Numeral(NamedTuple):
@@ -45,7 +41,7 @@ def numeral(cell: str) -> Numeral | None:
     """A cell of a number, maybe with a unit; None if it is none."""
     text = cell.strip().translate(_SIGNS)
     text = _EXPONENT.sub("e", _TIMES_TEN.sub(r"e\1", text))
-    if match := _BY_BLANKS.match(text):
+    if match := re.match(rf"[+-]?\d{{1,3}}([{_BLANKS}'’]\d{{3}})+(?!\d)", text):
         whole = re.sub(rf"[{_BLANKS}'’]", "", match[0])
         text = whole + text[match.end() :]
     match = _CELL.fullmatch(text)
@@ -55,7 +51,7 @@ def numeral(cell: str) -> Numeral | None:
 
 
 def decimal_sign(cells: Iterable[tuple[str, str]], separator: str) -> str:
-    """Which sign is the decimal one, "point" or "comma".
+    """Return the decimal sign of numbers as they are written, "point" or "comma".
 
     Args:
         cells: where each number stands, and its :attr:`Numeral.text`.
@@ -69,7 +65,10 @@ def decimal_sign(cells: Iterable[tuple[str, str]], separator: str) -> str:
     grouped = False
     for where, text in cells:
         mantissa = _mantissa(text)
-        scientific = text != mantissa and _ONE_DIGIT.match(mantissa)
+        # the point of 1.000E+03 is a decimal one: one digit stands before it
+        scientific = text != mantissa and re.compile(r"[+-]?\d[.,]", re.ASCII).match(
+            mantissa
+        )
         if sign := next((s for s in _GROUPED if _GROUPED[s].fullmatch(mantissa)), None):
             grouped = True
             proven.setdefault(sign, (where, text))
@@ -102,7 +101,8 @@ def decimal_sign(cells: Iterable[tuple[str, str]], separator: str) -> str:
 
 def plain(text: str, sign: str) -> str:
     """A number with a decimal point and no thousands."""
-    return text.replace(_OTHER[sign], "").replace(",", ".")
+    thousands = {"point": ",", "comma": "."}
+    return text.replace(thousands[sign], "").replace(",", ".")
 
 
 def _mantissa(text: str) -> str:
@@ -114,6 +114,6 @@ def _is_number(mantissa: str) -> bool:
 
 
 def are_numbers(cells: Sequence[str]) -> bool:
-    """Whether all cells are numbers without a unit."""
+    """Return whether all cells are numbers without a unit."""
     read = [numeral(cell) for cell in cells]
     return all(number is not None and not number.unit for number in read)

@@ -10,14 +10,11 @@ from typing import NamedTuple
 
 from squealpipe.laws.numerals import are_numbers
 
-COMMENTS = ("#", "%", "//", "!")
 EXCEL_ERRORS = (
     *("#N/A", "#VALUE!", "#REF!", "#DIV/0!", "#NAME?", "#NUM!", "#NULL!"),
     *("#NV", "#WERT!", "#BEZUG!", "#ZAHL!"),  # of Excel in German
 )
 """Cells that begin like a comment and are none."""
-_RULER = re.compile(r"[\s|+:=_-]{3,}|\s*\\[a-z]+\b.*")  # of Markdown, of LaTeX
-_QUOTED = re.compile(r'^="(.*)"$')  # a number that Excel is to leave alone
 _TRAILING = re.compile(r"\s(#|//|;|!).*|\s*\\\\.*")
 _CLEAN = {code + 0xFEE0: code for code in range(0x21, 0x7F)} | dict.fromkeys(
     (0x200B, 0x200C, 0x200D, 0x2060, 0xFEFF, 0x1A)
@@ -77,7 +74,10 @@ def text_rows(path: Path, is_header: Callable[[Sequence[str]], object]) -> FileR
             separator = match[1]
         elif is_comment(line):
             comments.append(FileLine(number, line.lstrip(" \t#%/!")))
-        elif line.strip(" ;,\t") and not _RULER.fullmatch(line):
+        # rulers of Markdown (|---|) and of LaTeX (\hline) hold no data
+        elif line.strip(" ;,\t") and not re.fullmatch(
+            r"[\s|+:=_-]{3,}|\s*\\[a-z]+\b.*", line
+        ):
             kept.append(FileLine(number, line))
     separator = separator or _separator([line for _, line in kept])
     rows = _split_rows(kept, separator)
@@ -115,8 +115,11 @@ def _split_rows(
             ),
             [],
         )
+        # ="1/2": a number that Excel is to leave alone
         rows.append(
-            FileRow(number, [_QUOTED.sub(r"\1", cell.strip()) for cell in cells])
+            FileRow(
+                number, [re.sub(r'^="(.*)"$', r"\1", cell.strip()) for cell in cells]
+            )
         )
     return rows
 
@@ -134,7 +137,7 @@ def _whole_lines(lines: Iterable[str]) -> list[FileLine]:
 
 
 def _is_open(line: str) -> bool:
-    """Whether a cell begins with a quotation mark that its line does not close."""
+    """Return whether a cell begins with a quotation mark that its line does not close."""
     return (
         not is_comment(line)
         and line.count('"') % 2 == 1
@@ -143,9 +146,9 @@ def _is_open(line: str) -> bool:
 
 
 def is_comment(text: str) -> bool:
-    """Whether a line or cell is a comment, and no error of Excel."""
+    """Return whether a line or cell is a comment, and no error of Excel like #N/A."""
     text = text.lstrip()
-    return text.startswith(COMMENTS) and not text.startswith(EXCEL_ERRORS)
+    return text.startswith(("#", "%", "//", "!")) and not text.startswith(EXCEL_ERRORS)
 
 
 def _without_remark(line: str, separator: str) -> str:
@@ -188,7 +191,7 @@ def _text_of(raw: bytes) -> str | None:
 
 
 def _separator(lines: Sequence[str]) -> str:
-    """What separates the cells of most lines."""
+    """Return the separator of the cells in most lines."""
     numeric = [line for line in lines if _NUMERIC.match(line)] or lines
     for separator in ("\t", ";", "|", "&"):
         if sum(separator in line for line in numeric) > len(numeric) / 2:

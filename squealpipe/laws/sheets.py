@@ -10,11 +10,6 @@ from typing import Any
 from squealpipe.laws.numerals import MAY_BE_THOUSANDS
 from squealpipe.laws.rows import FileRow, FileRows, clean, is_comment
 
-_FOR_POSITIVE = re.compile(r'(?:"[^"]*"|\\.|[^;"\\])*')
-"""Of a format its part for positive numbers, the first."""
-_WORDS = re.compile(r'"([^"]*)"|\\(.)|\[\$([^\]-]*)[^\]]*\]|\[[^\]]*\]|[_*].')
-"""What a format writes beside the number; colours and gaps, too, which are no words."""
-TIMES = (datetime.date, datetime.time, datetime.timedelta)
 IS_TIME = (
     " (a date or time to Excel; format the column as text, then write the cell again)"
 )
@@ -95,7 +90,7 @@ def _cell_text(cell: Any) -> str:
     value = cell.value
     if value is None:
         return ""
-    if isinstance(value, TIMES):
+    if isinstance(value, (datetime.date, datetime.time, datetime.timedelta)):
         return f"{value}{IS_TIME}"
     if isinstance(value, bool) or not isinstance(value, int | float):
         return clean(str(value)).strip()
@@ -110,9 +105,14 @@ def shown_as(number_format: str) -> tuple[int, str]:
 
     ``0.0 %`` shows it times a hundred, ``0.0,`` in thousands, ``0.0" km/h"`` with a unit.
     """
-    form = _FOR_POSITIVE.match(number_format)[0]  # type: ignore[index]  # it may be empty
-    words = "".join(map("".join, _WORDS.findall(form))).strip()
-    signs = _WORDS.sub("", form)
+    # a number format has parts for positive, negative, zero; the first is for positive numbers
+    form = re.match(r'(?:"[^"]*"|\\.|[^;"\\])*', number_format)[0]  # type: ignore[index]  # it may be empty
+    # what a format writes beside the number; colours and gaps, too, which are no words
+    words_of_format = re.compile(
+        r'"([^"]*)"|\\(.)|\[\$([^\]-]*)[^\]]*\]|\[[^\]]*\]|[_*].'
+    )
+    words = "".join(map("".join, words_of_format.findall(form))).strip()
+    signs = words_of_format.sub("", form)
     thousands = max(map(len, re.findall(r"(?<=[0#?]),+(?![0#?,])", signs)), default=0)
     if "%" in signs:
         return 2 - 3 * thousands, f"% {words}".rstrip()

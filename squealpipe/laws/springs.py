@@ -58,7 +58,8 @@ def spring_force(
 def long_spring_force(
     k: Scalar, length: Scalar, x: Scalar, y: Scalar, x_fixed: Scalar, y_fixed: Scalar
 ) -> tuple[Scalar, Scalar]:
-    """The same force from q = d² − L² expanded in r, so that d − L = q/(d + L) does not cancel.
+    """Return the spring force from q = d² − L² expanded in r, so that d − L = q/(d + L) does not
+    cancel.
 
     Exact to round-off far from the fixed end, next to which d² = L² + q cancels instead.
     """

@@ -28,8 +28,6 @@ from squealpipe.units import UnitError, in_si, is_unit
 
 ENDINGS = (".csv", ".txt", ".tsv", ".dat", ".xlsx")
 """Of files that are read as tables without being called so."""
-LARGEST_COEFFICIENT = 2.0
-"""A larger coefficient of friction is rather one in per cent, or another column."""
 
 
 class Cell(NamedTuple):
@@ -163,6 +161,8 @@ def _check_values(
     pairs: Sequence[tuple[float, float]],
 ) -> None:
     """Refuse knots that do not ascend, negative values, and what is likely another quantity."""
+    # a coefficient of friction above 2 is rather one in per cent, or another column
+    largest = 2.0
     for line, pair in zip(lines, pairs, strict=True):
         for name, value in zip(columns, pair, strict=True):
             if not 0 <= value < float("inf"):
@@ -170,10 +170,10 @@ def _check_values(
                     f"{path}, row {line}: {name} = {value!r}; finite numbers from 0 on are "
                     "needed; take the row out, or write it without its sign"
                 )
-        if columns[1] == "coefficient" and pair[1] > LARGEST_COEFFICIENT:
+        if columns[1] == "coefficient" and pair[1] > largest:
             raise ValueError(
                 f"{path}, row {line}: a coefficient of {pair[1]!r} is above "
-                f"{LARGEST_COEFFICIENT:g}; if it is in per cent, write [%] behind the column's "
+                f"{largest:g}; if it is in per cent, write [%] behind the column's "
                 "name; if it is meant, write the table into the configuration, like "
                 f"'linear 0:{pair[1]:g} 1:0.3'"
             )

@@ -115,7 +115,7 @@ def scaled(text: str, knot: float, value: float) -> str:
 
 
 def functions_of(source: str) -> dict[str, Any]:
-    """What the source of a law in Python defines; its own code, run as a script is."""
+    """Run the source of a law in Python, and return what it defines."""
     found: dict[str, Any] = {}
     try:
         with without_neighbours():
@@ -128,7 +128,7 @@ def functions_of(source: str) -> dict[str, Any]:
 
 
 def is_table(name: object) -> bool:
-    """Whether the name of a law is the text of a table."""
+    """Return whether the name of a law is the text of a table."""
     return isinstance(name, str) and name.partition(" ")[0] in BETWEEN and ":" in name
 
 

@@ -33,7 +33,7 @@ IN_SOURCE = ()
 
 
 class ContactLaw(Protocol):
-    """What a contact law holds."""
+    """Contents of a module that defines a contact law."""
 
     def force(self, compression: Any, closing: Any, p: Any) -> Any:
         """N at a compression δ, m, that grows with the rate ``closing``, m/s."""

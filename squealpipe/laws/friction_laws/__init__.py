@@ -27,7 +27,7 @@ IN_SOURCE = ("friction_speed",)
 
 
 class FrictionLaw(Protocol):
-    """What a module of a friction law holds; w ≥ 0 is the sliding speed, m/s."""
+    """Contents of a module that defines a friction law; w ≥ 0 is the sliding speed, m/s."""
 
     @property
     def PARAMETERS(self) -> tuple[str, ...]:  # noqa: N802
@@ -49,11 +49,6 @@ LAWS = {
 """Friction laws by name."""
 FALLING = [name for name, law in LAWS.items() if getattr(law, "FALLING", False)]
 """Laws in which μ falls from its static value to that of sliding: Coulomb's where both agree."""
-
-
-BESIDE = 1e-12
-"""Distance from a knot, over the speed there, within which both of its slopes count: a speed in
-other units may miss its knot by round-off."""
 
 
 def _is_complex(speed: Any) -> bool:
@@ -84,9 +79,12 @@ class FrictionTable:
         mean.
         """
         unit = p.friction_speed**-1.0
+        # relative to the speed of the knot: a speed converted from other units may miss its knot
+        # by round-off, so both slopes count this close to it
+        beside = 1e-12
         below, above = (
             self.pieces.value(speed * unit * factor, derivative=True)
-            for factor in (1.0 - BESIDE, 1.0 + BESIDE)
+            for factor in (1.0 - beside, 1.0 + beside)
         )
         return unit * 0.5 * (below + above)
 
