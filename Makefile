@@ -73,7 +73,7 @@ $(STUDY): requirements.lock pyproject.toml
 
 # These compile the event loop (25 s) and the shots of orbits (8 s) into the user's cache, which several
 # first jobs would otherwise do at once; and byte code of what jobs import, for those who may not write it.
-LOOP = $(BIN)/python -c "from squealpipe.methods.taylor.loop import loop; loop()"
+LOOP = $(BIN)/python -c "from squealpipe.systems.taylor.loop import loop; loop()"
 ORBITS = $(BIN)/python -c "import matplotlib.pyplot, netCDF4, snakemake.cli, squealpipe.cli, squealpipe as s; s.periodic_orbit(s.Parameters(), 0.9, 2.8, mode=1, y_peak=2)"
 $(KERNELS): $(STUDY)
 	$(LOOP) & $(ORBITS) && wait $$!

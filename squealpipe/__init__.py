@@ -10,44 +10,44 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from squealpipe.execution.sweep import Sweep, run_sweep
+    from squealpipe.brake.assess.assess import assess
+    from squealpipe.brake.backbones.backbone import backbone
+    from squealpipe.brake.backbones.orbit import periodic_orbit
+    from squealpipe.brake.basins.basin import basin_map
+    from squealpipe.brake.basins.disturbance import smallest_disturbance
+    from squealpipe.brake.curves.chart import regime_chart
+    from squealpipe.brake.curves.contact import boundary_distance, contact_boundary
+    from squealpipe.brake.cycles.branch import cycle_branch
+    from squealpipe.brake.cycles.curve import cycle_curve
+    from squealpipe.brake.cycles.cycle import limit_cycle
+    from squealpipe.brake.dynamics.hammering import hammering_map
+    from squealpipe.brake.dynamics.refinement import refine_validity_map
+    from squealpipe.brake.dynamics.runs import simulate, validity_map
+    from squealpipe.brake.dynamics.spectrum import spectrum
+    from squealpipe.brake.dynamics.summary import summarize
+    from squealpipe.brake.ladder.choice import choose_model
+    from squealpipe.brake.linear.critical import critical_friction_map
+    from squealpipe.brake.linear.maps import (
+        natural_frequencies,
+        quasi_static_map,
+        stability_map,
+    )
+    from squealpipe.brake.propensity.propensity import propensity
+    from squealpipe.paper.inference.inference import infer_parameters
     from squealpipe.parameters import SCENES, Parameters, Scene
     from squealpipe.plotting import plot
     from squealpipe.schema import labels
     from squealpipe.store.netcdf import load, save
     from squealpipe.store.results import open_results
     from squealpipe.store.tables import convert
+    from squealpipe.structures.contact import Contact
+    from squealpipe.structures.meshes.faces import Face, Rotation
+    from squealpipe.structures.squeal.ladder import squeal_ladder
+    from squealpipe.structures.squeal.squealing_modes import squealing_modes
+    from squealpipe.structures.structure import Structure
+    from squealpipe.study.sweep import Sweep, run_sweep
     from squealpipe.systems.components import Component, Switch
-    from squealpipe.systems.structures.contact import Contact
-    from squealpipe.systems.structures.meshes.faces import Face, Rotation
-    from squealpipe.systems.structures.squeal.ladder import squeal_ladder
-    from squealpipe.systems.structures.squeal.squealing_modes import squealing_modes
-    from squealpipe.systems.structures.structure import Structure
     from squealpipe.systems.system import System
-    from squealpipe.tasks.assess.assess import assess
-    from squealpipe.tasks.backbones.backbone import backbone
-    from squealpipe.tasks.backbones.orbit import periodic_orbit
-    from squealpipe.tasks.basins.basin import basin_map
-    from squealpipe.tasks.basins.disturbance import smallest_disturbance
-    from squealpipe.tasks.curves.chart import regime_chart
-    from squealpipe.tasks.curves.contact import boundary_distance, contact_boundary
-    from squealpipe.tasks.cycles.branch import cycle_branch
-    from squealpipe.tasks.cycles.curve import cycle_curve
-    from squealpipe.tasks.cycles.cycle import limit_cycle
-    from squealpipe.tasks.dynamics.hammering import hammering_map
-    from squealpipe.tasks.dynamics.refinement import refine_validity_map
-    from squealpipe.tasks.dynamics.runs import simulate, validity_map
-    from squealpipe.tasks.dynamics.spectrum import spectrum
-    from squealpipe.tasks.dynamics.summary import summarize
-    from squealpipe.tasks.inference.inference import infer_parameters
-    from squealpipe.tasks.ladder.choice import choose_model
-    from squealpipe.tasks.linear.critical import critical_friction_map
-    from squealpipe.tasks.linear.maps import (
-        natural_frequencies,
-        quasi_static_map,
-        stability_map,
-    )
-    from squealpipe.tasks.propensity.propensity import propensity
 
 HOME = {
     alias.name: str(node.module)

@@ -36,3 +36,12 @@ class SpecialPoint(IntEnum):
     period_doubling = 0
     index_two = 1
     fold = 2
+
+
+class Verdict(IntEnum):
+    """What a motion ends in."""
+
+    quiet = 0
+    squeals = 1
+    hammers = 2
+    undetermined = 3

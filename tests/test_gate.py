@@ -26,8 +26,8 @@ from squealpipe import (
     simulate,
 )
 from squealpipe.structures import elastic_pad
+from squealpipe.structures.units import scales_of
 from squealpipe.systems.shipped import impact_oscillator as shipped
-from squealpipe.systems.structures.units import scales_of
 from squealpipe.units import UnitError, in_si, number_of
 
 QUANTITY = pint.UnitRegistry().Quantity

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from squealpipe.config.settings import ConfigError, parse_study
 from squealpipe.parameters import DEFAULTS, SCENES, TABLE, Parameters, parameters_of
+from squealpipe.study.configuration.settings import ConfigError, parse_study
 
 positive = st.floats(1e-3, 1e3)
 

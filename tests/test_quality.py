@@ -46,7 +46,7 @@ def test_hooks_watch_files_that_exist():
 
 INSIDE_FUNCTIONS = {
     "squealpipe/systems/system.py": "cycles load scipy.interpolate, which runs do not need",
-    "squealpipe/systems/structures/structure.py": "runs load the compiler, which modes do not need",
+    "squealpipe/structures/structure.py": "runs load the compiler, which modes do not need",
 }
 """Modules that may import parts of the package inside functions; the command line may, too: a
 command loads what it needs, so that ``--help`` is quick."""
@@ -55,6 +55,7 @@ BY_NAME = {
     "squealpipe/benchmark/adapters/__init__.py": "a solver is loaded if it is asked for",
     "squealpipe/schema/__init__.py": "schemas register themselves by their module's name",
     "squealpipe/store/__init__.py": "the workflow needs keys of files, and no Xarray for that",
+    "squealpipe/structures/__init__.py": "readers of files need the schemas, and no SciPy",
     "squealpipe/study/figures/declared.py": "figures do, too",
     "squealpipe/systems/__init__.py": "import paths of 1.0.0",
 }

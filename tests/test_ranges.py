@@ -6,14 +6,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from squealpipe.config.ranges import (
+from squealpipe.inputs import parse_angle
+from squealpipe.ranges import (
     longest,
     parse_range,
     read_fixed,
     read_values,
     sweep_config,
 )
-from squealpipe.inputs import parse_angle
 
 FORMS = {
     "0.4pi": 0.4, "2pi/5": 0.4, "72deg": 0.4, "1.25": 1.25 / math.pi, "1.25rad": 1.25 / math.pi,

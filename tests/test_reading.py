@@ -2,7 +2,7 @@
 
 import pytest
 
-from squealpipe.models.variants import VARIANT_RULES
+from squealpipe.brake.models.variants import VARIANT_RULES
 from squealpipe.parameters import Parameters
 from squealpipe.reading import READINGS, corrected, for_linear
 

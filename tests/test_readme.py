@@ -14,10 +14,10 @@ from pathlib import Path
 import pytest
 import yaml
 
-from squealpipe.config.yaml_files import overlay
-from squealpipe.rerun.key import PARTS
-from squealpipe.store.archive import archive
 from squealpipe.store.keys import stated_key
+from squealpipe.store.rerun.key import PARTS
+from squealpipe.store.yaml_files import overlay
+from squealpipe.study.archive import archive
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")

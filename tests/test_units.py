@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from squealpipe import Contact, Structure, simulate
-from squealpipe.config.ranges import parse_range, read_fixed, read_values
 from squealpipe.parameters import UNITS_OF_INPUTS, Parameters
+from squealpipe.ranges import parse_range, read_fixed, read_values
 from squealpipe.structures import elastic_pad
 from squealpipe.units import (
     UnitError,
@@ -127,7 +127,7 @@ def test_sweeps_take_units_and_no_decimal_comma_slips_through():
 def test_plain_numbers_do_not_wait_for_pint():
     code = (
         "import sys; import squealpipe; from squealpipe.parameters import Parameters\n"
-        "import squealpipe.config.settings as s; s.read_study(s.PAPER)\n"
+        "import squealpipe.study.configuration.settings as s; s.read_study(s.PAPER)\n"
         "Parameters(mu=0.2); assert 'pint' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

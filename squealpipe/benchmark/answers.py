@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.benchmark.problems import all_data, references
+from squealpipe.benchmark.schema import Reliability
 from squealpipe.benchmark.scoring import (
     BENCHMARK_VERSION,
     Score,
@@ -17,7 +18,6 @@ from squealpipe.benchmark.scoring import (
     failed,
     score,
 )
-from squealpipe.schema.comparison import Reliability
 
 OPTIONAL = ("evaluations", "flag", "derivative", "cpu_time")
 NEEDED = ("problem", "tolerance", "times", "kinds", "state")

@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from squealpipe import functions
 from squealpipe.benchmark.problems import FUNCTIONS, Problem
+from squealpipe.systems import functions
 from squealpipe.systems.components import Switch
 from squealpipe.systems.system import System
 

@@ -11,8 +11,8 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.benchmark.problems import all_data
+from squealpipe.benchmark.schema import Reliability
 from squealpipe.benchmark.scoring import BENCHMARK_VERSION, Score, Stored
-from squealpipe.schema.comparison import Reliability
 
 INPUT_FILES = ("results.json",)
 SHIPPED = "shipped"

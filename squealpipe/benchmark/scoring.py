@@ -14,10 +14,10 @@ import xarray as xr
 from squealpipe.benchmark.adapters.scipy import solve as reference_solver
 from squealpipe.benchmark.machine import processor, versions
 from squealpipe.benchmark.problems import Problem, all_data, references
+from squealpipe.benchmark.schema import BENCHMARK, Reliability, Role
 from squealpipe.benchmark.worker import Worker
 from squealpipe.parameters import finite_number
 from squealpipe.schema import build
-from squealpipe.schema.comparison import BENCHMARK, Reliability, Role
 
 BENCHMARK_VERSION = 3
 """Goes up when problems are added, none of which is ever changed or removed, and when answers are

@@ -34,7 +34,7 @@ from squealpipe.cli.project import run as run_study
 from squealpipe.cli.structures import ladder, modes, squeal
 from squealpipe.cli.study import archive, compare, explain, verify
 from squealpipe.cli.sweep import sweep
-from squealpipe.execution.supervised import StoppedError, stops_raise
+from squealpipe.study.supervised import StoppedError, stops_raise
 
 HELP = """Friction-induced vibration with contact loss: from one run to the whole study.
 

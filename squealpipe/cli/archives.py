@@ -11,7 +11,7 @@ from squealpipe.cli.arguments import AsJson, OutputElsewhere
 from squealpipe.cli.console import ANSWER_IS_NO, DONE, working
 
 if TYPE_CHECKING:
-    from squealpipe.store.catalogue import StoredRun
+    from squealpipe.study.catalogue import StoredRun
 
 SHOWN = 4
 """Changed parameters of a run that a line shows."""
@@ -25,7 +25,7 @@ def list_runs(*, json_: AsJson = False) -> int:
     Args:
         json_: print JSON, with the whole configuration of each run.
     """
-    from squealpipe.store.catalogue import paper_configuration, runs
+    from squealpipe.study.catalogue import paper_configuration, runs
 
     listed, paper = runs(), paper_configuration()
     if json_:
@@ -80,7 +80,7 @@ def find(expression: str, /, *, json_: AsJson = False) -> int:
             keys (linear.points), joined by and, or, not, as pandas reads them.
         json_: print a JSON list of names.
     """
-    from squealpipe.store.catalogue import matching, runs
+    from squealpipe.study.catalogue import matching, runs
 
     found = runs()
     names = matching(expression, found)

@@ -8,9 +8,9 @@ from typing import Annotated, Any
 
 from cyclopts import Group, Parameter
 
-from squealpipe.config.ranges import parse_range
 from squealpipe.inputs import STATE, parse_angle, parse_number, reader
 from squealpipe.parameters import SYMBOLS, Parameters
+from squealpipe.ranges import parse_range
 from squealpipe.substitutes import SUBSTITUTES
 from squealpipe.text import as_number
 from squealpipe.units import has_unit, in_si

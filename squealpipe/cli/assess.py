@@ -44,8 +44,8 @@ def assess(
     elif brake.picture is not None:
         raise ValueError("--picture is drawn beside a dataset; name that by --output")
     else:
+        from squealpipe.brake.assess.assess import judge
         from squealpipe.study.report.answer import cure_lines, first_lines
-        from squealpipe.tasks.assess.assess import judge
 
         with working("assess"):
             judged = judge(brake.params, alpha1, alpha2, tol=tol)

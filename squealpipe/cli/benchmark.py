@@ -70,7 +70,7 @@ def run(
 
 
 def _verdict(found: xr.Dataset, output: Path) -> int:
-    from squealpipe.schema.comparison import Reliability
+    from squealpipe.benchmark.schema import Reliability
 
     wrong = int((found.verdict == Reliability.silently_wrong).sum())
     print(f"{wrong} of {found.verdict.size} answers silently wrong; wrote {output}")

@@ -27,7 +27,7 @@ def claims(
         json_: print a JSON list of objects.
         file: dataset of verdicts, made by `squealpipe run`.
     """
-    from squealpipe.study.claims.table import table
+    from squealpipe.paper.claims.table import table
 
     if not file.is_file():
         raise FileNotFoundError(f"no verdicts {file}; make them with: squealpipe run")
@@ -85,8 +85,8 @@ def _line(row: Mapping[str, Any]) -> str:
 
 def _counts(rows: Sequence[Mapping[str, Any]]) -> str:
     """Verdicts of the paper's statements counted: those that test apart from the fitted ones."""
-    from squealpipe.schema.claims import ClaimVerdict
-    from squealpipe.study.claims.table import tally
+    from squealpipe.paper.claims.table import tally
+    from squealpipe.paper.schema.claims import ClaimVerdict
 
     own = [row for row in rows if row["origin"] == "paper"]
     told = [f"{len(own)} of them the paper's"]

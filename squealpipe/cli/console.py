@@ -108,7 +108,7 @@ def working(what: str) -> Iterator[None]:
     from rich.console import Console
     from rich.progress import Progress, SpinnerColumn, TimeElapsedColumn
 
-    from squealpipe.methods.progress import shown
+    from squealpipe.systems.progress import shown
 
     console = Console(stderr=True)
     if not console.is_terminal:

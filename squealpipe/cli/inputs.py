@@ -113,7 +113,7 @@ def _of_study(paths: Sequence[str]) -> dict[str, Any]:
     """Parameters of a study, with what stands for some in their place."""
     if not paths:
         return {}
-    from squealpipe.config.settings import read_study
+    from squealpipe.study.configuration.settings import read_study
 
     section = read_study(*paths).parameters
     written = section.substitutes

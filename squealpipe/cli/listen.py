@@ -56,7 +56,7 @@ def listen(
     counts: list[int] = []
 
     def again(times: np.ndarray) -> xr.Dataset:
-        from squealpipe.tasks.dynamics.again import simulated_again
+        from squealpipe.brake.dynamics.again import simulated_again
 
         counts.append(times.size)
         return simulated_again(run, times)

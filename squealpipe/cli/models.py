@@ -55,7 +55,7 @@ def choose(
         t_end: horizon, s; 200 √(mass/k1) by default.
     """
     from squealpipe import choose_model
-    from squealpipe.schema.ladder import Level
+    from squealpipe.brake.schema.ladder import Level
 
     with working("choose"):
         choice = choose_model(brake.params, alpha1, alpha2, question, t_end=t_end)
@@ -178,7 +178,7 @@ def propensity(
 
 def _distribution(text: str) -> tuple[str, dict[str, str | float]]:
     """Name and distribution of NAME=KIND:A:B."""
-    from squealpipe.tasks.propensity.distributions import KINDS
+    from squealpipe.brake.propensity.distributions import KINDS
 
     name, _, words = text.partition("=")
     name, parts = name.strip().replace("-", "_"), words.split(":")

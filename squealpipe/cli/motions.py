@@ -85,9 +85,9 @@ def simulate(
 
     import numpy as np
 
-    from squealpipe.methods.spectrum import FEWEST
-    from squealpipe.tasks.dynamics.summary import summarize, summary_lines
-    from squealpipe.tasks.sampling import default_times, unresolved
+    from squealpipe.brake.dynamics.summary import summarize, summary_lines
+    from squealpipe.brake.sampling import default_times, unresolved
+    from squealpipe.vibration.spectrum import FEWEST
 
     times = (
         np.linspace(0.0, t_end, points)

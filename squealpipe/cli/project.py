@@ -82,8 +82,8 @@ def init(
             folder NAME beside it.
     """
     from squealpipe.cli.structure_example import FILES, STUDY
-    from squealpipe.config.settings import PAPER, read_study
     from squealpipe.store.whole_files import whole_file
+    from squealpipe.study.configuration.settings import PAPER, read_study
 
     check_output(file, force=force, kinds=(".yaml", ".yml"), option="FILE")
     if own and structure:
@@ -156,15 +156,15 @@ def run(
         quick: coarse grids and short horizons, for a first look.
         cores: cores to use; all by default.
     """
-    from squealpipe.execution import progress
-    from squealpipe.execution.explain import snakemake_command
-    from squealpipe.execution.supervised import (
+    from squealpipe.study import progress
+    from squealpipe.study.explain import snakemake_command
+    from squealpipe.study.supervised import (
         StoppedError,
         remove_stale_lock,
         run_to_its_end,
         standing_lock,
     )
-    from squealpipe.methods.processes import available_cores
+    from squealpipe.systems.processes import available_cores
 
     command, study = snakemake_command(config or [], quick=quick)
     for line in study.parameters.became():

@@ -29,7 +29,7 @@ from squealpipe.cli.output import (
     write,
 )
 from squealpipe.cli.signatures import errors_in_options, in_options, options_of
-from squealpipe.config.ranges import parse_range
+from squealpipe.ranges import parse_range
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -88,8 +88,8 @@ def modes(
 
     refuse_existing(output, force=files.force)
 
-    from squealpipe.systems.structures import complex_modes as library
-    from squealpipe.systems.structures.modes import highest_frequency
+    from squealpipe.structures import complex_modes as library
+    from squealpipe.structures.modes import highest_frequency
 
     shown = "modes"
 
@@ -214,8 +214,8 @@ def squeal(
     refuse_existing(output, force=files.force)
 
     from squealpipe import squealing_modes
+    from squealpipe.structures.squeal.plant import carried, check_modes
     from squealpipe.study.report.squealing import lines
-    from squealpipe.systems.structures.squeal.plant import carried, check_modes
 
     def squeal(structure: Any, **options: Any) -> xr.Dataset:
         number, limit = (options.pop(k, None) for k in ("n_modes", "frequency_max"))
@@ -266,7 +266,7 @@ def ladder(
     refuse_existing(output, force=files.force)
 
     from squealpipe import squeal_ladder
-    from squealpipe.schema.comparison import Reliability
+    from squealpipe.benchmark.schema import Reliability
     from squealpipe.study.report.squeal_ladder import lines
 
     asked = {"pushes": pushes, "t_end": t_end, "frequency_max": frequency_max}

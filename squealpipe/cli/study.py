@@ -26,8 +26,8 @@ def explain(
     from rich.markup import escape
     from rich.table import Table
 
-    from squealpipe.execution.explain import explain as plan_of
-    from squealpipe.rerun.sources import PACKAGE
+    from squealpipe.store.rerun.sources import PACKAGE
+    from squealpipe.study.explain import explain as plan_of
 
     with working("explain"):
         plan = plan_of(config or [], quick=quick)
@@ -65,9 +65,9 @@ def archive(name: str, /, *, config: Configs = None, leave_out: Texts = None) ->
         config: the run's configuration laid over the paper's, as for `squealpipe run`; repeatable.
         leave_out: suffix (.svg) or path pattern (data/simulate/*) that is not frozen; repeatable.
     """
-    from squealpipe.config.settings import PAPER
-    from squealpipe.execution.explain import explain as plan_of
-    from squealpipe.store.archive import archive as freeze
+    from squealpipe.study.archive import archive as freeze
+    from squealpipe.study.configuration.settings import PAPER
+    from squealpipe.study.explain import explain as plan_of
 
     with working("archive"):
         # a configuration that was given whole may be the paper's own

@@ -19,7 +19,7 @@ from squealpipe.cli.arguments import (
 )
 from squealpipe.cli.console import AGAIN, DONE, SESSION, answer, say, working
 from squealpipe.cli.output import check_output, refuse_existing, write
-from squealpipe.config.ranges import read_fixed, read_values, sweep_config
+from squealpipe.ranges import read_fixed, read_values, sweep_config
 
 
 def sweep(
@@ -53,9 +53,9 @@ def sweep(
     """
     refuse_existing(output, force=brake.force)
 
-    from squealpipe.execution.chunks import beside
-    from squealpipe.execution.sweep import outcome_lines, planned, run_sweep
-    from squealpipe.rerun.key import rule_key, sources
+    from squealpipe.store.rerun.key import rule_key, sources
+    from squealpipe.study.chunks import beside
+    from squealpipe.study.sweep import outcome_lines, planned, run_sweep
 
     varied = pairs_of("--vary", vary)
     options = pairs_of("--option", option or [])

@@ -26,7 +26,7 @@ from squealpipe.plotting.squealing import figure as squealing_figure
 from squealpipe.plotting.style import COLUMN, SETTINGS, new_figure
 from squealpipe.plotting.systems import draw_ensemble, draw_path, draw_states
 from squealpipe.schema import SYSTEM
-from squealpipe.schema.structures import NAME as COMPLEX_MODES
+from squealpipe.structures.schema.structures import NAME as COMPLEX_MODES
 from squealpipe.validation import checked
 
 DRAWN: dict[str, Callable[[Axes, xr.Dataset], None]] = {

@@ -5,10 +5,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from squealpipe.codes import Verdict
 from squealpipe.plotting import style
 from squealpipe.plotting.cycles import joined
 from squealpipe.schema import meanings
-from squealpipe.schema.assess import Verdict
 from squealpipe.units import shown_in
 
 

@@ -25,9 +25,9 @@ from matplotlib.ticker import (
 )
 
 from squealpipe.plotting.style import ANGLES, SMALL, angle_in_words, symbol
-from squealpipe.schema.sizes import is_real
 from squealpipe.text import RAISED, number
 from squealpipe.units import conversion, shown_in
+from squealpipe.vibration.sizes import is_real
 
 READABLE = {"m": "m", "s": "s", "N": "N", "Hz": "Hz", "m/s": "m s-1", "N/m": "N m-1"}
 """Unit of an axis → CF unit, of those for which a readable one is chosen."""

@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 
 from squealpipe.plotting import style
 from squealpipe.plotting.origin import parameter
-from squealpipe.schema.contact_points import MOST_FRICTION
+from squealpipe.structures.schema.contact_points import MOST_FRICTION
 
 
 def draw_onsets(axes: Axes, pads: xr.Dataset) -> None:

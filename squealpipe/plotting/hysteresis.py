@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 
 from squealpipe.plotting import style
 from squealpipe.plotting.origin import parameter
-from squealpipe.schema.squealing import JUST_ABOVE
+from squealpipe.structures.schema.squealing import JUST_ABOVE
 from squealpipe.text import number
 from squealpipe.units import engineering
 

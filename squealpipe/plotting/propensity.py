@@ -5,8 +5,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from squealpipe.brake.schema.propensity import WIDEST
 from squealpipe.plotting import style
-from squealpipe.schema.propensity import WIDEST
 
 COLOURS = (style.BLUE, style.ORANGE, style.RED, style.PURPLE, style.GREEN)
 

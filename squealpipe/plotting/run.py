@@ -7,19 +7,19 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from squealpipe.brake.schema.dynamics.intervals import intervals
 from squealpipe.codes import Regime
-from squealpipe.methods.spectrum import (
+from squealpipe.plotting import style
+from squealpipe.plotting.mechanism import SPRING_COLOURS, displaced_springs
+from squealpipe.plotting.quantities import label
+from squealpipe.schema import meanings
+from squealpipe.vibration.spectrum import (
     FEWEST,
     amplitude_spectrum,
     highest_peaks,
     lasts,
     strongest_lines,
 )
-from squealpipe.plotting import style
-from squealpipe.plotting.mechanism import SPRING_COLOURS, displaced_springs
-from squealpipe.plotting.quantities import label
-from squealpipe.schema import meanings
-from squealpipe.schema.dynamics.intervals import intervals
 
 Window = tuple[float, float]
 """First and last instant that are shown, s."""

@@ -28,17 +28,17 @@ from scipy.interpolate import make_interp_spline
 from scipy.signal import correlate, resample
 
 from squealpipe.codes import Regime
-from squealpipe.methods.parabola import vertex
-from squealpipe.methods.spectrum import (
+from squealpipe.store.whole_files import whole_file
+from squealpipe.text import number
+from squealpipe.units import engineering
+from squealpipe.vibration.parabola import vertex
+from squealpipe.vibration.settling import WindowLevels, difference
+from squealpipe.vibration.spectrum import (
     FEWEST,
     amplitude_spectrum,
     step_of,
     strongest_lines,
 )
-from squealpipe.store.whole_files import whole_file
-from squealpipe.text import number
-from squealpipe.units import engineering
-from squealpipe.vibration.settling import WindowLevels, difference
 
 RATE = 48_000
 """Samples of a file in a second."""

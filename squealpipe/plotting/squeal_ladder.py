@@ -7,9 +7,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from squealpipe.benchmark.schema import Role
 from squealpipe.plotting import style
 from squealpipe.plotting.work_precision import MARKS, draw_methods, foot
-from squealpipe.schema.comparison import Role
 
 ERRORS = {
     "frequency": ("frequency", "relative error"),

@@ -191,6 +191,11 @@ def patches(tones: Iterable[tuple[Any, str]], **look: Any) -> list[Patch]:
     return [Patch(facecolor=colour, label=words, **look) for colour, words in tones]
 
 
+def colour_of(entry: Any) -> str:
+    """Return the colour of this palette that an entry of an enumeration names."""
+    return str(globals()[entry.colour])
+
+
 def category_colours(colours: Sequence[Any]) -> dict[str, Any]:
     """``cmap`` and ``norm`` that paint the integers 0, 1, … with the given colours."""
     bounds = np.arange(len(colours) + 1) - 0.5

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FormatStrFormatter, LogLocator
 
+from squealpipe.benchmark.schema import Reliability, Role
 from squealpipe.plotting import style
-from squealpipe.schema.comparison import Reliability, Role
 
 MARKS = [
     (colour, marker, dash)

@@ -1,13 +1,13 @@
 """What every dataset holds: names, dimensions, units, meanings, tolerances: stated once.
 
-The tables are in the modules below, one per topic; a task imports its own table and calls
-:func:`build`. :func:`find` gets a schema by name, for readers of files.
+Each room of the package holds the tables of what it makes in its ``schema``; a task imports its
+own table and calls :func:`build`. :func:`find` gets a schema by name, for readers of files.
 """
 
 import importlib
 import math
 import pkgutil
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from enum import IntEnum
 from functools import cache, cached_property
@@ -23,6 +23,13 @@ from squealpipe.validation import checked
 
 SYSTEM = "system "
 """How the schemas begin that datasets of systems state: ``system ensemble``."""
+
+
+ROOMS = ("systems", "brake", "structures", "benchmark", "study", "paper")
+"""Packages that hold the schemas of the datasets that they make, in ``schema``."""
+
+DERIVED = ("squealpipe.study.schema.sweep", "squealpipe.structures.schema.structures")
+"""Modules of schemas that follow from their names."""
 
 
 class SchemaError(ValueError):
@@ -394,12 +401,12 @@ def faults_of_values(
 
 
 def find(name: str) -> DatasetSchema:
-    """The schema of that name, from the tables beside this module."""
+    """The schema of that name, from the tables of all rooms."""
     schemas = all_schemas()
     if name in schemas:
         return schemas[name]
-    for module in ("sweep", "structures"):  # schemas that follow from their names
-        derive = importlib.import_module(f"{__name__}.{module}").derived
+    for module in DERIVED:
+        derive = importlib.import_module(module).derived
         if (schema := derive(name)) is not None:
             return schema  # type: ignore[no-any-return]
     near = nearest(name, schemas)
@@ -419,7 +426,7 @@ def schema_of(dataset: xr.Dataset) -> DatasetSchema:
         )
     if not name.startswith(SYSTEM):
         return find(name)
-    systems = importlib.import_module(f"{__name__}.systems")
+    systems = importlib.import_module("squealpipe.systems.schema")
     return systems.of_dataset(dataset)  # type: ignore[no-any-return]
 
 
@@ -427,10 +434,21 @@ def schema_of(dataset: xr.Dataset) -> DatasetSchema:
 def all_schemas() -> dict[str, DatasetSchema]:
     """Every schema of the package by name."""
     schemas = {}
-    for module in pkgutil.walk_packages(__path__, f"{__name__}."):
-        table = importlib.import_module(module.name)
+    for name in _modules_of_schemas():
+        table = importlib.import_module(name)
         for value in vars(table).values():
             for schema in value if isinstance(value, tuple) else (value,):
                 if isinstance(schema, DatasetSchema):
                     schemas[schema.name] = schema
     return schemas
+
+
+def _modules_of_schemas() -> Iterator[str]:
+    """Names of the modules ``schema`` of the rooms, and of those below them."""
+    for room in ROOMS:
+        package = importlib.import_module(f"squealpipe.{room}.schema")
+        yield package.__name__
+        below = pkgutil.walk_packages(
+            getattr(package, "__path__", ()), f"{package.__name__}."
+        )
+        yield from (module.name for module in below)

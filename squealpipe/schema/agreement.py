@@ -56,3 +56,7 @@ class Listing:
     kinds: tuple[str, ...] = ()
     position: str = ""
     fillers: tuple[int, ...] = ()
+
+
+RAGGED = ("event", "point", "switch", "sample", "harmonic")
+"""Dimensions whose length may differ from run to run of a sweep."""

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.rerun.key import canonical, digest
 from squealpipe.schema import schema_of
+from squealpipe.store.rerun.key import canonical, digest
 
 VOLATILE_ATTRIBUTES = frozenset(
     {

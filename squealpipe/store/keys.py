@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from squealpipe.rerun.key import key_behind
+from squealpipe.store.rerun.key import key_behind
 from squealpipe.store.sealed import attributes
 from squealpipe.store.whole_files import StoreError
 

@@ -9,11 +9,11 @@ from typing import Any
 
 import xarray as xr
 
-from squealpipe.rerun.key import canonical, digest, file_key, refuse_edited
 from squealpipe.schema.origin import versions
 from squealpipe.store.checkout import commit
 from squealpipe.store.identity import with_key
 from squealpipe.store.netcdf import load, made_now, save
+from squealpipe.store.rerun.key import canonical, digest, file_key, refuse_edited
 
 
 def produce(
@@ -31,7 +31,7 @@ def produce(
         started: when work on it began, by ``time.perf_counter``; now by default.
         config: exactly the configuration that the task was given.
         inputs: NetCDF files that the task read.
-        key: of the rule (see :mod:`squealpipe.rerun.key`).
+        key: of the rule (see :mod:`squealpipe.store.rerun.key`).
 
     Raises:
         RuntimeError: the code was edited while the study ran, so the key may be another's; what is

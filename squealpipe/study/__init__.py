@@ -1,1 +1,1 @@
-"""What only a study needs: statements, figures, report."""
+"""Studies: configuration, sweeps, progress and reports of one's own."""

@@ -6,11 +6,11 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.schema import flag_table
-from squealpipe.schema.systems import build
 from squealpipe.systems.grid import duration_of, outer_product
 from squealpipe.systems.integrate import MOST_STEPS
 from squealpipe.systems.labels import attributes_of, flag, labels, outcome
 from squealpipe.systems.motion import MotionKind, RepeatableRuns, drift_tolerance
+from squealpipe.systems.schema import build
 from squealpipe.validation import Natural, Number, Tolerance, Values, Workers, checked
 
 SAME_ATTRACTOR = 1e-3

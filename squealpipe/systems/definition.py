@@ -11,7 +11,6 @@ from pydantic import WrapValidator
 
 from squealpipe.parameters import is_finite_number, numbers_in_si
 from squealpipe.schema import Outcome
-from squealpipe.schema.systems import names_in_results
 from squealpipe.systems.components import (
     Begins,
     Component,
@@ -20,6 +19,7 @@ from squealpipe.systems.components import (
     Regimes,
     Switch,
 )
+from squealpipe.systems.schema import names_in_results
 from squealpipe.systems.trace import Names, Traced
 from squealpipe.text import suggestion
 from squealpipe.units import holds_units

@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.methods.taylor.scalar import (
+from squealpipe.systems.taylor.scalar import (
     REGIME,
     SwitchSymbols,
     evaluate,
     numpy_function,
 )
-from squealpipe.methods.taylor.symbols import Symbol, derivative, symbol
+from squealpipe.systems.taylor.symbols import Symbol, derivative, symbol
 from squealpipe.systems.text import expression
 from squealpipe.systems.trace import Traced, Tracer
 

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.methods.processes import run_shared
-from squealpipe.methods.taylor import lanes, layout
-from squealpipe.methods.taylor.loop import loop
-from squealpipe.methods.taylor.scalar import ScalarSource
-from squealpipe.methods.taylor.series import HybridSystem
-from squealpipe.methods.taylor.simd import FEW, LANES
+from squealpipe.systems.processes import run_shared
+from squealpipe.systems.taylor import lanes, layout
+from squealpipe.systems.taylor.loop import loop
+from squealpipe.systems.taylor.scalar import ScalarSource
+from squealpipe.systems.taylor.series import HybridSystem
+from squealpipe.systems.taylor.simd import FEW, LANES
 from squealpipe.systems.trace import TIME, TIME_UNIT, Names
 from squealpipe.systems.tracing import TracedSystem as System
 

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.methods.taylor.scalar import evaluate
-from squealpipe.methods.taylor.symbols import derivative, symbol
+from squealpipe.systems.taylor.scalar import evaluate
+from squealpipe.systems.taylor.symbols import derivative, symbol
 from squealpipe.systems.trace import TIME, Traced
 
 

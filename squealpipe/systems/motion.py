@@ -12,15 +12,15 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.methods.recurrence import (
+from squealpipe.schema import Outcome
+from squealpipe.systems.integrate import MOST_STEPS, RunOptions, integrate
+from squealpipe.systems.recurrence import (
     LEAST_REPEATS,
     REPEATED,
     crossings,
     in_blocks,
     repeats_after,
 )
-from squealpipe.schema import Outcome
-from squealpipe.systems.integrate import MOST_STEPS, RunOptions, integrate
 
 AT_REST = 1e-3
 """A motion rests whose states stay this close together, over their ranges in the whole run."""

@@ -8,9 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.methods.taylor.scalar import numpy_function
 from squealpipe.parameters import brief
-from squealpipe.schema.systems import build
 from squealpipe.systems.cycles.sensitivity import sensitivities
 from squealpipe.systems.grid import call_values, duration_of, outer_product, scalar
 from squealpipe.systems.integrate import MOST_STEPS, RunOptions, integrate
@@ -23,6 +21,8 @@ from squealpipe.systems.labels import (
     regime_flag,
 )
 from squealpipe.systems.record import RunRecord, single_run
+from squealpipe.systems.schema import build
+from squealpipe.systems.taylor.scalar import numpy_function
 from squealpipe.systems.trace import TIME
 from squealpipe.validation import (
     Natural,

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from squealpipe.methods.taylor.scalar import numpy_function
 from squealpipe.systems.components import Composition
+from squealpipe.systems.taylor.scalar import numpy_function
 from squealpipe.systems.trace import TIME_UNIT, Traced
 
 _EQUAL = 1e-15

@@ -4,7 +4,7 @@ import math
 from collections import Counter
 from collections.abc import Iterator
 
-from squealpipe.methods.taylor.symbols import Symbol, symbol
+from squealpipe.systems.taylor.symbols import Symbol, symbol
 
 INCREASING = frozenset({"tanh", "sinh", "atan", "asin"})
 """Functions that grow, and vanish where their argument does."""

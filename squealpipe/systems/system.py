@@ -5,11 +5,11 @@ from typing import Any
 
 import xarray as xr
 
-from squealpipe.schema.systems import check
 from squealpipe.systems.basin import basin
 from squealpipe.systems.components import Switch
 from squealpipe.systems.definition import Definition
 from squealpipe.systems.runs import ensemble, simulate
+from squealpipe.systems.schema import check
 from squealpipe.systems.tracing import TracedSystem
 
 __all__ = ["Switch", "System"]

@@ -3,9 +3,9 @@
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
-from squealpipe.methods.taylor.scalar import REGIME
-from squealpipe.methods.taylor.symbols import FUNCTIONS, Symbol, in_order
 from squealpipe.systems.components import Composition
+from squealpipe.systems.taylor.scalar import REGIME
+from squealpipe.systems.taylor.symbols import FUNCTIONS, Symbol, in_order
 from squealpipe.systems.trace import Traced
 
 LONG = 20_000

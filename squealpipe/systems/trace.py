@@ -8,8 +8,9 @@ from typing import Any, Self
 
 import numpy as np
 
-from squealpipe.methods.taylor.scalar import REGIME, SwitchSymbols
-from squealpipe.methods.taylor.symbols import (
+from squealpipe.systems.components import Composition
+from squealpipe.systems.taylor.scalar import REGIME, SwitchSymbols
+from squealpipe.systems.taylor.symbols import (
     Symbol,
     constant_parts,
     in_order,
@@ -18,7 +19,6 @@ from squealpipe.methods.taylor.symbols import (
     symbol,
     variables,
 )
-from squealpipe.systems.components import Composition
 from squealpipe.text import suggestion
 
 TIME, TIME_UNIT = "time", "time unit"

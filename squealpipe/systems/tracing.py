@@ -9,19 +9,19 @@ from typing import Any, Self
 
 import numpy as np
 
-from squealpipe.methods.taylor.scalar import (
-    REGIME,
-    SwitchSymbols,
-    evaluate,
-    numpy_function,
-)
-from squealpipe.methods.taylor.symbols import Symbol, in_order, only, parameter, symbol
 from squealpipe.systems.components import Switch
 from squealpipe.systems.definition import MOST_SURFACES, Definition
 from squealpipe.systems.entries import Entries
 from squealpipe.systems.joint import Joint
 from squealpipe.systems.starts import Starts
 from squealpipe.systems.surfaces import simplest
+from squealpipe.systems.taylor.scalar import (
+    REGIME,
+    SwitchSymbols,
+    evaluate,
+    numpy_function,
+)
+from squealpipe.systems.taylor.symbols import Symbol, in_order, only, parameter, symbol
 from squealpipe.systems.text import describe
 from squealpipe.systems.trace import TIME, TIME_UNIT, Traced, Tracer, long_name
 

@@ -20,8 +20,8 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.methods.progress import alone
-from squealpipe.schema.assess import Verdict
+from squealpipe.codes import Verdict
+from squealpipe.systems.progress import alone
 from squealpipe.vibration.settling import Agreement, Settling, agreement, difference
 from squealpipe.vibration.verdicts import heard
 from squealpipe.vibration.windows import Windows

@@ -1,6 +1,6 @@
 """Verdict on a settled motion: quiet, squeals or hammers."""
 
-from squealpipe.schema.assess import Verdict
+from squealpipe.codes import Verdict
 
 
 def heard(losses: int, *, quiet: bool = False) -> Verdict:

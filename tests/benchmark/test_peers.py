@@ -9,14 +9,14 @@ from squealpipe.benchmark.machine import processor
 from squealpipe.benchmark.peers import benchmark_beside_peers
 from squealpipe.benchmark.problems import all_data
 from squealpipe.benchmark.results import results_as_json, shipped
+from squealpipe.benchmark.schema import Reliability
 from squealpipe.benchmark.scoring import Score, dataset_of
-from squealpipe.config.sections import BenchmarkComparison
-from squealpipe.schema.comparison import Reliability
-from squealpipe.store.comparison.compare import compare_datasets
-from squealpipe.store.comparison.differences import Agreement
-from squealpipe.study.figures.comparison.work_precision_benchmark import (
+from squealpipe.paper.figures.comparison.work_precision_benchmark import (
     where_solvers_ran,
 )
+from squealpipe.store.comparison.compare import compare_datasets
+from squealpipe.store.comparison.differences import Agreement
+from squealpipe.study.configuration.sections import BenchmarkComparison
 
 
 @pytest.fixture(scope="module")

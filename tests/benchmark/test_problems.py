@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from squealpipe.benchmark.problems import Problem, all_data
-from squealpipe.methods.taylor.symbols import parameter, substituted, symbol
+from squealpipe.brake.a1.motion_system import brake
 from squealpipe.systems.shipped.belt_friction import leine_oscillator
 from squealpipe.systems.shipped.bouncing_ball import bouncing_ball
-from squealpipe.systems.shipped.brake import brake
 from squealpipe.systems.shipped.dry_friction import dry_friction_oscillator
 from squealpipe.systems.shipped.impact_oscillator import impact_oscillator
 from squealpipe.systems.shipped.relief_valve import relief_valve
+from squealpipe.systems.taylor.symbols import parameter, substituted, symbol
 from squealpipe.systems.text import expression
 from squealpipe.systems.trace import TIME, TIME_UNIT
 

@@ -5,8 +5,8 @@ import pytest
 
 from squealpipe.benchmark.adapters import solver
 from squealpipe.benchmark.problems import Problem, all_data
+from squealpipe.benchmark.schema import Reliability
 from squealpipe.benchmark.scoring import measure
-from squealpipe.schema.comparison import Reliability
 
 DATA = {data["name"]: data for data in all_data()}
 

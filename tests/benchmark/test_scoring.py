@@ -7,8 +7,8 @@ import pytest
 
 from squealpipe.benchmark.adapters import SOLVERS, solver
 from squealpipe.benchmark.problems import Problem, all_data, references
+from squealpipe.benchmark.schema import Reliability
 from squealpipe.benchmark.scoring import BENCHMARK_VERSION, benchmark, measure, score
-from squealpipe.schema.comparison import Reliability
 
 DATA = {data["name"]: data for data in all_data()}
 TOL = 1e-8

@@ -12,10 +12,10 @@ import time
 
 import numpy as np
 
+from squealpipe.brake.a1.ensemble import run_ensemble
+from squealpipe.brake.dynamics.refinement import refine_validity_map
+from squealpipe.brake.dynamics.runs import validity_map
 from squealpipe.parameters import Parameters
-from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.tasks.dynamics.refinement import refine_validity_map
-from squealpipe.tasks.dynamics.runs import validity_map
 from tests.oracles.a1_scipy import simulate_scipy
 
 BASELINE = Parameters()
@@ -23,7 +23,7 @@ COLD = """
 import time
 import numpy as np
 from squealpipe.parameters import Parameters
-from squealpipe.tasks.dynamics.runs import validity_map
+from squealpipe.brake.dynamics.runs import validity_map
 angles = np.linspace(0, np.pi, 181)
 validity_map(Parameters(), angles, angles, workers=1)
 print(time.process_time())

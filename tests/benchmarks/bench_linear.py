@@ -8,10 +8,10 @@ import time
 import numpy as np
 
 from squealpipe import natural_frequencies, quasi_static_map, stability_map
+from squealpipe.brake.models.a4 import contact_matrix
 from squealpipe.laws.springs import geometry, linear_stiffness
-from squealpipe.models.a4 import contact_matrix
+from squealpipe.paper.inference.inference import infer_parameters
 from squealpipe.parameters import Parameters
-from squealpipe.tasks.inference.inference import infer_parameters
 
 POINTS = 1441
 SAMPLES = 20_480

@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
+from squealpipe.brake.dynamics.hammering import hammering_map
+from squealpipe.brake.dynamics.runs import validity_map
 from squealpipe.parameters import Parameters
 from squealpipe.store import save
-from squealpipe.tasks.dynamics.hammering import hammering_map
-from squealpipe.tasks.dynamics.runs import validity_map
 
 
 def cpu_seconds():

@@ -14,12 +14,12 @@ from scipy.sparse.linalg import splu
 from squealpipe import Structure, labels
 from squealpipe.benchmark.machine import processor
 from squealpipe.structures import elastic_pad
-from squealpipe.systems.structures.pencil import Pencil
+from squealpipe.structures.pencil import Pencil
 from tests.oracles.elastic_block import elastic_block
 from tests.oracles.structure_events import Reference
-from tests.systems.structures.test_large import by_scipy
-from tests.systems.structures.test_motion import names, twelve_modes
-from tests.systems.structures.test_truth import BRAKE, brake
+from tests.structures.test_large import by_scipy
+from tests.structures.test_motion import names, twelve_modes
+from tests.structures.test_truth import BRAKE, brake
 
 ROUNDS = 3
 """Of ours and scipy's in turn; the median of the ratios counts."""

@@ -5,13 +5,13 @@ import json
 import numpy as np
 import pytest
 
+from squealpipe.brake.dynamics.runs import simulate
+from squealpipe.brake.linear.maps import quasi_static_map, stability_map
 from squealpipe.cli import run
+from squealpipe.paper.claims.judge import judge
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.store.netcdf import save
 from squealpipe.store.provenance import stamped
-from squealpipe.study.claims.judge import judge
-from squealpipe.tasks.dynamics.runs import simulate
-from squealpipe.tasks.linear.maps import quasi_static_map, stability_map
 
 SCENE = SCENES["F2d"]
 

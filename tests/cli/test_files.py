@@ -33,8 +33,8 @@ from squealpipe import (
     summarize,
 )
 from squealpipe.cli import reservation, run
-from squealpipe.config.settings import parse_study, read_study
 from squealpipe.plotting import picture
+from squealpipe.study.configuration.settings import parse_study, read_study
 
 read = partial(pd.read_csv, comment="#", float_precision="round_trip")
 STABILITY = ["map", "stability", "--alpha1", "0:pi:5", "--alpha2", "0:2:3"]
@@ -215,7 +215,7 @@ def test_unexpected_errors_are_one_line_and_a_traceback_on_request(capsys, monke
         warnings.warn("internal", RuntimeWarning, stacklevel=2)
         return {}["nothing"]
 
-    monkeypatch.setattr("squealpipe.tasks.linear.maps.stability_map", broken)
+    monkeypatch.setattr("squealpipe.brake.linear.maps.stability_map", broken)
     assert run(STABILITY) == 2
     assert capsys.readouterr().err == (
         "squealpipe: unexpected error (KeyError: 'nothing'); "
@@ -270,7 +270,7 @@ def test_a_map_that_does_not_fit_is_refused_with_what_it_would_take(
     capsys, monkeypatch
 ):
     begun = Mock(side_effect=AssertionError("it would take all memory"))
-    monkeypatch.setattr("squealpipe.tasks.linear.maps.stability_map", begun)
+    monkeypatch.setattr("squealpipe.brake.linear.maps.stability_map", begun)
     words = ["map", "stability", "--alpha1", "0:pi:30000", "--alpha2", "0:pi:30000"]
     assert run([*words, "-o", "big.nc"]) == 2
     told = capsys.readouterr().err
@@ -406,7 +406,7 @@ def test_a_study_in_a_folder_that_cannot_be_written_says_what_to_do(
 
 
 def test_a_study_that_failed_says_how_to_go_on(capsys, monkeypatch):
-    monkeypatch.setattr("squealpipe.execution.supervised.run_to_its_end", lambda *_: 1)
+    monkeypatch.setattr("squealpipe.study.supervised.run_to_its_end", lambda *_: 1)
     assert run(["run"]) == 2
     told = capsys.readouterr().err
     assert "results is not complete; mend what is told above, then run the same" in told

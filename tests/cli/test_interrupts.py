@@ -13,7 +13,7 @@ import pytest
 
 from squealpipe.cli import main
 from squealpipe.cli.console import INTERRUPTED
-from squealpipe.execution.supervised import end_group, remove_stale_lock
+from squealpipe.study.supervised import end_group, remove_stale_lock
 
 LONG = {
     "simulate": ["simulate", "0.4pi", "0.6pi", "--t-end", "1e6"],
@@ -55,7 +55,7 @@ def test_other_signals_that_stop_a_command_leave_no_lock_either(
     number = getattr(signal, name)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(
-        "squealpipe.tasks.linear.maps.stability_map",
+        "squealpipe.brake.linear.maps.stability_map",
         lambda *_, **__: signal.raise_signal(number),
     )
     words = ["map", "stability", "--alpha1", "1,2", "--alpha2", "1,2", "-o", "a.nc"]
@@ -72,7 +72,7 @@ def test_other_signals_that_stop_a_command_leave_no_lock_either(
 
 HEAD = """
 import os, sys
-from squealpipe.execution.supervised import run_to_its_end
+from squealpipe.study.supervised import run_to_its_end
 run_to_its_end([sys.executable, "-c", sys.argv[1]], os.environ)
 """
 JOB = """
@@ -109,7 +109,7 @@ DEAF = "import signal, time; signal.signal(2, signal.SIG_IGN); print(1, flush=Tr
 
 
 def test_a_job_that_does_not_heed_an_interrupt_is_killed(monkeypatch):
-    monkeypatch.setattr("squealpipe.execution.supervised.PATIENCE", 0.3)
+    monkeypatch.setattr("squealpipe.study.supervised.PATIENCE", 0.3)
     with subprocess.Popen(
         [sys.executable, "-c", DEAF], stdout=subprocess.PIPE, start_new_session=True
     ) as job:

@@ -11,9 +11,9 @@ import pytest
 from squealpipe import Parameters, load, stability_map
 from squealpipe.cli import run
 from squealpipe.cli.console import SESSION, working
-from squealpipe.config.mistakes import ConfigError
-from squealpipe.config.settings import read_study
-from squealpipe.methods.progress import alone
+from squealpipe.store.mistakes import ConfigError
+from squealpipe.study.configuration.settings import read_study
+from squealpipe.systems.progress import alone
 
 SHORT = ["simulate", "5pi/6", "5pi/6", "--t-end", "5"]
 

@@ -13,14 +13,14 @@ import numpy as np
 import xarray as xr
 
 import squealpipe as sp
-from squealpipe.config.ranges import parse_range
-from squealpipe.config.settings import parse_study
+from squealpipe.brake.a1.ensemble import run_ensemble
+from squealpipe.brake.schema.ladder import QUESTIONS
 from squealpipe.functions import cos
 from squealpipe.inputs import parse_angle
 from squealpipe.laws.friction_laws import LAWS
 from squealpipe.parameters import TABLE
-from squealpipe.schema.ladder import QUESTIONS
-from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.ranges import parse_range
+from squealpipe.study.configuration.settings import parse_study
 
 LONGEST = 20.0
 """Seconds of CPU time after which a call counts as one that does not end."""

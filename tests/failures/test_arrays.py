@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from squealpipe import Parameters, simulate
-from squealpipe.tasks.linear.maps import stability_map
+from squealpipe.brake.linear.maps import stability_map
 from squealpipe.validation import real_array
 from tests.failures.fuzz import NO_ANGLES
 

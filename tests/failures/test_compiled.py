@@ -8,8 +8,8 @@ import pytest
 from numba import types
 
 from squealpipe import Parameters, simulate
+from squealpipe.brake.a1.ensemble import run_ensemble
 from squealpipe.schema import Outcome
-from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.systems import integrate
 
 

@@ -7,10 +7,10 @@ harmonic within each regime and every event time has a closed form (units of m =
 import numpy as np
 import pytest
 
+from squealpipe.brake.a1.ensemble import run_ensemble
+from squealpipe.brake.dynamics.runs import simulate
 from squealpipe.codes import Event, Regime
 from squealpipe.schema import Outcome
-from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.tasks.dynamics.runs import simulate
 from tests.former import FORMER
 from tests.oracles.a1_scipy import simulate_scipy
 

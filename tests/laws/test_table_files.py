@@ -5,11 +5,11 @@ import re
 import pytest
 
 from squealpipe import Parameters
-from squealpipe.config.settings import ConfigError, read_study
 from squealpipe.laws.contact_laws import COLUMNS as CONTACT
 from squealpipe.laws.friction_laws import COLUMNS as FRICTION
 from squealpipe.laws.sheets import shown_as
 from squealpipe.laws.table_files import read_pairs
+from squealpipe.study.configuration.settings import ConfigError, read_study
 
 SI = [(0.0, 0.5), (0.1, 0.45), (1.5, 0.3)]
 """What every table of friction below says."""

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from squealpipe import Parameters
-from squealpipe.config.settings import ConfigError, read_study
+from squealpipe.brake.models.refusals import refuse_extensions
 from squealpipe.laws import contact_laws
 from squealpipe.laws.friction_laws import coefficient, slope
-from squealpipe.models.refusals import refuse_extensions
-from squealpipe.rerun.key import rule_key
+from squealpipe.store.rerun.key import rule_key
+from squealpipe.study.configuration.settings import ConfigError, read_study
 
 CSV = "speed, coefficient\n0, 0.5\n0.1, 0.4\n1, 0.3\n"
 TEXT = "linear 0.0:0.5 0.1:0.4 1.0:0.3"

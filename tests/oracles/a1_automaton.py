@@ -1,6 +1,6 @@
 """A1 as a hybrid automaton: fields, guards and switching rules in plain floats.
 
-Written from the definition of A1 (see :mod:`squealpipe.models.a1`) and nothing else, so that
+Written from the definition of A1 (see :mod:`squealpipe.brake.models.a1`) and nothing else, so that
 public integrators can run it and our own engine has an independent counterpart.
 """
 
@@ -9,11 +9,11 @@ from enum import IntEnum
 
 import numpy as np
 
+from squealpipe.brake.models.a1 import State, Suspension, acceleration, suspension_force
 from squealpipe.codes import Regime
 from squealpipe.laws.contact import contact_force
 from squealpipe.laws.friction import stick_limit
 from squealpipe.laws.springs import Geometry, geometry
-from squealpipe.models.a1 import State, Suspension, acceleration, suspension_force
 
 EventKind = IntEnum("EventKind", "separation contact belt_speed release", start=0)
 DIRECTION = {Regime.slip_slower: 1.0, Regime.slip_faster: -1.0, Regime.stick: 0.0}

@@ -10,13 +10,13 @@ from types import SimpleNamespace
 import heyoka
 import numpy as np
 
+from squealpipe.brake.models.a1 import State, acceleration, suspension_force
 from squealpipe.codes import Regime
 from squealpipe.laws.contact import contact_force
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction import stick_limit
 from squealpipe.laws.functions import exp
 from squealpipe.laws.springs import Geometry
-from squealpipe.models.a1 import State, acceleration, suspension_force
 from squealpipe.parameters import NUMBERS_OF_A1
 from tests.oracles.a1_automaton import DIRECTION, A1Automaton, EventKind, HybridRun
 

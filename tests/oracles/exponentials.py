@@ -8,7 +8,7 @@ Where a surface changes its sign in a step, the instant is located by exponentia
 import numpy as np
 import scipy.linalg as la
 
-from squealpipe.systems.structures.modes import modal_damping_of
+from squealpipe.structures.modes import modal_damping_of
 
 OPEN, SLOWER, FASTER, STICK = range(4)
 

@@ -9,10 +9,10 @@ import scipy.io.wavfile
 import xarray as xr
 
 from squealpipe import Parameters, load, simulate
+from squealpipe.brake.dynamics.again import simulated_again
 from squealpipe.cli import run
 from squealpipe.plotting.sound import RATE, TooCoarseError, sound
 from squealpipe.store import save
-from squealpipe.tasks.dynamics.again import simulated_again
 
 PAD = Parameters(
     mass=0.45, k1=1e7, k2=1e7, k3=7e6, preload=5.714e-4, mu=0.37, mu_static=0.55,

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import yaml
 
-from squealpipe.config.settings import Study
+from squealpipe.brake.linear.maps import stability_map
 from squealpipe.parameters import Parameters
-from squealpipe.rerun.key import file_key, state_key
 from squealpipe.store import produce
-from squealpipe.tasks.linear.maps import stability_map
+from squealpipe.store.rerun.key import file_key, state_key
+from squealpipe.study.configuration.settings import Study
 
 KEY = "0123456789abcdef"
 

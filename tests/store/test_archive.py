@@ -10,13 +10,13 @@ from rocrate.rocrate import ROCrate
 
 from squealpipe import Structure
 from squealpipe.cli import run as cli
-from squealpipe.config.settings import read_study
-from squealpipe.rerun.key import file_key
 from squealpipe.store import StoreError, load, produce, save
-from squealpipe.store.archive import archive
 from squealpipe.store.comparison.compare import compare
+from squealpipe.store.rerun.key import file_key
 from squealpipe.store.runs import verify
 from squealpipe.store.whole_files import checksum
+from squealpipe.study.archive import archive
+from squealpipe.study.configuration.settings import read_study
 
 
 @pytest.fixture(scope="module")

@@ -7,9 +7,9 @@ import pytest
 
 from squealpipe.cli import run as command
 from squealpipe.store import load, save
-from squealpipe.store.archive import archive
-from squealpipe.store.catalogue import StoredRun, matching
 from squealpipe.store.runs import locate
+from squealpipe.study.archive import archive
+from squealpipe.study.catalogue import StoredRun, matching
 
 
 @pytest.fixture(scope="module")

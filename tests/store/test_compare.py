@@ -9,14 +9,14 @@ import pytest
 import xarray as xr
 
 from squealpipe import Parameters, Sweep, backbone, run_sweep, simulate
+from squealpipe.paper.schema.claims import CLAIMS
 from squealpipe.schema import DatasetSchema, Variable, build, find
-from squealpipe.schema.claims import CLAIMS
 from squealpipe.store import load, save
-from squealpipe.store.archive import archive
 from squealpipe.store.comparison.compare import compare, compare_datasets
 from squealpipe.store.comparison.differences import Agreement, difference
 from squealpipe.store.comparison.lines import lines
 from squealpipe.store.comparison.matching import align
+from squealpipe.study.archive import archive
 
 
 def edited(path, change):

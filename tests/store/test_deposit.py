@@ -5,10 +5,10 @@ import zipfile
 
 import pytest
 
-from squealpipe.store.archive import archive
 from squealpipe.store.checkout import ROOT
 from squealpipe.store.deposit import bundle
 from squealpipe.store.runs import verify
+from squealpipe.study.archive import archive
 
 
 @pytest.fixture

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from squealpipe.brake.linear.maps import stability_map
 from squealpipe.parameters import Parameters
 from squealpipe.schema import SchemaError
 from squealpipe.store import StoreError, load, produce, save
@@ -22,7 +23,6 @@ from squealpipe.store.keys import stated_key
 from squealpipe.store.provenance import stamped
 from squealpipe.store.sealed import MARK
 from squealpipe.store.whole_files import checksum, whole_file
-from squealpipe.tasks.linear.maps import stability_map
 
 ANGLES = np.linspace(0, np.pi, 31)
 

@@ -78,12 +78,12 @@ def test_every_public_function_that_returns_a_dataset_is_covered():
         "save",
         "run_sweep",
     }
-    # of a structure, not of Parameters: see tests/systems/structures
+    # of a structure, not of Parameters: see tests/structures
     other |= {"Component", "Contact", "Structure", "squealing_modes", "squeal_ladder"}
     other |= {"open_results", "labels", "System", "Switch", "convert", "plot"}
     other.add(
         "cycle_curve"
-    )  # needs a special point: see the curves of tests/tasks/cycles
+    )  # needs a special point: see the curves of tests/brake/cycles
     assert set(squealpipe.__all__) - other == set(MODEL_AND_TOLERANCE)
 
 

@@ -7,11 +7,11 @@ import pytest
 import xarray as xr
 
 from squealpipe import load, open_results
-from squealpipe.rerun.key import file_key
 from squealpipe.store import StoreError, produce
-from squealpipe.store.archive import archive
 from squealpipe.store.checkout import ROOT
+from squealpipe.store.rerun.key import file_key
 from squealpipe.store.runs import verify
+from squealpipe.study.archive import archive
 
 
 def test_nodes_are_the_datasets_by_their_names(run, keys_of):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from squealpipe import Parameters, simulate
-from squealpipe.systems.shipped.brake import brake
+from squealpipe.brake.a1.motion_system import brake
 
 
 def test_the_late_part_may_begin_at_an_event():

@@ -6,7 +6,7 @@ from scipy.linalg import expm
 
 from squealpipe import Switch, System
 from squealpipe.functions import cos
-from squealpipe.schema.branch_labels import Meeting
+from squealpipe.systems.branch_labels import Meeting
 from squealpipe.systems.shipped.belt_friction import exponential_oscillator
 from squealpipe.systems.shipped.impact_oscillator import impact_oscillator
 

@@ -9,7 +9,7 @@ from scipy.optimize import brentq, fsolve
 from squealpipe import Switch, System
 from squealpipe.functions import cos
 from squealpipe.schema import Outcome, meanings
-from squealpipe.schema.branch_labels import Label
+from squealpipe.systems.branch_labels import Label
 from squealpipe.systems.cycles.event_map import EventMap
 from squealpipe.systems.cycles.find import find_cycle, labelled
 from squealpipe.systems.cycles.solution import Cycle

@@ -8,7 +8,7 @@ import pytest
 from squealpipe import Switch, System, labels
 from squealpipe.functions import cos
 from squealpipe.schema import Outcome, meanings
-from squealpipe.schema.branch_labels import Label
+from squealpipe.systems.branch_labels import Label
 from squealpipe.systems.cycles import following
 from squealpipe.systems.shipped.belt_friction import (
     exponential_oscillator,

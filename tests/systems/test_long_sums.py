@@ -5,7 +5,7 @@ import pytest
 from scipy.linalg import expm
 
 from squealpipe import Component, Switch, System
-from squealpipe.methods.taylor import sums
+from squealpipe.systems.taylor import sums
 
 SIZE, CONTACTS = 6, 2
 

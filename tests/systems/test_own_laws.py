@@ -5,10 +5,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from squealpipe import Parameters
+from squealpipe.brake.a1.motion_system import brake_of, parameters_of_run
 from squealpipe.laws.contact import law as contact_law
 from squealpipe.laws.friction_laws import coefficient
 from squealpipe.laws.springs import elastic_force, geometry
-from squealpipe.systems.shipped.brake import brake_of, parameters_of_run
 from tests.oracles.energy import elastic_energy
 
 ANGLES = (1.0, 2.2)

@@ -6,10 +6,10 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from squealpipe import Switch, System
+from squealpipe.brake.a1.motion_system import brake_of, parameters_of_run
 from squealpipe.functions import cos, exp, sin, tanh
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
-from squealpipe.systems.shipped.brake import brake_of, parameters_of_run
 
 
 def flight(speed, start, **options):

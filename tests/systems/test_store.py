@@ -7,9 +7,10 @@ import pytest
 import xarray as xr
 
 import squealpipe
-from squealpipe.schema import SchemaError, systems
+from squealpipe.schema import SchemaError
 from squealpipe.store.comparison.compare import compare_datasets
 from squealpipe.store.comparison.differences import Agreement
+from squealpipe.systems import schema as systems
 from squealpipe.systems.shipped.belt_friction import leine_oscillator
 from squealpipe.systems.shipped.impact_oscillator import impact_oscillator
 from squealpipe.systems.shipped.mode_coupling import mode_coupling

@@ -6,12 +6,12 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
-from squealpipe.config.ranges import sweep_config
-from squealpipe.execution.chunks import Chunks
-from squealpipe.execution.scatter import join
-from squealpipe.execution.sweep import planned, run_sweep
-from squealpipe.execution.system_sweep import SystemSweep
-from squealpipe.rerun.key import rule_key
+from squealpipe.ranges import sweep_config
+from squealpipe.store.rerun.key import rule_key
+from squealpipe.study.chunks import Chunks
+from squealpipe.study.scatter import join
+from squealpipe.study.sweep import planned, run_sweep
+from squealpipe.study.system_sweep import SystemSweep
 from squealpipe.systems.shipped import impact_oscillator
 
 
@@ -47,8 +47,8 @@ def test_a_sweep_of_a_system_is_its_ensemble_whole_or_in_parts(task, run):
 def test_a_sweep_of_a_system_that_was_stopped_goes_on_where_it_was(
     task, run, along, blocks, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr("squealpipe.execution.system_sweep.FIRST", 6)
-    monkeypatch.setattr("squealpipe.execution.system_sweep.MOST", 12)
+    monkeypatch.setattr("squealpipe.study.system_sweep.FIRST", 6)
+    monkeypatch.setattr("squealpipe.study.system_sweep.MOST", 12)
     given = config(task, run=run, amplitude=0.6)
     omega, x0 = [0.8, 1.0, 1.2, 1.4, 1.6, 1.9], [0.0, 0.5, 0.6, 0.7, 0.9]
     given["vary"] = {"omega": omega, "x0": x0}
@@ -89,7 +89,7 @@ wells = System(
 
 
 def test_attractors_are_numbered_over_all_parts(tmp_path, monkeypatch):
-    monkeypatch.setattr("squealpipe.execution.system_sweep.FIRST", 1)
+    monkeypatch.setattr("squealpipe.study.system_sweep.FIRST", 1)
     monkeypatch.chdir(tmp_path)
     Path("wells.py").write_text(WELLS)
     fixed = {"run": "basin", "t_end": 60.0}

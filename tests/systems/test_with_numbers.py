@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from squealpipe.brake.a1.motion_system import brake
 from squealpipe.laws.tables import scaled
-from squealpipe.systems.shipped.brake import brake
 from squealpipe.systems.system import Switch, System
 
 

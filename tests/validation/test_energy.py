@@ -6,14 +6,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from squealpipe.brake.a1.ensemble import run_ensemble
+from squealpipe.brake.models.a1 import State, suspension_force
 from squealpipe.codes import Regime
 from squealpipe.laws.contact import contact_force
 from squealpipe.laws.dashpots import damping_force
 from squealpipe.laws.friction_laws import LAWS
 from squealpipe.laws.springs import geometry
-from squealpipe.models.a1 import State, suspension_force
 from squealpipe.schema import Outcome
-from squealpipe.solvers.a1.ensemble import run_ensemble
 from tests.former import FORMER
 from tests.oracles.energy import friction_power, mechanical_energy
 

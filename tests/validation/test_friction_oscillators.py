@@ -11,10 +11,10 @@ import math
 import numpy as np
 import pytest
 
+from squealpipe.brake.a1.ensemble import run_ensemble
+from squealpipe.brake.linear.maps import stability_map
 from squealpipe.codes import Event
 from squealpipe.schema import Outcome
-from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.tasks.linear.maps import stability_map
 from tests.oracles.friction_oscillators import ANGLES, BSTAB, LEINE, STEADY, oscillator
 
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from squealpipe.brake.a1.ensemble import run_ensemble
+from squealpipe.brake.dynamics.runs import simulate, validity_map
+from squealpipe.brake.dynamics.whirl import transient_lifetimes, whirl_sizes
 from squealpipe.parameters import SCENES
 from squealpipe.schema import Outcome
-from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.tasks.dynamics.runs import simulate, validity_map
-from squealpipe.tasks.dynamics.whirl import transient_lifetimes, whirl_sizes
 from tests.former import FORMER
 
 BASELINE = FORMER

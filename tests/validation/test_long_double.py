@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.brake.a1.ensemble import run_ensemble
 from tests.former import FORMER
 from tests.oracles.a1_long_double import simulate_reference
 from tests.oracles.a1_scipy import simulate_scipy

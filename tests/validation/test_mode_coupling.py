@@ -11,8 +11,8 @@ import math
 import numpy as np
 import pytest
 
+from squealpipe.brake.linear.maps import stability_map
 from squealpipe.parameters import Parameters
-from squealpipe.tasks.linear.maps import stability_map
 
 ANGLE = math.pi / 6
 ONSET = 0.75

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.tasks.backbones.orbit import periodic_orbit
-from squealpipe.tasks.linear.maps import (
+from squealpipe.brake.a1.ensemble import run_ensemble
+from squealpipe.brake.backbones.orbit import periodic_orbit
+from squealpipe.brake.linear.maps import (
     natural_frequencies,
     quasi_static_map,
     stability_map,

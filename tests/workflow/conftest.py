@@ -23,7 +23,7 @@ def study_copy(tiny_study, tmp_path_factory):
 def finished(study_copy, monkeypatch):
     """The same, explained by its own workflow and package."""
     monkeypatch.setenv("PYTHONPATH", str(study_copy))
-    home = "squealpipe.execution.explain"
+    home = "squealpipe.study.explain"
     monkeypatch.setattr(f"{home}.WORKFLOW", study_copy / "workflow")
     monkeypatch.setattr(f"{home}.PACKAGE", study_copy / "squealpipe")
     return study_copy

@@ -5,8 +5,8 @@ import shutil
 
 import pytest
 
-from squealpipe.execution.explain import explain
 from squealpipe.store import load, save
+from squealpipe.study.explain import explain
 
 TINY = "workflow/config/tiny.yaml"
 
@@ -36,7 +36,7 @@ def test_changed_key_is_named_with_what_follows(finished, tmp_path):
 def test_changed_code_is_noticed_whatever_its_date_and_dates_or_other_words_are_not(
     finished, date
 ):
-    path = finished / "squealpipe/study/figures/linear/fig06.py"
+    path = finished / "squealpipe/paper/figures/linear/fig06.py"
     text = path.read_text()
     path.write_text(text + "ANOTHER = 1\n")
     if date:
@@ -52,7 +52,7 @@ def test_changed_code_is_noticed_whatever_its_date_and_dates_or_other_words_are_
         *finished.glob("workflow/**/*.*"),
     ]:
         each.touch()
-    law = finished / "squealpipe/models/a1.py"
+    law = finished / "squealpipe/brake/models/a1.py"
     law.write_text(
         '"""In other words."""\n# A remark.\n' + law.read_text().split('"""', 2)[2]
     )

@@ -2,7 +2,7 @@
 
 import pytest
 
-from squealpipe.execution.explain import explain
+from squealpipe.study.explain import explain
 from tests.conftest import ROOT, run_snakemake
 
 TINY = "workflow/config/tiny.yaml"

@@ -10,13 +10,13 @@ from textwrap import indent
 
 import pytest
 
-from squealpipe.rerun.key import PLAN
+from squealpipe.store.rerun.key import PLAN
 from tests.conftest import ROOT
 
 ROW, LAW, LAW_NAME, RECORD, FIGURE, FIGURE_NAME, SYSTEM = range(7)
 FILES = {
     LAW: "squealpipe/laws/friction_laws/rising.py",
-    FIGURE: "squealpipe/study/figures/dynamics/impacts.py",
+    FIGURE: "squealpipe/paper/figures/dynamics/impacts.py",
     SYSTEM: "squealpipe/systems/shipped/pendulum.py",
 }
 LINES = {
@@ -24,9 +24,9 @@ LINES = {
         "squealpipe/parameters.py",
         "\n    def __post_init__(self) -> None:\n        for name",
     ),
-    RECORD: ("squealpipe/schema/ladder.py", "    a1_short = ("),
+    RECORD: ("squealpipe/brake/schema/ladder.py", "    a1_short = ("),
     LAW_NAME: ("squealpipe/laws/friction_laws/__init__.py", None),
-    FIGURE_NAME: ("squealpipe/study/report/sections.py", None),
+    FIGURE_NAME: ("squealpipe/paper/report/sections.py", None),
 }
 """Where a block goes: before a text, or in place of the line that begins as it does."""
 
@@ -87,19 +87,19 @@ def test_the_steps_are_as_few_as_promised(extended):
     _, changed = extended
     assert changed == {
         "squealpipe/parameters.py": (8, 0),
-        "squealpipe/schema/ladder.py": (9, 0),
+        "squealpipe/brake/schema/ladder.py": (9, 0),
         "squealpipe/laws/friction_laws/__init__.py": (1, 1),
-        "squealpipe/study/report/sections.py": (3, 1),
+        "squealpipe/paper/report/sections.py": (3, 1),
     }
 
 
 PARAMETER_AND_LAW = """
 import numpy as np
 from squealpipe import Parameters, stability_map
-from squealpipe.config.settings import parse_study
-from squealpipe.models.refusals import refuse_unread
+from squealpipe.study.configuration.settings import parse_study
+from squealpipe.brake.models.refusals import refuse_unread
 from tests.oracles.a1_automaton import A1Automaton
-from squealpipe.solvers.a1.jobs import jobs_of
+from squealpipe.brake.a1.jobs import jobs_of
 from tests.oracles.a1_scipy import simulate_scipy
 from tests.oracles.a1_long_double import simulate_reference
 
@@ -165,7 +165,7 @@ ENGINE = """
 # compiled anew in the copy, at random parameters, against long double
 import numpy as np
 from squealpipe import Parameters
-from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.brake.a1.ensemble import run_ensemble
 from tests.oracles.a1_long_double import simulate_reference
 rng = np.random.default_rng(7)
 for _ in range(12):
@@ -198,7 +198,7 @@ LADDER = """
 import numpy as np
 from squealpipe import Parameters
 from squealpipe.study.figures import declared
-from squealpipe.tasks.ladder.ladder import model_ladder
+from squealpipe.brake.ladder.ladder import model_ladder
 ladder = model_ladder(Parameters(mu=0.5), 8, 0.05, t_end=100.0, workers=1)
 assert "a1_quarter" in ladder.level.values and ladder.sizes["level"] == 7
 wrong = ladder.error.sel(level="a1_quarter", question="contact_lost") > 0
@@ -224,13 +224,13 @@ def test_what_was_added_is_right(extended, script):
 
 
 BROKEN_ONCE = (
-    "tests/models/test_damped.py::test_eigenvalues_of_random_sets_to_twelve_digits",
-    "tests/test_config.py::test_every_key_refuses_another_kind_and_says_which_key_takes_it",
+    "tests/brake/models/test_damped.py::test_eigenvalues_of_random_sets_to_twelve_digits",
+    "tests/study/test_config.py::test_every_key_refuses_another_kind_and_says_which_key_takes_it",
     "tests/schema/test_third_parties.py::test_the_data_dictionary_is_current",
 )
 """Tests that what was added has failed."""
 GATES = (
-    ("squealpipe.config.settings",),
+    ("squealpipe.study.configuration.settings",),
     ("docs.build_dictionary",),
     ("ruff", "check", "."),
     ("ruff", "format", "--check", "."),

@@ -14,10 +14,10 @@ from pathlib import Path
 import pytest
 import yaml
 
-from squealpipe.config.settings import Study
-from squealpipe.config.yaml_files import flat
-from squealpipe.rerun.key import PLAN, WATCHERS
-from squealpipe.rerun.sources import PACKAGE, closure
+from squealpipe.store.rerun.key import PLAN, WATCHERS
+from squealpipe.store.rerun.sources import PACKAGE, closure
+from squealpipe.store.yaml_files import flat
+from squealpipe.study.configuration.settings import Study
 
 ROOT = Path(__file__).resolve().parents[2]
 STATED = Path(__file__).with_name("direct_readers.yaml")
@@ -71,11 +71,11 @@ def test_no_key_is_idle_and_no_figure_is_drawn_from_a_number_of_the_physics():
 
 LAYERS = {
     "laws/springs.py": ({"map_linear"}, {"draw_model"}),
-    "tasks/linear/maps.py": ({"map_linear"}, {"draw_model"}),
-    "study/figures/linear/fig06.py": ({"draw_linear"}, {"map_linear", "draw_model"}),
+    "brake/linear/maps.py": ({"map_linear"}, {"draw_model"}),
+    "paper/figures/linear/fig06.py": ({"draw_linear"}, {"map_linear", "draw_model"}),
     "study/report/build.py": ({"write_report"}, {"map_linear", "draw_linear"}),
-    "store/archive.py": (set(), {"write_report"}),
-    "execution/sweep.py": (set(), {"map_linear", "write_report"}),
+    "study/archive.py": (set(), {"write_report"}),
+    "study/sweep.py": (set(), {"map_linear", "write_report"}),
 }
 """Module → rules that its edit must reach, and some that it must not."""
 

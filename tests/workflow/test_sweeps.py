@@ -1,8 +1,8 @@
 """Sweeps of the study: in parts or whole the same bits, and an edit touches its own sweep alone."""
 
 from squealpipe.cli import run
-from squealpipe.execution.explain import explain
 from squealpipe.store import load
+from squealpipe.study.explain import explain
 
 TINY = "workflow/config/tiny.yaml"
 RAGGED = """

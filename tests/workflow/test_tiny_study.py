@@ -9,11 +9,12 @@ import re
 import matplotlib.pyplot as plt
 
 from squealpipe import plot
+from squealpipe.paper.report.content import gather
+from squealpipe.paper.report.sections import FIGURES
 from squealpipe.parameters import Parameters
 from squealpipe.store import load, save
 from squealpipe.study.report.build import write_document
-from squealpipe.study.report.content import Made, gather, picture_files
-from squealpipe.study.report.sections import FIGURES
+from squealpipe.study.report.parts import Made, picture_files
 
 PAPER_FIGURES = [
     *(f"fig{number:02d}" for number in range(1, 10)),

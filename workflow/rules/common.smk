@@ -5,10 +5,10 @@ import sys
 import time
 from pathlib import Path
 
-from squealpipe.models.refusals import extensions
+from squealpipe.brake.models.refusals import extensions
 from squealpipe.parameters import Parameters, parameters_of
 from squealpipe.reading import READINGS
-from squealpipe.rerun.key import STARTED
+from squealpipe.store.rerun.key import STARTED
 
 # Our matrices are small: several threads of linear algebra in a job only wait for one another,
 # and for the jobs beside it.

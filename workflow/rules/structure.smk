@@ -1,12 +1,12 @@
 """A study of a structure (``structure:``): its complex modes, and which of them squeal."""
 
-from squealpipe.rerun.key import files_named_in
+from squealpipe.store.rerun.key import files_named_in
 
 STRUCTURE = settings("structure")
 
 if workflow.is_main_process:  # jobs need not check again: the import takes a second
-    from squealpipe.config.mistakes import ConfigError
-    from squealpipe.execution.structure_study import read_structure
+    from squealpipe.store.mistakes import ConfigError
+    from squealpipe.study.structure_study import read_structure
 
     try:
         read_structure(STRUCTURE["structure"])

@@ -10,9 +10,7 @@ from typing import Any
 
 import xarray as xr
 
-from squealpipe.config.yaml_files import flat
 from squealpipe.schema import DatasetSchema, Variable, meanings, schema_of
-from squealpipe.schema.claims import CLAIMS
 from squealpipe.store.comparison.curves import beside_the_curve
 from squealpipe.store.comparison.differences import Agreement, VariableDifference, judge
 from squealpipe.store.comparison.matching import Aligned, align, is_filler
@@ -26,6 +24,7 @@ from squealpipe.store.runs import (
     matches_any,
     read_manifest,
 )
+from squealpipe.store.yaml_files import flat
 
 PHYSICAL_KEY = re.compile(r"(parameters\.|alpha\d|mode\b|scene\b|vary\.|fixed\.)")
 """Configuration keys that say what is computed; the others say how, and on which grid."""
@@ -150,7 +149,7 @@ def compare(
         parameters |= _changes(configuration(first), configuration(second))
         environment |= _changes(_environment(first), _environment(second))
         datasets.append(compare_datasets(name, first, second))
-        if first.attrs["schema"] == second.attrs["schema"] == CLAIMS.name:
+        if first.attrs["schema"] == second.attrs["schema"] == "claims":
             statements = changed_statements(first, second)
     physical_first = sorted(
         parameters, key=lambda key: (not PHYSICAL_KEY.match(key), key)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import xarray as xr
 
-from squealpipe.schema.claims import CLAIMS, ClaimVerdict
+from squealpipe.schema import find, meanings
 from squealpipe.store.comparison.differences import outside_tolerance
 
 
@@ -33,14 +33,15 @@ def changed_statements(a: xr.Dataset, b: xr.Dataset) -> list[StatementChange]:
     """Statements whose verdict or value differs; changed verdicts first."""
     a, b = xr.align(a, b, join="outer", fill_value={"verdict": -1, "statement": ""})
     beyond = outside_tolerance(
-        a.value.values, b.value.values, CLAIMS.variables["value"]
+        a.value.values, b.value.values, find("claims").variables["value"]
     )
+    words_of = meanings(b.verdict) | {-1: ""}
     changed = []
     for i in range(a.sizes["claim"]):
         rows = a.isel(claim=i), b.isel(claim=i)
         codes = [int(row.verdict) for row in rows]
         if codes[0] != codes[1] or beyond[i]:
-            words = ["" if code < 0 else ClaimVerdict(code).words for code in codes]
+            words = [words_of[code].replace("_", " ") for code in codes]
             numbers = [
                 value if math.isfinite(value := float(row.value)) else None
                 for row in rows

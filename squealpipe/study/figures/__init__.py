@@ -1,1 +1,1 @@
-"""Figures: datasets in, pictures out."""
+"""Figures of a study of one's own pad or structure."""

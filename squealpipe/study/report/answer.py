@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from squealpipe.schema.assess import Mechanism, Verdict, error_of
+from squealpipe.brake.schema.assess import Mechanism, error_of
+from squealpipe.codes import Verdict
 from squealpipe.text import number, percent
 from squealpipe.units import engineering
 

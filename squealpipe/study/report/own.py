@@ -8,18 +8,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.codes import Regime
+from squealpipe.brake.schema.assess import KICKS
+from squealpipe.brake.schema.dynamics.intervals import intervals
+from squealpipe.codes import Regime, Verdict
 from squealpipe.parameters import Parameters
-from squealpipe.schema.assess import KICKS, Verdict
-from squealpipe.schema.dynamics.intervals import intervals
-from squealpipe.study.claims.evidence import Evidence
+from squealpipe.study.evidence import Evidence
 from squealpipe.study.report import answer
-from squealpipe.study.report.content import (
-    Made,
-    changed_rows,
-    parameter_table,
-    pictures,
-)
+from squealpipe.study.report.parts import Made, changed_rows, parameter_table, pictures
 from squealpipe.study.report.sections import OWN
 from squealpipe.text import number, percent
 from squealpipe.units import engineering

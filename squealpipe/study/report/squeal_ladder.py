@@ -5,9 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
-from squealpipe.schema.comparison import Role
+from squealpipe.benchmark.schema import Role
 from squealpipe.schema.outcomes import Outcome
-from squealpipe.schema.squeal_ladder import PushAnswer
+from squealpipe.structures.schema.squeal_ladder import PushAnswer
 from squealpipe.text import number
 from squealpipe.units import engineering
 

@@ -5,10 +5,10 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
+from squealpipe.codes import Verdict
 from squealpipe.plotting.origin import parameter
 from squealpipe.schema import Outcome
-from squealpipe.schema.assess import Verdict
-from squealpipe.schema.squealing import (
+from squealpipe.structures.schema.squealing import (
     JUST_ABOVE,
     MOST_MODES,
     NO_ATTRACTOR,

@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from squealpipe.codes import Verdict
 from squealpipe.plotting.origin import parameter
 from squealpipe.schema import Outcome, meanings
-from squealpipe.schema.assess import Verdict
-from squealpipe.schema.squealing import MOST_DAMPING, NO_ATTRACTOR
-from squealpipe.schema.structures import Onset
 from squealpipe.store import load
+from squealpipe.structures.schema.squealing import MOST_DAMPING, NO_ATTRACTOR
+from squealpipe.structures.schema.structures import Onset
 from squealpipe.study.report import squealing
-from squealpipe.study.report.content import Made, pictures
+from squealpipe.study.report.parts import Made, pictures
 from squealpipe.study.report.sections import STRUCTURE
 from squealpipe.text import number, percent
 from squealpipe.units import engineering

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squealpipe.methods.branch_line import ZERO_ROUND_OFF
+from squealpipe.systems.branch_line import ZERO_ROUND_OFF
 from squealpipe.systems.cycles.event_map import FREE
 from squealpipe.systems.cycles.solution import Cycle
 

@@ -12,7 +12,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from squealpipe.methods.taylor.symbols import Symbol, degree
+from squealpipe.systems.taylor.symbols import Symbol, degree
 
 Vector = NDArray[np.float64]
 Rates = Callable[[Vector], Vector]

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.methods.continuation import ContinuationState
 from squealpipe.schema import Outcome, flag_table
-from squealpipe.schema.branch_labels import Label
+from squealpipe.systems.branch_labels import Label
+from squealpipe.systems.continuation import ContinuationState
 from squealpipe.systems.cycles.described import columns, describe_columns, outcome_of
 from squealpipe.systems.cycles.find import find_cycle
 from squealpipe.systems.cycles.flow import Flow

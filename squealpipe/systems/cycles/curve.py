@@ -17,7 +17,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.schema import flag_table
-from squealpipe.schema.branch_labels import Label, Meeting
+from squealpipe.systems.branch_labels import Label, Meeting
 from squealpipe.systems.cycles.branch import started
 from squealpipe.systems.cycles.curve_equations import RETURNS
 from squealpipe.systems.cycles.curve_following import ENDS, CurvePoint, follow_curve

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.schema.branch_labels import Label, Meeting
+from squealpipe.systems.branch_labels import Label, Meeting
 from squealpipe.systems.cycles.admissible import Margin, MarginKind, margins
 from squealpipe.systems.cycles.event_map import FREE, EventMap, PhaseCondition
 from squealpipe.systems.cycles.event_order import label_of

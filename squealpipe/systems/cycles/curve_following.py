@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squealpipe.methods.branch_line import Line
-from squealpipe.methods.continuation import ContinuationState, PseudoArclength
-from squealpipe.schema.branch_labels import Label, Meeting
+from squealpipe.systems.branch_labels import Label, Meeting
+from squealpipe.systems.branch_line import Line
+from squealpipe.systems.continuation import ContinuationState, PseudoArclength
 from squealpipe.systems.cycles.admissible import (
     MARGIN_ROUND_OFF,
     Margin,

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from squealpipe.methods.continuation import ContinuationState
+from squealpipe.systems.continuation import ContinuationState
 from squealpipe.systems.cycles.event_map import FREE
 from squealpipe.systems.cycles.line import ALONG, STEPS
 from squealpipe.systems.cycles.solution import Cycle

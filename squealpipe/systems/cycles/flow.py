@@ -12,27 +12,27 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from squealpipe.methods.taylor.lanes import (
+from squealpipe.systems.cycles.affine import is_affine
+from squealpipe.systems.cycles.crossing import Crossing
+from squealpipe.systems.cycles.legs import LegEnd, Path, Vector
+from squealpipe.systems.integrate import compiled, symbolic
+from squealpipe.systems.taylor.lanes import (
     INVERSES,
     Workspace,
     aligned,
     drive,
     taylor_terms,
 )
-from squealpipe.methods.taylor.legs import (
+from squealpipe.systems.taylor.legs import (
     ARRAYS,
     FIRST_PARAMETER,
     SIZES,
     TABLE,
     run_legs,
 )
-from squealpipe.methods.taylor.scalar import python_function
-from squealpipe.methods.taylor.simd import FEW, LANES
-from squealpipe.methods.taylor.symbols import derivative, parameter, symbol
-from squealpipe.systems.cycles.affine import is_affine
-from squealpipe.systems.cycles.crossing import Crossing
-from squealpipe.systems.cycles.legs import LegEnd, Path, Vector
-from squealpipe.systems.integrate import compiled, symbolic
+from squealpipe.systems.taylor.scalar import python_function
+from squealpipe.systems.taylor.simd import FEW, LANES
+from squealpipe.systems.taylor.symbols import derivative, parameter, symbol
 from squealpipe.systems.trace import TIME_UNIT, Names
 
 if TYPE_CHECKING:

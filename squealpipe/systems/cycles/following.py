@@ -14,11 +14,10 @@ from functools import partial
 
 import numpy as np
 
-from squealpipe.methods.branch_line import Line
-from squealpipe.methods.continuation import ContinuationState
-from squealpipe.methods.progress import alone
 from squealpipe.schema import Outcome
-from squealpipe.schema.branch_labels import Label
+from squealpipe.systems.branch_labels import Label
+from squealpipe.systems.branch_line import Line
+from squealpipe.systems.continuation import ContinuationState
 from squealpipe.systems.cycles.admissible import MARGIN_ROUND_OFF, margins
 from squealpipe.systems.cycles.event_map import PhaseCondition
 from squealpipe.systems.cycles.event_order import NewOrder, label_of, least_margin
@@ -40,6 +39,7 @@ from squealpipe.systems.cycles.line import (
 )
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.cycles.trail import GONE, BranchPoint, Trail
+from squealpipe.systems.progress import alone
 
 _CHANGE = 1.0
 """Largest change of a multiplier between neighbouring points."""

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.methods.recurrence import crossings
 from squealpipe.schema import Outcome
 from squealpipe.systems.cycles.described import SETTLED_ON
 from squealpipe.systems.cycles.event_map import PhaseCondition
@@ -33,6 +32,7 @@ from squealpipe.systems.cycles.settled import (
 from squealpipe.systems.cycles.solution import Cycle, scale_of
 from squealpipe.systems.motion import AT_REST
 from squealpipe.systems.record import RunRecord
+from squealpipe.systems.recurrence import crossings
 
 _WINDOWS = (40.0, 160.0, 640.0)
 """Times, in units, within which a return is looked for."""

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from squealpipe.methods.zeros import bracketed
+from squealpipe.systems.zeros import bracketed
 
 Vector = NDArray[np.float64]
 _PLACES = np.linspace(0.0, 1.0, 9)

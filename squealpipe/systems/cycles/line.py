@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from squealpipe.methods.continuation import (
+from squealpipe.systems.branch_labels import Label
+from squealpipe.systems.continuation import (
     ContinuationSettings,
     ContinuationState,
     PseudoArclength,
 )
-from squealpipe.schema.branch_labels import Label
 from squealpipe.systems.cycles.event_map import EventMap
 from squealpipe.systems.cycles.solution import Cycle
 

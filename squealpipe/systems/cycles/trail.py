@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from squealpipe.methods.continuation import ContinuationState
 from squealpipe.schema import Outcome
-from squealpipe.schema.branch_labels import Label
+from squealpipe.systems.branch_labels import Label
+from squealpipe.systems.continuation import ContinuationState
 from squealpipe.systems.cycles.legs import Vector
 from squealpipe.systems.cycles.line import AT
 from squealpipe.systems.cycles.solution import Cycle

@@ -14,11 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.methods.taylor.legs import transfer
-from squealpipe.methods.taylor.series import gauss
 from squealpipe.systems.cycles.affine import derivatives as affine_derivatives
 from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.legs import Path, Vector
+from squealpipe.systems.taylor.legs import transfer
+from squealpipe.systems.taylor.series import gauss
 
 _TOGETHER, _FINEST = 20_000, 64
 """Most pieces of steps that are computed at once, and most pieces of one step."""

@@ -8,8 +8,8 @@ speed. :data:`leine_oscillator` is that of Leine, van Campen, de Kraker and van 
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from squealpipe.functions import exp
 from squealpipe.systems.components import Switch
+from squealpipe.systems.functions import exp
 from squealpipe.systems.system import System
 
 REGIMES = {

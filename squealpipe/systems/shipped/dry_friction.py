@@ -3,8 +3,8 @@
 from math import pi
 from typing import Any
 
-from squealpipe.functions import cos
 from squealpipe.systems.components import Switch
+from squealpipe.systems.functions import cos
 from squealpipe.systems.system import System
 
 

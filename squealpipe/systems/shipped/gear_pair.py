@@ -8,8 +8,8 @@ the drive side, x + gap on the coast side, and 0 between. Each flank is a compon
 from math import pi
 from typing import Any
 
-from squealpipe.functions import cos
 from squealpipe.systems.components import Component, Switch
+from squealpipe.systems.functions import cos
 from squealpipe.systems.system import System
 
 FLANKS = {"drive": 1.0, "coast": -1.0}

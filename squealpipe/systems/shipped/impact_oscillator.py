@@ -2,8 +2,8 @@
 
 from math import pi
 
-from squealpipe.functions import cos
 from squealpipe.systems.components import Switch
+from squealpipe.systems.functions import cos
 from squealpipe.systems.system import System
 
 impact_oscillator = System(

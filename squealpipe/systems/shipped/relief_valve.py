@@ -3,8 +3,8 @@
 ẏ1 = y2, ẏ2 = −κ y2 − (y1 + δ) + y3, ẏ3 = β (q − y1 √y3); impact at y1 = 0.
 """
 
-from squealpipe.functions import sqrt
 from squealpipe.systems.components import Switch
+from squealpipe.systems.functions import sqrt
 from squealpipe.systems.system import System
 
 relief_valve = System(

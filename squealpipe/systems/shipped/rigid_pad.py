@@ -8,8 +8,8 @@ both along +x; ``work`` is what friction has done since the start.
 
 from typing import Any
 
-from squealpipe.functions import cos, sin, sqrt
 from squealpipe.systems.components import Component, Switch
+from squealpipe.systems.functions import cos, sin, sqrt
 from squealpipe.systems.system import System
 
 LEADING, TRAILING = 1.0, -1.0

@@ -6,7 +6,7 @@ Included when all rules are known; no rule has to name what its script imports.
 import base64
 import json
 
-from squealpipe.rerun.key import PLAN, digest, file_key, rule_key, sources
+from squealpipe.store.rerun.key import PLAN, digest, file_key, rule_key, sources
 from squealpipe.store.keys import misfits, refuse_misfits
 
 MAKERS = {str(path): known for known in workflow.rules for path in known.output}

@@ -5,13 +5,13 @@ Included after the report, which shows the paper's study and must not wait for t
 
 from math import prod
 
-from squealpipe.config.mistakes import ConfigError
-from squealpipe.config.ranges import is_structure, longest
+from squealpipe.store.mistakes import ConfigError
+from squealpipe.ranges import is_structure, longest
 
 SWEEPS = {name: STUDY.sweep(name) for name in STUDY.sweeps}
 
 if SWEEPS and workflow.is_main_process:  # jobs need not check again: the import takes a second
-    from squealpipe.execution.sweep import planned
+    from squealpipe.study.sweep import planned
 
     faults = []
     for name, sweep in SWEEPS.items():

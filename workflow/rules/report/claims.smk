@@ -1,6 +1,6 @@
 """The paper's statements, judged on the datasets of the run. Included after all that make data."""
 
-from squealpipe.study.claims.datasets import READ
+from squealpipe.paper.claims.datasets import READ
 
 EVIDENCE = [name for folder in SHOWN for name in (f"{folder}{read}" for read in READ) if name in MADE]
 

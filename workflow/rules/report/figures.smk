@@ -6,7 +6,8 @@ not make is left out.
 
 from squealpipe.study.figures import declared
 from squealpipe.study.report.lineage import lineage
-from squealpipe.study.report.sections import FIGURES, OWN as OWN_FIGURES, STRUCTURE as OF_STRUCTURE
+from squealpipe.paper.report.sections import FIGURES
+from squealpipe.study.report.sections import OWN as OWN_FIGURES, STRUCTURE as OF_STRUCTURE
 
 MADE = lineage(workflow.rules, f"{RESULTS}/data/")
 SHOWN_FIGURES = FIGURES if STUDY.paper else OWN_FIGURES if STUDY.structure is None else OF_STRUCTURE

@@ -1,8 +1,8 @@
 """Model A1 started on periodic motions of A4."""
 
-from squealpipe.execution.job import Job
-from squealpipe.tasks.backbones.a1_beside_a4 import a1_beside_a4
-from squealpipe.tasks.backbones.backbone import contact_losing_branches, with_orbits
+from squealpipe.brake.backbones.a1_beside_a4 import a1_beside_a4
+from squealpipe.brake.backbones.backbone import contact_losing_branches, with_orbits
+from squealpipe.study.job import Job
 
 PEAK = 2.0
 

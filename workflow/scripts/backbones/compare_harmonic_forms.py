@@ -1,8 +1,8 @@
 """The paper's own form of harmonic balance, mended and as printed, beside exact orbits."""
 
-from squealpipe.execution.job import Job
-from squealpipe.tasks.backbones.backbone import contact_losing_branches, with_orbits
-from squealpipe.tasks.backbones.harmonic_forms import compare_harmonic_forms
+from squealpipe.brake.backbones.backbone import contact_losing_branches, with_orbits
+from squealpipe.brake.backbones.harmonic_forms import compare_harmonic_forms
+from squealpipe.study.job import Job
 
 job = Job(snakemake)
 settings, params = job.settings, job.params

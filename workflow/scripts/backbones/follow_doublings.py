@@ -2,8 +2,8 @@
 
 import math
 
-from squealpipe.execution.job import Job
-from squealpipe.tasks.backbones.doubling import doubled_branch
+from squealpipe.brake.backbones.doubling import doubled_branch
+from squealpipe.study.job import Job
 
 job = Job(snakemake)
 settings, params = job.settings, job.params

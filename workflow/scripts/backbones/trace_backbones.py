@@ -1,7 +1,7 @@
 """Backbones of the paper's scenes and of coupled ones, exact and by harmonic balance."""
 
-from squealpipe.execution.job import Job
-from squealpipe.tasks.backbones.backbone import backbone, named_scenes
+from squealpipe.brake.backbones.backbone import backbone, named_scenes
+from squealpipe.study.job import Job
 
 job = Job(snakemake)
 settings, params = job.settings, job.params

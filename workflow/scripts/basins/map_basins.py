@@ -1,9 +1,9 @@
 """Basins of the scenes of Figs. 2(d) and 3 over the velocity at the start."""
 
 import numpy as np
-from squealpipe.execution.job import Job
+from squealpipe.brake.basins.basin import basin_map
 from squealpipe.parameters import SCENES
-from squealpipe.tasks.basins.basin import basin_map
+from squealpipe.study.job import Job
 
 job = Job(snakemake)
 settings, out, params = job.settings, job.out, job.params

@@ -1,8 +1,8 @@
 """Smallest disturbances of steady sliding in the paper's scenes."""
 
-from squealpipe.execution.job import Job
+from squealpipe.brake.basins.disturbance import smallest_disturbance
 from squealpipe.parameters import SCENES
-from squealpipe.tasks.basins.disturbance import smallest_disturbance
+from squealpipe.study.job import Job
 
 job = Job(snakemake)
 settings, params = job.settings, job.params

@@ -1,6 +1,6 @@
 """The failure atlas of frequencies and stability."""
 
-from squealpipe.execution.job import Job
-from squealpipe.tasks.comparison.failures import judge_balances
+from squealpipe.paper.comparison.failures import judge_balances
+from squealpipe.study.job import Job
 
 Job(snakemake).make(judge_balances)

@@ -6,8 +6,8 @@ import os
 # sets as many as the rule has
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
-from squealpipe.execution.job import Job
-from squealpipe.tasks.comparison.work_precision import work_precision
+from squealpipe.paper.comparison.work_precision import work_precision
+from squealpipe.study.job import Job
 
 job = Job(snakemake)
 job.make(lambda: work_precision(job.params, **job.settings["comparison.harmonic"]))

@@ -1,7 +1,7 @@
 """The benchmark of integrators with events."""
 
 from squealpipe.benchmark.peers import benchmark_beside_peers
-from squealpipe.execution.job import Job
+from squealpipe.study.job import Job
 
 job = Job(snakemake)
 study = job.settings["comparison.benchmark"]

@@ -3,12 +3,12 @@
 import math
 
 import numpy as np
-from squealpipe.execution.job import Job
+from squealpipe.brake.cycles.branch import cycle_branch
+from squealpipe.brake.cycles.cycle import limit_cycle
+from squealpipe.brake.cycles.extremes import settled_extremes
 from squealpipe.parameters import SCENES
 from squealpipe.store import load
-from squealpipe.tasks.cycles.branch import cycle_branch
-from squealpipe.tasks.cycles.cycle import limit_cycle
-from squealpipe.tasks.cycles.extremes import settled_extremes
+from squealpipe.study.job import Job
 
 job = Job(snakemake)
 settings, out = job.settings, job.out

@@ -1,6 +1,6 @@
 """Cycles of the impact oscillator of one forcing period, from above its resonance to below."""
 
-from squealpipe.execution.job import Job
+from squealpipe.study.job import Job
 from squealpipe.systems.shipped.impact_oscillator import impact_oscillator
 
 job = Job(snakemake)

@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from squealpipe.execution.job import Job
+from squealpipe.brake.curves.chart import regime_chart
+from squealpipe.brake.cycles.branch import cycle_branch
+from squealpipe.brake.cycles.curve import cycle_curve
+from squealpipe.brake.cycles.cycle import limit_cycle
 from squealpipe.parameters import SCENES
 from squealpipe.schema import Outcome
-from squealpipe.schema.branch_labels import Label
-from squealpipe.tasks.curves.chart import regime_chart
-from squealpipe.tasks.cycles.branch import cycle_branch
-from squealpipe.tasks.cycles.curve import cycle_curve
-from squealpipe.tasks.cycles.cycle import limit_cycle
+from squealpipe.study.job import Job
+from squealpipe.systems.branch_labels import Label
 
 COARSE = 31
 SMALLEST, LARGEST = 0.002, 2.0  # of κ and μ over those of the study

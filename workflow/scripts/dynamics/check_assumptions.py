@@ -1,7 +1,7 @@
 """Table 1 extended: what each model level takes for granted, along its motions."""
 
-from squealpipe.execution.job import Job
-from squealpipe.tasks.dynamics.assumptions import check_assumptions
+from squealpipe.brake.dynamics.assumptions import check_assumptions
+from squealpipe.study.job import Job
 
 job = Job(snakemake)
 job.make(lambda: check_assumptions(job.params))

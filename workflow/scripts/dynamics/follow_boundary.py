@@ -3,8 +3,8 @@
 from pathlib import Path
 
 import numpy as np
-from squealpipe.execution.job import Job
-from squealpipe.tasks.curves.contact import boundary_distance, contact_boundary
+from squealpipe.brake.curves.contact import boundary_distance, contact_boundary
+from squealpipe.study.job import Job
 
 job = Job(snakemake)
 settings, params = job.settings, job.params

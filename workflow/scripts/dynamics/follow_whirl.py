@@ -1,10 +1,10 @@
 """What becomes of the responses of Figs. 3 and 4 in the long run."""
 
 import numpy as np
-from squealpipe.execution.job import Job
+from squealpipe.brake.dynamics.runs import simulate
+from squealpipe.brake.dynamics.whirl import transient_lifetimes, whirl_sizes
 from squealpipe.parameters import SCENES
-from squealpipe.tasks.dynamics.runs import simulate
-from squealpipe.tasks.dynamics.whirl import transient_lifetimes, whirl_sizes
+from squealpipe.study.job import Job
 
 job = Job(snakemake)
 settings, out = job.settings, job.out

@@ -1,8 +1,8 @@
 """Where model A1 keeps contact; of a scattered map the rows of one part."""
 
-from squealpipe.execution.job import Job
-from squealpipe.execution.scatter import over_angles
-from squealpipe.tasks.dynamics.runs import validity_map
+from squealpipe.brake.dynamics.runs import validity_map
+from squealpipe.study.job import Job
+from squealpipe.study.scatter import over_angles
 
 job = Job(snakemake)
 job.make(

@@ -1,7 +1,7 @@
 """Where model A1 keeps contact, at full resolution."""
 
-from squealpipe.execution.job import Job
-from squealpipe.tasks.dynamics.refinement import refine_validity_map
+from squealpipe.brake.dynamics.refinement import refine_validity_map
+from squealpipe.study.job import Job
 
 job = Job(snakemake)
 settings, params = job.settings, job.params

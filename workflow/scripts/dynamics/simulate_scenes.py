@@ -2,11 +2,11 @@
 
 from dataclasses import replace
 
-from squealpipe.execution.job import Job
+from squealpipe.brake.dynamics.runs import simulate
+from squealpipe.paper.schema.growth import HORIZON
 from squealpipe.parameters import SCENES
 from squealpipe.reading import READINGS
-from squealpipe.schema.dynamics.growth import HORIZON
-from squealpipe.tasks.dynamics.runs import simulate
+from squealpipe.study.job import Job
 
 LONG = 3000.0  # √(m/k1), of Fig. 4
 

@@ -1,9 +1,9 @@
 """A scattered map or sweep from its parts."""
 
-from squealpipe.config.ranges import longest
-from squealpipe.execution.job import Job
-from squealpipe.execution.scatter import join
+from squealpipe.ranges import longest
 from squealpipe.store import load
+from squealpipe.study.job import Job
+from squealpipe.study.scatter import join
 
 job = Job(snakemake)
 settings, parts = job.settings, list(snakemake.input.parts)

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from squealpipe.execution.chunks import beside
-from squealpipe.execution.job import Job
-from squealpipe.execution.sweep import planned, run_sweep
+from squealpipe.study.chunks import beside
+from squealpipe.study.job import Job
+from squealpipe.study.sweep import planned, run_sweep
 
 job = Job(snakemake)
 sweep = planned(job.settings).scattered(job.item)

@@ -1,8 +1,8 @@
 """Which parameters agree with the paper's statements."""
 
-from squealpipe.execution.job import Job
+from squealpipe.paper.inference.inference import infer_parameters
 from squealpipe.parameters import parameters_of
-from squealpipe.tasks.inference.inference import infer_parameters
+from squealpipe.study.job import Job
 
 job = Job(snakemake)
 settings = job.settings

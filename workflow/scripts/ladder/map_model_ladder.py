@@ -1,7 +1,7 @@
 """The cheapest adequate model over both spring angles."""
 
-from squealpipe.execution.job import Job
-from squealpipe.tasks.ladder.ladder import model_ladder
+from squealpipe.brake.ladder.ladder import model_ladder
+from squealpipe.study.job import Job
 
 job = Job(snakemake)
 params, ladder = job.params, job.settings["comparison.ladder"]

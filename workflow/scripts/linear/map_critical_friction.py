@@ -3,10 +3,10 @@
 import math
 
 import numpy as np
-from squealpipe.execution.job import Job
-from squealpipe.models.refusals import extensions
+from squealpipe.brake.linear.critical import critical_damping_map, critical_friction_map
+from squealpipe.brake.models.refusals import extensions
 from squealpipe.parameters import DEFAULTS
-from squealpipe.tasks.linear.critical import critical_damping_map, critical_friction_map
+from squealpipe.study.job import Job
 
 job = Job(snakemake)
 settings, out = job.settings, job.out

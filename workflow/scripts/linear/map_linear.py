@@ -1,15 +1,15 @@
 """Linear maps over both spring angles: sliding (A2), stability (A3) and frequencies (A4)."""
 
 import numpy as np
-from squealpipe.execution.job import Job
-from squealpipe.parameters import SCENE_ANGLES
-from squealpipe.tasks.dynamics.assumptions import linear_pull_map
-from squealpipe.tasks.linear.boundaries import stability_boundaries
-from squealpipe.tasks.linear.maps import (
+from squealpipe.brake.dynamics.assumptions import linear_pull_map
+from squealpipe.brake.linear.boundaries import stability_boundaries
+from squealpipe.brake.linear.maps import (
     natural_frequencies,
     quasi_static_map,
     stability_map,
 )
+from squealpipe.parameters import SCENE_ANGLES
+from squealpipe.study.job import Job
 
 job = Job(snakemake)
 params, settings = job.params, job.settings

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
+from squealpipe.brake.assess.assess import assess
+from squealpipe.brake.dynamics.runs import simulate
 from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
-from squealpipe.tasks.assess.assess import assess
-from squealpipe.tasks.dynamics.runs import simulate
 
 settings, key = snakemake.params.settings, snakemake.params.key
 params, scenes = parameters_of(settings), settings["scenes"]

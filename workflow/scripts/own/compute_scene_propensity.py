@@ -1,8 +1,8 @@
 """Shares and Sobol indices around the first scene of a study of one's own."""
 
+from squealpipe.brake.propensity.propensity import propensity
 from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
-from squealpipe.tasks.propensity.propensity import propensity
 
 settings = snakemake.params.settings
 params, scene = parameters_of(settings), next(iter(settings["scenes"].values()))

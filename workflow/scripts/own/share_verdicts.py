@@ -1,7 +1,7 @@
 """Shares of the verdicts around the first scene of a study of one's own."""
 
-from squealpipe.execution.job import Job
-from squealpipe.tasks.assess.shares import verdict_shares
+from squealpipe.brake.assess.shares import verdict_shares
+from squealpipe.study.job import Job
 
 MOST = 1024
 """Brakes that are run at most."""

@@ -4,13 +4,13 @@ import json
 from pathlib import Path
 
 from squealpipe.parameters import parameters_of
-from squealpipe.rerun.key import state_key
 from squealpipe.store import load
 from squealpipe.store.keys import refuse_misfits
+from squealpipe.store.rerun.key import state_key
 from squealpipe.store.whole_files import whole_file
 from squealpipe.study.report.build import write_document
-from squealpipe.study.report.content import made_files, picture_files, provenance
 from squealpipe.study.report.own import gather_own
+from squealpipe.study.report.parts import made_files, picture_files, provenance
 from squealpipe.study.report.tables import write_tables
 
 params, out = snakemake.params, snakemake.output

@@ -2,9 +2,9 @@
 
 import math
 
-from squealpipe.execution.job import Job
-from squealpipe.tasks.propensity.distributions import centred
-from squealpipe.tasks.propensity.propensity import propensity
+from squealpipe.brake.propensity.distributions import centred
+from squealpipe.brake.propensity.propensity import propensity
+from squealpipe.study.job import Job
 
 job = Job(snakemake)
 settings, params = job.settings, job.params

@@ -1,8 +1,8 @@
 """The paper's statements in settings that it leaves out."""
 
-from squealpipe.execution.job import Job
+from squealpipe.paper.robustness import verdict_robustness
 from squealpipe.store import load
-from squealpipe.tasks.propensity.robustness import verdict_robustness
+from squealpipe.study.job import Job
 
 job = Job(snakemake)
 settings, inferred = job.settings, snakemake.input.get("inferred")

@@ -1,8 +1,8 @@
 """Motions from rest, spectra and backbones on a grid of spring angles."""
 
 import numpy as np
-from squealpipe.execution.job import Job
-from squealpipe.tasks.explorer import explorer_data
+from squealpipe.brake.explorer import explorer_data
+from squealpipe.study.job import Job
 
 job = Job(snakemake)
 options = dict(job.settings["explorer"])

@@ -1,8 +1,8 @@
 """The figures of one topic, each from the datasets that it declares."""
 
 from squealpipe.plotting.style import save_figure
-from squealpipe.rerun.key import state_key
 from squealpipe.store import load
+from squealpipe.store.rerun.key import state_key
 from squealpipe.study.figures.declared import draw
 
 given, params = snakemake.input, snakemake.params

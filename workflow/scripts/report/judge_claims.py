@@ -1,8 +1,8 @@
 """The verdict on every statement of the paper."""
 
-from squealpipe.execution.job import Job
+from squealpipe.paper.claims.judge import judge
 from squealpipe.parameters import parameters_of
-from squealpipe.study.claims.judge import judge
+from squealpipe.study.job import Job
 
 job = Job(snakemake)
 settings, paths = job.settings, snakemake.input.datasets

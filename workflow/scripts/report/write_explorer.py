@@ -1,7 +1,7 @@
 """The explorer page."""
 
-from squealpipe.rerun.key import state_key
 from squealpipe.store import load
+from squealpipe.store.rerun.key import state_key
 from squealpipe.study.report.explorer import write_explorer
 from squealpipe.study.report.explorer.layers import layers
 

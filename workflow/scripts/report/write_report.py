@@ -3,17 +3,13 @@
 import json
 from pathlib import Path
 
+from squealpipe.paper.report.content import gather
 from squealpipe.parameters import parameters_of
-from squealpipe.rerun.key import state_key
 from squealpipe.store.keys import refuse_misfits
+from squealpipe.store.rerun.key import state_key
 from squealpipe.store.whole_files import whole_file
 from squealpipe.study.report.build import write_document
-from squealpipe.study.report.content import (
-    gather,
-    made_files,
-    picture_files,
-    provenance,
-)
+from squealpipe.study.report.parts import made_files, picture_files, provenance
 
 params, out = snakemake.params, snakemake.output
 refuse_misfits(params.expected)

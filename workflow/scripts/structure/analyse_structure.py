@@ -1,7 +1,7 @@
 """Complex modes of a structure over friction, and which of them squeal."""
 
-from squealpipe.execution.job import Job
-from squealpipe.execution.structure_study import (
+from squealpipe.study.job import Job
+from squealpipe.study.structure_study import (
     modes_over_friction,
     read_structure,
     squealing,

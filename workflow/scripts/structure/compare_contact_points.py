@@ -1,7 +1,7 @@
 """An elastic pad on one, two and more contact points, and a stiff one."""
 
-from squealpipe.execution.job import Job
-from squealpipe.tasks.structures.contact_points import Run, contact_points
+from squealpipe.paper.contact_points import Run, contact_points
+from squealpipe.study.job import Job
 
 job = Job(snakemake)
 section = dict(job.settings["contact_points"])

@@ -3,11 +3,11 @@
 import json
 from pathlib import Path
 
-from squealpipe.rerun.key import state_key
 from squealpipe.store.keys import refuse_misfits
+from squealpipe.store.rerun.key import state_key
 from squealpipe.store.whole_files import whole_file
 from squealpipe.study.report.build import write_document
-from squealpipe.study.report.content import made_files, picture_files, provenance
+from squealpipe.study.report.parts import made_files, picture_files, provenance
 from squealpipe.study.report.structure import gather_structure
 
 params, out = snakemake.params, snakemake.output

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from squealpipe.codes import Verdict
 from squealpipe.plotting.style import (
     BLACK,
     BLUE,
@@ -19,7 +20,6 @@ from squealpipe.plotting.style import (
     new_figure,
     patches,
 )
-from squealpipe.schema.assess import Verdict
 from squealpipe.study.figures.declared import report_figure
 
 TONES = {

@@ -5,11 +5,10 @@ from typing import NamedTuple
 
 import xarray as xr
 
-from squealpipe.plotting.style import REGIME_COLOURS, flag_words
+from squealpipe.brake.schema.dynamics.runs import MotionFlag
+from squealpipe.brake.schema.ladder import Level
+from squealpipe.plotting.style import REGIME_COLOURS, colour_of, flag_words
 from squealpipe.schema import meanings
-from squealpipe.schema.dynamics.runs import MotionFlag
-from squealpipe.schema.ladder import Level
-from squealpipe.study.figures.comparison.model_ladder import colour_of
 
 
 class Layer(NamedTuple):

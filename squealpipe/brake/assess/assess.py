@@ -1,0 +1,171 @@
+"""The answer for one brake: verdict, cause, frequency, level, and what stops it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.brake.assess.any_start import strikes
+from squealpipe.brake.assess.cures import Boundary, boundaries, nearest_angles
+from squealpipe.brake.assess.levels import levels
+from squealpipe.brake.assess.settling import pushed, settle, start_at
+from squealpipe.brake.assess.sliding import Design, Sliding
+from squealpipe.brake.linear.maps import stability_map
+from squealpipe.brake.schema.assess import ASSESS, CURES, Mechanism
+from squealpipe.codes import Verdict
+from squealpipe.parameters import Parameters
+from squealpipe.schema import Outcome, build
+from squealpipe.schema.origin import recorded
+from squealpipe.validation import Angle, Tolerance
+from squealpipe.vibration.settling import FOR_NUMBERS
+
+SEARCHED = 1e-9
+"""Tolerance of the runs that search boundaries, which are located far more coarsely."""
+
+
+@recorded(model="A1", method="Taylor series with located events")
+def assess(
+    params: Parameters, alpha1: Angle, alpha2: Angle, *, tol: Tolerance = 1e-12
+) -> xr.Dataset:
+    """Whether a brake squeals or hammers, at which frequency, how loud, why, and what stops it.
+
+    Two starts are told: steady sliding, pushed by 1 % of the static compression in the direction
+    in which small motions grow fastest, and (prefix ``sudden_``) rest under the whole preload at
+    once. Each is run until its motion has settled, at most 20,000 periods 2π √(2m/(k1 + k2)). The
+    ``verdict`` is that of the first: quiet (dies out; an undamped brake: stays below ten times the
+    push), squeals (lasts, contact kept), hammers (lasts, contact lost again and again), or
+    undetermined. Without steady sliding it is that of the sudden start.
+
+    Args:
+        alpha1: angle of spring 1, counted from +x, the direction of the belt, rad.
+        alpha2: angle of spring 2, counted from −x, rad.
+        tol: tolerance of the Taylor integrator, relative to l_pre.
+
+    Returns:
+        Dataset ``assess``: scalars of both starts, spectrum and path of the settled motion of the
+        verdict, and over ``cure``, by ascending change: the nearest value from which the brake is
+        quiet (of a quiet one, up to which it is), from steady sliding and from any start that was
+        tried: both above, three strikes, and the motions of this brake, followed. NaN: none between
+        ``lowest_tried`` and ``highest_tried``. Outcomes: converged, unresolved (undetermined),
+        no_sliding_state.
+    """
+    return judge(params, alpha1, alpha2, tol=tol).with_cures()
+
+
+@dataclass(frozen=True)
+class Judged:
+    """Verdict on a brake and its motions, before the search for what stops it.
+
+    Attributes:
+        verdict: what the start that decides ends in.
+        motions: states of other motions that last.
+        facts: variables of the dataset that are known already.
+        tol: tolerance of the runs.
+    """
+
+    design: Design
+    verdict: Verdict
+    motions: list[np.ndarray]
+    facts: dict[str, Any]
+    tol: float
+
+    def without_cures(self) -> xr.Dataset:
+        """The answer so far: verdict, cause, frequency and level."""
+        return self._answer({}, (np.nan, np.nan))
+
+    def with_cures(self) -> xr.Dataset:
+        """The whole answer; the search takes most of its time."""
+        coarse = max(self.tol, SEARCHED)
+        cures = boundaries(self.design, self.verdict, self.motions, tol=coarse)
+        return self._answer(
+            cures, nearest_angles(self.design, self.verdict, tol=coarse)
+        )
+
+    def _answer(
+        self, cures: dict[str, Boundary], nearest: tuple[float, float]
+    ) -> xr.Dataset:
+        names = {
+            "value": "value",
+            "quiet_from": "quiet_from",
+            "quiet_from_any_start": "quiet_from_any_start",
+            "change": "change",
+            "change_any_start": "change_any_start",
+            "lowest_tried": "lowest",
+            "highest_tried": "highest",
+            "snaps_from": "snaps_from",
+            "snap_distance": "snap_distance",
+        }
+        return build(
+            ASSESS,
+            {
+                **self.facts,
+                **{
+                    name: np.array([getattr(each, key) for each in cures.values()])
+                    for name, key in names.items()
+                },
+                "quiet_alpha1": nearest[0],
+                "quiet_alpha2": nearest[1],
+                "unit": np.array([CURES[name] for name in cures], str),
+            },
+            {"cure": np.array(list(cures), str), "mode": [1, 2]},
+        )
+
+
+def judge(params: Parameters, alpha1: float, alpha2: float, *, tol: float) -> Judged:
+    """Run both starts of a brake, and three strikes, until their motions have settled."""
+    design = Design(params, alpha1, alpha2)
+    sliding = Sliding.of(design)
+    sudden = start_at(design, sliding, np.zeros(4))
+    starts = [sudden]
+    if sliding is not None:
+        starts += [pushed(design, sliding), *strikes(design, sliding)]
+    settled = settle(starts, tol=tol, rules=FOR_NUMBERS)
+    of_sudden, of_verdict = settled[0], settled[min(1, len(settled) - 1)]
+    others = [each for each in settled if each.verdict is not Verdict.quiet]
+    scalars, pictured = levels(design, of_verdict, sliding, tol=tol)
+    sudden_scalars, _ = levels(design, of_sudden, sliding, tol=tol)
+    outcome = Outcome.converged
+    if of_verdict.verdict is Verdict.undetermined:
+        outcome = Outcome.unresolved
+    elif sliding is None:
+        outcome = Outcome.no_sliding_state
+    facts = {
+        **scalars,
+        **{f"sudden_{name}": value for name, value in sudden_scalars.items()},
+        **pictured,
+        **_linear(design, sliding),
+        "quiet_unless_struck": of_verdict.verdict is Verdict.quiet and bool(others),
+        "alpha1": alpha1,
+        "alpha2": alpha2,
+        "preload": params.preload,
+        "outcome": outcome,
+    }
+    motions = [each.last.final for each in others[:2]]
+    return Judged(design, of_verdict.verdict, motions, facts, tol)
+
+
+def _linear(design: Design, sliding: Sliding | None) -> dict[str, Any]:
+    """What is known of small motions."""
+    linear = stability_map(design.params, [design.alpha1], [design.alpha2])
+    linear_facts = {
+        "growth_rate": float(linear.growth_rate[0, 0]),
+        "mode_frequency": linear.frequency.values[0, 0] / (2.0 * np.pi),
+    }
+    if sliding is None:
+        return linear_facts | {
+            "mechanism": Mechanism.no_sliding_state,
+            **dict.fromkeys(
+                ("sliding_growth_rate", "x_sliding", "y_sliding", "sliding_force"),
+                np.nan,
+            ),
+        }
+    return linear_facts | {
+        "mechanism": sliding.mechanism,
+        "sliding_growth_rate": sliding.growth_rate,
+        "x_sliding": sliding.state[0],
+        "y_sliding": sliding.state[1],
+        "sliding_force": sliding.force,
+    }

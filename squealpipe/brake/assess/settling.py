@@ -1,0 +1,95 @@
+"""Starts of a pad, and what they settle to."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from squealpipe.brake.assess.sliding import Design, Sliding
+from squealpipe.brake.assess.windows import run_windows
+from squealpipe.brake.models.damped import is_undamped
+from squealpipe.vibration.settled_runs import QUIETNESS, Horizon, SettledRun, Start
+from squealpipe.vibration.settled_runs import settle as settle_runs
+from squealpipe.vibration.settling import FOR_VERDICTS, Settling
+
+PUSH = 0.01
+"""Push of steady sliding, over the static compression."""
+FIRST = 50.0
+"""Length of the first two windows, in periods."""
+MOST = 20_000.0
+"""Periods after which a motion that has not settled is undetermined."""
+
+
+def pushed(design: Design, sliding: Sliding) -> Start:
+    """Return steady sliding, pushed in the direction in which small motions grow fastest."""
+    size = PUSH * (design.params.preload - sliding.state[1])
+    speed = size * float(np.linalg.norm(sliding.push[2:]))
+    speed = max(speed, size * design.rate)
+    return _start(design, sliding, sliding.state + size * sliding.push, speed)
+
+
+def start_at(design: Design, sliding: Sliding | None, state: np.ndarray) -> Start:
+    """Return another start, at a state (4,), m and m/s."""
+    size, rest = design.params.preload, np.zeros(4)
+    if sliding is not None:
+        size, rest = design.params.preload - sliding.state[1], sliding.state
+    speed = PUSH * size * design.rate
+    if is_undamped(design.params):
+        away = np.hypot(*(state - rest)[:2]) * design.rate
+        own = float(np.hypot(away, np.hypot(*state[2:])))
+        speed = max(speed, own / QUIETNESS.stays_small * 2.0)
+    return _start(design, sliding, np.asarray(state, float), speed)
+
+
+def _start(
+    design: Design, sliding: Sliding | None, state: np.ndarray, speed: float
+) -> Start:
+    return Start(
+        subject=design,
+        state=state,
+        sliding=None if sliding is None else sliding.state,
+        period=design.period,
+        speed=speed,
+        rate=_rate(sliding),
+        measure=lambda away: float(
+            np.hypot(*away[:2]) * design.rate + np.hypot(*away[2:])
+        ),
+    )
+
+
+def _rate(sliding: Sliding | None) -> float:
+    """Growth rate of small motions, 1/s; 0 for no growth or a decay that no run shows."""
+    if sliding is None:
+        return 0.0
+    fades = sliding.growth_rate < -sliding.marginal
+    return sliding.growth_rate if fades or sliding.is_unstable else 0.0
+
+
+def settle(
+    starts: Sequence[Start],
+    *,
+    tol: float,
+    most: float = MOST,
+    rules: Settling = FOR_VERDICTS,
+) -> list[SettledRun]:
+    """Run each start until it has settled by the rules, ``most`` periods at most."""
+
+    def advance(
+        rows: list[int],
+        states: np.ndarray,
+        regimes: np.ndarray | None,  # noqa: ARG001 (each state of a pad has one)
+        seconds: np.ndarray,
+        turn: int,  # noqa: ARG001
+    ) -> object:
+        designs = [starts[row].subject for row in rows]
+        return run_windows(designs, states, seconds, rules, tol=tol)
+
+    period = np.array([start.period for start in starts])
+    first = np.array([_first_window(start, most) for start in starts]) * period
+    return settle_runs(starts, advance, Horizon(first, first, most * period), rules)
+
+
+def _first_window(start: Start, most: float) -> float:
+    """Periods of the first window, in which small motions grow to e^½ or more."""
+    rate = abs(start.rate) * start.period
+    shown = QUIETNESS.shown / rate if rate > 0 else 0.0
+    return float(np.clip(shown, FIRST, 0.25 * most))

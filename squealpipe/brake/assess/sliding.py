@@ -1,0 +1,284 @@
+"""Steady sliding of A1 and small motions about it, in SI units.
+
+The acceleration of A1 is evaluated at complex displacements: the imaginary part of the result
+over a tiny step is the exact derivative (Squire and Trapp, SIAM Review 40 (1998) 110–112), for
+every law and without a compiled system, so that thousands of designs cost a second.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+
+from squealpipe.brake.models import a1
+from squealpipe.brake.schema.assess import Mechanism
+from squealpipe.laws.contact import normal_force
+from squealpipe.laws.friction_laws import COULOMB
+from squealpipe.laws.springs import LONG, Geometry, geometry
+from squealpipe.parameters import Parameters
+
+GROWS = 1e-7
+"""Growth rate, over the largest |s|, above which steady sliding is unstable; below it is the
+round-off of an undamped pair."""
+ROUND_OFF = 1e-13
+"""The same where a force depends on velocity."""
+FIRST_STEPS, MOST_STEPS = 4, 40
+"""Newton steps while friction is raised, and under the whole."""
+RAISED, PACE = 64, 20.0
+"""Steps in which friction is raised, and as many under the whole; time of each over 1/rate."""
+MOST_DOUBLED = 400
+"""Most steps after those; over the first :data:`MOST_STEPS` of them the time doubles each step."""
+LONGEST = 0.1
+"""Longest step, over the shorter spring."""
+BALANCE = 1e-11
+"""Force left over at an equilibrium, over that of the preload."""
+STEP = 1e-30
+"""Imaginary step, over a length or a speed of the system."""
+
+
+class Design(NamedTuple):
+    """A brake: parameters and angles (rad)."""
+
+    params: Parameters
+    alpha1: float
+    alpha2: float
+
+    @property
+    def rate(self) -> float:
+        """√((k1 + k2)/2m), rad/s, the unit of frequencies."""
+        p = self.params
+        return float(np.sqrt((p.k1 + p.k2) / (2.0 * p.mass)))
+
+    @property
+    def period(self) -> float:
+        """2π over :attr:`rate`, s."""
+        return 2.0 * np.pi / self.rate
+
+
+@dataclass(frozen=True)
+class Sliding:
+    """Steady sliding of a design in contact.
+
+    Attributes:
+        state: x, y, 0, 0, m.
+        force: contact force, N.
+        jacobian: (4, 4) derivative of the velocities and accelerations by the state.
+    """
+
+    design: Design
+    state: np.ndarray
+    force: float
+    jacobian: np.ndarray
+
+    @classmethod
+    def of(cls, design: Design) -> Self | None:
+        """The one that slowly raised friction leads to from r = 0; None where there is none.
+
+        Newton's method finds it in a few steps; where that fails, or leads out of contact, an
+        overdamped mass is followed.
+        """
+        if design.params.belt_speed == 0.0:
+            return None
+        for looked_for in (_balanced, _followed):
+            place = looked_for(design)
+            if place is None:
+                continue
+            normal = float(normal_force(float(place[1]), 0.0, design.params))
+            if place[1] < design.params.preload and normal > 0.0:
+                _, slopes = _linearized(_acceleration(design), place, design)
+                state = np.array([*place, 0.0, 0.0])
+                return cls(design, state, normal, _jacobian(slopes))
+        return None
+
+    @cached_property
+    def growth_rate(self) -> float:
+        """Largest real part of small motions, 1/s."""
+        return float(self._roots.real.max())
+
+    @property
+    def is_unstable(self) -> bool:
+        """Whether small motions grow."""
+        return self.margin > 0.0
+
+    @cached_property
+    def margin(self) -> float:
+        """By how much small motions grow faster than round-off, 1/s."""
+        return excess_growth(self.jacobian)
+
+    @cached_property
+    def marginal(self) -> float:
+        """Growth too slow for any run to show, 1/s."""
+        return GROWS * float(np.abs(self._roots).max())
+
+    @cached_property
+    def mechanism(self) -> Mechanism:
+        """Why it is unstable."""
+        if not self.is_unstable:
+            return Mechanism.none
+        level = _level(self.design)
+        _, slopes = _linearized(_acceleration(level), self.state[:2], level)
+        if excess_growth(_jacobian(slopes)) <= 0.0:
+            return Mechanism.falling_friction
+        leading = self._roots[np.argmax(self._roots.real)]
+        oscillates = abs(leading.imag) > np.sqrt(GROWS) * abs(leading)
+        return Mechanism.flutter if oscillates else Mechanism.divergence
+
+    @cached_property
+    def push(self) -> np.ndarray:
+        """Direction in which small motions grow fastest: displacement of size 1, and velocity.
+
+        Of several that grow alike, as without damping, the slowest.
+        """
+        values, vectors = np.linalg.eig(self.jacobian)
+        slack = 1e-9 * np.abs(values).max() + self.marginal
+        leading = np.flatnonzero(values.real >= values.real.max() - slack)
+        vector = vectors[:, leading[np.argmin(np.abs(values[leading]))]]
+        # the phase at which the mass is farthest out
+        square = complex((vector[:2] ** 2).sum())
+        vector = np.real(vector * np.exp(-0.5j * np.angle(square)))
+        sign = 1.0 if vector[np.argmax(np.abs(vector[:2]))] > 0 else -1.0
+        return np.asarray(sign * vector / np.linalg.norm(vector[:2]))
+
+    @cached_property
+    def _roots(self) -> np.ndarray:
+        return np.asarray(np.linalg.eigvals(self.jacobian))
+
+
+def _balanced(design: Design) -> np.ndarray | None:
+    """Where the mass slides steadily, m, by Newton's method from r = 0.
+
+    At the whole friction at once it would jump to another branch where springs are soft.
+    """
+    raised = [((step + 1) / FIRST_STEPS, math.inf) for step in range(FIRST_STEPS)]
+    return _approach(design, raised + [(1.0, math.inf)] * MOST_STEPS)
+
+
+def _followed(design: Design) -> np.ndarray | None:
+    """Where an overdamped mass comes to rest, m, while friction is raised slowly from none.
+
+    Pseudo-transient continuation (Kelley and Keyes, SIAM Journal on Numerical Analysis 35 (1998)):
+    implicit Euler steps that end as Newton's. Just beyond a fold the mass lingers, then goes far.
+    """
+    raised = [((step + 1) / RAISED, PACE) for step in range(RAISED)]
+    settles = [(1.0, PACE)] * RAISED
+    doubled = [min(step, MOST_STEPS) for step in range(MOST_DOUBLED)]
+    ends = [(1.0, PACE * 2.0**step) for step in doubled]
+    return _approach(design, raised + settles + ends)
+
+
+def _approach(design: Design, steps: list[tuple[float, float]]) -> np.ndarray | None:
+    """A place in balance after steps with a share of friction and a time over 1/rate each."""
+    params, stiffness = design.params, np.eye(2) * design.rate**2
+    balance = params.k3 * params.preload / params.mass
+    longest = LONGEST * min(params.length1, params.length2)
+    place, acceleration, last = np.zeros(2), _acceleration(design), 1.0
+    for share, time in steps:
+        if share != last:
+            acceleration, last = _acceleration(_level(design, share)), share
+        try:
+            force, slopes = _linearized(acceleration, place, design, count=2)
+        except (OverflowError, ZeroDivisionError):
+            return None
+        if not np.isfinite(force).all():
+            return None
+        if share == 1.0 and np.abs(force).max() < BALANCE * balance:
+            return place
+        try:
+            place = place + _step(force, slopes, stiffness, time, longest)
+        except np.linalg.LinAlgError:
+            return None
+        if not np.abs(place).max() < 1e3 * (params.length1 + params.length2):
+            return None
+    return None
+
+
+def _step(
+    force: np.ndarray,
+    slopes: np.ndarray,
+    stiffness: np.ndarray,
+    time: float,
+    longest: float,
+) -> np.ndarray:
+    """An implicit Euler step, of less time where it would go far or against the force.
+
+    Against the force it goes where the time is too long for a place the mass is driven away from.
+    """
+    while True:
+        step = np.asarray(np.linalg.solve(stiffness / time - slopes, force))
+        too_long = np.abs(step).max() > longest or step @ force < 0.0
+        if math.isinf(time) or not too_long:
+            return step
+        time *= 0.5
+
+
+def _level(design: Design, share: float = 1.0) -> Design:
+    """The same brake with the coefficient of belt speed, or a share of it, at any speed."""
+    params = design.params
+    friction = share * abs(params.drag)
+    return design._replace(
+        params=params.with_(
+            friction_law=COULOMB, mu=friction, mu_static=None, friction_speed=1.0
+        )
+    )
+
+
+def _acceleration(design: Design) -> Any:
+    """Acceleration of the mass that slides slower than the belt, m/s²."""
+    params = design.params
+    g = Geometry(*map(float, geometry(design.alpha1, design.alpha2)))
+    long = tuple(
+        length > LONG * params.preload for length in (params.length1, params.length2)
+    )
+
+    form = a1.Suspension(long=(long[0], long[1]))
+
+    def acceleration(state: Any) -> tuple[Any, Any]:
+        return a1.acceleration(
+            a1.State(*state),
+            params,
+            g,
+            contact=1.0,
+            direction=params.belt_direction,
+            form=form,
+        )
+
+    return acceleration
+
+
+def _linearized(
+    acceleration: Any, place: np.ndarray, design: Design, count: int = 4
+) -> tuple[np.ndarray, np.ndarray]:
+    """Acceleration of the mass at rest in some place, (2,), and its slopes by the state.
+
+    The slopes, (2, count), are those by the first of x, y, ẋ, ẏ. Numbers of Python are several
+    times as fast as arrays of so few.
+    """
+    length = design.params.preload
+    speed = length * design.rate
+    steps = [STEP * unit for unit in (length, length, speed, speed)]
+    rest = [float(each) for each in (*place, 0.0, 0.0)]
+    values, slopes = (0j, 0j), np.empty((2, count))
+    for column in range(count):
+        state: list[complex] = [*rest]
+        state[column] += 1j * steps[column]
+        values = acceleration(state)
+        slopes[:, column] = [each.imag / steps[column] for each in values]
+    return np.array([each.real for each in values]), slopes
+
+
+def _jacobian(slopes: np.ndarray) -> np.ndarray:
+    """(4, 4) derivative of the velocities and accelerations by the state."""
+    return np.vstack([np.eye(4)[2:], slopes])
+
+
+def excess_growth(jacobian: np.ndarray) -> float:
+    """By how much small motions grow faster than round-off, 1/s.
+
+    Where no force depends on velocity, frequencies that merge lose half of their digits; elsewhere
+    the sign of growth tells, however slow it is.
+    """
+    roots = np.linalg.eigvals(jacobian)
+    share = ROUND_OFF if jacobian[2:, 2:].any() else GROWS
+    return float(roots.real.max() - share * np.abs(roots).max())

@@ -1,0 +1,187 @@
+"""Branches of periodic motions of model A1 in a parameter or an angle."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any
+
+import numpy as np
+import xarray as xr
+from annotated_types import Ge
+from pydantic import BeforeValidator
+
+from squealpipe.brake.a1.jobs import STATE
+from squealpipe.brake.cycles.cycle import cycle_from
+from squealpipe.brake.cycles.onset import find_onset
+from squealpipe.brake.cycles.scene import IN_SYSTEM, CycleScene
+from squealpipe.brake.models.refusals import refuse_unread
+from squealpipe.brake.schema.cycles import CYCLE_BRANCH, LIMIT_CYCLE
+from squealpipe.parameters import TABLE, Parameters, is_finite_number
+from squealpipe.schema import Outcome, blank, build
+from squealpipe.schema.origin import recorded
+from squealpipe.systems.branch_labels import Label
+from squealpipe.systems.cycles.branch import first_point, in_rows
+from squealpipe.systems.cycles.doubling import doubled_start
+from squealpipe.systems.cycles.following import Follower
+from squealpipe.systems.cycles.solution import Cycle
+from squealpipe.systems.cycles.trail import BranchPoint
+from squealpipe.validation import Angle, Number, Whole, state_of
+
+
+def _start(value: Any) -> Any:
+    if isinstance(value, xr.Dataset) or (isinstance(value, str) and value == "onset"):
+        return value
+    try:
+        return state_of(value)
+    except ValueError as error:
+        raise ValueError(
+            "a state (x, y, vx, vy), a dataset or 'onset' is needed"
+        ) from error
+
+
+Start = Annotated[Any, BeforeValidator(_start)]
+_SAME_VALUE = 1e-11
+"""Two values of a parameter as close as this, relative, are one to a branch."""
+
+
+@recorded(model="A1", method="pseudo-arclength continuation of the return map")
+def cycle_branch(
+    params: Parameters,
+    alpha1: Angle,
+    alpha2: Angle,
+    *,
+    parameter: str,
+    to: Number,
+    start: Start | None = None,
+    n_points: Annotated[Whole, Ge(2)] = 200,
+    doubled: bool = False,
+) -> xr.Dataset:
+    """The branch of cycles through a start, in one parameter, stable and unstable parts.
+
+    Pseudo-arclength continuation that goes round folds and corners. A step holds at most one
+    change of the events; folds, period doublings, torus bifurcations, grazings, and stick that
+    just begins, ends or is interrupted, are located and become points of their own. Events that
+    coincide, as where contact is lost at belt speed, make no special point.
+
+    Args:
+        params: physical parameters; their value of ``parameter`` is where the branch starts.
+        alpha1, alpha2: angles, rad.
+        parameter: name of a physical parameter, "alpha1" or "alpha2".
+        to: value at which the branch ends with ``converged``. It may end before: where the
+            parameter comes back to its value at the start (``returned``), where the branch is a
+            closed curve (``closed``), meets a cycle of half the period or a third of it
+            (``tongue_end``), shrinks to a state of rest (``equilibrium``), comes to a pivot
+            (``singular_geometry``), where the mass just touches belt speed or the limit of stick
+            and would jump (``tangency``), or where it cannot be followed (``branch_lost``).
+        start: a state (x, y, ẋ, ẏ) near the first cycle, a dataset of ``limit_cycle``, "onset" (the
+            loss of stability of steady sliding between the two values), or None: a settled run.
+        n_points: largest number of points; a branch that goes on ends with ``point_limit``.
+        doubled: follow the branch that leaves at the first period doubling instead.
+
+    Returns:
+        Dataset over ``point``, with a variable named like the parameter; ``label`` says what is
+        special about a point, "end" at the last one, and ``end`` why the branch ended there.
+    """
+    begin = _value(params, alpha1, alpha2, parameter)
+    if math.isclose(to, begin, rel_tol=_SAME_VALUE):
+        raise ValueError(
+            f"to = {to!r}: a finite value other than {parameter} = {begin!r}, the start, is needed"
+        )
+    if parameter not in ("alpha1", "alpha2"):
+        params.with_(**{parameter: to})
+    scene = CycleScene(params, alpha1, alpha2, follow=parameter)
+    scale = scene.units[parameter]
+    low, high = sorted((begin / scale, to / scale))
+    follower = Follower(low, high, n_points)
+    outcome = Outcome.no_convergence
+    if isinstance(start, str):
+        first = find_onset(scene, begin / scale, to / scale)
+    else:
+        cycle, outcome = _first_cycle(scene, start)
+        first = None
+        if cycle is not None:
+            first = first_point(cycle, IN_SYSTEM[parameter], to / scale)
+            outcome = Outcome.no_convergence
+    if first is None:
+        return _dataset(scene, [], outcome)
+    end = follower.run(*first)
+    if doubled:
+        flips = (p for p in follower.points if p.label == Label.period_doubling)
+        first = next((found for p in flips if (found := doubled_start(p))), None)
+        if first is None:
+            return _dataset(scene, [], Outcome.no_doubling)
+        follower = Follower(low, high, n_points)
+        end = follower.run(*first)
+    last = follower.points[-1]
+    there = scene.at(last.parameter)
+    if end == Outcome.branch_lost and there.is_singular(
+        last.cycle.parts.path.series[:, :2, 0]
+    ):
+        end = Outcome.singular_geometry
+    elif end == Outcome.converged and math.isclose(
+        last.parameter, begin / scale, rel_tol=1e-11
+    ):
+        end = Outcome.returned
+    return _dataset(scene, follower.points, end)
+
+
+def _value(params: Parameters, alpha1: float, alpha2: float, parameter: str) -> float:
+    values = {
+        name: getattr(params, name) for name, row in TABLE.items() if row.enters_a1
+    }
+    values |= {"alpha1": alpha1, "alpha2": alpha2}
+    if not is_finite_number(values.get(parameter)):
+        known = ", ".join(
+            name for name, value in values.items() if is_finite_number(value)
+        )
+        why = " (A1 does not read it)" if parameter in {*TABLE} - {*values} else ""
+        raise ValueError(f"parameter = {parameter!r}{why}: one of {known} is needed")
+    refuse_unread(params, [parameter])
+    return float(values[parameter])
+
+
+def _first_cycle(scene: CycleScene, start: Any) -> tuple[Cycle | None, Outcome]:
+    if isinstance(start, xr.Dataset):
+        if start.attrs.get("schema") != LIMIT_CYCLE.name:
+            raise ValueError(
+                f"start holds {', '.join(map(str, start.data_vars)) or 'nothing'}: a dataset of "
+                "limit_cycle is needed"
+            )
+        if Outcome(int(start.outcome)) not in {
+            Outcome.converged,
+            Outcome.family_member,
+        }:
+            return None, Outcome(int(start.outcome))
+        start = np.array([float(start[f"{name}_start"]) for name in STATE])
+    return cycle_from(scene, start)
+
+
+def _dataset(scene: CycleScene, points: list[BranchPoint], end: Outcome) -> xr.Dataset:
+    parameter = str(scene.follow)
+    rows = in_rows(points, scene.numbers)
+    columns: dict[str, Any] = blank(CYCLE_BRANCH, multiplier=4)
+    if rows:
+        columns |= {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    starts = [point.cycle.start()[0] * scene.state_units for point in points]
+    states = np.array(starts).reshape(-1, 4)
+    followed = np.array([point.parameter for point in points]) * scene.units[parameter]
+    fixed = {"alpha1": scene.alpha1, "alpha2": scene.alpha2}
+    outcomes = [
+        Outcome.family_member if point.cycle.is_family_member else Outcome.converged
+        for point in points
+    ]
+    return build(
+        CYCLE_BRANCH,
+        {
+            **columns,
+            **{name: np.full(len(points), value) for name, value in fixed.items()},
+            parameter: followed,
+            "label": [point.label for point in points],
+            "events": [scene.count(point.cycle) for point in points],
+            **{f"{name}_start": states[:, i] for i, name in enumerate(STATE)},
+            "outcome": outcomes,
+            "end": end,
+        },
+        {"multiplier": np.arange(1, 5), "point": np.arange(len(points))},
+        {"parameter": parameter},
+    )

@@ -1,0 +1,269 @@
+"""Closed-form flow of an undamped linear system of two degrees of freedom, and its events.
+
+Within one state ü = −A u + b with a constant 2×2 matrix A. With λm = tr A/2 and the trace-free
+B = A − λm I, every function of A is α I + β B, where α is the mean and β the divided difference
+of the function at the eigenvalues ω1², ω2². Written with ω2 ± ω1 these stay exact for repeated,
+zero, negative and complex eigenvalues, where eigenvectors do not exist or lose digits.
+
+A *state row* holds λm, B11, B12, B21, δ² = −det B, Re ω1, Im ω1, Re ω2, Im ω2, b1, b2 and the
+threshold of y (see :class:`squealpipe.brake.orbits.piecewise_linear.PiecewiseLinearSystem`).
+"""
+
+from typing import Any
+
+import numpy as np
+
+from squealpipe.systems.compiled import compiled
+
+# A bound on the curvature replaces trial and error up to this phase of the fastest mode, rad.
+_LONGEST_LOOK_AHEAD = 1.0
+# Below this part of the longest look-ahead a touch without crossing is passed over.
+_TOUCH = 1e-9
+_MOST_LOOKS = 100_000
+GIVEN_UP = -2.0
+"""What :func:`next_crossing` returns after too many look-aheads."""
+
+
+@compiled
+def _over(sine: Any, frequency: Any, limit: Any) -> Any:
+    """A sine over its frequency ω, at ω = 0 the limit."""
+    return frequency + limit if frequency == 0.0 else sine / frequency
+
+
+@compiled
+def _cosine_of_double(sine: Any, cosine: Any) -> Any:
+    """cos 2φ from sin φ and cos φ, by the smaller of them: their own round-off does not enter."""
+    if abs(cosine) < abs(sine):
+        return 2.0 * cosine * cosine - 1.0
+    return 1.0 - 2.0 * sine * sine
+
+
+@compiled
+def modal_coefficients(omega1: Any, omega2: Any, time: Any) -> Any:
+    """(α, β) of C = cos(√A t), S = sin(√A t)/√A and G = (1 − C)/A; real or complex ω.
+
+    All from sine and cosine of ω1 t/2 and ω2 t/2, by sums and products that do not cancel.
+    """
+    mean, half = 0.5 * (omega1 + omega2), 0.5 * (omega2 - omega1)
+    angle1, angle2 = 0.5 * time * omega1, 0.5 * time * omega2
+    sin1 = np.sin(angle1)
+    cos1 = np.cos(angle1)
+    sin2 = np.sin(angle2)
+    cos2 = np.cos(angle2)
+    sine_mean = _over(sin1 * cos2 + cos1 * sin2, mean, time)
+    sine1_half = _over(sin1, omega1, 0.5 * time)
+    sine2_half = _over(sin2, omega2, 0.5 * time)
+    sine1, sine2 = 2.0 * sine1_half * cos1, 2.0 * sine2_half * cos2
+    rise1, rise2 = 2.0 * sine1_half * sine1_half, 2.0 * sine2_half * sine2_half
+
+    if abs(half) < 0.5 * abs(mean):
+        sine_half = _over(np.sin(half * time), half, time)
+        cos_mean, cos_half = cos1 * cos2 - sin1 * sin2, cos1 * cos2 + sin1 * sin2
+        sine_beta = (
+            0.5 * (cos_mean * sine_half - sine_mean * cos_half) / (omega1 * omega2)
+        )
+    else:
+        sine_half = _over(sin2 * cos1 - cos2 * sin1, half, time)
+        sine_beta = 0.25 * (sine2 - sine1) / (mean * half)
+    cosine_beta = -0.5 * sine_mean * sine_half
+    rise_beta = -(cosine_beta + rise1) / (omega2 * omega2)
+    return (
+        0.5 * (_cosine_of_double(sin1, cos1) + _cosine_of_double(sin2, cos2)),
+        cosine_beta,
+        0.5 * (sine1 + sine2),
+        sine_beta,
+        0.5 * (rise1 + rise2),
+        rise_beta,
+    )
+
+
+@compiled
+def coefficients_at(row: Any, time: float) -> Any:
+    """(α, β) of C, S, −A S and G of a state row over a time: eight numbers."""
+    if row[6] == 0.0 and row[8] == 0.0:
+        ca, cb, sa, sb, ga, gb = modal_coefficients(row[5], row[7], time)
+    else:
+        omega1, omega2 = complex(row[5], row[6]), complex(row[7], row[8])
+        c0, c1, s0, s1, g0, g1 = modal_coefficients(omega1, omega2, complex(time))
+        ca, cb, sa, sb, ga, gb = c0.real, c1.real, s0.real, s1.real, g0.real, g1.real
+    return ca, cb, sa, sb, -(row[0] * sa + row[4] * sb), -(sa + row[0] * sb), ga, gb
+
+
+@compiled
+def propagator(row: Any, time: float, out: Any) -> None:
+    """Fill ``out`` with :func:`coefficients_at` a time."""
+    out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7] = coefficients_at(
+        row, time
+    )
+
+
+@compiled
+def moved_tangent(
+    row: Any, coefficients: Any, x: float, y: float, vx: float, vy: float
+) -> Any:
+    """A tangent vector (δx, δy, δvx, δvy) later."""
+    bux, buy = row[1] * x + row[2] * y, row[3] * x - row[1] * y
+    bvx, bvy = row[1] * vx + row[2] * vy, row[3] * vx - row[1] * vy
+    ca, cb, sa, sb = coefficients[0], coefficients[1], coefficients[2], coefficients[3]
+    da, db = coefficients[4], coefficients[5]
+    return (
+        ca * x + cb * bux + sa * vx + sb * bvx,
+        ca * y + cb * buy + sa * vy + sb * bvy,
+        da * x + db * bux + ca * vx + cb * bvx,
+        da * y + db * buy + ca * vy + cb * bvy,
+    )
+
+
+@compiled
+def moved_state(
+    row: Any, coefficients: Any, x: float, y: float, vx: float, vy: float
+) -> Any:
+    """A state (x, y, vx, vy) later, load b included."""
+    x, y, vx, vy = moved_tangent(row, coefficients, x, y, vx, vy)
+    sa, sb, ga, gb = coefficients[2], coefficients[3], coefficients[6], coefficients[7]
+    bx, by = row[9], row[10]
+    bbx, bby = row[1] * bx + row[2] * by, row[3] * bx - row[1] * by
+    return (
+        x + (ga * bx + gb * bbx),
+        y + (ga * by + gb * bby),
+        vx + (sa * bx + sb * bbx),
+        vy + (sa * by + sb * bby),
+    )
+
+
+@compiled
+def apply(row: Any, coefficients: Any, state: Any) -> None:
+    """Advance a tangent vector (δx, δy, δvx, δvy) in place."""
+    state[0], state[1], state[2], state[3] = moved_tangent(
+        row, coefficients, state[0], state[1], state[2], state[3]
+    )
+
+
+@compiled
+def advance(row: Any, coefficients: Any, state: Any) -> None:
+    """Advance a state (x, y, vx, vy) in place, load b included."""
+    state[0], state[1], state[2], state[3] = moved_state(
+        row, coefficients, state[0], state[1], state[2], state[3]
+    )
+
+
+@compiled
+def copy_state(source: Any, target: Any) -> None:
+    """Copy (x, y, vx, vy)."""
+    for index in range(4):
+        target[index] = source[index]
+
+
+@compiled
+def acceleration(row: Any, x: float, y: float) -> tuple[float, float]:
+    """−A u + b."""
+    return (
+        row[9] - (row[0] + row[1]) * x - row[2] * y,
+        row[10] - row[3] * x - (row[0] - row[1]) * y,
+    )
+
+
+@compiled
+def _jerk_bound(
+    row: Any, ax: float, ay: float, vx: float, vy: float, step: float
+) -> float:
+    """Bound on |d³y/dt³| over the next ``step`` from the state at its start."""
+    norm_b = abs(row[1]) + max(abs(row[2]), abs(row[3]))
+    growth = 1.0 + 0.5 * norm_b * step * step
+    if row[6] != 0.0 or row[8] != 0.0:
+        growth *= np.exp(max(abs(row[6]), abs(row[8])) * step)
+    jx = (row[0] + row[1]) * vx + row[2] * vy
+    jy = row[3] * vx + (row[0] - row[1]) * vy
+    later = (abs(row[0]) + norm_b) * step * np.sqrt(ax * ax + ay * ay)
+    return float(growth * (np.sqrt(jx * jx + jy * jy) + later))
+
+
+@compiled
+def _stays(
+    distance: float, slope: float, curvature: float, jerk: float, step: float
+) -> bool:
+    """Whether Taylor's bound keeps the distance positive in (0, step]."""
+    if slope >= 0.0 and 0.5 * curvature - jerk * step / 6.0 > 0.0:
+        return True
+    # the secant slope ė + ½ëτ − ⅙Jτ² is concave in τ, so its minimum is at an end
+    least = min(slope, slope + 0.5 * curvature * step - jerk * step * step / 6.0)
+    return least > 0.0 or distance + step * min(least, 0.0) > 0.0
+
+
+@compiled
+def _refine_crossing(
+    row: Any, origin: Any, start: float, end: float, guess: float, sign: float
+) -> float:
+    """Time of the single zero of sign·(y − threshold) in (start, end), by safeguarded Newton.
+
+    It ends with the step after which Newton's error, from the curvature, is below round-off.
+    """
+    x0, y0, vx0, vy0 = origin[0], origin[1], origin[2], origin[3]
+    time = guess if start < guess < end else 0.5 * (start + end)
+    for _ in range(100):
+        x, y, _, vy = moved_state(row, coefficients_at(row, time), x0, y0, vx0, vy0)
+        distance, slope = sign * (y - row[11]), sign * vy
+        if distance > 0.0:
+            start = time
+        else:
+            end = time
+        if slope < 0.0:
+            newton = time - distance / slope
+            move = abs(newton - time)
+            _, ay = acceleration(row, x, y)
+            error = move * min(1.0, abs(ay / slope) * move)
+            if error <= 4e-16 * abs(newton) and start <= newton <= end:
+                return float(newton)
+        else:
+            newton = start
+        if not start < newton < end:
+            newton = 0.5 * (start + end)
+            if not start < newton < end:
+                return newton
+        time = newton
+    return time
+
+
+@compiled
+def next_crossing(row: Any, origin: Any, sign: float, horizon: float) -> float:
+    """First time in (0, horizon] at which y leaves this state's side, −1, or ``GIVEN_UP``.
+
+    ``sign`` is +1 above and −1 below the threshold. Each look-ahead is bounded by Taylor's
+    theorem, so a pair of crossings at grazing is never stepped over; ``origin`` may lie on the
+    threshold.
+    """
+    x0, y0, vx0, vy0 = origin[0], origin[1], origin[2], origin[3]
+    x, y, vx, vy = x0, y0, vx0, vy0
+    longest = _LONGEST_LOOK_AHEAD / max(
+        np.sqrt(row[7] * row[7] + row[8] * row[8]), 1e-300
+    )
+    time = 0.0
+    for _ in range(_MOST_LOOKS):
+        if not time < horizon:
+            return -1.0
+        distance = max(sign * (y - row[11]), 0.0)
+        slope = sign * vy
+        ax, ay = acceleration(row, x, y)
+        curvature = sign * ay
+        step = min(longest, horizon - time)
+        falls = False
+        while step > _TOUCH * longest:
+            jerk = _jerk_bound(row, ax, ay, vx, vy, step)
+            if _stays(distance, slope, curvature, jerk, step):
+                break
+            falls = (
+                max(slope, slope + curvature * step + 0.5 * jerk * step * step) < 0.0
+            )
+            if falls:
+                break
+            step *= 0.5
+        ahead = time + step
+        x, y, vx, vy = moved_state(row, coefficients_at(row, ahead), x0, y0, vx0, vy0)
+        if falls and sign * (y - row[11]) <= 0.0:
+            root = np.sqrt(slope * slope - 2.0 * curvature * distance)  # NaN: no guess
+            guess = time + 2.0 * distance / (root - slope)
+            return _refine_crossing(row, origin, time, ahead, guess, sign)
+        time = ahead
+        if horizon - time <= 1e-15 * horizon:
+            return -1.0
+    return GIVEN_UP

@@ -1,0 +1,60 @@
+"""Where a branch of symmetric orbits meets shorter ones, of half the period down to a seventh."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from squealpipe.brake.orbits.orbit_shape import sample
+from squealpipe.brake.orbits.orbits import Orbit
+from squealpipe.brake.orbits.piecewise_linear import PiecewiseLinearSystem
+
+_COVERS = np.arange(7, 1, -1)
+_SAME_STATE, _NEARLY_SAME = 1e-8, 1e-3
+"""Distance over 1 + |z| below which two states are one, or one next to where branches meet."""
+_MAY_COVER = 0.5
+"""Least stability index at which a step is checked for having met shorter orbits, which have 2
+where branches meet."""
+
+
+def _apart(system: PiecewiseLinearSystem, orbit: Orbit) -> NDArray[np.float64]:
+    """States after T/n less the first one, (6, 4)."""
+    states = sample(system.rows, orbit.point, 2.0 * math.pi / _COVERS)
+    return np.asarray(states - [*orbit.point[:2], 0.0, 0.0])
+
+
+def is_primitive(
+    system: PiecewiseLinearSystem, orbit: Orbit, near: float = _SAME_STATE
+) -> bool:
+    """Whether an orbit is not a shorter one that is run through several times.
+
+    ``near`` is the distance over 1 + |z| below which two states count as one.
+    """
+    apart = np.abs(_apart(system, orbit)).sum(axis=1)
+    return bool(apart.min() >= near * (1.0 + float(np.linalg.norm(orbit.point))))
+
+
+def about_to_meet(system: PiecewiseLinearSystem, orbit: Orbit) -> bool:
+    """Whether an orbit is a shorter one run through several times, or nearly and next to it.
+
+    Where its branch meets that one's the stability index is 2.
+    """
+    if not orbit.stability_index > _MAY_COVER:
+        return False
+    next_to_it = abs(orbit.stability_index - 2.0) < _NEARLY_SAME
+    near = _NEARLY_SAME if next_to_it else _SAME_STATE
+    return not is_primitive(system, orbit, near)
+
+
+def shorter_orbit_between(
+    system: PiecewiseLinearSystem, first: Orbit, last: Orbit
+) -> bool:
+    """Whether a branch of shorter orbits lies between two orbits or holds the second.
+
+    At a shorter orbit the state after T/n is the initial one; its distance turns round there.
+    """
+    if not is_primitive(system, last, _NEARLY_SAME):
+        return True
+    before, after = _apart(system, first), _apart(system, last)
+    size = np.abs(before).sum(axis=1) * np.abs(after).sum(axis=1)
+    return bool(((before * after).sum(axis=1) < -0.2 * size).any())

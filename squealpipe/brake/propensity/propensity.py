@@ -1,0 +1,256 @@
+"""Propensities over distributed parameters, and Sobol indices of what they depend on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from types import SimpleNamespace
+from typing import Annotated, Any
+
+import numpy as np
+import scipy
+import xarray as xr
+from annotated_types import Ge, Interval, MinLen
+
+from squealpipe.brake.a1.ensemble import REACH, run_ensemble
+from squealpipe.brake.dynamics.motion import as_judged, classify_motion
+from squealpipe.brake.models import a3
+from squealpipe.brake.models.contact_system import contact_system, with_drag
+from squealpipe.brake.models.damped import damped_system, is_undamped, regime
+from squealpipe.brake.models.refusals import refuse_unread
+from squealpipe.brake.propensity import sobol
+from squealpipe.brake.propensity.distributions import check_stick, distribution
+from squealpipe.brake.schema.dynamics.runs import MotionFlag
+from squealpipe.brake.schema.propensity import PROPENSITY, WIDEST
+from squealpipe.codes import LinearRegime
+from squealpipe.inputs import ANGLES
+from squealpipe.laws.contact_laws import LINEAR
+from squealpipe.parameters import DEFAULTS, Parameters
+from squealpipe.schema import Outcome, build
+from squealpipe.schema.origin import recorded
+from squealpipe.systems.progress import with_progress
+from squealpipe.validation import (
+    Angle,
+    Number,
+    Positive,
+    Seed,
+    Tolerance,
+    Whole,
+    Workers,
+)
+
+QUANTITIES = ("flutter", "contact_loss", "irregular_hammering", "whirl")
+INDEX_FACTOR = np.array([[4], [1], [1], [1]])
+"""Base sample of the indices of each quantity, over that of the shares: flutter needs no run."""
+SIZES = 6
+ORDERS = ("first_order", "total_order")
+INDICES = tuple(f"{order}{end}" for order in ORDERS for end in ("", "_low", "_high"))
+
+
+@recorded(model="A1, A3", method="quasi-random sample; Sobol indices from replicates")
+def propensity(
+    params: Parameters,
+    alpha1: Angle,
+    alpha2: Angle,
+    *,
+    distributions: Annotated[Mapping[str, Any], MinLen(1)],
+    samples: Annotated[Whole, Ge(64)],
+    t_end: Positive,
+    spring_correlation: Annotated[Number, Interval(gt=-1, lt=1)] = 0.0,
+    seed: Seed = 1,
+    tol: Tolerance = 1e-9,
+    workers: Workers = None,
+) -> xr.Dataset:
+    """How often flutter, contact loss, irregular hammering and whirl occur, and why.
+
+    Args:
+        params: the parameters that are not distributed.
+        alpha1, alpha2: angles, rad; they may be distributed too.
+        distributions: name → {"distribution": "uniform", "low", "high"}, {"normal", "mean",
+            "std"} (cut off at 4 std) or {"lognormal", "median", "log_std"}.
+        samples: size of the sample, a power of 2; the indices take samples·(inputs + 2) runs, and
+            4 times as many points for flutter, which needs none.
+        t_end: end of each run, s.
+        spring_correlation: of k1 and k2 (Gaussian copula). Sobol indices assume independent
+            inputs and are not given with it.
+        seed: of the scrambled Sobol sequence.
+
+    Returns:
+        Dataset over quantity and input: shares, first-order and total Sobol indices with 95 %
+        intervals (Student's t over 8 replicates; of rare cases Wilson's), the share of growing
+        parts of the sample, and the half-width of the widest total by the size of the base sample.
+        An index is NaN, with outcome ``unresolved``, where its half-width is above 0.05 or fewer
+        than 30 samples differ.
+    """
+    if samples & (samples - 1):
+        raise ValueError(
+            f"samples = {samples!r}: a power of 2 of at least 64 is needed"
+        )
+    frozen = {name: distribution(name, given) for name, given in distributions.items()}
+    for name in sorted(set(frozen) & set(params.in_laws)):
+        raise ValueError(
+            f"distributions: a law's file stands for {name}, which cannot be spread"
+        )
+    refuse_unread(params, list(frozen))
+    check_stick(params, frozen)
+    names = list(frozen)
+    if spring_correlation and not {"k1", "k2"} <= set(names):
+        raise ValueError(
+            "spring_correlation: distributions of k1 and k2 are needed for it"
+        )
+    fixed = {**params.as_dict(), "alpha1": alpha1, "alpha2": alpha2}
+    turns = with_progress(range(1 if spring_correlation else len(names) + 3))
+
+    def judge(values: np.ndarray, *, runs: bool = True) -> np.ndarray:
+        size = values.shape[-1]
+        fields: dict[str, Any] = {**fixed, **dict(zip(names, values, strict=True))}
+        first, second = (np.broadcast_to(fields.pop(name), size) for name in ANGLES)
+        flutters = _flutters(fields, first, second)[None]
+        if not runs:
+            return flutters
+        next(turns)
+        events = _events(fields, first, second, t_end, tol, workers)
+        return np.concatenate([flutters, events])
+
+    points = sobol.scrambled(len(names), samples, seed)
+    if spring_correlation:
+        points = _correlate(
+            points, names.index("k1"), names.index("k2"), spring_correlation
+        )
+    values = np.array([frozen[name].ppf(points[:, i]) for i, name in enumerate(names)])
+    happens = judge(values)
+    low, high = np.transpose([sobol.share_interval(each) for each in happens])
+    sizes = samples >> np.arange(SIZES)[::-1]
+    index_samples = INDEX_FACTOR * sizes
+    blank = dict.fromkeys(INDICES, np.full((len(QUANTITIES), len(names)), np.nan))
+    table = blank | {"half_width_by_size": np.full((len(QUANTITIES), SIZES), np.nan)}
+    if not spring_correlation:
+        linear = _judged_matrices(
+            partial(judge, runs=False), frozen, index_samples[0, -1], seed + 1
+        )
+        by_run = _judged_matrices(judge, frozen, index_samples[1, -1], seed + 1)
+        table |= _indices([linear[:, 0], *np.moveaxis(by_run[:, 1:], 1, 0)], SIZES)
+    supported = np.isfinite(table["total_order"]).all(axis=1)
+    return build(
+        PROPENSITY,
+        {
+            "share": happens.mean(axis=1),
+            "share_low": low,
+            "share_high": high,
+            "share_by_size": np.stack(
+                [happens[:, :size].mean(axis=1) for size in sizes], axis=1
+            ),
+            **table,
+            "index_samples": index_samples,
+            "judged": samples,
+            "outcome": np.where(supported, Outcome.converged, Outcome.unresolved),
+            "alpha1": alpha1,
+            "alpha2": alpha2,
+            "t_end": t_end,
+        },
+        {"quantity": list(QUANTITIES), "input": names, "size": sizes},
+        {"spring_correlation": spring_correlation},
+    )
+
+
+def _correlate(
+    points: np.ndarray, first: int, second: int, correlation: float
+) -> np.ndarray:
+    """Two columns of a uniform sample joined by a Gaussian copula."""
+    normal = scipy.stats.norm.ppf(points[:, [first, second]])
+    mixed = correlation * normal[:, 0] + np.sqrt(1.0 - correlation**2) * normal[:, 1]
+    joined = points.copy()
+    joined[:, second] = scipy.stats.norm.cdf(mixed)
+    return joined
+
+
+def _events(
+    fields: Mapping[str, Any],
+    alpha1: np.ndarray,
+    alpha2: np.ndarray,
+    t_end: float,
+    tol: float,
+    workers: int | None,
+) -> np.ndarray:
+    """Whether each quantity that needs a run occurs, (quantities − 1, size)."""
+    run = run_ensemble(
+        fields,
+        alpha1,
+        alpha2,
+        **as_judged(t_end),
+        tol=tol,
+        tracked=(REACH,),
+        workers=workers,
+    )
+    motion, _ = classify_motion(run, SimpleNamespace(**fields))
+    return np.array(
+        [
+            np.isfinite(run.first_separation_time),
+            motion == MotionFlag.irregular_hammering,
+            motion == MotionFlag.whirl,
+        ]
+    )
+
+
+def _flutters(
+    fields: Mapping[str, Any], alpha1: np.ndarray, alpha2: np.ndarray
+) -> np.ndarray:
+    p = with_drag(DEFAULTS | dict(fields))
+    if p.contact_law == LINEAR and np.all(is_undamped(p)):
+        regimes = a3.regime(contact_system(p, alpha1, alpha2).invariants)
+    else:
+        regimes = regime(damped_system(p, alpha1, alpha2))
+    return np.asarray(regimes == LinearRegime.flutter)
+
+
+def _indices(judged: Sequence[np.ndarray], parts: int) -> dict[str, np.ndarray]:
+    """Sobol indices with intervals, and the widest total's half-width by sample size.
+
+    Args:
+        parts: of the sample, each twice the one before; the last is all of it.
+    """
+    shape = (len(judged), len(judged[0]) - 2)
+    found = {key: np.full(shape, np.nan) for key in INDICES}
+    widest = np.full((len(judged), parts), np.nan)
+    for row, flat in enumerate(judged):
+        whole = flat.reshape(len(flat), sobol.REPLICATES, -1)
+        for column in range(parts):
+            part = whole[..., : whole.shape[-1] >> (parts - 1 - column)]
+            count = part[0].sum()
+            if min(count, part[0].size - count) < sobol.LEAST_EVENTS:
+                continue
+            value, half = sobol.sobol_indices(part)
+            widest[row, column] = half[1].max()
+            if column < parts - 1:
+                continue
+            # beyond its interval below 0 an estimate is a failure of the sample, not an index
+            failed = (half > WIDEST) | (value + half < 0.0)
+            for order, name in enumerate(ORDERS):
+                for end, limit in (
+                    ("", value),
+                    ("_low", value - half),
+                    ("_high", value + half),
+                ):
+                    found[name + end][row] = np.where(
+                        failed[order], np.nan, limit[order]
+                    )
+    return {**found, "half_width_by_size": widest}
+
+
+def _judged_matrices(
+    judge: Any, frozen: Mapping[str, Any], size: int, seed: int
+) -> np.ndarray:
+    """What is judged at Saltelli's samples, (2 + inputs, quantities, size)."""
+    return np.stack(
+        [
+            judge(
+                np.array(
+                    [
+                        each.ppf(u)
+                        for each, u in zip(frozen.values(), matrix, strict=True)
+                    ]
+                )
+            )
+            for matrix in sobol.saltelli_matrices(len(frozen), size, seed)
+        ]
+    ).astype(float)

@@ -1,0 +1,46 @@
+"""At which instants a motion is looked at, and whether these resolve it."""
+
+import math
+
+import numpy as np
+
+from squealpipe.parameters import Parameters
+from squealpipe.vibration.spectrum import FEWEST
+
+FINE, COARSE = 12.0, 2.5
+"""Samples per radian of the fastest linear oscillation: of a short run, and the fewest."""
+PLENTY = 20_000
+"""Samples up to which a run is sampled finely."""
+MOST_SAMPLES = 1e7
+
+
+def sample_times(params: Parameters, t_end: float) -> np.ndarray:
+    """Instants at equal steps from 0 to ``t_end`` that resolve the fastest oscillation, s."""
+    wanted = COARSE * params.fastest * t_end
+    if not wanted <= MOST_SAMPLES:
+        raise ValueError(
+            f"t_end = {t_end!r}: {wanted:.2g} samples would resolve the fastest oscillation up to "
+            f"there, at most {MOST_SAMPLES:.0e} are taken; shorten t_end"
+        )
+    return np.linspace(0.0, t_end, max(FEWEST, math.ceil(wanted)) + 1)
+
+
+def default_times(params: Parameters, t_end: float) -> np.ndarray:
+    """The instants of :func:`sample_times`, more of them where the run is short."""
+    fine = math.ceil(min(PLENTY, FINE * params.fastest * t_end))
+    coarse = sample_times(params, t_end)
+    return coarse if coarse.size > fine else np.linspace(0.0, t_end, fine + 1)
+
+
+def unresolved(params: Parameters, times: np.ndarray) -> str:
+    """One line about instants between which oscillations are missed; empty where none are."""
+    if times.size < FEWEST:
+        return ""
+    period, step = 2.0 * math.pi / params.fastest, float(np.diff(times).max())
+    if step <= 0.5 * period:
+        return ""
+    return (
+        f"samples {step:.3g} s apart do not resolve oscillations of period {period:.3g} s: ask for "
+        f"{math.ceil((times[-1] - times[0]) * COARSE * params.fastest) + 1} points or more, or for "
+        "a shorter run"
+    )

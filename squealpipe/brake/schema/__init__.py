@@ -1,0 +1,1 @@
+"""Schemas of the datasets that tasks of the pad make."""

@@ -1,0 +1,69 @@
+"""Datasets on what the model levels take for granted (Table 1 and section 6 of the paper)."""
+
+from squealpipe.brake.schema.linear import ANGLES, MAP
+from squealpipe.schema import (
+    RUN_ENDS,
+    DatasetSchema,
+    Outcome,
+    Variable,
+    flag,
+    or_nan,
+    outcome,
+    text,
+)
+
+YES_NO = {0: "no", 1: "yes"}
+TABLE = ("level", "scene")
+
+
+def _largest(units: str, meaning: str) -> Variable:
+    return or_nan(meaning, units, TABLE, rtol=1e-6)
+
+
+ASSUMPTIONS = DatasetSchema(
+    name="assumptions",
+    title="Which assumptions held along the motion that each model level computes for each scene",
+    coordinates={
+        "level": text("model level", "level"),
+        "scene": text("scene of the paper", "scene"),
+        "assumption": text("assumption", "assumption"),
+    },
+    variables={
+        "needed": flag(
+            "whether the level makes the assumption", YES_NO, "level", "assumption"
+        ),
+        "measure": or_nan(
+            "the number that decides", dims=(*TABLE, "assumption"), rtol=1e-6
+        ),
+        "limit": Variable("limit of the measure", dims=("assumption",)),
+        "held": flag(
+            "whether the assumption held along the whole motion",
+            YES_NO,
+            *TABLE,
+            "assumption",
+        ),
+        "largest_x": _largest("m", "largest |x|"),
+        "largest_y": _largest("m", "largest y"),
+        "max_displacement": _largest("m", "largest distance from the start position"),
+        "t_end": Variable("end of the motion", "s", ("scene",)),
+        "outcome": outcome(
+            *TABLE, among=(*RUN_ENDS, Outcome.separated, Outcome.singular_static_state)
+        ),
+    },
+)
+
+LINEAR_PULL = DatasetSchema(
+    name="linear_pull",
+    title="How far the linear model lets the contact spring pull, from rest",
+    coordinates=ANGLES,
+    variables={
+        "lowest_contact_force": Variable(
+            "lowest contact force over k3 l_pre; negative: the spring pulls", dims=MAP
+        ),
+        "pulling_fraction": Variable(
+            "fraction of the time during which the spring pulls", dims=MAP
+        ),
+        "t_end": Variable("end of the motion", "s"),
+        "outcome": outcome(*MAP, among=(Outcome.converged, Outcome.separated)),
+    },
+)

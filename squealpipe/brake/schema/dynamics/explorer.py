@@ -1,0 +1,65 @@
+"""The dataset behind the explorer page: motions, spectra and backbones on a grid of angles."""
+
+from dataclasses import replace
+from typing import Any
+
+from squealpipe.brake.schema.backbones import BACKBONE
+from squealpipe.brake.schema.dynamics.runs import FREQUENCY, SIMULATION, TIME
+from squealpipe.brake.schema.linear import ANGLES, MAP, MODES
+from squealpipe.schema import RUN_ENDS, DatasetSchema, Variable, count, outcome
+
+RUN = (*MAP, "time")
+BRANCH = (*MAP, "mode", "point")
+
+
+DRAWN: dict[str, Any] = {"dtype": "f4", "rtol": 1e-5, "atol": 1e-6}
+"""Single precision: what is drawn, not computed with."""
+HISTORIES = ("x", "y", "normalized_contact_force")
+ORBITS = ("omega", "x_amplitude", "y_amplitude", "y_peak", "stability_index")
+
+EXPLORER = DatasetSchema(
+    name="explorer",
+    title="Motions from rest (A1), their spectra, and exact backbones (A4) over both angles",
+    coordinates={
+        **ANGLES,
+        **{name: replace(entry, optional=True) for name, entry in MODES.items()},
+        "time": TIME,
+        "frequency": FREQUENCY,
+        "point": count("point along the branch", "point", optional=True),
+    },
+    variables={
+        **{
+            name: replace(
+                SIMULATION.variables[name],
+                dims=RUN,
+                nan_allowed=False,
+                round_off=None,
+                **DRAWN,
+            )
+            for name in HISTORIES
+        },
+        "force_spectrum": Variable(
+            "amplitude spectrum of the normalized contact force",
+            dims=(*MAP, "frequency"),
+            dtype="f4",
+            rtol=1e-4,
+            atol=1e-5,
+        ),
+        "outcome": outcome(*MAP, among=RUN_ENDS),
+        **{
+            name: replace(
+                BACKBONE.variables[name],
+                dims=BRANCH,
+                nan_allowed=True,
+                optional=True,
+                **DRAWN,
+            )
+            for name in ORBITS
+        },
+        "end": replace(BACKBONE.variables["end"], dims=(*MAP, "mode"), optional=True),
+        "preload": Variable("precompression l_pre of the contact spring", "m"),
+        "length1": Variable("free length of spring 1", "m"),
+        "length2": Variable("free length of spring 2", "m"),
+        "belt_speed": Variable("belt speed V", "m s-1"),
+    },
+)

@@ -1,1 +1,0 @@
-"""The same task many times: catalogue, sweeps, row blocks."""

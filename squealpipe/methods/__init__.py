@@ -1,1 +1,0 @@
-"""Methods: they know dynamical systems, not squeal."""

@@ -1,0 +1,360 @@
+"""The failure atlas of frequencies and stability: hard scenes asked of ours and public methods."""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+import mpmath
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from squealpipe.benchmark.schema import FAILURE_ATLAS, Reliability, Role
+from squealpipe.brake.a4.harmonic_branches import linear_series
+from squealpipe.brake.a4.orbits import find_orbit, linear_orbit
+from squealpipe.brake.a4.system import ScaledSystem, scaled_system
+from squealpipe.brake.backbones.backbone import backbone
+from squealpipe.brake.backbones.orbit import periodic_orbit
+from squealpipe.brake.balance.harmonic_balance import CosineBalance, contact_of
+from squealpipe.brake.balance.hill import hill_multipliers, sampled_share_above
+from squealpipe.brake.balance.sampled_balance import SampledBalance
+from squealpipe.brake.linear.maps import quasi_static_map
+from squealpipe.brake.models import a3, a4
+from squealpipe.brake.orbits.orbits import Orbit
+from squealpipe.laws.springs import Stiffness, geometry, linear_stiffness
+from squealpipe.paper.comparison.work_precision import CORRECTED, PRINTED, orbit_series
+from squealpipe.parameters import Parameters
+from squealpipe.schema import Outcome, build
+from squealpipe.systems.continuation import Continuation, ContinuationSettings
+
+BASE = Parameters(k3=0.75, mu=0.3, belt_speed=100.0, length1=5.0, length2=5.0)
+"""Parameters at which the scenes are hard, whatever the study's are."""
+EXACT, BALANCE = "closed form, exact orbit", "closed-form balance"
+COLD = "cold Newton, sampled"
+ARC = "arc length, unchecked"
+TANH = "tanh balance, sampled"
+HILL, NUMERIC = "Hill's method, sampled", "numpy.linalg"
+METHODS = (EXACT, BALANCE, COLD, ARC, TANH, CORRECTED, PRINTED, HILL, NUMERIC)
+"""The columns; the first two are ours."""
+TOLERANCE = 1e-5
+"""Largest error of ω that counts as right, in √(k1/m)."""
+N_HARMONICS = 16
+PAPER_SIGMA = 1e3
+TRUTH_HARMONICS = 128
+"""Their ω is good to 1e-9, ten thousand times better than the tolerance."""
+HILL_HARMONICS, HILL_SAMPLES = 16, 80
+NOT_CONVERGED = "Newton did not converge"
+FARTHEST = 0.01
+"""A balance point whose own distance from the exact orbit is larger, over l_pre, warns."""
+_REACHED = (Outcome.converged, Outcome.amplitude_reached, Outcome.linear_mode)
+_MOST_POINTS = 400
+_ONSET = 2.0**-40
+
+
+class BranchCase(NamedTuple):
+    """A point of a backbone at the baseline; ``n_time`` and ``sigma`` of the sampled balances."""
+
+    name: str
+    alpha1_over_pi: float
+    alpha2_over_pi: float
+    mode: int
+    y_peak: float
+    n_time: int = 16 * N_HARMONICS
+    sigma: float | None = None
+    warm: bool = False
+
+    @property
+    def angles(self) -> tuple[float, float]:
+        """In rad."""
+        return self.alpha1_over_pi * math.pi, self.alpha2_over_pi * math.pi
+
+
+CASES = (
+    BranchCase("σ too small (balance)", 0.3, 0.9, 1, 3.0, sigma=10.0),
+    BranchCase("σ too large (balance)", 0.3, 0.9, 1, 3.0, n_time=40, sigma=1e6),
+    BranchCase(
+        "aliasing, N ≈ 2N_h", 0.3, 0.9, 1, 3.0, n_time=2 * N_HARMONICS + 2, warm=True
+    ),
+    BranchCase("pole at ω_x/2", 0.97, 0.97, 1, 1.5),
+    BranchCase("tongue end", 0.05, 0.85, 1, 3.0),
+    BranchCase("tongue end, slow mode", 0.4, 0.55, 1, 3.0),
+    BranchCase("cold start, wrong basin", 0.3, 0.8, 1, 3.0),
+)
+
+
+class Answer(NamedTuple):
+    """What a method said: NaN where it gave no answer; its warning, empty where it gave none."""
+
+    value: np.ndarray | float
+    flag: str = ""
+
+
+class HardScene(NamedTuple):
+    """A scene: its truth, NaN where only a warning is right; whom to ask, by the method's name."""
+
+    name: str
+    truth: np.ndarray | float
+    tolerance: float
+    answers: Mapping[str, Callable[[], Answer]]
+
+
+def verdict_of(
+    answer: Answer, truth: np.ndarray | float, tolerance: float
+) -> tuple[Reliability, float]:
+    """Right within the tolerance, else flagged or silently wrong; the largest error."""
+    error = float(np.max(np.abs(np.asarray(answer.value) - truth)))
+    if error <= tolerance:
+        return Reliability.right, error
+    wrong = Reliability.flagged if answer.flag else Reliability.silently_wrong
+    return wrong, error if math.isfinite(error) else math.inf
+
+
+def judge_balances() -> xr.Dataset:
+    """Dataset ``failure_atlas``: every method on every hard scene that it can be asked.
+
+    Truths are exact orbits, closed forms, 128 harmonics or sixty digits.
+    """
+    scenes = [
+        _singular_static_state(),
+        _flutter_onset(),
+        *map(_branch, CASES),
+        _period_doubling(),
+    ]
+    shape = len(scenes), len(METHODS)
+    verdict = np.zeros(shape)
+    error = np.full(shape, np.nan)
+    message = np.full(shape, "", "U64")
+    for row, scene in enumerate(scenes):
+        for name, ask in scene.answers.items():
+            cell, answer = (row, METHODS.index(name)), ask()
+            verdict[cell], error[cell] = verdict_of(
+                answer, scene.truth, scene.tolerance
+            )
+            message[cell] = answer.flag[:64]
+    return build(
+        FAILURE_ATLAS,
+        {
+            "verdict": verdict,
+            "error": error,
+            "message": message,
+            "tolerance": [scene.tolerance for scene in scenes],
+            "role": [
+                Role.ours if name in METHODS[:2] else Role.public for name in METHODS
+            ],
+        },
+        {"scene": [scene.name for scene in scenes], "solver": METHODS},
+    )
+
+
+def _branch(case: BranchCase) -> HardScene:
+    scene = scaled_system(BASE, *case.angles)
+    exact, _ = find_orbit(scene, case.mode, case.y_peak)
+    balance = CosineBalance(
+        scene.system, contact_of(N_HARMONICS, 1.0, case.n_time, case.sigma)
+    )
+    start = linear_series(
+        scene, case.mode, N_HARMONICS, linear_orbit(scene, case.mode, case.y_peak).point
+    )
+    if exact and (case.warm or case.sigma):  # the form is on trial, not the start
+        start = orbit_series(scene, exact, N_HARMONICS)
+    truth: np.ndarray | float = math.nan
+    if exact:
+        fine = CosineBalance(scene.system, contact_of(TRUTH_HARMONICS, 1.0, None, None))
+        truth = _newton(
+            scene, case, fine, orbit_series(scene, exact, TRUTH_HARMONICS)
+        ).value
+    answers: dict[str, Callable[[], Answer]] = {
+        EXACT: lambda: _exact_orbit(case),
+        BALANCE: lambda: _our_balance(case),
+        CORRECTED: lambda: _paper(scene, case, start, exact, as_printed=False),
+        PRINTED: lambda: _paper(scene, case, start, exact, as_printed=True),
+        COLD if case.sigma is None else TANH: lambda: _newton(
+            scene, case, balance, start
+        ),
+    }
+    if case.sigma is None:
+        answers[ARC] = lambda: _arc_length(scene, case, balance)
+    return HardScene(case.name, truth, TOLERANCE, answers)
+
+
+def _exact_orbit(case: BranchCase) -> Answer:
+    orbit = periodic_orbit(BASE, *case.angles, mode=case.mode, y_peak=case.y_peak)
+    return Answer(float(orbit.omega), _flag(orbit.outcome))
+
+
+def _our_balance(case: BranchCase) -> Answer:
+    branch = _series(case.angles, case.mode, case.y_peak)
+    flag = _flag(branch.end)
+    if flag or not branch.sizes["point"]:
+        return Answer(math.nan, flag)
+    away = float(branch.waveform_error[-1])
+    flag = (
+        ""
+        if away < FARTHEST * BASE.preload
+        else f"{away:.2g} away from the exact orbit"
+    )
+    return Answer(float(branch.omega[-1]), flag)
+
+
+def _series(angles: tuple[float, float], mode: int, y_peak: float) -> xr.Dataset:
+    return backbone(
+        BASE,
+        *angles,
+        mode=mode,
+        y_peak_max=y_peak,
+        method="hbm",
+        n_harmonics=N_HARMONICS,
+    )
+
+
+def _newton(
+    scene: ScaledSystem,
+    case: BranchCase,
+    balance: CosineBalance,
+    start: NDArray[np.float64],
+) -> Answer:
+    with np.errstate(all="ignore"):
+        solution = balance.solve(start, balance.peak_row, case.y_peak)
+    if solution is None:
+        return Answer(math.nan, NOT_CONVERGED)
+    return Answer(abs(float(solution[0][-1])) * scene.frequency)
+
+
+def _paper(
+    scene: ScaledSystem,
+    case: BranchCase,
+    z: NDArray[np.float64],
+    exact: Orbit | None,
+    *,
+    as_printed: bool,
+) -> Answer:
+    """Newton on Eqs. (31)–(36), which prescribe neither peak nor phase.
+
+    What is found is therefore compared with the exact orbit of its own peak, where there is one.
+    """
+    balance = SampledBalance(
+        scene.system,
+        N_HARMONICS,
+        case.n_time,
+        case.sigma or PAPER_SIGMA,
+        as_printed=as_printed,
+    )
+    start = balance.start_from_cosines(
+        z[: N_HARMONICS + 1], z[N_HARMONICS + 1 : -1], float(z[-1])
+    )
+    with np.errstate(all="ignore"):
+        solution = balance.solve(start, max_iterations=40)
+    if not solution.converged:
+        return Answer(math.nan, NOT_CONVERGED)
+    omega, peak = abs(solution.omega), balance.peak(solution)
+    own = find_orbit(scene, case.mode, peak)[0] if peak > 1.0 else None
+    if exact and own:
+        omega += exact.omega - own.omega
+    return Answer(omega * scene.frequency)
+
+
+def _arc_length(
+    scene: ScaledSystem, case: BranchCase, balance: CosineBalance
+) -> Answer:
+    """Arc-length continuation from the linear mode until the peak is met, nothing else checked."""
+    orbit = linear_orbit(scene, case.mode, 1.0 - 1e-3)
+    start = linear_series(scene, case.mode, N_HARMONICS, orbit.point)
+    direction = np.zeros_like(start)
+    direction[1], direction[N_HARMONICS + 2] = scene.slope(case.mode), 1.0
+    settings = ContinuationSettings(max_points=_MOST_POINTS)
+
+    def reached(state: Any) -> bool:
+        return bool(balance.peak_row @ state.point >= case.y_peak)
+
+    with np.errstate(all="ignore"):
+        states = Continuation(balance, start, direction, settings).run(reached)
+    if not (states and reached(states[-1])):
+        lost = len(states) < settings.max_points
+        return Answer(math.nan, "branch_lost" if lost else "point_limit")
+    return _newton(scene, case, balance, states[-1].point)
+
+
+def _flag(outcome: Any) -> str:
+    outcome = Outcome(int(outcome))
+    return "" if outcome in _REACHED else f"{outcome.name}: {outcome.remedy}"
+
+
+def _period_doubling() -> HardScene:
+    """Is the motion stable? Inside the window its multipliers are real and negative."""
+    angles, mode, y_peak = (0.3 * math.pi, 0.9 * math.pi), 1, 4.0
+    scene = scaled_system(BASE, *angles)
+    exact, _ = find_orbit(scene, mode, y_peak)
+    balance = CosineBalance(scene.system, contact_of(HILL_HARMONICS, 1.0, None, None))
+
+    def ours() -> Answer:
+        found = periodic_orbit(BASE, *angles, mode=mode, y_peak=y_peak)
+        return Answer(float(abs(float(found.stability_index)) > 2.0))
+
+    def series() -> Answer:
+        branch = _series(angles, mode, y_peak)
+        return Answer(
+            float(abs(float(branch.stability_index[-1])) > 2.0), _flag(branch.end)
+        )
+
+    def hill() -> Answer:
+        guess = orbit_series(scene, exact, HILL_HARMONICS) if exact else None
+        solution = (
+            None if guess is None else balance.solve(guess, balance.peak_row, y_peak)
+        )
+        if solution is None:
+            return Answer(math.nan, NOT_CONVERGED)
+        _, y, omega = balance.split(solution[0])
+        share = sampled_share_above(y, 1.0, HILL_SAMPLES)
+        multipliers = hill_multipliers(scene.system, share, omega)
+        return Answer(float(np.abs(multipliers).max() > 1.0 + 1e-3))
+
+    truth = float(abs(exact.stability_index) > 2.0) if exact else math.nan
+    return HardScene(
+        "period-doubling window", truth, 0.5, {EXACT: ours, BALANCE: series, HILL: hill}
+    )
+
+
+def _singular_static_state() -> HardScene:
+    """x of the static state at α1 = α2 = π/2, where K11 = 0 and there is none."""
+    angle = np.array([0.5 * math.pi])
+
+    def ours() -> Answer:
+        found = quasi_static_map(BASE, angle, angle).squeeze()
+        return Answer(float(found.x_static), _flag(found.outcome))
+
+    def numeric() -> Answer:
+        stiffness = linear_stiffness(BASE, geometry(angle[0], angle[0]))
+        a11, a12, a21, a22 = a4.contact_matrix(stiffness, BASE.k3, BASE.mu)
+        load = BASE.k3 * BASE.preload * np.array([BASE.mu, 1.0])
+        try:
+            return Answer(float(np.linalg.solve([[a11, a12], [a21, a22]], load)[0]))
+        except np.linalg.LinAlgError as error:
+            return Answer(math.nan, str(error))
+
+    return HardScene(
+        "singular static state", math.nan, 1.0, {EXACT: ours, NUMERIC: numeric}
+    )
+
+
+def _flutter_onset() -> HardScene:
+    """Both ω at a distance of 2⁻⁴⁰ from onset, where the eigenvalues have almost merged.
+
+    The structure of Hoffmann et al. (2002), K11 = K22 + k3, with numbers that binary holds
+    exactly and onset at μ = 1.
+    """
+    stiffness, mu = Stiffness(2.0, -1.0, 1.0), 1.0 - _ONSET
+    a11, a12, a21, a22 = a4.contact_matrix(stiffness, 1.0, mu)
+    with mpmath.workdps(60):
+        half, mean = (mpmath.mpf(a11) - a22) / 2, (mpmath.mpf(a11) + a22) / 2
+        root = mpmath.sqrt(half * half + mpmath.mpf(a12) * a21)
+        truth = np.array([float(mpmath.sqrt(mean + sign * root)) for sign in (-1, 1)])
+
+    def ours() -> Answer:
+        invariants = a4.spectrum(stiffness, 1.0, k3=1.0, mu=mu, mass=1.0)
+        return Answer(np.sort([abs(s) for s in a3.eigenvalues(invariants)]))
+
+    def numeric() -> Answer:
+        matrix = [[0, 0, 1, 0], [0, 0, 0, 1], [-a11, -a12, 0, 0], [-a21, -a22, 0, 0]]
+        return Answer(np.sort(np.abs(np.linalg.eigvals(matrix)))[::2])
+
+    return HardScene("flutter onset", truth, 1e-12, {EXACT: ours, NUMERIC: numeric})

@@ -1,0 +1,23 @@
+"""Fig. 9: the second natural frequency over both spring angles."""
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from squealpipe.paper.figures.panels.frequency_map import LINES_AND_HATCHING, draw_mode
+from squealpipe.study.figures.declared import report_figure
+
+
+@report_figure(
+    reads=("natural_frequencies",),
+    caption=(
+        "Second natural frequency ω₂ of model A4 (a) in contact, Eq. (22b), and (b) separated, "
+        f"Eq. (25b). {LINES_AND_HATCHING}"
+    ),
+    alt=(
+        "Two maps of the second natural frequency over both spring angles, in contact and "
+        "separated."
+    ),
+)
+def draw(frequencies: xr.Dataset) -> Figure:
+    """Draw the second frequency in contact and separated, with one colour scale."""
+    return draw_mode(frequencies, mode=2)

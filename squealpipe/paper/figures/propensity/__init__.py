@@ -1,0 +1,1 @@
+"""How far verdicts carry, and how parameters spread into results."""

@@ -1,0 +1,100 @@
+"""Whether A1 keeps contact from rest, over all angles or at those where A3 is unstable."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from squealpipe.laws.springs import springs_are_equal
+from squealpipe.paper.inference.candidates import Candidates
+from squealpipe.paper.inference.unstable_cells import midpoints
+from squealpipe.parameters import HORIZON
+from squealpipe.schema import Outcome
+
+VISIBLE = 0.95
+"""Distance of the cells from the centre of the disc of flutter, in radii: a region that is thinner
+than the rest shows on no map, and next to the edge nothing grows within ``HORIZON``."""
+COARSE = 8
+"""Every so many of the unstable cells are run first."""
+ANGLES, CLEAR = (12, 24, 48), 0.6
+"""Midpoints an axis of the maps of runs: finer while |share − ½| is below ``CLEAR`` spacings."""
+SOON = 25.0
+"""Time, √(m/k1), by which contact is lost in nearly all cells in which it ever is; cells that keep
+it until ``HORIZON`` take nearly all steps."""
+
+
+def separating_share(
+    candidates: Candidates, *, angles: Sequence[int] = ANGLES
+) -> np.ndarray:
+    """Share of the angle map on which A1, from rest, loses contact within ``HORIZON``.
+
+    Midpoint rule; a parameter set goes on to the next number of ``angles`` while its share is
+    within ``CLEAR``/angles of one half. Unless margins are wanted, runs end at ``SOON`` first:
+    where more cells than that have lost contact by then, their share is the result.
+    """
+    shares = np.full(candidates.size, 0.5)
+    for number in angles:
+        clear = CLEAR / number
+        left = np.flatnonzero(np.abs(shares - 0.5) < clear)
+        enough = 0.5 if number == angles[-1] else 0.5 + clear
+        for horizon in (HORIZON,) if candidates.exact else (SOON, HORIZON):
+            shares[left] = _share(candidates.subset(left), number, horizon)
+            # what has separated stays separated, so that a later share is not smaller
+            left = left[shares[left] <= enough]
+    return shares
+
+
+def _share(candidates: Candidates, number: int, horizon: float) -> np.ndarray:
+    """Share of the midpoints, ``number`` an axis, at which contact is lost."""
+    alpha1, alpha2 = midpoints(number)
+    weight = np.ones(alpha1.size)
+    if springs_are_equal(candidates.fields):
+        middle = np.abs(alpha1 + alpha2 - np.pi) < 1e-9
+        below = middle | (alpha1 + alpha2 < np.pi)
+        weight = np.where(middle, 1.0, 2.0)[below]
+        alpha1, alpha2 = alpha1[below], alpha2[below]
+    rows = np.arange(candidates.size)[:, None]
+    outcome = _outcome(candidates.subset(rows), alpha1, alpha2, horizon)
+    return np.asarray((outcome == Outcome.separated) @ weight / number**2)
+
+
+def keeping_share(candidates: Candidates) -> np.ndarray:
+    """Share of the unstable cells in which A1 keeps contact throughout ``HORIZON``; 0 of none.
+
+    Of cells that lie ``VISIBLE`` inside the region's edge: every ``COARSE``-th of them, and all
+    where A1 keeps contact in none of these.
+    """
+    unstable = candidates.unstable_cells(VISIBLE)
+    share = np.zeros(candidates.size)
+    for step in (COARSE, 1):
+        left = np.flatnonzero(share == 0)
+        some = [unstable[i] for i in left]
+        cells = [(where.alpha1[::step], where.alpha2[::step]) for where in some]
+        number = np.array([alpha1.size for alpha1, _ in cells], int)
+        owner = np.repeat(np.arange(left.size), number)
+        alpha1, alpha2 = (
+            np.concatenate([*(each[i] for each in cells), []]) for i in (0, 1)
+        )
+        kept = (
+            _outcome(candidates.subset(left[owner]), alpha1, alpha2)
+            == Outcome.converged
+        )
+        share[left] = np.bincount(owner[kept], minlength=left.size) / np.maximum(
+            number, 1
+        )
+    return share
+
+
+def _outcome(
+    candidates: Candidates,
+    alpha1: np.ndarray,
+    alpha2: np.ndarray,
+    horizon: float = HORIZON,
+) -> np.ndarray:
+    """``separated`` where A1 loses contact from rest within the horizon, else how its run ended."""
+    shape = np.broadcast_shapes(candidates.fields["mu"].shape, alpha1.shape)
+    if 0 in shape:
+        return np.zeros(shape, np.int8)
+    t_end = horizon * candidates.time_unit
+    return candidates.ensemble(
+        alpha1, alpha2, t_end=t_end, stop_at_first_separation=True, tracked=()
+    ).outcome

@@ -1,0 +1,232 @@
+"""Parameter sets that the paper's statements are measured at, and their motions."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from types import SimpleNamespace
+from typing import Any, Self
+
+import numpy as np
+
+from squealpipe.brake.a1.ensemble import Ensemble, run_ensemble
+from squealpipe.brake.models.contact_system import ContactSystem, contact_system
+from squealpipe.paper.inference.unstable_cells import (
+    INSIDE,
+    Unstable,
+    unstable_along_edges,
+    unstable_cells,
+)
+from squealpipe.paper.schema.growth import WINDOW, WINDOWS, growth_fails
+from squealpipe.parameters import SCENES, TABLE, Parameters, Scene, direction_of
+from squealpipe.reading import reading_of
+from squealpipe.schema import Outcome
+
+
+@dataclass(frozen=True)
+class StatementMargin:
+    """By how much one statement holds, and how the runs behind that ended, both (size,)."""
+
+    margin: np.ndarray
+    outcome: np.ndarray
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """Parameter sets, one an entry of each array, and the motions computed for them.
+
+    Attributes:
+        fields: names of ``Parameters`` → 1-D arrays of one length.
+        initial_state: (x, y, ẋ, ẏ) of the scenes' runs, (4,) or one for each set, m and m/s.
+        exact: whether margins are wanted. Else they may be bounds of the right sign, and motions
+            end as soon as the sign is known.
+        sampled: whether the starts are a random sample. What is chance then shows in the share of
+            it that meets a statement, and none is judged from several starts.
+    """
+
+    fields: Mapping[str, np.ndarray]
+    tol: float
+    workers: int | None = None
+    initial_state: Any = (0.0, 0.0, 0.0, 0.0)
+    model: str = "A1"
+    exact: bool = True
+    sampled: bool = False
+
+    @classmethod
+    def of(cls, *params: Parameters, tol: float, workers: int | None = 1) -> Self:
+        """Candidates one by one, which have the same parameters beyond the paper's model."""
+        fields = {
+            name: np.array([each.as_dict()[name] for each in params])
+            for name in params[0].as_dict()
+        }
+        return cls(fields, tol, workers)
+
+    def read(self, name: str) -> Self:
+        """The same sets in one reading of the sign of friction."""
+        reading = reading_of(name)
+        fields = {
+            **self.fields,
+            "belt_speed": reading.direction * self.fields["belt_speed"],
+        }
+        return replace(self, fields=fields, model=reading.a1_model)
+
+    def subset(self, rows: np.ndarray) -> Self:
+        """Return some of the sets."""
+        state = np.asarray(self.initial_state, float)
+        return replace(
+            self,
+            fields={name: each[rows] for name, each in self.fields.items()},
+            initial_state=state[rows] if state.ndim == 2 else state,
+        )
+
+    def moved(self, x: float, y: float) -> Self:
+        """Return the same sets with their starts displaced by (x, y) l_pre."""
+        preload = np.asarray(self.fields["preload"])[:, None]
+        apart = preload * np.array([x, y, 0.0, 0.0])
+        return replace(self, initial_state=np.asarray(self.initial_state) + apart)
+
+    @property
+    def size(self) -> int:
+        """How many sets there are."""
+        return len(self.fields["mu"])
+
+    @cached_property
+    def time_unit(self) -> np.ndarray:
+        """√(m/k1), s."""
+        return np.asarray(np.sqrt(self.fields["mass"] / self.fields["k1"]))
+
+    def ensemble(
+        self, alpha1: Any, alpha2: Any, *, variant: str = "", **options: Any
+    ) -> Ensemble:
+        """Motions of all sets."""
+        return run_ensemble(
+            self.fields,
+            alpha1,
+            alpha2,
+            model=self.model + variant,
+            tol=self.tol,
+            workers=self.workers,
+            **options,
+        )
+
+    def run(self, scene: Scene, variant: str = "") -> Ensemble:
+        """The motion at a scene over its horizon, with its second half as the late one."""
+        t_end = scene.t_end * self.time_unit
+        return self.ensemble(
+            scene.alpha1,
+            scene.alpha2,
+            variant=variant,
+            t_end=t_end,
+            t_late=0.5 * t_end,
+            tracked=("x", "contact_force"),
+            initial_state=self.initial_state,
+        )
+
+    def windows(self, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+        """Largest |x| in each window of a long run at a scene, and how the run ended.
+
+        Window after window starts where the one before ended. A run that ended early is not taken
+        up again, and its windows from there on are NaN; so, unless margins are wanted, one that
+        does not grow by the rule of :mod:`squealpipe.paper.schema.growth` whatever comes next.
+        """
+        sizes = np.full((self.size, WINDOWS), np.nan)
+        outcome = np.full(self.size, int(Outcome.converged), np.int8)
+        state = np.broadcast_to(np.array(self.initial_state, float), (self.size, 4))
+        state = state.copy()
+        for window in range(WINDOWS):
+            going = outcome == Outcome.converged
+            left = np.flatnonzero(going if self.exact else going & ~growth_fails(sizes))
+            if not left.size:
+                break
+            some = self.subset(left)
+            run = some.ensemble(
+                scene.alpha1,
+                scene.alpha2,
+                t_end=WINDOW * some.time_unit,
+                tracked=("x",),
+                initial_state=state[left],
+            )
+            sizes[left, window] = np.maximum(run.early_max_x, run.late_max_x)
+            outcome[left], state[left] = run.outcome, run.final_state
+        return sizes, outcome
+
+    @cached_property
+    def contact(self) -> dict[str, StatementMargin]:
+        """Lowest N/(k3 l_pre) at the scenes of Fig. 2, negative where contact is lost.
+
+        From the variant whose contact spring also pulls: it moves as A1 does until N = 0, and
+        then shows by how much contact is lost.
+        """
+        runs = {
+            name: self.run(SCENES[name], "-no-separation")
+            for name in ("F2a", "F2b", "F2c", "F2d")
+        }
+        return {
+            # where contact is lost, it does not matter how the run went on
+            name: StatementMargin(
+                lowest, np.where(lowest < 0, Outcome.converged, run.outcome)
+            )
+            for name, run in runs.items()
+            for lowest in [run.lowest_contact_force]
+        }
+
+    @cached_property
+    def level(self) -> Ensemble:
+        """The motion at (π, π), both springs along the belt."""
+        return self.run(SCENES["F5a"])
+
+    def linear(self, scene: Scene) -> ContactSystem:
+        """The linear system at a scene, with the friction of the belt's direction."""
+        p = SimpleNamespace(**self.fields, drag=self.drag)
+        return contact_system(p, scene.alpha1, scene.alpha2)
+
+    @cached_property
+    def sets(self) -> list[Parameters]:
+        """The parameter sets one by one."""
+        rows = zip(
+            *(np.asarray(values).tolist() for values in self.fields.values()),
+            strict=True,
+        )
+        return [Parameters(**dict(zip(self.fields, row, strict=True))) for row in rows]
+
+    @cached_property
+    def extended(self) -> list[Parameters]:
+        """The sets if they may go beyond the paper's model; else none."""
+        return self.sets if any(TABLE[name].extension for name in self.fields) else []
+
+    @cached_property
+    def drag(self) -> np.ndarray:
+        """Friction over normal force along +x in the linear models."""
+        if self.extended:
+            return np.array([params.drag for params in self.extended])
+        return np.asarray(direction_of(self.fields["belt_speed"]) * self.fields["mu"])
+
+    @cached_property
+    def unstable(self) -> list[Unstable]:
+        """Angles at which A3 is unstable, of each set."""
+        return self.unstable_cells(INSIDE)
+
+    def unstable_cells(self, inside: float) -> list[Unstable]:
+        """Return unstable cells at this distance, in radii, from the centre of the flutter disc."""
+        if self.extended:
+            return [unstable_cells(params, inside=inside) for params in self.extended]
+        fields = {**self.fields, "drag": self.drag}
+        return unstable_along_edges(fields, inside=inside)
+
+
+def sets_of(
+    groups: dict[str, np.ndarray], *, tol: float, workers: int | None
+) -> Candidates:
+    """Candidates with equal springs, in units of m = k = l_pre = 1."""
+    ones = np.ones(len(groups["mu"]))
+    fields = {
+        "mass": ones,
+        "k1": ones,
+        "k2": ones,
+        "k3": groups["kappa"],
+        "mu": groups["mu"],
+        "preload": ones,
+        "length1": groups["length_ratio"],
+        "length2": groups["length_ratio"],
+        "belt_speed": groups["speed_ratio"],
+    }
+    return Candidates(fields, tol, workers)

@@ -1,0 +1,139 @@
+"""Angles at which A3 is unstable, however few of them a grid over the angles would hit.
+
+Whatever can be said of all angles is said in the plane of Z
+(see :mod:`squealpipe.brake.models.a3`):
+flutter fills one disc there, so a search along its rim finds unstable cells.
+"""
+
+from collections.abc import Mapping
+from functools import lru_cache
+from types import SimpleNamespace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from squealpipe.brake.models import a3
+from squealpipe.brake.models.contact_system import contact_system
+from squealpipe.brake.models.damped import damped_system, is_undamped, stability
+from squealpipe.brake.schema.linear import ALIKE
+from squealpipe.codes import LinearRegime
+from squealpipe.laws.springs import springs_alike
+from squealpipe.paper.schema.inference import DAMPED_GRID
+from squealpipe.parameters import Parameters
+
+RIM = 192
+"""Points around the disc of flutter."""
+INSIDE = 1.0 - 1e-6
+"""Their distance from its centre, in radii: unstable, and at the edge where contact lasts."""
+DIVERGENT = 24
+"""Points along each arc that bounds divergence."""
+AT_ONCE = 256
+"""Sets whose cells are looked for at once, half a megabyte an array."""
+READ = ("mass", "k1", "k2", "k3")
+EQUAL = ("length1", "length2", "damping1", "damping2")
+"""Parameters that the linear model reads, and others that a mirror image has to share."""
+FLUTTER = LinearRegime.flutter
+
+
+class Unstable(NamedTuple):
+    """Unstable cells: angles, rad, and whether it is by modes that couple."""
+
+    alpha1: np.ndarray
+    alpha2: np.ndarray
+    couples: np.ndarray
+
+
+def unstable_cells(params: Parameters, *, inside: float = INSIDE) -> Unstable:
+    """Cells along the edge of every region in which A3 is unstable; there may be none.
+
+    Dashpots, and friction that depends on speed, leave no such edge in closed form: there, all
+    unstable cells of a grid.
+    """
+    if not is_undamped(params):
+        return _on_grid(params)
+    fields = {
+        name: np.array([getattr(params, name)]) for name in (*READ, *EQUAL, "drag")
+    }
+    return unstable_along_edges(fields, inside=inside)[0]
+
+
+def unstable_along_edges(
+    fields: Mapping[str, np.ndarray], *, inside: float = INSIDE
+) -> list[Unstable]:
+    """Find unstable cells of many sets without dashpots, whose friction does not depend on speed.
+
+    Args:
+        fields: parameters by name, and ``drag``, (sets,).
+    """
+    found: list[Unstable] = []
+    for first in range(0, len(fields["mass"]), AT_ONCE):
+        rows = slice(first, first + AT_ONCE)
+        p = SimpleNamespace(**{name: fields[name][rows, None] for name in READ})
+        p.drag = np.asarray(fields["drag"])[rows, None]
+        mirrored = springs_alike({n: v[rows] for n, v in fields.items()})
+        alpha1, alpha2, there = _along_edges(p, mirrored, inside)
+        regime = np.asarray(a3.regime(contact_system(p, alpha1, alpha2).invariants))
+        found += [
+            _where(kind[known], first[known], second[known], kind[known] == FLUTTER)
+            for kind, first, second, known in zip(
+                regime, alpha1, alpha2, there, strict=True
+            )
+        ]
+    return found
+
+
+@lru_cache(maxsize=4)
+def _on_grid(params: Parameters) -> Unstable:
+    """Several statements ask for the cells of one set, which take a tenth of a second."""
+    alpha1, alpha2 = midpoints(DAMPED_GRID)
+    linear = stability(damped_system(params, alpha1, alpha2))
+    couples = (linear.regime == LinearRegime.flutter) & (
+        linear.shape_similarity >= ALIKE
+    )
+    return _where(linear.regime, alpha1, alpha2, couples)
+
+
+def _where(
+    regime: np.ndarray, alpha1: np.ndarray, alpha2: np.ndarray, couples: np.ndarray
+) -> Unstable:
+    unstable = regime > LinearRegime.stable
+    return Unstable(alpha1[unstable], alpha2[unstable], couples[unstable])
+
+
+def midpoints(number: int) -> tuple[np.ndarray, np.ndarray]:
+    """Angles of the cells of a map with ``number`` of them per axis, rad."""
+    axis = (np.arange(number) + 0.5) * (np.pi / number)
+    alpha1, alpha2 = np.meshgrid(axis, axis, indexing="ij")
+    return alpha1.ravel(), alpha2.ravel()
+
+
+def _along_edges(
+    p: Any, mirrored: np.ndarray, inside: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return angles, rad, among which some are unstable if any are, and which of them exist.
+
+    Without damping, flutter is sought in ``RIM`` directions, just inside its disc in the plane of
+    Z. Divergence, which lies outside a circle and within |Z| = k1 + k2, is sought midway between.
+
+    Args:
+        p: parameters, each (sets, 1).
+        mirrored: whether (α1, α2) and (π − α2, π − α1), which have the same Z, also have the same
+            motion, (sets,).
+    """
+    farthest, nearest = p.k1 + p.k2, np.abs(p.k1 - p.k2)
+    centre, radius = a3.flutter_circle(p, p.k3)
+    turn = (np.arange(RIM) + 0.5) * (2.0 * np.pi / RIM)
+    flutter = centre + inside * radius * np.exp(1j * turn)
+    arcs = a3.reached_arcs(p, *a3.divergence_circle(p, p.k3), DIVERGENT)
+    edge = np.concatenate([arc[:, 1:-1] for arc in arcs], axis=1)
+    z = np.concatenate([flutter, edge * 0.5 * (1.0 + farthest / np.abs(edge))], axis=1)
+    with np.errstate(invalid="ignore"):  # NaN where the circle is not reached
+        there = (np.abs(z) < farthest) & (
+            np.abs(z) > np.maximum(nearest, 1e-9 * farthest)
+        )
+    alpha1, alpha2 = a3.angles_from_plane(np.where(there, z, farthest), p)
+    both = np.stack([there, there & ~mirrored[:, None]])
+    first, second, known = (
+        np.concatenate(list(each), axis=1) for each in (alpha1, alpha2, both)
+    )
+    return first, second, known

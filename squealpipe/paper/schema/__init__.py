@@ -1,0 +1,1 @@
+"""Schemas of the datasets that only the paper's study makes."""

@@ -1,0 +1,159 @@
+"""Dataset of the parameter inference: samples, the paper's statements, and their margins."""
+
+import re
+from enum import IntEnum
+
+import xarray as xr
+
+from squealpipe.reading import READINGS
+from squealpipe.schema import (
+    DatasetSchema,
+    Outcome,
+    Variable,
+    count,
+    flag,
+    or_nan,
+    outcome,
+    text,
+    whether,
+)
+from squealpipe.schema.agreement import ComparedAs, RoundOff
+from squealpipe.vibration.shares import CONFIDENCE
+
+SAMPLE = ("sample",)
+STATEMENT = ("statement",)
+READING = ("reading",)
+JUDGED = ("sample", "reading")
+BY_READING = ("reading", "statement")
+
+
+class Holds(IntEnum):
+    """Whether a statement holds at a parameter set, as stored."""
+
+    no = 0
+    yes = 1
+    undecided = 2
+    not_judged = 3
+
+
+WORDS = {
+    "F2a": "contact kept in (a)",
+    "F2b": "contact kept in (b)",
+    "F2c": "contact kept in (c)",
+    "F2d": "contact lost in (d)",
+    "F2e": "(a) to (c) differ little",
+    "F3": "|x| grows",
+    "F4": "|x| stays bounded",
+    "F5a": "both forces identical",
+    "F5b": "mass jumps again and again",
+    "F6d": "linearly stable at Fig. 3's angles",
+    "F6b_printed": "unstable only where Eq. (11) forbids",
+    "F6b": "unstable only where R ≤ 0",
+    "F7a": "contact lost in most cells",
+    "F7_black": "kept and unstable somewhere",
+    "F8c": "ω₁ largest on lines, in contact",
+    "F8c_separated": "ω₁ largest on lines, separated",
+    "F13": "modes switched",
+    "S3": "modes couple",
+}
+"""Statements in few words, for figures, in the paper's order."""
+
+
+def in_words(statement: str) -> str:
+    """A statement by the paper's figure, and in few words: ``Fig. 3: |x| grows``."""
+    figure = re.match(r"F(\d+)", statement)
+    return (f"Fig. {figure[1]}: " if figure else "") + WORDS[statement]
+
+
+def in_order(dataset: xr.Dataset) -> xr.Dataset:
+    """A dataset over statements, in the paper's order."""
+    return dataset.sel(statement=[name for name in WORDS if name in dataset.statement])
+
+
+LITTLE = 0.1
+"""F2e: spread of the contact force over three scenes, in preloads, that is taken for "a minimal
+difference"; the paper gives no number."""
+SAME_FORCE = 1e-10
+"""F5a: difference of normalized contact forces that two identical runs may show."""
+JUMPS = 3
+"""F5b: how many separations count as "again and again"."""
+BOUND = 2.0
+"""F3, F4: |x| over the longer free length up to which the motion is a pendulum's on its springs."""
+LARGE_REGION = 0.5
+"""F7a: share of the angle map from which a region is called large."""
+
+
+DAMPED_GRID = 181
+"""Angles per axis at which instability is looked for where it has no closed form."""
+
+
+def _limit(side: str, of: str, dims: tuple[str, ...]) -> Variable:
+    name = f"{side} end of the {CONFIDENCE:.0%} Wilson interval of {of}"
+    return or_nan(name, dims=dims)
+
+
+PARAMETER_INFERENCE = DatasetSchema(
+    name="parameter_inference",
+    title="Which parameters agree with the paper's statements, in which reading of its friction",
+    coordinates={
+        "sample": count("number of the sample", *SAMPLE),
+        "reading": text("reading of the sign of friction", *READING),
+        "statement": text("id of the statement", *STATEMENT),
+        "consequence": text(
+            "id of a statement that was not a constraint", "consequence"
+        ),
+    },
+    variables={
+        "kappa": Variable("contact stiffness k3/k", dims=SAMPLE),
+        "mu": Variable("friction coefficient", dims=SAMPLE),
+        "length_ratio": Variable("free length of the springs over l_pre", dims=SAMPLE),
+        "speed_ratio": Variable("belt speed over l_pre √(k/m)", dims=SAMPLE),
+        "holds": flag(
+            "whether the statement holds; undecided where starts that nobody can tell apart "
+            "disagree; not judged, so nothing is said of it, where cheaper statements had failed",
+            Holds,
+            *JUDGED,
+            *STATEMENT,
+            round_off=RoundOff(
+                ComparedAs.judged,
+                "of a set that another statement has refuted none is judged",
+                none=int(Holds.not_judged),
+            ),
+        ),
+        "feasible": whether("all statements hold", *JUDGED),
+        "outcome": outcome(
+            *JUDGED, among=(Outcome.converged, Outcome.unresolved, Outcome.infeasible)
+        ),
+        "feasible_count": count("number of feasible samples", *READING),
+        "share": Variable("share of the samples that are feasible", dims=READING),
+        "share_low": _limit("lower", "share", READING),
+        "share_high": _limit("upper", "share", READING),
+        "share_cut_alone": Variable(
+            "share of the samples that this statement alone excludes, of the first sixteenth; of "
+            "growth, which is judged last, of all",
+            dims=BY_READING,
+        ),
+        "criterion": text("what was checked", *STATEMENT),
+        "baseline_kappa": Variable("k3/k1 of the study"),
+        "baseline_mu": Variable("friction coefficient of the study"),
+        "baseline_length_ratio": Variable("L1/l_pre of the study"),
+        "baseline_speed_ratio": Variable("V/(l_pre √(k1/m)) of the study, signed"),
+        "baseline_reading": flag("the study's reading", dict(enumerate(READINGS))),
+        "baseline_margin": Variable(
+            "margin at the parameters of the study",
+            dims=BY_READING,
+            rtol=1e-6,
+            atol=1e-6,
+        ),
+        "feasible_share": or_nan(
+            "share of the feasible samples in which the consequence holds; NaN where "
+            "feasible_count is 0",
+            dims=("reading", "consequence"),
+        ),
+    },
+)
+
+
+def of_study(inference: xr.Dataset) -> xr.Dataset:
+    """The part of a ``parameter_inference`` that is in the study's own reading."""
+    return inference.isel(reading=int(inference.baseline_reading))

@@ -1,1 +1,0 @@
-"""Models prepared for the methods that solve them: arrays in, arrays out."""

@@ -1,0 +1,229 @@
+"""A table of contacts: name, normal, tangential, stiffness, preload, speed and mu by column.
+
+Text in any encoding, with commas, semicolons or tabs between its cells, or an Excel sheet.
+"""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from squealpipe.laws.numerals import Numeral, decimal_sign, numeral, plain
+from squealpipe.laws.rows import FileRows, text_rows
+from squealpipe.laws.sheets import IS_TIME, sheet
+from squealpipe.parameters import brief, finite_number
+from squealpipe.structures.contact import Contact
+from squealpipe.structures.units import Scales
+from squealpipe.text import suggestion
+
+CONTACT_COLUMNS = ("name", "normal", "tangential", "stiffness", "preload")
+KNOWN = (*CONTACT_COLUMNS, "speed", "mu", "mu_static", "across")
+HEADER = f"its first row must name the columns, like {','.join(CONTACT_COLUMNS)}"
+
+
+def read_contacts(
+    path: Path, labels: list[str] | None, size: int, scales: Scales
+) -> list[Contact]:
+    """The contacts of a table, in SI units.
+
+    Args:
+        labels: of the matrices' rows, ``node.direction``, where they have some.
+        size: degrees of freedom.
+
+    Raises:
+        FileNotFoundError: no such file.
+        ValueError: names the line and what is wrong there.
+    """
+    header, table = _rows(path)
+    lines = []
+    for line, cells in table.rows:
+        where = f"{path}, line {line}"
+        row = dict(zip(header, cells, strict=False))
+        row.pop("", "")
+        nameless = [cell for name, cell in zip(header, cells, strict=False) if not name]
+        if any(nameless) or any(cells[len(header) :]):
+            raise ValueError(
+                f"{where} has {len(cells)} cells, but the header {len(header)} columns"
+            )
+        for name in CONTACT_COLUMNS:
+            if not row.get(name):
+                raise ValueError(f"{where}: {name} is missing")
+        for name in row.keys() - {"name"}:
+            table.refuse_doubtful(path, line, row[name])
+        lines.append(
+            _Line(where, row["name"], _terms(where, row), _numerals(where, row))
+        )
+    # all cells together tell whether numbers have a decimal point or comma
+    written = (cell for line in lines for cell in line.written())
+    sign = decimal_sign(written, table.separator)
+    return [line.contact(sign, labels, size, scales) for line in lines]
+
+
+class _Term(NamedTuple):
+    """One term of a direction as it is written: a degree of freedom and its coefficient."""
+
+    place: str
+    coefficient: Numeral
+
+
+class _Line(NamedTuple):
+    """A row of the table, before it is known which of comma and point is the decimal sign."""
+
+    where: str
+    name: str
+    directions: dict[str, list[_Term]]
+    numerals: dict[str, Numeral]
+
+    def written(self) -> Iterator[tuple[str, str]]:
+        """Yield where each number stands, and its text."""
+        for key, terms in self.directions.items():
+            for term in terms:
+                yield f"{self.where}: {key}", term.coefficient.text
+        for key, each in self.numerals.items():
+            yield f"{self.where}: {key}", each.text
+
+    def contact(
+        self, sign: str, labels: list[str] | None, size: int, scales: Scales
+    ) -> Contact:
+        """The contact, in SI units."""
+        try:
+            directions: dict[str, Any] = {
+                key: _direction(terms, sign, labels, size)
+                for key, terms in self.directions.items()
+            }
+            # who names the direction across asks for friction's damping along it
+            transverse = "across" in directions
+            return Contact(
+                self.name,
+                **directions,
+                **self._values(sign, scales),
+                transverse_damping=transverse,
+            )
+        except ValueError as error:
+            raise ValueError(f"{self.where}: {error}") from error
+
+    def _values(self, sign: str, scales: Scales) -> dict[str, float]:
+        factors = {"stiffness": scales.stiffness, "preload": scales.force}
+        values = {}
+        for key, each in self.numerals.items():
+            text = plain(each.text, sign)
+            # a cell has a unit of its own, or is a number in the units of the file
+            values[key] = (
+                finite_number(key, f"{text} {each.unit}", UNITS[key])
+                if each.unit
+                else finite_number(key, float(text), UNITS[key]) * factors.get(key, 1.0)
+            )
+        return values
+
+
+UNITS = {
+    "stiffness": "N m-1",
+    "preload": "N",
+    "speed": "1",
+    "mu": "1",
+    "mu_static": "1",
+}
+"""Columns of numbers → CF unit."""
+
+
+def _numerals(where: str, row: Mapping[str, str]) -> dict[str, Numeral]:
+    """The numbers of a row as they are written."""
+    return {key: _numeral(f"{where}: {key}", row[key]) for key in UNITS if row.get(key)}
+
+
+def _numeral(where: str, text: str) -> Numeral:
+    number = numeral(text)
+    if number is None:
+        raise ValueError(
+            f"{where} = {brief(text)}: a number is needed, like 1.5 or 2e7"
+        )
+    return number
+
+
+def _rows(path: Path) -> tuple[list[str], FileRows]:
+    """The names of the columns, and the rows below."""
+    if not path.is_file():
+        raise FileNotFoundError(f"contacts: no file {path}")
+    excel = path.suffix.lower() == ".xlsx"
+    table = (sheet if excel else text_rows)(path, lambda row: "name" in row)
+    if not table.rows:
+        raise ValueError(f"{path} is empty; {HEADER}")
+    header = table.rows[0].cells
+    if not set(header) & set(KNOWN):
+        raise ValueError(f"{path} begins with {brief(header)}; {HEADER}")
+    for name in header:
+        if name in KNOWN or not name:
+            continue
+        if any(name.startswith(known) for known in KNOWN):
+            raise ValueError(
+                f"{path}: column {name!r}: {suggestion(name, KNOWN)} Units stand in the "
+                "structure's file, like `units: mm-t-s`"
+            )
+        raise ValueError(f"{path}: column {name!r}: {suggestion(name, KNOWN)}")
+    for name in CONTACT_COLUMNS:
+        if name not in header:
+            raise ValueError(
+                f"{path} has no column {name!r}; it has {', '.join(header)}"
+            )
+    names = [name for name in header if name]
+    if len(set(names)) < len(names):
+        raise ValueError(f"{path}: a column is there twice; it has {', '.join(names)}")
+    return header, table._replace(rows=table.rows[1:])
+
+
+def _terms(where: str, row: Mapping[str, str]) -> dict[str, list[_Term]]:
+    """The terms of each direction, like ``12:1 40:-1`` or ``31.2:0,5; 31.3:1``."""
+    terms: dict[str, list[_Term]] = {}
+    for key in ("normal", "tangential", "across"):
+        if key == "across" and not row.get(key):
+            continue
+        if row[key].endswith(IS_TIME):
+            raise ValueError(f"{where}: {key} = {row[key]}, like 12:1")
+        text = re.sub(r"\s*:\s*", ":", row[key].strip())
+        # what separates terms stands before a degree of freedom and its colon
+        parts = [part.strip(" ,;") for part in re.split(r"[\s,;]+(?=[^\s,;:]+:)", text)]
+        terms[key] = []
+        for part in filter(None, parts):
+            place, colon, coefficient = part.partition(":")
+            if not colon:
+                raise ValueError(
+                    f"{where}: {part!r} is no direction; write for instance 12:1 40:-1"
+                )
+            number = _numeral(f"{where}: {key}: {place}", coefficient)
+            if number.unit:
+                raise ValueError(
+                    f"{where}: {part!r} is no direction: a coefficient has no unit"
+                )
+            terms[key].append(_Term(place, number))
+    return terms
+
+
+def _direction(
+    terms: Sequence[_Term], sign: str, labels: list[str] | None, size: int
+) -> dict[int, float]:
+    """{degree of freedom from 0: coefficient}; ``31.2`` is a node and its direction."""
+    direction: dict[int, float] = {}
+    for place, coefficient in terms:
+        if "." in place:
+            if labels is None:
+                raise ValueError(
+                    f"{place}: the matrices have no labels; count rows from 1"
+                )
+            if place not in labels:
+                raise ValueError(f"{place}: no such node and direction in the matrices")
+            number = labels.index(place)
+        else:
+            number = int(place) - 1 if re.fullmatch(r"\d{1,9}", place, re.ASCII) else -1
+            if not 0 <= number < size:
+                raise ValueError(
+                    f"{place}: degrees of freedom are 1 to {size} in files"
+                )
+            if labels is not None:
+                # a node's number would be taken for that of a row
+                raise ValueError(
+                    f"{place} is a row, but the matrices name nodes and directions; write "
+                    f"{labels[number]} if row {place} is meant"
+                )
+        value = float(plain(coefficient.text, sign))
+        direction[number] = direction.get(number, 0.0) + value
+    return direction

@@ -1,0 +1,309 @@
+"""What a structure is: matrices of mass, damping and stiffness with contacts on a moving belt."""
+
+import hashlib
+from collections.abc import Sequence
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+import scipy.sparse as sp
+
+from squealpipe.parameters import brief, finite_number, numbers_in_si
+from squealpipe.structures.contact import Contact, directions, transversals
+from squealpipe.structures.friction import Friction, default_mu, friction_of, has_own_mu
+from squealpipe.structures.matrices import checked_mass, real_square
+from squealpipe.structures.meshes.faces import Rotation
+from squealpipe.structures.meshes.structure_mesh import StructureMesh
+from squealpipe.validation import real_array
+
+OF_SLIDING = {"mu", "belt_speed", "friction_law", "mu_static", "friction_speed"}
+"""Arguments that mean the same for a structure and for a reduced one."""
+
+
+class ReducedFrom(NamedTuple):
+    """Origin of a reduced structure.
+
+    Attributes:
+        whole: the structure of all degrees of freedom.
+        frequency_max: end of the band in which the modes of both are compared, Hz; None: all.
+        truth: modes of the whole (:class:`.agreement.Truth`), where they are known already.
+    """
+
+    whole: "ContactStructure"
+    frequency_max: float | None
+    truth: Any = None
+
+
+class ContactStructure:
+    """M q̈ + C q̇ + K q = f + Σ (nᵢ Nᵢ + tᵢ Tᵢ): an elastic structure with contacts on a belt.
+
+    Friction Tᵢ is μ(|wᵢ|) Nᵢ sgn wᵢ in slip, at most μ_s Nᵢ in stick, with the sliding speed
+    wᵢ = speedᵢ · belt_speed − tᵢᵀq̇. Consistent units of any system work; names here are SI's.
+    Numbers may be texts with a unit, like ``7.2 km/h``.
+
+    Args:
+        mass: M, (n, n), dense or sparse, symmetric and positive definite, kg.
+        stiffness: K, N/m; parts that are not symmetric are allowed.
+        damping: C, N s/m; likewise. None: none.
+        modal_damping: a damping ratio for all modes, or one for each of the lowest: the modes are
+            those of (M, K + Σ kᵢ nᵢnᵢᵀ), without friction. Up to 1000 degrees of freedom all are
+            meant, beyond those up to the largest frequency asked for, or as many as ratios.
+        contacts: :class:`Contact` each.
+        mu: coefficient of friction of the contacts that have none of their own, 0.5 by default;
+            with a table a factor of it, 1 by default.
+        belt_speed: V, m/s, 2 by default; its sign is the direction. With a rotation it is Ω, rad/s,
+            that of the rotation by default, and ``speed`` of a contact is its radius in m.
+        friction_law, mu_static, friction_speed: as in ``Parameters``.
+        load: f, (n,), N; None: −Σ nᵢ preloadᵢ, which balances the preloads at rest; 0: none.
+        mesh: nodes, facets and what each degree of freedom is, for names and pictures.
+        rotation: of the body that rubs, about an axis.
+
+    Raises:
+        ValueError: matrices that do not fit each other, a mass that is not positive definite,
+            numbers that are not finite or not real, or a contact whose directions are parallel.
+    """
+
+    def __init__(
+        self,
+        mass: Any,
+        stiffness: Any,
+        damping: Any = None,
+        *,
+        modal_damping: float | Sequence[float] = 0.0,
+        contacts: Sequence[Contact] = (),
+        mu: float | None = None,
+        belt_speed: float | None = None,
+        friction_law: Any = "coulomb",
+        mu_static: float | None = None,
+        friction_speed: float = 1.0,
+        load: Any = None,
+        mesh: StructureMesh | None = None,
+        rotation: Rotation | None = None,
+    ) -> None:
+        mass, stiffness, damping = (
+            numbers_in_si(name, matrix, units)
+            for name, matrix, units in (
+                ("mass", mass, "kg"),
+                ("stiffness", stiffness, "N m-1"),
+                ("damping", damping, "N s m-1"),
+            )
+        )
+        self.mass = checked_mass(real_square("mass", mass))
+        self.size = int(self.mass.shape[0])
+        """Degrees of freedom n."""
+        self.stiffness = real_square("stiffness", stiffness, self.size)
+        nothing = sp.csr_array((self.size, self.size))
+        self.damping = (
+            nothing if damping is None else real_square("damping", damping, self.size)
+        )
+        self.modal_damping = _ratios(modal_damping, self.size)
+        if rotation is not None and not isinstance(rotation, Rotation):
+            raise ValueError(f"rotation = {brief(rotation)}: a Rotation is needed")
+        self.rotation = rotation
+        """Rotation of the body that rubs; None where a belt runs straight on."""
+        if belt_speed is None:
+            belt_speed = 2.0 if rotation is None else rotation.speed
+        unit = "m s-1" if rotation is None else "rad s-1"
+        self.belt_speed = finite_number("belt_speed", belt_speed, unit)
+        if not isinstance(contacts, Sequence):
+            raise ValueError(  # noqa: TRY004 (of all arguments mistakes are values)
+                f"contacts = {brief(contacts)}: a list of Contact is needed"
+            )
+        self.contacts = tuple(contacts)
+        for contact in self.contacts:
+            if not isinstance(contact, Contact):
+                raise ValueError(f"contacts: {brief(contact)} is no Contact")  # noqa: TRY004
+        self.normals, self.tangentials = directions(self.contacts, self.size)
+        self.transversals = transversals(self.contacts, self.normals, self.tangentials)
+        self.friction = Friction(
+            friction_law=friction_law,
+            mu=default_mu(friction_law) if mu is None else finite_number("mu", mu, "1"),
+            mu_static=(
+                None
+                if mu_static is None
+                else finite_number("mu_static", mu_static, "1")
+            ),
+            friction_speed=finite_number("friction_speed", friction_speed, "m s-1"),
+        )
+        self.frictions = tuple(
+            friction_of(each, self.friction) for each in self.contacts
+        )
+        """Of each contact: its own law and coefficients, or the structure's."""
+        self.given_load = numbers_in_si("load", load, "N")
+        self.load = self._load(self.given_load)
+        self.mesh = _fitting(mesh, self.size)
+        """Nodes, facets and degrees of freedom; of a reduced structure those of the whole."""
+        self.modes: np.ndarray | None = None
+        """Of a reduced structure, (n of the whole, n): amplitudes → displacements."""
+        self.record: dict[str, Any] = {}
+        """Of a reduced structure: how many modes were kept, and their errors."""
+        self.reduced_from: ReducedFrom | None = None
+        """Of a reduced structure: its origin."""
+
+    @property
+    def mu(self) -> float:
+        """Coefficient of friction of the contacts that have none of their own."""
+        return self.friction.mu
+
+    @property
+    def has_own_mu(self) -> np.ndarray:
+        """Mask of the contacts whose coefficient is not the structure's, (contacts,)."""
+        return np.array([has_own_mu(each) for each in self.contacts], bool)
+
+    @property
+    def mu_of_contacts(self) -> np.ndarray:
+        """Coefficient of each contact, its own or the structure's, (contacts,)."""
+        return np.array([each.mu for each in self.frictions])
+
+    @property
+    def mu_static_of_contacts(self) -> np.ndarray:
+        """Largest friction over normal force in stick, of each contact, (contacts,)."""
+        return np.array([each.static_mu for each in self.frictions])
+
+    @property
+    def largest_mu(self) -> float:
+        """The largest structure's ``mu`` that limits of stick allow; infinite without any."""
+        own = self.has_own_mu
+        free = [
+            each for each, is_own in zip(self.frictions, own, strict=True) if not is_own
+        ]
+        return min((each.largest_mu for each in [self.friction, *free]), default=np.inf)
+
+    @property
+    def preloads(self) -> np.ndarray:
+        """Of each contact, N."""
+        return np.array([each.preload for each in self.contacts])
+
+    @property
+    def stiffnesses(self) -> np.ndarray:
+        """Of each contact, N/m."""
+        return np.array([each.stiffness for each in self.contacts])
+
+    @property
+    def speeds(self) -> np.ndarray:
+        """Belt speed at each contact over ``belt_speed``."""
+        return np.array([each.speed for each in self.contacts])
+
+    @property
+    def stiffness_at_rest(self) -> sp.csr_array:
+        """K + Σ kᵢ nᵢnᵢᵀ, the symmetric part."""
+        scaled = sp.csr_array(self.normals * self.stiffnesses)
+        whole = self.stiffness + scaled @ sp.csr_array(self.normals).T
+        return sp.csr_array(0.5 * (whole + whole.T))
+
+    def _load(self, load: Any) -> np.ndarray:
+        if load is None:
+            return (
+                -self.normals @ self.preloads if self.contacts else np.zeros(self.size)
+            )
+        vector = real_array("load", load)
+        if vector.ndim == 0 and vector == 0:
+            return np.zeros(self.size)
+        if vector.shape != (self.size,):
+            raise ValueError(
+                f"load has shape {vector.shape}: {self.size} finite numbers are needed, or 0"
+            )
+        return vector
+
+    def __repr__(self) -> str:
+        names = ", ".join(each.name for each in self.contacts) or "none"
+        return (
+            f"Structure({self.size} degrees of freedom; contacts {names}; mu = {self.mu:g}, "
+            f"belt_speed = {self.belt_speed:g})"
+        )
+
+    def with_(self, **changes: Any) -> Self:
+        """Return the structure with other arguments.
+
+        A reduced structure keeps its origin if only friction or the belt changes; with other
+        matrices, contacts or loads it has none.
+        """
+        other = type(self)(**{**self.arguments, **changes})
+        if self.reduced_from is not None and set(changes) <= OF_SLIDING:
+            origin = self.reduced_from
+            other.modes, other.mesh = self.modes, self.mesh
+            other.reduced_from = ReducedFrom(
+                origin.whole.with_(**changes), origin.frequency_max
+            )
+        return other
+
+    @property
+    def arguments(self) -> dict[str, Any]:
+        """What it is made of, by the names of its arguments."""
+        friction = self.friction
+        return {
+            "mass": self.mass,
+            "stiffness": self.stiffness,
+            "damping": self.damping,
+            "modal_damping": self.modal_damping,
+            "contacts": self.contacts,
+            "mu": friction.mu,
+            "belt_speed": self.belt_speed,
+            "friction_law": friction.friction_law,
+            "mu_static": friction.mu_static,
+            "friction_speed": friction.friction_speed,
+            "load": self.given_load,
+            "mesh": self.mesh if self.modes is None else None,
+            "rotation": self.rotation,
+        }
+
+    def as_dict(self) -> dict[str, Any]:
+        """Numbers and names as JSON takes them; of the matrices and directions a hash."""
+        content = hashlib.sha256()
+        for matrix in (self.mass, self.damping, self.stiffness):
+            for part in (matrix.indptr, matrix.indices, matrix.data):
+                content.update(np.ascontiguousarray(part).tobytes())
+        for array in (self.normals, self.tangentials, self.load, self.transversals):
+            content.update(np.ascontiguousarray(array).tobytes())
+        contacts = {
+            each.name: {
+                "stiffness": each.stiffness,
+                "preload": each.preload,
+                "speed": each.speed,
+            }
+            | {
+                key: getattr(each, key)
+                for key in ("mu", "friction_law", "mu_static")
+                if getattr(each, key) is not None
+            }
+            for each in self.contacts
+        }
+        return {
+            "degrees_of_freedom": self.size,
+            "matrices": content.hexdigest()[:16],
+            "modal_damping": self.modal_damping.tolist(),
+            "contacts": contacts,
+            "mu": self.mu,
+            "belt_speed": self.belt_speed,
+            "friction_law": self.friction.friction_law,
+            "mu_static": self.friction.mu_static,
+            "friction_speed": self.friction.friction_speed,
+            **({} if self.rotation is None else {"rotation": self.rotation.as_dict()}),
+        }
+
+
+def _fitting(mesh: StructureMesh | None, size: int) -> StructureMesh | None:
+    """Return the mesh if it has the degrees of freedom of the matrices."""
+    if mesh is not None and not isinstance(mesh, StructureMesh):
+        raise ValueError(f"mesh = {brief(mesh)}: a StructureMesh is needed")
+    if mesh is not None and len(mesh.degree_of_freedom) != size:
+        raise ValueError(
+            f"mesh: it says what {len(mesh.degree_of_freedom)} degrees of freedom are, but the "
+            f"matrices have {size}"
+        )
+    return mesh
+
+
+def _ratios(given: Any, size: int) -> np.ndarray:
+    """Damping ratios, one number or one for each of the lowest modes."""
+    several = numbers_in_si("modal_damping", given, "1")
+    several = several.tolist() if isinstance(several, np.ndarray) else several
+    if isinstance(several, Sequence) and not isinstance(several, str):
+        ratios = np.array([finite_number("modal_damping", one, "1") for one in several])
+    else:
+        ratios = np.array(finite_number("modal_damping", several, "1"))
+    if ratios.size > size or not (ratios >= 0).all():
+        raise ValueError(
+            f"modal_damping = {brief(given)}: a ratio of 0 or greater is needed, or at most {size} "
+            "of them"
+        )
+    return ratios

@@ -1,0 +1,285 @@
+"""A structure in a file: ``pad.yaml`` names matrices, contacts and numbers."""
+
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+import scipy.sparse as sp
+
+from squealpipe.laws.friction_laws import COLUMNS
+from squealpipe.laws.numerals import decimal_sign, numeral, plain
+from squealpipe.laws.rows import text_rows
+from squealpipe.laws.tables import named
+from squealpipe.parameters import brief, is_finite_number
+from squealpipe.store.yaml_files import read_yaml
+from squealpipe.structures.contact import Contact
+from squealpipe.structures.contact_table import read_contacts
+from squealpipe.structures.definition import ContactStructure
+from squealpipe.structures.matrices import real_square
+from squealpipe.structures.readers import Labelled, read_matrix
+from squealpipe.structures.units import SI, Scales, scales_of
+from squealpipe.text import suggestion
+
+Form = TypeVar("Form", bound=ContactStructure)
+MATRICES = ("mass", "stiffness", "damping")
+NUMBERS = ("mu", "belt_speed", "mu_static", "friction_speed")
+KEYS = (
+    *MATRICES,
+    *NUMBERS,
+    "contacts",
+    "modal_damping",
+    "friction_law",
+    "load",
+    "units",
+    "triangle",
+)
+TRIANGLES = ("mirror", "keep")
+NOTHING = 1e-13
+"""Entries below this share of the scale of their rows are round-off."""
+
+
+def read(path: str | PathLike[str], form: type[Form]) -> Form:
+    """A structure from its file.
+
+    The file has the keys ``mass`` and ``stiffness``, and where needed ``damping``: names of matrix
+    files beside it, or ``{file: NAME, variable: NAME}``; ``contacts``, a table (text or .xlsx) with
+    the columns name, normal, tangential, stiffness, preload and optionally speed, ``mu`` and
+    ``mu_static`` (of that contact; an empty cell leaves it to the structure), where a direction is
+    ``12:1 40:-1``, degrees of freedom counted from 1, or ``31.2:1``, node and direction, where the
+    matrix file has them; ``mu``, ``belt_speed``, ``friction_law``, ``mu_static``,
+    ``friction_speed``, ``modal_damping`` and ``load`` (a file with one number a line, or 0) as of
+    :class:`Structure`; ``units`` (``m-kg-s``; all numbers of a file with ``mm-t-s`` are in mm, t, s
+    and N and become SI's; a rotation then counts as the displacement at an arm of one unit of
+    length); ``triangle``: ``mirror`` where a file has one triangle of a symmetric matrix, ``keep``
+    where it is meant as it is.
+
+    Args:
+        path: the YAML file; names in it are relative to its folder.
+        form: :class:`Structure`, or a class derived from it.
+
+    Raises:
+        FileNotFoundError: a file that does not exist.
+        ValueError: a key, value or file that is wrong; names it.
+    """
+    source = Path(path).expanduser()
+    content = _content(source)
+    scales = scales_of(content["units"]) if "units" in content else SI
+    matrices, labels = _matrices(content, source.parent, scales)
+    arguments: dict[str, Any] = {**matrices}
+    if "contacts" in content:
+        table = source.parent / _file_name("contacts", content["contacts"])
+        size = matrices["mass"].shape[0]
+        arguments["contacts"] = _contacts(table, labels, size, scales)
+    for name in NUMBERS:
+        if name in content:
+            arguments[name] = content[name]
+    for name in ("belt_speed", "friction_speed"):
+        if is_finite_number(arguments.get(name)):
+            arguments[name] = float(arguments[name]) * scales.speed
+    if "modal_damping" in content:
+        arguments["modal_damping"] = content["modal_damping"]
+    if "friction_law" in content:
+        arguments["friction_law"] = named(
+            content["friction_law"], COLUMNS, source.parent
+        )
+    if "load" in content:
+        arguments["load"] = _load(content["load"], source.parent, scales)
+    try:
+        return form(**arguments)
+    except ValueError as error:
+        raise ValueError(f"{source}: {error}") from error
+
+
+def _contacts(
+    table: Path, labels: list[str] | None, size: int, scales: Scales
+) -> list[Contact]:
+    """Those of a table that has some."""
+    contacts = read_contacts(table, labels, size, scales)
+    if not contacts:
+        raise ValueError(f"{table} has no row; leave `contacts` out if there are none")
+    return contacts
+
+
+def _file_name(key: str, given: Any) -> str:
+    if not isinstance(given, str) or not given:
+        raise ValueError(f"{key} = {brief(given)}: the name of a file is needed")
+    return given
+
+
+def _content(source: Path) -> dict[str, Any]:
+    content = read_yaml(source)
+    for key in content:
+        if key not in KEYS:
+            raise ValueError(
+                f"{source}: {key!r} is unknown; {suggestion(str(key), KEYS)}"
+            )
+    for key in ("mass", "stiffness"):
+        if key not in content:
+            raise ValueError(
+                f"{source} lacks {key}; name its matrix, like `{key}: {key}.mtx`"
+            )
+    return content
+
+
+def _matrices(
+    content: Mapping[str, Any], folder: Path, scales: Scales
+) -> tuple[dict[str, Any], list[str] | None]:
+    """Matrices in SI units, in one order, and the labels of their rows."""
+    triangle = content.get("triangle")
+    if triangle is not None and triangle not in TRIANGLES:
+        raise ValueError(
+            f"triangle = {triangle!r}: {suggestion(str(triangle), TRIANGLES)}"
+        )
+    read_in = {}
+    for key in MATRICES:
+        if key not in content:
+            continue
+        entry = content[key]
+        if isinstance(entry, Mapping):
+            if set(entry) - {"file", "variable"} or "file" not in entry:
+                raise ValueError(
+                    f"{key} = {dict(entry)!r}: file and variable are needed"
+                )
+            file, variable = entry["file"], entry.get("variable")
+        else:
+            file, variable = entry, None
+        path = folder / _file_name(key, file)
+        one = read_matrix(path, key, variable)
+        whole = _completed(
+            real_square(f"{key}: {path}", one.matrix), path, one, triangle
+        )
+        read_in[key] = one._replace(matrix=whole)
+    _refuse_orders(read_in)
+    labels = next((each.labels for each in read_in.values() if each.labels), None)
+    return {
+        key: _in_order(key, each, labels) * getattr(scales, key)
+        for key, each in read_in.items()
+    }, labels
+
+
+def _refuse_orders(read_in: Mapping[str, Labelled]) -> None:
+    """Refuse rows without labels beside rows whose order is that of nodes."""
+    sorted_ones = [key for key, each in read_in.items() if each.by_node]
+    bare = [key for key, each in read_in.items() if each.labels is None]
+    if sorted_ones and bare:
+        raise ValueError(
+            f"{sorted_ones[0]} names nodes and directions, {bare[0]} has rows alone, whose order "
+            "nobody knows; write both in one format"
+        )
+
+
+def _completed(matrix: Any, path: Path, given: Labelled, triangle: str | None) -> Any:
+    """The matrix with both triangles.
+
+    Raises:
+        ValueError: only one is there, or only a part of the other, and nobody says what is meant.
+    """
+    off = sp.coo_array(matrix - sp.diags_array(matrix.diagonal()))
+    # assembly leaves round-off where there is nothing, on either side; each row has its own scale,
+    # since a penalty or a rotation in other units makes single rows larger by any factor
+    sizes, diagonal = abs(off), np.abs(matrix.diagonal())
+    largest = np.maximum(
+        sizes.max(axis=0).toarray().ravel(), sizes.max(axis=1).toarray().ravel()
+    )
+    scale = np.maximum(
+        *(np.minimum(each[off.row], each[off.col]) for each in (largest, diagonal))
+    )
+    significant = np.abs(off.data) > NOTHING * scale
+    pattern = sp.csr_array(
+        (np.ones(significant.sum(), int), (off.row[significant], off.col[significant])),
+        off.shape,
+    )
+    single = pattern.nnz - pattern.multiply(pattern.T).nnz
+    if not single or triangle == "keep":
+        return matrix
+    if single == pattern.nnz and (given.halved or triangle == "mirror"):
+        return sp.csr_array(matrix + off.T)
+    what = (
+        "no entry off the diagonal has"
+        if single == pattern.nnz
+        else f"{single} entries lack"
+    )
+    raise ValueError(
+        f"{path}: {what} one on the other side of the diagonal; if the file is whole, write "
+        "`triangle: mirror` where it holds one triangle of a symmetric matrix, `triangle: keep` "
+        "where it is meant as it is"
+    )
+
+
+def _in_order(key: str, given: Labelled, labels: list[str] | None) -> Any:
+    """The matrix with its rows in the order of these labels."""
+    if labels is None:
+        return given.matrix
+    if len(set(labels)) < len(labels):
+        twice = next(label for label in labels if labels.count(label) > 1)
+        raise ValueError(f"{key}: {twice} (node.direction) is there twice; rename one")
+    if given.labels is None or given.labels == labels:
+        size = given.matrix.shape[0]
+        if size != len(labels):
+            raise ValueError(f"{key} has {size} rows, but {len(labels)} are labelled")
+        return given.matrix
+    place_of = {label: place for place, label in enumerate(labels)}
+    if unknown := [label for label in given.labels if label not in place_of]:
+        raise ValueError(
+            f"{key} has {unknown[0]} (node.direction), which the mass has not; condense what has "
+            "no mass in your program, or give it a small one"
+        )
+    if key != "damping" and len(given.labels) < len(labels):
+        missing = next(label for label in labels if label not in set(given.labels))
+        raise ValueError(
+            f"{key} lacks {missing} (node.direction), which the mass has; if its file is whole, "
+            "add an entry of 0 on the diagonal"
+        )
+    places = np.array([place_of[label] for label in given.labels])
+    entries = given.matrix.tocoo()
+    size = len(labels)
+    return sp.csr_array(
+        (entries.data, (places[entries.row], places[entries.col])), (size, size)
+    )
+
+
+def _column(path: Path) -> np.ndarray:
+    """Numbers of a text file, one a line or all in one, as people and programs write them.
+
+    Raises:
+        ValueError: a cell that is no number, or whose comma or point may separate thousands.
+    """
+    table = text_rows(path, lambda _: False)
+    if len(table.rows) > 1 and max(len(row.cells) for row in table.rows) > 1:
+        raise ValueError("it has several columns")
+    cells = []
+    for row in table.rows:
+        for cell in filter(None, row.cells):
+            number = numeral(cell)
+            if number is None or number.unit:
+                raise ValueError(f"line {row.number}: {brief(cell)} is no number")
+            cells.append((f"line {row.number}", number.text))
+    between = table.separator if len(table.rows) == 1 else "\n"
+    sign = decimal_sign(cells, between)
+    return np.array([[float(plain(text, sign)) for _, text in cells]])
+
+
+def _load(given: Any, folder: Path, scales: Scales) -> Any:
+    if given == 0:
+        return 0.0
+    if not isinstance(given, str):
+        raise ValueError(f"load = {brief(given)}: the name of a file, or 0, is needed")  # noqa: TRY004
+    path = folder / given
+    if not path.is_file():
+        raise FileNotFoundError(f"load: no file {path}")
+    try:
+        if path.suffix == ".mtx":
+            entries = read_matrix(path, "load").matrix
+            entries = entries.toarray() if sp.issparse(entries) else entries
+        else:
+            entries = _column(path)
+    except ValueError as error:
+        text = str(error).removeprefix("load: ").removeprefix(f"{path}: ")
+        raise ValueError(
+            f"load: {path}: {text}; one real number a line is needed"
+        ) from error
+    if 1 not in entries.shape or np.iscomplexobj(entries):
+        raise ValueError(f"load: {path}: one real number a line is needed")
+    return np.asarray(entries, dtype=float).ravel() * scales.force

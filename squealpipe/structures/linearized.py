@@ -1,0 +1,71 @@
+"""Small motions about steady sliding.
+
+Their pencil is M s² + (C + Σ Nᵢ μᵢ′ tᵢtᵢᵀ) s + K + Σ kᵢ (nᵢ + σᵢ μᵢ tᵢ) nᵢᵀ, both sums over closed
+contacts, with Nᵢ, σᵢ and μᵢ of the state (:mod:`.sliding`). Those with transverse damping add
+Σ (Nᵢ μᵢ/|wᵢ|) aᵢaᵢᵀ s, aᵢ across the sliding.
+"""
+
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+
+from squealpipe.structures.definition import ContactStructure
+from squealpipe.structures.pencil import LowRank, Pencil, Uncertain
+from squealpipe.structures.sliding import (
+    OF_FRICTION,
+    SteadySliding,
+    acting_directions,
+    contact_stiffness,
+)
+
+
+def pencil_about(
+    structure: ContactStructure, state: SteadySliding, modal: LowRank | None
+) -> Pencil:
+    """The pencil of small motions about steady sliding, with the damping of single modes."""
+    acting = acting_directions(structure, state.closed, state.drag)
+    falling = state.force * state.slope
+    damping = sp.csr_array(structure.damping)
+    if falling.any():
+        tangential = sp.csr_array(structure.tangentials * falling)
+        damping = damping + tangential @ sp.csr_array(structure.tangentials).T
+    if structure.transversals.any():
+        # friction μN turns with the sliding velocity: across it, μN times its angle v/|V|
+        speeds = np.abs(structure.speeds * state.belt_speed)
+        turning = state.force * np.abs(state.drag) / speeds
+        across = sp.csr_array(structure.transversals)
+        damping = damping + across * turning @ across.T
+    stiffness = structure.stiffness + contact_stiffness(structure, state.closed, acting)
+    return Pencil(
+        _tidy(structure.mass),
+        _tidy(damping),
+        _tidy(stiffness),
+        modal,
+        _uncertain(structure, state),
+    )
+
+
+def _uncertain(structure: ContactStructure, state: SteadySliding) -> Uncertain | None:
+    """What rounding of forces and of friction leaves open in damping and stiffness."""
+    rounding = OF_FRICTION * np.finfo(float).eps
+    closed = state.closed
+    if not closed.any():
+        return None
+    along, across = structure.tangentials[:, closed], structure.normals[:, closed]
+    force = state.force_error + rounding * state.force
+    damping = (force * np.abs(state.slope))[closed]
+    stiffness = (rounding * structure.stiffnesses * np.abs(state.drag))[closed]
+    return Uncertain(
+        sp.csc_array(np.hstack([along, along])),
+        sp.csc_array(np.hstack([along, across])),
+        np.concatenate([damping, 0.0 * stiffness]),
+        np.concatenate([0.0 * damping, stiffness]),
+    )
+
+
+def _tidy(matrix: Any) -> sp.csr_array:
+    tidy = sp.csr_array(matrix, copy=True)
+    tidy.sum_duplicates()
+    tidy.eliminate_zeros()
+    return tidy

@@ -1,0 +1,123 @@
+"""Matrices of a structure as they are kept: square, real, finite, sparse by rows."""
+
+from typing import Any
+
+import numpy as np
+import scipy.linalg as la
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+
+from squealpipe.parameters import brief
+from squealpipe.structures.pencil import DENSE
+
+SYMMETRIC = 1e-10
+"""Largest asymmetry of a mass that is round-off, over the geometric mean of both diagonals."""
+
+
+def real_square(name: str, given: Any, size: int | None = None) -> sp.csr_array:
+    """A matrix, dense or sparse, as a sparse one.
+
+    Raises:
+        ValueError: it is no matrix, not square, of another size, complex or not finite.
+    """
+    if sp.issparse(given):
+        # entries at one place are added up as floats: of bytes 100 + 100 would be -56
+        wide = complex if given.dtype.kind == "c" else float
+        matrix = sp.csr_array(given.astype(wide), copy=True)
+    else:
+        try:
+            array = np.asarray(given)
+        except ValueError:
+            raise ValueError(f"{name}: rows of one length are needed") from None
+        if array.ndim != 2 or array.dtype.kind not in "biufc":
+            raise ValueError(
+                f"{name} = {brief(given)}: a matrix is needed, dense or of scipy.sparse"
+            )
+        matrix = sp.csr_array(array)
+    rows, columns = matrix.shape
+    if rows != columns or not rows:
+        raise ValueError(f"{name} is {rows} × {columns}: a square matrix is needed")
+    if size is not None and rows != size:
+        raise ValueError(
+            f"{name} is {rows} × {rows}, but mass is {size} × {size}: one size is needed"
+        )
+    if matrix.dtype.kind == "c":
+        if np.any(matrix.data.imag):
+            raise ValueError(
+                f"{name} has complex entries: structural damping has no equation of motion in "
+                "time; use modal_damping or a damping matrix"
+            )
+        matrix = matrix.real
+    matrix = matrix.astype(float)
+    if not np.isfinite(matrix.data).all():
+        place = np.flatnonzero(~np.isfinite(matrix.data))[0]
+        row = int(np.searchsorted(matrix.indptr, place, side="right")) - 1
+        raise ValueError(
+            f"{name}[{row}, {matrix.indices[place]}] = {matrix.data[place]}: finite numbers are "
+            "needed"
+        )
+    matrix.sum_duplicates()
+    matrix.eliminate_zeros()
+    matrix.sort_indices()
+    return matrix
+
+
+def checked_mass(mass: sp.csr_array) -> sp.csr_array:
+    """A mass that is symmetric and positive definite.
+
+    Raises:
+        ValueError: it is not; names degrees of freedom without mass.
+    """
+    difference = sp.coo_array(abs(mass - mass.T))
+    root = np.sqrt(np.abs(mass.diagonal()))
+    if (
+        difference.data > SYMMETRIC * root[difference.row] * root[difference.col]
+    ).any():
+        half = sp.triu(mass, 1).nnz == 0 or sp.tril(mass, -1).nnz == 0
+        raise ValueError(
+            "mass is not symmetric"
+            + (
+                ": only one triangle is there; mirror the other, A + A.T − diag(A)"
+                if half
+                else "; a symmetric one is needed"
+            )
+        )
+    mass = sp.csr_array(0.5 * (mass + mass.T))
+    negative = np.flatnonzero(mass.diagonal() < 0)
+    if negative.size:
+        raise ValueError(
+            f"mass is negative at degree of freedom {negative[0]}, counted from 0: change its sign"
+        )
+    bare = np.flatnonzero(mass.diagonal() == 0)
+    if bare.size:
+        few = ", ".join(map(str, bare[:5])) + (", …" if bare.size > 5 else "")
+        raise ValueError(
+            f"mass is singular: {bare.size} degrees of freedom have none ({few}, counted from 0); "
+            "condense them in your finite-element program, or give them a small mass"
+        )
+    if not _is_positive(mass):
+        raise ValueError(
+            "mass is singular or not positive definite: some motion has no kinetic energy; "
+            "condense it, or give it a small mass"
+        )
+    return mass
+
+
+def _is_positive(mass: sp.csr_array) -> bool:
+    # unit diagonal: degrees of freedom in other units do not look singular
+    scale = sp.diags_array(mass.diagonal() ** -0.5)
+    scaled = scale @ mass @ scale
+    limit = mass.shape[0] * np.finfo(float).eps
+    if mass.shape[0] <= DENSE:
+        return bool(la.eigvalsh(scaled.toarray()).min() > limit)
+    try:
+        factors = splu(
+            sp.csc_array(scaled),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
+    except RuntimeError:  # exactly singular
+        return False
+    kept_order = np.array_equal(factors.perm_r, factors.perm_c)
+    return bool(kept_order and (factors.U.diagonal() > limit).all())

@@ -1,0 +1,306 @@
+"""A structure as a system: one component for each contact, with the regimes of A1."""
+
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+
+from squealpipe.laws.tables import is_table, pieces_of
+from squealpipe.parameters import brief, is_finite_number, is_whole_number
+from squealpipe.structures.definition import ContactStructure
+from squealpipe.structures.dynamics import (
+    Motion,
+    Numbers,
+    coefficients_of,
+    reads_speed,
+    total,
+)
+from squealpipe.structures.modes import modes_at_rest
+from squealpipe.structures.reduction import conflict_in_stick
+from squealpipe.systems.belt_contact import FIRST, SLIP, BeltContact, Surface, negative
+from squealpipe.systems.components import MOST_COMPONENTS, Component, Switch
+from squealpipe.systems.definition import MOST_STATES
+from squealpipe.systems.system import System
+
+HIDDEN = 1e-14
+"""Over a typical force: a contact that friction lacks no more than this to hold sticks."""
+
+
+def system(
+    structure: ContactStructure, displacements: Mapping[str, Any] | None = None
+) -> System:
+    """The structure with contact loss, friction and stick as a :class:`squealpipe.System`.
+
+    States are ``q1``…, ``v1``…: amplitudes of the modes of a reduced structure, else displacements.
+    Parameters are ``mu``, ``belt_speed``, ``preload`` (a factor of all, and of the load that
+    balances them) and what the friction law reads; ``<contact>_mu`` and ``<contact>_mu_static`` are
+    those of a contact of its own. Each contact is a component with the regimes
+    ``slip_slower``, ``slip_faster`` (than the belt), ``stick`` and ``separated``, in pieces where
+    friction is a table; its outputs are ``<contact>_normal_force``, N, and ``<contact>_speed``,
+    the speed of sliding, m/s.
+
+    Args:
+        displacements: further outputs, m: name → a degree of freedom of the whole structure, or
+            {degree of freedom: coefficient}, counted from 0.
+
+    Raises:
+        ValueError: too many degrees of freedom or contacts; transverse damping; contacts that
+            cannot all stick at once for their sliding directions are dependent; a degree of freedom
+            that does not exist.
+    """
+    size = structure.size
+    damped = [each.name for each in structure.contacts if each.transverse_damping]
+    if damped:
+        raise ValueError(
+            f"contact {damped[0]}: transverse_damping is a part of complex modes; in a run "
+            "friction acts along the tangential direction alone: leave it out there"
+        )
+    if 2 * size > MOST_STATES:
+        most = MOST_STATES // 2
+        raise ValueError(
+            f"{size} degrees of freedom: a system can have {most}; "
+            + (
+                "take structure.reduce().system()"
+                if structure.modes is None
+                else f"reduce the whole structure with n_modes={most}, and see the errors in its "
+                "record"
+            )
+        )
+    if len(structure.contacts) > MOST_COMPONENTS:
+        raise ValueError(
+            f"{len(structure.contacts)} contacts: a system can have {MOST_COMPONENTS}; complex "
+            "modes take any number"
+        )
+    if conflict := conflict_in_stick(structure):
+        raise ValueError(conflict)
+    equations = Equations(structure)
+    scale = _Scale.of(structure)
+    unit = "m" if structure.modes is None else "kg^0.5 m"
+    places = range(1, size + 1)
+    states: dict[str, Any] = {f"q{i}": (unit, scale.displacement) for i in places}
+    states |= {f"v{i}": (f"{unit} s-1", scale.velocity) for i in places}
+    contacts = {
+        each.name: _Contact(equations, place, scale.force).component()
+        for place, each in enumerate(structure.contacts)
+    }
+    parts: dict[str, Any] = {"components": contacts}
+    if not contacts:
+        parts = {"regimes": {"free": {}}}
+    return System(
+        f"structure of {size} degrees of freedom",
+        states=states,
+        parameters=_parameters(structure),
+        **parts,
+        field=equations.field,
+        start=dict.fromkeys(states, 0.0),
+        outputs=equations.outputs(displacements or {}),
+        time_scale=scale.time,
+    )
+
+
+def _parameters(structure: ContactStructure) -> dict[str, float]:
+    friction = structure.friction
+    parameters = {"mu": friction.mu, "belt_speed": structure.belt_speed, "preload": 1.0}
+    if friction.mu_static is not None:
+        parameters["mu_static"] = friction.mu_static
+    for place in range(len(structure.contacts)):
+        parameters |= coefficients_of(structure, place)
+    if any(map(reads_speed, (friction, *structure.frictions))):
+        parameters["friction_speed"] = friction.friction_speed
+    return parameters
+
+
+class Equations:
+    """The equations of motion of a structure, traced once for each state and regime."""
+
+    def __init__(self, structure: ContactStructure) -> None:
+        self.structure, self.numbers = structure, Numbers.of(structure)
+        # functions of one contact are called with the constants of its regimes again and again
+        self.at = lru_cache(maxsize=8)(self._at)
+
+    def _at(self, s: Any, p: Any, r: Any) -> Motion:
+        return Motion(self.structure, self.numbers, s, p, r)
+
+    def field(self, t: Any, s: Any, p: Any, r: Any) -> dict[str, Any]:  # noqa: ARG002
+        """Rates of all states."""
+        rates = self.at(s, p, r).accelerations
+        places = range(1, self.structure.size + 1)
+        changes = {f"q{i}": getattr(s, f"v{i}") for i in places}
+        return changes | {f"v{i}": rate for i, rate in zip(places, rates, strict=True)}
+
+    def of_contact(self, what: str, place: int) -> Surface:
+        """A quantity of one contact, by its name in :class:`Motion`."""
+        return lambda t, s, p, r: getattr(self.at(s, p, r), what)[place]
+
+    def outputs(self, displacements: Mapping[str, Any]) -> dict[str, Any]:
+        """Normal force and sliding speed of each contact, and displacements."""
+        outputs: dict[str, Any] = {}
+        for place, contact in enumerate(self.structure.contacts):
+            force = self.of_contact("normal_forces", place)
+            speed = self.of_contact("sliding_speeds", place)
+            outputs[f"{contact.name}_normal_force"] = ("N", force)
+            outputs[f"{contact.name}_speed"] = ("m s-1", speed)
+        for name, given in displacements.items():
+            outputs[name] = ("m", _displacement(self._shape(name, given)))
+        return outputs
+
+    def _shape(self, name: str, given: Any) -> np.ndarray:
+        """What a displacement of the whole structure is of each state's."""
+        modes = self.structure.modes
+        if modes is None:
+            modes = np.eye(self.structure.size)
+        chosen = given if isinstance(given, Mapping) else {given: 1.0}
+        shape = np.zeros(modes.shape[1])
+        for place, coefficient in chosen.items():
+            if not is_whole_number(place) or not 0 <= place < len(modes):
+                raise ValueError(
+                    f"displacements: {name} = {brief(given)}: degrees of freedom are 0 to "
+                    f"{len(modes) - 1}"
+                )
+            if not is_finite_number(coefficient):
+                raise ValueError(
+                    f"displacements: {name} = {brief(given)}: finite coefficients are needed"
+                )
+            shape += float(coefficient) * modes[int(place)]
+        return shape
+
+
+def _displacement(shape: np.ndarray) -> Surface:
+    def displacement(t: Any, s: Any, p: Any, r: Any) -> Any:
+        return total(shape, [getattr(s, f"q{i}") for i in range(1, len(shape) + 1)])
+
+    return displacement
+
+
+class _Scale(NamedTuple):
+    """Typical sizes of a structure's motion, for error control and default times."""
+
+    time: float
+    displacement: float
+    velocity: float
+    force: float
+
+    @classmethod
+    def of(cls, structure: ContactStructure) -> Self:
+        """By the preloads, or where there are none by load, or by the belt."""
+        omega, modes = modes_at_rest(structure)
+        elastic = omega[omega > 1e-6 * omega.max()]
+        mean = float(np.sqrt((elastic**2).mean())) if elastic.size else 1.0
+        # amplitudes in which directions of contacts have a length
+        reach = np.abs(structure.normals).max(axis=0, initial=0.0)
+        pressed = np.abs(structure.preloads) / structure.stiffnesses
+        displacement = float((pressed / reach).max(initial=0.0))
+        if not displacement:
+            amplitudes = modes.T @ structure.load
+            static = amplitudes[omega > 0] / omega[omega > 0] ** 2
+            displacement = float(np.abs(modes[:, omega > 0] @ static).max(initial=0.0))
+        if not displacement:
+            displacement = abs(structure.belt_speed) / mean or 1.0
+        force = float(np.abs(structure.preloads).max(initial=0.0))
+        stiffest = float(structure.stiffnesses.max(initial=0.0))
+        lowest = float(elastic[0]) if elastic.size else 1.0
+        return cls(
+            1.0 / lowest,
+            displacement,
+            displacement * mean,
+            force or stiffest * displacement,
+        )
+
+
+class _Contact:
+    """Regimes and switches of one contact."""
+
+    def __init__(self, equations: Equations, place: int, force: float) -> None:
+        self.equations, self.place, self.force = equations, place, force
+        structure = equations.structure
+        friction, name = structure.frictions[place], structure.contacts[place].name
+        pieces: list[dict[str, float]] = [{}]
+        if is_table(friction.friction_law):
+            pieces = pieces_of(friction.friction_law).constants("mu")
+        self.pressing = equations.of_contact("pressing", place)
+        self.speed = equations.of_contact("sliding_speeds", place)
+        self.limit = equations.of_contact("limits", place)
+        self.belt = BeltContact(
+            frictions=pieces,
+            speed=self.speed,
+            unit=lambda p: friction.friction_speed,
+            own=lambda r: getattr(r, name),
+        )
+
+    def component(self) -> Component:
+        """The contact as a component of a system."""
+        return Component(
+            regimes=self.belt.regimes(),
+            switches=[*self._switches(), *self.belt.friction_knots()],
+            starts_in=self._starts(),
+        )
+
+    def _holding(self, t: Any, s: Any, p: Any, r: Any) -> Any:  # noqa: ARG002
+        """The friction that would keep the contact on the belt."""
+        return self.equations.at(s, p, r).holding(self.place)
+
+    def _holds(self, t: Any, s: Any, p: Any, r: Any) -> Any:
+        """Whether friction can, ≥ 0, whatever its sign."""
+        hidden = HIDDEN * self.force
+        return self.limit(t, s, p, r) ** 2 + hidden**2 - self._holding(t, s, p, r) ** 2
+
+    def _margin(self, sign: float) -> Surface:
+        """What the friction of stick lacks to its limit, on one side."""
+        friction = self.equations.of_contact("stick_friction", self.place)
+        return lambda t, s, p, r: self.limit(t, s, p, r) - sign * friction(t, s, p, r)
+
+    def _to_belt(self, t: Any, s: Any, p: Any, r: Any) -> dict[str, Any]:
+        """Velocities with the contact on the belt, by an impulse of friction."""
+        numbers = self.equations.numbers
+        share = numbers.drags[:, self.place] / numbers.mobility[self.place, self.place]
+        speed = self.speed(t, s, p, r)
+        return {
+            f"v{i}": getattr(s, f"v{i}") + float(part) * speed
+            for i, part in enumerate(share, 1)
+            if part
+        }
+
+    def _switches(self) -> Iterator[Switch]:
+        closed = [self.belt.name(*each) for each in self.belt.in_contact()]
+        yield Switch("separation", closed, self.pressing, "separated")
+        # friction is 0 where contact begins and holds nothing: the contact slips
+        landing = self.belt.landing("contact", self.speed)
+        yield Switch("contact", "separated", negative(self.pressing), landing)
+        ends = {
+            "slip": (self._margin(1.0), "slip_slower"),
+            "slip_back": (self._margin(-1.0), "slip_faster"),
+        }
+        yield from self.belt.belt_switches(self._holds, ends, self._to_belt)
+
+    def _starts(self) -> list[Any]:
+        """In which regime a run starts: the first that fits.
+
+        Where the contact is just closed, its velocity decides; on the belt the friction that
+        would hold it.
+        """
+        slower, faster = map(self.belt.name, SLIP)
+        normal = self.equations.numbers.normals[:, self.place]
+        along = self.equations.numbers.tangentials[:, self.place]
+
+        def rises(t: Any, s: Any, p: Any, r: Any) -> Any:
+            motion = self.equations.at(s, p, r)
+            lifts = total(normal, motion.velocities)
+            return FIRST * lifts + total(normal, motion.accelerations)
+
+        def on_belt(t: Any, s: Any, p: Any, r: Any) -> Any:
+            return self.speed(t, s, p, r) / float(np.abs(along).max())
+
+        def above(t: Any, s: Any, p: Any, r: Any) -> Any:
+            return -FIRST * self.pressing(t, s, p, r) - self.force
+
+        slips = self.belt.slips(self.speed)
+        return [
+            ("separated", rises, self.pressing),
+            ("separated", above),
+            ("stick", self._holds, on_belt),
+            (slower, self._holding, on_belt),
+            (faster, lambda t, s, p, r: -self._holding(t, s, p, r), on_belt),
+            *slips[:-1],
+            slips[-1][0],
+        ]

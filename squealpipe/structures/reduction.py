@@ -1,0 +1,365 @@
+"""A structure of no more modes than its unstable complex modes need."""
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import scipy.linalg as la
+
+from squealpipe.inputs import takes_units
+from squealpipe.parameters import brief, is_finite_number, is_whole_number
+from squealpipe.structures.agreement import Agreement, Truth, compared, refined, summary
+from squealpipe.structures.contact import are_parallel, dependent_contacts
+from squealpipe.structures.definition import ContactStructure, ReducedFrom
+from squealpipe.structures.dense import all_modes
+from squealpipe.structures.linearized import pencil_about
+from squealpipe.structures.modes import modes_at_rest
+from squealpipe.structures.pencil import DENSE, one_thread
+from squealpipe.structures.sliding import (
+    NoSlidingError,
+    acting_directions,
+    contact_stiffness,
+    steady_sliding,
+)
+from squealpipe.structures.spectrum import Limits, Solver, check_frequency
+from squealpipe.structures.subspace import in_coordinates
+from squealpipe.systems.progress import report
+
+AND_LARGER = 3
+"""Larger numbers of modes that must do as well: convergence is not monotonic."""
+FIRST = 64
+"""Modes computed at first of a large structure; up to here every number is tried."""
+GROWS = 1e-9
+"""Growth over the modulus of an eigenvalue below which the search takes it for round-off."""
+
+
+@takes_units
+def reduce(
+    structure: ContactStructure,
+    *,
+    n_modes: int | None = None,
+    frequency_max: float | None = None,
+    tol: float = 1e-2,
+) -> ContactStructure:
+    """The structure in coordinates of its lowest modes at rest.
+
+    The modes Φ are those of (M, K + Σ kᵢ nᵢnᵢᵀ) without friction, with ΦᵀMΦ = 1. Their number is
+    the smallest (beyond 64 at most an eighth above it), and no smaller than that of contacts, for
+    which the same modes grow as in the whole structure and every unstable one is right within
+    ``tol``, by frequency and by growth rate, with this and the next three numbers, at the
+    structure's ``mu`` and ``belt_speed``. Contacts whose sliding directions are independent stay
+    so.
+
+    Args:
+        n_modes: keep so many instead.
+        frequency_max: unstable modes up to there count, Hz; needed beyond 1000 degrees of freedom.
+        tol: of |Δω|/ω, and of |Δσ|/max(|σ|, 0.01 ω).
+
+    Returns:
+        A structure with ``modes`` (n, m), amplitudes → displacements, and ``record``: ``n_modes``,
+        ``frequency_error``, ``growth_rate_error``, ``unstable`` (how many modes were judged),
+        ``missing`` (frequency and growth rate of unstable modes of the whole that it lacks) and
+        ``agrees`` (whether the same modes grow).
+
+    Raises:
+        ValueError: an argument; there is no steady sliding.
+        RuntimeError: all modes are not enough.
+    """
+    if not is_finite_number(tol) or not 0 < tol < 1:
+        raise ValueError(f"tol = {brief(tol)}: a number between 0 and 1 is needed")
+    fewest = fewest_modes(structure)
+    if n_modes is not None and not (
+        is_whole_number(n_modes) and fewest <= n_modes <= structure.size
+    ):
+        raise ValueError(
+            f"n_modes = {brief(n_modes)}: a whole number from {fewest} (one for each contact, two "
+            f"at least) to {structure.size} is needed"
+        )
+    check_frequency(frequency_max)
+    if structure.size > DENSE and frequency_max is None:
+        raise ValueError(
+            f"{structure.size} degrees of freedom: give frequency_max (Hz), up to which unstable "
+            f"modes are to be kept; all are computed up to {DENSE}"
+        )
+    search = Search(structure, Truth.of(structure, frequency_max), frequency_max)
+    if n_modes is not None:
+        return search.structure(int(n_modes))
+    number = search.smallest(fewest, tol)
+    if number is None:
+        raise RuntimeError(
+            f"all {structure.size} modes miss tol = {tol:g}: an unstable mode is next to a double "
+            "eigenvalue, whose growth rate has no more digits; raise tol or change mu a little"
+        )
+    return search.structure(number)
+
+
+def fewest_modes(structure: ContactStructure) -> int:
+    """Return the fewest modes: one for each contact, and two where there are any.
+
+    A contact's two directions cannot differ in a single coordinate.
+    """
+    return min(
+        max(len(structure.contacts), 2 if structure.contacts else 1), structure.size
+    )
+
+
+class Kept:
+    """The lowest modes, and what becomes of matrices and contacts in their coordinates."""
+
+    def __init__(self, structure: ContactStructure, number: int) -> None:
+        self.whole, self.number = structure, number
+        self.omega, self.modes = modes_at_rest(structure, number)
+        modes = self.modes
+        at_rest = modes.T @ (structure.stiffness_at_rest @ modes)
+        # round-off of the modes would couple them
+        self.stiffness = modes.T @ (structure.stiffness @ modes)
+        self.stiffness += np.diag(self.omega**2) - at_rest
+        self.damping = modes.T @ (structure.damping @ modes)
+        ratios = np.zeros(number)
+        asked = (
+            np.broadcast_to(structure.modal_damping, number)
+            if (structure.modal_damping.ndim == 0)
+            else structure.modal_damping[:number]
+        )
+        ratios[: len(asked)] = asked
+        self.damping += np.diag(2.0 * ratios * self.omega)
+        self.normals = modes.T @ structure.normals
+        self.tangentials = modes.T @ structure.tangentials
+        self.transversals = modes.T @ structure.transversals
+        self.load = modes.T @ structure.load
+        self.balanced = structure.given_load is None
+
+    def parallel_contact(self, number: int) -> str | None:
+        """Name the first contact whose two directions are one in the lowest of these modes."""
+        for place, each in enumerate(self.whole.contacts):
+            normal, along = (
+                self.normals[:number, place],
+                self.tangentials[:number, place],
+            )
+            if not normal.any() or not along.any() or are_parallel(normal, along):
+                return each.name
+        return None
+
+    def dependent(self, number: int) -> list[str]:
+        """Name the contacts whose sliding directions are dependent in the lowest of these modes."""
+        names = [each.name for each in self.whole.contacts]
+        return dependent_contacts(names, self.tangentials[:number])
+
+    def reduced(self, number: int) -> ContactStructure:
+        """The structure of the lowest of these modes."""
+        return in_coordinates(
+            self.whole,
+            self.stiffness[:number, :number],
+            self.damping[:number, :number],
+            (
+                self.normals[:number],
+                self.tangentials[:number],
+                self.transversals[:number],
+            ),
+            None if self.balanced else self.load[:number],
+        )
+
+    def values(self, number: int) -> np.ndarray:
+        """Eigenvalues of the structure of so many modes about its own steady sliding."""
+        reduced = self.reduced(number)
+        state = steady_sliding(reduced, reduced.mu, reduced.belt_speed)
+        pairs = all_modes(pencil_about(reduced, state, None))
+        return np.array([each.value for each in pairs])
+
+    def quick_values(self, number: int, added: float = 0.0) -> np.ndarray:
+        """Return these eigenvalues, s with Im s ≥ 0, less accurately and without vectors.
+
+        Args:
+            added: damping ratio of every mode, beside its own.
+        """
+        reduced = self.reduced(number)
+        state = steady_sliding(reduced, reduced.mu, reduced.belt_speed)
+        acting = acting_directions(reduced, state.closed, state.drag)
+        springs = contact_stiffness(reduced, state.closed, acting)
+        stiffness = self.stiffness[:number, :number] + springs.toarray()
+        along = self.tangentials[:number]
+        damping = (
+            self.damping[:number, :number]
+            + along * (state.force * state.slope) @ along.T
+        )
+        damping = damping + np.diag(2.0 * added * self.omega[:number])
+        if not damping.any():
+            squares = la.eigvals(stiffness).astype(complex)
+            roots = 1j * np.sqrt(squares)
+            values = np.concatenate([roots, -roots])
+        else:
+            unit = np.sqrt(np.linalg.norm(stiffness)) or np.linalg.norm(damping)
+            first_order = np.zeros((2 * number, 2 * number))
+            first_order[:number, number:] = unit * np.eye(number)
+            first_order[number:, :number] = -stiffness / unit
+            first_order[number:, number:] = -damping
+            values = la.eigvals(first_order)
+        return np.asarray(values[values.imag >= 0])
+
+
+class Search:
+    """Search for a number of modes by the unstable modes of the whole structure.
+
+    Args:
+        frequency_max: the end of the band, Hz, or None.
+    """
+
+    def __init__(
+        self, structure: ContactStructure, truth: Truth, frequency_max: float | None
+    ) -> None:
+        self.whole, self.truth, self.frequency_max = structure, truth, frequency_max
+        self.kept = Kept(structure, min(FIRST, structure.size))
+
+    def smallest(
+        self, fewest: int, tol: float = 1e-2, most: int | None = None
+    ) -> int | None:
+        """Return the smallest number that meets the tolerance, as do the next three; None if none.
+
+        Args:
+            most: numbers up to there are tried; None: all.
+        """
+        number, most = fewest, self.whole.size if most is None else most
+        while number <= most:
+            with one_thread():  # with small matrices threads cost more than they save
+                meets = self._meets_with_larger(number, tol)
+            if meets:
+                return number
+            report(lambda number=number, most=most: number / most)  # type: ignore[misc]
+            # beyond, by an eighth at a time: trying every number takes minutes
+            number += 1 if number < FIRST else max(1, min(number // 8, most - number))
+        return None
+
+    def _meets_with_larger(self, number: int, tol: float) -> bool:
+        largest = min(number + AND_LARGER, self.whole.size)
+        return all(self._meets(each, tol) for each in range(number, largest + 1))
+
+    def _meets(self, number: int, tol: float) -> bool:
+        kept = self._at_least(number)
+        if not self._reaches(number):
+            return False
+        if kept.parallel_contact(number) or self._loses_stick(number):
+            return False
+        try:
+            values = kept.quick_values(number)
+        except NoSlidingError:  # in these modes, not in the whole
+            return False
+        grows = values.real > GROWS * np.abs(values)
+        agreement = compared(self.truth, values, grows)
+        return agreement.holds and max(agreement.errors) <= tol
+
+    def _reaches(self, number: int) -> bool:
+        """Tell whether the modes kept reach half the highest unstable frequency of the whole."""
+        if number == self.whole.size:
+            return True
+        highest = np.abs(self.truth.unstable.imag).max(initial=0.0)
+        return bool(self.kept.omega[number - 1] >= 0.5 * highest)
+
+    def _loses_stick(self, number: int) -> bool:
+        """Tell whether directions of sliding, independent in the whole, are dependent here."""
+        return self._all_can_stick and bool(self._at_least(number).dependent(number))
+
+    @cached_property
+    def _all_can_stick(self) -> bool:
+        return not dependent_of(self.whole)
+
+    def _at_least(self, number: int) -> Kept:
+        if number > self.kept.number:
+            larger = max(number + AND_LARGER, 2 * self.kept.number)
+            self.kept = Kept(self.whole, min(larger, self.whole.size))
+        return self.kept
+
+    def structure(self, number: int) -> ContactStructure:
+        """Return the structure of so many modes with its record.
+
+        Raises:
+            ValueError: a contact has no two directions in these modes; says how many suffice.
+        """
+        kept = self._at_least(number)
+        if name := kept.parallel_contact(number):
+            enough = next(
+                each
+                for each in range(number, self.whole.size + 1)
+                if not self._at_least(each).parallel_contact(each)
+            )
+            raise ValueError(
+                f"n_modes = {number}: contact {name} has no two directions in the {number} modes "
+                f"kept; keep more (n_modes={enough} suffices)"
+            )
+        reduced = kept.reduced(number)
+        reduced.modes, reduced.mesh = kept.modes[:, :number], self.whole.mesh
+        reduced.reduced_from = ReducedFrom(self.whole, self.frequency_max, self.truth)
+        spectrum = Solver(reduced, Limits(), reduced.belt_speed).at(reduced.mu)
+        agreement = agreement_of(self.truth, spectrum, reduced.modes)
+        reduced.record = {
+            "n_modes": number,
+            **summary(agreement),
+            "unstable": len(self.truth.unstable),
+        }
+        return reduced
+
+
+def dependent_of(structure: ContactStructure) -> list[str]:
+    """Name the contacts of a structure that cannot all stick at once."""
+    names = [each.name for each in structure.contacts]
+    return dependent_contacts(names, structure.tangentials)
+
+
+def conflict_in_stick(structure: ContactStructure) -> str | None:
+    """Say which contacts cannot stick at once, so that nothing can be run, and what helps."""
+    names = dependent_of(structure)
+    if not names:
+        return None
+    who = f"contacts {', '.join(names[:-1])} and {names[-1]} cannot all stick at once"
+    origin = structure.reduced_from
+    if origin is None or dependent_of(origin.whole):
+        return (
+            f"{who}: their sliding directions are linearly dependent in the structure itself, and "
+            "so their friction forces in stick are undetermined; runs need a degree of freedom "
+            "with the elasticity between them (complex modes do not)"
+        )
+    kept = Kept(origin.whole, origin.whole.size)
+    enough = next(
+        each
+        for each in range(structure.size, origin.whole.size + 1)
+        if not kept.dependent(each)
+    )
+    return (
+        f"{who}: their sliding directions are linearly dependent in the {structure.size} modes "
+        f"kept; keep more modes (n_modes={enough} suffices)"
+    )
+
+
+def agreement_of(truth: Truth, spectrum: Any, modes: np.ndarray) -> Agreement:
+    """Return how the modes of a reduced structure agree with those of the whole.
+
+    Args:
+        spectrum: of the reduced structure.
+        modes: (n of the whole, n), amplitudes → displacements.
+    """
+    grows = spectrum.values.real > spectrum.growth_errors
+    return compared(truth, spectrum.values, grows, refined(truth, spectrum, modes))
+
+
+def modes_that_would_do(structure: ContactStructure, truth: Truth) -> int | None:
+    """Return a larger number of modes that agrees with the whole within 1 %, None if none does."""
+    origin = structure.reduced_from
+    if origin is None:
+        return None
+    search = Search(origin.whole, truth, origin.frequency_max)
+    return search.smallest(structure.size + 1)
+
+
+def fitted(
+    structure: ContactStructure, frequency_max: float | None, most: int
+) -> ContactStructure:
+    """Reduce to the fewest modes that agree within 1 %, or to ``most`` where none do.
+
+    Args:
+        frequency_max: unstable modes up to there count, Hz; needed beyond 1000 degrees of freedom.
+        most: number of modes that may be kept, no smaller than that of contacts.
+    """
+    if structure.size > DENSE and frequency_max is None:
+        return reduce(structure)  # raises: a band is needed
+    search = Search(structure, Truth.of(structure, frequency_max), frequency_max)
+    number = search.smallest(fewest_modes(structure), most=most)
+    return search.structure(most if number is None else number)

@@ -1,0 +1,146 @@
+"""Methods that say which unstable modes squeal: what each says, how well, and what it costs."""
+
+from enum import IntEnum
+
+from squealpipe.benchmark.schema import Reliability, Role
+from squealpipe.schema import (
+    DatasetSchema,
+    Outcome,
+    Variable,
+    count,
+    flag,
+    or_nan,
+    outcome,
+    text,
+)
+from squealpipe.schema.agreement import Listing
+
+NO_MODE = -1
+RUN, PUSHED, AT = ("run",), ("run", "mode"), ("run", "mode", "contact")
+
+
+class PushAnswer(IntEnum):
+    """What a method says becomes of a push along an unstable mode, beside the finest run."""
+
+    right = 0
+    other_mode = 1
+    quiet_instead = 2
+    rings_instead = 3
+    not_settled = 4
+    no_such_mode = 5
+    not_known = 6
+
+
+_ERROR = "largest over the pushes; NaN: not answered"
+
+
+def _error(long_name: str) -> Variable:
+    return or_nan(f"{long_name}, {_ERROR}", dims=RUN, rtol=0.2, atol=1e-3)
+
+
+def _uncertainty(long_name: str) -> Variable:
+    return or_nan(
+        f"{long_name} of the finest run: its scatter over starts, or the change from the next "
+        "smaller number of modes, the larger",
+        rtol=0.5,
+        atol=1e-3,
+    )
+
+
+SQUEAL_LADDER = DatasetSchema(
+    name="squeal_ladder",
+    title="What methods say of a structure's squeal, against the finest run, and their cost",
+    coordinates={
+        "run": count("one method at one setting", *RUN),
+        "mode": count(
+            "mode of the finest structure along which is pushed, numbered as by complex_modes",
+            "mode",
+        ),
+        "contact": text("name of the contact", "contact"),
+    },
+    variables={
+        "method": text("method", *RUN),
+        "setting": text("its setting", *RUN),
+        "role": flag("whose method it is", Role, *RUN),
+        "n_modes": count("modes of the structure", *RUN),
+        "friction_width": or_nan(
+            "sliding speed over which friction is smoothed, over the belt's; 0: exact; NaN: no run",
+            dims=RUN,
+        ),
+        "contact_width": or_nan(
+            "force over which loss of contact is smoothed, over the preload; 0: exact; NaN: no run",
+            dims=RUN,
+        ),
+        "answer": flag("what becomes of a push", PushAnswer, *PUSHED),
+        "verdict": flag(
+            "right: the same modes ring after all pushes; flagged: a motion has not settled; "
+            "silently wrong: another mode rings, or none does",
+            Reliability,
+            *RUN,
+        ),
+        "rings_near": count(
+            "mode of the finest structure nearest to the strongest line, -1: none rings",
+            *PUSHED,
+        ),
+        "frequency": or_nan(
+            "strongest line of the kinetic energy", "Hz", PUSHED, rtol=1e-2
+        ),
+        "velocity_rms": or_nan(
+            "rms speed of vibration, all contacts",
+            "m s-1",
+            PUSHED,
+            rtol=0.05,
+            atol=1e-3,
+        ),
+        "separated_fraction": or_nan(
+            "share of the time without contact", dims=AT, rtol=0.05, atol=0.01
+        ),
+        "stick_fraction": or_nan(
+            "share of the time in stick; of smoothed friction, slower than its width",
+            dims=AT,
+            rtol=0.05,
+            atol=0.01,
+        ),
+        "creep": or_nan(
+            "mean speed of sliding in that time, over the belt's; NaN: no such time",
+            dims=AT,
+            rtol=0.1,
+            atol=1e-3,
+        ),
+        "peak_force": or_nan(
+            "largest normal force over the preload", dims=AT, rtol=0.05, atol=0.01
+        ),
+        "frequency_error": _error(
+            "relative error of the frequency, 1 where none rings"
+        ),
+        "velocity_error": _error("relative error of the rms speed"),
+        "separation_error": _error("largest error of a share of time without contact"),
+        "frequency_uncertainty": _uncertainty("relative error of the frequency"),
+        "velocity_uncertainty": _uncertainty("relative error of the rms speed"),
+        "separation_uncertainty": _uncertainty("error of the shares without contact"),
+        "cpu_time": Variable(
+            "CPU time for all pushes, median; of exact events that of one in an ensemble",
+            "s",
+            RUN,
+            volatile=True,
+        ),
+        "compile_time": Variable(
+            "CPU time to compile before, about 0 where the code was kept",
+            "s",
+            RUN,
+            volatile=True,
+        ),
+        "evaluations": count(
+            "calls of the field for all pushes, a Taylor step of order p as p + 1; 0: none",
+            *RUN,
+            dtype="i8",
+            rtol=0.2,
+        ),
+        "t_end": Variable("time that is run", "s"),
+        "outcome": outcome(
+            *PUSHED,
+            among=(Outcome.converged, Outcome.unresolved, Outcome.no_convergence),
+        ),
+    },
+    lists={"run": Listing(kinds=("method", "setting"))},
+)

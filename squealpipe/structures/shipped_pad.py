@@ -1,0 +1,135 @@
+"""An elastic pad in plane strain on a belt, hung by springs along its upper edge."""
+
+from functools import partial
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+
+from squealpipe.structures.contact import Contact
+from squealpipe.structures.meshes.structure_mesh import StructureMesh
+from squealpipe.structures.structure import Structure
+from squealpipe.validation import Natural, NotNegative, Number, Positive, checked
+
+YOUNG, DENSITY, POISSON = 8e9, 2500.0, 0.25
+"""Of a friction material: Pa, kg/m³, 1."""
+SUPPORT = (3e7, 5e7)
+"""Total stiffness of the springs on the upper edge, along and across the belt, N/m."""
+
+UNITS = {
+    **dict.fromkeys(("length", "height", "depth"), "m"),
+    "young": "Pa",
+    "contact_stiffness": "N m-1",
+    "preload": "N",
+    "mu": "1",
+    "belt_speed": "m s-1",
+    "modal_damping": "1",
+}
+"""CF units of the pad's numbers."""
+
+
+@partial(checked, units=UNITS)
+def elastic_pad(
+    length: Positive = 0.06,
+    height: Positive = 0.015,
+    depth: Positive = 0.05,
+    elements: tuple[Natural, Natural] = (24, 6),
+    contacts: Natural = 4,
+    *,
+    young: Positive = YOUNG,
+    contact_stiffness: Positive = 8e8,
+    preload: NotNegative = 800.0,
+    mu: NotNegative = 0.5,
+    belt_speed: Number = 2.0,
+    modal_damping: NotNegative = 0.0,
+) -> Structure:
+    """A rectangular pad of bilinear elements (2 × 2 points, consistent mass).
+
+    Its upper edge is on springs of 3e7 N/m along the belt and 5e7 N/m across, spread over the
+    nodes, half as much at both ends. Degrees of freedom are x and y of node after node.
+
+    Args:
+        length, height, depth: along, across and out of the plane, m.
+        elements: along and across.
+        contacts: points ``p1``… equally spaced from edge to edge, ``p1`` at x = 0, which the belt
+            meets first; a single one is in the middle. Between nodes a point has both.
+        young: modulus of elasticity, Pa.
+        contact_stiffness, preload: of all points together, N/m and N.
+        mu, belt_speed, modal_damping: as of :class:`Structure`.
+
+    Raises:
+        ValueError: an argument; more contacts than nodes along the edge.
+    """
+    from skfem import Basis, BilinearForm, ElementQuad1, ElementVector, MeshQuad  # type: ignore[import-untyped]
+    from skfem.helpers import ddot, dot, eye, sym_grad, trace  # type: ignore[import-untyped]
+
+    if contacts > elements[0] + 1:
+        raise ValueError(
+            f"contacts = {contacts}: at most {elements[0] + 1}, one a node, are independent"
+        )
+    first = young * POISSON / ((1 + POISSON) * (1 - 2 * POISSON))
+    shear = young / (2 * (1 + POISSON))
+
+    @BilinearForm
+    def elasticity(u: Any, v: Any, _: Any) -> Any:
+        strain = sym_grad(u)
+        stress = 2.0 * shear * strain + first * eye(trace(strain), 2)
+        return depth * ddot(stress, sym_grad(v))
+
+    @BilinearForm
+    def inertia(u: Any, v: Any, _: Any) -> Any:
+        return depth * DENSITY * dot(u, v)
+
+    mesh = MeshQuad.init_tensor(
+        np.linspace(0.0, length, elements[0] + 1),
+        np.linspace(0.0, height, elements[1] + 1),
+    )
+    basis = Basis(mesh, ElementVector(ElementQuad1()), intorder=3)
+    stiffness = sp.csr_array(elasticity.assemble(basis))
+    mass = sp.csr_array(inertia.assemble(basis))
+    x, y = mesh.p
+    along, across = basis.nodal_dofs
+    upper = np.flatnonzero(np.isclose(y, height))
+    ends = np.isclose(x[upper], 0.0) | np.isclose(x[upper], length)
+    share = np.where(ends, 0.5, 1.0) / elements[0]
+    springs = np.zeros(basis.N)
+    springs[along[upper]] = SUPPORT[0] * share
+    springs[across[upper]] = SUPPORT[1] * share
+    lower = np.flatnonzero(np.isclose(y, 0.0))
+    lower = lower[np.argsort(x[lower])]
+    places = np.linspace(0.0, length, contacts) if contacts > 1 else [0.5 * length]
+    points = []
+    for number, place in enumerate(places, 1):
+        weights = _between(float(place) / length * elements[0], len(lower))
+        points.append(
+            Contact(
+                f"p{number}",
+                # N acts away from the belt, along +y; friction along +x
+                normal={int(across[lower[i]]): w for i, w in weights.items()},
+                tangential={int(along[lower[i]]): w for i, w in weights.items()},
+                stiffness=contact_stiffness / contacts,
+                preload=preload / contacts,
+            )
+        )
+    freedoms = np.empty((basis.N, 2), int)
+    for direction, places in enumerate(basis.nodal_dofs, 1):
+        freedoms[places] = np.column_stack(
+            [np.arange(len(x)), np.full(len(x), direction)]
+        )
+    return Structure(
+        mass,
+        stiffness + sp.diags_array(springs),
+        mesh=StructureMesh(mesh.p.T, mesh.t.T, freedoms),
+        modal_damping=modal_damping,
+        contacts=points,
+        mu=mu,
+        belt_speed=belt_speed,
+    )
+
+
+def _between(place: float, nodes: int) -> dict[int, float]:
+    """Linear shape functions at a place in units of elements, without those that are 0."""
+    place = round(place, 9)
+    left = min(int(place), nodes - 2)
+    weights = {left: left + 1 - place, left + 1: place - left}
+    return {node: weight for node, weight in weights.items() if weight}

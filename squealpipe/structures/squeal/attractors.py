@@ -1,0 +1,50 @@
+"""Settled motions told apart by their statistics."""
+
+import numpy as np
+from scipy.sparse.csgraph import connected_components
+
+from squealpipe.structures.schema.squealing import NO_ATTRACTOR
+from squealpipe.vibration.settled_runs import SettledRun
+from squealpipe.vibration.settling import FOR_VERDICTS, difference
+
+SCATTER = 3.0
+"""Multiples of a run's own change between windows within which it may be another's motion."""
+FARTHEST = 0.06
+"""Difference of statistics above which two runs never count as one motion. They always do up to the
+difference that two windows of one motion may have."""
+
+
+def grouped(settled: list[SettledRun], pushes: int) -> np.ndarray:
+    """The number of the attractor of each run, those of most random starts first; −1: not settled.
+
+    The first ``pushes`` runs are no random starts. Runs that have died out are
+    one. Others are one if a chain of near statistics joins them.
+    """
+    count = len(settled)
+    near = np.zeros((count, count), bool)
+    for i, one in enumerate(settled):
+        for j, other in enumerate(settled[:i]):
+            if one.agrees and other.agrees:
+                near[i, j] = near[j, i] = is_same(one, other)
+    _, numbers = connected_components(near, directed=False)
+    numbers = np.array(
+        [
+            n if each.agrees else NO_ATTRACTOR
+            for n, each in zip(numbers, settled, strict=True)
+        ]
+    )
+    known = np.unique(numbers[numbers >= 0])
+    sizes = np.array([(numbers[pushes:] == number).sum() for number in known], int)
+    order = {
+        old: new for new, old in enumerate(known[np.argsort(-sizes, kind="stable")])
+    }
+    return np.array([order.get(number, NO_ATTRACTOR) for number in numbers], int)
+
+
+def is_same(one: SettledRun, other: SettledRun) -> bool:
+    """Tell whether two settled runs may show one motion."""
+    if one.quiet or other.quiet:
+        return one.quiet and other.quiet
+    nearest = FOR_VERDICTS.agreement
+    allowed = np.clip(SCATTER * max(one.change, other.change), nearest, FARTHEST)
+    return bool(difference(one.last.levels(1.0), other.last.levels(1.0)) <= allowed)

@@ -1,0 +1,206 @@
+"""The kind of a settled motion, and its spectrum: from one run, and others that start beside it.
+
+Beside the motion start some that are off by 1e-8 of it, each in a direction of its own. Where they
+run away from it exponentially it is irregular. Where they do not, and it repeats, the exact map
+closes it to a cycle, whose multipliers decide. What neither repeats nor runs away is a torus.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squealpipe.schema import Outcome
+from squealpipe.structures.schema.squealing import Kind
+from squealpipe.structures.squeal.plant import Plant
+from squealpipe.structures.squeal.windows import (
+    Running,
+    StructureWindows,
+    run,
+    statistics_of,
+    strongest_line,
+)
+from squealpipe.systems.cycles.find import find_cycle
+from squealpipe.systems.cycles.solution import Cycle
+from squealpipe.systems.recurrence import repeats_after
+from squealpipe.vibration.settled_runs import SettledRun
+from squealpipe.vibration.settling import FOR_NUMBERS, late_growth
+from squealpipe.vibration.spectrum import amplitude_spectrum
+
+BESIDE, OFF = 7, 1e-8
+"""Runs beside the motion, and how far off they start, over its extent."""
+PERIODS = 300.0
+"""Length of the run, in periods of the slowest mode that grows."""
+FINEST, MOST_SAMPLES = 6.0, 2**16
+"""Samples in a period of the fastest mode, and of all."""
+APART, FAR = 1e3, 1e-2
+"""Growth of the distance from which it is exponential; extent beyond which it grows no more."""
+LINEAR = 30.0
+"""Growth of the distance up to which it may be one of phases, as on a torus."""
+REPEATED, NEARLY = 1e-5, 1e-3
+"""Largest difference of intervals, over their mean, of what repeats, and of what may do so."""
+
+
+@dataclass(frozen=True)
+class Described:
+    """A settled motion.
+
+    Attributes:
+        kind: of motion.
+        frequency: strongest line of the kinetic energy, Hz; NaN where nothing moves.
+        resolution: of the spectrum, Hz.
+        exponent: growth rate of the distance of neighbours, 1/s; NaN where it was not measured.
+        cycle: closed by the exact map, where it is one.
+        lines, amplitudes: the spectrum, Hz and √J.
+        late_growth: ln of the growth of the area that neighbours span, from the third to the last
+            quarter of the run.
+        leaves: whether the motion is about to leave what repels it: neighbours run away, but the
+            run is too short for that to grow from round-off.
+        window: statistics of a run that begins where the motion has settled, so that nothing of
+            what it settled from is in them; None where it has died out.
+    """
+
+    kind: Kind
+    frequency: float
+    resolution: float
+    exponent: float
+    cycle: Cycle | None
+    lines: np.ndarray
+    amplitudes: np.ndarray
+    late_growth: float = 0.0
+    leaves: bool = False
+    window: StructureWindows | None = None
+
+
+def described(
+    plant: Plant, settled: SettledRun, how: Running, before: float = 0.0
+) -> Described:
+    """Run on from where a start has settled.
+
+    Args:
+        before: the late growth that an earlier, shorter run showed.
+    """
+    nothing = np.empty(0)
+    if settled.quiet:
+        return Described(
+            Kind.steady_sliding, np.nan, np.nan, np.nan, None, nothing, nothing
+        )
+    length = max(PERIODS / plant.slowest, 0.5 * float(settled.last.length))
+    step = 1.0 / (FINEST * plant.fastest)
+    count = int(min(np.ceil(length / step), MOST_SAMPLES))
+    length = count * step
+    times = step * np.arange(1, count + 1)
+    rng = np.random.default_rng(how.seed)
+    base = settled.last.final
+    extent = float(plant.sizes(base - plant.sliding))
+    directions = rng.standard_normal((BESIDE, base.size)) * np.abs(base - plant.sliding)
+    directions *= OFF * extent / plant.sizes(directions)[:, None]
+    states = np.concatenate([base[None], base + directions])
+    # all start in the regimes of the motion, but for a contact that is just at a switch
+    regimes = np.tile(settled.last.regimes, (len(states), 1))
+    room = int(2.0 * length * settled.last.events / settled.last.length) + 64
+    raw = run(plant, states, times, how, regime=regimes, log_events=room)
+    samples = raw["samples"]
+    modal = plant.modal_velocities(samples)
+    omega, amplitude = amplitude_spectrum(np.moveaxis(modal, -1, 1), step)
+    power = np.sqrt((amplitude**2).sum(axis=1).mean(axis=0))
+    frequency = strongest_line(modal[0], step)
+    grown, exponent, late = _apart(plant, samples, times, extent)
+    kind, cycle = Kind.undetermined, None
+    rules = FOR_NUMBERS
+    leaves = late > rules.still_grows and late > rules.proportional * before
+    if grown >= APART:
+        kind = Kind.irregular
+        leaves = exponent * float(settled.last.length) < rules.irregular
+    else:
+        # on a torus near returns are many, and closing each takes minutes
+        if _repeats(raw, length, NEARLY):
+            cycle = _closed(plant, settled, raw, frequency)
+        if cycle is not None:
+            kind, leaves = Kind.cycle, False
+        elif grown <= LINEAR and not _repeats(raw, length, REPEATED):
+            kind = Kind.torus
+    window = statistics_of(plant, raw, length).row(0)
+    lines = omega / (2.0 * np.pi)
+    if leaves:
+        kind = Kind.undetermined
+    resolution = 1.0 / length
+    return Described(
+        kind, frequency, resolution, exponent, cycle, lines, power, late, leaves, window
+    )
+
+
+def _apart(
+    plant: Plant, samples: np.ndarray, times: np.ndarray, extent: float
+) -> tuple[float, float, float]:
+    """Return how far neighbours have run away, how fast, and the late growth of their area.
+
+    The distance is the median over all neighbours. Its part along the motion keeps its size, which
+    hides what grows slowly beside it; an area spanned with that direction shows it at once.
+    """
+    # many periods at once: distances swing within each
+    blocks = np.array_split(np.arange(len(times)), 40)
+    spread, areas = np.empty(len(blocks)), np.empty(len(blocks))
+    for place, block in enumerate(blocks):
+        away = plant.coordinates(samples[1:, block] - samples[:1, block]) / extent
+        gram = np.einsum("itk,jtk->tij", away, away)
+        square = np.einsum("tii->ti", gram)
+        spread[place] = np.median(np.sqrt(square.max(axis=0)))
+        # the sum of all areas of two, by the second elementary symmetric polynomial of the roots
+        area = square.sum(axis=1) ** 2 - (gram**2).sum(axis=(1, 2))
+        areas[place] = np.sqrt(max(0.5 * float(area.max()), 0.0))
+    middles = np.array([times[block].mean() for block in blocks])
+    grown = float(spread.max() / spread[0])
+    far = np.flatnonzero(spread > FAR)
+    grows = slice(max(int(far[0]), 3) + 1 if far.size else None)
+    rate = np.polyfit(middles[grows], np.log(spread[grows] + 1e-300), 1)[0]
+    return grown, float(rate), float(late_growth(np.log(areas + 1e-300)))
+
+
+def _repeats(raw: dict[str, np.ndarray], length: float, within: float) -> bool:
+    """Whether the second half has a period, by its events."""
+    count = int(raw["n_events"][0])
+    at, kinds = raw["event_times"][0, :count], raw["event_kinds"][0, :count]
+    late = at > 0.5 * length
+    return repeats_after(at[late], kinds[late], within) > 0
+
+
+def stable_cycle(
+    plant: Plant,
+    state: np.ndarray,
+    regimes: np.ndarray,
+    frequency: float,
+    **parameters: float,
+) -> Cycle | None:
+    """The stable cycle near a state, if the exact map closes one there.
+
+    Args:
+        frequency: of the motion, Hz.
+        parameters: of the system, where they are not its own.
+    """
+    system = plant.system
+    values: dict[str, Any] = {**system.parameters, **parameters}
+    regime = system.joint.number(regimes.tolist())
+    cycle, outcome = find_cycle(
+        system, values, state, guess=True, regime=regime, unit=1.0 / frequency
+    )
+    if cycle is None or outcome != Outcome.converged or not cycle.is_stable:
+        return None
+    return cycle
+
+
+def _closed(
+    plant: Plant, settled: SettledRun, raw: dict[str, np.ndarray], frequency: float
+) -> Cycle | None:
+    """The stable cycle through the end of the run, if the exact map finds it there."""
+    if raw["outcome"][0] != Outcome.converged or not np.isfinite(frequency):
+        return None
+    cycle = stable_cycle(
+        plant, raw["final"][0], raw["sample_regimes"][0, -1], frequency
+    )
+    if cycle is None:
+        return None
+    # the same motion: as many events in a period as in the run
+    rate = len(cycle.events) / cycle.period
+    seen = float(settled.last.events / settled.last.length)
+    return cycle if abs(rate - seen) <= 0.05 * seen else None

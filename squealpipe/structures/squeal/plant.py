@@ -1,0 +1,290 @@
+"""A structure as it is run: its system, its steady sliding, its modes, and a measure of states."""
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import scipy.linalg as la
+from scipy.optimize import linear_sum_assignment
+
+from squealpipe.laws.friction_laws import COULOMB
+from squealpipe.structures.agreement import Agreement, Truth, exact
+from squealpipe.structures.complex_modes import complex_modes
+from squealpipe.structures.definition import ContactStructure, ReducedFrom
+from squealpipe.structures.modes import modes_at_rest
+from squealpipe.structures.motion_system import system
+from squealpipe.structures.pencil import DENSE
+from squealpipe.structures.reduction import (
+    agreement_of,
+    conflict_in_stick,
+    fitted,
+    modes_that_would_do,
+    reduce,
+)
+from squealpipe.structures.schema.squealing import MOST_MODES
+from squealpipe.structures.spectrum import Limits, Solver, Spectrum
+from squealpipe.systems.components import MOST_COMPONENTS
+from squealpipe.systems.system import System
+from squealpipe.systems.trace import TIME
+
+PUSH = 0.01
+"""Push along a mode, over the deformation whose energy is that of the preload."""
+
+
+def carried(
+    structure: ContactStructure, frequency_max: float | None = None
+) -> ContactStructure:
+    """Return a structure of as few modes as give the answer, and no more than a run can have.
+
+    Args:
+        frequency_max: unstable modes up to there count, Hz; None: as it was reduced, or all.
+
+    Returns:
+        The structure itself where it is small, or where it has too many contacts to be run.
+    """
+    if not structure.contacts:
+        raise ValueError("the structure has no contacts: nothing rubs")
+    if structure.size <= MOST_MODES:
+        return structure
+    origin = structure.reduced_from or ReducedFrom(structure, frequency_max)
+    whole, band = origin.whole, origin.frequency_max
+    if len(whole.contacts) > MOST_COMPONENTS:
+        # nothing will be run: the modes of the structure itself are reported
+        return (
+            structure if structure.size <= DENSE else reduce(whole, frequency_max=band)
+        )
+    return fitted(whole, band, MOST_MODES)
+
+
+def check_modes(number: int | None) -> None:
+    """Refuse a number of modes in which a structure cannot be run."""
+    if number is not None and number > MOST_MODES:
+        raise ValueError(
+            f"n_modes = {number}: a structure can be run in {MOST_MODES}; leave it out for the "
+            "fewest that answer"
+        )
+
+
+class Plant:
+    """A structure of few degrees of freedom, about its steady sliding.
+
+    States are (q, v) side by side, (2 n,). Their size is √E of the deviation from steady sliding,
+    E = ½ vᵀ M v + ½ qᵀ (K + Σ kᵢ nᵢnᵢᵀ) q.
+
+    Args:
+        structure: of any size; one that is larger than a system can carry is reduced.
+
+    Raises:
+        NoSlidingError: there is no steady sliding.
+        ValueError: no contact; or beyond 1000 degrees of freedom, which are to be reduced by hand.
+    """
+
+    def __init__(self, structure: ContactStructure) -> None:
+        self.structure = carried(structure)
+        self.size = self.structure.size
+        solver = Solver(self.structure, Limits(None, None), self.structure.belt_speed)
+        self.spectrum: Spectrum = solver.at(self.structure.mu)
+        self.sliding = np.concatenate(
+            [self.spectrum.state.displacement, np.zeros(self.size)]
+        )
+
+    @cached_property
+    def obstacle(self) -> str | None:
+        """Reason why the structure cannot be run, with a remedy; None if it can."""
+        count = len(self.structure.contacts)
+        if count > MOST_COMPONENTS:
+            return f"{count} contacts are more than the {MOST_COMPONENTS} that runs can have"
+        if self.size > MOST_MODES:
+            return (
+                f"{self.size} modes are more than the {MOST_MODES} that runs can have"
+            )
+        return conflict_in_stick(self.structure)
+
+    @cached_property
+    def agreement(self) -> Agreement:
+        """Agreement of its modes with those of the structure that it was reduced from."""
+        if self.truth is None or self.structure.modes is None:
+            return exact(self.spectrum)
+        return agreement_of(self.truth, self.spectrum, self.structure.modes)
+
+    @cached_property
+    def truth(self) -> Truth | None:
+        """Modes of the structure that it was reduced from."""
+        origin = self.structure.reduced_from
+        if origin is None:
+            return None
+        return origin.truth or Truth.of(origin.whole, origin.frequency_max)
+
+    @cached_property
+    def enough(self) -> int | None:
+        """Number of modes that would agree with the whole where these do not; None if not known."""
+        if self.truth is None or self.agreement.holds:
+            return None
+        return modes_that_would_do(self.structure, self.truth)
+
+    def truth_at(self, mu: float) -> Truth:
+        """Modes of the whole, or of the structure itself, at another friction."""
+        origin = self.structure.reduced_from or ReducedFrom(self.structure, None)
+        return Truth.of(origin.whole.with_(mu=mu), origin.frequency_max)
+
+    @cached_property
+    def system(self) -> System:
+        """As a system, whose states are displacements, then velocities."""
+        return system(self.structure)
+
+    @cached_property
+    def regimes_at_rest(self) -> np.ndarray:
+        """Regime of each component in steady sliding."""
+        system = self.system
+        values = dict(zip(system.states, self.sliding[:, None], strict=True))
+        parameters = {name: np.full(1, at) for name, at in system.parameters.items()}
+        named = {**values, **parameters, TIME: np.zeros(1)}
+        return np.asarray(system.first_regimes(named, 1)[0])
+
+    @property
+    def contacts(self) -> list[str]:
+        """Names."""
+        return [contact.name for contact in self.structure.contacts]
+
+    @cached_property
+    def unstable(self) -> np.ndarray:
+        """Places of the unstable modes in the spectrum, the fastest first."""
+        growth = self.spectrum.values.real
+        places = np.flatnonzero(growth > self.spectrum.growth_errors)
+        return places[np.argsort(-growth[places], kind="stable")]
+
+    @cached_property
+    def decays(self) -> bool:
+        """Whether small motions about steady sliding die out."""
+        return bool((self.spectrum.values.real < -self.spectrum.growth_errors).all())
+
+    @property
+    def rate(self) -> float:
+        """Growth rate of small motions, 1/s; 0 where its sign is not known."""
+        if not self.unstable.size and not self.decays:
+            return 0.0
+        return float(self.spectrum.values.real.max())
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether motions during which no contact switches are linear: friction is constant."""
+        return self.structure.friction.friction_law == COULOMB
+
+    @cached_property
+    def rest(self) -> tuple[np.ndarray, np.ndarray]:
+        """ω (n,) and Φ (n, n) of the modes at rest, ΦᵀMΦ = 1."""
+        return modes_at_rest(self.structure)
+
+    @property
+    def pressed(self) -> np.ndarray:
+        """Preload of each contact, or where it has none its force in steady sliding, N."""
+        preloads = self.structure.preloads
+        force = np.where(preloads > 0, preloads, self.spectrum.state.force)
+        return np.where(force > 0, force, np.nan)
+
+    @cached_property
+    def energy(self) -> float:
+        """What the preloads store in the contact springs, J."""
+        force = self.structure.preloads
+        if not force.any():
+            force = self.spectrum.state.force
+        return float((force**2 / (2.0 * self.structure.stiffnesses)).sum())
+
+    @cached_property
+    def _roots(self) -> tuple[np.ndarray, np.ndarray]:
+        """Square roots of ½ M and ½ (K + Σ k nnᵀ)."""
+        omega, modes = self.rest
+        mass = self.structure.mass.toarray()
+        to_modes = modes.T @ mass
+        return to_modes / np.sqrt(2.0), omega[:, None] * to_modes / np.sqrt(2.0)
+
+    def coordinates(self, deviation: np.ndarray) -> np.ndarray:
+        """Coordinates of deviations (…, 2 n) whose squares sum to E, √J."""
+        kinetic, elastic = self._roots
+        q, v = deviation[..., : self.size], deviation[..., self.size :]
+        return np.concatenate([v @ kinetic.T, q @ elastic.T], axis=-1)
+
+    def sizes(self, deviation: np.ndarray) -> np.ndarray:
+        """√E of deviations (…, 2 n), √J."""
+        return np.asarray(np.linalg.norm(self.coordinates(deviation), axis=-1))
+
+    def modal_velocities(self, states: np.ndarray) -> np.ndarray:
+        """Velocities of the modes at rest, (…, n); half their squares sum to kinetic energy."""
+        kinetic, _ = self._roots
+        return np.asarray(states[..., self.size :] @ kinetic.T * np.sqrt(2.0))
+
+    def contact_speeds(self, states: np.ndarray) -> np.ndarray:
+        """Speed of vibration of each contact point, (…, contacts), m/s."""
+        v = states[..., self.size :]
+        along, across = v @ self.structure.tangentials, v @ self.structure.normals
+        return np.asarray(np.hypot(along, across))
+
+    @cached_property
+    def modes(self) -> Any:
+        """Complex modes as a dataset, for numbers and critical friction."""
+        return complex_modes(self.structure)
+
+    @cached_property
+    def _places(self) -> np.ndarray:
+        """Place in that dataset of each mode of the spectrum, by its eigenvalue."""
+        omega = 2.0 * np.pi * self.modes.frequency.values
+        values = self.modes.growth_rate.values + 1j * omega
+        away = np.abs(self.spectrum.values[:, None] - values)
+        return np.asarray(linear_sum_assignment(away)[1])
+
+    @property
+    def numbers(self) -> np.ndarray:
+        """Number of each mode of the spectrum."""
+        return np.asarray(self.modes.mode.values[self._places])
+
+    @property
+    def critical_mu(self) -> np.ndarray:
+        """Friction from which each grows, NaN if none."""
+        return np.asarray(self.modes.critical_mu.values[self._places])
+
+    @cached_property
+    def frequencies(self) -> np.ndarray:
+        """Of the modes about steady sliding, Hz."""
+        return np.asarray(self.spectrum.values.imag / (2.0 * np.pi))
+
+    @cached_property
+    def slowest(self) -> float:
+        """The lowest frequency that a run must resolve: of an unstable mode, or of any, Hz."""
+        places = self.unstable if self.unstable.size else slice(None)
+        chosen = self.frequencies[places]
+        chosen = chosen[chosen > 0]
+        if not chosen.size:
+            chosen = self.rest[0][self.rest[0] > 0] / (2.0 * np.pi)
+        return float(chosen.min())
+
+    @cached_property
+    def fastest(self) -> float:
+        """The highest frequency of a mode, Hz."""
+        return float(max(self.frequencies.max(), self.rest[0].max() / (2.0 * np.pi)))
+
+    def random_states(self, number: int, seed: int) -> Any:
+        """States uniform in the ball of the preload's energy about steady sliding."""
+        rng = np.random.default_rng(seed)
+        dims = 2 * self.size
+        direction = rng.standard_normal((number, dims))
+        direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+        radius = np.sqrt(self.energy) * rng.random((number, 1)) ** (1.0 / dims)
+        return self.sliding + (direction * radius) @ self._from_ball.T
+
+    @cached_property
+    def _from_ball(self) -> np.ndarray:
+        """From coordinates whose squares sum to the energy to states."""
+        omega, modes = self.rest
+        # a rigid body moves without energy: its place is not drawn, its velocity is
+        along = np.where(omega > 0, 1.0 / np.where(omega > 0, omega, 1.0), 0.0)
+        return np.asarray(np.sqrt(2.0) * la.block_diag(modes * along, modes))
+
+    def pushed(self, place: int, share: float) -> np.ndarray:
+        """Steady sliding pushed along a mode of the spectrum, by a share of √energy."""
+        pair = self.spectrum.pairs[place]
+        shape = pair.right
+        # the phase at which the displacement is largest
+        turned = shape * np.exp(-0.5j * np.angle((shape**2).sum()))
+        state = np.concatenate([turned.real, (pair.value * turned).real])
+        size = share * np.sqrt(self.energy) / float(self.sizes(state))
+        return np.asarray(self.sliding + state * size)

@@ -1,0 +1,247 @@
+"""Windows of runs from many states at once, and the statistics of each.
+
+Instants at which a motion is looked at are drawn at random, one in each of many equal parts of the
+window, so that none of its statistics depends on a step that is in time with its period.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any, Self
+
+import numpy as np
+
+from squealpipe.schema import Outcome
+from squealpipe.structures.squeal.plant import Plant
+from squealpipe.systems.integrate import LARGEST, RunOptions, integrate
+from squealpipe.vibration.spectrum import amplitude_spectrum, strongest_lines
+from squealpipe.vibration.windows import Windows
+
+SAMPLES = 2048
+"""Instants of a window."""
+PADDING = 4
+"""Lines of a spectrum beside those of its samples."""
+WIDE = 5
+"""Fewest runs at once."""
+BLOCKS = 64
+"""Parts of a window whose kinetic energy is kept."""
+
+
+@dataclass(frozen=True)
+class Running:
+    """How windows are run.
+
+    Attributes:
+        tol: tolerance of the Taylor integrator.
+        seed: that the instants at which a motion is looked at follow from.
+        workers: processes; None takes all cores.
+    """
+
+    tol: float
+    seed: int = 0
+    workers: int | None = None
+
+    def turn(self, number: int) -> Self:
+        """Likewise, with instants of their own."""
+        return replace(self, seed=self.seed + number)
+
+
+@dataclass(frozen=True, kw_only=True)
+class StructureWindows(Windows):
+    """Windows of a structure; velocities are those of the modes at rest, √J.
+
+    Attributes:
+        speed: rms speed of vibration of each contact, m/s.
+        peak_speed: the largest of the samples.
+        landings: returns to contact, of each.
+        events: all of them.
+        steps: of the integrator.
+        kinetic: mean kinetic energy of each block, J.
+        block_ends: of each block from the window's begin, s.
+    """
+
+    speed: np.ndarray
+    peak_speed: np.ndarray
+    landings: np.ndarray
+    events: np.ndarray
+    steps: np.ndarray
+    kinetic: np.ndarray
+    block_ends: np.ndarray
+
+    def mean(self) -> Self:
+        """Merge runs of one motion into one: means, and the largest of largest values."""
+        means = "velocities", "speed", "separated", "stuck", "landings", "separations"
+        largest = "forces", "peak_speed", "largest_velocity"
+        values = {
+            name: value.mean(axis=0, dtype=float)
+            if name in means
+            else value.max(axis=0)
+            if name in largest
+            else value[0]
+            for name, value in vars(self).items()
+        }
+        return type(self)(**values)
+
+
+def still(plant: Plant) -> StructureWindows:
+    """Return the window of steady sliding, where nothing of the push is left."""
+    contacts = np.zeros(len(plant.contacts))
+    return StructureWindows(
+        final=plant.sliding,
+        regimes=plant.regimes_at_rest,
+        velocities=np.zeros(plant.size),
+        largest_velocity=np.zeros(()),
+        speed=contacts,
+        peak_speed=np.zeros(()),
+        separated=contacts,
+        stuck=contacts,
+        separations=contacts,
+        landings=contacts,
+        forces=plant.spectrum.state.force,
+        switched=np.array(False),
+        events=np.zeros((), int),
+        steps=np.zeros((), int),
+        kinetic=np.zeros(BLOCKS),
+        block_ends=np.arange(1, BLOCKS + 1) / BLOCKS,
+        finished=np.array(True),
+        length=np.ones(()),
+        growth=np.array(np.nan),
+        late_growth=np.array(np.nan),
+    )
+
+
+def run(
+    plant: Plant,
+    states: np.ndarray,
+    times: np.ndarray,
+    how: Running,
+    frictions: np.ndarray | None = None,
+    **options: Any,
+) -> dict[str, np.ndarray]:
+    """Raw results from some states, sampled at instants whose last one ends the run.
+
+    Args:
+        times: (instants,) or (runs, instants), s.
+        frictions: of each run; None: that of the structure.
+        options: of :class:`squealpipe.systems.integrate.RunOptions`.
+    """
+    system, size = plant.system, len(states)
+    values = {name: states[:, i] for i, name in enumerate(system.states)}
+    values |= {name: np.full(size, value) for name, value in system.parameters.items()}
+    if frictions is not None:
+        values["mu"] = frictions
+    ends = np.broadcast_to(np.atleast_2d(times)[:, -1], (size,)).copy()
+    return integrate(
+        system,
+        values,
+        ends,
+        RunOptions(
+            times=times,
+            tracked=[f"{LARGEST}{name}_normal_force" for name in plant.contacts],
+            **options,
+        ),
+        tol=how.tol,
+        workers=how.workers,
+    )
+
+
+def run_windows(
+    plant: Plant,
+    states: np.ndarray,
+    lengths: np.ndarray | float,
+    how: Running,
+    regimes: np.ndarray | None = None,
+    frictions: np.ndarray | None = None,
+) -> StructureWindows:
+    """Run states on, each for its length of time, s.
+
+    Args:
+        lengths: (runs,), or one for all.
+        regimes: of each component in which each run starts; None: what fits.
+        frictions: of each run; None: that of the structure.
+    """
+    count = len(states)
+    lengths = np.broadcast_to(np.asarray(lengths, float), (count,))
+    # fewer are done by other code, which would have to be compiled, too
+    wide = np.array([*range(count), *[*range(count)] * WIDE])[: max(count, WIDE)]
+    part = np.random.default_rng(how.seed).random(SAMPLES)
+    times = np.append((np.arange(SAMPLES) + part) / SAMPLES, 1.0)
+    options = {} if regimes is None else {"regime": regimes[wide]}
+    frictions = None if frictions is None else frictions[wide]
+    raw = run(
+        plant, states[wide], lengths[wide, None] * times, how, frictions, **options
+    )
+    return statistics_of(plant, raw, lengths[wide]).row(slice(count))
+
+
+def statistics_of(
+    plant: Plant, raw: dict[str, np.ndarray], lengths: np.ndarray | float
+) -> StructureWindows:
+    """Statistics of windows by the raw results of their runs, whose last sample is their end."""
+    size = len(raw["final"])
+    lengths = np.broadcast_to(np.asarray(lengths, float), (size,))
+    samples = raw["samples"][:, :-1]
+    modal = plant.modal_velocities(samples)
+    speed = plant.contact_speeds(samples)
+    square = (modal**2).sum(-1)
+    shares = raw["durations"] / lengths[:, None]
+    separated, stuck = (
+        np.stack([shares[:, places].sum(1) for places in _regimes(plant, word)], 1)
+        for word in ("separated", "stick")
+    )
+    kinds = plant.system.traced.kinds
+    landings, separations = (
+        np.stack(
+            [raw["counts"][:, kinds.index(f"{name}_{e}")] for name in plant.contacts], 1
+        )
+        for e in ("contact", "separation")
+    )
+    events, regimes = raw["counts"].sum(1), raw["sample_regimes"][:, -1].copy()
+    moved = (regimes != plant.regimes_at_rest).any(axis=1)
+    with np.errstate(invalid="ignore"):
+        return StructureWindows(
+            final=raw["final"],
+            regimes=regimes,
+            velocities=np.sqrt((modal**2).mean(1)),
+            largest_velocity=np.sqrt(square.max(axis=1)),
+            speed=np.sqrt((speed**2).mean(1)),
+            peak_speed=speed.max(axis=(1, 2)),
+            separated=separated,
+            stuck=stuck,
+            separations=separations,
+            landings=landings,
+            forces=raw["extremes"][..., 1],
+            switched=(events > 0) | moved,
+            events=events,
+            steps=raw["steps"],
+            kinetic=np.stack(
+                [0.5 * part.mean(1) for part in np.array_split(square, BLOCKS, axis=1)],
+                axis=1,
+            ),
+            block_ends=lengths[:, None] * np.arange(1, BLOCKS + 1) / BLOCKS,
+            finished=raw["outcome"] == Outcome.converged,
+            length=lengths,
+            growth=np.full(size, np.nan),
+            late_growth=np.full(size, np.nan),
+        )
+
+
+def _regimes(plant: Plant, word: str) -> list[list[int]]:
+    """Of each contact, the numbers of its regimes of a kind."""
+    # by owner: of contacts p and p_stick, the second one's regimes begin like the first one's
+    owners = plant.system.traced.component_of.tolist()
+    numbered = list(enumerate(zip(plant.system.regimes, owners, strict=True)))
+    return [
+        [
+            i
+            for i, (name, owner) in numbered
+            if owner == place and name.startswith(f"{contact}_{word}")
+        ]
+        for place, contact in enumerate(plant.contacts)
+    ]
+
+
+def strongest_line(modal: np.ndarray, step: float) -> float:
+    """The strongest line of the kinetic energy by modal velocities (instants, n), Hz, or NaN."""
+    omega, amplitude = amplitude_spectrum(modal.T, step, padding=PADDING)
+    power = np.sqrt((amplitude**2).sum(axis=0))
+    places, _ = strongest_lines(omega, power, 1, 2.0 * np.pi / (step * len(modal)))
+    return float(places[0] / (2.0 * np.pi)) if places.size else np.nan

@@ -1,6 +1,0 @@
-"""The paper's statements as data, checks that read datasets only, and their verdicts.
-
-A row of the table is a :class:`~squealpipe.study.claims.statement.Statement`; its check looks at
-the datasets of one run and returns a :class:`~squealpipe.study.claims.evidence.Finding`. ``judge``
-runs all checks, ``table`` reads the verdicts back.
-"""

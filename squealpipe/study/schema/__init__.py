@@ -1,0 +1,1 @@
+"""Schemas of sweeps and of a study's own datasets."""

@@ -1,0 +1,61 @@
+"""What a user's own scenes do, as configured and with one thing changed.
+
+Studies of 1.0.0 hold it; ``assess`` answers in its place, and it is still read.
+"""
+
+from dataclasses import replace
+
+from squealpipe.brake.schema.dynamics.runs import IMPACT_SPEED, RETURN_FORCE
+from squealpipe.brake.schema.linear import ONE_PAIR
+from squealpipe.schema import RUN_ENDS, DatasetSchema, Variable, count, outcome, text
+
+_RUN = ("scene", "variant")
+
+NUMBERS = (
+    "first_separation_time",
+    "separated_fraction",
+    "stick_fraction",
+    "return_peak_contact_force",
+    "impact_speed",
+    "largest_x",
+    "largest_y",
+)
+"""What is given of each run, as in its summary."""
+
+
+def _number(meaning: str, units: str = "1") -> Variable:
+    return Variable(meaning, units, _RUN, nan_allowed=True, rtol=1e-3, atol=1e-9)
+
+
+OWN_SCENES = DatasetSchema(
+    name="own_scenes",
+    title="What the scenes of a study do, as configured and with one thing changed",
+    coordinates={
+        "scene": text("name of the scene", "scene"),
+        "variant": text("what is changed", "variant"),
+        "question": text("question asked of a scene", "question"),
+        "peak": count("peak of the spectrum, by height", "peak"),
+    },
+    variables={
+        "motion": text("kind of motion", *_RUN),
+        "first_separation_time": _number("time of the first loss of contact", "s"),
+        "separated_fraction": _number("share of the time without contact"),
+        "stick_fraction": _number("share of the time in stick"),
+        "return_peak_contact_force": _number(RETURN_FORCE.long_name),
+        "impact_speed": _number(IMPACT_SPEED.long_name, IMPACT_SPEED.units),
+        "largest_x": _number("largest |x|", "m"),
+        "largest_y": _number("largest |y|", "m"),
+        "predictability_horizon": _number("time to which a run can be computed", "s"),
+        "dominant_frequency": Variable(
+            "angular frequencies of the contact force",
+            "rad s-1",
+            (*_RUN, "peak"),
+            nan_allowed=True,
+            rtol=1e-3,
+        ),
+        "model": text("cheapest level that answers", "scene", "question"),
+        **{name: replace(entry, dims=("scene",)) for name, entry in ONE_PAIR.items()},
+        "t_end": Variable("end of the runs", "s", ("scene",)),
+        "outcome": outcome(*_RUN, among=RUN_ENDS),
+    },
+)

@@ -1,0 +1,70 @@
+"""What a study of a structure computes: complex modes over friction, and which of them squeal."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.structures.pencil import DENSE
+from squealpipe.structures.schema.squealing import MOST_MODES
+from squealpipe.structures.squeal.plant import carried, check_modes
+from squealpipe.structures.squeal.squealing_modes import squealing_modes
+from squealpipe.structures.structure import Structure
+
+BEYOND = 2.0
+"""Largest friction of the modes, over the structure's."""
+POINTS = ((MOST_MODES, 41), (DENSE, 13))
+"""Degrees of freedom up to which there are so many frictions; odd, so that one is its own."""
+FEWEST = 5
+
+
+def read_structure(section: Mapping[str, Any]) -> Structure:
+    """The structure of a section ``structure``.
+
+    Raises:
+        FileNotFoundError: a file is missing.
+        ValueError: a file or a key that is wrong, or one that a large structure needs.
+    """
+    structure = Structure.read(section["file"])
+    if structure.size > DENSE and section["frequency_max"] is None:
+        raise ValueError(
+            f"structure.frequency_max: {structure.size} degrees of freedom need it; write up to "
+            "which frequency modes count, for instance 10 kHz"
+        )
+    if not structure.contacts:
+        raise ValueError(
+            f"structure.file: {section['file']} names no contacts: nothing rubs"
+        )
+    return structure
+
+
+def modes_over_friction(structure: Structure, section: Mapping[str, Any]) -> xr.Dataset:
+    """Complex modes of the whole structure, from no friction to twice its own."""
+    points = next((n for size, n in POINTS if structure.size <= size), FEWEST)
+    frictions = np.linspace(0.0, BEYOND * structure.mu or 1.0, points)
+    allowed = frictions[frictions <= structure.friction.largest_mu]
+    return structure.complex_modes(
+        mu=allowed, frequency_max=_band(structure, section["frequency_max"])
+    )
+
+
+def _band(structure: Structure, frequency_max: float | None) -> float | None:
+    """Return the end of the band, Hz; None for a small structure, which is run as it is."""
+    return None if structure.size <= MOST_MODES else frequency_max
+
+
+def squealing(
+    structure: Structure, section: Mapping[str, Any], workers: int
+) -> xr.Dataset:
+    """Which unstable modes squeal, of the structure reduced as its section says."""
+    number, limit = section["n_modes"], _band(structure, section["frequency_max"])
+    check_modes(number)
+    return squealing_modes(
+        carried(structure, limit)
+        if number is None
+        else structure.reduce(n_modes=number, frequency_max=limit),
+        **{name: section[name] for name in ("samples", "seed", "t_end")},
+        onset=True,
+        workers=workers,
+    )

@@ -1,0 +1,71 @@
+"""A sweep of the complex modes of a structure in a file: ``FILE.yaml:complex_modes``."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Self
+
+import xarray as xr
+
+from squealpipe.structures.factors import asked_of
+from squealpipe.structures.structure import Structure
+from squealpipe.study.chunks import Chunks
+
+TASK = "complex_modes"
+OPTIONS = ("frequency_max", "n_modes")
+
+
+@dataclass(frozen=True, kw_only=True)
+class StructureSweep:
+    """Complex modes of a structure over ranges; one part, for modes are numbered over all of them.
+
+    Attributes:
+        task: ``FILE.yaml:complex_modes``.
+        vary: name → values, of friction, belt speed and further factors.
+        fixed: further ones, ``frequency_max`` (Hz) and ``n_modes``.
+
+    Raises:
+        FileNotFoundError: no such file.
+        ValueError: a file, task or name that is wrong.
+    """
+
+    task: str
+    vary: Mapping[str, Sequence[float]]
+    fixed: Mapping[str, Any]
+    structure: Structure = field(init=False, compare=False)
+
+    def __post_init__(self) -> None:
+        file, _, task = self.task.rpartition(":")
+        if task != TASK:
+            raise ValueError(
+                f"{self.task}: a structure has the task {TASK}; write {file}:{TASK}"
+            )
+        object.__setattr__(self, "structure", Structure.read(file))
+        for name in self.vary:
+            if name in OPTIONS:
+                raise ValueError(f"{name} cannot be varied; fix it")
+        asked_of(self.structure, **self._arguments())
+
+    @property
+    def names(self) -> list[str]:
+        """Swept names in the order given."""
+        return list(self.vary)
+
+    def scattered(self, item: str) -> Self:
+        """The whole, which is its only part."""
+        if item != "1-of-1":
+            raise ValueError(f"{self.task} is made in one part, not {item}")
+        return self
+
+    def finished(self, kept: Chunks) -> int:  # noqa: ARG002 (as of other sweeps)
+        """None: it is computed in one piece."""
+        return 0
+
+    def run(self) -> xr.Dataset:
+        """The dataset over friction, belt speed and further factors."""
+        arguments = self._arguments()
+        return self.structure.complex_modes(**arguments.pop("factors"), **arguments)
+
+    def _arguments(self) -> dict[str, Any]:
+        factors = {**self.fixed, **self.vary}
+        options = {name: factors.pop(name) for name in OPTIONS if name in factors}
+        return {"factors": factors, **options}

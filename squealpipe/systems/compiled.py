@@ -1,0 +1,110 @@
+"""What numba compiles, and where its machine code is kept between runs.
+
+A function is compiled by who calls it:
+
+- :func:`compiled`: Python calls it;
+- :func:`compiled_entry`: its address is called: a whole loop (source text made at run time is
+  compiled in :mod:`squealpipe.systems.taylor.machine`);
+- ``part``: other compiled code calls it, so there are no wrappers to compile, and no counts of
+  references to arrays (an eighth of the time), so it makes none and returns none;
+- ``inline``: likewise in every step, where passing a dozen arrays costs as much as the work;
+- ``polynomial``: likewise with fused multiply-add, which halves the time of a Horner chain.
+
+Only the first two are stored, each with all that it calls, in the user's cache folder: one store
+for all checkouts. numba decides by a function's own file whether its stored code is current, but
+that code contains what it calls from other files. Each store is therefore keyed by a digest of
+every source and numba's version (numba adds the processor): an edit of any source compiles all
+again, and none is ever stale. (heyoka compiles expressions of its own, in
+:mod:`tests.oracles.a1_long_double`, and stores nothing.)
+"""
+
+import hashlib
+import os
+from collections.abc import Callable
+from functools import cache, partial
+from pathlib import Path
+from types import FunctionType
+from typing import Any, TypeVar, cast
+
+import numba
+
+_numba: Any = numba
+_settings: Any = numba.config  # untyped, the home of CACHE_DIR
+_Kernel = TypeVar("_Kernel", bound=Callable[..., Any])
+_PART: dict[str, Any] = {
+    "error_model": "numpy",
+    "no_cpython_wrapper": True,
+    "no_cfunc_wrapper": True,
+    "_nrt": False,
+}
+_MARK = b"from squealpipe.systems.compiled import "
+
+part = _numba.njit(**_PART)
+inline = _numba.njit(forceinline=True, **_PART)
+polynomial = _numba.njit(fastmath={"contract"}, **_PART)
+
+
+def kernel_sources() -> list[Path]:
+    """This file and every module of its package that compiles kernels or their parts."""
+    here = Path(__file__)
+    package = here.parents[__name__.count(".") - 1]
+    users = [
+        path for path in sorted(package.rglob("*.py")) if _MARK in path.read_bytes()
+    ]
+    return [here, *(path for path in users if path != here)]
+
+
+@cache
+def _store() -> str:
+    """Directory of the kernels that Python calls, by a digest of them all."""
+    return store_folder(
+        "kernels", b"".join(source.read_bytes() for source in kernel_sources())
+    )
+
+
+def store_folder(kind: str, content: bytes) -> str:
+    """NUMBA_CACHE_DIR or the user's cache folder, and in it one for this content."""
+    user = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")  # noqa: PTH111
+    root = _settings.CACHE_DIR or f"{user}/squealpipe"
+    content += numba.__version__.encode()
+    return f"{root}/{kind}-{hashlib.sha256(content).hexdigest()[:16]}"
+
+
+def _kept(
+    compile_: Callable[..., Any], function: Callable[..., Any], folder: str
+) -> Any:
+    """The function compiled and stored where the folder can be written; else without a store.
+
+    numba stores under the path of a function's file, which differs from checkout to checkout: the
+    function is given an empty file of the store in its place.
+    """
+    previous = _settings.CACHE_DIR
+    _settings.CACHE_DIR = folder
+    try:
+        place = Path(folder) / f"{function.__module__}.py"
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.touch()
+        code = function.__code__.replace(co_filename=str(place))
+        return compile_(cache=True)(FunctionType(code, function.__globals__))
+    except (RuntimeError, OSError):
+        return compile_(cache=False)(function)
+    finally:
+        _settings.CACHE_DIR = previous
+
+
+def compiled(function: _Kernel) -> _Kernel:
+    """Compile on first call, without the interpreter lock; keep the result where one can write.
+
+    Where nothing can be written the kernel is compiled anew in each process.
+    """
+    compile_ = partial(_numba.njit, nogil=True, error_model="numpy")
+    return cast("_Kernel", _kept(compile_, function, _store()))
+
+
+def compiled_entry(function: Callable[..., Any], signature: Any, content: bytes) -> Any:
+    """A C function, compiled now; stored under a digest of all ``content`` that it is made of.
+
+    Compiling takes seconds. Where nothing can be written it is done in each process.
+    """
+    compile_ = partial(_numba.cfunc, signature, error_model="numpy")
+    return _kept(compile_, function, store_folder("lanes", content))

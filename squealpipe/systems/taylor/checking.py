@@ -1,0 +1,195 @@
+"""Whether a step may be believed: what it led to, compared with what its series say.
+
+The length of a step comes from the last orders of its series, which may show nothing of what it
+leads into. At its end rates, surfaces and outputs are computed from the state: where they differ
+from their polynomials by more than the tolerance's share, the step is halved.
+"""
+
+import math
+from typing import Any
+
+from squealpipe.systems.compiled import inline, part
+from squealpipe.systems.taylor import layout
+from squealpipe.systems.taylor.lanes import call
+from squealpipe.systems.taylor.roots import evaluate, evaluate_twice
+from squealpipe.systems.taylor.simd import (
+    ROW,
+    bits_below,
+    first_bit,
+    fma,
+    larger,
+    load,
+    magnitude,
+    splat,
+)
+from squealpipe.systems.taylor.step import at_end, cut, set_end, slope_at_end
+from squealpipe.systems.taylor.switching import SLACK, gauge
+
+RATES = 1e-14
+"""Round-off of a rate, relative to it."""
+TERMS = 1e-13
+"""Round-off of a surface or output, relative to its terms."""
+TINY = 1e-300
+"""Of a surface or output below this too few digits are left to compare."""
+HELPLESS = 1e5
+"""A difference below this many tolerances that a halved step does not halve is round-off."""
+JUMP = 1e-4
+"""A rate jumps in a step across the root of a base (``bases``) if it changes there by so many sizes
+of its state, over the longest step of late."""
+FINEST = 2.0**-52
+"""Share of the time reached below which there is no step, and of the whole run below which steps
+that move nothing lead nowhere."""
+
+
+@inline
+def differing(t: Any, m: Any, parameters: int) -> Any:
+    """Lanes at the end of whose steps something may differ from its polynomial by too much."""
+    terms, base, at = t.n_terms, t.series, t.rows
+    call(t.verify, (at + layout.FIXED_ROWS * ROW, parameters, t.exact))
+    step, share = load(at + layout.STEP * ROW), m.share[0]
+    size = splat(1.0)
+    for variable in range(t.n_states):
+        start = magnitude(load(base + variable * terms * ROW))
+        size = larger(start * load(t.units + variable * ROW), size)
+    size = size * splat(share)
+    agree = bits_below(splat(0.0), splat(1.0))
+    for variable in range(t.n_states):
+        if m.steep[variable]:
+            slope = slope_at_end(base + variable * terms * ROW, terms, step)
+            unit = step * load(t.units + variable * ROW)
+            gap = magnitude(load(t.exact + variable * ROW) - slope) * unit
+            limit = fma(magnitude(slope) * unit, splat(RATES), size)
+            agree &= bits_below(gap, limit)
+    for event in range(t.n_surfaces + t.n_outputs):
+        if m.bent[event] and m.active[event]:
+            agree &= _event_agrees(t, event, step, share) | ~m.active[event]
+    if t.shorten:
+        agree &= ~bits_below(splat(0.0), load(at + layout.ACROSS * ROW))
+    return ~agree & bits_below(splat(0.0), step)
+
+
+@inline
+def _event_agrees(t: Any, event: int, step: Any, share: float) -> Any:
+    series = t.series + (t.n_variables + event) * t.n_terms * ROW
+    exact = load(t.exact + (t.n_states + event) * ROW)
+    gap = magnitude(at_end(series, t.n_terms, step) - exact)
+    size = larger(magnitude(load(series)), magnitude(exact))
+    return bits_below(gap, size * splat(share))
+
+
+@inline
+def end_stalled(t: Any, m: Any, c: Any, busy: int) -> int:
+    """End the runs whose steps have shrunk without end; returns their lanes.
+
+    The step has moved no variable, so that all later ones are like it, and the run would take more
+    than 2⁵² of them. So it is where a numerator vanishes with its base, as in Painlevé's problem.
+    """
+    short = splat(FINEST) * load(t.rows + layout.T_END * ROW)
+    bits = bits_below(load(t.rows + layout.STEP * ROW), short) & busy
+    ended = 0
+    while bits:
+        lane = first_bit(bits)
+        bits ^= 1 << lane
+        if _stands_still(t, m, c, lane):
+            m.integers[layout.OUTCOME, lane] = layout.DISCONTINUITY
+            ended |= 1 << lane
+    return ended
+
+
+@part
+def _stands_still(t: Any, m: Any, c: Any, lane: int) -> bool:
+    """Whether a lane runs on after a step that has moved no variable; the next one is the same."""
+    hit, outcome = m.integers[layout.HIT, lane], m.integers[layout.OUTCOME, lane]
+    if hit != -1 or outcome != layout.RUNNING:
+        return False
+    for variable in range(t.n_variables):
+        start, end = c[variable, 0, lane], m.rows[layout.FIXED_ROWS + variable, lane]
+        if start != end:
+            return False
+    fresh = False  # the next step of a surface that starts from zero is another
+    for surface in range(t.n_surfaces):
+        fresh |= m.fresh[surface] & (1 << lane) != 0
+    return not fresh
+
+
+@part
+def _largest_gap(t: Any, m: Any, c: Any, lane: int) -> float:
+    """The largest difference at the end of a lane's step, over what is tolerated."""
+    step, share = m.rows[layout.STEP, lane], m.share[0]
+    size, most = 1.0, 0.0
+    for variable in range(t.n_states):
+        size = max(size, abs(c[variable, 0, lane]) * m.units[variable, lane])
+    for variable in range(t.n_states):
+        if m.steep[variable]:
+            _, slope, _ = evaluate_twice(c, variable, lane, step)
+            unit = step * m.units[variable, lane]
+            limit = size * share + abs(slope) * unit * RATES
+            ratio = abs(m.exact[variable, lane] - slope) * unit / limit
+            most = ratio if not ratio <= most else most
+    z, sizes = m.scratch[0], m.scratch[1]
+    for variable in range(t.n_variables):
+        z[variable] = m.rows[layout.FIXED_ROWS + variable, lane]
+        sizes[variable] = abs(z[variable])
+    gauge(t, lane, m.scratch.shape[1])
+    for event in range(t.n_surfaces + t.n_outputs):
+        if m.bent[event] and m.active[event] & (1 << lane):
+            ratio = _event_gap(t, m, c, lane, event)
+            most = ratio if not ratio <= most else most
+    return most
+
+
+@part
+def _jumps(t: Any, m: Any, c: Any, lane: int) -> bool:
+    """Whether a rate jumps in a lane's step, which leads across the root of a base."""
+    reach, most = m.rows[layout.REACH, lane], 0.0
+    for variable in range(t.n_states):
+        if m.steep[variable]:
+            change = abs(m.exact[variable, lane] - c[variable, 1, lane])
+            most = max(most, change * m.units[variable, lane])
+    return bool(most * reach > JUMP)
+
+
+@part
+def _event_gap(t: Any, m: Any, c: Any, lane: int, event: int) -> float:
+    """Of a surface or an output, whose terms are in the scratch."""
+    index, terms = t.n_variables + event, m.scratch[2, 3 * event + 1]
+    exact = m.exact[t.n_states + event, lane]
+    size = max(abs(c[index, 0, lane]), abs(exact))
+    limit = max(m.share[0] * size, TERMS * terms, TINY)
+    if event < t.n_surfaces and m.fresh[event] & (1 << lane):
+        limit += max(SLACK, m.share[1]) * terms
+    gap = abs(evaluate(c, index, lane, m.rows[layout.STEP, lane]) - exact)
+    # an output of another regime need not be a number
+    agrees = gap == 0.0 or (event >= t.n_surfaces and not gap >= 0.0)
+    return 0.0 if agrees else gap / limit
+
+
+@part
+def believe_or_halve(t: Any, m: Any, c: Any, lane: int) -> bool:
+    """Whether a lane's step stands after all; else it is halved, or its run ends."""
+    rows, integers = m.rows, m.integers
+    gap = _largest_gap(t, m, c, lane)
+    # the difference that a jump leaves is halved with the step, as that of round-off is
+    across = rows[layout.ACROSS, lane] > 0.0
+    jumps = across and _jumps(t, m, c, lane)
+    helpless = not across and 0.5 * rows[layout.GAP, lane] < gap < HELPLESS
+    if (gap <= 1.0 and not jumps) or helpless:
+        return True
+    rows[layout.GAP, lane] = gap
+    rows[layout.STEPS, lane] += 1.0
+    integers[layout.HIT, lane], integers[layout.OUTCOME, lane] = -1, layout.RUNNING
+    step = 0.5 * rows[layout.STEP, lane]
+    if gap <= 1.0:
+        integers[layout.OUTCOME, lane] = layout.DISCONTINUITY
+    elif not step > FINEST * abs(rows[layout.CLOCK, lane]) or step < 1e-290:
+        finite = gap < math.inf
+        ends = layout.DISCONTINUITY if finite else layout.NOT_FINITE
+        integers[layout.OUTCOME, lane] = ends
+    elif rows[layout.STEPS, lane] >= rows[layout.MOST_STEPS, lane]:
+        integers[layout.OUTCOME, lane] = layout.STEP_LIMIT
+    ended = integers[layout.OUTCOME, lane] != layout.RUNNING
+    rows[layout.STEP, lane] = 0.0 if ended else step
+    set_end(t, m, c, lane)
+    if not ended:
+        cut(t, m, c, lane)
+    return bool(ended)

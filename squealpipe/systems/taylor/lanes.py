@@ -1,0 +1,209 @@
+"""Batches of event-driven integrations whose lanes are refilled as soon as one finishes.
+
+A :class:`squealpipe.systems.taylor.series.HybridSystem` is a symbolic vector field whose regime
+sits in parameters, with the functions whose roots end a regime. Its Taylor series are compiled
+once; a compiled loop alternates them with what happens after each step: events, observations,
+refilling.
+
+Lanes share nothing and each carries its own time, so a result does not depend on the lane, its
+neighbours, the order of the jobs or the number of processes.
+"""
+
+import ctypes
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numba
+import numpy as np
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+from squealpipe.systems.compiled import compiled_entry
+from squealpipe.systems.progress import report
+from squealpipe.systems.taylor import simd
+from squealpipe.systems.taylor.series import (
+    HybridSystem,
+    longest_source,
+    perturbation_source,
+    series_source,
+    shorten_source,
+    verify_source,
+)
+from squealpipe.systems.taylor.writing import compile_source
+
+_numba: Any = numba
+_cgutils: Any = cgutils
+ROUNDS = 4096
+"""Steps of all lanes between two returns from compiled code: some ten milliseconds."""
+MOST_TERMS = 64
+_START = ctypes.c_char * 0
+INVERSES = 1.0 / np.maximum(1.0, np.arange(MOST_TERMS))
+
+
+@dataclass(frozen=True, eq=False)
+class CompiledSystem:
+    """Addresses of a system's functions by name, and the number of series that it keeps."""
+
+    code: dict[str, int]
+    n_series: int
+
+    def address(self, name: str) -> int:
+        """Of a function; 0 of one that is left out."""
+        return self.code.get(name, 0)
+
+
+def compile_system(
+    system: HybridSystem,
+    further: Mapping[str, str] = MappingProxyType({}),
+    *,
+    tangent: bool,
+    few: bool = False,
+) -> CompiledSystem:
+    """Write and compile the functions of a system, or take them from the store.
+
+    Args:
+        further: sources of its functions of one state.
+        few: compute the first ``simd.FEW`` lanes only.
+    """
+    series, n_series = series_source(system)
+    sources = {"series": series}
+    if system.checked():
+        sources["verify"] = verify_source(system)
+    if shorten := shorten_source(system):
+        sources["shorten"] = shorten
+    if tangent:
+        sources |= {
+            "perturb": perturbation_source(system),
+            "longest": longest_source(system),
+        }
+    width = simd.FEW if few else simd.LANES
+    code = {name: compile_source(text, width) for name, text in sources.items()}
+    code |= {name: compile_source(text) for name, text in further.items()}
+    return CompiledSystem(code, n_series)
+
+
+def _to_pointer(typing_context: Any, value: Any) -> Any:
+    """An integer as a pointer."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.inttoptr(arguments[0], cgutils.voidptr_t)
+
+    return types.voidptr(types.intp), generate
+
+
+_address: Any = intrinsic(_to_pointer)
+
+
+def _call(typing_context: Any, function: Any, arguments: Any) -> Any:
+    """Call the C function at an address with addresses and sizes."""
+
+    def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        word = context.get_value_type(types.intp)
+        given = _cgutils.unpack_tuple(builder, values[1], len(signature.args[1]))
+        kind = ir.FunctionType(ir.VoidType(), [word] * len(given))
+        builder.call(builder.inttoptr(values[0], kind.as_pointer()), given)
+        return context.get_dummy_value()
+
+    return types.void(types.intp, arguments), generate
+
+
+call: Any = intrinsic(_call)
+
+
+@_numba.njit
+def view(address: int, shape: Any, dtype: Any) -> Any:
+    """The array at an address."""
+    return _numba.carray(_address(address), shape, dtype)
+
+
+class Workspace:
+    """Addresses of arrays and sizes for a compiled function, as one record; keeps the arrays."""
+
+    def __init__(
+        self, record: np.dtype, arrays: Mapping[str, np.ndarray], sizes: dict[str, int]
+    ) -> None:
+        for name, array in arrays.items():
+            if not array.flags.c_contiguous or array.dtype.itemsize % 8:
+                raise ValueError(
+                    f"{name}: the workspace holds contiguous 8-byte fields only"
+                )
+        self.arrays = dict(arrays)
+        at = {name: _address_of(array) for name, array in arrays.items()} | sizes
+        self.table = np.array([tuple(at[name] for name in record.names or ())], record)
+
+    @property
+    def pointer(self) -> ctypes.c_void_p:
+        """Address of the table."""
+        return ctypes.c_void_p(self.table.ctypes.data)
+
+
+def _address_of(array: np.ndarray) -> int:
+    """``array.ctypes.data``, which takes a single run twice as long."""
+    if array.dtype.names:
+        return array.ctypes.data
+    buffer: Any = array
+    return ctypes.addressof(_START.from_buffer(buffer))
+
+
+def compile_advance(advance: Callable[..., Any]) -> Any:
+    """A C function from ``advance(table) -> busy lanes``, stored under a digest of this folder."""
+    content = b"".join(
+        path.read_bytes() for path in sorted(Path(__file__).parent.glob("*.py"))
+    )
+    compiled = compiled_entry(advance, types.intp(types.voidptr), content)
+    function: Any = ctypes.CFUNCTYPE(ctypes.c_ssize_t, ctypes.c_void_p)(
+        compiled.address
+    )
+    # The wrapper does not own the machine code.
+    function.code = compiled
+    return function
+
+
+def drive(
+    advance: Any, workspace: Workspace, share: Callable[[], float] = lambda: 0.0
+) -> None:
+    """Call ``advance``, which returns every ``ROUNDS`` steps, until it reports no lane busy.
+
+    Between two calls an interrupt is heard, and ``share`` says how much of the work is done.
+    """
+    while advance(workspace.pointer):
+        report(share)
+
+
+def share_of(
+    job: np.ndarray, clock: np.ndarray, t_end: np.ndarray, left: np.ndarray
+) -> float:
+    """How much of their jobs the lanes of a process have done.
+
+    Args:
+        job, clock, t_end: of each lane; the job is negative in an idle one.
+        left: next job of this process, number of all jobs, number of processes.
+    """
+    following, count, stride = left.tolist()
+    busy = float((1.0 - clock / t_end)[job >= 0].sum())
+    return float(
+        1.0 - (max(count - following, 0) / stride + busy) / max(count / stride, 1.0)
+    )
+
+
+def taylor_terms(tol: float) -> int:
+    """Number of Taylor coefficients for a tolerance.
+
+    Two orders more than a step's own error asks for (Jorba and Zou 2005), since errors of a
+    hundred steps add up and grow.
+    """
+    return max(2, math.ceil(1.0 - 0.5 * math.log(tol))) + 3
+
+
+def aligned(*shape: int) -> np.ndarray:
+    """Zeros whose rows of ``LANES`` start where ``simd`` wants them."""
+    size = math.prod(shape)
+    store = np.zeros(size + simd.ALIGNMENT // 8)
+    first = -store.ctypes.data // 8 % (simd.ALIGNMENT // 8)
+    return store[first : first + size].reshape(shape)

@@ -1,0 +1,399 @@
+"""The compiled loop of any hybrid system: a Taylor step of all lanes, then its events and its ends.
+
+Compiled once for all systems: numbers of states, surfaces and regimes are data, and what a system
+computes is called by address. After each step all lanes are looked at side by side; one in which
+nothing ends, no surface may be crossed and no sample is due takes no path of its own.
+"""
+
+import math
+from functools import cache
+from typing import Any
+
+import numba
+import numpy as np
+
+from squealpipe.systems.compiled import inline, part
+from squealpipe.systems.taylor import layout
+from squealpipe.systems.taylor.checking import believe_or_halve, differing, end_stalled
+from squealpipe.systems.taylor.lanes import call, compile_advance, view
+from squealpipe.systems.taylor.observation import (
+    clear_extremes,
+    count_turns,
+    entered_row,
+    extremes_between,
+    log_norm,
+    observe,
+    sample,
+)
+from squealpipe.systems.taylor.simd import (
+    LANES,
+    ROW,
+    bits_below,
+    first_bit,
+    load,
+    splat,
+    store,
+)
+from squealpipe.systems.taylor.step import cut, reaches, take_step
+from squealpipe.systems.taylor.switching import (
+    put_into,
+    settle,
+    start_from_zero,
+    switch_all,
+    watch,
+)
+
+_numba: Any = numba
+
+
+@part
+def _grow(t: Any, m: Any, lane: int, tangent_row: int) -> None:
+    """Note the horizon when it is passed, and scale a perturbation back."""
+    job, size = m.integers[layout.JOB, lane], log_norm(t, m, lane, tangent_row)
+    if size == -math.inf:
+        return
+    growth = m.summary[job, 0] + size
+    if math.isnan(m.summary[job, 1]) and growth > m.limits[job, 4]:
+        m.summary[job, 1] = m.rows[layout.CLOCK, lane]
+    if not 1e-6 < math.exp(2.0 * size) < 1e6:
+        for variable in range(t.n_states):
+            m.rows[tangent_row + variable, lane] /= math.exp(size)
+        m.summary[job, 0] = growth
+    _limit_growth(m, lane)
+
+
+@part
+def _limit_growth(m: Any, lane: int) -> None:
+    """The squared size of a perturbation at which the horizon is passed."""
+    job = m.integers[layout.JOB, lane]
+    left = m.limits[job, 4] - m.summary[job, 0]
+    waits = math.isnan(m.summary[job, 1]) and left < 300.0
+    m.rows[layout.LOST, lane] = math.exp(2.0 * left) if waits else math.inf
+
+
+@inline
+def _grow_all(t: Any, m: Any, tangent_row: int, busy: int) -> None:
+    """Look at perturbations that have grown or shrunk a thousandfold, or passed what is lost."""
+    square = splat(0.0)
+    for variable in range(t.n_states):
+        part = load(t.rows + (tangent_row + variable) * ROW) * load(
+            t.units + variable * ROW
+        )
+        square = square + part * part
+    usual = bits_below(splat(1e-6), square) & bits_below(square, splat(1e6))
+    bits = ~(usual & bits_below(square, load(t.rows + layout.LOST * ROW))) & busy
+    while bits:
+        lane = first_bit(bits)
+        bits ^= 1 << lane
+        _grow(t, m, lane, tangent_row)
+
+
+@part
+def _finish(
+    t: Any, m: Any, c: Any, lane: int, tangent_row: int, first_extreme: int
+) -> None:
+    """Write a job's results."""
+    rows, job = m.rows, m.integers[layout.JOB, lane]
+    m.ends[job, 0] = m.integers[layout.OUTCOME, lane]
+    m.ends[job, 1] = int(rows[layout.STEPS, lane])
+    m.ends[job, 2] = m.integers[layout.EVENTS, lane]
+    m.summary[job, 2] = rows[layout.CLOCK, lane]
+    for variable in range(t.n_states):
+        m.final[job, variable] = c[variable, 0, lane]
+    for index in range(t.n_tracked):
+        for each in range(2):
+            found = rows[first_extreme + 2 * index + each, lane]
+            m.extremes[job, index, m.integers[layout.LATE, lane], each] = found
+    first_time = first_extreme + 2 * t.n_tracked
+    for component in range(t.n_components):
+        last = m.integers[layout.REGIMES + component, lane]
+        since = rows[entered_row(t) + component, lane]
+        rows[first_time + last, lane] += rows[layout.CLOCK, lane] - since
+    for regime in range(t.n_regimes):
+        m.durations[job, regime] = rows[first_time + regime, lane]
+    for point in range(t.n_points):
+        m.half_turns[job, point] = rows[first_time + t.n_regimes + 3 * point + 2, lane]
+    if t.tangent:
+        m.summary[job, 0] += log_norm(t, m, lane, tangent_row)
+
+
+@part
+def _start(
+    t: Any, m: Any, c: Any, lane: int, job: int, tangent_row: int, first: int
+) -> None:
+    """Start a job in a lane."""
+    rows, integers = m.rows, m.integers
+    integers[:, lane] = 0
+    integers[layout.JOB, lane], integers[layout.OUTCOME, lane] = job, layout.RUNNING
+    integers[layout.HIT, lane] = -1
+    for row in (
+        layout.CLOCK,
+        layout.CORRECTION,
+        layout.STEPS,
+        layout.STEP,
+        layout.REACH,
+        layout.ACROSS,
+        layout.DELAY,
+    ):
+        rows[row, lane] = 0.0
+    rows[layout.LONGEST, lane] = math.inf
+    rows[layout.T_END, lane] = m.limits[job, 0]
+    rows[layout.T_LATE, lane] = m.limits[job, 1]
+    rows[layout.MOST_STEPS, lane] = m.limits[job, 2]
+    rows[layout.ORIGIN, lane] = m.limits[job, 6]
+    if m.limits[job, 1] <= 0.0:
+        rows[layout.T_LATE, lane], integers[layout.LATE, lane] = math.inf, 1
+    times = m.sample_times[job]
+    rows[layout.NEXT_SAMPLE, lane] = times[0] if times.size else math.inf
+    first_parameter = t.n_rows - t.n_constants - t.n_parameters
+    for parameter in range(t.n_parameters):
+        rows[first_parameter + parameter, lane] = m.parameters[job, parameter]
+    c[: t.n_variables, :, lane] = 0.0
+    for variable in range(t.n_states):
+        c[variable, 0, lane] = m.initial[job, variable]
+        m.units[variable, lane] = 1.0 / m.sizes[job, variable]
+        rows[tangent_row + variable, lane] = m.sizes[job, variable] / math.sqrt(
+            t.n_states
+        )
+    if t.n_variables > t.n_states:
+        c[t.n_states, 0, lane] = rows[layout.ORIGIN, lane]
+    for index in range(t.n_tracked):
+        clear_extremes(m, lane, index, first)
+        if t.n_between:
+            m.between[index, 0, lane], m.between[index, 1, lane] = math.inf, -math.inf
+    row = first + 2 * t.n_tracked
+    rows[row : row + t.n_regimes, lane] = 0.0
+    for point in range(t.n_points):
+        row = first + 2 * t.n_tracked + t.n_regimes + 3 * point
+        rows[row, lane] = m.points[job, point, 0]
+        rows[row + 1, lane] = m.points[job, point, 1]
+        rows[row + 2, lane] = 0.0
+    m.summary[job, 0], m.summary[job, 1] = 0.0, math.nan
+    _limit_growth(m, lane)
+    for component in range(t.n_components):
+        rows[entered_row(t) + component, lane] = 0.0
+        put_into(t, m, lane, component, m.first_regime[job, component])
+    settle(t, lane)
+    m.ticked[:, lane] = -math.inf
+    watch(t, m, c, lane, 0.0)
+
+
+@inline
+def _go_on(t: Any) -> None:
+    """The end of each lane's step becomes the start of the next; its time is compensated."""
+    at = t.rows
+    for variable in range(t.n_variables):
+        store(
+            t.series + variable * t.n_terms * ROW,
+            load(at + (layout.FIXED_ROWS + variable) * ROW),
+        )
+    store(at + layout.STEPS * ROW, load(at + layout.STEPS * ROW) + 1.0)
+    increment = load(at + layout.STEP * ROW) + load(at + layout.CORRECTION * ROW)
+    clock = load(at + layout.CLOCK * ROW)
+    time = clock + increment
+    store(at + layout.CORRECTION * ROW, (clock - time) + increment)
+    store(at + layout.CLOCK * ROW, time)
+
+
+@inline
+def _cut_all(t: Any, m: Any, c: Any, special: int) -> None:
+    """End the steps of some lanes where something happens in them."""
+    while special:
+        lane = first_bit(special)
+        special ^= 1 << lane
+        cut(t, m, c, lane)
+
+
+@inline
+def _check(t: Any, m: Any, c: Any, parameters: int, busy: int) -> int:
+    """Halve steps until their ends can be believed; returns lanes that were halved or ended."""
+    store(t.rows + layout.GAP * ROW, splat(math.inf))
+    wrong, halved = busy, 0
+    while True:
+        wrong &= differing(t, m, parameters)
+        if not wrong:
+            return halved
+        bits = wrong
+        while bits:
+            lane = first_bit(bits)
+            bits ^= 1 << lane
+            stands = believe_or_halve(t, m, c, lane)
+            if stands:
+                wrong ^= 1 << lane
+            if not stands or m.integers[layout.OUTCOME, lane] != layout.RUNNING:
+                halved |= 1 << lane
+
+
+@inline
+def _refill(
+    t: Any, m: Any, c: Any, busy: int, ended: int, tangent_row: int, first_extreme: int
+) -> int:
+    """Finish the lanes that have ended and give them new jobs; returns the busy ones."""
+    while ended:
+        lane = first_bit(ended)
+        ended ^= 1 << lane
+        if m.integers[layout.JOB, lane] >= 0:
+            _finish(t, m, c, lane, tangent_row, first_extreme)
+        busy &= ~(1 << lane)
+        m.integers[layout.JOB, lane] = -1
+        if m.queue[0] < m.queue[1]:
+            job = m.queue[0]
+            m.queue[0] += m.queue[2]
+            _start(t, m, c, lane, job, tangent_row, first_extreme)
+            busy |= 1 << lane
+    return busy
+
+
+@inline
+def _ended(t: Any, m: Any, special: int, busy: int) -> int:
+    """Lanes whose run has ended, among those that ended their step and those out of steps."""
+    spent = ~bits_below(
+        load(t.rows + layout.STEPS * ROW), load(t.rows + layout.MOST_STEPS * ROW)
+    )
+    bits, ended = (special | spent) & busy, 0
+    while bits:
+        lane = first_bit(bits)
+        bits ^= 1 << lane
+        if m.integers[layout.OUTCOME, lane] == layout.RUNNING and spent & (1 << lane):
+            m.integers[layout.OUTCOME, lane] = layout.STEP_LIMIT
+        if m.integers[layout.OUTCOME, lane] != layout.RUNNING:
+            ended |= 1 << lane
+    return ended
+
+
+@inline
+def _gather_extremes(t: Any, m: Any, c: Any, busy: int) -> None:
+    """Gather the extremes between the asked instants over one step of all lanes, if asked for."""
+    while t.n_between and busy:
+        lane = first_bit(busy)
+        busy ^= 1 << lane
+        extremes_between(t, m, c, lane)
+
+
+@inline
+def _rounds(t: Any, m: Any, c: Any) -> int:
+    """Steps of all lanes until none is busy, or there were enough."""
+    tangent_row = layout.FIXED_ROWS + t.n_variables
+    first_extreme = tangent_row + t.n_states
+    first_time = first_extreme + 2 * t.n_tracked
+    first_parameter = t.n_rows - t.n_constants - t.n_parameters
+    parameters = t.rows + first_parameter * ROW
+    time_unit = first_parameter + t.n_parameters - 1
+    busy, ended = 0, 0
+    for lane in range(LANES):
+        busy |= (1 << lane) if m.integers[layout.JOB, lane] >= 0 else 0
+        ended |= (
+            (1 << lane) if m.integers[layout.OUTCOME, lane] != layout.RUNNING else 0
+        )
+    for _ in range(t.n_rounds):
+        busy = _refill(t, m, c, busy, ended, tangent_row, first_extreme)
+        if not busy:
+            return 0
+        call(t.take_step, (t.series, parameters, t.inverses, t.n_terms))
+        if t.tangent:
+            call(
+                t.longest,
+                (t.series, parameters, t.rows + layout.LONGEST * ROW, t.n_terms),
+            )
+        start_from_zero(t, m, c)
+        special = take_step(t, m, parameters) & busy
+        due = reaches(t.rows, layout.NEXT_SAMPLE) & busy if t.n_samples else 0
+        _cut_all(t, m, c, special)
+        if t.verify:
+            special |= _check(t, m, c, parameters, busy)
+        special |= end_stalled(t, m, c, busy)
+        # before the samples, which count on to the next one that is due
+        _gather_extremes(t, m, c, busy)
+        while due:
+            lane = first_bit(due)
+            due ^= 1 << lane
+            sample(t, m, c, lane, first_time)
+        observe(t, m, c, first_extreme, busy)
+        turned = count_turns(t, m, first_time + t.n_regimes, busy)
+        if t.tangent:
+            step, at = t.rows + layout.STEP * ROW, t.rows + tangent_row * ROW
+            call(t.perturb, (t.series, parameters, step, at, t.n_terms))
+        _go_on(t)
+        if t.n_variables > t.n_states:
+            clock = load(t.rows + layout.CLOCK * ROW) + load(
+                t.rows + layout.CORRECTION * ROW
+            )
+            now = clock * load(t.rows + time_unit * ROW)
+            now = now + load(t.rows + layout.ORIGIN * ROW)
+            store(t.series + t.n_states * t.n_terms * ROW, now)
+        switch_all(t, m, c, special, tangent_row)
+        if t.tangent:
+            _grow_all(t, m, tangent_row, busy)
+        ended = _ended(t, m, special | turned, busy)
+    return int(busy)
+
+
+def _advance(table: Any) -> int:
+    """Some rounds over all lanes; returns how many are busy. The table: :data:`TABLE`."""
+    t = _numba.carray(table, (1,), layout.TABLE)[0]
+    n_events = t.n_surfaces + t.n_outputs
+    width = max(3 * n_events, t.n_variables, t.n_constants) + 2
+    size = t.n_states
+    m = layout.Memory(
+        rows=view(t.rows, (t.n_rows, LANES), np.float64),
+        integers=view(t.integers, (layout.REGIMES + t.n_components, LANES), np.int64),
+        sizes=view(t.sizes, (t.n_jobs, size), np.float64),
+        units=view(t.units, (size, LANES), np.float64),
+        tracked=view(t.tracked, (t.n_tracked, 2), np.int64),
+        regimes=view(t.regimes, (t.n_regimes, t.n_table), np.float64),
+        falls=view(t.falls, (t.n_regimes, t.n_surfaces), np.int64),
+        rises=view(t.rises, (t.n_regimes, t.n_surfaces), np.int64),
+        component_of=view(t.component_of, (t.n_regimes,), np.int64),
+        first_constant=view(t.first_constant, (t.n_components + 1,), np.int64),
+        owner=view(t.owner, (t.n_surfaces,), np.int64),
+        marks=view(t.marks, (t.n_regimes, t.n_surfaces), np.int64),
+        clocks=view(t.clocks, (t.n_surfaces,), np.int64),
+        ticked=view(t.ticked, (t.n_surfaces, LANES), np.float64),
+        active=view(t.active, (n_events,), np.int64),
+        fresh=view(t.fresh, (t.n_surfaces,), np.int64),
+        beyond=view(t.beyond, (t.n_surfaces,), np.int64),
+        exact=view(t.exact, (size + n_events, LANES), np.float64),
+        steep=view(t.steep, (size,), np.int64),
+        bent=view(t.bent, (n_events,), np.int64),
+        share=view(t.share, (3,), np.float64),
+        noise=view(t.noise, (t.n_surfaces, 2, LANES), np.float64),
+        scratch=view(t.scratch, (6, width), np.float64),
+        initial=view(t.initial, (t.n_jobs, size), np.float64),
+        parameters=view(t.parameters, (t.n_jobs, t.n_parameters), np.float64),
+        first_regime=view(t.first_regime, (t.n_jobs, t.n_components), np.int64),
+        limits=view(t.limits, (t.n_jobs, 7), np.float64),
+        final=view(t.final, (t.n_jobs, size), np.float64),
+        extremes=view(t.extremes, (t.n_jobs, t.n_tracked, 2, 2), np.float64),
+        logs=view(t.logs, (t.n_kinds,), np.int64),
+        counts=view(t.counts, (t.n_jobs, t.n_kinds), np.int64),
+        firsts=view(t.firsts, (t.n_jobs, t.n_kinds), np.float64),
+        durations=view(t.durations, (t.n_jobs, t.n_regimes), np.float64),
+        ends=view(t.ends, (t.n_jobs, 3), np.int64),
+        summary=view(t.summary, (t.n_jobs, 3), np.float64),
+        sample_times=view(t.sample_times, (t.n_jobs, t.n_samples), np.float64),
+        samples=view(t.samples, (t.n_jobs, t.n_samples, size), np.float64),
+        sample_regimes=view(
+            t.sample_regimes, (t.n_jobs, t.n_samples, t.n_components), np.int64
+        ),
+        sample_sums=view(t.sample_sums, (t.n_jobs, t.n_samples, t.n_sums), np.float64),
+        sample_extremes=view(
+            t.sample_extremes, (t.n_jobs, t.n_between, t.n_tracked, 2), np.float64
+        ),
+        between=view(t.between, (t.n_tracked, 2, LANES), np.float64),
+        event_times=view(t.event_times, (t.n_jobs, t.n_logged), np.float64),
+        event_kinds=view(t.event_kinds, (t.n_jobs, t.n_logged), np.int64),
+        event_regimes=view(t.event_regimes, (t.n_jobs, t.n_logged), np.int64),
+        event_states=view(t.event_states, (t.n_jobs, t.n_logged, size), np.float64),
+        peaks=view(t.peaks, (t.n_jobs, t.n_kinds, size), np.float64),
+        points=view(t.points, (t.n_jobs, t.n_points, 2), np.float64),
+        half_turns=view(t.half_turns, (t.n_jobs, t.n_points), np.float64),
+        queue=view(t.queue, (3,), np.int64),
+    )
+    c = view(t.series, (t.n_series, t.n_terms, LANES), np.float64)
+    return int(_rounds(t, m, c))
+
+
+@cache
+def loop() -> Any:
+    """The compiled loop, built once a process."""
+    return compile_advance(_advance)

@@ -1,0 +1,146 @@
+"""Machine code of written functions: LLVM without what they do not need, kept on disk.
+
+Written code computes with rows of lanes already and says itself where it loops. What looks for
+more to vectorize or to unroll takes three quarters of the time in vain.
+"""
+
+import hashlib
+import os
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import llvmlite.binding
+import numba
+from llvmlite import __version__ as llvmlite_version
+from llvmlite import ir
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.registry import cpu_target
+
+from squealpipe.systems.compiled import store_folder
+
+_llvm: Any = llvmlite.binding
+_config: Any = numba.config
+_only_one_thread: Any = global_compiler_lock
+_cpu_target: Any = cpu_target
+LEVEL = 2
+"""Of LLVM's optimization."""
+MOST = 2**28
+"""Bytes of code that the store keeps."""
+Write = Callable[[Any, Sequence[Any]], None]
+
+
+@cache
+def _processor() -> tuple[str, str, str]:
+    """Target, name and features of the processor, as numba takes it."""
+    found: tuple[str, str, str] = _cpu_target.target_context.codegen().magic_tuple()
+    return found
+
+
+def _machine() -> Any:
+    triple, name, features = _processor()
+    target = _llvm.Target.from_triple(triple)
+    return target.create_target_machine(
+        cpu=name,
+        features=features,
+        opt=LEVEL,
+        reloc="static" if target.name.startswith("x86") else "default",
+        codemodel="jitdefault",
+        jit=True,
+    )
+
+
+@cache
+def _engine() -> Any:
+    """What code is loaded into; it stays as long as the process."""
+    return _llvm.create_mcjit_compiler(
+        _llvm.parse_assembly(""),
+        _machine(),
+        use_lmm=_config.USE_LLVMLITE_MEMORY_MANAGER,
+    )
+
+
+def address_of(write: Write, n_arguments: int, content: bytes) -> int:
+    """The address of a function of addresses and sizes, compiled or taken from the store.
+
+    Args:
+        write: writes its body, for a builder and the arguments.
+        content: all that decides what ``write`` writes.
+    """
+    versions = f"{llvmlite_version}{LEVEL}{_processor()}"
+    content = versions.encode() + Path(__file__).read_bytes() + content
+    digest = hashlib.sha256(content).hexdigest()
+    address: int = _loaded(digest, write, n_arguments)
+    return address
+
+
+_ADDRESSES: dict[str, int] = {}
+
+
+@_only_one_thread  # type: ignore[untyped-decorator]
+def _loaded(digest: str, write: Write, n_arguments: int) -> int:
+    """The address of a function, by a digest that names it."""
+    if digest not in _ADDRESSES:
+        name = f"written_{digest}"
+        path = Path(store_folder("written", b"")) / f"{digest}.o"
+        code = _kept(path)
+        if code is None:
+            code = _compiled(name, write, n_arguments)
+            _keep(path, code)
+        engine = _engine()
+        engine.add_object_file(_llvm.ObjectFileRef.from_data(code))
+        engine.finalize_object()
+        _ADDRESSES[digest] = engine.get_function_address(name)
+    return _ADDRESSES[digest]
+
+
+def _compiled(name: str, write: Write, n_arguments: int) -> bytes:
+    """An object file with one function."""
+    machine = _machine()
+    module = ir.Module(name)
+    module.triple, module.data_layout = machine.triple, str(machine.target_data)
+    word = ir.IntType(64)
+    kind = ir.FunctionType(ir.VoidType(), [word] * n_arguments)
+    function = ir.Function(module, kind, name)
+    builder: Any = ir.IRBuilder(function.append_basic_block())
+    write(builder, function.args)
+    builder.ret_void()
+    parsed = _llvm.parse_assembly(str(module))
+    parsed.verify()
+    tuning = _llvm.create_pipeline_tuning_options(speed_level=LEVEL)
+    tuning.loop_vectorization = tuning.slp_vectorization = False
+    tuning.loop_unrolling = tuning.loop_interleaving = False
+    passes = _llvm.create_pass_builder(machine, tuning)
+    passes.getModulePassManager().run(parsed, passes)
+    code: bytes = machine.emit_object(parsed)
+    return code
+
+
+def _kept(path: Path) -> bytes | None:
+    """Code from the store, if it is whole."""
+    with suppress(OSError):
+        stored = path.read_bytes()
+        seal, code = stored[:32], stored[32:]
+        if seal == hashlib.sha256(code).digest():
+            return code
+    return None
+
+
+def _keep(path: Path, code: bytes) -> None:
+    """Code into the store, where it can be written; beyond its size what was written first goes."""
+    part = path.with_suffix(f".{os.getpid()}")
+    with suppress(OSError):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            part.write_bytes(hashlib.sha256(code).digest() + code)
+            part.replace(path)
+        finally:  # a full disk, say, leaves no part of a file behind
+            part.unlink(missing_ok=True)
+        held = 0
+        files = path.parent.glob("*.o")
+        for old in sorted(files, key=lambda file: -file.stat().st_mtime_ns):
+            held += old.stat().st_size
+            if held > MOST:
+                old.unlink(missing_ok=True)

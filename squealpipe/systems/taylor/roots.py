@@ -1,0 +1,284 @@
+"""The first root of a Taylor polynomial in its step, with a proof where there is none; compiled.
+
+On an interval of width w a function with |p''| ≤ M lies within w² M/8 of the chord of its ends,
+a monotone one has a root where its ends differ in sign, and one that is convex or concave has at
+most one extremum. An interval where none of this decides is halved, down to where round-off
+hides the function: such a band holds a root if the function leaves it on its other side.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+from squealpipe.systems.compiled import part, polynomial
+
+NO_ROOT, UNDECIDED = -1.0, -2.0
+FINEST = 2.0**-48
+"""Share of a step below which round-off hides what an undecided interval holds."""
+ROUND_OFF = 1e-15
+"""Of a polynomial, over the sum of its terms."""
+UNSURE = 1e-6
+"""Share of a step: a root that round-off hides by more on both sides is a multiple one."""
+MOST_LOOKS = 20_000
+"""Intervals of one step that are looked at."""
+
+
+class End(NamedTuple):
+    """A polynomial and its first two derivatives at an end of an interval."""
+
+    time: float
+    value: float
+    slope: float
+    bend: float
+
+
+class Watch(NamedTuple):
+    """Which crossings of zero count.
+
+    Attributes:
+        falls, rises: whether those from above, and those from below.
+        fresh: whether the polynomial starts from zero.
+        at_once: whether a start to the wrong side is a crossing.
+        noise: size within which the value at a fresh start is zero.
+        drift: growth of the noise with time.
+    """
+
+    falls: bool
+    rises: bool
+    fresh: bool
+    at_once: bool
+    noise: float
+    drift: float
+
+
+@polynomial
+def evaluate(coefficients: Any, variable: int, lane: int, step: float) -> Any:
+    """The Taylor polynomial of a variable, [variable, order, lane], so long after its start."""
+    order = coefficients.shape[1] - 1
+    value = coefficients[variable, order, lane]
+    for k in range(order - 1, -1, -1):
+        value = value * step + coefficients[variable, k, lane]
+    return value
+
+
+@polynomial
+def evaluate_twice(coefficients: Any, variable: int, lane: int, step: float) -> Any:
+    """A polynomial and its first and second derivatives."""
+    order = coefficients.shape[1] - 1
+    value, slope, bend = coefficients[variable, order, lane], 0.0, 0.0
+    for k in range(order - 1, -1, -1):
+        bend = bend * step + slope
+        slope = slope * step + value
+        value = value * step + coefficients[variable, k, lane]
+    return value, slope, 2.0 * bend
+
+
+@part
+def largest_third(coefficients: Any, variable: int, lane: int, step: float) -> Any:
+    """A bound of the third derivative over the step."""
+    bound = 0.0
+    for k in range(coefficients.shape[1] - 1, 2, -1):
+        bound = bound * step + k * (k - 1.0) * (k - 2.0) * abs(
+            coefficients[variable, k, lane]
+        )
+    return bound
+
+
+@part
+def hidden_below(coefficients: Any, variable: int, lane: int, step: float) -> Any:
+    """The size below which round-off hides a polynomial in its step."""
+    size = 0.0
+    for k in range(coefficients.shape[1] - 1, -1, -1):
+        size = size * step + abs(coefficients[variable, k, lane])
+    return ROUND_OFF * size
+
+
+@part
+def is_hidden(
+    coefficients: Any, variable: int, lane: int, step: float, root: float, floor: float
+) -> Any:
+    """Whether round-off hides where a root is, as it hides that of (x − 1)⁵ multiplied out.
+
+    What is below ``floor`` is round-off. Of two roots close together each is clear on one side.
+    """
+    off = UNSURE * step
+    before = abs(evaluate(coefficients, variable, lane, root - off))
+    after = abs(evaluate(coefficients, variable, lane, root + off))
+    _, slope, _ = evaluate_twice(coefficients, variable, lane, root)
+    if abs(slope) * off > floor:
+        return before <= floor and after <= floor
+    return before <= floor or after <= floor
+
+
+@part
+def first_root(
+    coefficients: Any,
+    variable: int,
+    lane: int,
+    step: float,
+    start: float = 0.0,
+    known: float = 0.0,
+) -> Any:
+    """The first t in (start, step] where the polynomial changes its sign or touches zero.
+
+    A root at the start itself is where the state comes from; it does not count. ``known`` is the
+    sign just after it where round-off hides it.
+
+    Returns:
+        The root, ``NO_ROOT`` where there is none or ``UNDECIDED`` where nothing can be said, and
+        the time up to which the search is complete: a step may end where its sign is hidden.
+    """
+    third = largest_third(coefficients, variable, lane, step)
+    floor = hidden_below(coefficients, variable, lane, step)
+    left, right, band, band_side = start, step, start, 0.0
+    p0, s0, b0 = evaluate_twice(coefficients, variable, lane, left)
+    for _ in range(MOST_LOOKS):
+        p1, s1, b1 = evaluate_twice(coefficients, variable, lane, right)
+        ends = End(left, p0, s0, b0), End(right, p1, s1, b1)
+        width = right - left
+        side = p0 if p0 != 0.0 else (s0 if s0 != 0.0 else b0)
+        if known != 0.0 and left == start:
+            side = known
+        if band_side != 0.0 and abs(p0) > floor:
+            if band_side * side < 0.0:
+                return 0.5 * (band + left), step
+            band_side = 0.0
+        before = side if band_side == 0.0 else band_side
+        decided, root = _look(coefficients, variable, lane, ends, before, third)
+        bend = max(abs(b0), abs(b1)) + 0.5 * third * width
+        hidden = max(abs(p0), abs(p1)) + 0.125 * bend * width * width <= 2.0 * floor
+        if not (decided or hidden or width < FINEST * step):
+            right = left + 0.5 * width
+            continue
+        if decided and root >= 0.0:
+            return root, step
+        if not decided and band_side == 0.0:
+            band, band_side = left, math.copysign(1.0, side)
+        if right >= step:
+            return _at_the_end(step, p1, floor, band, band_side)
+        left, right = right, min(step, right + 2.0 * width)
+        p0, s0, b0 = p1, s1, b1
+    return UNDECIDED, left
+
+
+@part
+def _at_the_end(
+    step: float, value: float, floor: float, band: float, side: float
+) -> Any:
+    """What :func:`first_root` returns if round-off has hidden it since ``band`` (side not 0)."""
+    if side != 0.0 and abs(value) <= floor:
+        return NO_ROOT, band
+    return 0.5 * (band + step) if side * value < 0.0 else NO_ROOT, step
+
+
+@part
+def _agree(a: float, b: float) -> Any:
+    """Whether both are positive, or both negative."""
+    return (a > 0.0 and b > 0.0) or (a < 0.0 and b < 0.0)
+
+
+@part
+def _look(
+    coefficients: Any, variable: int, lane: int, ends: Any, side: float, third: float
+) -> Any:
+    """Whether an interval between two ends is decided, and its first root or ``NO_ROOT``."""
+    left, p0, s0, b0 = ends[0]
+    right, p1, s1, b1 = ends[1]
+    width = right - left
+    bend = max(abs(b0), abs(b1)) + 0.5 * third * width
+    # signs, not products: those of small numbers may vanish
+    monotone = _agree(s0, s1) and min(abs(s0), abs(s1)) > 0.5 * bend * width
+    curved = _agree(b0, b1) and min(abs(b0), abs(b1)) > 0.5 * third * width
+    if not _agree(side, p1):
+        if monotone or curved:
+            return True, _bracketed(coefficients, variable, lane, left, right, side)
+        return False, NO_ROOT
+    if monotone or min(abs(p0), abs(p1)) > 0.125 * bend * width * width:
+        return True, NO_ROOT
+    if not curved:
+        return False, NO_ROOT
+    if _agree(side, -b0) or not _agree(s0, -s1):
+        # An arch is lowest at its ends; a bow without a turning point likewise.
+        return True, NO_ROOT
+    lowest = _bracketed(coefficients, variable, lane, left, right, s0, of_slope=True)
+    value, _, _ = evaluate_twice(coefficients, variable, lane, lowest)
+    if _agree(side, value):
+        return True, NO_ROOT
+    return True, _bracketed(coefficients, variable, lane, left, lowest, side)
+
+
+@part
+def _bracketed(
+    coefficients: Any,
+    variable: int,
+    lane: int,
+    left: float,
+    right: float,
+    side: float,
+    of_slope: bool = False,
+) -> Any:
+    """The only root between a point on ``side`` of zero and one that is not, by Newton's method.
+
+    A step out of the bracket, which shrinks each time, is replaced by its middle. Of the slope
+    instead of the polynomial if asked.
+    """
+    low, high = left, right
+    time = 0.5 * (low + high)
+    for _ in range(100):
+        value, slope, bend = evaluate_twice(coefficients, variable, lane, time)
+        if of_slope:
+            value, slope = slope, bend
+        if value == 0.0:
+            return time
+        if _agree(value, side):
+            low = time
+        else:
+            high = time
+        following = time - value / slope
+        if not low < following < high:
+            following = 0.5 * (low + high)
+        if abs(following - time) <= 2.0**-53 * abs(time) or following in (low, high):
+            return following
+        time = following
+    return time
+
+
+@part
+def first_crossing(
+    coefficients: Any, variable: int, lane: int, step: float, watch: Watch
+) -> Any:
+    """The first t in [0, step] where the polynomial falls, or rises, through zero as is asked.
+
+    Returns it and the time up to which the search is complete, as :func:`first_root`. One that
+    starts from zero (``fresh``) has the side that it first takes by more than its noise, which
+    grows by ``drift`` with time; a side that is the wrong one is a crossing ``at_once``, at 0,
+    unless the switch changes nothing.
+    """
+    falls, rises, fresh, at_once, noise, drift = watch
+    start, side = 0.0, coefficients[variable, 0, lane]
+    if not fresh:  # a step may start where round-off hides the side
+        noise, drift = hidden_below(coefficients, variable, lane, step), 0.0
+    hidden = abs(side) <= noise
+    if fresh or (hidden and is_hidden(coefficients, variable, lane, step, 0.0, noise)):
+        start, side = _leaves_zero(coefficients, variable, lane, step, noise, drift)
+        if at_once and ((side < 0.0 and falls) or (side > 0.0 and rises)):
+            return 0.0, step
+    while side != 0.0:
+        root, looked = first_root(coefficients, variable, lane, step, start, side)
+        if root < 0.0 or (side > 0.0 and falls) or (side < 0.0 and rises):
+            return root, looked
+        start, side = root, -side
+    return NO_ROOT, step
+
+
+@part
+def _leaves_zero(
+    coefficients: Any, variable: int, lane: int, step: float, noise: float, drift: float
+) -> Any:
+    """When a polynomial that starts from zero first differs from it, and by what; 0 if never."""
+    time = step * FINEST
+    while 0.0 < time <= step:
+        value, _, _ = evaluate_twice(coefficients, variable, lane, time)
+        if abs(value) > noise + drift * time:
+            return time, value
+        time *= 2.0
+    return step, 0.0

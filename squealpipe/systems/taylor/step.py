@@ -1,0 +1,368 @@
+"""How long a Taylor step of all lanes is, and where it ends in a lane that crosses a surface."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from squealpipe.systems.compiled import inline, part
+from squealpipe.systems.taylor import layout
+from squealpipe.systems.taylor.lanes import call
+from squealpipe.systems.taylor.roots import (
+    UNDECIDED,
+    Watch,
+    evaluate,
+    evaluate_twice,
+    first_crossing,
+    hidden_below,
+    is_hidden,
+    largest_third,
+)
+from squealpipe.systems.taylor.simd import (
+    ROW,
+    bits_below,
+    choose,
+    choose_below,
+    fma,
+    larger,
+    load,
+    magnitude,
+    rough_power,
+    smaller,
+    splat,
+    store,
+)
+from squealpipe.systems.taylor.switching import NOISE, gauge
+
+SPARE = 100.0
+"""What the last orders of such a series may be more than those of the states."""
+FITS = 4
+"""Times that a step is fitted to the size of a series, which depends on the step."""
+SUSPECT = 1e6
+"""A root that this many times the round-off would hide may be hidden by that of its terms."""
+LEAST = 0.1
+"""Share of a step to which it may be shortened where round-off hides a surface at its end."""
+FADING = 0.95
+"""What a step leaves of the longest one of late; near a root of a base steps shrink by half."""
+RESOLVED = 2.0**-50
+"""Share of the time reached below which no step is shortened: the state would not move."""
+NOTHING = 1e-30
+"""Below the round-off of any quantity."""
+
+
+@inline
+def step_length(base: int, terms: int, n_states: int, units: int) -> Any:
+    """Lengths of the next steps from the last two orders (Jorba and Zou 2005; Biscani 2021).
+
+    Args:
+        units: address of the rows of one over the states' typical sizes.
+    """
+    size, last, previous = splat(1.0), splat(1e-300), splat(1e-300)
+    for variable in range(n_states):
+        series, unit = base + variable * terms * ROW, load(units + variable * ROW)
+        size = larger(magnitude(load(series)) * unit, size)
+        last = larger(magnitude(load(series + (terms - 1) * ROW)) * unit, last)
+        previous = larger(magnitude(load(series + (terms - 2) * ROW)) * unit, previous)
+    order = terms - 1.0
+    reach = smaller(
+        rough_power(size / last, splat(1.0 / order)),
+        rough_power(size / previous, splat(1.0 / (order - 1.0))),
+    )
+    return reach * math.exp(-2.0 - 0.7 / (order - 1.0))
+
+
+@inline
+def reach(series: int, terms: int) -> Any:
+    """Longest step of a series that is no state's, from ratios of its orders.
+
+    Where the state rests, what depends on the time alone still needs short steps. Its highest
+    order may be left out. Of a quantity that is kept at zero all orders are round-off.
+    """
+    reach, tiny = splat(0.0), splat(1e-300)
+    for low in (0, 1, 2):
+        base, nearer = magnitude(load(series + low * ROW)), splat(np.inf)
+        if low == 0:
+            base = splat(NOTHING)
+        for high in (terms - 3, terms - 2):
+            last = magnitude(load(series + high * ROW))
+            power = rough_power(
+                larger(base, tiny) / larger(last, tiny), splat(1.0 / (high - low))
+            )
+            nearer = smaller(nearer, choose_below(tiny, last, power, splat(np.inf)))
+        reach = larger(reach, nearer)
+    return reach * math.exp(-2.0)
+
+
+@inline
+def converged_steps(series: int, terms: int, step: Any) -> Any:
+    """The longest steps, up to those given, in which a series that is no state's has converged.
+
+    Its last orders are to be as small beside its first ones, over the step, as those of the
+    states; the highest may be left out. Where the state rests, what depends on the time alone
+    still needs short steps.
+    """
+    height = magnitude(load(series))
+    slope = magnitude(load(series + ROW))
+    bend = magnitude(load(series + 2 * ROW))
+    last = magnitude(load(series + (terms - 3) * ROW))
+    later = magnitude(load(series + (terms - 2) * ROW))
+    tiny, shorter = splat(1e-300), step
+    for _ in range(FITS):
+        size = height + shorter * (slope + shorter * bend)
+        target = smaller(
+            _until(size, last, terms - 3.0), _until(size, later, terms - 2.0)
+        )
+        shorter = smaller(shorter, choose_below(tiny, size, target, shorter))
+    return shorter
+
+
+@inline
+def _until(size: Any, last: Any, order: float) -> Any:
+    """Steps at the end of which a last order is as small beside a size as it is to be."""
+    tiny = splat(1e-300)
+    power = rough_power(larger(size, tiny) / larger(last, tiny), splat(1.0 / order))
+    return choose_below(tiny, last, power * math.exp(-2.0), splat(np.inf))
+
+
+@inline
+def _has_converged(series: int, terms: int, step: Any, power: Any) -> Any:
+    """Lanes with steps up to :func:`converged_steps`; ``power`` is that of order terms − 3."""
+    size = magnitude(load(series + 2 * ROW))
+    for k in (1, 0):
+        size = fma(size, step, magnitude(load(series + k * ROW)))
+    share = SPARE * math.exp(-2.0 * (terms - 3.0))
+    last = magnitude(load(series + (terms - 3) * ROW)) * power
+    later = magnitude(load(series + (terms - 2) * ROW)) * power * step
+    size = size * splat(share)
+    return bits_below(last, size) & bits_below(later, size * math.exp(-2.0))
+
+
+@inline
+def shorten_steps(t: Any, m: Any, step: Any) -> Any:
+    """Steps in which the series of surfaces and outputs have converged."""
+    terms, first = t.n_terms, t.series + t.n_variables * t.n_terms * ROW
+    power = shortest = step
+    for _ in range(terms - 4):
+        power = power * step
+    for event in range(t.n_surfaces + t.n_outputs):
+        if m.bent[event] and m.active[event]:
+            series = first + event * terms * ROW
+            bits = ~_has_converged(series, terms, step, power) & m.active[event]
+            if bits:
+                converged = converged_steps(series, terms, step)
+                shortest = choose(bits, smaller(converged, shortest), shortest)
+    return shortest
+
+
+@inline
+def slope_at_end(series: int, terms: int, step: Any) -> Any:
+    """A series' rate at the end of its step."""
+    value, slope = load(series + (terms - 1) * ROW), splat(0.0)
+    for k in range(terms - 2, -1, -1):
+        slope = fma(slope, step, value)
+        value = fma(value, step, load(series + k * ROW))
+    return slope
+
+
+@inline
+def at_end(series: int, terms: int, step: Any) -> Any:
+    """A series' value at the end of its step."""
+    value = load(series + (terms - 1) * ROW)
+    for k in range(terms - 2, -1, -1):
+        value = fma(value, step, load(series + k * ROW))
+    return value
+
+
+@inline
+def _free(series: int, terms: int, step: Any) -> Any:
+    """Lanes in which a surface has no root: both ends are further from zero than it bends."""
+    value, bend = load(series + (terms - 1) * ROW), splat(0.0)
+    for k in range(terms - 1, 1, -1):
+        row = load(series + k * ROW)
+        bend = fma(bend, step, magnitude(row) * splat(k * (k - 1.0)))
+        value = fma(value, step, row)
+    value = fma(value, step, load(series + ROW))
+    first = load(series)
+    value = fma(value, step, first)
+    free = bits_below(splat(0.0), first * value)
+    nearest = smaller(magnitude(first), magnitude(value))
+    return free & bits_below(bend * step * step * 0.125, nearest)
+
+
+@inline
+def reaches(rows: int, instant: int) -> Any:
+    """Lanes whose step does not end before the instant in a row."""
+    left = load(rows + instant * ROW) - load(rows + layout.CLOCK * ROW)
+    return ~bits_below(
+        load(rows + layout.STEP * ROW), left - load(rows + layout.CORRECTION * ROW)
+    )
+
+
+@inline
+def take_step(t: Any, m: Any, parameters: int) -> Any:
+    """Ends of all lanes' steps; returns the lanes that need a look of their own."""
+    terms, base, at = t.n_terms, t.series, t.rows
+    step = smaller(
+        step_length(base, terms, t.n_states, t.units), load(at + layout.LONGEST * ROW)
+    )
+    if t.n_variables > t.n_states:
+        for each in range(t.n_surfaces + t.n_tracked - t.n_states):
+            step = smaller(
+                step, reach(base + (t.n_variables + each) * terms * ROW, terms)
+            )
+    if t.shorten or m.share[2] != 0.0:
+        left = load(at + layout.T_END * ROW) - load(at + layout.CLOCK * ROW)
+        step = smaller(step, left - load(at + layout.CORRECTION * ROW))
+        step = shorten_steps(t, m, step)
+    if t.shorten:
+        reached = load(at + layout.REACH * ROW) * splat(FADING)
+        store(at + layout.REACH * ROW, larger(reached, step))
+        store(at + layout.STEP * ROW, step)
+        call(t.shorten, (base, parameters, at + layout.STEP * ROW, terms))
+        resolved = magnitude(load(at + layout.CLOCK * ROW)) * splat(RESOLVED)
+        short, least = load(at + layout.STEP * ROW), smaller(step, resolved)
+        across = load(at + layout.ACROSS * ROW)
+        across = choose_below(short, least, splat(1.0), across)
+        store(at + layout.ACROSS * ROW, across)
+        step = larger(short, least)
+    store(at + layout.STEP * ROW, step)
+    lost = step
+    for variable in range(t.n_variables):
+        value = at_end(base + variable * terms * ROW, terms, step)
+        store(at + (layout.FIXED_ROWS + variable) * ROW, value)
+        lost = lost + value * 0.0
+    plain = bits_below(magnitude(lost), splat(np.inf))
+    for surface in range(t.n_surfaces):
+        if m.active[surface]:
+            series = base + (t.n_variables + surface) * terms * ROW
+            plain &= _free(series, terms, step) | ~m.active[surface]
+            plain &= ~m.beyond[surface]
+    return ~plain | reaches(at, layout.T_END) | reaches(at, layout.T_LATE)
+
+
+@part
+def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
+    """When the first watched surface is crossed, whose switch goes into ``HIT``; or the step."""
+    integers = m.integers
+    bit = 1 << lane
+    first, tie, complete, winner = step, step * 2.0**-44, step, -1
+    unclear = False
+    for surface in range(t.n_surfaces):
+        regime = integers[layout.REGIMES + m.owner[surface], lane]
+        falls, rises = m.falls[regime, surface], m.rises[regime, surface]
+        if falls < 0 and rises < 0:
+            continue
+        root = 0.0
+        if not m.beyond[surface] & bit:
+            fresh = (m.fresh[surface] & bit) != 0
+            at_once = m.marks[regime, surface] == 0
+            if m.clocks[surface]:
+                ticked = m.ticked[surface, lane] == m.rows[layout.CLOCK, lane]
+                at_once = fresh and not ticked  # of a marker, too
+            watch = Watch(
+                falls >= 0,
+                rises >= 0,
+                fresh,
+                at_once,
+                m.noise[surface, 0, lane],
+                m.noise[surface, 1, lane],
+            )
+            index = t.n_variables + surface
+            root, looked = first_crossing(c, index, lane, step, watch)
+            unclear |= root == UNDECIDED
+            complete = min(complete, looked)
+        if root < 0.0 or root > first + tie:
+            continue
+        _, slope, _ = evaluate_twice(c, t.n_variables + surface, lane, root)
+        which = falls if rises < 0 or (falls >= 0 and slope < 0.0) else rises
+        earlier = root < first - tie or integers[layout.HIT, lane] < 0
+        # of switches at one instant the first by name goes first, whatever their order
+        if earlier or which < integers[layout.HIT, lane]:
+            first, integers[layout.HIT, lane] = min(root, first), which
+            winner = surface
+    if winner >= 0:
+        at_once = (m.beyond[winner] | m.fresh[winner]) & bit and first == 0.0
+        unclear = not at_once and _is_hidden(t, m, c, lane, winner, step, first)
+    elif complete > LEAST * step:  # the rest is looked at from there
+        first = min(first, complete)
+        unclear = False
+    if unclear:
+        integers[layout.OUTCOME, lane] = layout.HIDDEN
+    return first
+
+
+@part
+def _is_hidden(
+    t: Any, m: Any, c: Any, lane: int, surface: int, step: float, root: float
+) -> bool:
+    """Whether round-off of a surface's series, or of its terms, hides where it is crossed."""
+    index = t.n_variables + surface
+    floor = hidden_below(c, index, lane, step)
+    if not is_hidden(c, index, lane, step, root, SUSPECT * floor):
+        return False
+    for variable in range(t.n_variables):
+        value = evaluate(c, variable, lane, root)
+        m.scratch[0, variable], m.scratch[1, variable] = value, abs(value)
+    gauge(t, lane, m.scratch.shape[1])
+    floor = max(floor, NOISE * m.scratch[2, 3 * surface + 1])
+    return bool(is_hidden(c, index, lane, step, root, floor))
+
+
+@part
+def _is_finite(t: Any, m: Any, c: Any, lane: int) -> bool:
+    """Whether a lane's step is, and the surfaces it watches; others are looked through for ever."""
+    total = m.rows[layout.STEP, lane]
+    for variable in range(t.n_variables):
+        total += 0.0 * m.rows[layout.FIXED_ROWS + variable, lane]
+    for surface in range(t.n_surfaces):
+        if m.active[surface] & (1 << lane):
+            third = largest_third(
+                c, t.n_variables + surface, lane, m.rows[layout.STEP, lane]
+            )
+            total += 0.0 * third
+    return math.isfinite(total)
+
+
+@part
+def cut(t: Any, m: Any, c: Any, lane: int) -> None:
+    """End a lane's step at the first crossing, at the late time or at the end of its run."""
+    rows, integers = m.rows, m.integers
+    integers[layout.HIT, lane] = -1
+    if not _is_finite(t, m, c, lane):
+        rows[layout.STEP, lane] = 0.0
+        integers[layout.OUTCOME, lane] = layout.NOT_FINITE
+        for variable in range(
+            t.n_variables
+        ):  # of its series higher orders may be no numbers
+            rows[layout.FIXED_ROWS + variable, lane] = c[variable, 0, lane]
+        return
+    done = rows[layout.CLOCK, lane]
+    remaining = (rows[layout.T_END, lane] - done) - rows[layout.CORRECTION, lane]
+    step = min(rows[layout.STEP, lane], remaining)
+    ends = remaining <= rows[layout.STEP, lane]
+    late = (rows[layout.T_LATE, lane] - done) - rows[layout.CORRECTION, lane]
+    turns_late = late <= step
+    if turns_late:
+        step, ends = late, ends and late >= remaining
+    first = _first_switch(t, m, c, lane, step)
+    if integers[layout.OUTCOME, lane] == layout.HIDDEN:
+        integers[layout.HIT, lane] = -1
+        step, ends, turns_late = first, False, False
+    elif integers[layout.HIT, lane] >= 0 or first < step:
+        step, ends, turns_late = first, False, False
+    if step != rows[layout.STEP, lane]:
+        rows[layout.STEP, lane] = step
+        set_end(t, m, c, lane)
+    if turns_late:
+        integers[layout.HIT, lane] = layout.LATE_BEGINS
+    if ends:
+        integers[layout.OUTCOME, lane] = layout.CONVERGED
+
+
+@part
+def set_end(t: Any, m: Any, c: Any, lane: int) -> None:
+    """The variables at the end of a lane's step."""
+    for variable in range(t.n_variables):
+        m.rows[layout.FIXED_ROWS + variable, lane] = evaluate(
+            c, variable, lane, m.rows[layout.STEP, lane]
+        )

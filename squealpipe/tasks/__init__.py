@@ -1,1 +1,0 @@
-"""Tasks: a model and a method make a labelled dataset."""

@@ -1,1 +1,0 @@
-"""Questions to structures that the study of the paper asks."""

@@ -1,0 +1,33 @@
+"""Motions are followed to where they end, also far below the present value."""
+
+import numpy as np
+import pytest
+
+from squealpipe.brake.assess.any_start import any_start
+from squealpipe.brake.assess.designs import Cure
+from squealpipe.brake.assess.search import sides_of
+
+
+@pytest.mark.parametrize("fold", [0.0213, 0.0041])
+def test_a_motion_that_lasts_far_beyond_is_followed_to_its_fold(fold):
+    """It dies out if its value changes by a tenth at once, and no other start finds it."""
+    below = 0.4 * np.geomspace(1.0, 1e-3, 60)[1:]
+    cure = Cure(0.4, lambda value: value, below, np.zeros(0))
+    (side,) = sides_of({"mu": cure})
+    side.motions = [np.array([0.0226])]
+
+    def dies_out(sides, values):
+        found = []
+        for each, value in zip(sides, values, strict=True):
+            last = float(each.motions[0][0])
+            lasts = value > fold and abs(value - last) < 0.1 * last
+            if lasts:
+                each.motions = [np.array([value])]
+            found.append(not lasts)
+        return found
+
+    quiet_from = {"mu": 0.0225}
+    found = any_start(
+        {"mu": cure}, [side], quiet_from, False, False, dies_out, dies_out
+    )
+    assert 0.989 * fold < found["mu"] <= fold

@@ -1,0 +1,140 @@
+"""Verdicts on chaotic motions: the same from starts, and on processors, that nobody tells apart."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from squealpipe.paper.inference.candidates import sets_of
+from squealpipe.paper.inference.constraints import (
+    CONSTRAINTS,
+    STARTS,
+    StatementMargin,
+    compared_near_the_threshold,
+    from_several_starts,
+    verdicts,
+)
+from squealpipe.paper.inference.inference import FULLY_JUDGED, _sample
+from squealpipe.paper.schema.growth import growth_margin
+from squealpipe.paper.schema.inference import PARAMETER_INFERENCE, Holds
+from squealpipe.parameters import SCENES
+from squealpipe.store.comparison.differences import Agreement, judge
+
+RANGES = {
+    "kappa": (0.3, 1.3),
+    "mu": (0.02, 0.8),
+    "length_ratio": (2.0, 100.0),
+    "speed_ratio": (0.1, 316.0),
+}
+CHECKS = {constraint.name: constraint.check for constraint in CONSTRAINTS}
+
+
+def candidates(*rows):
+    groups = dict(zip(RANGES, np.array(rows).T, strict=True))
+    sets = sets_of(groups, tol=1e-9, workers=1).read("as_printed")
+    return replace(sets, exact=False)
+
+
+CHAOTIC = (0.496819139, 0.0312182139, 21.6394175, 0.186224365)
+"""Of the samples of the study: whether |x| grows to t = 6000 depends on the last digit."""
+STUDY = (0.65, 0.3, 15.0, 100.0)
+
+
+def test_growth_that_depends_on_the_last_digit_is_undecided():
+    """Single runs from ten starts 1e-9 l_pre apart say both; the study's own parameters grow."""
+    many = candidates(*[CHAOTIC] * 10)
+    states = 1e-9 * np.random.default_rng(3).uniform(-1.0, 1.0, (10, 4))
+    sizes, _ = replace(many, initial_state=states).windows(SCENES["F3"])
+    assert len({*(growth_margin(sizes) > 0.0)}) == 2
+    found = CHECKS["F3"](candidates(CHAOTIC, STUDY))
+    assert verdicts(found).tolist() == [Holds.undecided, Holds.yes]
+
+
+def test_starts_that_differ_by_a_thousandth_of_that_leave_verdicts():
+    """As another processor's last bits do: sets around the study's, motions of F3 and F4."""
+    generator = np.random.default_rng(5)
+    some = candidates(*(np.array(STUDY) * generator.uniform(0.8, 1.2, (16, 4))))
+    moved = some.moved(1e-12, -1e-12)
+    for name in ("F3", "F4"):
+        one, other = (verdicts(CHECKS[name](each)) for each in (some, moved))
+        np.testing.assert_array_equal(one, other)
+
+
+def counted(margins):
+    """A check whose margin depends on how far right it starts, and the sets that it was asked."""
+    asked = []
+
+    def check(sets):
+        asked.append(sets.size)
+        state = np.broadcast_to(sets.initial_state, (sets.size, 4))
+        margin = np.array(
+            [
+                margins[int(k)](x)
+                for k, x in zip(sets.fields["mu"], state[:, 0], strict=True)
+            ]
+        )
+        return StatementMargin(margin, np.zeros(sets.size, np.int8))
+
+    return check, asked
+
+
+def test_more_starts_are_asked_where_two_disagree_only():
+    """Regular, chaotic without reaching the threshold, chaotic across it, in this order."""
+    margins = (
+        lambda _: 0.2,
+        lambda x: 0.2 + 0.1 * np.sign(x),
+        lambda x: -0.1 + 0.2 * (x > 0),
+    )
+    sets = replace(candidates(*[STUDY] * 3), initial_state=np.zeros((3, 4)))
+    sets.fields["mu"][:] = [0, 1, 2]
+    check, asked = counted(margins)
+    found = verdicts(from_several_starts(check)(sets))
+    assert found.tolist() == [Holds.yes, Holds.yes, Holds.undecided]
+    assert asked == [3, 3, *[2] * len(STARTS.directions)]
+    check, asked = counted(margins)
+    sampled = replace(sets, sampled=True)
+    assert verdicts(from_several_starts(check)(sampled)).tolist() == [1, 1, 0]
+    assert asked == [3]
+
+
+@pytest.mark.parametrize(("distance", "verdict"), [(1e-3, 1), (1e-10, 2)])
+def test_a_regular_motion_is_compared_at_its_threshold(distance, verdict):
+    check, asked = counted([lambda x: distance + x])
+    sets = replace(candidates(STUDY), initial_state=np.zeros(4))
+    sets.fields["mu"][:] = 0
+    assert verdicts(compared_near_the_threshold(check)(sets)).tolist() == [verdict]
+    assert len(asked) == (1 if verdict == 1 else 1 + len(STARTS.directions))
+
+
+def test_samples_do_not_depend_on_the_last_bit_of_exp():
+    """Nine digits: exp of NumPy differs by a bit between processors with and without AVX-512."""
+    groups = _sample(512, 2021, RANGES)
+    for name, values in groups.items():
+        assert [
+            float(f"{v:.9g}") for v in np.nextafter(values, 0.0)
+        ] == values.tolist(), name
+
+
+def test_samples_that_are_judged_further_cover_the_ranges():
+    """Of every eighth point of Halton's all κ lay within an eighth of its range."""
+    groups = _sample(4096, 2021, RANGES)
+    first = slice(int(FULLY_JUDGED * 4096))
+    for name, (low, high) in RANGES.items():
+        scale = np.log if low > 1.0 or high > 300 else np.asarray
+        shares = np.histogram(scale(groups[name][first]), 8, tuple(scale([low, high])))[
+            0
+        ]
+        assert abs(shares - 32).max() <= 4, name
+
+
+def test_what_one_side_did_not_judge_is_no_difference():
+    """A verdict that differs is one; what follows from it, that others were not judged, is not."""
+    entry = PARAMETER_INFERENCE.variables["holds"]
+    one = xr.Dataset({"holds": ("sample", np.array([1, 0, 3, 1], np.int8))})
+    other = xr.Dataset({"holds": ("sample", np.array([1, 0, 1, 3], np.int8))})
+    assert judge("holds", one, other, entry).verdict == Agreement.equal
+    other.holds[0] = Holds.undecided
+    found = judge("holds", one, other, entry)
+    assert found.verdict == Agreement.different
+    assert sum(found.flips.values()) == 1

@@ -1,0 +1,71 @@
+"""Critical frictions of large structures: found in a subspace, confirmed in the whole."""
+
+import numpy as np
+import pytest
+
+from squealpipe.structures.numbering import Way
+from squealpipe.structures.onset import confirmed
+from squealpipe.structures.reduction import Kept
+from squealpipe.structures.schema.structures import Onset
+from squealpipe.structures.shipped_pad import elastic_pad
+from squealpipe.structures.spectrum import Limits, Solver
+from tests.structures.test_large import by_scipy
+
+
+def followed(structure, frictions):
+    """The way of all modes of a structure along friction, and its critical frictions."""
+    way = Way(Solver(structure, Limits(45e3), structure.belt_speed))
+    way.follow(frictions, None)
+    step = way.steps[frictions[-1]]
+    numbers = step.numbers[way.solver.selected(step.spectrum)].tolist()
+    return [each for each in way.criticals(numbers) if each.onset == Onset.located]
+
+
+def test_modes_of_a_large_pad_merge_where_scipys_eigenvalues_do():
+    pad = elastic_pad(elements=(48, 10), mu=0.3)
+    assert pad.size > 1000
+    modes = pad.complex_modes(frequency_max=45e3)
+    located = modes.critical_mu.values[modes.onset == Onset.located]
+    assert len(located) == 2  # a pair, of which one grows
+    closed = np.ones(4, bool)
+    for share, expected in ((1 - 1e-6, 0), (1 + 1e-6, 1)):
+        values = by_scipy(pad, closed, share * located[0], 14)
+        assert (values.real > 1e-2).sum() == expected
+
+
+@pytest.mark.release
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        ({"contacts": 7, "mu": 0.46, "belt_speed": -2.0}, 4),
+        ({"contacts": 3, "mu": 0.97, "modal_damping": 0.002}, 1),
+        ({"contacts": 5, "mu": 0.8, "elements": (60, 10)}, 2),
+    ],
+)
+def test_critical_frictions_are_those_of_the_whole_followed(changes, expected):
+    pad = elastic_pad(**{"elements": (48, 10), **changes})
+    modes = pad.complex_modes(frequency_max=45e3)
+    frictions = np.linspace(0.0, pad.mu, 3).tolist()
+    theirs = sorted(each.mu for each in followed(pad, frictions))
+    ours = np.sort(modes.critical_mu.values[modes.onset == Onset.located])
+    assert len(ours) == expected
+    assert ours == pytest.approx(theirs, abs=1e-10)
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.002])
+def test_the_whole_has_the_last_word(damping):
+    pad = elastic_pad(elements=(12, 3), mu=0.7, modal_damping=damping)
+    solver = Solver(pad, Limits(), pad.belt_speed)
+    expected = followed(pad, [0.35, 0.525, 0.7])
+    kept = Kept(pad, 14)
+    # modes at rest alone are a poor subspace: what it finds is not what the whole does
+    found = followed(kept.reduced(14), [0.35, 0.525, 0.7])
+    assert found
+    other = pad.with_(stiffness=1.5 * pad.stiffness)
+    elsewhere = Solver(other, Limits(), pad.belt_speed)
+    for each in found:
+        mu = confirmed(solver.pencil, each.crossing, kept.modes)
+        nearest = min(expected, key=lambda one, mu=each.mu: abs(one.mu - mu))
+        assert abs(each.mu - nearest.mu) > 1e-5
+        assert mu == pytest.approx(nearest.mu, abs=1e-10)
+        assert confirmed(elsewhere.pencil, each.crossing, kept.modes) is None

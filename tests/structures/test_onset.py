@@ -1,0 +1,88 @@
+"""Where modes turn unstable, against eigenvalues of matrices put together here."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+
+from squealpipe import Contact, Structure
+from squealpipe.structures.schema.structures import Onset
+
+
+def undamped(seed):
+    """M, K, contacts' n, t, k, preload and direction of the belt, of a random structure."""
+    generator = np.random.default_rng([55, seed])
+    size = int(generator.integers(2, 9))
+    mass, stiffness = (
+        generator.standard_normal((size, size)) / np.sqrt(size) for _ in range(2)
+    )
+    generator.random()
+    number = int(generator.integers(1, max(2, size // 2 + 1)))
+    normal, tangential = (generator.standard_normal((number, size)) for _ in range(2))
+    springs, preload = (
+        generator.uniform(0.5, 8, number),
+        generator.uniform(3, 6, number),
+    )
+    belt = generator.choice([-1.0, 1.0]) * generator.uniform(0.5, 3)
+    speeds = generator.choice([1.0, -1.0, 2.0], number)
+    return (
+        mass @ mass.T + 0.5 * np.eye(size),
+        10 * stiffness @ stiffness.T + np.eye(size),
+        normal, tangential, springs, preload, np.sign(speeds * belt),
+    )  # fmt: skip
+
+
+def growing(case, mu):
+    """How many of s² = −λ grow about the state that fits, of all open and closed ones."""
+    mass, stiffness, normal, tangential, springs, preload, side = case
+    for closed in product([1.0, 0.0], repeat=len(springs)):
+        acting = ((normal + mu * (side * tangential.T).T).T * closed).T
+        matrix = stiffness + (acting.T * springs) @ normal
+        q = np.linalg.solve(matrix, (acting - normal).T @ preload)
+        if np.array_equal(preload - springs * (normal @ q) > 0, np.array(closed) > 0):
+            squares = np.linalg.eigvals(np.linalg.solve(mass, matrix))
+            return int((squares.imag > 0).sum() + (squares.real < 0).sum())
+    raise AssertionError("no steady sliding")
+
+
+# a contact opens at 1.372 and frees a mode that grows; modes are stable again from 0.70008 to
+# 0.70809 alone; a third eigenvalue lies between two that merge
+@pytest.mark.parametrize(("seed", "located"), [(17, 4), (70, 4), (77, 4)])
+def test_a_critical_friction_that_is_stated_is_one(seed, located):
+    case = undamped(seed)
+    mass, stiffness, *_, side = case
+    contacts = [
+        Contact(f"c{number}", *each, speed)
+        for number, (each, speed) in enumerate(
+            zip(zip(*case[2:6], strict=True), side, strict=True)
+        )
+    ]
+    modes = Structure(mass, stiffness, contacts=contacts).complex_modes(
+        mu=np.linspace(0, 1.5, 16)
+    )
+    critical = modes.critical_mu.values[np.isfinite(modes.critical_mu)]
+    assert len(critical) == located
+    assert Onset.not_followed not in modes.onset
+    for mu in critical:
+        assert growing(case, mu * (1 - 1e-9)) < growing(case, mu * (1 + 1e-9))
+
+
+def test_a_mode_that_damping_lets_grow_alone_and_the_other_name_each_other():
+    contact = Contact("c", {1: -1.0}, {0: 1.0}, stiffness=4 / 3, preload=1.0)
+    hoffmann = np.array([[2.0, -1.0], [-1.0, 2 / 3]])
+    modes = Structure(
+        np.eye(2), hoffmann, 0.02 * np.eye(2), contacts=[contact], belt_speed=-1.0
+    ).complex_modes(mu=[0.0, 0.5, 0.9])
+    assert np.isfinite(modes.critical_mu).sum() == 1
+    assert list(modes.merges_with.values) == [2, 1]
+
+
+@pytest.mark.parametrize("beside", [-1e-13, 0.0, 1e-13])
+def test_the_critical_friction_itself_may_be_among_those_asked_for(beside):
+    # K + k(n + μt)nᵀ = [[10, 10μ − 3], [−3, 18]]: both of its eigenvalues are 14 at μ = 5/6
+    contact = Contact("c", {1: 1.0}, {0: 1.0}, stiffness=10.0, preload=1.0)
+    structure = Structure(np.eye(2), [[10.0, -3.0], [-3.0, 8.0]], contacts=[contact])
+    critical = np.nextafter(5 / 6, 1) + beside
+    modes = structure.complex_modes(mu=[0.0, critical, 1.0])
+    assert (modes.onset == Onset.located).all()
+    assert modes.critical_mu.values == pytest.approx(np.full(2, 5 / 6), abs=1e-11)

@@ -1,0 +1,202 @@
+"""Contacts with a friction of their own, against matrices put together here."""
+
+import numpy as np
+import pytest
+import scipy.linalg as la
+
+from squealpipe import Contact, Structure, squealing_modes
+from squealpipe.structures.files import read
+from squealpipe.structures.schema.structures import Onset
+
+TABLE = "linear 0:0.5 4:0.3"
+
+
+def random_case(seed, size=7, number=3):
+    """M, C, K, normals, tangentials (size, number), springs and preloads of a random structure."""
+    generator = np.random.default_rng([64, seed])
+    mass, stiffness = generator.standard_normal((2, size, size)) / np.sqrt(size)
+    normal, tangential = generator.standard_normal((2, size, number))
+    damping = 0.01 * np.eye(size)
+    springs, preload = generator.uniform([[0.5], [20]], [[8], [40]], (2, number))
+    return (
+        mass @ mass.T + 0.5 * np.eye(size), damping,
+        10 * stiffness @ stiffness.T + np.eye(size), normal, tangential, springs, preload,
+    )  # fmt: skip
+
+
+def structure_of(
+    case, speeds=(1.0, -1.0, 2.0), own=((), (), ()), names="abc", **further
+):
+    mass, damping, stiffness, *parts = case
+    columns = zip(names, *(part.T for part in parts), speeds, own, strict=True)
+    contacts = [Contact(*each[:-1], **dict(each[-1])) for each in columns]
+    return Structure(mass, stiffness, damping, contacts=contacts, **further)
+
+
+def growth(case, drag, slope=0.0):
+    """Largest growth rate with all contacts closed, by a first-order form; forces of contacts."""
+    mass, damping, stiffness, normal, tangential, springs, preload = case
+    acting = normal + tangential * drag
+    matrix = stiffness + acting * springs @ normal.T
+    q = la.solve(matrix, (acting - normal) @ preload)
+    force = preload - springs * (normal.T @ q)
+    assert (force > 0).all()
+    dashpots = damping + tangential * (force * slope) @ tangential.T
+    size = len(mass)
+    first = np.block([[np.zeros((size, size)), np.eye(size)], [-matrix, -dashpots]])
+    values = la.eigvals(first, la.block_diag(np.eye(size), mass))
+    return values.real.max(), force
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("belt_speed", [1.5, -1.5])
+def test_each_contact_has_its_own_law(seed, belt_speed):
+    """Own mu, a table, and an exponential law of the structure side by side."""
+    case = random_case(seed)
+    own = ({"mu": 0.15}, {"friction_law": TABLE, "mu": 0.4}, {})
+    structure = structure_of(
+        case, own=own, mu=0.2, belt_speed=belt_speed, friction_law="exponential",
+        mu_static=0.3, friction_speed=2.0,
+    )  # fmt: skip
+    modes = structure.complex_modes(critical=False)
+    # of the first contact the law is the structure's without a static limit: Coulomb's
+    falling = 0.1 * np.exp(-3.0 / 2.0)
+    mu = np.array([0.15, 0.4 * (0.5 - 0.2 * 1.5 / 4), 0.2 + falling])
+    slope = np.array([0.0, -0.4 * 0.2 / 4, -falling / 2.0])
+    drag = mu * np.sign([belt_speed, -belt_speed, 2 * belt_speed])
+    fastest, force = growth(case, drag, slope)
+    assert np.allclose(modes.normal_force, force, rtol=1e-10)
+    assert abs(modes.growth_rate.max() - fastest) < 1e-9
+    assert np.allclose(structure.mu_static_of_contacts, [0.15, 0.2, 0.3])
+
+
+def critical_by_hand(case, drag_at, high):
+    """Smallest number at which a mode grows, by bisection from a grid."""
+    grid = np.linspace(0, high, 401)
+    grows = [growth(case, drag_at(each))[0] > 0 for each in grid]
+    place = int(np.argmax(grows))
+    if not place:
+        return np.nan
+    low, top = grid[place - 1], grid[place]
+    for _ in range(50):
+        middle = 0.5 * (low + top)
+        low, top = (
+            (low, middle) if growth(case, drag_at(middle))[0] > 0 else (middle, top)
+        )
+    return top
+
+
+SIGNS = np.array([1.0, -1.0, 1.0])
+
+
+@pytest.mark.parametrize("seed", [1, 4])
+def test_the_critical_friction_is_that_of_what_is_varied(seed):
+    case = random_case(seed)
+    own = ({}, {"mu": 0.1}, {"mu": 0.1})
+    structure = structure_of(
+        case, own=own, names=("back", "lining_1", "lining_2"), mu=0.1
+    )
+    of_own = np.array([0.1, 0.1, 0.1])
+    for name, mask in (("back", [1, 0, 0]), ("lining", [0, 1, 1])):
+        expected = critical_by_hand(
+            case, lambda mu, mask=mask: SIGNS * np.where(mask, mu, of_own), 0.8
+        )
+        asked = 0.8 if name == "back" else {name: 0.8}
+        modes = structure.complex_modes(mu=asked)
+        located = modes.critical_mu.where(modes.onset == Onset.located).min()
+        assert modes.mu == 0.8
+        assert np.isclose(located, expected, rtol=1e-8, equal_nan=True), name
+
+
+def test_all_are_scaled_where_each_has_its_own():
+    case = random_case(4)
+    mu = np.array([0.7, 0.6, 0.8])
+    structure = structure_of(case, own=[{"mu": each} for each in mu])
+    modes = structure.complex_modes()
+    expected = critical_by_hand(case, lambda scale: SIGNS * scale * mu, 1.0)
+    assert np.isfinite(expected)
+    assert np.isclose(modes.critical_scale.min(), expected, rtol=1e-8)
+    assert np.isnan(modes.critical_mu).all()
+    assert "mu" not in modes.coords
+    assert np.allclose(modes.normal_force, growth(case, SIGNS * mu)[1])
+
+
+def test_what_nothing_has_cannot_be_varied():
+    structure = structure_of(random_case(0), own=[{"mu": 0.3}] * 3)
+    with pytest.raises(
+        ValueError, match=r"every contact has a mu of its own.*\{'a': …\}"
+    ):
+        structure.complex_modes(mu=[0.1, 0.2])
+    with pytest.raises(ValueError, match="no contact or face 'lining'"):
+        structure.complex_modes(mu={"lining": 0.2})
+    with pytest.raises(ValueError, match="one contact or face at a time"):
+        structure.complex_modes(mu={"a": 0.2, "b": 0.1})
+    with pytest.raises(ValueError, match="every contact has one of its own"):
+        squealing_modes(structure, onset=True)
+
+
+REFUSED = {
+    "negative": ({"mu": -0.1}, "contact a: mu = -0.1"),
+    "static below": ({"mu": 0.3, "mu_static": 0.2}, "contact a: mu_static = 0.2"),
+    "unknown law": ({"friction_law": "coulom"}, "contact a: friction_law = 'coulom'"),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_a_friction_that_none_has_is_refused_by_its_contact(what):
+    own, words = REFUSED[what]
+    with pytest.raises(ValueError, match=words):
+        structure_of(random_case(0), own=(own, {}, {}))
+
+
+def test_a_reduced_structure_and_its_runs_have_them():
+    """All modes kept, small motions grow as the complex modes do."""
+    case = random_case(4, size=5, number=2)
+    own = ({"mu": 0.9}, {})
+    whole = structure_of(
+        case, speeds=(1.0, -1.0), own=own, names="ab", mu=0.8, belt_speed=50.0
+    )
+    reduced = whole.reduce(n_modes=5)
+    assert np.allclose(
+        np.sort(reduced.complex_modes(critical=False).growth_rate),
+        np.sort(whole.complex_modes(critical=False).growth_rate),
+    )
+    system = whole.system()
+    assert system.parameters == {
+        "mu": 0.8,
+        "a_mu": 0.9,
+        "belt_speed": 50.0,
+        "preload": 1.0,
+    }
+    mass, damping, stiffness, normal, tangential, springs, preload = case
+    mu, side = np.array([0.9, 0.8]), np.array([1.0, -1.0])
+    acting = normal + tangential * (mu * side)
+    matrix = stiffness + acting * springs @ normal.T
+    first = np.block([
+        [np.zeros((5, 5)), np.eye(5)],
+        [-la.solve(mass, matrix), -la.solve(mass, damping)],
+    ])  # fmt: skip
+    rest = la.solve(matrix, (acting - normal) @ preload)
+    push = 1e-3 * np.arange(1.0, 6.0)
+    run = system.simulate(
+        3.0, start={f"q{i}": each for i, each in enumerate(rest + push, 1)}
+    )
+    end = la.expm(first * float(run.time[-1])) @ np.concatenate([push, np.zeros(5)])
+    found = np.array([run[f"q{i}"].values[-1] for i in range(1, 6)])
+    assert run.sizes["event"] == 0
+    assert np.allclose(found, rest + end[:5], atol=1e-9)
+
+
+def test_a_table_of_contacts_has_a_column_of_friction(tmp_path):
+    np.save(tmp_path / "K.npy", np.diag([2.0, 3.0]))
+    np.save(tmp_path / "M.npy", np.eye(2))
+    (tmp_path / "contacts.csv").write_text(
+        "name,normal,tangential,stiffness,preload,mu,mu_static\n"
+        "a,2:1,1:1,1,2,,\nb,2:1,1:2,1,2,0.3,35 %\n"
+    )
+    (tmp_path / "s.yaml").write_text(
+        "mass: M.npy\nstiffness: K.npy\ncontacts: contacts.csv\nmu: 0.2\n"
+    )
+    structure = read(tmp_path / "s.yaml", Structure)
+    assert structure.mu_of_contacts.tolist() == [0.2, 0.3]
+    assert structure.mu_static_of_contacts.tolist() == [0.2, 0.35]

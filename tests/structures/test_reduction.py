@@ -1,0 +1,276 @@
+"""A reduced structure against eigenvalues of the whole, assembled here and solved by SciPy."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import scipy.linalg as la
+
+from squealpipe import Contact, Structure, plot, squealing_modes
+from squealpipe.cli.signatures import in_options
+from squealpipe.codes import Verdict
+from squealpipe.structures import elastic_pad
+from squealpipe.structures.agreement import Truth
+from squealpipe.structures.reduction import Search, fewest_modes
+from squealpipe.structures.squeal.attractors import grouped
+from squealpipe.study.report.squealing import lines
+
+
+def chain(links, *, mu=0.5, offset=0.0):
+    """A mirror-symmetric chain of masses in a plane with a contact at each end.
+
+    Args:
+        offset: of the stiffness at one end, over itself: 0 keeps the mirror.
+    """
+    line = 1e8 * (2 * np.eye(links) - np.eye(links, k=1) - np.eye(links, k=-1))
+    line += 1e6 * np.eye(links)
+    line[0, 0] *= 1.0 + offset
+    stiffness = np.zeros((2 * links, 2 * links))
+    stiffness[::2, ::2], stiffness[1::2, 1::2] = line, 0.5 * line
+    contacts = [
+        Contact("left", {1: 1.0}, {0: 1.0}, 1e7, 100.0),
+        Contact("right", {2 * links - 1: 1.0}, {2 * links - 2: 1.0}, 1e7, 100.0),
+    ]
+    return Structure(
+        0.1 * np.eye(2 * links), stiffness, contacts=contacts, mu=mu, modal_damping=0.01
+    )
+
+
+def rigid_pad():
+    """A rigid pad on an elastic back that rests on its leading and its trailing edge."""
+    contacts = [
+        Contact("leading", {1: 1.0, 2: 0.03}, {0: 1.0, 2: 0.01}, 2e7, 300.0),
+        Contact("trailing", {1: 1.0, 2: -0.03}, {0: 1.0, 2: 0.01}, 2e7, 300.0),
+    ]
+    return Structure(
+        np.diag([0.3, 0.3, 1e-4]),
+        np.diag([3e7, 4e7, 1e4]),
+        contacts=contacts,
+        mu=0.6,
+        modal_damping=0.005,
+    )
+
+
+def eigenvalues(structure, ratio):
+    """About steady sliding, from dense arrays, s with Im s ≥ 0; None where none was found.
+
+    Args:
+        ratio: of the modes of (M, K + Σ k n nᵀ), beside the damping matrix.
+    """
+    mass, stiffness, damping = (
+        each.toarray()
+        for each in (structure.mass, structure.stiffness, structure.damping)
+    )
+    n, t, k, p = (
+        structure.normals,
+        structure.tangentials,
+        structure.stiffnesses,
+        structure.preloads,
+    )
+    acting = n + np.sign(structure.belt_speed * structure.speeds) * structure.mu * t
+    closed = np.ones(len(k), bool)
+    for _ in range(50):
+        rubbing = stiffness + acting * (k * closed) @ n.T
+        q = la.solve(rubbing, structure.load + acting @ (p * closed))
+        wrong = np.flatnonzero((p - k * (n.T @ q) > 0) != closed)
+        if not wrong.size:
+            break
+        closed[wrong[0]] ^= True
+    else:
+        return None
+    squares, shapes = la.eigh(stiffness + n * k @ n.T, mass)
+    to_modes = mass @ shapes
+    omega = np.sqrt(np.maximum(squares, 0.0))
+    damper = damping + to_modes @ np.diag(2 * ratio * omega) @ to_modes.T
+    zero, one = np.zeros_like(mass), np.eye(len(mass))
+    values = la.eigvals(
+        np.block([[zero, one], [-la.solve(mass, rubbing), -la.solve(mass, damper)]])
+    )
+    return values[values.imag >= 0]
+
+
+def test_contacts_on_one_tangent_have_complex_modes_and_are_refused_in_runs_alone():
+    pad = rigid_pad()
+    found = pad.complex_modes()
+    ours = found.growth_rate.values + 2j * np.pi * found.frequency.values
+    truth = eigenvalues(pad, 0.005)
+    assert np.sort_complex(ours) == pytest.approx(np.sort_complex(truth), rel=1e-9)
+    with pytest.raises(ValueError, match="dependent in the structure itself"):
+        pad.system()
+
+
+@pytest.mark.parametrize("links", [3, 20])
+def test_a_mirror_symmetric_structure_is_reduced_by_itself(links):
+    reduced = chain(links).reduce()
+    assert reduced.record["agrees"]
+    reduced.system()  # both contacts can stick
+    assert np.linalg.matrix_rank(reduced.tangentials, tol=1e-6) == 2
+
+
+def test_directions_dependent_in_the_modes_kept_name_the_number_that_suffices():
+    whole = chain(20)
+    few = whole.reduce(n_modes=2)
+    assert few.complex_modes().sizes["mode"] == 2
+    with pytest.raises(
+        ValueError, match=r"contacts left and right cannot all stick"
+    ) as error:
+        few.system()
+    enough = int(str(error.value).partition("n_modes=")[2].partition(" ")[0])
+    whole.reduce(n_modes=enough).system()
+    with pytest.raises(ValueError, match="dependent in the"):
+        whole.reduce(n_modes=enough - 1).system()
+
+
+def test_a_missing_mode_makes_the_verdict_undetermined_and_is_named():
+    """Without it the pad was quiet: in four modes nothing grows, in the whole 45 kHz does."""
+    pad = elastic_pad(elements=(10, 3), mu=0.6, modal_damping=0.008)
+    answer = squealing_modes(pad.reduce(n_modes=4), samples=1, t_end=1e-3, tol=1e-6)
+    truth = growing(pad, 0.008)
+    assert Verdict(int(answer.verdict)) is Verdict.undetermined
+    lost = (
+        answer.missing_growth_rate.values + 2j * np.pi * answer.missing_frequency.values
+    )
+    assert np.abs(truth - lost[0]).min() < 1e-6 * abs(lost[0])
+    enough = int(answer.modes_that_would_do)
+    assert pad.reduce(n_modes=enough).record["agrees"]
+    said = lines(answer)
+    assert said[0].startswith(
+        "Undetermined: 1 unstable mode of the whole structure (45.18 kHz"
+    )
+    assert f"{enough} modes would do: n_modes={enough}." in said[0]
+    # the error of what is shown is that from the whole structure's
+    for growth, error in zip(
+        answer.growth_rate.values, answer.mode_growth_rate_error.values, strict=True
+    ):
+        assert np.abs(np.abs(truth.real - growth) - error).min() < 1e-6 * growth
+    assert "±" in said[1]
+    assert plot(answer).has_data()
+
+
+def test_too_many_contacts_are_told_with_the_modes():
+    pad = elastic_pad(elements=(16, 1), contacts=17, mu=0.6, modal_damping=0.02)
+    answer = squealing_modes(pad, samples=2)
+    said = lines(answer)
+    assert said[0] == (
+        "Undetermined: nothing was run, because 17 contacts are more than the 16 that runs can "
+        "have."
+    )
+    assert len(answer.growth_rate) == len(growing(pad, 0.02)) == len(said) - 1
+
+
+def random_structure(seed, most=400):
+    """A pad of other shape, or masses with random springs and dashpots; 50 to 400 freedoms."""
+    rng = np.random.default_rng(seed)
+    mu, speed = (
+        float(rng.uniform(0.2, 0.9)),
+        float(rng.choice([-1.0, 1.0]) * rng.uniform(0.5, 8)),
+    )
+    damping = float(10 ** rng.uniform(-3.3, -1.5))
+    if seed % 2:
+        columns, rows = int(rng.integers(6, 20)), int(rng.integers(3, 7))
+        while 2 * (columns + 1) * (rows + 1) > most:
+            columns -= 1
+        return elastic_pad(
+            length=float(rng.uniform(0.03, 0.12)),
+            height=float(rng.uniform(0.008, 0.03)),
+            elements=(columns, rows),
+            contacts=int(rng.integers(1, 7)),
+            young=float(10 ** rng.uniform(9.3, 11.0)),
+            contact_stiffness=float(10 ** rng.uniform(8.0, 9.5)),
+            mu=mu,
+            belt_speed=speed,
+            modal_damping=damping,
+        ), damping  # fmt: skip
+    size = int(rng.integers(50, most + 1))
+    root = rng.standard_normal((size, size)) * (rng.random((size, size)) < 4 / size)
+    stiffness = 1e7 * (root @ root.T) + np.diag(10 ** rng.uniform(5, 8, size))
+    contacts = [
+        Contact(
+            f"c{place}",
+            {int(n): float(rng.normal()), int(t): float(0.3 * rng.normal())},
+            {int(t): float(rng.normal())},
+            float(10 ** rng.uniform(6.5, 8.5)),
+            float(rng.uniform(50, 500)),
+        )
+        for place, (n, t) in enumerate(
+            rng.permutation(size)[: 2 * int(rng.integers(1, 6))].reshape(-1, 2)
+        )
+    ]
+    return Structure(
+        np.diag(rng.uniform(0.05, 0.5, size)),
+        stiffness,
+        contacts=contacts,
+        mu=mu,
+        belt_speed=speed,
+        modal_damping=damping,
+    ), damping
+
+
+def growing(structure, ratio=0.0):
+    """Unstable eigenvalues; None where there is no steady sliding."""
+    values = eigenvalues(structure, ratio)
+    return None if values is None else values[values.real > 1e-7 * np.abs(values)]
+
+
+def judge(seed, most=400, up_to=60):
+    """Where a reduced structure that claims to agree does not, and where it claims to."""
+    structure, ratio = random_structure(seed, most)
+    truth = growing(structure, ratio)
+    if truth is None:  # no steady sliding was found here: nothing to compare with
+        return [], [], -1
+    search = Search(structure, Truth.of(structure, None), None)
+    wrong, decided = [], []
+    for number in range(fewest_modes(structure), min(up_to, structure.size) + 1):
+        try:
+            reduced = search.structure(number)
+        except ValueError as error:
+            assert "suffices" in str(error)  # noqa: PT017 (a contact without two directions)
+            continue
+        if not reduced.record["agrees"]:
+            continue
+        decided.append(number)
+        grows = growing(reduced)
+        # as many modes grow, at the same frequencies
+        off = np.abs(grows.imag[:, None] - truth.imag)
+        same = (
+            len(grows) == len(truth)
+            and (off.min(0, initial=np.inf) <= 0.11 * truth.imag).all()
+        )
+        if not same:
+            wrong.append(number)
+    return wrong, decided, len(truth)
+
+
+@pytest.mark.parametrize(
+    "seed", [3, *(pytest.param(seed, marks=pytest.mark.release) for seed in range(40))]
+)
+def test_a_reduced_structure_agrees_with_the_whole_or_says_that_it_does_not(seed):
+    small = seed == 3
+    wrong, decided, unstable = judge(seed, *((100, 16) if small else ()))
+    assert not wrong
+    assert decided or unstable  # what grows above all modes kept is not decided
+
+
+def test_remedies_are_in_the_words_of_the_terminal():
+    assert (
+        in_options("12 modes would do: n_modes=12.")
+        == "12 modes would do: --n-modes 12."
+    )
+    assert in_options("give frequency_max (Hz)") == "give --frequency-max (Hz)"
+    assert in_options("t_end = 1e-05: 4 periods") == "--t-end 1e-05: 4 periods"
+
+
+def test_motions_as_near_as_two_windows_of_one_are_one_attractor():
+    """Runs 2.5 % apart were two, though windows of one motion may differ by 3 %."""
+
+    def run(loss):
+        levels = SimpleNamespace(
+            velocities=np.array([1.0, 0.1]),
+            total=1.005,
+            separated=np.array([loss]),
+            stuck=np.zeros(1),
+        )
+        last = SimpleNamespace(levels=levels)
+        return SimpleNamespace(agrees=True, quiet=False, change=1e-3, last=last)
+
+    assert grouped([run(0.3), run(0.325), run(0.5)], 0).tolist() == [0, 0, 1]

@@ -1,0 +1,187 @@
+"""The report of a structure, on the example that ``init --structure`` writes."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from scipy.optimize import brentq
+
+from squealpipe import Structure
+from squealpipe.cli import run
+from squealpipe.store.mistakes import ConfigError
+from squealpipe.store.rerun.key import rule_key
+from squealpipe.study.configuration.settings import PAPER, parse_study, read_study
+from squealpipe.study.report import squealing as words
+from squealpipe.study.report import structure as report
+from squealpipe.study.report.build import write_document
+from squealpipe.study.structure_study import (
+    modes_over_friction,
+    read_structure,
+    squealing,
+)
+from squealpipe.text import number
+
+MU = 0.5
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("example")
+    assert run(["init", str(folder / "pads.yaml"), "--structure"]) == 0
+    return read_study(PAPER, folder / "pads.yaml")
+
+
+@pytest.fixture(scope="module")
+def section(study):
+    return study.slice("structure")["structure"] | {"samples": 3}
+
+
+@pytest.fixture(scope="module")
+def modes(section):
+    return modes_over_friction(read_structure(section), section)
+
+
+@pytest.fixture(scope="module")
+def answer(section):
+    return squealing(read_structure(section), section, 1)
+
+
+def test_friction_goes_no_further_than_the_limit_of_stick_allows(study):
+    text = Path(study.structure.file).read_text(encoding="utf-8")
+    folder = Path(study.structure.file).parent
+    (folder / "limited.yaml").write_text(f"{text}\nmu_static: 0.6\n", encoding="utf-8")
+    section = study.slice("structure")["structure"]
+    limited = section | {"file": str(folder / "limited.yaml")}
+    found = modes_over_friction(read_structure(limited), limited)
+    assert MU < float(found.mu[-1]) <= 0.6
+    assert MU in found.mu.values
+
+
+def growths(mu, added=0.0):
+    """Growth rates of both pads about steady sliding from numbers typed here, and numpy's own."""
+    stiffness = np.zeros((4, 4))
+    stiffness[:2, :2] = [[4e7, -1.2e7], [-1.2e7, 1e7]]
+    stiffness[2:, 2:] = [[6e7, -1.4e7], [-1.4e7, 1e7]]
+    stiffness += 4e6 * np.outer([0, 1, 0, 1], [0, 1, 0, 1])
+    at_rest = stiffness + np.diag([0, 3e7, 0, 5e7])
+    squares, shapes = np.linalg.eigh(at_rest / 0.4)
+    damping = shapes @ np.diag(2 * (0.01 + added) * np.sqrt(squares)) @ shapes.T
+    rubbing = at_rest.copy()
+    rubbing[0, 1] += mu * 3e7
+    rubbing[2, 3] += mu * 5e7
+    first_order = np.block([[np.zeros((4, 4)), np.eye(4)], [-rubbing / 0.4, -damping]])
+    values = np.linalg.eigvals(first_order)
+    return values.real[np.argsort(-values.real)]
+
+
+def onsets():
+    """Frictions at which the first and the second pair of modes turn unstable."""
+    first = brentq(lambda mu: growths(mu)[0], 0.1, 0.35)
+    second = brentq(lambda mu: growths(mu)[2], 0.35, 0.5)
+    return first, second
+
+
+def test_both_onsets_and_the_added_damping_are_those_of_eigenvalues_from_numpy(
+    modes, answer
+):
+    located = np.sort(modes.critical_mu.values[np.isfinite(modes.critical_mu.values)])
+    assert located == pytest.approx(onsets(), abs=1e-8)
+    damping = brentq(lambda added: growths(MU, added)[0], 0.0, 0.2)
+    assert float(answer.added_damping) == pytest.approx(damping, rel=1e-6)
+
+
+def test_the_answer_comes_first_and_says_mode_sound_cause_and_remedy(
+    modes, answer, tmp_path
+):
+    said = words.headline(answer)
+    worst = answer.isel(attractor=int(answer.ends_in[0])).separated_fraction
+    assert said.startswith("Hammers at 1.")
+    assert "nearest to unstable mode" in said
+    assert f"contact {worst.contact.values[worst.values.argmax()]} is open" in said
+    first, second = (number(each) for each in onsets())
+    cause = report.cause(modes, answer)
+    assert cause.index(f"mu = {first} on (flutter)") < cause.index(f"mu = {second} on")
+    stops = report.stops(modes, answer)
+    assert stops[0].startswith(f"Less friction: below mu = {first} (−42 %)")
+    assert "percentage points of damping ratio added to every mode" in stops[1]
+    assert [row["critical"] for row in report.onsets(modes)] == [
+        number(each, 4) for each in onsets()
+    ]
+    content = {
+        "title": "Report of a structure", "set": "", "verdict": "hammers", "headline": said,
+        "lines": [cause, words.level(answer)], "quiet": False, "stops": stops,
+        "fates": list(words.modes(answer)), "ends": list(words.attractors(answer)),
+        "onsets": report.onsets(modes), "contacts": report.contacts(answer),
+        "structure": report.structure(modes, answer), "rest": report.not_examined(answer),
+        "figures": {},
+    }  # fmt: skip
+    page = tmp_path / "index.html"
+    write_document("structure", content, {}, page=page, pdf=tmp_path / "report.pdf")
+    text = page.read_text(encoding="utf-8")
+    assert text.index(said) < text.rindex("What becomes of each unstable mode")
+
+
+def test_a_quiet_structure_is_told_with_its_margin(section, tmp_path, answer):
+    pads = Structure.read(section["file"])
+    modes = pads.complex_modes(mu=[0.0, 0.1, 0.2, 0.3, 0.4])
+    quiet = modes.assign_attrs(parameters=modes.attrs["parameters"].replace(
+        '"mu": 0.5', '"mu": 0.2'
+    ))  # fmt: skip
+    still = answer.copy()
+    still["pole_growth_rate"] = -np.abs(answer.pole_growth_rate)
+    assert report.cause(quiet, still) == (
+        "Steady sliding is stable: small motions die out."
+    )
+    first = number(onsets()[0])
+    assert report.stops(quiet, still) == [
+        f"Friction: small motions die out up to mu = {first} (+45 %)."
+    ]
+
+
+def test_an_edited_matrix_file_changes_the_key_of_the_rule(study, section):
+    file = Path(section["file"])
+    part = study.slice("structure")
+    before = rule_key(part, [])
+    matrix = file.with_name("stiffness.mtx")
+    text = matrix.read_text()
+    matrix.write_text(text.replace("6.0e7", "6.1e7"))
+    assert rule_key(part, []) != before
+    matrix.write_text(text)
+    assert rule_key(part, []) == before
+
+
+def test_a_configuration_of_a_structure_is_checked(tmp_path):
+    overlay = {"paper": False, "structure": {"file": "none.yaml"}}
+    (tmp_path / "mine.yaml").write_text(yaml.safe_dump(overlay))
+    with pytest.raises(ConfigError, match=r"structure.file = 'none.yaml': no file"):
+        read_study(PAPER, tmp_path / "mine.yaml")
+    with pytest.raises(ConfigError, match="write paper: false"):
+        parse_study({"structure": {"file": "a.yaml"}})
+    scene = {"mine": {"alpha1": 0.5, "alpha2": 0.8}}
+    with pytest.raises(ConfigError, match="another configuration"):
+        parse_study({"paper": False, "scenes": scene, "structure": {"file": "a.yaml"}})
+    with pytest.raises(ConfigError, match=r"structure\.samples"):
+        parse_study({"paper": False, "structure": {"file": "a.yaml", "samples": 0}})
+    units = {"file": "a.yaml", "t_end": "20 ms", "frequency_max": "10 kHz"}
+    parsed = parse_study({"paper": False, "structure": units}).structure
+    assert (parsed.t_end, parsed.frequency_max) == (0.02, 1e4)
+
+
+def test_the_example_is_written_once_and_whole(tmp_path, capsys):
+    file = str(tmp_path / "pads.yaml")
+    assert run(["init", file, "--structure", "--own"]) == 2
+    assert run(["init", file, "--structure"]) == 0
+    assert run(["init", file, "--structure"]) == 2
+    assert run(["init", str(tmp_path / "other.yaml"), "--structure"]) == 0
+    assert run(["init", file, "--structure", "--force"]) == 0
+    pads = read_structure(
+        {"file": str(tmp_path / "pads/structure.yaml"), "frequency_max": None}
+    )
+    assert [contact.preload for contact in pads.contacts] == [2e3, 2e3]
+    (tmp_path / "pads/structure.yaml").write_text(
+        "mass: mass.mtx\nstiffness: stiffness.mtx\n"
+    )
+    file = str(tmp_path / "pads/structure.yaml")
+    with pytest.raises(ValueError, match="names no contacts"):
+        read_structure({"file": file, "frequency_max": None})

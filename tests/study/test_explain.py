@@ -1,0 +1,128 @@
+"""The plan in words: rules, keys and sources, figures, and the time that they took before."""
+
+import json
+import os
+from dataclasses import replace
+
+import pytest
+
+from squealpipe.store.rerun.sources import PACKAGE
+from squealpipe.study.durations import job_times
+from squealpipe.study.explain import (
+    Explanation,
+    PlannedJob,
+    WorkflowError,
+    _changing,
+    explain,
+    snakemake_command,
+)
+
+
+def job(rule, seconds, outputs=(), reasons=(), follows=()):
+    lists = {
+        "outputs": list(outputs),
+        "reasons": list(reasons),
+        "follows": list(follows),
+    }
+    return PlannedJob(rule=rule, seconds=seconds, **lists)
+
+
+def test_plan_names_figures_and_time():
+    jobs = [
+        job(
+            "map_validity",
+            10.0,
+            ["results/data/validity_map.nc"],
+            ["parameters.mu: 0.3 → 0.4"],
+        ),
+        job(
+            "draw_linear",
+            2.0,
+            [f"results/figures/fig07.{end}" for end in ("png", "svg")],
+        ),
+        job(
+            "draw_model",
+            None,
+            ["results/figures/fig01.png"],
+            ["missing"],
+            ["map_validity"],
+        ),
+    ]
+    plan = Explanation(jobs=jobs, cores=2)
+    assert plan.figures == ["fig01", "fig07"]
+    assert Explanation(jobs=[replace(jobs[1], changing=["fig08"])]).figures == ["fig08"]
+    assert plan.seconds == 10.0, "no less than the longest job"
+    assert plan.estimate() == (
+        "about 10 s on 2 cores, from recorded times; not counted, never run: draw_model"
+    )
+    assert jobs[2].why() == "missing; follows map_validity"
+    assert json.loads(json.dumps(plan.as_dict()))["jobs"][0]["rule"] == "map_validity"
+    assert "not known" in Explanation(jobs=[jobs[2]]).estimate()
+
+
+def test_of_the_figures_that_a_rule_draws_those_change_that_an_edit_reaches(tmp_path):
+    """A module of one of them is edited, or a dataset of one is pending; the rule draws both."""
+    (tmp_path / "figures").mkdir()
+    for name in ("one.py", "two.py", "figures/one.png", "figures/two.png"):
+        (tmp_path / name).touch()
+        os.utime(tmp_path / name, (1000.0, 1000.0))
+    outputs = {
+        f"figures/{name}.png": {
+            "reads": [f"data/{name}.nc"],
+            "imports": [str(tmp_path / f"{name}.py")],
+        }
+        for name in ("one", "two")
+    }
+    assert _changing(tmp_path, outputs, {"data/one.nc"}) == ["one"]
+    assert _changing(tmp_path, outputs, set()) is None, "what is drawn with all of them"
+    os.utime(tmp_path / "two.py", (2000.0, 2000.0))
+    assert _changing(tmp_path, outputs, set()) == ["two"]
+    (tmp_path / "figures/one.png").unlink()
+    assert _changing(tmp_path, outputs, set()) == ["one", "two"]
+
+
+def test_times_come_from_snakemakes_records(tmp_path):
+    folder = tmp_path / ".snakemake/metadata"
+    folder.mkdir(parents=True)
+    for name, start, end in (("a", 1.0, 3.0), ("b", 1.0, 3.001)):
+        record = {"rule": "map_linear", "starttime": start, "endtime": end}
+        (folder / name).write_text(json.dumps(record))
+    (folder / "damaged").write_text("{")
+    assert job_times(tmp_path) == {"map_linear": pytest.approx(2.0, abs=0.01)}
+
+
+@pytest.mark.parametrize(
+    ("text", "results"),
+    [("", "results/quick"), ("results: results/mine\n", "results/mine-quick")],
+)
+def test_a_quick_study_goes_beside_the_full_one(tmp_path, text, results):
+    """Also where the overlay names a folder of its own."""
+    mine = tmp_path / "mine.yaml"
+    mine.write_text(text)
+    command, study = snakemake_command([mine], quick=True)
+    assert study.results == results
+    assert f"results={results}" in command
+    assert (str(mine) in command) == bool(text), "Snakemake takes no empty file"
+
+
+@pytest.mark.release
+def test_what_cannot_be_planned_is_one_message(tmp_path, monkeypatch):
+    (tmp_path / "Snakefile").write_text("raise ValueError('broken')\n")
+    monkeypatch.setattr("squealpipe.study.explain.WORKFLOW", tmp_path)
+    with pytest.raises(WorkflowError, match="broken"):
+        explain(directory=tmp_path)
+
+
+@pytest.mark.parametrize("ask", [snakemake_command, explain])
+def test_a_checkout_with_a_package_of_its_own_says_which_was_imported(ask, tmp_path):
+    (tmp_path / "Snakefile").touch()
+    package = tmp_path / "squealpipe"
+    package.mkdir()
+    (package / "__init__.py").write_bytes((PACKAGE / "__init__.py").read_bytes())
+    snakemake_command(directory=tmp_path)  # installed from this folder
+    (package / "__init__.py").touch()
+    (package / "reading.py").write_text("edited = True\n")
+    with pytest.raises(WorkflowError) as caught:
+        ask(directory=tmp_path)
+    assert f"imported from {PACKAGE}, but" in str(caught.value)
+    assert f"PYTHONPATH={tmp_path} before the command" in str(caught.value)

@@ -1,0 +1,90 @@
+"""Machine code of written functions, and the store that keeps it."""
+
+import ctypes
+import errno
+import os
+from functools import cache
+
+import numpy as np
+import pytest
+
+from squealpipe.systems.taylor import machine
+from squealpipe.systems.taylor.writing import compile_source
+
+SOURCE = """
+def horner(values, count, out):
+ total = 0.0
+ for k in range(count - 1, -1, -1):
+  total = total * 0.5 + number(values + 8 * k)
+ put(out, total)
+ return
+"""
+
+
+@pytest.fixture
+def compiled(tmp_path, monkeypatch):
+    """Compiles as a new process would, with a store of its own."""
+
+    def value():
+        monkeypatch.setattr(machine, "_ADDRESSES", {})
+        monkeypatch.setattr(machine, "_engine", cache(machine._engine.__wrapped__))
+        words = [ctypes.c_ssize_t] * 3
+        function = ctypes.CFUNCTYPE(None, *words)(compile_source(SOURCE))
+        values, out = np.array([1.0, -3.0, 5.0]), np.zeros(1)
+        function(values.ctypes.data, len(values), out.ctypes.data)
+        return out[0]
+
+    monkeypatch.setattr(machine, "store_folder", lambda *_: str(tmp_path / "store"))
+    return value
+
+
+def files(tmp_path):
+    return {path: path.read_bytes() for path in (tmp_path / "store").iterdir()}
+
+
+def test_a_function_is_compiled_once_and_kept(compiled, tmp_path, monkeypatch):
+    assert compiled() == 1.0 - 3.0 / 2 + 5.0 / 4
+    kept = files(tmp_path)
+    assert len(kept) == 1
+    monkeypatch.setattr(machine, "_compiled", None)
+    assert compiled() == 0.75
+    assert files(tmp_path) == kept
+
+
+@pytest.mark.parametrize("kept", [-100, 0])
+def test_a_damaged_file_of_the_store_is_written_anew(compiled, tmp_path, kept):
+    assert compiled() == 0.75
+    ((path, whole),) = files(tmp_path).items()
+    path.write_bytes(whole[:kept])
+    assert compiled() == 0.75
+    assert files(tmp_path) == {path: whole}
+
+
+def test_the_store_is_readable_as_others_are_and_forgets_what_it_kept_first(
+    compiled, tmp_path, monkeypatch
+):
+    (tmp_path / "another").write_text("")
+    assert compiled() == 0.75
+    ((path, whole),) = files(tmp_path).items()
+    assert path.stat().st_mode == (tmp_path / "another").stat().st_mode
+    old = path.with_name("old.o")
+    old.write_bytes(whole)
+    os.utime(old, (0, 0))
+    path.unlink()
+    monkeypatch.setattr(machine, "MOST", len(whole))
+    assert compiled() == 0.75
+    assert files(tmp_path) == {path: whole}
+
+
+def test_what_cannot_be_kept_leaves_no_file_behind(compiled, tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(errno.ENOSPC, "no space left")
+
+    monkeypatch.setattr(machine.Path, "replace", full)
+    assert compiled() == 0.75
+    assert not files(tmp_path)
+
+
+def test_without_a_place_to_write_it_is_compiled_in_memory(compiled, tmp_path):
+    (tmp_path / "store").write_text("a file in the way")
+    assert compiled() == 0.75

@@ -1,0 +1,94 @@
+"""The store of compiled kernels: current, shared, and done without where nothing can be written."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import squealpipe
+from squealpipe.systems import compiled
+
+PACKAGE = Path(squealpipe.__file__).parent
+PROGRAM = """
+import math
+from squealpipe.parameters import Parameters
+from squealpipe.brake.backbones.orbit import periodic_orbit
+params = Parameters(k3=0.75, mu=0.3, belt_speed=100.0, length1=5.0, length2=5.0)
+found = periodic_orbit(params, math.pi / 2, math.pi, mode=2, y_peak=2.0)
+print(repr(float(found.omega)))
+"""
+KNOWN = 1.23408516277258
+
+
+@pytest.fixture
+def copy(tmp_path):
+    """A copy of the package without any compiled code."""
+    shutil.copytree(
+        PACKAGE, tmp_path / "squealpipe", ignore=shutil.ignore_patterns("__pycache__")
+    )
+    return tmp_path
+
+
+def _run(folder, **environment):
+    return subprocess.Popen(
+        [sys.executable, "-B", "-c", PROGRAM], cwd=folder, stdout=subprocess.PIPE,
+        env={**os.environ, "PYTHONPATH": str(folder), **environment},
+        stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+
+
+def _omega(process):
+    out, errors = process.communicate(timeout=300)
+    assert process.returncode == 0, errors
+    return float(out)
+
+
+def test_every_kernel_file_is_part_of_the_digest():
+    """A kernel in a file that is not listed would be used stale after an edit."""
+    files = PACKAGE.rglob("*.py")
+    using = {path.name for path in files if "\n@compiled\n" in path.read_text("utf-8")}
+    assert len(using) > 2
+    assert using <= {path.name for path in compiled.kernel_sources()}
+
+
+@pytest.mark.release
+def test_processes_and_checkouts_share_one_store(copy, tmp_path):
+    place = {"XDG_CACHE_HOME": str(tmp_path / "cache"), "NUMBA_CACHE_DIR": ""}
+    together = [_run(copy, **place) for _ in range(2)]
+    assert [_omega(process) for process in together] == pytest.approx(
+        [KNOWN] * 2, abs=1.2e-14
+    )
+    stores = list((tmp_path / "cache/squealpipe").glob("kernels-*"))
+    assert len(stores) == 1
+    kept = {path.name for path in stores[0].rglob("*.nbc")}
+    assert kept
+    (copy / "squealpipe").rename(tmp_path / "moved")
+    (tmp_path / "other").mkdir()
+    other = (tmp_path / "moved").rename(tmp_path / "other/squealpipe").parent
+    assert _omega(_run(other, **place)) == pytest.approx(KNOWN, abs=1.2e-14)
+    assert {path.name for path in stores[0].rglob("*.nbc")} == kept
+
+
+def test_an_edit_of_any_kernel_opens_a_new_store(copy, monkeypatch):
+    """numba itself would go by the file of the calling kernel alone."""
+    monkeypatch.setattr(
+        compiled, "__file__", str(copy / "squealpipe/systems/compiled.py")
+    )
+    before = compiled._store.__wrapped__()
+    edited = copy / "squealpipe/brake/orbits/modal_flow.py"
+    edited.write_text(edited.read_text("utf-8") + "\n# edited\n", "utf-8")
+    assert compiled._store.__wrapped__() != before
+
+
+@pytest.mark.release
+def test_without_any_place_to_write_kernels_are_compiled_in_memory(copy):
+    """The place of the store is a file, which even root cannot write into."""
+    blocked = copy / "blocked"
+    blocked.write_text("", "utf-8")
+    found = _run(
+        copy, HOME=str(blocked), XDG_CACHE_HOME=str(blocked), NUMBA_CACHE_DIR=""
+    )
+    assert _omega(found) == pytest.approx(KNOWN, abs=1.2e-14)
