@@ -54,10 +54,7 @@ BY_NAME = {
     "squealpipe/__init__.py": "public names are loaded on first use",
     "squealpipe/benchmark/adapters/__init__.py": "a solver is loaded if it is asked for",
     "squealpipe/schema/__init__.py": "schemas register themselves by their module's name",
-    "squealpipe/store/__init__.py": "the workflow needs keys of files, and no Xarray for that",
-    "squealpipe/structures/__init__.py": "readers of files need the schemas, and no SciPy",
     "squealpipe/study/figures/declared.py": "figures do, too",
-    "squealpipe/systems/__init__.py": "import paths of 1.0.0",
 }
 """Modules that may import by a name that is computed, which no contract sees."""
 

@@ -20,8 +20,14 @@ Command = TypeVar("Command", bound=Callable[..., int])
 @cache
 def defaults_of(task: str) -> dict[str, Any]:
     """Argument → default of a public function of the package; those that are literals."""
-    place = squealpipe.HOME[task].split(".")[1:]
-    path = Path(str(squealpipe.__file__)).parent.joinpath(*place).with_suffix(".py")
+    package = Path(str(squealpipe.__file__)).parent
+    module = next(
+        str(node.module)
+        for node in ast.parse((package / "__init__.pyi").read_bytes()).body
+        if isinstance(node, ast.ImportFrom)
+        and task in {alias.name for alias in node.names}
+    )
+    path = package.joinpath(*module.split(".")).with_suffix(".py")
     for node in ast.parse(path.read_bytes()).body:
         if isinstance(node, ast.FunctionDef) and node.name == task:
             pairs = zip(node.args.kwonlyargs, node.args.kw_defaults, strict=True)

@@ -196,6 +196,7 @@ def test_systems_are_found_where_the_first_release_had_them():
 
     from squealpipe.systems import impact_oscillator as module
 
-    assert former is module.impact_oscillator is impact_oscillator
+    assert former is module.impact_oscillator
+    assert repr(former) == repr(impact_oscillator)
     with pytest.raises(ModuleNotFoundError, match="no_such_system"):
         import squealpipe.systems.no_such_system  # noqa: F401

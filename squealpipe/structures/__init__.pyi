@@ -1,0 +1,6 @@
+from .contact import Contact
+from .meshes.faces import Face, Rotation
+from .shipped_pad import elastic_pad
+from .structure import Structure
+
+__all__ = ["Contact", "Face", "Rotation", "Structure", "elastic_pad"]
