@@ -58,5 +58,5 @@ class Listing:
     fillers: tuple[int, ...] = ()
 
 
-RAGGED = ("event", "point", "switch", "sample", "harmonic")
+RAGGED = ("event", "point", "switch", "sample", "harmonic", "interval")
 """Dimensions whose length may differ from run to run of a sweep."""

@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.brake.assess.any_start import strikes
 from squealpipe.brake.assess.cures import Boundary, boundaries, nearest_angles
 from squealpipe.brake.assess.levels import levels
-from squealpipe.brake.assess.settling import pushed, settle, start_at
+from squealpipe.brake.assess.settling import pushed, settle, start_at, strikes
 from squealpipe.brake.assess.sliding import Design, Sliding
 from squealpipe.brake.linear.maps import stability_map
 from squealpipe.brake.schema.assess import ASSESS, CURES, Mechanism
@@ -20,6 +19,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
 from squealpipe.validation import Angle, Tolerance
+from squealpipe.vibration.boundaries import interval_table
 from squealpipe.vibration.settling import FOR_NUMBERS
 
 SEARCHED = 1e-9
@@ -49,7 +49,8 @@ def assess(
         verdict, and over ``cure``, by ascending change: the nearest value from which the brake is
         quiet (of a quiet one, up to which it is), from steady sliding and from any start that was
         tried: both above, three strikes, and the motions of this brake, followed. NaN: none between
-        ``lowest_tried`` and ``highest_tried``. Outcomes: converged, unresolved (undetermined),
+        ``lowest_tried`` and ``highest_tried``; ``quiet_low`` and ``quiet_high`` over ``interval``:
+        all intervals that are quiet after a push. Outcomes: converged, unresolved (undetermined),
         no_sliding_state.
     """
     return judge(params, alpha1, alpha2, tol=tol).with_cures()
@@ -106,6 +107,7 @@ class Judged:
                     name: np.array([getattr(each, key) for each in cures.values()])
                     for name, key in names.items()
                 },
+                **interval_table([each.intervals for each in cures.values()]),
                 "quiet_alpha1": nearest[0],
                 "quiet_alpha2": nearest[1],
                 "unit": np.array([CURES[name] for name in cures], str),

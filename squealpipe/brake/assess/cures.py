@@ -2,19 +2,27 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
-from squealpipe.brake.assess.any_start import any_start, dies_out_always, lead
-from squealpipe.brake.assess.designs import FARTHEST, STEP, Cure, cures_of
-from squealpipe.brake.assess.search import LOCATED, Side, nearer, search, sides_of
-from squealpipe.brake.assess.settling import pushed, settle
+from squealpipe.brake.assess.designs import FARTHEST, STEP, cures_of
+from squealpipe.brake.assess.settling import MOST, pushed, settle, start_at, strikes
 from squealpipe.brake.assess.sliding import Design, Sliding
 from squealpipe.brake.assess.snap_through import SnapThrough, snap_throughs
 from squealpipe.brake.schema.assess import CURES
 from squealpipe.codes import Verdict
+from squealpipe.vibration.any_start import any_start, dies_out_always, lead, sides_of
+from squealpipe.vibration.boundaries import (
+    Cure,
+    QuietInterval,
+    linear_intervals,
+    nearest_boundary,
+    quiet_intervals,
+)
+from squealpipe.vibration.settled_runs import SettledRun, Start
 
 RAYS = 24
 """Directions in which the nearest quiet pair of angles is looked for."""
@@ -32,6 +40,49 @@ class Boundary(NamedTuple):
     highest: float
     snaps_from: float
     snap_distance: float
+    intervals: Sequence[QuietInterval]
+
+
+def growth_margin(design: Design) -> float:
+    """By how much small motions grow faster than round-off, 1/s; positive without any sliding."""
+    sliding = Sliding.of(design)
+    return design.rate if sliding is None else sliding.margin
+
+
+@dataclass(frozen=True)
+class Pads:
+    """Pads as the search for other motions sees them.
+
+    Attributes:
+        tol: tolerance of the runs.
+    """
+
+    tol: float
+
+    def is_quiet_linearly(self, subject: Design) -> bool:
+        """Tell whether steady sliding exists, and small motions about it do not grow."""
+        return growth_margin(subject) <= 0.0
+
+    def fading(self, subject: Design) -> float:
+        """Return ln of the decay of small motions within the longest run; NaN where they grow."""
+        sliding = Sliding.of(subject)
+        if sliding is None or sliding.is_unstable:
+            return math.nan
+        return sliding.growth_rate * subject.period * MOST
+
+    def starts(
+        self, subject: Design, number: int, motions: Sequence[np.ndarray]
+    ) -> list[Start]:
+        """Return one kind of starts: states of motions, rest under the preload, or strikes."""
+        sliding = Sliding.of(subject)
+        if number == 2:
+            return [] if sliding is None else strikes(subject, sliding)
+        states = motions if number == 0 else [np.zeros(4)]
+        return [start_at(subject, sliding, state) for state in states]
+
+    def settle(self, starts: Sequence[Start]) -> list[SettledRun]:
+        """Run starts until they have settled."""
+        return settle(starts, tol=self.tol)
 
 
 def boundaries(
@@ -46,21 +97,30 @@ def boundaries(
     cures = cures_of(design)
     quiet = verdict is Verdict.quiet
 
-    dies_out, test = partial(_dies_out, tol=tol), partial(dies_out_always, tol=tol)
-    nearest = nearer(cures, search(sides_of(cures), quiet, dies_out, LOCATED))
+    pads = Pads(tol)
+    linear = {
+        name: linear_intervals(cure, growth_margin) for name, cure in cures.items()
+    }
+    dies_out = partial(_dies_out, tol=tol)
+    intervals = quiet_intervals(cures, linear, dies_out, quiet=quiet)
+    nearest = {
+        name: nearest_boundary(intervals[name], cure.value, quiet=quiet)
+        for name, cure in cures.items()
+    }
+    test = partial(dies_out_always, subjects=pads)
     sides = sides_of(cures)
     for side in sides:
         side.motions = list(motions)
     always = quiet and not motions and Sliding.of(design) is not None
     if not quiet:
-        lead(sides, nearest, tol=tol)
-    follow = partial(dies_out_always, tol=tol, kinds=1)
-    anywhere = any_start(cures, sides, nearest, quiet, always, test, follow)
+        lead(sides, nearest, pads)
+    follow = partial(dies_out_always, subjects=pads, kinds=1)
+    anywhere = any_start(cures, sides, nearest, quiet, always, pads, test, follow)
     snaps = snap_throughs(cures, nearest) if quiet else {}
     located = {}
     for name, cure in cures.items():
         ends = [*cure.below, cure.value, *cure.above]
-        first, second = nearest.get(name, math.nan), anywhere.get(name, math.nan)
+        first, second = nearest[name], anywhere.get(name, math.nan)
         located[name] = Boundary(
             cure.value,
             first,
@@ -70,6 +130,7 @@ def boundaries(
             min(ends),
             max(ends),
             *snaps.get(name, SnapThrough()),
+            intervals[name],
         )
     return dict(
         sorted(
@@ -91,7 +152,7 @@ def nearest_angles(
     nearer.
     """
     steps = STEP * np.arange(1, 1 + round(FARTHEST / STEP))
-    sides = []
+    rays = {}
     for turn in np.linspace(0.0, 2.0 * math.pi, RAYS, endpoint=False):
         along, across = math.cos(turn), math.sin(turn)
 
@@ -103,16 +164,20 @@ def nearest_angles(
                 alpha2=design.alpha2 + distance * across,
             )
 
-        cure = Cure(0.0, apply, np.zeros(0), steps)
-        sides.append(Side("alpha", cure, steps, 0.0))
-
-    dies_out = partial(_dies_out, tol=tol)
-    found = search(sides, verdict is Verdict.quiet, dies_out, LOCATED)
-    known = [side for side in found if not math.isnan(side.answer)]
-    if not known:
+        rays[f"{turn}"] = Cure(0.0, apply, np.zeros(0), steps, is_angle=True)
+    quiet = verdict is Verdict.quiet
+    linear = {
+        name: linear_intervals(ray, growth_margin)[:1] for name, ray in rays.items()
+    }
+    intervals = quiet_intervals(rays, linear, partial(_dies_out, tol=tol), quiet=quiet)
+    known = {
+        name: nearest_boundary(those, 0.0, quiet=quiet)
+        for name, those in intervals.items()
+    }
+    best = min(known, key=lambda name: known[name] if known[name] > 0 else math.inf)
+    if not known[best] >= 0.0:
         return math.nan, math.nan
-    best = min(known, key=lambda side: side.answer)
-    there = best.cure.apply(best.answer)
+    there = rays[best].apply(known[best])
     return there.alpha1, there.alpha2
 
 
@@ -124,17 +189,17 @@ def _change(name: str, value: float, found: float) -> float:
 
 
 def _dies_out(
-    sides: Sequence[Side], values: Sequence[float], *, tol: float
+    cures: Sequence[Cure], values: Sequence[float], *, tol: float
 ) -> list[bool]:
-    """Whether pushed steady sliding of each side's design ends quiet; where there is none, no."""
+    """Tell whether pushed steady sliding ends quiet; where there is none it does not."""
     rows, starts = [], []
-    for row, (side, value) in enumerate(zip(sides, values, strict=True)):
-        design = side.cure.apply(value)
+    for row, (cure, value) in enumerate(zip(cures, values, strict=True)):
+        design = cure.apply(value)
         sliding = Sliding.of(design)
         if sliding is not None and not sliding.is_unstable:
             rows.append(row)
             starts.append(pushed(design, sliding))
-    answers = [False] * len(sides)
+    answers = [False] * len(cures)
     for row, settled in zip(rows, settle(starts, tol=tol) if rows else [], strict=True):
-        answers[row] = settled.verdict is Verdict.quiet
+        answers[row] = settled.quiet
     return answers

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 
@@ -11,6 +10,7 @@ from squealpipe.laws.friction_laws import COULOMB, LAWS
 from squealpipe.laws.tables import is_table, scaled
 from squealpipe.parameters import Parameters
 from squealpipe.substitutes import critical_damping
+from squealpipe.vibration.boundaries import Cure
 
 FACTOR = 10.0
 """Largest factor that a stiffness, the preload or the belt speed is changed by, either way."""
@@ -31,21 +31,6 @@ def coefficient(speed, p):
     return p.mu * _plain_coefficient(speed, _AsGiven)
 """
 """Added to a Python law: with ``mu`` as its factor it is compiled once for all of them."""
-
-
-class Cure(NamedTuple):
-    """One change of a design.
-
-    Attributes:
-        value: the present value.
-        apply: the design with another value.
-        below, above: values on either side, away from the present one.
-    """
-
-    value: float
-    apply: Callable[[float], Design]
-    below: np.ndarray
-    above: np.ndarray
 
 
 def cures_of(design: Design) -> dict[str, Cure]:
@@ -72,7 +57,7 @@ def cures_of(design: Design) -> dict[str, Cure]:
     for name in ("alpha1", "alpha2"):
         now = getattr(design, name)
         steps = STEP * np.arange(1, 1 + round(FARTHEST / STEP))
-        cures[name] = Cure(now, angle(name), now - steps, now + steps)
+        cures[name] = Cure(now, angle(name), now - steps, now + steps, is_angle=True)
     cures["damping"] = _damping(design)
     return cures
 

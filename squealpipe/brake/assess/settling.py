@@ -7,6 +7,7 @@ import numpy as np
 from squealpipe.brake.assess.sliding import Design, Sliding
 from squealpipe.brake.assess.windows import run_windows
 from squealpipe.brake.models.damped import is_undamped
+from squealpipe.brake.schema.assess import KICKS
 from squealpipe.vibration.settled_runs import QUIETNESS, Horizon, SettledRun, Start
 from squealpipe.vibration.settled_runs import settle as settle_runs
 from squealpipe.vibration.settling import FOR_VERDICTS, Settling
@@ -38,6 +39,20 @@ def start_at(design: Design, sliding: Sliding | None, state: np.ndarray) -> Star
         own = float(np.hypot(away, np.hypot(*state[2:])))
         speed = max(speed, own / QUIETNESS.stays_small * 2.0)
     return _start(design, sliding, np.asarray(state, float), speed)
+
+
+def strikes(design: Design, sliding: Sliding) -> list[Start]:
+    """Return steady sliding, struck."""
+    speed = design.params.preload * design.rate
+    along = design.params.belt_direction
+    return [
+        start_at(
+            design,
+            sliding,
+            sliding.state + speed * np.array([0.0, 0.0, along * first, second]),
+        )
+        for first, second in KICKS
+    ]
 
 
 def _start(

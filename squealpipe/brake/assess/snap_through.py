@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squealpipe.brake.assess.designs import Cure
 from squealpipe.brake.assess.sliding import Design, Sliding
+from squealpipe.vibration.boundaries import Cure
 
 VALUES = 12
 """Values of each side at which the place is looked up; a snap and its return between two of them

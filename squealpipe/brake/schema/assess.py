@@ -165,6 +165,16 @@ ASSESS = DatasetSchema(
             dims=("cure",),
             rtol=2e-2,
         ),
+        **{
+            f"quiet_{end}": or_nan(
+                f"{end}er end of each interval of values that are quiet after a push, the "
+                "nearest first; the end of the range searched where quiet does not end there",
+                dims=("cure", "interval"),
+                rtol=2e-3,
+                optional=True,
+            )
+            for end in ("low", "high")
+        },
         "change": or_nan(
             "change from the present value to quiet_from, in per cent (angles: degrees)",
             dims=("cure",),

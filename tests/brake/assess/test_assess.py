@@ -7,9 +7,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from squealpipe import Parameters, Sweep, assess, load, run_sweep, save, stability_map
+from squealpipe.brake.assess.cures import growth_margin
 from squealpipe.brake.assess.designs import cures_of
 from squealpipe.brake.assess.levels import error_of_mean, levels
-from squealpipe.brake.assess.search import LOCATED, search, sides_of
 from squealpipe.brake.assess.settling import pushed, settle, start_at
 from squealpipe.brake.assess.sliding import Design, Sliding
 from squealpipe.brake.assess.windows import run_windows
@@ -18,6 +18,7 @@ from squealpipe.cli import run
 from squealpipe.codes import Verdict
 from squealpipe.study.report.answer import first_lines
 from squealpipe.substitutes import critical_damping
+from squealpipe.vibration.boundaries import linear_intervals
 from squealpipe.vibration.settled_runs import Horizon
 from squealpipe.vibration.settled_runs import settle as settle_runs
 from squealpipe.vibration.settling import FOR_NUMBERS, FOR_VERDICTS
@@ -177,11 +178,6 @@ def test_without_friction_it_is_quiet_and_the_margin_is_where_it_starts():
         assert growth.item() * sign > 0.0
 
 
-def is_quiet(sides, values):
-    """An answer of runs that all die out: the linear boundary decides."""
-    return [True for _ in zip(sides, values, strict=True)]
-
-
 @pytest.mark.parametrize("speed", [10.0, 12.0, 14.0])
 def test_damping_that_outweighs_a_slight_fall_of_friction_has_a_closed_form(speed):
     """At K12 = 0 the dashpots along the belt and N dμ/dw cancel, though growth is 1e-7 or less."""
@@ -193,9 +189,9 @@ def test_damping_that_outweighs_a_slight_fall_of_friction_has_a_closed_form(spee
         force * (0.55 - 0.37) * math.exp(-speed) / critical_damping(pad.k1, pad.mass)
     )
     damping = cures_of(Design(pad, math.pi / 4, math.pi / 4))["damping"]
-    sides = sides_of({"damping": damping})
-    (side,) = search(sides, False, is_quiet, LOCATED)
-    assert side.answer == pytest.approx(truth, rel=1e-3)
+    (interval,) = linear_intervals(damping, growth_margin)
+    assert interval.low == pytest.approx(truth, rel=1e-3)
+    assert interval.high_open
 
 
 def test_a_stretch_of_noise_between_two_quiet_values_is_seen():
@@ -208,9 +204,9 @@ def test_a_stretch_of_noise_between_two_quiet_values_is_seen():
         friction_speed=2.063646776673715,
     )  # fmt: skip
     cures = cures_of(Design(pad, 0.4362176191815051, 0.7838847933211535))
-    sides = sides_of({"alpha1": cures["alpha1"]})
-    _, above = search(sides, True, is_quiet, LOCATED)
-    assert 0.65 < above.answer < 0.6525
+    intervals = linear_intervals(cures["alpha1"], growth_margin)
+    present = next(each for each in intervals if each.contains(cures["alpha1"].value))
+    assert 0.65 < present.high < 0.6525
 
 
 def test_growth_of_small_motions_is_that_of_a_run():

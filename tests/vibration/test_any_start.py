@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from squealpipe.brake.assess.any_start import any_start
-from squealpipe.brake.assess.designs import Cure
-from squealpipe.brake.assess.search import sides_of
+from squealpipe.vibration.any_start import any_start, sides_of
+from squealpipe.vibration.boundaries import Cure
 
 
 @pytest.mark.parametrize("fold", [0.0213, 0.0041])
@@ -28,6 +27,6 @@ def test_a_motion_that_lasts_far_beyond_is_followed_to_its_fold(fold):
 
     quiet_from = {"mu": 0.0225}
     found = any_start(
-        {"mu": cure}, [side], quiet_from, False, False, dies_out, dies_out
+        {"mu": cure}, [side], quiet_from, False, False, None, dies_out, dies_out
     )
     assert 0.989 * fold < found["mu"] <= fold

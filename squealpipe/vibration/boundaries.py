@@ -1,0 +1,348 @@
+"""Find all values of one parameter at which a vibrating subject is quiet.
+
+Idea: steady sliding that is linearly unstable is never quiet. So the range of a parameter is split
+where growth crosses zero, which costs no run; in each stretch where small motions die out, runs
+next to both of its ends and at some values between them tell whether a push dies out there. Where
+it does right beside a linear boundary that boundary is the end of the quiet interval; between a
+quiet and a noisy value runs bisect. All parameters are tested side by side.
+
+Invariant: growth that comes up to zero between three stable values and crosses it twice is seen; a
+stretch of quiet between two values that are looked at is not. Cost: two to ten runs an interval,
+and one for each halving.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+import scipy
+
+
+@dataclass(frozen=True)
+class Search:
+    """Thresholds of the search; each comment says what another value would do."""
+
+    located: float = 1e-3
+    """To which a boundary is located by runs: of the value, or rad. Half as much: one run more."""
+    least: float = 1e-3
+    """Values below this, over the present one, are located as if they were this. Half as much: one
+    run more where a boundary lies near 0."""
+    rungs: int = 8
+    """Most values within a stretch that are run. Twice as many: shorter noise within quiet is
+    seen, at twice the cost."""
+    root: float = 1e-14
+    """To which the linear boundary is located, relatively; more would show in printed digits."""
+
+
+SEARCH = Search()
+
+
+class Cure(NamedTuple):
+    """One parameter of a subject that is changed.
+
+    Attributes:
+        value: the present value.
+        apply: the subject with another value.
+        below, above: values on either side that are looked at, away from the present one.
+        is_angle: whether values are located absolutely, in rad.
+    """
+
+    value: float
+    apply: Callable[[float], Any]
+    below: np.ndarray
+    above: np.ndarray
+    is_angle: bool = False
+
+    @property
+    def grid(self) -> np.ndarray:
+        """All values that are looked at, ascending or descending with ``above``."""
+        return np.unique([*self.below, self.value, *self.above])
+
+    def scale(self, located: float, value: float) -> float:
+        """Return the distance next to a value that counts as located."""
+        if self.is_angle:
+            return located
+        return located * max(abs(value), SEARCH.least * abs(self.value), 1e-12)
+
+
+@dataclass
+class QuietInterval:
+    """Values from ``low`` to ``high`` at which the subject is quiet.
+
+    Attributes:
+        low_open, high_open: whether the range that was searched ends there, and not the quiet.
+    """
+
+    low: float
+    high: float
+    low_open: bool = False
+    high_open: bool = False
+
+    def contains(self, value: float) -> bool:
+        """Tell whether a value is in it."""
+        return self.low <= value <= self.high
+
+    def distance(self, value: float) -> float:
+        """Return how far a value has to be changed to be quiet."""
+        return max(self.low - value, value - self.high, 0.0)
+
+    def edges(self) -> list[float]:
+        """Return its ends that are boundaries, not ends of the range."""
+        ends = (self.low, self.low_open), (self.high, self.high_open)
+        return [end for end, is_open in ends if not is_open]
+
+
+Margin = Callable[[Any], float]
+"""By how much small motions of a subject grow faster than round-off, 1/s; positive where there is
+no steady sliding."""
+Test = Callable[[Sequence[Cure], Sequence[float]], Sequence[bool]]
+"""Whether a push dies out at some values of some parameters."""
+
+
+def linear_intervals(cure: Cure, margin: Margin) -> list[QuietInterval]:
+    """Return the stretches of a parameter's range in which small motions do not grow."""
+
+    def at(value: float) -> float:
+        return margin(cure.apply(value))
+
+    values = cure.grid.tolist()
+    margins = [at(value) for value in values]
+    values, margins = _with_peaks(at, values, margins)
+    intervals: list[QuietInterval] = []
+    for place, value in enumerate(values):
+        if margins[place] > 0.0:
+            continue
+        if place and margins[place - 1] <= 0.0:
+            intervals[-1].high = value
+            continue
+        begins = QuietInterval(value, value, low_open=True, high_open=True)
+        if place:
+            begins.low, begins.low_open = _zero(at, value, values[place - 1]), False
+        intervals.append(begins)
+    # where each ends
+    for interval in intervals:
+        place = values.index(interval.high)
+        if place + 1 < len(values):
+            interval.high = _zero(at, values[place], values[place + 1])
+            interval.high_open = False
+    return intervals
+
+
+def _with_peaks(
+    at: Callable[[float], float], values: list[float], margins: list[float]
+) -> tuple[list[float], list[float]]:
+    """Return values and margins, with those at which growth crosses zero twice between two."""
+    for place in range(len(values) - 2, 0, -1):
+        three = margins[place - 1 : place + 2]
+        if max(three) > 0.0 or not three[1] > max(three[0], three[2]):
+            continue
+        low, high = values[place - 1], values[place + 1]
+        found = scipy.optimize.minimize_scalar(
+            lambda value: -at(float(value)),
+            bounds=(low, high),
+            method="bounded",
+            options={"xatol": 0.02 * (high - low)},
+        )
+        peak = float(found.x)
+        if at(peak) > 0.0 and peak not in values:
+            values, margins = [*values, peak], [*margins, at(peak)]
+    order = np.argsort(values)
+    return [values[i] for i in order], [margins[i] for i in order]
+
+
+def _zero(at: Callable[[float], float], stable: float, unstable: float) -> float:
+    """Return the last value at which small motions do not grow, on the way to one where they do.
+
+    Where growth crosses zero, by Brent's method, which bisects where it jumps.
+    """
+    near = SEARCH.root * abs(unstable - stable)
+    root = float(
+        scipy.optimize.brentq(at, stable, unstable, xtol=near, rtol=SEARCH.root)
+    )
+    step = near + SEARCH.root * abs(root)
+    value = root
+    while value != stable and at(value) > 0.0:
+        way = min(step, abs(stable - root))
+        value, step = root + math.copysign(way, stable - root), 4.0 * step
+    return value
+
+
+def thinned(values: np.ndarray, count: int = SEARCH.rungs) -> list[float]:
+    """Return some of the values, dense at first, the last among them."""
+    if not values.size:
+        return []
+    places = np.geomspace(1, values.size, min(count, values.size)).astype(int)
+    return [float(value) for value in values[np.unique(places) - 1]]
+
+
+@dataclass
+class _Stretch:
+    """One linear interval of one parameter, and the values at which it is tested.
+
+    Attributes:
+        tried: value → whether it is quiet.
+    """
+
+    cure: Cure
+    interval: QuietInterval
+    tried: dict[float, bool] = field(default_factory=dict)
+
+    def plan(self, *, quiet: bool, located: float) -> list[float]:
+        """Return the values to run."""
+        interval, cure = self.interval, self.cure
+        now, grid = cure.value, cure.grid
+        inside = grid[(grid > interval.low) & (grid < interval.high)]
+        if not interval.contains(now):
+            away = inside[np.argsort(np.abs(inside - now))]
+            chosen = thinned(away)
+        else:
+            self.tried[now] = quiet
+            chosen = []
+            for is_open, side in (
+                (interval.low_open, inside[inside < now][::-1]),
+                (interval.high_open, inside[inside > now]),
+            ):
+                # a quiet subject is taken to be quiet as far as it is right beside the boundary
+                if not quiet or is_open:
+                    chosen += thinned(side)
+        low, high = (
+            self._beside(end, other, is_open, located)
+            for end, other, is_open in (
+                (interval.low, interval.high, interval.low_open),
+                (interval.high, interval.low, interval.high_open),
+            )
+        )
+        chosen = [value for value in chosen if low < value < high]
+        return [v for v in dict.fromkeys([*chosen, low, high]) if v not in self.tried]
+
+    def _beside(self, end: float, other: float, is_open: bool, located: float) -> float:
+        """Return the value that tells whether an end of the stretch is quiet."""
+        if is_open:
+            return end
+        step = min(self.cure.scale(located, end), 0.5 * abs(other - end))
+        return end + math.copysign(step, other - end)
+
+    def brackets(self) -> list[list[float]]:
+        """Return quiet and noisy neighbours between which the verdict changes."""
+        order = sorted(self.tried)
+        return [
+            [one, other] if self.tried[one] else [other, one]
+            for one, other in pairwise(order)
+            if self.tried[one] != self.tried[other]
+        ]
+
+
+def quiet_intervals(
+    cures: Mapping[str, Cure],
+    linear: Mapping[str, Sequence[QuietInterval]],
+    test: Test,
+    *,
+    quiet: bool,
+    located: float = SEARCH.located,
+) -> dict[str, list[QuietInterval]]:
+    """Return all quiet intervals of each parameter, the nearest first.
+
+    Args:
+        linear: stretches of each in which small motions do not grow.
+        test: whether a push dies out, by runs.
+        quiet: whether it does now.
+    """
+    stretches = {
+        name: [_Stretch(cure, each) for each in linear[name]]
+        for name, cure in cures.items()
+    }
+    every = [each for those in stretches.values() for each in those]
+    asked = [
+        (each, value)
+        for each in every
+        for value in each.plan(quiet=quiet, located=located)
+    ]
+    _run(asked, test)
+    _bisect(every, test, located)
+    answers = {}
+    for name, those in stretches.items():
+        now = cures[name].value
+        intervals = [part for each in those for part in _quiet_parts(each)]
+        answers[name] = sorted(intervals, key=lambda one: one.distance(now))
+    return answers
+
+
+def _run(asked: Sequence[tuple[_Stretch, float]], test: Test) -> None:
+    if not asked:
+        return
+    cures = [each.cure for each, _ in asked]
+    dies = test(cures, [value for _, value in asked])
+    for (each, value), answer in zip(asked, dies, strict=True):
+        each.tried[value] = bool(answer)
+
+
+def _bisect(stretches: Sequence[_Stretch], test: Test, located: float) -> None:
+    """Halve brackets until each is as narrow as a boundary is located."""
+    while True:
+        asked = []
+        for each in stretches:
+            for one, other in each.brackets():
+                # next to a boundary of growth the bracket is as narrow as it can be
+                near = min(one, other, key=abs)
+                if abs(one - other) > each.cure.scale(located, near) * (1.0 + 1e-9):
+                    asked.append((each, 0.5 * (one + other)))
+        if not asked:
+            return
+        _run(asked, test)
+
+
+def _quiet_parts(stretch: _Stretch) -> list[QuietInterval]:
+    """Return the quiet parts of a stretch by what was tried in it."""
+    order = sorted(stretch.tried)
+    parts: list[QuietInterval] = []
+    for place, value in enumerate(order):
+        if not stretch.tried[value]:
+            continue
+        if place and stretch.tried[order[place - 1]]:
+            parts[-1].high = value
+        else:
+            parts.append(QuietInterval(value, value))
+    for part in parts:
+        first, last = part.low == order[0], part.high == order[-1]
+        part.low_open = first and stretch.interval.low_open
+        part.high_open = last and stretch.interval.high_open
+        if first:
+            part.low = stretch.interval.low
+        if last:
+            part.high = stretch.interval.high
+    return parts
+
+
+def nearest_boundary(
+    intervals: Sequence[QuietInterval], value: float, *, quiet: bool
+) -> float:
+    """Return the nearest value at which the verdict changes between quiet and not; NaN if none.
+
+    Args:
+        intervals: the nearest first.
+        quiet: whether the present value is quiet.
+    """
+    if quiet:
+        edges = [e for each in intervals if each.contains(value) for e in each.edges()]
+    else:
+        edges = [
+            each.low if each.low > value else each.high
+            for each in intervals
+            if not each.contains(value)
+        ]
+    return min(edges, key=lambda edge: abs(edge - value), default=math.nan)
+
+
+def interval_table(rows: Sequence[Sequence[QuietInterval]]) -> dict[str, np.ndarray]:
+    """Return ``quiet_low`` and ``quiet_high``, (cures, intervals); NaN where there are fewer."""
+    count = max((len(row) for row in rows), default=0)
+    table = np.full((2, len(rows), count), np.nan)
+    for place, row in enumerate(rows):
+        table[0, place, : len(row)] = [each.low for each in row]
+        table[1, place, : len(row)] = [each.high for each in row]
+    return {"quiet_low": table[0], "quiet_high": table[1]}
