@@ -25,7 +25,7 @@ from squealpipe.cli.console import (
 )
 from squealpipe.cli.files import convert, plot, spectrum
 from squealpipe.cli.inputs import read_brake
-from squealpipe.cli.listen import listen
+from squealpipe.cli.listen import animate, listen
 from squealpipe.cli.maps import basin, disturbance, map_angles, refine
 from squealpipe.cli.models import choose, infer, propensity
 from squealpipe.cli.motions import backbone, branch, cycle, simulate
@@ -63,6 +63,7 @@ COMMANDS: dict[str, Callable[..., int]] = {
     "plot": plot,
     "spectrum": spectrum,
     "listen": listen,
+    "animate": animate,
     "convert": convert,
     "init": init,
     "run": run_study,

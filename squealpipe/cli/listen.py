@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from squealpipe.cli.arguments import Force, OutputElsewhere, Share, Time
-from squealpipe.cli.console import DONE, answer, say
+from squealpipe.cli.arguments import Dpi, Force, OutputElsewhere, Share, Time
+from squealpipe.cli.console import DONE, answer, say, working
 from squealpipe.cli.output import check_output
 
 if TYPE_CHECKING:
     import numpy as np
     import xarray as xr
+
+FILMS = (".mp4", ".gif", ".html")
 
 
 def listen(
@@ -69,5 +71,63 @@ def listen(
         )
     write_wav(heard, target, seconds)
     answer(heard.told())
+    say(f"wrote {target}")
+    return DONE
+
+
+def animate(
+    file: Path,
+    /,
+    *,
+    output: OutputElsewhere = None,
+    seconds: Time = 3.0,
+    periods: Annotated[Share | None, Parameter(negative="")] = None,
+    begin: Time | None = None,
+    dpi: Dpi = None,
+    force: Force = False,
+) -> int:
+    """Write a film of the end of a run: the pad on its springs, contact force and path.
+
+    Contacts are coloured by what they do: slip, stick or open. Without ffmpeg (`pip install
+    imageio-ffmpeg`) only .gif and .html can be written.
+
+    Example: `squealpipe animate run.nc -o run.mp4`
+
+    Args:
+        file: run that `squealpipe simulate -o` or `squealpipe assess -o` wrote.
+        output: film to write (.mp4, .gif or .html); by default FILE.mp4, here.
+        seconds: length of the film, s.
+        periods: periods of the strongest line that are shown; by default one in each second.
+        begin: instant of the run at which the film begins, s; by default the film ends with the
+            run.
+        dpi: dots per inch of a picture of 8 by 4.5 inches; 120 by default.
+    """
+    target = Path(file.with_suffix(".mp4").name) if output is None else output
+    check_output(target, force=force, kinds=FILMS)
+
+    from squealpipe.plotting.animation import film_of
+    from squealpipe.plotting.film import NO_FFMPEG, has_ffmpeg, write_film
+    from squealpipe.store import load
+
+    if target.suffix == ".mp4" and not has_ffmpeg():
+        raise ValueError(NO_FFMPEG)
+    run = load(file)
+
+    def again(times: np.ndarray) -> xr.Dataset:
+        from squealpipe.brake.dynamics.again import simulated_again
+
+        return simulated_again(run, times)
+
+    made = film_of(
+        run,
+        seconds=seconds,
+        periods=periods,
+        begin=begin,
+        again=again,
+        dpi=120 if dpi is None else dpi,
+    )
+    with working("film"):
+        write_film(made, target, str(run.attrs.get("title", file.name)))
+    answer(made.scene.caption)
     say(f"wrote {target}")
     return DONE

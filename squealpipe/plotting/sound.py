@@ -14,7 +14,6 @@ samples as are heard.
 """
 
 import io
-import json
 import math
 import struct
 import wave
@@ -28,6 +27,7 @@ from scipy.interpolate import make_interp_spline
 from scipy.signal import correlate, resample
 
 from squealpipe.codes import Regime
+from squealpipe.plotting.pad_motion import PadMotion
 from squealpipe.store.whole_files import whole_file
 from squealpipe.text import number
 from squealpipe.units import engineering
@@ -83,6 +83,11 @@ class Listening:
 
 
 LISTENING = Listening()
+
+
+COMPONENTS = ("x", "y")
+WORDS = {"x": "along the belt (x)", "y": "across the belt (y)"}
+"""Component of a pad's velocity → words."""
 
 
 class TooCoarseError(ValueError):
@@ -179,7 +184,7 @@ def sound(
     """Make the settled part of a run audible.
 
     Args:
-        run: dataset ``simulation``.
+        run: dataset ``simulation``, or the settled motion of ``assess``.
         at: ``x`` or ``y``; by default the one with the larger rms velocity.
         seconds: length that the sound will be repeated to, s; a loop is no longer.
         speed: how many times faster than in reality it is played.
@@ -195,23 +200,25 @@ def sound(
         raise ValueError(f"seconds = {seconds!r}: a time above 0 is needed")
     if not (math.isfinite(speed) and speed > 0):
         raise ValueError(f"speed = {speed!r}: a factor above 0 is needed")
-    time, velocities = _velocities(run)
-    begin = _settled_from(run, time, velocities)
-    time, kept = time[begin:], {name: v[begin:] for name, v in velocities.items()}
-    name = _component(kept, at)
-    step = (time[-1] - time[0]) / (time.size - 1)
+    motion = _audible(run)
+    name = _component(motion, at)
+    if not motion.settled:
+        motion = _settled_part(motion)
+    step = (motion.time[-1] - motion.time[0]) / (motion.time.size - 1)
     for _ in range(int(math.log2(LISTENING.finest)) // 2 + 1):
-        missing = _missing(time, kept)
+        missing = _missing(motion)
         if missing is None:
             break
-        if again is None:
+        if again is None or motion.settled:
             raise TooCoarseError(missing)
         step /= 4.0
-        count = math.ceil((time[-1] - time[0]) / step) + 1
-        time, kept = _velocities(again(np.linspace(time[0], time[-1], count)))
+        count = math.ceil((motion.time[-1] - motion.time[0]) / step) + 1
+        instants = np.linspace(motion.time[0], motion.time[-1], count)
+        motion = PadMotion.read(again(instants))
     else:
         raise TooCoarseError(missing)
-    signal = kept[name] - kept[name].mean()
+    time, signal = motion.time, motion.velocity[:, COMPONENTS.index(name)]
+    signal = signal - signal.mean()
     frequency = _strongest(signal, step_of(time))
     periods = frequency * (time[-1] - time[0])
     if not periods >= LISTENING.fewest_periods:
@@ -225,89 +232,69 @@ def sound(
     return Sound(loop, WORDS[name], frequency, speed, correlation)
 
 
-WORDS = {"x": "along the belt (x)", "y": "across the belt (y)"}
-"""Component → words."""
-
-
-def _velocities(run: xr.Dataset) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Instants (n,) that a run reached, s, and the velocities of its components (n,), m/s."""
-    if run.attrs.get("schema") != "simulation":
+def _audible(run: xr.Dataset) -> PadMotion:
+    """Read a motion that has enough samples to be heard."""
+    motion = PadMotion.read(run)
+    if motion.time.size < 8 * FEWEST:
         raise ValueError(
-            f"{run.attrs.get('schema', 'the file')} is no run that can be heard; give what "
-            "`squealpipe simulate` writes"
+            f"the run is too short to be heard: {motion.time.size} samples; run it longer (--t-end)"
         )
-    reached = np.isfinite(run.x.values)
-    if reached.sum() < 8 * FEWEST:
-        raise ValueError(
-            f"the run is too short to be heard: {reached.sum()} samples; run it longer (--t-end)"
-        )
-    velocities = {"x": run.vx.values[reached], "y": run.vy.values[reached]}
-    return run.time.values[reached], velocities
+    return motion
 
 
-def _component(velocities: dict[str, np.ndarray], at: str | None) -> str:
-    """Return the component that is asked for, or that with the larger rms."""
+def _component(motion: PadMotion, at: str | None) -> str:
+    """Return the component that is asked for, or the one with the larger rms in the later half."""
     if at is None:
-        return max(velocities, key=lambda name: float(velocities[name].std()))
-    if at not in velocities:
-        raise ValueError(f"at = {at!r}: the run has {', '.join(velocities)}")
+        late = motion.velocity[motion.time.size // 2 :]
+        return COMPONENTS[int(late.std(axis=0).argmax())]
+    if at not in COMPONENTS:
+        raise ValueError(f"at = {at!r}: the run has {', '.join(COMPONENTS)}")
     return at
 
 
-def _settled_from(
-    run: xr.Dataset, time: np.ndarray, velocities: dict[str, np.ndarray]
-) -> int:
-    """Return the first sample after which levels stay what they are.
+def _settled_part(motion: PadMotion) -> PadMotion:
+    """Return the part of a run after which levels stay what they are.
 
     Raises:
         ValueError: the motion has died out, or has not settled.
     """
-    moving = np.stack(list(velocities.values()), axis=1)
-    last = moving[3 * len(moving) // 4 :]
-    level = float(np.sqrt(last.var(axis=0).sum()))
-    belt = abs(_belt_speed(run))
-    least = LISTENING.quiet * max(float(np.abs(moving).max()), 1e-3 * belt)
-    if not level > least:
+    count = motion.time.size
+    level = float(np.sqrt(motion.velocity[3 * count // 4 :].var(axis=0).sum()))
+    largest = float(np.abs(motion.velocity).max())
+    if not level > LISTENING.quiet * max(largest, 1e-3 * abs(motion.belt_speed)):
         raise ValueError(
             "nothing is heard: the motion has died out, its rms velocity is "
             f"{engineering(level, 'm s-1', 2)} in the last quarter of the run"
         )
-    regimes = run.regime.values[: len(moving)]
     for share in LISTENING.tails:
-        begin = int(share * len(moving))
-        halves = np.array_split(np.arange(begin, len(moving)), 2)
-        before, now = (_levels(moving[half], regimes[half]) for half in halves)
-        if difference(before, now) <= LISTENING.level_agreement:
-            return begin
-    changes = 100.0 * difference(before, now)
+        halves = np.array_split(np.arange(int(share * count), count), 2)
+        change = difference(*(_levels(motion, half) for half in halves))
+        if change <= LISTENING.level_agreement:
+            return motion.from_(motion.time[halves[0][0]])
     raise ValueError(
-        f"the motion has not settled: its level changes by {changes:.0f} % within the last part "
-        f"of the run, {engineering(float(time[-1]), 's', 3)} long; run it longer (--t-end)"
+        f"the motion has not settled: its level changes by {100.0 * change:.0f} % within the last "
+        f"part of the run, {engineering(float(motion.time[-1]), 's', 3)} long; run it longer "
+        "(--t-end)"
     )
 
 
-def _levels(velocities: np.ndarray, regimes: np.ndarray) -> WindowLevels:
+def _levels(motion: PadMotion, part: np.ndarray) -> WindowLevels:
     separated, stuck = (
-        np.array([(regimes == each).mean()])
+        np.array([(motion.regimes[part] == each).mean()])
         for each in (Regime.separated, Regime.stick)
     )
-    rms = velocities.std(axis=0)
+    rms = motion.velocity[part].std(axis=0)
     return WindowLevels(rms, separated, stuck, peaks=np.zeros(1))
 
 
-def _belt_speed(run: xr.Dataset) -> float:
-    stated = json.loads(run.attrs.get("parameters", "{}"))
-    return float(stated.get("belt_speed", 0.0))
-
-
-def _missing(time: np.ndarray, velocities: dict[str, np.ndarray]) -> str | None:
+def _missing(motion: PadMotion) -> str | None:
     """Return what is missing in the samples of a run to be heard; None if nothing is."""
     try:
-        step = step_of(time)
+        step = step_of(motion.time)
     except ValueError as error:
         return str(error)
     needed = 0.0
-    for values in velocities.values():
+    for values in motion.velocity.T:
         omega, amplitude = amplitude_spectrum(values, step)
         loud = omega[amplitude > LISTENING.audible * amplitude.max()]
         needed = max(
@@ -317,7 +304,7 @@ def _missing(time: np.ndarray, velocities: dict[str, np.ndarray]) -> str | None:
     if 1.0 / step >= needed:
         return None
     # what is between the samples may lie higher still
-    points = math.ceil(2.0 * needed * time[-1])
+    points = math.ceil(2.0 * needed * motion.time[-1])
     return (
         f"the run is sampled too coarsely to be heard: {engineering(1.0 / step, 'Hz', 3)}, and its "
         f"lines reach {engineering(needed / LISTENING.samples_per_period, 'Hz', 3)}; simulate it "
@@ -371,7 +358,7 @@ def _loop(
     ends = squares[count - lags] * (squares[-1] - squares[lags])
     alike = products / np.sqrt(np.maximum(ends, 1e-300))
     best = int(np.argmax(alike[1:-1])) + 1
-    shift, _ = vertex(*(alike[best + k] for k in (-1, 0, 1)))
+    shift, peak = vertex(*(alike[best + k] for k in (-1, 0, 1)))
     lag = float(lags[best] + np.clip(shift, -1.0, 1.0))
     fade = count - 1 - lag
     curve = make_interp_spline(np.arange(count), signal, k=5)
@@ -379,7 +366,7 @@ def _loop(
     weight = np.clip((places - lag) / fade, 0.0, 1.0)
     weight = weight**2 * (3.0 - 2.0 * weight)
     before = curve(np.maximum(places - lag, 0.0))
-    correlation = float(np.clip(alike[best], -0.5, 1.0))
+    correlation = float(np.clip(peak, -0.5, 1.0))
     power = (1 - weight) ** 2 + weight**2 + 2 * correlation * weight * (1 - weight)
     looped = ((1.0 - weight) * curve(places) + weight * before) / np.sqrt(power)
     number_ = max(round(lag * step / speed * RATE), 2)

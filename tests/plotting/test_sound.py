@@ -38,18 +38,26 @@ def heard(content):
     return samples.astype(float)
 
 
-def written(x, y, step, **attributes):
+def written(x, y, step):
     """A run with velocities that are given."""
     time = step * np.arange(len(x))
+    zeros = np.zeros(len(x))
+    angles = {"alpha1": 0.4, "alpha2": 0.8, "preload": 1e-3}
     return xr.Dataset(
         {
             "x": ("time", np.cumsum(x) * step),
+            "y": ("time", np.cumsum(y) * step),
             "vx": ("time", x),
             "vy": ("time", y),
-            "regime": ("time", np.zeros(len(x), int)),
-        },
+            "normalized_contact_force": ("time", zeros),
+            "regime": ("time", zeros.astype(int)),
+        }
+        | angles,
         {"time": time},
-        {"schema": "simulation", **attributes},
+        {
+            "schema": "simulation",
+            "parameters": '{"length1": 0.1, "length2": 0.1, "belt_speed": 2.0}',
+        },
     )
 
 
@@ -184,7 +192,7 @@ def test_a_short_run_and_a_pitch_that_nobody_hears_are_refused_with_a_remedy_tha
             frequency, rel=1e-3
         )
     with pytest.raises(ValueError, match="is no run"):
-        sound(xr.Dataset(attrs={"schema": "assess"}))
+        sound(xr.Dataset(attrs={"schema": "stability_map"}))
 
 
 def test_the_component_that_is_asked_for_is_heard():

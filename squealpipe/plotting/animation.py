@@ -1,0 +1,124 @@
+"""Make films and strips of phases from the motion in a dataset."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from squealpipe.plotting import style
+from squealpipe.plotting.film import FRAMES_PER_SECOND, Film
+from squealpipe.plotting.pad_motion import PadMotion
+from squealpipe.plotting.pad_scene import Geometry, Instants, Mechanism, PadScene
+from squealpipe.text import number
+from squealpipe.vibration.spectrum import amplitude_spectrum, strongest_lines
+
+SAMPLES_PER_PERIOD = 16
+"""Samples in a period between which cubics with the right velocities miss nothing that is seen."""
+
+
+def film_of(
+    run: xr.Dataset,
+    *,
+    seconds: float = 3.0,
+    periods: float | None = None,
+    begin: float | None = None,
+    again: Callable[[np.ndarray], xr.Dataset] | None = None,
+    dpi: int = 120,
+) -> Film:
+    """Make a film of the end of a run.
+
+    Args:
+        run: dataset ``simulation`` or ``assess``.
+        seconds: length of the film, s.
+        periods: of the strongest line that are shown; by default one in each second of film.
+        begin: instant of the run at which the film begins, s; by default so that it ends with the
+            run.
+        again: integrates the run again, given instants (n,), s; used where it is sampled too
+            coarsely.
+        dpi: pixels per inch of a picture of 8 by 4.5 inches.
+
+    Raises:
+        ValueError: an argument, or the dataset holds no motion.
+    """
+    if not (math.isfinite(seconds) and 0 < seconds <= 120):
+        raise ValueError(f"seconds = {seconds!r}: a time up to 120 s is needed")
+    periods = seconds if periods is None else periods
+    if not (math.isfinite(periods) and periods > 0):
+        raise ValueError(f"periods = {periods!r}: a number above 0 is needed")
+    motion = PadMotion.read(run)
+    period = period_of(motion)
+    first, last = float(motion.time[0]), float(motion.time[-1])
+    span = min(periods * period, last - first)
+    start = last - span if begin is None else begin
+    if not first <= start < last:
+        raise ValueError(
+            f"begin = {start!r} s: the run is from {first:.6g} to {last:.6g} s"
+        )
+    span = min(span, last - start)
+    seconds *= span / (periods * period)  # the pace stays what was asked for
+    part = motion.from_(start - period)
+    if part.time.size * period < SAMPLES_PER_PERIOD * (last - part.time[0]):
+        if again is None:
+            raise ValueError(
+                "the run is sampled too coarsely for a film; simulate it with more --points"
+            )
+        count = math.ceil(4 * SAMPLES_PER_PERIOD * (last - part.time[0]) / period)
+        motion = PadMotion.read(
+            again(np.linspace(max(start - period, first), last, count + 1))
+        )
+    count = max(round(seconds * FRAMES_PER_SECOND), 2)
+    shown = motion.at(start + span * np.arange(count) / count)
+    around = motion.from_(start - 1e-9 * span)
+    around = around if around.time.size > 3 else motion
+    return Film(PadScene(around, shown, seconds / span), count, dpi)
+
+
+def period_of(motion: PadMotion) -> float:
+    """Return the period of the strongest line of the velocity in the later half, s.
+
+    Of a motion without a line it is a twelfth of the whole.
+    """
+    late = motion.from_(0.5 * (motion.time[0] + motion.time[-1]))
+    if motion.settled:
+        late = motion
+    length = float(late.time[-1] - late.time[0])
+    uniform = np.linspace(late.time[0], late.time[-1], late.time.size)
+    louder = int(late.velocity.std(axis=0).argmax())
+    signal = np.interp(uniform, late.time, late.velocity[:, louder])
+    omega, amplitude = amplitude_spectrum(
+        signal, length / (late.time.size - 1), padding=4
+    )
+    lines, _ = strongest_lines(omega, amplitude, 1, 2.0 * math.pi / length)
+    if lines.size:
+        return 2.0 * math.pi / float(lines[0])
+    return float(motion.time[-1] - motion.time[0]) / 12.0
+
+
+def phases(run: xr.Dataset, count: int = 8) -> Figure:
+    """Draw the last period of a motion as a strip of phases, for paper.
+
+    Args:
+        run: dataset ``simulation`` or ``assess``.
+        count: of phases, in rows of four.
+    """
+    motion = PadMotion.read(run)
+    period, last = period_of(motion), float(motion.time[-1])
+    shown = motion.at(last - period * (1.0 - np.arange(count) / count))
+    around = motion.from_(last - period)
+    geometry = Geometry(around if around.time.size > 3 else motion)
+    rows = -(-count // 4)
+    figure, axes = style.new_figure(style.PAGE, 1.75 * rows, nrows=rows, ncols=4)
+    instants = Instants(period)
+    for place, panel in enumerate(axes.flat):
+        if place >= count:
+            panel.set_axis_off()
+            continue
+        Mechanism(panel, geometry, shown, small=True).show(place)
+        time = instants.factor * period * place / count
+        panel.set_title(f"{number(time, 3)} {instants.unit}", fontsize=7)
+    figure.suptitle(f"one period; motion drawn {geometry.told}", fontsize=8)
+    return figure

@@ -1,0 +1,320 @@
+"""Draw a moving pad: mass on two inclined springs above the belt, contact force, path."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle, Patch
+from matplotlib.text import Text
+
+from squealpipe.codes import Regime
+from squealpipe.plotting import style
+from squealpipe.plotting.cycles import joined
+from squealpipe.plotting.mechanism import arrow, coil, displaced_springs
+from squealpipe.plotting.pad_motion import PadMotion
+from squealpipe.text import number
+from squealpipe.units import engineering, shown_in
+
+CONTACT = {
+    Regime.slip_slower: ("slip", style.BLUE),
+    Regime.slip_faster: ("slip", style.BLUE),
+    Regime.stick: ("stick", style.ORANGE),
+    Regime.separated: ("open", style.RED),
+}
+"""State of a contact in a word, and its colour."""
+
+
+class Geometry:
+    """Places of the drawn mechanism for displacements of the mass.
+
+    Displacements about their mean are drawn `scale` times larger, the springs at their true
+    angles and lengths, so that 1 mm is seen beside a spring of 100 mm.
+
+    Attributes:
+        scale: 1, 2 or 5 times a power of ten.
+        size: of all that is drawn, m.
+        radius: of the drawn mass, m.
+        low, high: corners of all that is drawn, m.
+        belt: height of the belt's surface, m.
+    """
+
+    def __init__(self, motion: PadMotion) -> None:
+        self.angles, self.lengths = motion.angles, motion.lengths
+        self.mean = motion.place.mean(axis=0)
+        shortest = min(motion.lengths)
+        extent = float(np.abs(motion.place - self.mean).max())
+        # beside a spring the motion is seen well, and the mass stays off its pivots
+        self.scale = max(_round(0.22 * shortest / max(extent, 1e-300)), 1.0)
+        points = np.concatenate([self.drawn(motion.place), self.ends])
+        self.size = float(np.ptp(points, axis=0).max())
+        self.radius = 0.04 * self.size
+        top = min(motion.preload, float(motion.place[:, 1].max()))
+        lowest = float(motion.place[:, 1].min())
+        self.level = self.drawn(np.array([0.0, top]))[1]
+        depth = self.level - self.drawn(np.array([0.0, lowest]))[1]
+        self.free = max(0.5 * shortest, 1.4 * depth)
+        self.belt = self.level - self.radius - self.free
+        self.low = points.min(axis=0) - 0.08 * self.size
+        self.high = points.max(axis=0) + 0.08 * self.size
+        self.low[1] = self.belt - 0.13 * self.size
+
+    @property
+    def told(self) -> str:
+        """The scale in words."""
+        larger = f"{number(self.scale)} times larger"
+        return larger if self.scale > 1.0 else "at its true size"
+
+    def drawn(self, place: np.ndarray) -> np.ndarray:
+        """Return where the middle of the mass is drawn, (…, 2), m."""
+        return np.asarray(self.mean + self.scale * (place - self.mean))
+
+    def foot(self, middle: np.ndarray, *, separated: bool) -> float:
+        """Return the height of the lower end of the contact spring, m."""
+        lifted = self.belt + max(float(middle[1]) - self.level, 0.0)
+        return lifted if separated else self.belt
+
+    @property
+    def ends(self) -> np.ndarray:
+        """Fixed ends of the springs, (2, 2), m."""
+        (a, b), (first, second) = self.angles, self.lengths
+        return np.array(
+            [
+                [first * math.cos(a), first * math.sin(a)],
+                [-second * math.cos(b), second * math.sin(b)],
+            ]
+        )
+
+
+def _round(value: float) -> float:
+    """The largest of 1, 2 and 5 times a power of ten that is no larger than a value."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return power * max(
+        step for step in (1.0, 2.0, 5.0) if step * power <= value * 1.000001
+    )
+
+
+class Mechanism:
+    """Mass, springs, contact and belt on axes.
+
+    Args:
+        geometry: of the whole motion, so that nothing leaves the axes.
+        motion: instants that will be shown.
+        small: for a strip of several: thinner lines, no legend.
+    """
+
+    def __init__(
+        self, axes: Axes, geometry: Geometry, motion: PadMotion, *, small: bool = False
+    ) -> None:
+        self.geometry, self.motion, self.axes = geometry, motion, axes
+        self.middles = geometry.drawn(motion.place)
+        low, high = geometry.low, geometry.high
+        # limits that are set would be warned of where the aspect extends them
+        axes.plot(*np.stack([low, high], axis=1), alpha=0.0)
+        axes.margins(0.0)
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.set_axis_off()
+        width = 0.8 if small else 1.4
+        deep = 0.09 * geometry.size
+        axes.axhspan(
+            geometry.belt - deep,
+            geometry.belt,
+            facecolor="#E8E8E8",
+            edgecolor="black",
+            lw=0.6,
+        )
+        for end in geometry.ends:
+            axes.plot(*end, "s", color="black", markersize=3 if small else 6, zorder=3)
+        if not small and motion.belt_speed:
+            ahead = math.copysign(1.0, motion.belt_speed)
+            middle = 0.5 * (low[0] + high[0])
+            height = geometry.belt - 0.5 * deep
+            span = geometry.size
+            start, tip = (
+                (middle + ahead * share * span, height) for share in (-0.1, 0.1)
+            )
+            arrow(axes, start, tip, 11, "black")
+            axes.text(
+                middle + ahead * 0.13 * span, height, "belt", va="center", fontsize=8,
+                ha="left" if ahead > 0 else "right",
+            )  # fmt: skip
+        # colours tell what the contact does, so the springs have none
+        look: dict[str, Any] = {"color": style.GREY, "lw": width}
+        self.springs = [
+            axes.plot([], [], solid_joinstyle="round", zorder=2, **look)[0]
+            for _ in motion.angles
+        ]
+        self.contact: Line2D = axes.plot([], [], color=style.GREY, lw=width, zorder=1)[
+            0
+        ]
+        self.foot: Line2D = axes.plot(
+            [], [], lw=2.5 if small else 5, solid_capstyle="butt", zorder=3
+        )[0]
+        self.mass = Circle(
+            (0, 0), geometry.radius, facecolor=style.BLACK, lw=0, zorder=4
+        )
+        axes.add_patch(self.mass)
+        self.state: Text = axes.text(
+            0, 0, "", ha="left", va="center", fontsize=6 if small else 9, zorder=5
+        )
+        self.moving: list[Any] = [
+            self.contact, *self.springs, self.foot, self.mass, self.state,
+        ]  # fmt: skip
+
+    def show(self, frame: int) -> None:
+        """Move all to an instant of the motion."""
+        geometry, middle = self.geometry, self.middles[frame]
+        width = 0.03 * geometry.size
+        paths = displaced_springs(*middle, *geometry.angles, geometry.lengths, width)
+        for line, path in zip(self.springs, paths, strict=True):
+            line.set_data(*path.T)
+        regime = Regime(int(self.motion.regimes[frame]))
+        word, colour = CONTACT[regime]
+        foot = geometry.foot(middle, separated=regime is Regime.separated)
+        lower = (float(middle[0]), float(middle[1]) - geometry.radius)
+        self.contact.set_data(
+            *coil(lower, (lower[0], foot), turns=4, width=0.8 * width).T
+        )
+        half = 1.3 * geometry.radius
+        self.foot.set_data([middle[0] - half, middle[0] + half], [foot, foot])
+        self.foot.set_color(colour)
+        self.mass.set_center(tuple(middle))
+        self.state.set_position((middle[0] + 1.25 * half, foot + 0.6 * geometry.radius))
+        self.state.set_text(word)
+        self.state.set_color(colour)
+
+
+class PadScene:
+    """The film of a pad: mechanism at the left, force over time and path at the right.
+
+    Args:
+        motion: all of it that the panels show.
+        shown: instants of the frames.
+        slower: how many times slower than in reality the film is.
+    """
+
+    def __init__(self, motion: PadMotion, shown: PadMotion, slower: float) -> None:
+        self.shown = shown
+        self.figure, axes = style.new_figure(
+            8.0, 4.5, ncols=2, width_ratios=[1.35, 1.0]
+        )
+        left = axes[0, 0]
+        grid = (
+            axes[0, 1].get_gridspec()[0, 1].subgridspec(2, 1, height_ratios=[1, 1.25])
+        )
+        axes[0, 1].remove()
+        force, path = (self.figure.add_subplot(grid[row, 0]) for row in (0, 1))
+        geometry = Geometry(motion)
+        self.mechanism = Mechanism(left, geometry, shown)
+        self.instants = Instants(float(shown.time[-1]))
+        words = dict(CONTACT.values())
+        left.legend(
+            handles=[Patch(color=colour, label=word) for word, colour in words.items()],
+            loc="lower center", bbox_to_anchor=(0.5, -0.02), ncols=3, title="contact",
+        )  # fmt: skip
+        first, second = (f"{number(math.degrees(angle))}°" for angle in shown.angles)
+        left.set_title(
+            f"α₁ = {first}, α₂ = {second}; motion drawn {geometry.told}", fontsize=8
+        )
+        self.clock: Text = left.text(
+            0.0, 0.98, "", transform=left.transAxes, va="top", fontsize=10
+        )
+        self.past, self.now = self._draw_force(force, motion, shown)
+        self.dot = self._draw_path(path, motion)
+        self.moving = [
+            *self.mechanism.moving,
+            self.clock,
+            self.past,
+            self.now,
+            self.dot,
+        ]
+        self.caption = (
+            f"{engineering(float(shown.time[-1] - shown.time[0]), 's', 3)} of the motion, played "
+            f"{_speed(slower)}; displacements are drawn {geometry.told} "
+            "beside the springs. Blue: the contact slips; orange: it sticks; red: it is open."
+        )
+        open_, stuck = (
+            f"{100 * np.mean(shown.regimes == each):.0f} %"
+            for each in (Regime.separated, Regime.stick)
+        )
+        self.alt = (
+            f"Film of a mass on two springs at {first} and {second} above a moving belt; its "
+            f"contact is open {open_} and sticks {stuck} of the time. Beside it the contact force "
+            "over time and the path of the mass."
+        )
+
+    def _draw_force(
+        self, axes: Axes, motion: PadMotion, shown: PadMotion
+    ) -> tuple[Line2D, Line2D]:
+        kept = (motion.time >= shown.time[0]) & (motion.time <= shown.time[-1])
+        self.force_time = self.instants.factor * motion.time[kept]
+        self.force = motion.force[kept]
+        top = 1.1 * max(float(np.nanmax(self.force)), 1e-12)
+        axes.plot(self.force_time, self.force, color=style.LIGHT, lw=0.8)
+        margin = 0.03 * (self.force_time[-1] - self.force_time[0])
+        axes.axhline(0.0, color=style.GREY, lw=0.5)
+        axes.set(
+            xlim=(self.force_time[0] - margin, self.force_time[-1] + margin),
+            ylim=(-0.06 * top, top),
+            xlabel=f"time ({self.instants.unit})",
+            ylabel="contact force over preload",
+        )
+        axes.locator_params(axis="x", nbins=4)
+        past: Line2D = axes.plot([], [], color=style.BLACK, lw=1.0)[0]
+        now: Line2D = axes.plot([], [], "o", color=style.BLACK, ms=5)[0]
+        return past, now
+
+    def _draw_path(self, axes: Axes, motion: PadMotion) -> Line2D:
+        self.unit_factor, unit = shown_in(float(np.abs(motion.place).max()), "m")
+        x, y = self.unit_factor * motion.place.T
+        for word, colour in dict(CONTACT.values()).items():
+            codes = [code for code, (name, _) in CONTACT.items() if name == word]
+            shown = np.where(joined(np.isin(motion.regimes, codes)), y, np.nan)
+            axes.plot(x, shown, color=colour, lw=0.7)
+        limit = self.unit_factor * motion.preload
+        if y.min() < limit < 1.2 * max(y.max(), 0.0):
+            axes.axhline(limit, color=style.GREY, lw=0.8, linestyle=":")
+        axes.set(xlabel=f"along the belt ({unit})", ylabel=f"away from it ({unit})")
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.locator_params(nbins=5)
+        dot: Line2D = axes.plot([], [], "o", color=style.BLACK, ms=6, zorder=5)[0]
+        return dot
+
+    def show(self, frame: int) -> None:
+        """Move all to an instant of the film."""
+        self.mechanism.show(frame)
+        time = float(self.shown.time[frame])
+        self.clock.set_text(self.instants.told(time))
+        before = self.force_time <= self.instants.factor * time
+        at = self.instants.factor * time, float(self.shown.force[frame])
+        self.past.set_data(
+            np.append(self.force_time[before], at[0]),
+            np.append(self.force[before], at[1]),
+        )
+        colour = CONTACT[Regime(int(self.shown.regimes[frame]))][1]
+        self.now.set_data([at[0]], [at[1]])
+        x, y = self.unit_factor * self.shown.place[frame]
+        self.dot.set_data([x], [y])
+        for mark in (self.now, self.dot):
+            mark.set_color(colour)
+
+
+class Instants:
+    """Times of a motion in words that keep their length."""
+
+    def __init__(self, last: float) -> None:
+        self.factor, self.unit = (1e3, "ms") if last < 10.0 else (1.0, "s")
+        self.digits = max(5 - len(str(int(self.factor * last))), 0)
+
+    def told(self, time: float) -> str:
+        """Return an instant with its unit."""
+        return f"t = {self.factor * time:.{self.digits}f} {self.unit}"
+
+
+def _speed(slower: float) -> str:
+    if slower >= 1.0:
+        return f"{number(slower, 2)} times slower than in reality"
+    return f"{number(1.0 / slower, 2)} times faster than in reality"
