@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import base64
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from html import escape
 from importlib.resources import files
@@ -19,7 +19,6 @@ from string import Template
 from typing import Any, Protocol
 
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
@@ -45,7 +44,7 @@ class Scene(Protocol):
     """
 
     figure: Figure
-    moving: Sequence[Artist]
+    moving: list[Any]
     caption: str
     alt: str
 
@@ -70,17 +69,17 @@ class Film:
         """Draw the frames one after another, (height, width, 3) of 8 bit, even numbers."""
         figure = self.scene.figure
         figure.set_dpi(self.dpi)
-        canvas = FigureCanvasAgg(figure)
+        canvas: Any = FigureCanvasAgg(figure)
         for artist in self.scene.moving:
             artist.set_animated(True)
         self.scene.show(0)
         canvas.draw()
-        still = canvas.copy_from_bbox(figure.bbox)  # type: ignore[attr-defined]
+        still = canvas.copy_from_bbox(figure.bbox)
         for frame in range(self.count):
             canvas.restore_region(still)
             self.scene.show(frame)
             for artist in self.scene.moving:
-                artist.axes.draw_artist(artist)  # type: ignore[union-attr]
+                artist.axes.draw_artist(artist)
             pixels = np.asarray(canvas.buffer_rgba())[..., :3]
             height, width = (side - side % 2 for side in pixels.shape[:2])
             yield np.ascontiguousarray(pixels[:height, :width])
@@ -220,10 +219,11 @@ def write_film(film: Film, path: Path, title: str) -> None:
     Raises:
         ValueError: there is no ffmpeg, which .mp4 needs.
     """
-    content = {
-        ".mp4": film.mp4,
-        ".gif": film.gif,
-        ".html": lambda: film.page(title).encode(),
-    }[path.suffix]()
+    if path.suffix == ".mp4":
+        content = film.mp4()
+    elif path.suffix == ".gif":
+        content = film.gif()
+    else:
+        content = film.page(title).encode()
     with whole_file(path) as temporary:
         temporary.write_bytes(content)

@@ -54,8 +54,8 @@ class Geometry:
         self.radius = 0.04 * self.size
         top = min(motion.preload, float(motion.place[:, 1].max()))
         lowest = float(motion.place[:, 1].min())
-        self.level = self.drawn(np.array([0.0, top]))[1]
-        depth = self.level - self.drawn(np.array([0.0, lowest]))[1]
+        self.level = float(self.drawn(np.array([0.0, top]))[1])
+        depth = self.level - float(self.drawn(np.array([0.0, lowest]))[1])
         self.free = max(0.5 * shortest, 1.4 * depth)
         self.belt = self.level - self.radius - self.free
         self.low = points.min(axis=0) - 0.08 * self.size
@@ -168,7 +168,13 @@ class Mechanism:
         """Move all to an instant of the motion."""
         geometry, middle = self.geometry, self.middles[frame]
         width = 0.03 * geometry.size
-        paths = displaced_springs(*middle, *geometry.angles, geometry.lengths, width)
+        paths = displaced_springs(
+            float(middle[0]),
+            float(middle[1]),
+            *geometry.angles,
+            geometry.lengths,
+            width,
+        )
         for line, path in zip(self.springs, paths, strict=True):
             line.set_data(*path.T)
         regime = Regime(int(self.motion.regimes[frame]))
