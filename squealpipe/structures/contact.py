@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,6 +18,24 @@ from squealpipe.validation import real_array
 
 DEPENDENT = 1e-9
 """Smallest singular value of unit directions that are independent."""
+
+
+class PointOrigin(NamedTuple):
+    """Where a contact of a mesh comes from.
+
+    Attributes:
+        nodes: numbers of the nodes that it acts on, of the face that rubs.
+        against: numbers of the nodes of the other surface; none of a rigid belt.
+        area: m².
+        gap: distance along the normal, m, the largest of its nodes; negative where bodies overlap.
+        position: of the middle of its forces, m.
+    """
+
+    nodes: tuple[int, ...]
+    against: tuple[int, ...]
+    area: float
+    gap: float
+    position: tuple[float, float, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +62,7 @@ class Contact:
         transverse_damping: whether complex modes include that friction turns with the sliding
             velocity, which damps small motions across it by μN/|V|. Runs in time, which have
             friction along t alone, refuse it.
+        origin: where it comes from, of contacts of a mesh.
 
     Raises:
         ValueError: names the contact and the argument.
@@ -60,6 +79,7 @@ class Contact:
     mu: float | None = None
     friction_law: Any = None
     mu_static: float | None = None
+    origin: PointOrigin | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not self.name.isidentifier():
@@ -70,7 +90,7 @@ class Contact:
             name = f"contact {self.name}: {key}"
             value = finite_number(name, getattr(self, key), units)
             object.__setattr__(self, key, value)
-        self._check_friction()
+        self._check_friction_and_origin()
         for key in ("normal", "tangential", "across"):
             direction = getattr(self, key)
             if direction is None:
@@ -100,7 +120,9 @@ class Contact:
                 "transverse_damping needs the direction across, like across={2: 1.0}",
             )
 
-    def _check_friction(self) -> None:
+    def _check_friction_and_origin(self) -> None:
+        if self.origin is not None and not isinstance(self.origin, PointOrigin):
+            raise self._refusal("origin", self.origin, "a PointOrigin is needed")
         for key in ("mu", "friction_law", "mu_static"):
             if (own := getattr(self, key)) is not None:
                 try:

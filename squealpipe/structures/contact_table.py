@@ -87,18 +87,14 @@ class _Line(NamedTuple):
     ) -> Contact:
         """The contact, in SI units."""
         try:
-            directions: dict[str, Any] = {
+            arguments: dict[str, Any] = {
                 key: _direction(terms, sign, labels, size)
                 for key, terms in self.directions.items()
             }
             # who names the direction across asks for friction's damping along it
-            transverse = "across" in directions
-            return Contact(
-                self.name,
-                **directions,
-                **self._values(sign, scales),
-                transverse_damping=transverse,
-            )
+            transverse = "across" in arguments
+            arguments |= self._values(sign, scales)
+            return Contact(self.name, **arguments, transverse_damping=transverse)
         except ValueError as error:
             raise ValueError(f"{self.where}: {error}") from error
 

@@ -1,6 +1,7 @@
 """A structure in a file: ``pad.yaml`` names matrices, contacts and numbers."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import Any, TypeVar
@@ -18,9 +19,13 @@ from squealpipe.structures.contact import Contact
 from squealpipe.structures.contact_table import read_contacts
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.matrices import real_square
+from squealpipe.structures.meshes.face_entries import faces_in, read_pressures
+from squealpipe.structures.meshes.faces import Face, Rotation
+from squealpipe.structures.meshes.from_mesh import names_of, of_mesh
 from squealpipe.structures.readers import Labelled, read_matrix
 from squealpipe.structures.units import SI, Scales, scales_of
 from squealpipe.text import suggestion
+from squealpipe.validation import real_array
 
 Form = TypeVar("Form", bound=ContactStructure)
 MATRICES = ("mass", "stiffness", "damping")
@@ -34,6 +39,9 @@ KEYS = (
     "load",
     "units",
     "triangle",
+    "mesh",
+    "degrees_of_freedom",
+    "rotation",
 )
 TRIANGLES = ("mirror", "keep")
 NOTHING = 1e-13
@@ -55,6 +63,11 @@ def read(path: str | PathLike[str], form: type[Form]) -> Form:
     length); ``triangle``: ``mirror`` where a file has one triangle of a symmetric matrix, ``keep``
     where it is meant as it is.
 
+    With ``mesh`` (a deck of CalculiX or Abaqus, or what meshio reads) ``contacts`` may be a mapping
+    of faces, with the arguments of :class:`Face` each; ``degrees_of_freedom`` names a ``.dof`` file
+    that does not have the matrices' name; ``rotation`` has ``axis``, ``through``, ``speed``
+    (``20 rad/s``) and ``body``. ``belt_speed`` is then in rad/s.
+
     Args:
         path: the YAML file; names in it are relative to its folder.
         form: :class:`Structure`, or a class derived from it.
@@ -65,31 +78,148 @@ def read(path: str | PathLike[str], form: type[Form]) -> Form:
     """
     source = Path(path).expanduser()
     content = _content(source)
+    folder = source.parent
     scales = scales_of(content["units"]) if "units" in content else SI
-    matrices, labels = _matrices(content, source.parent, scales)
-    arguments: dict[str, Any] = {**matrices}
-    if "contacts" in content:
-        table = source.parent / _file_name("contacts", content["contacts"])
-        size = matrices["mass"].shape[0]
-        arguments["contacts"] = _contacts(table, labels, size, scales)
-    for name in NUMBERS:
-        if name in content:
-            arguments[name] = content[name]
-    for name in ("belt_speed", "friction_speed"):
-        if is_finite_number(arguments.get(name)):
-            arguments[name] = float(arguments[name]) * scales.speed
-    if "modal_damping" in content:
-        arguments["modal_damping"] = content["modal_damping"]
-    if "friction_law" in content:
-        arguments["friction_law"] = named(
-            content["friction_law"], COLUMNS, source.parent
+    matrices, labels = read_matrices(
+        {key: content[key] for key in MATRICES if key in content},
+        folder,
+        scales,
+        content.get("triangle"),
+    )
+    if "degrees_of_freedom" in content:
+        labels = names_of(
+            _file_name("degrees_of_freedom", content["degrees_of_freedom"]), folder
         )
-    if "load" in content:
-        arguments["load"] = _load(content["load"], source.parent, scales)
+    arguments: dict[str, Any] = {**matrices}
+    rotation = _rotation(content, scales)
     try:
-        return form(**arguments)
+        arguments |= _of_mesh(content, folder, scales, arguments, labels, rotation)
     except ValueError as error:
         raise ValueError(f"{source}: {error}") from error
+    if isinstance(content.get("contacts"), str):
+        table = folder / content["contacts"]
+        size = matrices["mass"].shape[0]
+        arguments["contacts"] = _contacts(table, labels, size, scales)
+    arguments |= _numbers(content, folder, scales, rotation)
+    if "load" in content:
+        arguments["load"] = _load(content["load"], folder, scales)
+    try:
+        return form(**arguments, rotation=rotation)
+    except ValueError as error:
+        raise ValueError(f"{source}: {error}") from error
+
+
+def _numbers(
+    content: Mapping[str, Any], folder: Path, scales: Scales, rotation: Rotation | None
+) -> dict[str, Any]:
+    """Return friction, speeds and modal damping, in SI."""
+    arguments: dict[str, Any] = {
+        name: content[name] for name in (*NUMBERS, "modal_damping") if name in content
+    }
+    # the speed of what turns is an angular one
+    turning = scales.speed if rotation is None else scales.rate
+    for name, factor in (("friction_speed", scales.speed), ("belt_speed", turning)):
+        if is_finite_number(arguments.get(name)):
+            arguments[name] = float(arguments[name]) * factor
+    if "friction_law" in content:
+        arguments["friction_law"] = named(content["friction_law"], COLUMNS, folder)
+    return arguments
+
+
+def _of_mesh(
+    content: Mapping[str, Any],
+    folder: Path,
+    scales: Scales,
+    matrices: Mapping[str, Any],
+    labels: Sequence[Any] | None,
+    rotation: Rotation | None,
+) -> dict[str, Any]:
+    """Return mesh and contacts of faces; nothing where the file names no mesh."""
+    contacts = content.get("contacts")
+    if "mesh" not in content:
+        if isinstance(contacts, Mapping):
+            raise ValueError(
+                "contacts are faces of a mesh, which is missing; name it, like `mesh: brake.inp`"
+            )
+        if "contacts" in content and not isinstance(contacts, str):
+            raise ValueError(
+                f"contacts = {brief(contacts)}: the name of a file is needed, a table of them, "
+                "or faces of a mesh by name"
+            )
+        return {}
+    faces: dict[str, Face] = {}
+    if contacts is not None and not isinstance(contacts, str):
+        faces = faces_in(contacts, folder, scales)
+    path = folder / _file_name("mesh", content["mesh"])
+    whole = of_mesh(matrices["mass"], labels, path, faces, rotation, scales.length)
+    return {"mesh": whole.mesh} | ({"contacts": whole.contacts} if faces else {})
+
+
+def from_mesh(
+    form: type[Form],
+    matrices: Mapping[str, Any],
+    mesh: Any,
+    faces: Mapping[str, Face],
+    rotation: Rotation | None,
+    degrees_of_freedom: Any,
+    units: str | None,
+    arguments: Mapping[str, Any],
+) -> Form:
+    """A structure whose contacts are faces of a mesh; see :meth:`Structure.from_mesh`."""
+    if not isinstance(faces, Mapping) or not all(
+        isinstance(each, Face) for each in faces.values()
+    ):
+        raise ValueError(
+            f"contacts = {brief(faces)}: {{name: Face}} is needed, like {{'lining': Face('PAD', "
+            "against='DISC', stiffness=1e9, pressure=5e5)}"
+        )
+    if rotation is not None and not isinstance(rotation, Rotation):
+        raise ValueError(f"rotation = {brief(rotation)}: a Rotation is needed")
+    scales = SI if units is None else scales_of(units)
+    entries = {key: each for key, each in matrices.items() if each is not None}
+    in_si, labels = read_matrices(entries, Path(), scales)
+    names = labels if degrees_of_freedom is None else names_of(degrees_of_freedom)
+    with_pressures = {
+        name: replace(face, pressures=read_pressures(Path(face.pressures)))
+        if isinstance(face.pressures, str | PathLike)
+        else face
+        for name, face in faces.items()
+    }
+    whole = of_mesh(in_si["mass"], names, mesh, with_pressures, rotation, scales.length)
+    return form(
+        **in_si,
+        **arguments,
+        contacts=whole.contacts,
+        mesh=whole.mesh,
+        rotation=rotation,
+    )
+
+
+def _rotation(content: Mapping[str, Any], scales: Scales) -> Rotation | None:
+    """Return the rotation that the file has."""
+    if "rotation" not in content:
+        return None
+    given = content["rotation"]
+    keys = ("axis", "through", "speed", "body")
+    if not isinstance(given, Mapping):
+        raise ValueError(  # noqa: TRY004 (of all arguments mistakes are values)
+            f"rotation = {brief(given)}: {', '.join(keys)} are needed, like `rotation: {{axis: "
+            "[0, 0, 1], through: [0, 0, 0], speed: 20 rad/s}}`"
+        )
+    for key in given:
+        if key not in keys:
+            raise ValueError(
+                f"rotation: {key!r} is unknown; {suggestion(str(key), keys)}"
+            )
+    if "speed" not in given:
+        raise ValueError("rotation: speed is missing; give it, like `speed: 20 rad/s`")
+    arguments = dict(given)
+    if is_finite_number(arguments["speed"]):
+        arguments["speed"] *= scales.rate
+    if "through" in arguments:
+        through = real_array("rotation: through", arguments["through"])
+        arguments["through"] = through * scales.length
+    return Rotation(**arguments)
 
 
 def _contacts(
@@ -123,40 +253,46 @@ def _content(source: Path) -> dict[str, Any]:
     return content
 
 
-def _matrices(
-    content: Mapping[str, Any], folder: Path, scales: Scales
+def read_matrices(
+    entries: Mapping[str, Any], folder: Path, scales: Scales, triangle: Any = None
 ) -> tuple[dict[str, Any], list[str] | None]:
-    """Matrices in SI units, in one order, and the labels of their rows."""
-    triangle = content.get("triangle")
+    """Return matrices in SI units, in one order, and the labels of their rows.
+
+    Args:
+        entries: by name (mass, stiffness, damping) a file, ``{file: NAME, variable: NAME}``, or a
+            matrix.
+        triangle: ``mirror`` or ``keep``, as of :func:`read`.
+    """
     if triangle is not None and triangle not in TRIANGLES:
         raise ValueError(
             f"triangle = {triangle!r}: {suggestion(str(triangle), TRIANGLES)}"
         )
-    read_in = {}
-    for key in MATRICES:
-        if key not in content:
-            continue
-        entry = content[key]
-        if isinstance(entry, Mapping):
-            if set(entry) - {"file", "variable"} or "file" not in entry:
-                raise ValueError(
-                    f"{key} = {dict(entry)!r}: file and variable are needed"
-                )
-            file, variable = entry["file"], entry.get("variable")
-        else:
-            file, variable = entry, None
-        path = folder / _file_name(key, file)
-        one = read_matrix(path, key, variable)
-        whole = _completed(
-            real_square(f"{key}: {path}", one.matrix), path, one, triangle
-        )
-        read_in[key] = one._replace(matrix=whole)
+    read_in = {
+        key: _matrix(key, entry, folder, triangle) for key, entry in entries.items()
+    }
     _refuse_orders(read_in)
     labels = next((each.labels for each in read_in.values() if each.labels), None)
     return {
         key: _in_order(key, each, labels) * getattr(scales, key)
         for key, each in read_in.items()
     }, labels
+
+
+def _matrix(key: str, entry: Any, folder: Path, triangle: str | None) -> Labelled:
+    """Return one matrix, both of its triangles, as it is named or given."""
+    file, variable = entry, None
+    if isinstance(entry, Mapping):
+        if set(entry) - {"file", "variable"} or "file" not in entry:
+            raise ValueError(f"{key} = {dict(entry)!r}: file and variable are needed")
+        file, variable = entry["file"], entry.get("variable")
+    elif not isinstance(entry, str | PathLike):
+        if np.ndim(entry) == 0 and not sp.issparse(entry):
+            _file_name(key, entry)
+        return Labelled(real_square(key, entry))
+    path = folder / _file_name(key, str(file) if isinstance(file, PathLike) else file)
+    one = read_matrix(path, key, variable)
+    whole = _completed(real_square(f"{key}: {path}", one.matrix), path, one, triangle)
+    return one._replace(matrix=whole)
 
 
 def _refuse_orders(read_in: Mapping[str, Labelled]) -> None:

@@ -8,7 +8,8 @@ import io
 import re
 import zipfile
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -18,6 +19,7 @@ import scipy.io
 import scipy.sparse as sp
 
 from squealpipe.structures.matrix_market import BANNER, UNENDED, read_matrix_market
+from squealpipe.structures.packed import plain_name, text_of, unpacked
 
 DAMAGED = (
     OSError,
@@ -33,7 +35,6 @@ DAMAGED = (
 )
 """What libraries raise on files that are cut off or of another form."""
 MARKS = {
-    b"\x1f\x8b": "is packed by gzip; unpack it, with gunzip, and name what comes out",
     b"\xef\xbb\xbf": "begins with a byte order mark; save it as UTF-8 without one",
     b"\xff\xfe": "is UTF-16; save it as UTF-8 without byte order mark",
 }
@@ -72,25 +73,50 @@ def read_matrix(path: Path, key: str, variable: str | None = None) -> Labelled:
     """
     if not path.is_file():
         raise FileNotFoundError(f"{key}: no file {path}")
+    with unpacked_matrix(path, key) as plain:
+        return _read(plain, path, key, variable)
+
+
+@contextmanager
+def unpacked_matrix(path: Path, key: str) -> Iterator[Path]:
+    """Yield the path of the plain file, as :func:`unpacked` does."""
+    try:
+        with unpacked(path) as plain:
+            yield plain
+    except ValueError as error:
+        text = str(error)
+        raise ValueError(
+            text if text.startswith(f"{key}: ") else f"{key}: {text}"
+        ) from error
+
+
+def _read(plain: Path, path: Path, key: str, variable: str | None) -> Labelled:
+    """Return a matrix from a plain file.
+
+    Args:
+        path: the file as it was named; others stand beside it.
+    """
     readers: dict[str, Callable[[], Labelled]] = {
-        ".mtx": lambda: _mtx(path, key),
-        ".npz": lambda: Labelled(_npz(path, key, variable)),
-        ".npy": lambda: Labelled(np.load(path, allow_pickle=False)),
-        ".mat": lambda: Labelled(_matlab(path, key, variable)),
-        ".sti": lambda: _calculix(path),
-        ".mas": lambda: _calculix(path),
+        ".mtx": lambda: _mtx(plain, key),
+        ".npz": lambda: Labelled(_npz(plain, key, variable)),
+        ".npy": lambda: Labelled(np.load(plain, allow_pickle=False)),
+        ".mat": lambda: Labelled(_matlab(plain, key, variable)),
+        ".sti": lambda: _calculix(plain, path),
+        ".mas": lambda: _calculix(plain, path),
     }
-    with path.open("rb") as file:
+    with plain.open("rb") as file:
         start = file.read(3)
     for mark, remedy in MARKS.items():
         if start.startswith(mark):
             raise ValueError(f"{key}: {path} {remedy}")
-    if path.suffix.lower() not in readers:
+    ending = plain_name(path).suffix.lower()
+    if ending not in readers:
         raise ValueError(
-            f"{key}: {path} ends in {path.suffix!r}; matrices are read from {', '.join(readers)}"
+            f"{key}: {path} ends in {ending!r}; matrices are read from {', '.join(readers)}, also "
+            "where gzip has packed them (.gz)"
         )
     try:
-        return _without_gaps(readers[path.suffix.lower()](), key)
+        return _without_gaps(readers[ending](), key)
     except ImportError as error:
         raise ValueError(f"{key}: {path} needs {error.name}; {EXTRA}") from error
     except ChoiceError as error:
@@ -179,14 +205,20 @@ def _substructure(path: Path, key: str) -> Labelled:
     return Labelled(matrix, labels)
 
 
-def _calculix(path: Path) -> Labelled:
+def _calculix(plain: Path, path: Path) -> Labelled:
     """Row, column, value of one triangle; labels from the ``.dof`` file beside."""
-    beside = path.with_suffix(".dof")
+    beside = plain_name(path).with_suffix(".dof")
     labels = None
-    if beside.is_file():
-        words = beside.read_text(encoding="utf-8").split()
-        labels = [_without_zeros(word, beside) for word in words]
-    return Labelled(_of_triplets(_numbers(path), len(labels or ())), labels, True)
+    for each in (beside, beside.with_name(f"{beside.name}.gz")):
+        if each.is_file():
+            labels = read_names(each)
+            break
+    return Labelled(_of_triplets(_numbers(plain), len(labels or ())), labels, True)
+
+
+def read_names(path: Path) -> list[str]:
+    """Return the names ``node.direction`` of a ``.dof`` file of CalculiX, one a row."""
+    return [_without_zeros(word, path) for word in text_of(path).split()]
 
 
 def _without_zeros(label: str, path: Path) -> str:

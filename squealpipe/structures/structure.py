@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, Self
 
 from squealpipe.structures.complex_modes import complex_modes
 from squealpipe.structures.definition import ContactStructure
-from squealpipe.structures.files import read
+from squealpipe.structures.files import from_mesh, read
+from squealpipe.structures.meshes.faces import Face, Rotation
 from squealpipe.structures.reduction import reduce
 
 if TYPE_CHECKING:
@@ -24,6 +25,54 @@ class Structure(ContactStructure):  # noqa: D101 (that of the definition)
     def read(cls, path: str | PathLike[str]) -> Self:
         """A structure from its file; see :func:`squealpipe.structures.files.read`."""
         return read(path, cls)
+
+    @classmethod
+    def from_mesh(
+        cls,
+        mass: Any,
+        stiffness: Any,
+        damping: Any = None,
+        *,
+        mesh: Any,
+        contacts: Mapping[str, Face],
+        rotation: Rotation | None = None,
+        degrees_of_freedom: Any = None,
+        units: str | None = None,
+        **arguments: Any,
+    ) -> Self:
+        """A structure whose contacts are faces of a mesh.
+
+        Args:
+            mass, stiffness, damping: matrices, or files of them.
+            mesh: deck of CalculiX or Abaqus (.inp), a file that meshio reads (.msh, .bdf, …), a
+                mesh of meshio, or (nodes, faces): positions (n, 3) or {number: position}, and
+                {name: facets} by indices from 0 or by these numbers, counterclockwise as seen from
+                outside.
+            contacts: faces by name; the contacts of ``"lining"`` are ``lining_1``, ``lining_2``, …,
+                in ascending order of their nodes.
+            rotation: of the body that faces are against, about an axis; without one each face has
+                its ``direction``.
+            degrees_of_freedom: names ``"12.1"`` (node.direction) or pairs (12, 1) of the rows of
+                the matrices, or a ``.dof`` file. None: as the matrix files have them; or 3 rows
+                for each node of arrays.
+            units: of the matrices and the mesh, like ``"mm-t-s"``; SI by default. Numbers of faces
+                and of the rotation are SI or texts with a unit.
+            arguments: further ones of :class:`Structure`.
+
+        Raises:
+            FileNotFoundError: a file that does not exist.
+            ValueError: what is wrong, with the names of face, surface and node, and a remedy.
+        """
+        return from_mesh(
+            cls,
+            {"mass": mass, "stiffness": stiffness, "damping": damping},
+            mesh,
+            contacts,
+            rotation,
+            degrees_of_freedom,
+            units,
+            arguments,
+        )
 
     def system(self, displacements: Mapping[str, Any] | None = None) -> System:
         """As a system; see :func:`squealpipe.structures.motion_system.system`."""

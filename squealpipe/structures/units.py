@@ -19,6 +19,22 @@ class Scales(NamedTuple):
     stiffness: float
     force: float
     speed: float
+    length: float = 1.0
+
+    @property
+    def rate(self) -> float:
+        """Factor of what is per time."""
+        return self.speed / self.length
+
+    @property
+    def pressure(self) -> float:
+        """Factor of forces over areas."""
+        return self.force / self.length**2
+
+    @property
+    def stiffness_per_area(self) -> float:
+        """Factor of stiffnesses over areas."""
+        return self.stiffness / self.length**2
 
 
 SI = Scales(1.0, 1.0, 1.0, 1.0, 1.0)
@@ -65,5 +81,10 @@ def scales_of(units: Any) -> Scales:
             ) from error
     length, mass, time = factors
     return Scales(
-        mass, mass / time, mass / time**2, mass * length / time**2, length / time
+        mass,
+        mass / time,
+        mass / time**2,
+        mass * length / time**2,
+        length / time,
+        length,
     )

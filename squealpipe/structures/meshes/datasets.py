@@ -26,7 +26,12 @@ def mesh_variables(structure: Any) -> tuple[dict[str, Any], dict[str, Any]]:
     whole = structure if origin is None else origin.whole
     if structure.contacts and len(whole.normals) == len(mesh.degree_of_freedom):
         data["contact_position"] = np.array(
-            [mesh.center(normal) for normal in whole.normals.T]
+            [
+                mesh.center(normal) if each.origin is None else each.origin.position
+                for each, normal in zip(
+                    structure.contacts, whole.normals.T, strict=True
+                )
+            ]
         )
     return data, {"node": mesh.numbers, "axis": list(AXES)}
 
