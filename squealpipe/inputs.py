@@ -13,8 +13,8 @@ from squealpipe.parameters import (
     FULL_TURN,
     KEYS_THAT_TAKE,
     UNITS_OF_INPUTS,
-    brief,
 )
+from squealpipe.systems.inputs.values import brief
 from squealpipe.text import as_number
 from squealpipe.units import (
     UnitError,

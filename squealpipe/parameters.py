@@ -2,10 +2,8 @@
 
 import math
 import re
-import reprlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from numbers import Integral, Real
 from typing import Any, Literal, Self
 
 from squealpipe.laws import contact_laws, friction_laws
@@ -20,8 +18,9 @@ from squealpipe.substitutes import (
     stands_for,
     stood_for,
 )
+from squealpipe.systems.inputs.values import brief, is_finite_number, numbers_in_si
 from squealpipe.text import as_number, suggestion
-from squealpipe.units import engineering, number_of
+from squealpipe.units import engineering
 
 FULL_TURN = 2 * math.pi * (1 + 1e-9)
 """Largest angle, rad; beyond it one meant degrees, or slipped."""
@@ -100,50 +99,9 @@ def finite_number(
     return float(number)
 
 
-def numbers_in_si(
-    name: str, value: Any, units: str, keys: Mapping[str, str] | None = None
-) -> Any:
-    """A number, list, array or matrix in SI where it has units; else the value as it is.
-
-    Args:
-        name: of the argument, for messages.
-        units: CF unit of the result, or that of a state.
-        keys: names and CF units of other inputs, to say which takes what was written.
-
-    Raises:
-        ValueError: a unit of another kind; names argument and value.
-    """
-    try:
-        return number_of(value, units, keys)
-    except ValueError as error:
-        raise ValueError(f"{name} = {brief(value)}: {error}") from error
-
-
 def direction_of(belt_speed: Any) -> Any:
     """sgn V of a number or of each entry of an array, with +1 for a belt at rest."""
     return 1.0 - 2.0 * (belt_speed < 0.0)
-
-
-def is_finite_number(value: object) -> bool:
-    """Return whether a value is a real number that a double holds; no truth value or text."""
-    if not isinstance(value, Real) or isinstance(value, bool):
-        return False
-    try:
-        return math.isfinite(float(value))
-    except (OverflowError, TypeError):  # NumPy takes a duration for an integer
-        return False
-
-
-def is_whole_number(value: object) -> bool:
-    """Return whether a value is an integer; truth values and floats are not."""
-    return isinstance(value, Integral) and is_finite_number(value)
-
-
-def brief(value: object) -> str:
-    """A value as an error message shows it: long ones are cut."""
-    if isinstance(value, int) and value.bit_length() > 64:
-        return f"an integer of {value.bit_length()} bits"
-    return reprlib.repr(value)
 
 
 def law_in_words(law: str, units: tuple[str, str] = ("1", "1")) -> str:

@@ -1,31 +1,69 @@
-"""The gate for arguments: annotations say what a function takes; all else is refused by name."""
+"""The gate for arguments of the brake's tasks: angles, states and modes beside the common types."""
 
-import functools
 import inspect
-import keyword
-import math
-import os
-import sys
-from collections.abc import Callable, Iterable, Mapping
-from pathlib import Path
-from typing import Annotated, Any, ParamSpec, TypeVar, cast
+from collections.abc import Callable, Mapping, Sequence
+from typing import Annotated, Any, ParamSpec, TypeVar
 
 import numpy as np
-from annotated_types import Ge, Gt, Interval
-from pydantic import (
-    AfterValidator,
-    BeforeValidator,
-    ConfigDict,
-    ValidationError,
-    WrapValidator,
-    validate_call,
-)
-from xarray import Dataset
+from pydantic import AfterValidator, BeforeValidator
 
 from squealpipe.inputs import UNITS, with_units
-from squealpipe.parameters import BEYOND_A_TURN, FULL_TURN, brief, is_whole_number
-from squealpipe.text import in_words, suggestion
-from squealpipe.units import refuse_units
+from squealpipe.parameters import BEYOND_A_TURN, FULL_TURN
+from squealpipe.systems.inputs import gate
+from squealpipe.systems.inputs.gate import (
+    AnyPath,
+    Extended,
+    Identifier,
+    Line,
+    Natural,
+    NotNegative,
+    NotNegativeVector,
+    Number,
+    Positive,
+    Seed,
+    Several,
+    Tolerance,
+    Values,
+    Vector,
+    Whole,
+    Word,
+    Workers,
+    needed,
+    one_of,
+    real_array,
+    reals,
+)
+from squealpipe.systems.inputs.values import is_whole_number
+
+__all__ = [
+    "Angle",
+    "Angles",
+    "AnyPath",
+    "Extended",
+    "Identifier",
+    "Line",
+    "Mode",
+    "Natural",
+    "NotNegative",
+    "NotNegativeVector",
+    "Number",
+    "Positive",
+    "Seed",
+    "Several",
+    "State",
+    "Tolerance",
+    "Values",
+    "Vector",
+    "Whole",
+    "Word",
+    "Workers",
+    "checked",
+    "needed",
+    "one_of",
+    "real_array",
+    "state_of",
+    "within_a_turn",
+]
 
 Given = ParamSpec("Given")
 Result = TypeVar("Result")
@@ -44,110 +82,16 @@ def checked(
         TypeError: an argument is missing, unknown or given twice.
     """
     arguments = inspect.signature(function).parameters
-    names = list(arguments)
     further = any(each.kind == each.VAR_KEYWORD for each in arguments.values())
-    # of a brake these are its parameters, of a system names of its own
-    readable = [*names, *units] if further and "params" in names else names
-    config = ConfigDict(arbitrary_types_allowed=True, strict=True)
-    call = validate_call(config=config)(function)
+    # keywords beyond the arguments are parameters where the function takes those of a brake
+    more = units if further and "params" in arguments else ()
 
-    @functools.wraps(function)
-    def run(*args: Given.args, **kwargs: Given.kwargs) -> Result:
-        read, named = with_units(readable, args, kwargs, units)
-        try:
-            return call(*read, **named)
-        except ValidationError as error:
-            if error.title not in (function.__name__, function.__qualname__):
-                raise
-            title = function.__qualname__.removesuffix(".__init__")
-            raise _refusal(error, title, names) from None
+    def read(
+        names: Sequence[str], args: Sequence[Any], kwargs: Mapping[str, Any]
+    ) -> gate.Arguments:
+        return with_units([*names, *more], args, kwargs, units)
 
-    return cast("Callable[Given, Result]", run)
-
-
-def _refusal(error: ValidationError, title: str, names: list[str]) -> Exception:
-    faults = error.errors(include_url=False)
-    first = next((each for each in faults if "unexpected" in each["type"]), faults[0])
-    place, *inside = first["loc"]
-    name = names[place] if isinstance(place, int) and place < len(names) else place
-    if "argument" in first["type"]:
-        near = (
-            f"; {suggestion(name, names)}"
-            if first["type"].startswith("unexpected")
-            else ""
-        )
-        return TypeError(f"{title}: {name}: {first['msg'].lower()}{near}")
-    where = "".join(f"[{step!r}]" for step in inside if step != "[key]")
-    return ValueError(f"{name}{where} = {brief(first['input'])}: {in_words(first)}")
-
-
-def real_array(name: str, values: Any, *, infinite: bool = False) -> np.ndarray:
-    """A float array.
-
-    Raises:
-        ValueError: no real numbers, masked entries, NaN or (unless allowed) infinity, with the
-            name and the first culprit.
-    """
-    # most often, and most runs
-    if isinstance(values, float) and abs(values) <= (
-        math.inf if infinite else sys.float_info.max
-    ):
-        return np.array(values)
-    try:
-        return _reals(values, infinite=infinite)
-    except ValueError as error:
-        raise ValueError(f"{name} = {brief(values)}: {error}") from None
-
-
-def _reals(values: Any, *, infinite: bool = False) -> np.ndarray:
-    refuse_units(values)
-    if np.ma.is_masked(values):
-        raise ValueError("masked entries: fill them or leave them out")
-    try:
-        array = np.asarray(values)
-    except (ValueError, TypeError, OverflowError) as error:
-        raise ValueError("rows of one length are needed") from error
-    # what people give instead of numbers, by NumPy's letter for the type
-    kinds = {
-        "U": "text",
-        "S": "bytes",
-        "b": "truth values",
-        "c": "complex numbers",
-        "M": "dates",
-        "m": "durations",
-    }
-    if array.dtype.kind not in "fiu":
-        raise ValueError(
-            f"numbers are needed, not {kinds.get(array.dtype.kind, 'objects')}"
-        )
-    array = array.astype(float)
-    bad = np.isnan(array) if infinite else ~np.isfinite(array)
-    if bad.any():
-        raise ValueError(
-            f"finite numbers are needed, not {float(array[bad].flat[0])!r}"
-        )
-    return array
-
-
-def _no_truth(value: Any) -> Any:
-    if isinstance(value, np.bool_):  # which has a float, so that it passes for one
-        raise ValueError("a number is needed, not a truth value")  # noqa: TRY004
-    return value
-
-
-def _number(value: Any) -> float:
-    if type(value) is float and math.isfinite(value):
-        return value
-    array = _reals(value)
-    if array.ndim:
-        raise ValueError("one number is needed")
-    return float(array)
-
-
-def _whole(value: Any) -> int:
-    if not is_whole_number(value):
-        raise ValueError("a whole number is needed")
-    return int(value)
+    return gate.checked(function, read)
 
 
 def _mode(value: Any) -> int:
@@ -158,27 +102,9 @@ def _mode(value: Any) -> int:
     return int(value)
 
 
-def _vector(value: Any) -> np.ndarray:
-    array = np.atleast_1d(_reals(value))
-    if array.ndim != 1 or not array.size:
-        raise ValueError(f"has shape {array.shape}: a 1-D array is needed")
-    return array
-
-
-def _line(value: Any) -> np.ndarray:
-    array = _reals(value)
-    return array if not array.ndim else _vector(array)
-
-
-def _not_negative(values: Any) -> Any:
-    if (values < 0).any():
-        raise ValueError("numbers of 0 or greater are needed")
-    return values
-
-
 def state_of(value: Any) -> np.ndarray:
     """The array of a state x, y, vx, vy."""
-    array = _reals(value)
+    array = reals(value)
     if array.shape != (4,):
         raise ValueError("four finite numbers (x, y, vx, vy) are needed")
     return array
@@ -191,90 +117,17 @@ def within_a_turn(angles: Any) -> Any:
     return angles
 
 
-def _path(value: Any) -> Path:
-    if not isinstance(value, str | os.PathLike) or "\0" in os.fspath(value):
-        raise ValueError("a path is needed")
-    try:
-        return Path(value).expanduser()  # a shell would have replaced ~
-    except RuntimeError as error:
-        raise ValueError("no home folder is known for it; write the folder") from error
-
-
-def _values(value: Any) -> Any:
-    if isinstance(value, Dataset):
-        raise ValueError("names and values are needed, not a dataset")  # noqa: TRY004
-    return value
-
-
-def _identifier(value: str) -> str:
-    if not value.isidentifier() or keyword.iskeyword(value):
-        raise ValueError(
-            "letters, digits and _ are needed, as for a variable of Python"
-        )
-    return value
-
-
-def _word(value: str) -> str:
-    if not value.strip() or not value.isprintable() or "/" in value:
-        raise ValueError("a name without / is needed")
-    return value
-
-
-def needed(what: str) -> WrapValidator:
-    """Words for what a type with several forms allows."""
-
-    def check(value: Any, handler: Callable[[Any], Any]) -> Any:
-        try:
-            return handler(value)
-        except ValidationError:
-            raise ValueError(f"{what} needed") from None
-
-    return WrapValidator(check)
-
-
-def one_of(names: Iterable[str]) -> BeforeValidator:
-    """One of some words."""
-    known = tuple(names)
-
-    def check(value: Any) -> str:
-        if not isinstance(value, str) or value not in known:
-            raise ValueError(f"unknown; {suggestion(value, known)}")
-        return value
-
-    return BeforeValidator(check)
-
-
-Number = Annotated[float, BeforeValidator(_number)]
-"""A finite number, also of an array without dimensions."""
-Positive = Annotated[Number, Gt(0)]
-NotNegative = Annotated[Number, Ge(0)]
-Tolerance = Annotated[Number, Interval(gt=1e-18, lt=1e-2)]
-"""Of the Taylor integrator, over the sizes of the states."""
-Extended = Annotated[float, BeforeValidator(_no_truth)]
-"""A number that may be infinite."""
-Whole = Annotated[int, BeforeValidator(_whole)]
-Natural = Annotated[Whole, Ge(1)]
-Several = Annotated[Whole, Ge(2)]
-Workers = Natural | None
-"""Processes; None takes all cores."""
-Seed = Annotated[Whole, Ge(0)]
 Mode = Annotated[int, BeforeValidator(_mode)]
 """1 or 2, by ascending frequency in contact."""
+
+
 Angle = Annotated[Number, AfterValidator(within_a_turn)]
 """One angle, rad."""
-Vector = Annotated[Any, BeforeValidator(_vector)]
-"""A 1-D array of finite numbers; one number is an array of one."""
-NotNegativeVector = Annotated[Vector, AfterValidator(_not_negative)]
-Line = Annotated[Any, BeforeValidator(_line)]
-"""A number, or a 1-D array of them."""
+
+
 Angles = Annotated[Vector, AfterValidator(within_a_turn)]
 """A 1-D array of angles, rad."""
+
+
 State = Annotated[Any, BeforeValidator(state_of)]
 """x, y, vx, vy."""
-Values = Annotated[Mapping[str, Any], BeforeValidator(_values)]
-"""Names → values; each is checked where its name is known."""
-Identifier = Annotated[str, AfterValidator(_identifier)]
-"""A name that is used as an attribute or a keyword."""
-Word = Annotated[str, AfterValidator(_word)]
-"""A name that becomes part of the names of variables."""
-AnyPath = Annotated[Any, BeforeValidator(_path)]

@@ -11,7 +11,7 @@ from squealpipe.schema import (
     outcome,
     text,
 )
-from squealpipe.schema.agreement import ComparedAs, Listing, RoundOff
+from squealpipe.systems.datasets.agreement import ComparedAs, Listing, RoundOff
 
 RUN = ("run",)
 

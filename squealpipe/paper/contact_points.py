@@ -10,13 +10,13 @@ import xarray as xr
 
 from squealpipe.codes import Verdict
 from squealpipe.schema import Outcome, build
-from squealpipe.schema.origin import versions
 from squealpipe.structures.schema.contact_points import CONTACT_POINTS, MOST_FRICTION
 from squealpipe.structures.schema.squealing import NO_ATTRACTOR
 from squealpipe.structures.shipped_pad import YOUNG, elastic_pad
 from squealpipe.structures.squeal.plant import Plant
 from squealpipe.structures.squeal.squealing_modes import squealing_of
 from squealpipe.structures.squeal.windows import WIDE, Running, run
+from squealpipe.systems.datasets.versions import versions
 
 STIFFER = 100.0
 """Modulus of the stiff pad, over that of friction material."""

@@ -5,7 +5,6 @@ parameters as one of the study does. None of these attributes enters the dataset
 """
 
 import functools
-import importlib.metadata
 import inspect
 import json
 from collections.abc import Callable, Mapping
@@ -15,9 +14,9 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.parameters import Parameters
+from squealpipe.systems.datasets.versions import versions
 from squealpipe.validation import checked
 
-LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "numba")
 LONGEST = 8
 """Arguments with more values than this are recorded by first, last and number."""
 INHERITED = ("parameters", "model", "method", "tolerance")
@@ -117,14 +116,3 @@ def plain(value: Any) -> Any:
     if array.dtype.kind == "f":
         array = array.astype(float)  # JSON knows no longer ones
     return array.tolist() if array.dtype.kind in "biufU" else str(value)
-
-
-@functools.cache
-def versions() -> Mapping[str, str]:
-    """Attributes with the version of this package and of the libraries that decide results."""
-    installed = {name: importlib.metadata.version(name) for name in LIBRARIES}
-    libraries = json.dumps(installed, sort_keys=True, separators=(",", ":"))
-    return {
-        "package_version": importlib.metadata.version("squealpipe"),
-        "libraries": libraries,
-    }

@@ -8,7 +8,8 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from squealpipe.parameters import SYMBOLS, brief
+from squealpipe.parameters import SYMBOLS
+from squealpipe.systems.inputs.values import brief
 from squealpipe.text import in_words, nearest
 
 

@@ -9,11 +9,11 @@ from typing import Any
 
 import xarray as xr
 
-from squealpipe.schema.origin import versions
 from squealpipe.store.checkout import commit
 from squealpipe.store.identity import with_key
 from squealpipe.store.netcdf import load, made_now, save
 from squealpipe.store.rerun.key import canonical, digest, file_key, refuse_edited
+from squealpipe.systems.datasets.versions import versions
 
 
 def produce(

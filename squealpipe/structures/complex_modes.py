@@ -10,7 +10,6 @@ import xarray as xr
 
 from squealpipe.inputs import takes_units
 from squealpipe.schema import Outcome, build, find
-from squealpipe.schema.origin import versions
 from squealpipe.structures.band import COMPLETE
 from squealpipe.structures.confirming import ConfirmedWay
 from squealpipe.structures.definition import ContactStructure
@@ -21,6 +20,7 @@ from squealpipe.structures.pencil import DENSE, one_thread
 from squealpipe.structures.schema.structures import name_over
 from squealpipe.structures.sliding import NoSlidingError
 from squealpipe.structures.spectrum import ALL, Solver, Spectrum
+from squealpipe.systems.datasets.versions import versions
 from squealpipe.systems.progress import with_progress
 
 STEPS = 9

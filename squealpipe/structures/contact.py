@@ -6,13 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from squealpipe.parameters import (
-    TABLE,
-    brief,
-    finite_number,
-    is_finite_number,
-    is_whole_number,
-)
+from squealpipe.parameters import TABLE, finite_number
+from squealpipe.systems.inputs.values import brief, is_finite_number, is_whole_number
 from squealpipe.units import refuse_units
 from squealpipe.validation import real_array
 

@@ -11,9 +11,10 @@ from typing import Any, NamedTuple
 from squealpipe.laws.numerals import Numeral, decimal_sign, numeral, plain
 from squealpipe.laws.rows import FileRows, text_rows
 from squealpipe.laws.sheets import IS_TIME, sheet
-from squealpipe.parameters import brief, finite_number
+from squealpipe.parameters import finite_number
 from squealpipe.structures.contact import Contact
 from squealpipe.structures.units import Scales
+from squealpipe.systems.inputs.values import brief
 from squealpipe.text import suggestion
 
 CONTACT_COLUMNS = ("name", "normal", "tangential", "stiffness", "preload")

@@ -7,12 +7,13 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 import scipy.sparse as sp
 
-from squealpipe.parameters import brief, finite_number, numbers_in_si
+from squealpipe.parameters import finite_number
 from squealpipe.structures.contact import Contact, directions, transversals
 from squealpipe.structures.friction import Friction, default_mu, friction_of, has_own_mu
 from squealpipe.structures.matrices import checked_mass, real_square
 from squealpipe.structures.meshes.faces import Rotation
 from squealpipe.structures.meshes.structure_mesh import StructureMesh
+from squealpipe.systems.inputs.values import brief, numbers_in_si
 from squealpipe.validation import real_array
 
 OF_SLIDING = {"mu", "belt_speed", "friction_law", "mu_static", "friction_speed"}

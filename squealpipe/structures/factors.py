@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.parameters import brief, is_whole_number
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.pencil import DENSE
 from squealpipe.structures.schema.structures import ARGUMENTS, OF_CONTACT, SCALED
 from squealpipe.structures.spectrum import Limits, check_frequency
 from squealpipe.structures.varied_friction import VariedFriction, varied_by
+from squealpipe.systems.inputs.values import brief, is_whole_number
 from squealpipe.text import suggestion
 from squealpipe.validation import real_array
 

@@ -13,7 +13,6 @@ from squealpipe.laws.friction_laws import COLUMNS
 from squealpipe.laws.numerals import decimal_sign, numeral, plain
 from squealpipe.laws.rows import text_rows
 from squealpipe.laws.tables import named
-from squealpipe.parameters import brief, is_finite_number
 from squealpipe.store.yaml_files import read_yaml
 from squealpipe.structures.contact import Contact
 from squealpipe.structures.contact_table import read_contacts
@@ -24,6 +23,7 @@ from squealpipe.structures.meshes.faces import Face, Rotation
 from squealpipe.structures.meshes.from_mesh import names_of, of_mesh
 from squealpipe.structures.readers import Labelled, read_matrix
 from squealpipe.structures.units import SI, Scales, scales_of
+from squealpipe.systems.inputs.values import brief, is_finite_number
 from squealpipe.text import suggestion
 from squealpipe.validation import real_array
 

@@ -7,8 +7,8 @@ import scipy.linalg as la
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
-from squealpipe.parameters import brief
 from squealpipe.structures.pencil import DENSE
+from squealpipe.systems.inputs.values import brief
 
 SYMMETRIC = 1e-10
 """Largest asymmetry of a mass that is round-off, over the geometric mean of both diagonals."""

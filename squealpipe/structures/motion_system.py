@@ -7,7 +7,6 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from squealpipe.laws.tables import is_table, pieces_of
-from squealpipe.parameters import brief, is_finite_number, is_whole_number
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.dynamics import (
     Motion,
@@ -21,6 +20,7 @@ from squealpipe.structures.reduction import conflict_in_stick
 from squealpipe.systems.belt_contact import FIRST, SLIP, BeltContact, Surface, negative
 from squealpipe.systems.components import MOST_COMPONENTS, Component, Switch
 from squealpipe.systems.definition import MOST_STATES
+from squealpipe.systems.inputs.values import brief, is_finite_number, is_whole_number
 from squealpipe.systems.system import System
 
 HIDDEN = 1e-14

@@ -7,7 +7,6 @@ import numpy as np
 import scipy.linalg as la
 
 from squealpipe.inputs import takes_units
-from squealpipe.parameters import brief, is_finite_number, is_whole_number
 from squealpipe.structures.agreement import Agreement, Truth, compared, refined, summary
 from squealpipe.structures.contact import are_parallel, dependent_contacts
 from squealpipe.structures.definition import ContactStructure, ReducedFrom
@@ -23,6 +22,7 @@ from squealpipe.structures.sliding import (
 )
 from squealpipe.structures.spectrum import Limits, Solver, check_frequency
 from squealpipe.structures.subspace import in_coordinates
+from squealpipe.systems.inputs.values import brief, is_finite_number, is_whole_number
 from squealpipe.systems.progress import report
 
 AND_LARGER = 3

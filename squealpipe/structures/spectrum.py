@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.parameters import brief, is_finite_number
 from squealpipe.schema import Outcome
 from squealpipe.structures import band, dense
 from squealpipe.structures.definition import ContactStructure
@@ -18,6 +17,7 @@ from squealpipe.structures.refinement import Eigenpair, error_of_forces, growing
 from squealpipe.structures.sliding import SteadySliding, steady_sliding
 from squealpipe.structures.stiff import beyond_gap, stiff_degrees
 from squealpipe.structures.varied_friction import VariedFriction
+from squealpipe.systems.inputs.values import brief, is_finite_number
 
 BEYOND = 1.05
 """The band of so many modes ends so far beyond the frequency that they reach without friction."""

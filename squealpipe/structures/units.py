@@ -2,7 +2,7 @@
 
 from typing import Any, NamedTuple
 
-from squealpipe.parameters import brief
+from squealpipe.systems.inputs.values import brief
 from squealpipe.units import UnitError, in_si
 
 KINDS = {"length": "m", "mass": "kg", "time": "s"}

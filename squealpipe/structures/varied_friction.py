@@ -7,8 +7,8 @@ from typing import Any, Self
 
 import numpy as np
 
-from squealpipe.parameters import brief
 from squealpipe.structures.definition import ContactStructure
+from squealpipe.systems.inputs.values import brief
 from squealpipe.text import suggestion
 
 

@@ -11,9 +11,9 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.ranges import longest
-from squealpipe.schema.agreement import RAGGED
 from squealpipe.study.job import Job
 from squealpipe.study.schema.sweep import fill_up
+from squealpipe.systems.datasets.agreement import RAGGED
 
 
 def scattered_rows(rows: int, item: str) -> slice:

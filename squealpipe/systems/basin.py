@@ -5,13 +5,20 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.schema import flag_table
+from squealpipe.systems.datasets import flag_table
 from squealpipe.systems.grid import duration_of, outer_product
+from squealpipe.systems.inputs.gate import (
+    Natural,
+    Number,
+    Tolerance,
+    Values,
+    Workers,
+    checked,
+)
 from squealpipe.systems.integrate import MOST_STEPS
 from squealpipe.systems.labels import attributes_of, flag, labels, outcome
 from squealpipe.systems.motion import MotionKind, RepeatableRuns, drift_tolerance
 from squealpipe.systems.schema import build
-from squealpipe.validation import Natural, Number, Tolerance, Values, Workers, checked
 
 SAME_ATTRACTOR = 1e-3
 """Extremes of one attractor from two starts differ by less, over those of all attractors."""

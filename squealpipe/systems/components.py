@@ -12,8 +12,8 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from squealpipe.text import suggestion
-from squealpipe.validation import Identifier, Number, Word, checked, needed
+from squealpipe.systems.inputs.gate import Identifier, Number, Word, checked, needed
+from squealpipe.systems.inputs.words import suggestion
 
 Function = Callable[..., Any]
 Target = str | tuple[str, Function | None] | tuple[str, Function | None, Word]

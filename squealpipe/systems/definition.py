@@ -9,8 +9,6 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import WrapValidator
 
-from squealpipe.parameters import is_finite_number, numbers_in_si
-from squealpipe.schema import Outcome
 from squealpipe.systems.components import (
     Begins,
     Component,
@@ -19,11 +17,20 @@ from squealpipe.systems.components import (
     Regimes,
     Switch,
 )
+from squealpipe.systems.datasets import Outcome
+from squealpipe.systems.inputs.gate import (
+    Identifier,
+    Number,
+    Positive,
+    Word,
+    checked,
+    needed,
+)
+from squealpipe.systems.inputs.units import holds_units
+from squealpipe.systems.inputs.values import is_finite_number, numbers_in_si
+from squealpipe.systems.inputs.words import suggestion
 from squealpipe.systems.schema import names_in_results
 from squealpipe.systems.trace import Names, Traced
-from squealpipe.text import suggestion
-from squealpipe.units import holds_units
-from squealpipe.validation import Identifier, Number, Positive, Word, checked, needed
 
 Size = Annotated[
     str | tuple[str, Positive | Function],

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.laws import functions as of_laws
+from squealpipe.systems import natural_exponential
 from squealpipe.systems.taylor import symbols
 
 
@@ -64,4 +64,4 @@ def sqrt(value: Any) -> Any:
     return value**0.5 if isinstance(value, symbols.Symbol) else np.sqrt(value)
 
 
-of_laws.exp.register(symbols.Symbol, exp)
+natural_exponential.exp.register(symbols.Symbol, exp)

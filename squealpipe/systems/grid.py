@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from squealpipe.systems.definition import in_unit_of_state
+from squealpipe.systems.inputs.gate import real_array
+from squealpipe.systems.inputs.words import suggestion
 from squealpipe.systems.labels import labels
 from squealpipe.systems.tracing import TracedSystem as System
-from squealpipe.text import suggestion
-from squealpipe.validation import real_array
 
 
 @dataclass(frozen=True)

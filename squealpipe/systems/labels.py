@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.schema import OWN_NAMES, SYSTEM, Outcome, flag_table, in_words
-from squealpipe.schema.origin import versions
+from squealpipe.systems.datasets import OWN_NAMES, SYSTEM, Outcome, flag_table, in_words
+from squealpipe.systems.datasets.versions import versions
 from squealpipe.systems.taylor import layout
 from squealpipe.systems.tracing import TracedSystem as System
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.schema import Outcome
+from squealpipe.systems.datasets import Outcome
 from squealpipe.systems.integrate import MOST_STEPS, RunOptions, integrate
 from squealpipe.systems.recurrence import (
     LEAST_REPEATS,

@@ -8,9 +8,18 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.parameters import brief
 from squealpipe.systems.cycles.sensitivity import sensitivities
 from squealpipe.systems.grid import call_values, duration_of, outer_product, scalar
+from squealpipe.systems.inputs.gate import (
+    Natural,
+    Number,
+    Tolerance,
+    Values,
+    Vector,
+    Workers,
+    checked,
+)
+from squealpipe.systems.inputs.values import brief
 from squealpipe.systems.integrate import MOST_STEPS, RunOptions, integrate
 from squealpipe.systems.labels import (
     attributes_of,
@@ -24,15 +33,6 @@ from squealpipe.systems.record import RunRecord, single_run
 from squealpipe.systems.schema import build
 from squealpipe.systems.taylor.scalar import numpy_function
 from squealpipe.systems.trace import TIME
-from squealpipe.validation import (
-    Natural,
-    Number,
-    Tolerance,
-    Values,
-    Vector,
-    Workers,
-    checked,
-)
 
 SAMPLES_PER_STEP, MOST_SAMPLES = 4, 20_001
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import xarray as xr
 
-from squealpipe.schema import (
+from squealpipe.systems.datasets import (
     SYSTEM,
     DatasetSchema,
     SchemaError,
@@ -24,7 +24,7 @@ from squealpipe.schema import (
     or_nan,
     text,
 )
-from squealpipe.schema.agreement import ComparedAs, Listing, RoundOff
+from squealpipe.systems.datasets.agreement import ComparedAs, Listing, RoundOff
 
 UNIT, GRID = "<unit>", "<grid>"
 FLAG = "i2"

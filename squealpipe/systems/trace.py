@@ -9,6 +9,7 @@ from typing import Any, Self
 import numpy as np
 
 from squealpipe.systems.components import Composition
+from squealpipe.systems.inputs.words import suggestion
 from squealpipe.systems.taylor.scalar import REGIME, SwitchSymbols
 from squealpipe.systems.taylor.symbols import (
     Symbol,
@@ -19,7 +20,6 @@ from squealpipe.systems.taylor.symbols import (
     symbol,
     variables,
 )
-from squealpipe.text import suggestion
 
 TIME, TIME_UNIT = "time", "time unit"
 """Names that no state or parameter can have: of the time, and of the unit that it is run in."""

@@ -15,9 +15,9 @@ from squealpipe.codes import Regime
 from squealpipe.laws.contact import contact_force
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction import stick_limit
-from squealpipe.laws.functions import exp
 from squealpipe.laws.springs import Geometry
 from squealpipe.parameters import NUMBERS_OF_A1
+from squealpipe.systems.natural_exponential import exp
 from tests.oracles.a1_automaton import DIRECTION, A1Automaton, EventKind, HybridRun
 
 exp.register(heyoka.expression, heyoka.exp)

@@ -3,7 +3,7 @@
 import mpmath as mp
 
 from squealpipe.laws.friction_laws import coefficient
-from squealpipe.laws.functions import exp
+from squealpipe.systems.natural_exponential import exp
 
 exp.register(mp.mpf, mp.exp)
 

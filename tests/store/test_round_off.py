@@ -7,10 +7,10 @@ import xarray as xr
 from squealpipe import cycle_branch, hammering_map, limit_cycle, simulate
 from squealpipe.parameters import SCENES
 from squealpipe.schema import Outcome, Variable, all_schemas
-from squealpipe.schema.agreement import ComparedAs, RoundOff
 from squealpipe.store.comparison.compare import compare_datasets
 from squealpipe.store.comparison.differences import Agreement, judge
 from squealpipe.systems.branch_labels import Label
+from squealpipe.systems.datasets.agreement import ComparedAs, RoundOff
 from tests.former import FORMER
 
 

@@ -15,7 +15,8 @@ from squealpipe.laws import springs
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import COULOMB, FALLING, LAWS, coefficient
 from squealpipe.laws.tables import is_table
-from squealpipe.parameters import DEFAULTS, NUMBERS_OF_A1, TABLE, Parameters, brief
+from squealpipe.parameters import DEFAULTS, NUMBERS_OF_A1, TABLE, Parameters
+from squealpipe.systems.inputs.values import brief
 from squealpipe.systems.system import System
 from squealpipe.text import suggestion
 from squealpipe.validation import real_array

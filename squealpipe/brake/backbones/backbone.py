@@ -25,9 +25,10 @@ from squealpipe.brake.orbits.special_points import special_points
 from squealpipe.brake.schema.backbones import BACKBONE
 from squealpipe.codes import SpecialPoint
 from squealpipe.laws.friction import slides
-from squealpipe.parameters import SCENES, Parameters, brief
+from squealpipe.parameters import SCENES, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
+from squealpipe.systems.inputs.values import brief
 from squealpipe.validation import Angle, Mode, Positive, Whole
 
 _MOST_TABLE_ENTRIES = 2**23

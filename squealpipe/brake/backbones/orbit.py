@@ -12,9 +12,10 @@ from squealpipe.brake.a4.orbits import find_orbit, orbit_values
 from squealpipe.brake.a4.system import scaled_system
 from squealpipe.brake.orbits.orbit_shape import sample
 from squealpipe.brake.schema.backbones import PERIODIC_ORBIT, Assumption
-from squealpipe.parameters import Parameters, brief
+from squealpipe.parameters import Parameters
 from squealpipe.schema import blank, build
 from squealpipe.schema.origin import recorded
+from squealpipe.systems.inputs.values import brief
 from squealpipe.validation import Angle, Mode, Positive
 
 PHASES = np.linspace(0.0, math.pi, 201)

@@ -23,9 +23,10 @@ from squealpipe.brake.schema.curves import (
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import LAWS
 from squealpipe.laws.springs import springs_are_equal
-from squealpipe.parameters import HORIZON, Parameters, brief
+from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
+from squealpipe.systems.inputs.values import brief
 from squealpipe.text import suggestion
 from squealpipe.validation import Line, Number, Positive, Tolerance, Workers, one_of
 

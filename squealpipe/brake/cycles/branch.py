@@ -16,7 +16,7 @@ from squealpipe.brake.cycles.onset import find_onset
 from squealpipe.brake.cycles.scene import IN_SYSTEM, CycleScene
 from squealpipe.brake.models.refusals import refuse_unread
 from squealpipe.brake.schema.cycles import CYCLE_BRANCH, LIMIT_CYCLE
-from squealpipe.parameters import TABLE, Parameters, is_finite_number
+from squealpipe.parameters import TABLE, Parameters
 from squealpipe.schema import Outcome, blank, build
 from squealpipe.schema.origin import recorded
 from squealpipe.systems.branch_labels import Label
@@ -25,6 +25,7 @@ from squealpipe.systems.cycles.doubling import doubled_start
 from squealpipe.systems.cycles.following import Follower
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.cycles.trail import BranchPoint
+from squealpipe.systems.inputs.values import is_finite_number
 from squealpipe.validation import Angle, Number, Whole, state_of
 
 

@@ -10,9 +10,10 @@ from squealpipe.brake.models.damped import critical_friction, dashpots_lower
 from squealpipe.brake.schema.linear import CRITICAL_DAMPING_MAP, CRITICAL_FRICTION_MAP
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import slope
-from squealpipe.parameters import Parameters, brief
+from squealpipe.parameters import Parameters
 from squealpipe.schema import build
 from squealpipe.schema.origin import recorded
+from squealpipe.systems.inputs.values import brief
 from squealpipe.validation import Angle, Angles, NotNegativeVector
 
 

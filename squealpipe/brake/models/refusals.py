@@ -9,7 +9,8 @@ import numpy as np
 
 from squealpipe.laws.friction_laws import COULOMB, FALLING, LAWS, coefficient
 from squealpipe.laws.tables import is_table
-from squealpipe.parameters import DEFAULTS, TABLE, Parameters, brief
+from squealpipe.parameters import DEFAULTS, TABLE, Parameters
+from squealpipe.systems.inputs.values import brief
 
 OF_OTHER_LAWS = {name for law in LAWS.values() for name in law.PARAMETERS} - set(
     LAWS[COULOMB].PARAMETERS

@@ -9,8 +9,9 @@ import scipy
 from squealpipe.brake.schema.propensity import TRUNCATION
 from squealpipe.inputs import ANGLES
 from squealpipe.laws.friction_laws import COULOMB, FALLING
-from squealpipe.parameters import Parameters, brief, is_finite_number
+from squealpipe.parameters import Parameters
 from squealpipe.ranges import NUMBERS
+from squealpipe.systems.inputs.values import brief, is_finite_number
 from squealpipe.text import suggestion
 
 KINDS: dict[str, tuple[str, str]] = {

@@ -15,7 +15,7 @@ from squealpipe.schema import (
     outcome,
     text,
 )
-from squealpipe.schema.agreement import Listing
+from squealpipe.systems.datasets.agreement import Listing
 
 
 class Assumption(IntEnum):

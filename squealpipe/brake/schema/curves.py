@@ -13,8 +13,8 @@ from squealpipe.schema import (
     text,
     whether,
 )
-from squealpipe.schema.agreement import Listing
-from squealpipe.schema.outcomes import Outcome
+from squealpipe.systems.datasets.agreement import Listing
+from squealpipe.systems.datasets.outcomes import Outcome
 
 
 class PointKind(IntEnum):

@@ -16,8 +16,8 @@ from squealpipe.schema import (
     outcome,
     text,
 )
-from squealpipe.schema.agreement import ComparedAs, Listing, RoundOff
 from squealpipe.systems.branch_labels import Label, Meeting
+from squealpipe.systems.datasets.agreement import ComparedAs, Listing, RoundOff
 
 
 class Stability(IntEnum):

@@ -15,7 +15,7 @@ from squealpipe.schema import (
     text,
     whether,
 )
-from squealpipe.schema.agreement import Listing
+from squealpipe.systems.datasets.agreement import Listing
 
 MAP = ("alpha1", "alpha2")
 

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from squealpipe.laws.functions import exp
+from squealpipe.systems.natural_exponential import exp
 
 PARAMETERS = ("mu", "mu_static", "friction_speed")
 FALLING = True

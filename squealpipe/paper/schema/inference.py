@@ -17,7 +17,7 @@ from squealpipe.schema import (
     text,
     whether,
 )
-from squealpipe.schema.agreement import ComparedAs, RoundOff
+from squealpipe.systems.datasets.agreement import ComparedAs, RoundOff
 from squealpipe.vibration.shares import CONFIDENCE
 
 SAMPLE = ("sample",)

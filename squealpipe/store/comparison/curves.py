@@ -8,8 +8,8 @@ import scipy
 import xarray as xr
 
 from squealpipe.schema import DatasetSchema, Variable
-from squealpipe.schema.agreement import Listing
 from squealpipe.store.comparison.differences import Agreement, VariableDifference
+from squealpipe.systems.datasets.agreement import Listing
 
 BETWEEN = 0.01
 """Largest error of an interpolation that is believed, over the extent of a variable."""

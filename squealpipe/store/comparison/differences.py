@@ -10,7 +10,7 @@ import scipy
 import xarray as xr
 
 from squealpipe.schema import Outcome, Variable, flag_table
-from squealpipe.schema.agreement import ComparedAs, RoundOff
+from squealpipe.systems.datasets.agreement import ComparedAs, RoundOff
 
 SMALLEST_CHANCE = 1e-6
 """Two samples of one distribution are taken for different ones at this probability or less."""

@@ -4,7 +4,6 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from squealpipe.schema.agreement import ComparedAs
 from squealpipe.store.comparison.compare import Comparison, DatasetDifference
 from squealpipe.store.comparison.differences import (
     Agreement,
@@ -12,6 +11,7 @@ from squealpipe.store.comparison.differences import (
     shortened,
 )
 from squealpipe.store.comparison.statements import StatementChange
+from squealpipe.systems.datasets.agreement import ComparedAs
 
 WIDTH = 100
 

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.schema import DatasetSchema
-from squealpipe.schema.agreement import RAGGED, Listing
+from squealpipe.systems.datasets.agreement import RAGGED, Listing
 
 SAME_PLACE = 1e-9
 """Positions of filling entries of a list that differ by less, relative, are the same."""

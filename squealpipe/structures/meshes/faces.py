@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.parameters import TABLE, brief, finite_number, is_whole_number
+from squealpipe.parameters import TABLE, finite_number
+from squealpipe.systems.inputs.values import brief, is_whole_number
 from squealpipe.validation import real_array
 
 BELT = "belt"

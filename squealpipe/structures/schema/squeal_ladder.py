@@ -13,7 +13,7 @@ from squealpipe.schema import (
     outcome,
     text,
 )
-from squealpipe.schema.agreement import Listing
+from squealpipe.systems.datasets.agreement import Listing
 
 NO_MODE = -1
 RUN, PUSHED, AT = ("run",), ("run", "mode"), ("run", "mode", "contact")

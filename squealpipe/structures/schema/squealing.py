@@ -15,8 +15,8 @@ from squealpipe.schema import (
     text,
     whether,
 )
-from squealpipe.schema.agreement import Listing
 from squealpipe.schema.meshes import MESH, MESH_COORDINATES
+from squealpipe.systems.datasets.agreement import Listing
 
 NO_ATTRACTOR = -1
 MOST_MODES = 32

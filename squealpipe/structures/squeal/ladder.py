@@ -12,7 +12,6 @@ import xarray as xr
 from squealpipe.benchmark.schema import Reliability, Role
 from squealpipe.schema import build
 from squealpipe.schema.origin import recorded
-from squealpipe.schema.outcomes import Outcome
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.pencil import DENSE
 from squealpipe.structures.reduction import reduce
@@ -34,6 +33,7 @@ from squealpipe.structures.squeal.methods import (
 from squealpipe.structures.squeal.plant import Plant
 from squealpipe.structures.squeal.settling import FEWEST, FIRST, horizon
 from squealpipe.structures.squeal.squealing_modes import nearest
+from squealpipe.systems.datasets.outcomes import Outcome
 from squealpipe.systems.progress import alone
 from squealpipe.validation import Natural, NotNegative, Positive, Tolerance
 

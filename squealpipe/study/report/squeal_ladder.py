@@ -6,8 +6,8 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.benchmark.schema import Role
-from squealpipe.schema.outcomes import Outcome
 from squealpipe.structures.schema.squeal_ladder import PushAnswer
+from squealpipe.systems.datasets.outcomes import Outcome
 from squealpipe.text import number
 from squealpipe.units import engineering
 

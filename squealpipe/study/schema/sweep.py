@@ -21,7 +21,7 @@ from squealpipe.schema import (
     find,
     flag_table,
 )
-from squealpipe.schema.agreement import RAGGED
+from squealpipe.systems.datasets.agreement import RAGGED
 
 OPTIONS = {
     "t_end": Variable("horizon", "s"),

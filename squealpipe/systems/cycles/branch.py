@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.schema import Outcome, flag_table
 from squealpipe.systems.branch_labels import Label
 from squealpipe.systems.continuation import ContinuationState
 from squealpipe.systems.cycles.described import columns, describe_columns, outcome_of
@@ -22,6 +21,8 @@ from squealpipe.systems.cycles.following import Follower
 from squealpipe.systems.cycles.line import AT, STEPS
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.cycles.trail import BranchPoint
+from squealpipe.systems.datasets import Outcome, flag_table
+from squealpipe.systems.inputs.gate import Number, Several, checked
 from squealpipe.systems.labels import (
     attributes_of,
     components_of,
@@ -29,7 +30,6 @@ from squealpipe.systems.labels import (
     labels,
     regime_flag,
 )
-from squealpipe.validation import Number, Several, checked
 
 if TYPE_CHECKING:
     from squealpipe.systems.tracing import TracedSystem as System

@@ -16,14 +16,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.schema import flag_table
 from squealpipe.systems.branch_labels import Label, Meeting
 from squealpipe.systems.cycles.branch import started
 from squealpipe.systems.cycles.curve_equations import RETURNS
 from squealpipe.systems.cycles.curve_following import ENDS, CurvePoint, follow_curve
+from squealpipe.systems.datasets import flag_table
+from squealpipe.systems.inputs.gate import Number, Several, checked
+from squealpipe.systems.inputs.words import suggestion
 from squealpipe.systems.labels import attributes_of, flag, labels
-from squealpipe.text import suggestion
-from squealpipe.validation import Number, Several, checked
 
 if TYPE_CHECKING:
     from squealpipe.systems.tracing import TracedSystem as System

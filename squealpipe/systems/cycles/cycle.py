@@ -12,7 +12,7 @@ from squealpipe.systems.cycles.described import dataset
 from squealpipe.systems.cycles.find import MOST_STEPS, find_cycle
 from squealpipe.systems.cycles.legs import Vector
 from squealpipe.systems.grid import call_values, scalar
-from squealpipe.validation import Natural, Positive, Values, checked
+from squealpipe.systems.inputs.gate import Natural, Positive, Values, checked
 
 if TYPE_CHECKING:
     from squealpipe.systems.tracing import TracedSystem as System

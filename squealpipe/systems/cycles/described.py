@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.schema import Outcome, flag_table
 from squealpipe.systems.cycles.event_map import FREE
 from squealpipe.systems.cycles.solution import CLOSING_TOLERANCE, Cycle
+from squealpipe.systems.datasets import Outcome, flag_table
 from squealpipe.systems.labels import (
     attributes_of,
     components_of,

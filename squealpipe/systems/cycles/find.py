@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squealpipe.schema import Outcome
 from squealpipe.systems.cycles.admissible import margins
 from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.forced import near_forced, settled_forced
 from squealpipe.systems.cycles.free import near_free, settled_free
 from squealpipe.systems.cycles.legs import Vector
 from squealpipe.systems.cycles.solution import Cycle
+from squealpipe.systems.datasets import Outcome
 
 if TYPE_CHECKING:
     from squealpipe.systems.tracing import TracedSystem as System

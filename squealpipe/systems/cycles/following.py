@@ -14,7 +14,6 @@ from functools import partial
 
 import numpy as np
 
-from squealpipe.schema import Outcome
 from squealpipe.systems.branch_labels import Label
 from squealpipe.systems.branch_line import Line
 from squealpipe.systems.continuation import ContinuationState
@@ -39,6 +38,7 @@ from squealpipe.systems.cycles.line import (
 )
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.cycles.trail import GONE, BranchPoint, Trail
+from squealpipe.systems.datasets import Outcome
 from squealpipe.systems.progress import alone
 
 _CHANGE = 1.0

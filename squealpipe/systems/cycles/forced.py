@@ -8,7 +8,6 @@ from functools import cached_property
 
 import numpy as np
 
-from squealpipe.schema import Outcome
 from squealpipe.systems.cycles.described import SETTLED_ON
 from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.guess import Repeat, as_motion, follow, guess_of
@@ -20,6 +19,7 @@ from squealpipe.systems.cycles.settled import (
     distances_in_step,
 )
 from squealpipe.systems.cycles.solution import Cycle, scale_of
+from squealpipe.systems.datasets import Outcome
 from squealpipe.systems.record import RunRecord
 
 SETTLE = 200.0

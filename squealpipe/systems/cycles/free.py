@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.schema import Outcome
 from squealpipe.systems.cycles.described import SETTLED_ON
 from squealpipe.systems.cycles.event_map import PhaseCondition
 from squealpipe.systems.cycles.flow import Flow
@@ -30,6 +29,7 @@ from squealpipe.systems.cycles.settled import (
     distances_from_orbit,
 )
 from squealpipe.systems.cycles.solution import Cycle, scale_of
+from squealpipe.systems.datasets import Outcome
 from squealpipe.systems.motion import AT_REST
 from squealpipe.systems.record import RunRecord
 from squealpipe.systems.recurrence import crossings

@@ -11,9 +11,9 @@ from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.guess import events_of
 from squealpipe.systems.cycles.legs import Vector
 from squealpipe.systems.cycles.variational import leg_derivatives
+from squealpipe.systems.inputs.words import suggestion
 from squealpipe.systems.labels import labels
 from squealpipe.systems.record import RunRecord
-from squealpipe.text import suggestion
 
 if TYPE_CHECKING:
     from squealpipe.systems.tracing import TracedSystem as System

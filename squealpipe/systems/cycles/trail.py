@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from squealpipe.schema import Outcome
 from squealpipe.systems.branch_labels import Label
 from squealpipe.systems.continuation import ContinuationState
 from squealpipe.systems.cycles.legs import Vector
 from squealpipe.systems.cycles.line import AT
 from squealpipe.systems.cycles.solution import Cycle
+from squealpipe.systems.datasets import Outcome
 
 _AT_REST = 1e-3
 """Size of a cycle, over the largest on its branch, below which one that shrinks comes to rest."""

@@ -10,9 +10,9 @@ from functools import cache
 from typing import Any
 
 from squealpipe.systems.components import MOST_COMPONENTS, Component, Switch
+from squealpipe.systems.inputs.gate import checked
 from squealpipe.systems.shipped.belt_friction import REGIMES
 from squealpipe.systems.system import System
-from squealpipe.validation import checked
 
 PARAMETERS = {
     "mass": 1.0,

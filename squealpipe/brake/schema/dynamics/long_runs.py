@@ -13,7 +13,7 @@ from squealpipe.schema import (
     outcome,
     whether,
 )
-from squealpipe.schema.agreement import ComparedAs, RoundOff
+from squealpipe.systems.datasets.agreement import ComparedAs, RoundOff
 
 _IRREGULAR = (
     "one long run, irregular where the belt is slow: the last bit of the belt speed, which the "

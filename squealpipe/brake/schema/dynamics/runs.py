@@ -18,7 +18,7 @@ from squealpipe.schema import (
     outcome,
     whether,
 )
-from squealpipe.schema.agreement import ComparedAs, Listing, RoundOff
+from squealpipe.systems.datasets.agreement import ComparedAs, Listing, RoundOff
 
 REGIMES = {**{int(each): each.name for each in Regime}, -1: "not_reached"}
 """Meaning of regime."""

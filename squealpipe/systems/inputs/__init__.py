@@ -1,0 +1,1 @@
+"""Inputs of systems: words, units, values and the gate for arguments."""
