@@ -16,7 +16,8 @@ TARGET = Path(__file__).with_name("datasets.md")
 HEAD = f"""\
 # Data dictionary
 
-Written from the schemas in `squealpipe/schema/` by `docs/build_dictionary.py`; a test compares
+Written from the schemas of all rooms (`squealpipe/*/schema`) by `docs/build_dictionary.py`; a test
+compares
 them. Files are NetCDF-4 with CF-1.11 attributes, one dataset each, under `results/data/`; each
 carries its configuration, code and library versions, licence, references and the ids of its
 inputs. Units are those of the parameters (SI by default).
