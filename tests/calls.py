@@ -20,7 +20,9 @@ CALLS: dict[str, Callable[[sp.Parameters], xr.Dataset]] = {
     "basin_map": lambda p: sp.basin_map(
         p, A, B, x=[0.0, 0.3 * p.preload], t_end=30 * p.time_unit
     ),
-    "smallest_disturbance": lambda p: sp.smallest_disturbance(p, 0.4, 1.0, directions=8),
+    "smallest_disturbance": lambda p: sp.smallest_disturbance(
+        p, 0.4, 1.0, directions=8
+    ),
     "assess": lambda p: sp.assess(p, 0.4, 1.0, tol=1e-9),
     "quasi_static_map": lambda p: sp.quasi_static_map(p, AXIS, AXIS),
     "stability_map": lambda p: sp.stability_map(p, AXIS, AXIS),
@@ -37,7 +39,11 @@ CALLS: dict[str, Callable[[sp.Parameters], xr.Dataset]] = {
         p, 0.07 * np.pi, 0.305 * np.pi, t_settle=20 * p.time_unit
     ),
     "propensity": lambda p: sp.propensity(
-        p, 0.3, 1.0, samples=64, t_end=20 * p.time_unit,
+        p,
+        0.3,
+        1.0,
+        samples=64,
+        t_end=20 * p.time_unit,
         distributions={"mu": {"distribution": "uniform", "low": 0.1, "high": 0.9}},
     ),
     "cycle_branch": lambda p: sp.cycle_branch(
@@ -50,5 +56,7 @@ CALLS: dict[str, Callable[[sp.Parameters], xr.Dataset]] = {
     "boundary_distance": lambda p: sp.boundary_distance(
         CALLS["contact_boundary"](p), {"alpha1": 0.9, "alpha2": 2.8}
     ),
-    "regime_chart": lambda p: sp.regime_chart(p, *WINDOW, t_end=5 * p.time_unit, tol=1e-9),
-}  # fmt: skip
+    "regime_chart": lambda p: sp.regime_chart(
+        p, *WINDOW, t_end=5 * p.time_unit, tol=1e-9
+    ),
+}

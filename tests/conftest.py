@@ -56,17 +56,29 @@ def run_snakemake(directory, *arguments, surroundings=None):
     """Run snakemake in a copy, with the package of that copy."""
     env = {**os.environ, "PYTHONPATH": str(directory), **(surroundings or {})}
     return subprocess.run(
-        [sys.executable, "-m", "snakemake", *arguments], cwd=directory, env=env,
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
+        [sys.executable, "-m", "snakemake", *arguments],
+        cwd=directory,
+        env=env,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
 
 
 def pytest_collection_modifyitems(items):
     """The long files first, so that two processes end at about the same time."""
     long = (
-        "references", "installation", "readme", "random_systems", "cycles", "entered_beyond",
-        "published_cycles", "damped_chart", "quality", "documentation",
-    )  # fmt: skip
+        "references",
+        "installation",
+        "readme",
+        "random_systems",
+        "cycles",
+        "entered_beyond",
+        "published_cycles",
+        "damped_chart",
+        "quality",
+        "documentation",
+    )
     files = [f"test_{name}.py" for name in long]
     items.sort(
         key=lambda item: (
@@ -111,9 +123,11 @@ def tiny_study(tmp_path_factory, worker_id):
                 READ: str(shared / "read"),
             }
             run = run_snakemake(
-                copy_checkout(original), "--configfile", "workflow/config/tiny.yaml",
+                copy_checkout(original),
+                "--configfile",
+                "workflow/config/tiny.yaml",
                 surroundings=watching,
-            )  # fmt: skip
+            )
             assert run.returncode == 0, run.stderr[-6000:]
             done.touch()
     copy = own / "tiny_study"

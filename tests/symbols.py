@@ -64,12 +64,17 @@ RNG_SEED = 4
 def random_parameters(generator):
     """Parameters without any symmetry."""
     return Parameters(
-        mass=generator.uniform(0.3, 3), k1=generator.uniform(0.3, 3), k2=generator.uniform(0.3, 3),
-        k3=generator.uniform(0.3, 3), mu=generator.uniform(0, 1),
-        belt_speed=generator.uniform(-5, 5), preload=generator.uniform(0.3, 3),
-        length1=generator.uniform(3, 8), length2=generator.uniform(3, 8),
+        mass=generator.uniform(0.3, 3),
+        k1=generator.uniform(0.3, 3),
+        k2=generator.uniform(0.3, 3),
+        k3=generator.uniform(0.3, 3),
+        mu=generator.uniform(0, 1),
+        belt_speed=generator.uniform(-5, 5),
+        preload=generator.uniform(0.3, 3),
+        length1=generator.uniform(3, 8),
+        length2=generator.uniform(3, 8),
         sigma=generator.uniform(0.3, 5),
-    )  # fmt: skip
+    )
 
 
 def draws(count):

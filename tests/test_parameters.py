@@ -34,10 +34,15 @@ def test_groups_do_not_depend_on_the_units(mass, stiffness, length):
     plain = Parameters()
     speed = length * math.sqrt(stiffness / mass)
     scaled = Parameters(
-        mass=mass, k1=stiffness, k2=stiffness, k3=plain.k3 * stiffness, preload=length,
-        length1=plain.length1 * length, length2=plain.length2 * length,
+        mass=mass,
+        k1=stiffness,
+        k2=stiffness,
+        k3=plain.k3 * stiffness,
+        preload=length,
+        length1=plain.length1 * length,
+        length2=plain.length2 * length,
         belt_speed=plain.belt_speed * speed,
-    )  # fmt: skip
+    )
     for group in ("kappa", "length_ratio", "speed_ratio"):
         assert math.isclose(
             getattr(scaled, group), getattr(plain, group), rel_tol=1e-14
@@ -46,10 +51,19 @@ def test_groups_do_not_depend_on_the_units(mass, stiffness, length):
 
 def test_scenes_are_those_of_the_paper():
     printed = {
-        "F2a": (0.5, 1), "F2b": (1, 0.5), "F2c": (0.75, 0.75), "F2d": (0.83, 0.83),
-        "F3": (0.4, 0.6), "F4": (0.2, 0.8), "F5a": (1, 1), "F5b": (0, 0),
-        "F10": (0.5, 1), "F11": (1, 0.5), "F12": (0.75, 0.75), "F13": (5 / 6, 5 / 6),
-    }  # fmt: skip
+        "F2a": (0.5, 1),
+        "F2b": (1, 0.5),
+        "F2c": (0.75, 0.75),
+        "F2d": (0.83, 0.83),
+        "F3": (0.4, 0.6),
+        "F4": (0.2, 0.8),
+        "F5a": (1, 1),
+        "F5b": (0, 0),
+        "F10": (0.5, 1),
+        "F11": (1, 0.5),
+        "F12": (0.75, 0.75),
+        "F13": (5 / 6, 5 / 6),
+    }
     assert set(SCENES) == set(printed)
     for name, over_pi in printed.items():
         scene = SCENES[name]

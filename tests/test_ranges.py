@@ -16,10 +16,20 @@ from squealpipe.ranges import (
 )
 
 FORMS = {
-    "0.4pi": 0.4, "2pi/5": 0.4, "72deg": 0.4, "1.25": 1.25 / math.pi, "1.25rad": 1.25 / math.pi,
-    "pi": 1.0, "-pi/2": -0.5, "-0.5pi": -0.5, "5*pi/6": 5 / 6, "0.83π": 0.83, "90°": 0.5,
-    " 1e-3 ": 1e-3 / math.pi, "0": 0.0,
-}  # fmt: skip
+    "0.4pi": 0.4,
+    "2pi/5": 0.4,
+    "72deg": 0.4,
+    "1.25": 1.25 / math.pi,
+    "1.25rad": 1.25 / math.pi,
+    "pi": 1.0,
+    "-pi/2": -0.5,
+    "-0.5pi": -0.5,
+    "5*pi/6": 5 / 6,
+    "0.83π": 0.83,
+    "90°": 0.5,
+    " 1e-3 ": 1e-3 / math.pi,
+    "0": 0.0,
+}
 
 
 @pytest.mark.parametrize("text", FORMS)

@@ -74,9 +74,14 @@ def run(step, language, place):
         [sys.executable, "-c", step] if language == "python" else ["bash", "-c", step]
     )
     return subprocess.run(
-        command, cwd=place, env=environment, capture_output=True, text=True, check=False,
+        command,
+        cwd=place,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
         timeout=300,
-    )  # fmt: skip
+    )
 
 
 @pytest.mark.release

@@ -8,18 +8,40 @@ from squealpipe.cli import run
 from tests.calls import CALLS, A, B
 
 SI = sp.Parameters(
-    mass=0.5, k1=1e7, k2=1e7, k3=7e6, mu=0.3, belt_speed=5.0, preload=1e-3, length1=0.05,
-    length2=0.05, sigma=1e6,
-)  # fmt: skip
+    mass=0.5,
+    k1=1e7,
+    k2=1e7,
+    k3=7e6,
+    mu=0.3,
+    belt_speed=5.0,
+    preload=1e-3,
+    length1=0.05,
+    length2=0.05,
+    sigma=1e6,
+)
 TIME, LENGTH, FORCE = SI.time_unit, SI.preload, SI.k1 * SI.preload
 UNIT = sp.Parameters(
-    mass=1.0, k1=1.0, k2=1.0, k3=0.7, mu=0.3, belt_speed=5.0 * TIME / LENGTH, preload=1.0,
-    length1=0.05 / LENGTH, length2=0.05 / LENGTH, sigma=1e6 * LENGTH,
-)  # fmt: skip
+    mass=1.0,
+    k1=1.0,
+    k2=1.0,
+    k3=0.7,
+    mu=0.3,
+    belt_speed=5.0 * TIME / LENGTH,
+    preload=1.0,
+    length1=0.05 / LENGTH,
+    length2=0.05 / LENGTH,
+    sigma=1e6 * LENGTH,
+)
 UNITS = {
-    "s": TIME, "s-1": 1 / TIME, "rad s-1": 1 / TIME, "m": LENGTH, "m s-1": LENGTH / TIME,
-    "Hz": 1 / TIME, "N": FORCE, "N m-1": SI.k1,
-}  # fmt: skip
+    "s": TIME,
+    "s-1": 1 / TIME,
+    "rad s-1": 1 / TIME,
+    "m": LENGTH,
+    "m s-1": LENGTH / TIME,
+    "Hz": 1 / TIME,
+    "N": FORCE,
+    "N m-1": SI.k1,
+}
 
 
 WITH_DASHPOTS = {

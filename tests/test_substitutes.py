@@ -45,9 +45,14 @@ def test_a_pad_by_stiffnesses_moves_like_the_pad_in_si():
     stiffness = {"along": matrix.k11, "across": matrix.k22, "coupling": matrix.k12}
     springs = equal_springs(**stiffness)
     written = Parameters.of(
-        mass="450 g", k3="7 kN/mm", pressure="10 bar", area="40 cm^2",
-        stiffness=stiffness, damping_ratio=0.01, belt_speed=2.0,
-    )  # fmt: skip
+        mass="450 g",
+        k3="7 kN/mm",
+        pressure="10 bar",
+        area="40 cm^2",
+        stiffness=stiffness,
+        damping_ratio=0.01,
+        belt_speed=2.0,
+    )
     assert written.k1 == written.k2 == pytest.approx(SI.k1, rel=1e-15)
     assert springs[1:] == pytest.approx(alphas, rel=1e-14)
     one = squealpipe.simulate(SI, *alphas, t_end=0.01)

@@ -80,11 +80,13 @@ def contact_points(
             "model": "elastic pad with exact contact and friction",
             "method": "complex modes; Taylor series with located events",
             "tolerance": how.tol,
-            "parameters": json.dumps({"mu": how.mu, "modal_damping": how.modal_damping}),
+            "parameters": json.dumps(
+                {"mu": how.mu, "modal_damping": how.modal_damping}
+            ),
             "arguments": json.dumps({"samples": how.samples, "t_end": how.t_end}),
             **versions(),
         },
-    )  # fmt: skip
+    )
 
 
 def _pad(

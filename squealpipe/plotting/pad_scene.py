@@ -138,9 +138,13 @@ class Mechanism:
             )
             arrow(axes, start, tip, 11, "black")
             axes.text(
-                middle + ahead * 0.13 * span, height, "belt", va="center", fontsize=8,
+                middle + ahead * 0.13 * span,
+                height,
+                "belt",
+                va="center",
+                fontsize=8,
                 ha="left" if ahead > 0 else "right",
-            )  # fmt: skip
+            )
         # colours tell what the contact does, so the springs have none
         look: dict[str, Any] = {"color": style.GREY, "lw": width}
         self.springs = [
@@ -161,8 +165,12 @@ class Mechanism:
             0, 0, "", ha="left", va="center", fontsize=6 if small else 9, zorder=5
         )
         self.moving: list[Any] = [
-            self.contact, *self.springs, self.foot, self.mass, self.state,
-        ]  # fmt: skip
+            self.contact,
+            *self.springs,
+            self.foot,
+            self.mass,
+            self.state,
+        ]
 
     def show(self, frame: int) -> None:
         """Move all to an instant of the motion."""
@@ -219,8 +227,11 @@ class PadScene:
         words = dict(CONTACT.values())
         left.legend(
             handles=[Patch(color=colour, label=word) for word, colour in words.items()],
-            loc="lower center", bbox_to_anchor=(0.5, -0.02), ncols=3, title="contact",
-        )  # fmt: skip
+            loc="lower center",
+            bbox_to_anchor=(0.5, -0.02),
+            ncols=3,
+            title="contact",
+        )
         first, second = (f"{number(math.degrees(angle))}°" for angle in shown.angles)
         left.set_title(
             f"α₁ = {first}, α₂ = {second}; motion drawn {geometry.told}", fontsize=8

@@ -29,9 +29,12 @@ def draw_states(axes: Axes, run: xr.Dataset) -> None:
     for place, state in enumerate(alike):
         turn, colour = divmod(place, len(PALETTE))
         axes.plot(
-            run.time, state, color=PALETTE[colour], label=str(state.name),
+            run.time,
+            state,
+            color=PALETTE[colour],
+            label=str(state.name),
             linestyle=dashes[turn % len(dashes)],
-        )  # fmt: skip
+        )
     names = [str(state.name) for state in alike]
     title = ", ".join(names)
     if len(names) > 6:

@@ -9,10 +9,30 @@ import xarray as xr
 from squealpipe.schema import meanings
 
 LONGEST = 63
-KEYWORDS = frozenset({
-    "break", "case", "catch", "classdef", "continue", "else", "elseif", "end", "for", "function",
-    "global", "if", "otherwise", "parfor", "persistent", "return", "spmd", "switch", "try", "while",
-})  # fmt: skip
+KEYWORDS = frozenset(
+    {
+        "break",
+        "case",
+        "catch",
+        "classdef",
+        "continue",
+        "else",
+        "elseif",
+        "end",
+        "for",
+        "function",
+        "global",
+        "if",
+        "otherwise",
+        "parfor",
+        "persistent",
+        "return",
+        "spmd",
+        "switch",
+        "try",
+        "while",
+    }
+)
 STRUCTURES = ("units", "meanings", "attributes", "names")
 """What a file holds beside its arrays; no array takes their names."""
 

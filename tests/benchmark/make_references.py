@@ -389,9 +389,10 @@ def disagreement(reference, motion):
     ]
     found += [
         abs(float(motion.times[i] - mpmath.mpf(reference["times"][j])))
-        / max(1.0, reference["times"][j]) / reference["time_growth"][j]
+        / max(1.0, reference["times"][j])
+        / reference["time_growth"][j]
         for i, j in zip(order, mine, strict=True)
-    ]  # fmt: skip
+    ]
     return float(max(found))
 
 

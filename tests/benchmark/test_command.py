@@ -211,9 +211,14 @@ def test_an_answer_that_cannot_be_read_is_refused_by_its_number_and_key(
     key, value, words, tmp_path
 ):
     answer = {
-        "problem": "two gates", "tolerance": 1e-8, "times": None, "kinds": None, "state": [0, 0],
-        "evaluations": None, "cpu_time": None,
-    }  # fmt: skip
+        "problem": "two gates",
+        "tolerance": 1e-8,
+        "times": None,
+        "kinds": None,
+        "state": [0, 0],
+        "evaluations": None,
+        "cpu_time": None,
+    }
     table = {"solver": "mine", "answers": [answer]}
     path = tmp_path / "answers.json"
     path.write_text(json.dumps(table))

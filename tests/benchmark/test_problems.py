@@ -15,10 +15,13 @@ from squealpipe.systems.text import expression
 from squealpipe.systems.trace import TIME, TIME_UNIT
 
 SYSTEMS = {
-    "bouncing ball": lambda: bouncing_ball, "relief valve": lambda: relief_valve,
-    "dry friction": lambda: dry_friction_oscillator, "stick–slip": lambda: leine_oscillator,
-    "chaotic impacts": lambda: impact_oscillator, "A1: hammering": brake,
-}  # fmt: skip
+    "bouncing ball": lambda: bouncing_ball,
+    "relief valve": lambda: relief_valve,
+    "dry friction": lambda: dry_friction_oscillator,
+    "stick–slip": lambda: leine_oscillator,
+    "chaotic impacts": lambda: impact_oscillator,
+    "A1: hammering": brake,
+}
 """Problem that has the equations → system; the other problems have equations of their own."""
 CASES = {
     data["name"]: data

@@ -142,9 +142,28 @@ def test_propensity_writes_shares_and_a_picture(capsys):
 def test_assess_answers_in_ten_lines_and_says_by_its_exit_code_whether_it_is_quiet(
     capsys, tmp_path
 ):
-    pad = ["--mass", "0.45", "--k1", "1e7", "--k2", "1e7", "--k3", "7e6", "--preload",
-           "5.714e-4", "--belt-speed", "2", "--length1", "0.1", "--length2", "0.1",
-           "--damping1", "42.4", "--damping2", "42.4"]  # fmt: skip
+    pad = [
+        "--mass",
+        "0.45",
+        "--k1",
+        "1e7",
+        "--k2",
+        "1e7",
+        "--k3",
+        "7e6",
+        "--preload",
+        "5.714e-4",
+        "--belt-speed",
+        "2",
+        "--length1",
+        "0.1",
+        "--length2",
+        "0.1",
+        "--damping1",
+        "42.4",
+        "--damping2",
+        "42.4",
+    ]
     assert run(["assess", "22deg", "46deg", *pad, "--mu", "0.4", "-o", "a.nc"]) == 1
     lines = capsys.readouterr().out.splitlines()
     assert (
@@ -211,10 +230,25 @@ def test_backbone_follows_the_linear_mode_first(capsys):
 
 
 def test_sweep_writes_one_dataset(capsys):
-    assert run([
-        "sweep", "stability_map", "--vary", "mu=0:0.6:3", "--vary", "alpha1=0:pi:5",
-        "--alpha2", "72deg", "--workers", "1", "-o", "s.nc",
-    ]) == 0  # fmt: skip
+    assert (
+        run(
+            [
+                "sweep",
+                "stability_map",
+                "--vary",
+                "mu=0:0.6:3",
+                "--vary",
+                "alpha1=0:pi:5",
+                "--alpha2",
+                "72deg",
+                "--workers",
+                "1",
+                "-o",
+                "s.nc",
+            ]
+        )
+        == 0
+    )
     assert "3 runs" in capsys.readouterr().out
     assert dict(load("s.nc").growth_rate.sizes) == {"mu": 3, "alpha1": 5, "alpha2": 1}
 

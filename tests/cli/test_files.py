@@ -57,8 +57,10 @@ def test_one_of_two_commands_that_write_to_one_name_is_refused_before_it_compute
     words = [*STABILITY, "-o", "a.nc"]
     long = ["simulate", "0.4pi", "0.6pi", "--t-end", "1e6", "-o", "a.nc"]
     with subprocess.Popen(
-        [sys.executable, "-m", "squealpipe", *long], cwd=tmp_path, stderr=subprocess.DEVNULL
-    ) as other:  # fmt: skip
+        [sys.executable, "-m", "squealpipe", *long],
+        cwd=tmp_path,
+        stderr=subprocess.DEVNULL,
+    ) as other:
         try:
             while not (tmp_path / ".a.nc.writing").exists():
                 time.sleep(0.1)
@@ -71,9 +73,9 @@ def test_one_of_two_commands_that_write_to_one_name_is_refused_before_it_compute
         finally:
             other.kill()  # the name is free again, however its holder ended
     assert run(words) == 0
-    assert sorted(entry.name for entry in tmp_path.iterdir() if entry.suffix == ".nc") == [
-        "a.nc", "b.nc",
-    ]  # fmt: skip
+    assert sorted(
+        entry.name for entry in tmp_path.iterdir() if entry.suffix == ".nc"
+    ) == ["a.nc", "b.nc"]
     assert not list(tmp_path.glob(".*"))
 
 
@@ -179,8 +181,25 @@ def test_csv_of_a_sweep_has_the_longest_table_first(tmp_path, capsys):
 
 def test_parameters_come_from_a_study_unless_they_are_typed(tmp_path):
     (tmp_path / "soft.yaml").write_text("parameters: {k1: 2.0, k3: 0.6, mu: 0.1}\n")
-    assert run(["map", "frequencies", "-c", "soft.yaml", "--k3", "3", "--alpha1", "1,2",
-                "--alpha2", "0.5,0.7", "-o", "f.nc"]) == 0  # fmt: skip
+    assert (
+        run(
+            [
+                "map",
+                "frequencies",
+                "-c",
+                "soft.yaml",
+                "--k3",
+                "3",
+                "--alpha1",
+                "1,2",
+                "--alpha2",
+                "0.5,0.7",
+                "-o",
+                "f.nc",
+            ]
+        )
+        == 0
+    )
     expected = natural_frequencies(
         Parameters(k1=2.0, k3=3.0, mu=0.1), [1.0, 2.0], [0.5, 0.7]
     )
@@ -193,11 +212,29 @@ def test_parameters_come_from_a_study_unless_they_are_typed(tmp_path):
 
 
 def test_sweep_states_outcomes_and_their_remedies(capsys):
-    assert run([
-        "sweep", "periodic_orbit", "--vary", "y_peak=1.1:3:4", "--vary", "mu=0.1,0.3",
-        "--option", "mode=1", "--alpha1", "0.3pi", "--alpha2", "0.9pi", "--k3", "0.75",
-        "--workers", "1",
-    ]) == 0  # fmt: skip
+    assert (
+        run(
+            [
+                "sweep",
+                "periodic_orbit",
+                "--vary",
+                "y_peak=1.1:3:4",
+                "--vary",
+                "mu=0.1,0.3",
+                "--option",
+                "mode=1",
+                "--alpha1",
+                "0.3pi",
+                "--alpha2",
+                "0.9pi",
+                "--k3",
+                "0.75",
+                "--workers",
+                "1",
+            ]
+        )
+        == 0
+    )
     out = capsys.readouterr().out
     assert "outcome of 8 runs: converged 4, tongue_end 4" in out
     assert "tongue_end: the branch closes" in out
@@ -437,14 +474,23 @@ def test_a_picture_has_the_size_and_the_dots_of_a_journal(capsys):
 
 def test_axes_take_the_units_that_are_asked_for_and_real_brakes_readable_ones():
     pad = Parameters(
-        mass=0.45, k1=1e7, k2=1e7, k3=7e6, preload=5.7e-4, mu=0.4, belt_speed=2.0,
-        length1=0.1, length2=0.1,
-    )  # fmt: skip
+        mass=0.45,
+        k1=1e7,
+        k2=1e7,
+        k3=7e6,
+        preload=5.7e-4,
+        mu=0.4,
+        belt_speed=2.0,
+        length1=0.1,
+        length2=0.1,
+    )
     motion = simulate(pad, math.radians(22), math.radians(46), t_end=0.04)
     drawn = picture(motion)
     assert {axes.get_xlabel() for axes in drawn.axes} == {
-        "t (ms)", "x (mm)", "frequency (kHz)",
-    }  # fmt: skip
+        "t (ms)",
+        "x (mm)",
+        "frequency (kHz)",
+    }
     asked = picture(motion, units=("µm", "Hz", "s"))
     path, spectrum = asked.axes[2:]
     assert (path.get_xlabel(), spectrum.get_xlabel()) == ("x (µm)", "frequency (Hz)")

@@ -17,14 +17,44 @@ from squealpipe.study.supervised import end_group, remove_stale_lock
 
 LONG = {
     "simulate": ["simulate", "0.4pi", "0.6pi", "--t-end", "1e6"],
-    "map": ["map", "hammering", "--t-end", "1e6", "--alpha1", "0:pi:41", "--alpha2", "0:pi:41"],
-    "backbone": ["backbone", "0.3pi", "0.9pi", "--method", "hbm", "--n-harmonics", "512",
-                 "--y-peak-max", "10000"],
-    "sweep": [
-        "sweep", "simulate", "--vary", "mu=0.1:0.6:60", "--alpha1", "5pi/6", "--alpha2", "5pi/6",
-        "--option", "t_end=1e6", "--option", "times=0:1e6:11", "--workers", "2",
+    "map": [
+        "map",
+        "hammering",
+        "--t-end",
+        "1e6",
+        "--alpha1",
+        "0:pi:41",
+        "--alpha2",
+        "0:pi:41",
     ],
-}  # fmt: skip
+    "backbone": [
+        "backbone",
+        "0.3pi",
+        "0.9pi",
+        "--method",
+        "hbm",
+        "--n-harmonics",
+        "512",
+        "--y-peak-max",
+        "10000",
+    ],
+    "sweep": [
+        "sweep",
+        "simulate",
+        "--vary",
+        "mu=0.1:0.6:60",
+        "--alpha1",
+        "5pi/6",
+        "--alpha2",
+        "5pi/6",
+        "--option",
+        "t_end=1e6",
+        "--option",
+        "times=0:1e6:11",
+        "--workers",
+        "2",
+    ],
+}
 
 
 SLOW = [pytest.param(name, marks=pytest.mark.release) for name in ("map", "backbone")]

@@ -22,9 +22,11 @@ SHORT = ["simulate", "5pi/6", "5pi/6", "--t-end", "5"]
 def test_simulate_works_where_the_terminal_is_ascii():
     surroundings = {**os.environ, "PYTHONIOENCODING": "ascii", "LANG": "C"}
     done = subprocess.run(
-        [sys.executable, "-m", "squealpipe", *SHORT], env=surroundings, capture_output=True,
+        [sys.executable, "-m", "squealpipe", *SHORT],
+        env=surroundings,
+        capture_output=True,
         check=False,
-    )  # fmt: skip
+    )
     assert done.returncode == 0, done.stderr
     assert "impacts" in done.stdout.decode("ascii")
 

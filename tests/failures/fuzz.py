@@ -26,16 +26,53 @@ LONGEST = 20.0
 """Seconds of CPU time after which a call counts as one that does not end."""
 
 NO_NUMBER = [
-    None, "1", "", b"1", 1j, True, np.bool_(True), math.nan, math.inf, -math.inf, 10**400,
-    [], {}, object(), np.timedelta64(1, "s"), np.datetime64("2020-01-01"), np.array([1.0, 2.0]),
-    np.ma.masked, np.complex128(1), {1.0}, range(2), np.nan, "many",
-]  # fmt: skip
+    None,
+    "1",
+    "",
+    b"1",
+    1j,
+    True,
+    np.bool_(True),
+    math.nan,
+    math.inf,
+    -math.inf,
+    10**400,
+    [],
+    {},
+    object(),
+    np.timedelta64(1, "s"),
+    np.datetime64("2020-01-01"),
+    np.array([1.0, 2.0]),
+    np.ma.masked,
+    np.complex128(1),
+    {1.0},
+    range(2),
+    np.nan,
+    "many",
+]
 NO_ANGLES = [
-    90.0, [0.1, -7.0],
-    None, "1", ["0", "1"], [True, False], 1j, [1j], [math.nan], [0.0, math.inf], [[0.1], [0, 1]],
-    np.ma.masked_all(2), np.ma.masked_array([0.3, 2.0], [False, True]), [None, 2.0], [10**400],
-    np.array([1], "timedelta64[s]"), {}, object(), [object()], [[0.1, 0.2]], np.zeros((2, 2, 2)),
-]  # fmt: skip
+    90.0,
+    [0.1, -7.0],
+    None,
+    "1",
+    ["0", "1"],
+    [True, False],
+    1j,
+    [1j],
+    [math.nan],
+    [0.0, math.inf],
+    [[0.1], [0, 1]],
+    np.ma.masked_all(2),
+    np.ma.masked_array([0.3, 2.0], [False, True]),
+    [None, 2.0],
+    [10**400],
+    np.array([1], "timedelta64[s]"),
+    {},
+    object(),
+    [object()],
+    [[0.1, 0.2]],
+    np.zeros((2, 2, 2)),
+]
 EXTREMES = [5e-324, 1e-300, 1e-155, 1e-12, 1e12, 1e155, 1e300, 1.7e308]
 
 
@@ -73,8 +110,13 @@ def whole(*values):
 
 
 SOME = [0, math.pi / 2, math.pi, np.float32(1.0)]
-LISTS = [np.linspace(0, math.pi, 3), [0.0, math.pi / 2], np.float32([0.2, 3.0]), [1, 2],
-         xr.DataArray([0.5, 1.0])]  # fmt: skip
+LISTS = [
+    np.linspace(0, math.pi, 3),
+    [0.0, math.pi / 2],
+    np.float32([0.2, 3.0]),
+    [1, 2],
+    xr.DataArray([0.5, 1.0]),
+]
 ANGLE = Kind(
     lambda rng: rng.choice([rng.uniform(0, math.pi), rng.uniform(-6, 6), *SOME]),
     [*NO_NUMBER, 7.0, -90, 1e9],
@@ -163,17 +205,20 @@ MAP = {"alpha1": ANGLES, "alpha2": ANGLES}
 
 
 OSCILLATOR: dict[str, Any] = {
-    "states": {"x": "m", "v": ("m/s", 2.0)}, "parameters": {"amplitude": 0.5, "gap": 1.0},
+    "states": {"x": "m", "v": ("m/s", 2.0)},
+    "parameters": {"amplitude": 0.5, "gap": 1.0},
     "regimes": {"free": {"stiffness": 1.0}},
     "field": lambda t, s, p, r: {
-        "x": s.v, "v": p.amplitude * cos(2.0 * t) - 0.1 * s.v - r.stiffness * s.x
+        "x": s.v,
+        "v": p.amplitude * cos(2.0 * t) - 0.1 * s.v - r.stiffness * s.x,
     },
-    "start": {"x": 0.0, "v": 0.1, "regime": "free"}, "starts_in": ["free"],
+    "start": {"x": 0.0, "v": 0.1, "regime": "free"},
+    "starts_in": ["free"],
     "period": lambda _: math.pi,
     "outputs": {"energy": ("m2/s2", lambda t, s, p, r: s.x * s.x + s.v * s.v)},
     "stops": {"far": lambda t, s, p, r: 50.0 - s.x},
     "time_scale": 1.0,
-}  # fmt: skip
+}
 IMPACT: dict[str, Any] = {
     "name": "impact",
     "leaves": "free",
@@ -182,11 +227,42 @@ IMPACT: dict[str, Any] = {
     "reset": lambda t, s, p, r: {"v": -0.8 * s.v},
 }
 NO_PIECES = [
-    None, 1, -1.0, 5e-324, "1e3", b"1", True, object(), 1j, [1], (None,), {"x": None}, {1: 2},
-    {"x": {"r": "1"}}, {"x": ("m", -1.0)}, {"": 1.0}, {"x": [0.1]}, np.ones(2),
-]  # fmt: skip
-NO_START = [1, "x", b"1", True, object(), [1], {"y": 0.0}, {"x": None}, {"x": "1"}, {"x": math.nan},
-            {"regime": "y"}, {"regime": ["free"]}, {"regime": 1}, {1: 2}, xr.Dataset()]  # fmt: skip
+    None,
+    1,
+    -1.0,
+    5e-324,
+    "1e3",
+    b"1",
+    True,
+    object(),
+    1j,
+    [1],
+    (None,),
+    {"x": None},
+    {1: 2},
+    {"x": {"r": "1"}},
+    {"x": ("m", -1.0)},
+    {"": 1.0},
+    {"x": [0.1]},
+    np.ones(2),
+]
+NO_START = [
+    1,
+    "x",
+    b"1",
+    True,
+    object(),
+    [1],
+    {"y": 0.0},
+    {"x": None},
+    {"x": "1"},
+    {"x": math.nan},
+    {"regime": "y"},
+    {"regime": ["free"]},
+    {"regime": 1},
+    {1: 2},
+    xr.Dataset(),
+]
 SYSTEM_STARTS = Kind(lambda rng: {"x": rng.uniform(-1.0, 0.9)}, NO_START)
 AMPLITUDE = {
     "amplitude": Kind(
@@ -242,134 +318,293 @@ CALLS: dict[str, tuple[float, Callable[..., Any], dict[str, Kind]]] = {
     "quasi_static_map": (2.0, sp.quasi_static_map, {**MAP, "sigma": SIGMA}),
     "critical_friction_map": (1.0, sp.critical_friction_map, MAP),
     "simulate": (
-        3.0, sp.simulate,
-        {**SCENE, "t_end": FROM_NOW, "model": MODEL, "tol": TOL, "initial_state": STATE},
+        3.0,
+        sp.simulate,
+        {
+            **SCENE,
+            "t_end": FROM_NOW,
+            "model": MODEL,
+            "tol": TOL,
+            "initial_state": STATE,
+        },
     ),
-    "validity_map": (1.0, sp.validity_map, {**MAP, "t_end": LATER, "tol": TOL, "workers": ONE}),
-    "hammering_map": (1.0, sp.hammering_map, {**MAP, "t_end": HORIZON, "tol": TOL, "workers": ONE}),
+    "validity_map": (
+        1.0,
+        sp.validity_map,
+        {**MAP, "t_end": LATER, "tol": TOL, "workers": ONE},
+    ),
+    "hammering_map": (
+        1.0,
+        sp.hammering_map,
+        {**MAP, "t_end": HORIZON, "tol": TOL, "workers": ONE},
+    ),
     "basin_map": (
-        0.5, sp.basin_map, {**SCENE, "x": START, "vy": START, "t_end": HORIZON, "workers": ONE}
+        0.5,
+        sp.basin_map,
+        {**SCENE, "x": START, "vy": START, "t_end": HORIZON, "workers": ONE},
     ),
     "periodic_orbit": (
-        2.0, sp.periodic_orbit, {**SCENE, "mode": whole(1, 2), "y_peak": number(0.1, 10.0)}
+        2.0,
+        sp.periodic_orbit,
+        {**SCENE, "mode": whole(1, 2), "y_peak": number(0.1, 10.0)},
     ),
     "backbone": (
-        0.15, sp.backbone,
-        {**SCENE, "mode": whole(1, 2), "y_peak_max": number(1.1, 4.0, extremes=False),
-         "method": one_of("exact", "hbm"), "n_harmonics": whole(4, 8)},
+        0.15,
+        sp.backbone,
+        {
+            **SCENE,
+            "mode": whole(1, 2),
+            "y_peak_max": number(1.1, 4.0, extremes=False),
+            "method": one_of("exact", "hbm"),
+            "n_harmonics": whole(4, 8),
+        },
     ),
     "choose_model": (
-        0.7, sp.choose_model, {**SCENE, "question": one_of(*QUESTIONS), "t_end": MAYBE}
+        0.7,
+        sp.choose_model,
+        {**SCENE, "question": one_of(*QUESTIONS), "t_end": MAYBE},
     ),
     "refine_validity_map": (
-        0.3, sp.refine_validity_map,
-        {"resolution": Kind(lambda _: 5, OPTIONAL), "coarse": Kind(lambda _: 3, OPTIONAL),
-         "t_end": HORIZON, "tol": TOL, "workers": ONE},
+        0.3,
+        sp.refine_validity_map,
+        {
+            "resolution": Kind(lambda _: 5, OPTIONAL),
+            "coarse": Kind(lambda _: 3, OPTIONAL),
+            "t_end": HORIZON,
+            "tol": TOL,
+            "workers": ONE,
+        },
     ),
     "run_ensemble": (
-        1.0, run_ensemble,
-        {"alpha1": MANY, "alpha2": MANY, "t_end": Kind(FROM_NOW.good, [*MANY.bad, -1.0]),
-         "model": MODEL, "tol": TOL, "tangent": TRUTH, "log_events": Kind(lambda _: 3, SEED.bad),
-         "stop_at_first_separation": TRUTH, "stop_at_turns": TURNS, "initial_state": STATE,
-         "workers": ONE},
+        1.0,
+        run_ensemble,
+        {
+            "alpha1": MANY,
+            "alpha2": MANY,
+            "t_end": Kind(FROM_NOW.good, [*MANY.bad, -1.0]),
+            "model": MODEL,
+            "tol": TOL,
+            "tangent": TRUTH,
+            "log_events": Kind(lambda _: 3, SEED.bad),
+            "stop_at_first_separation": TRUTH,
+            "stop_at_turns": TURNS,
+            "initial_state": STATE,
+            "workers": ONE,
+        },
     ),
     "infer_parameters": (
-        0.5, sp.infer_parameters,
-        {"samples": LEAST_ONE, "seed": SEED, "tol": TOL, "workers": ONE,
-         "mu": Kind(lambda _: (0.1, 0.5), [None, 1.0, (0.1,), ("a", "b"), (0.1, math.nan)])},
+        0.5,
+        sp.infer_parameters,
+        {
+            "samples": LEAST_ONE,
+            "seed": SEED,
+            "tol": TOL,
+            "workers": ONE,
+            "mu": Kind(
+                lambda _: (0.1, 0.5), [None, 1.0, (0.1,), ("a", "b"), (0.1, math.nan)]
+            ),
+        },
     ),
     "propensity": (
-        0.5, sp.propensity,
-        {**SCENE, "t_end": HORIZON, "seed": SEED, "tol": TOL, "workers": ONE,
-         "samples": Kind(lambda _: 64, [*NO_NUMBER, 0, -64, 65, 64.0]),
-         "distributions": Kind(lambda _: {"mu": UNIFORM}, MAPPING),
-         "spring_correlation": Kind(lambda _: 0.0, [*NO_NUMBER, 1.0, -1.0, 2])},
+        0.5,
+        sp.propensity,
+        {
+            **SCENE,
+            "t_end": HORIZON,
+            "seed": SEED,
+            "tol": TOL,
+            "workers": ONE,
+            "samples": Kind(lambda _: 64, [*NO_NUMBER, 0, -64, 65, 64.0]),
+            "distributions": Kind(lambda _: {"mu": UNIFORM}, MAPPING),
+            "spring_correlation": Kind(lambda _: 0.0, [*NO_NUMBER, 1.0, -1.0, 2]),
+        },
     ),
     "smallest_disturbance": (
-        0.5, sp.smallest_disturbance,
-        {**SCENE, "t_end": HORIZON, "bound": MAYBE,
-         "directions": Kind(lambda _: 8, [*NO_NUMBER, 7]),
-         "leads_to": one_of("contact_lost", "whirl"), "model": MODEL, "seed": SEED, "tol": TOL,
-         "workers": ONE},
+        0.5,
+        sp.smallest_disturbance,
+        {
+            **SCENE,
+            "t_end": HORIZON,
+            "bound": MAYBE,
+            "directions": Kind(lambda _: 8, [*NO_NUMBER, 7]),
+            "leads_to": one_of("contact_lost", "whirl"),
+            "model": MODEL,
+            "seed": SEED,
+            "tol": TOL,
+            "workers": ONE,
+        },
     ),
     "assess": (0.2, sp.assess, {**SCENE, "tol": TOL}),
     "limit_cycle": (
-        0.5, sp.limit_cycle,
-        {**SCENE, "model": one_of("A1"), "t_settle": MAYBE,
-         "guess": Kind(STATE.good, [bad for bad in STATE.bad if bad is not None])},
+        0.5,
+        sp.limit_cycle,
+        {
+            **SCENE,
+            "model": one_of("A1"),
+            "t_settle": MAYBE,
+            "guess": Kind(STATE.good, [bad for bad in STATE.bad if bad is not None]),
+        },
     ),
     "cycle_branch": (
-        0.5, sp.cycle_branch,
-        {**SCENE, "parameter": one_of("mu", "k3", "alpha1"), "to": number(0.1, 1.0, zero=True),
-         "n_points": Kind(lambda _: 2, [*NO_NUMBER, 0, 1, -3, 2.0]), "doubled": TRUTH,
-         "start": Kind(STATE.good, ["offset", [0.0] * 3, [None] * 4, ["0"] * 4, object(), 1j])},
+        0.5,
+        sp.cycle_branch,
+        {
+            **SCENE,
+            "parameter": one_of("mu", "k3", "alpha1"),
+            "to": number(0.1, 1.0, zero=True),
+            "n_points": Kind(lambda _: 2, [*NO_NUMBER, 0, 1, -3, 2.0]),
+            "doubled": TRUTH,
+            "start": Kind(
+                STATE.good, ["offset", [0.0] * 3, [None] * 4, ["0"] * 4, object(), 1j]
+            ),
+        },
     ),
     "Sweep": (
-        0.7, lambda params, **given: sp.Sweep(params=params, **given),
-        {"task": one_of("stability_map"),
-         "fixed": Kind(lambda _: {"alpha1": [1.0], "alpha2": [2.0]}, [None, 1, "mu", [], object()]),
-         "vary": Kind(
-             lambda _: {"mu": [0.1, 0.2]},
-             [*MAPPING, {}, {"mu": []}, {"mu": ["a"]}, {"mu": [0.1, 0.1]}, {"mu": [-1.0]}])},
+        0.7,
+        lambda params, **given: sp.Sweep(params=params, **given),
+        {
+            "task": one_of("stability_map"),
+            "fixed": Kind(
+                lambda _: {"alpha1": [1.0], "alpha2": [2.0]},
+                [None, 1, "mu", [], object()],
+            ),
+            "vary": Kind(
+                lambda _: {"mu": [0.1, 0.2]},
+                [
+                    *MAPPING,
+                    {},
+                    {"mu": []},
+                    {"mu": ["a"]},
+                    {"mu": [0.1, 0.1]},
+                    {"mu": [-1.0]},
+                ],
+            ),
+        },
     ),
     "System": (
-        2.0, partial(sp.System, "oscillator"),
-        pieces(OSCILLATOR, period=NoneType, outputs=NoneType, stops=NoneType,
-               time_scale=int | float),
+        2.0,
+        partial(sp.System, "oscillator"),
+        pieces(
+            OSCILLATOR,
+            period=NoneType,
+            outputs=NoneType,
+            stops=NoneType,
+            time_scale=int | float,
+        ),
     ),
-    "Switch": (1.0, sp.Switch, pieces(IMPACT, reset=NoneType, name=str, leaves=str, to=str)),
+    "Switch": (
+        1.0,
+        sp.Switch,
+        pieces(IMPACT, reset=NoneType, name=str, leaves=str, to=str),
+    ),
     "System.simulate": (
-        1.5, lambda hits, **given: oscillator(hits=hits).simulate(**given),
-        {"hits": Kind(TRUTH.good, []), "t_end": LIMITED, "start": SYSTEM_STARTS,
-         "tol": TOL, **AMPLITUDE},
+        1.5,
+        lambda hits, **given: oscillator(hits=hits).simulate(**given),
+        {
+            "hits": Kind(TRUTH.good, []),
+            "t_end": LIMITED,
+            "start": SYSTEM_STARTS,
+            "tol": TOL,
+            **AMPLITUDE,
+        },
     ),
     "System.ensemble": (
-        1.0, lambda **given: oscillator().ensemble(**given),
-        {"t_end": LIMITED, "start": SYSTEM_STARTS, "t_late": LATER, "horizon": TRUTH,
-         "workers": ONE, **AMPLITUDE},
+        1.0,
+        lambda **given: oscillator().ensemble(**given),
+        {
+            "t_end": LIMITED,
+            "start": SYSTEM_STARTS,
+            "t_late": LATER,
+            "horizon": TRUTH,
+            "workers": ONE,
+            **AMPLITUDE,
+        },
     ),
     "System.basin": (
-        0.7, lambda **given: oscillator().basin(**given),
+        0.7,
+        lambda **given: oscillator().basin(**given),
         {"t_end": LIMITED, "start": SYSTEM_STARTS, "workers": ONE, **AMPLITUDE},
     ),
     "System.limit_cycle": (
-        0.7, lambda hits, **given: oscillator(hits=hits).limit_cycle(**given),
-        {"hits": Kind(TRUTH.good, []), "guess": SYSTEM_STARTS,
-         "start": Kind(lambda _: None, NO_START), "periods": LEAST_ONE, "t_settle": MAYBE,
-         **AMPLITUDE},
+        0.7,
+        lambda hits, **given: oscillator(hits=hits).limit_cycle(**given),
+        {
+            "hits": Kind(TRUTH.good, []),
+            "guess": SYSTEM_STARTS,
+            "start": Kind(lambda _: None, NO_START),
+            "periods": LEAST_ONE,
+            "t_settle": MAYBE,
+            **AMPLITUDE,
+        },
     ),
     "System.cycle_branch": (
-        0.5, lambda **given: oscillator().cycle_branch(**{"start": oscillators_cycle(), **given}),
-        {"parameter": one_of("amplitude", "gap"),
-         "to": Kind(lambda rng: rng.uniform(0.3, 0.5), NO_NUMBER),
-         "n_points": Kind(lambda _: 3, [*NO_NUMBER, 0, 1, -3, 2.0])},
+        0.5,
+        lambda **given: oscillator().cycle_branch(
+            **{"start": oscillators_cycle(), **given}
+        ),
+        {
+            "parameter": one_of("amplitude", "gap"),
+            "to": Kind(lambda rng: rng.uniform(0.3, 0.5), NO_NUMBER),
+            "n_points": Kind(lambda _: 3, [*NO_NUMBER, 0, 1, -3, 2.0]),
+        },
     ),
     "System.cycle_curve": (
-        0.4, lambda **given: oscillator().cycle_curve(**{"start": oscillators_cycle(), **given}),
-        {"label": one_of("fold"), "parameters": Kind(lambda _: ("amplitude", "gap"), NO_PIECES),
-         "start": Kind(lambda _: oscillators_cycle(), NO_PIECES),
-         "n_points": Kind(lambda _: 3, [*NO_NUMBER, 0, 1, 2.0])},
+        0.4,
+        lambda **given: oscillator().cycle_curve(
+            **{"start": oscillators_cycle(), **given}
+        ),
+        {
+            "label": one_of("fold"),
+            "parameters": Kind(lambda _: ("amplitude", "gap"), NO_PIECES),
+            "start": Kind(lambda _: oscillators_cycle(), NO_PIECES),
+            "n_points": Kind(lambda _: 3, [*NO_NUMBER, 0, 1, 2.0]),
+        },
     ),
     "load": (0.4, lambda **given: sp.load(given["path"]), {"path": PLACE}),
     "save": (
-        0.4, lambda **given: sp.save(given["dataset"], given["path"]),
-        {"dataset": Kind(lambda _: xr.Dataset(), [None, {}, 1, "x", object()]), "path": PLACE},
+        0.4,
+        lambda **given: sp.save(given["dataset"], given["path"]),
+        {
+            "dataset": Kind(lambda _: xr.Dataset(), [None, {}, 1, "x", object()]),
+            "path": PLACE,
+        },
     ),
     "open_results": (0.4, sp.open_results, {"name_or_path": PLACE}),
     "parse_study": (1.0, lambda **given: parse_study({"parameters": given}), WRITTEN),
     "parse_range": (
-        0.7, lambda **given: parse_range(given["text"], parse_angle),
-        {"text": Kind(
-            lambda rng: rng.choice(["0:pi:5", "1,2", ".5pi", "0.1:10:4:log", "5pi/6"]),
-            ["", ":", "0:1", "0:1:0", "0:1:-3", "a", "nan", "inf", "1:2:3:4", "0:1:5:log", "1,,2",
-             "pipi", "1e999", "0:1:1e9", "0:1:2.5"],
-        )},
+        0.7,
+        lambda **given: parse_range(given["text"], parse_angle),
+        {
+            "text": Kind(
+                lambda rng: rng.choice(
+                    ["0:pi:5", "1,2", ".5pi", "0.1:10:4:log", "5pi/6"]
+                ),
+                [
+                    "",
+                    ":",
+                    "0:1",
+                    "0:1:0",
+                    "0:1:-3",
+                    "a",
+                    "nan",
+                    "inf",
+                    "1:2:3:4",
+                    "0:1:5:log",
+                    "1,,2",
+                    "pipi",
+                    "1e999",
+                    "0:1:1e9",
+                    "0:1:2.5",
+                ],
+            )
+        },
     ),
     "Scene": (
-        0.5, lambda **given: sp.Scene(name="X", figure=1, statement="", **given),
+        0.5,
+        lambda **given: sp.Scene(name="X", figure=1, statement="", **given),
         {**SCENE, "t_end": number(0.1, 100.0)},
     ),
-}  # fmt: skip
+}
 """Name → weight, function, arguments."""
 
 
@@ -381,10 +616,14 @@ class Findings(NamedTuple):
 
 
 EXPENSIVE = {
-    "infer_parameters", "propensity", "smallest_disturbance", "limit_cycle", "cycle_branch",
+    "infer_parameters",
+    "propensity",
+    "smallest_disturbance",
+    "limit_cycle",
+    "cycle_branch",
     "assess",
     "System.cycle_curve",
-}  # fmt: skip
+}
 """Always called with an argument that makes no sense."""
 NO_PARAMS = {
     "Parameters",

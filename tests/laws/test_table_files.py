@@ -75,11 +75,14 @@ READ = {
     "a dash for a minus": "speed;mu\n0;50e–2\n0,1;45e–2\n1,5;30e–2\n",
     "Markdown": "| speed | mu |\n|---|---|\n| 0 | 0.5 |\n| 0.1 | 0.45 |\n| 1.5 | 0.3 |\n",
     "LaTeX": "speed & mu \\\\\n\\midrule\n0 & 0.5 \\\\\n0.1 & 0.45 \\\\\n1.5 & 0.3 \\\\\n",
-}  # fmt: skip
+}
 CHOSEN = {
-    "columns by name": ("t;v (km/h);T;µ [%]\n0;0;20;50\n1;0,36;21;45\n2;5,4;22;30\n", ("v", "µ")),
+    "columns by name": (
+        "t;v (km/h);T;µ [%]\n0;0;20;50\n1;0,36;21;45\n2;5,4;22;30\n",
+        ("v", "µ"),
+    ),
     "whole headers": ("v (km/h);µ [%]\n0;50\n0,36;45\n5,4;30\n", ("v (km/h)", "µ [%]")),
-}  # fmt: skip
+}
 ENCODINGS = ("utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "cp1252")
 
 REFUSED = {
@@ -160,8 +163,10 @@ REFUSED = {
     ),
     "an unknown column": (
         "v,T,mu\n0,1,0.5\n1,1,0.3\n",
-        ("has no column 'speed'; its columns: v, T, mu; name one of them 'speed', or write "
-        "speed_column: with its name"),
+        (
+            "has no column 'speed'; its columns: v, T, mu; name one of them 'speed', or write "
+            "speed_column: with its name"
+        ),
         "speed,T,coefficient\n0,1,0.5\n1,1,0.3\n",
     ),
     "a unit of another kind": (
@@ -206,8 +211,10 @@ REFUSED = {
     ),
     "a word below a name, beside a unit": (
         "speed;mu\nkm/h;mean\n0;0,5\n3,6;0,3\n",
-        ("row 2: 'mean' is no number, nor a unit that is known; write a number there, or a unit of "
-        "coefficient, or - for none"),
+        (
+            "row 2: 'mean' is no number, nor a unit that is known; write a number there, or a unit "
+            "of coefficient, or - for none"
+        ),
         "speed;mu\nkm/h;-\n0;0,5\n3,6;0,3\n",
     ),
     "a table on its side": (
@@ -221,7 +228,7 @@ REFUSED = {
         "speed;mu\n0;0.5\n1;0.3\n",
     ),
     "no rows": ("speed;mu\n", "has no rows below its header", "speed;mu\n0;0,5\n"),
-}  # fmt: skip
+}
 """What is wrong → the file, what is said, and the file after the remedy was followed."""
 
 

@@ -64,10 +64,14 @@ def _integrator(law):
     ]
     long = {"fp_type": np.longdouble}
     return heyoka.taylor_adaptive(
-        [(x, vx), (y, vy), (vx, ax), (vy, ay)], np.zeros(4, np.longdouble), **long,
+        [(x, vx), (y, vy), (vx, ax), (vy, ay)],
+        np.zeros(4, np.longdouble),
+        **long,
         tol=np.longdouble(1e-19),
-        t_events=[heyoka.t_event(each, cooldown=np.longdouble(0), **long) for each in surfaces],
-    )  # fmt: skip
+        t_events=[
+            heyoka.t_event(each, cooldown=np.longdouble(0), **long) for each in surfaces
+        ],
+    )
 
 
 def simulate_reference(

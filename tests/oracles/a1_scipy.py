@@ -23,10 +23,14 @@ def simulate_scipy(
     while run.time < t_end:
         guards = a1.guards(regime)
         solution = solve_ivp(
-            a1.field(regime), (run.time, t_end), run.state, method="DOP853",
-            rtol=max(tol, 100 * EPS), atol=tol,
+            a1.field(regime),
+            (run.time, t_end),
+            run.state,
+            method="DOP853",
+            rtol=max(tol, 100 * EPS),
+            atol=tol,
             events=[_terminal(value, direction) for _, value, direction in guards],
-        )  # fmt: skip
+        )
         run.time, run.state = float(solution.t[-1]), solution.y[:, -1]
         run.message = "" if solution.status >= 0 else solution.message
         if solution.status < 1:

@@ -32,9 +32,16 @@ def a4_by_scipy(params, angles, orbit, times):
     while t < times[-1]:
         gap.direction = 1.0 if contact else -1.0
         piece = solve_ivp(
-            field, (t, times[-1]), z, "DOP853", events=gap, args=(contact,), dense_output=True,
-            rtol=1e-13, atol=1e-14 * params.preload,
-        )  # fmt: skip
+            field,
+            (t, times[-1]),
+            z,
+            "DOP853",
+            events=gap,
+            args=(contact,),
+            dense_output=True,
+            rtol=1e-13,
+            atol=1e-14 * params.preload,
+        )
         if (here := times[(times >= t) & (times < piece.t[-1])]).size:
             found.append(piece.sol(here))
         t, z, contact = piece.t[-1], piece.y[:, -1], not contact

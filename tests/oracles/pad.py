@@ -29,9 +29,21 @@ class Pad:
         if p.mu_static is None:
             p.mu_static = p.mu
         self.springs = (
-            (p.length1 * np.cos(alpha1), p.length1 * np.sin(alpha1), p.length1, p.k1, p.damping1),
-            (-p.length2 * np.cos(alpha2), p.length2 * np.sin(alpha2), p.length2, p.k2, p.damping2),
-        )  # fmt: skip
+            (
+                p.length1 * np.cos(alpha1),
+                p.length1 * np.sin(alpha1),
+                p.length1,
+                p.k1,
+                p.damping1,
+            ),
+            (
+                -p.length2 * np.cos(alpha2),
+                p.length2 * np.sin(alpha2),
+                p.length2,
+                p.k2,
+                p.damping2,
+            ),
+        )
 
     def pull(self, z):
         """Force of springs and dashpots, N."""
@@ -116,10 +128,16 @@ class Pad:
         spent = dict.fromkeys(("off", "stick", "slower", "faster"), 0.0)
         while time < t_end:
             made = solve_ivp(
-                self.field(mode), (time, t_end), z, "DOP853", events=self.watched(mode),
-                rtol=tol, atol=tol * p.preload, dense_output=True,
+                self.field(mode),
+                (time, t_end),
+                z,
+                "DOP853",
+                events=self.watched(mode),
+                rtol=tol,
+                atol=tol * p.preload,
+                dense_output=True,
                 max_step=0.2 * np.sqrt(p.mass / p.k3),
-            )  # fmt: skip
+            )
             reached = float(made.t[-1])
             inside = grid[(grid >= time) & (grid < reached)]
             if inside.size:

@@ -23,10 +23,14 @@ def first_order_matrix(p, alpha1, alpha2):
         formulas = {
             "coulomb": lambda: (f(p.mu), f(0)),
             "exponential": lambda: (
-                f(p.mu) + fall * mp.exp(-speed / v0), -fall / v0 * mp.exp(-speed / v0)),
+                f(p.mu) + fall * mp.exp(-speed / v0),
+                -fall / v0 * mp.exp(-speed / v0),
+            ),
             "hyperbolic": lambda: (
-                f(p.mu) + fall / (1 + speed / v0), -fall / v0 / (1 + speed / v0) ** 2),
-        }  # fmt: skip
+                f(p.mu) + fall / (1 + speed / v0),
+                -fall / v0 / (1 + speed / v0) ** 2,
+            ),
+        }
         mu, slope = formulas.get(p.friction_law, lambda: added(p, speed))()
         e1, e2 = mp.matrix([c1, s1]), mp.matrix([-c2, s2])
         k = f(p.k1) * e1 * e1.T + f(p.k2) * e2 * e2.T

@@ -20,8 +20,9 @@ class Reference:
 
     def __init__(self, structure, mu, mu_static=None, preload=1.0):
         self.mass, self.stiffness, self.damping = (
-            matrix.toarray() for matrix in (structure.mass, structure.stiffness, structure.damping)
-        )  # fmt: skip
+            matrix.toarray()
+            for matrix in (structure.mass, structure.stiffness, structure.damping)
+        )
         self.n, self.t = structure.normals, structure.tangentials
         self.k = np.array([each.stiffness for each in structure.contacts])
         self.preload = preload * np.array([each.preload for each in structure.contacts])
@@ -98,9 +99,11 @@ class Reference:
             limit = self.mu_static * self.pressing(z)
             slide = -self.t.T @ rate
             fits = all(
-                abs(friction[i]) <= limit[i] if modes[i] == STICK else modes[i] * slide[i] > 0.0
+                abs(friction[i]) <= limit[i]
+                if modes[i] == STICK
+                else modes[i] * slide[i] > 0.0
                 for i in loose
-            )  # fmt: skip
+            )
             if fits:
                 found.append(modes)
         assert found, "no combination of stick and slip agrees with the law"

@@ -26,9 +26,11 @@ def largest_growth(pad, mu):
     inverse = np.linalg.inv(pad.mass.toarray())
     size = pad.size
     first_order = np.block(
-        [[np.zeros((size, size)), np.eye(size)],
-         [-inverse @ stiffness, -inverse @ pad.damping.toarray()]]
-    )  # fmt: skip
+        [
+            [np.zeros((size, size)), np.eye(size)],
+            [-inverse @ stiffness, -inverse @ pad.damping.toarray()],
+        ]
+    )
     return np.linalg.eigvals(first_order).real.max()
 
 
@@ -44,8 +46,10 @@ def test_one_point_and_a_stiff_pad_are_quiet_as_their_eigenvalues_say(pads, tmp_
     save(pads, tmp_path / "pads.nc")
     read = load(tmp_path / "pads.nc")
     assert "every pad is quiet" in {
-        text.get_text() for axes in beyond_the_point.draw(read).axes for text in axes.texts
-    }  # fmt: skip
+        text.get_text()
+        for axes in beyond_the_point.draw(read).axes
+        for text in axes.texts
+    }
     assert "quiet: 1; 2, stiff" in beyond_the_point.caption(read)
 
 

@@ -15,10 +15,21 @@ from squealpipe.plotting.sound import RATE, TooCoarseError, sound
 from squealpipe.store import save
 
 PAD = Parameters(
-    mass=0.45, k1=1e7, k2=1e7, k3=7e6, preload=5.714e-4, mu=0.37, mu_static=0.55,
-    friction_speed=1.7, friction_law="exponential", belt_speed=2.0, length1=0.1, length2=0.1,
-    damping1=42.4, damping2=42.4,
-)  # fmt: skip
+    mass=0.45,
+    k1=1e7,
+    k2=1e7,
+    k3=7e6,
+    preload=5.714e-4,
+    mu=0.37,
+    mu_static=0.55,
+    friction_speed=1.7,
+    friction_law="exponential",
+    belt_speed=2.0,
+    length1=0.1,
+    length2=0.1,
+    damping1=42.4,
+    damping2=42.4,
+)
 
 
 def strongest(signal, rate):
@@ -108,8 +119,10 @@ def test_a_periodic_motion_is_looped_without_a_click():
 def test_a_motion_that_does_not_repeat_keeps_its_level_across_the_fade():
     rng = np.random.default_rng(3)
     lines = rng.uniform(500.0, 900.0, 40)
-    noise = sum(np.sin(2 * np.pi * f * np.arange(40_000) / 4e4 + p)
-                for f, p in zip(lines, rng.uniform(0, 6, 40), strict=True))  # fmt: skip
+    noise = sum(
+        np.sin(2 * np.pi * f * np.arange(40_000) / 4e4 + p)
+        for f, p in zip(lines, rng.uniform(0, 6, 40), strict=True)
+    )
     made = sound(written(noise, 0.1 * noise, 1 / 4e4), seconds=2.0)
     assert "does not repeat" in made.told()
     samples = heard(made.wav(2.0))[480:-480]

@@ -51,8 +51,12 @@ def test_only_outcomes_that_can_be_are_listed(scene):
     assert not run & {"complex_pair", "pole", "infeasible", "tongue_end"}
     linear = natural_frequencies(Parameters(), [1.0], [2.0])
     assert set(meanings(linear.outcome).values()) == {
-        "converged", "singular_static_state", "complex_pair", "divergence", "rigid_mode",
-    }  # fmt: skip
+        "converged",
+        "singular_static_state",
+        "complex_pair",
+        "divergence",
+        "rigid_mode",
+    }
 
 
 def test_an_outcome_that_cannot_be_is_refused(scene):

@@ -47,9 +47,15 @@ def test_archive_holds_result_and_what_made_it(run, frozen, keys_of):
         if path.is_file()
     }
     assert names >= {
-        "data/stability_map.nc", "figures/fig06.png", "config/paper.yaml", "config/resolved.yaml",
-        "environment.json", "manifest.json", "manifest.sha256", "ro-crate-metadata.json",
-    }  # fmt: skip
+        "data/stability_map.nc",
+        "figures/fig06.png",
+        "config/paper.yaml",
+        "config/resolved.yaml",
+        "environment.json",
+        "manifest.json",
+        "manifest.sha256",
+        "ro-crate-metadata.json",
+    }
     both = (
         load(folder / "data/stability_map.nc") for folder in (frozen, run / "results")
     )
@@ -118,8 +124,10 @@ def test_missing_extra_truncated_and_hidden_files_are_found(frozen):
     replace(path, path.read_bytes()[:-1])
     found = verify(frozen)
     assert found.findings == [
-        "changed: data/stability_map.nc", "missing: figures/fig06.png", "extra: figures/.note",
-    ]  # fmt: skip
+        "changed: data/stability_map.nc",
+        "missing: figures/fig06.png",
+        "extra: figures/.note",
+    ]
     assert "NOT as it was frozen (3 findings)" in found.lines()[0]
 
 

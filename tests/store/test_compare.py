@@ -429,8 +429,9 @@ def test_physical_keys_come_before_those_of_grids(tmp_path, write_run):
     a, b = write_run(tmp_path / "a"), write_run(tmp_path / "b", mu=0.4, points=7)
     found = compare(a / "results", b / "results")
     assert list(found.parameters.items()) == [
-        ("parameters.mu", (0.3, 0.4)), ("linear.points", (13, 7)),
-    ]  # fmt: skip
+        ("parameters.mu", (0.3, 0.4)),
+        ("linear.points", (13, 7)),
+    ]
     assert found.exit_code == 1
 
 

@@ -32,8 +32,14 @@ def test_a_deposit_is_whole(checkout, tmp_path):
         file.extractall(tmp_path / "elsewhere")
     deposit = tmp_path / "elsewhere/first"
     assert verify(deposit / "run").intact
-    for name in ("run/data/stability_map.nc", "run/figures/fig06.png", "run/config/resolved.yaml",
-                 "code/Snakefile", "code/requirements.lock", "CITATION.cff"):  # fmt: skip
+    for name in (
+        "run/data/stability_map.nc",
+        "run/figures/fig06.png",
+        "run/config/resolved.yaml",
+        "code/Snakefile",
+        "code/requirements.lock",
+        "CITATION.cff",
+    ):
         assert (deposit / name).is_file()
 
 

@@ -45,10 +45,13 @@ def judged(dataset):
     return [
         str(name)
         for name, variable in dataset.data_vars.items()
-        if variable.dtype.kind == "f" and np.isfinite(variable.values).any()
+        if variable.dtype.kind == "f"
+        and np.isfinite(variable.values).any()
         and (entry := table.lookup(str(name))) is not None
-        and not entry.volatile and entry.round_off is None and entry.rtol < 0.01
-    ]  # fmt: skip
+        and not entry.volatile
+        and entry.round_off is None
+        and entry.rtol < 0.01
+    ]
 
 
 def permuted(dataset, rng):

@@ -102,9 +102,9 @@ def test_sheets_with_long_names_do_not_take_each_others_place(tmp_path):
     convert(dataset, tmp_path / "long.xlsx")
     sheets = pd.read_excel(tmp_path / "long.xlsx", sheet_name=None)
     assert len(sheets) == 5
-    assert sorted(sheet.iloc[0, -1] for name, sheet in sheets.items() if name != "about") == [
-        0.0, 1.0, 2.0, 3.0,
-    ]  # fmt: skip
+    assert sorted(
+        sheet.iloc[0, -1] for name, sheet in sheets.items() if name != "about"
+    ) == [0.0, 1.0, 2.0, 3.0]
 
 
 @pytest.mark.parametrize("ending", ["csv", "xlsx", "mat", "parquet"])

@@ -26,9 +26,13 @@ def two_modes(mu, beside=False):
             Contact("d", {3: -1.0}, {2: 1.0}, stiffness=UNITS**2, preload=1e3)
         )
     return Structure(
-        np.eye(size), stiffness * UNITS**2, modal_damping=0.02, contacts=contacts, mu=mu,
+        np.eye(size),
+        stiffness * UNITS**2,
+        modal_damping=0.02,
+        contacts=contacts,
+        mu=mu,
         belt_speed=-2.0,
-    )  # fmt: skip
+    )
 
 
 def after(structure, regimes, state, time):

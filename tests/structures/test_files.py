@@ -143,9 +143,16 @@ def as_numpy_by_name(folder):
 
 
 FORMS = (
-    as_matrix_market, as_scipy, as_numpy, as_numpy_by_name, as_matlab, as_matlab_73,
-    as_calculix, as_abaqus, as_abaqus_substructure,
-)  # fmt: skip
+    as_matrix_market,
+    as_scipy,
+    as_numpy,
+    as_numpy_by_name,
+    as_matlab,
+    as_matlab_73,
+    as_calculix,
+    as_abaqus,
+    as_abaqus_substructure,
+)
 
 
 @pytest.mark.parametrize("form", FORMS)

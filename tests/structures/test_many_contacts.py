@@ -50,10 +50,14 @@ def random_structure(seed):
     mu, belt_speed = float(rng.uniform(0.2, 0.8)), float(rng.uniform(0.1, 0.6))
     q, v = 0.5 * rng.normal(size=(2, size))
     structure = Structure(
-        both(mass), both(stiffness, 0.3), both(damping), contacts=made, mu=mu,
+        both(mass),
+        both(stiffness, 0.3),
+        both(damping),
+        contacts=made,
+        mu=mu,
         mu_static=None if seed % 2 else mu * float(rng.uniform(1.05, 1.7)),
         belt_speed=belt_speed,
-    )  # fmt: skip
+    )
     return structure, np.tile(q, 1 + twice), np.tile(v, 1 + twice)
 
 
@@ -124,14 +128,19 @@ def test_bands_of_regimes_are_those_of_their_contact():
         Contact("c", {0: -1.0}, {1: 1.0}, stiffness=1e8 / 3, preload=1e3),
     ]
     structure = Structure(
-        np.eye(2), 1e8 * np.array([[2.0, -1.0], [-1.0, 2 / 3]]), modal_damping=0.02,
-        contacts=contacts, mu=1.0, belt_speed=-2.0,
-    )  # fmt: skip
+        np.eye(2),
+        1e8 * np.array([[2.0, -1.0], [-1.0, 2 / 3]]),
+        modal_damping=0.02,
+        contacts=contacts,
+        mu=1.0,
+        belt_speed=-2.0,
+    )
     run = structure.system().simulate(1e-3)
     names = labels(run.event_regime).values
     switches = sum(name.startswith("c_2_") for name in names)
     assert switches
     bands = plot(run).collections
     assert [len(band.get_paths()) for band in bands] == [
-        1 + switches, 1 + len(names) - switches
-    ]  # fmt: skip
+        1 + switches,
+        1 + len(names) - switches,
+    ]

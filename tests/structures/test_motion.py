@@ -12,8 +12,14 @@ from tests.oracles.structure_events import FASTER, OPEN, SLOWER, STICK, Referenc
 ANGLES = {
     ("exponential", None, 0.453, 2.98): {"separation", "contact"},
     ("hyperbolic", 0.8, 1.524, 3.081): {"stick", "slip"},
-    ("exponential", 0.8, 2.357, 0.881): {"separation", "contact", "reversal", "stick", "slip"},
-}  # fmt: skip
+    ("exponential", 0.8, 2.357, 0.881): {
+        "separation",
+        "contact",
+        "reversal",
+        "stick",
+        "slip",
+    },
+}
 
 
 def on_two_springs(p, alpha1, alpha2):
@@ -26,20 +32,35 @@ def on_two_springs(p, alpha1, alpha2):
 
     contact = Contact("c", {1: 1.0}, {0: 1.0}, p.k3, p.k3 * p.preload)
     return Structure(
-        p.mass * np.eye(2), pair(p.k1, p.k2), pair(p.damping1, p.damping2),
-        contacts=[contact], mu=p.mu, belt_speed=p.belt_speed, load=0,
-        friction_law=p.friction_law, mu_static=p.mu_static, friction_speed=p.friction_speed,
-    )  # fmt: skip
+        p.mass * np.eye(2),
+        pair(p.k1, p.k2),
+        pair(p.damping1, p.damping2),
+        contacts=[contact],
+        mu=p.mu,
+        belt_speed=p.belt_speed,
+        load=0,
+        friction_law=p.friction_law,
+        mu_static=p.mu_static,
+        friction_speed=p.friction_speed,
+    )
 
 
 @pytest.mark.parametrize(("case", "kinds"), ANGLES.items())
 def test_one_contact_on_two_springs_is_a1_with_linear_springs(case, kinds):
     law, mu_static, *angles = case
     p = Parameters(
-        mass=2.0, k1=3.0, k2=1.5, k3=0.8, mu=0.5, preload=1.0, damping2=0.01,
+        mass=2.0,
+        k1=3.0,
+        k2=1.5,
+        k3=0.8,
+        mu=0.5,
+        preload=1.0,
+        damping2=0.01,
         belt_speed=-0.4 if mu_static else 0.6,
-        friction_law=law, mu_static=mu_static, friction_speed=0.3,
-    )  # fmt: skip
+        friction_law=law,
+        mu_static=mu_static,
+        friction_speed=0.3,
+    )
     times = np.linspace(0.0, 60.0, 601)
     run = on_two_springs(p, *angles).system().simulate(60.0, times=times)
     truth = simulate(p, *angles, t_end=60.0, model="A1-linear-springs", times=times)
@@ -66,9 +87,14 @@ def test_a_start_at_the_speed_of_the_belt_is_in_the_regime_of_a1(x):
         .simulate(3.0, start={"q1": x, "v1": p.belt_speed}, times=[0.0, 3.0])
     )
     truth = simulate(
-        p, 0.5, 1.2, t_end=3.0, model="A1-linear-springs", times=[0.0, 3.0],
+        p,
+        0.5,
+        1.2,
+        t_end=3.0,
+        model="A1-linear-springs",
+        times=[0.0, 3.0],
         initial_state=(x, 0.0, p.belt_speed, 0.0),
-    )  # fmt: skip
+    )
     first = str(labels(run.regime).values[0]).removeprefix("c_")
     assert first == str(labels(truth.regime).values[0]).replace(" ", "_")
     assert (first == "stick") == (x == 0.0)
@@ -76,8 +102,11 @@ def test_a_start_at_the_speed_of_the_belt_is_in_the_regime_of_a1(x):
 
 
 REGIMES = {
-    "separated": OPEN, "stick": STICK, "slip_slower": SLOWER, "slip_faster": FASTER
-}  # fmt: skip
+    "separated": OPEN,
+    "stick": STICK,
+    "slip_slower": SLOWER,
+    "slip_faster": FASTER,
+}
 
 
 def names(size):
@@ -107,8 +136,10 @@ def against_reference(structure, state, t_end, mu_static=None, **parameters):
     assert labels(run.outcome).item() == "converged"
     reference = Reference(
         structure.with_(belt_speed=parameters.get("belt_speed", structure.belt_speed)),
-        parameters.get("mu", structure.mu), mu_static, parameters.get("preload", 1.0),
-    )  # fmt: skip
+        parameters.get("mu", structure.mu),
+        mu_static,
+        parameters.get("preload", 1.0),
+    )
     events, final = reference.run(t_end, state)
     places = [contact.name for contact in structure.contacts]
     happened = []
@@ -164,15 +195,23 @@ def coupled_contacts(**friction):
     mass, stiffness = generator.standard_normal((2, 4, 4))
     contacts = [
         Contact(
-            name, generator.standard_normal(4), generator.standard_normal(4),
-            stiffness=2.0, preload=1.0, speed=speed,
+            name,
+            generator.standard_normal(4),
+            generator.standard_normal(4),
+            stiffness=2.0,
+            preload=1.0,
+            speed=speed,
         )
         for name, speed in (("a", 1.0), ("b", 0.6), ("c", -0.8))
-    ]  # fmt: skip
+    ]
     return Structure(
-        mass @ mass.T + np.eye(4), stiffness @ stiffness.T + np.eye(4), 0.05 * np.eye(4),
-        contacts=contacts, belt_speed=0.2, **friction,
-    )  # fmt: skip
+        mass @ mass.T + np.eye(4),
+        stiffness @ stiffness.T + np.eye(4),
+        0.05 * np.eye(4),
+        contacts=contacts,
+        belt_speed=0.2,
+        **friction,
+    )
 
 
 @pytest.mark.parametrize("seed", range(4))

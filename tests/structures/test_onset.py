@@ -28,8 +28,12 @@ def undamped(seed):
     return (
         mass @ mass.T + 0.5 * np.eye(size),
         10 * stiffness @ stiffness.T + np.eye(size),
-        normal, tangential, springs, preload, np.sign(speeds * belt),
-    )  # fmt: skip
+        normal,
+        tangential,
+        springs,
+        preload,
+        np.sign(speeds * belt),
+    )
 
 
 def growing(case, mu):

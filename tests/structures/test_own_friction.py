@@ -19,9 +19,14 @@ def random_case(seed, size=7, number=3):
     damping = 0.01 * np.eye(size)
     springs, preload = generator.uniform([[0.5], [20]], [[8], [40]], (2, number))
     return (
-        mass @ mass.T + 0.5 * np.eye(size), damping,
-        10 * stiffness @ stiffness.T + np.eye(size), normal, tangential, springs, preload,
-    )  # fmt: skip
+        mass @ mass.T + 0.5 * np.eye(size),
+        damping,
+        10 * stiffness @ stiffness.T + np.eye(size),
+        normal,
+        tangential,
+        springs,
+        preload,
+    )
 
 
 def structure_of(
@@ -55,9 +60,14 @@ def test_each_contact_has_its_own_law(seed, belt_speed):
     case = random_case(seed)
     own = ({"mu": 0.15}, {"friction_law": TABLE, "mu": 0.4}, {})
     structure = structure_of(
-        case, own=own, mu=0.2, belt_speed=belt_speed, friction_law="exponential",
-        mu_static=0.3, friction_speed=2.0,
-    )  # fmt: skip
+        case,
+        own=own,
+        mu=0.2,
+        belt_speed=belt_speed,
+        friction_law="exponential",
+        mu_static=0.3,
+        friction_speed=2.0,
+    )
     modes = structure.complex_modes(critical=False)
     # of the first contact the law is the structure's without a static limit: Coulomb's
     falling = 0.1 * np.exp(-3.0 / 2.0)
@@ -172,10 +182,12 @@ def test_a_reduced_structure_and_its_runs_have_them():
     mu, side = np.array([0.9, 0.8]), np.array([1.0, -1.0])
     acting = normal + tangential * (mu * side)
     matrix = stiffness + acting * springs @ normal.T
-    first = np.block([
-        [np.zeros((5, 5)), np.eye(5)],
-        [-la.solve(mass, matrix), -la.solve(mass, damping)],
-    ])  # fmt: skip
+    first = np.block(
+        [
+            [np.zeros((5, 5)), np.eye(5)],
+            [-la.solve(mass, matrix), -la.solve(mass, damping)],
+        ]
+    )
     rest = la.solve(matrix, (acting - normal) @ preload)
     push = 1e-3 * np.arange(1.0, 6.0)
     run = system.simulate(

@@ -180,7 +180,7 @@ def random_structure(seed, most=400):
             mu=mu,
             belt_speed=speed,
             modal_damping=damping,
-        ), damping  # fmt: skip
+        ), damping
     size = int(rng.integers(50, most + 1))
     root = rng.standard_normal((size, size)) * (rng.random((size, size)) < 4 / size)
     stiffness = 1e7 * (root @ root.T) + np.diag(10 ** rng.uniform(5, 8, size))

@@ -28,8 +28,13 @@ def two_modes(mu, damping=0.02):
     contact = Contact("c", {1: -1.0}, {0: 1.0}, stiffness=4 / 3 * UNITS**2, preload=2e3)
     stiffness = np.array([[2.0, -1.0], [-1.0, 2 / 3]]) * UNITS**2
     return Structure(
-        np.eye(2), stiffness, modal_damping=damping, contacts=[contact], mu=mu, belt_speed=-2.0
-    )  # fmt: skip
+        np.eye(2),
+        stiffness,
+        modal_damping=damping,
+        contacts=[contact],
+        mu=mu,
+        belt_speed=-2.0,
+    )
 
 
 @pytest.fixture(scope="module")
@@ -116,8 +121,10 @@ def test_below_the_critical_friction_small_motions_die_out():
 def of_a_pad(angles, stiffness, damping, preload, **options):
     """A mass of two springs with dashpots beside one another, above a contact without a load."""
     mass, *springs, contact = stiffness
-    directions = [(math.cos(angles[0]), math.sin(angles[0])),
-                  (-math.cos(angles[1]), math.sin(angles[1]))]  # fmt: skip
+    directions = [
+        (math.cos(angles[0]), math.sin(angles[0])),
+        (-math.cos(angles[1]), math.sin(angles[1])),
+    ]
     parts = [np.outer(each, each) for each in directions]
     k, c = (
         sum(size * part for size, part in zip(sizes, parts, strict=True))
@@ -134,8 +141,14 @@ def test_nothing_of_a_push_is_left_in_what_is_quiet(samples, recwarn):
 
     Velocities and the largest force were those of the last window, in which starts died out.
     """
-    pad = of_a_pad(np.radians((30.0, 60.0)), (0.45, 1e7, 1e7, 7e6), (42.4, 42.4), 5.714e-4,
-                   mu=0.1, belt_speed=2.0)  # fmt: skip
+    pad = of_a_pad(
+        np.radians((30.0, 60.0)),
+        (0.45, 1e7, 1e7, 7e6),
+        (42.4, 42.4),
+        5.714e-4,
+        mu=0.1,
+        belt_speed=2.0,
+    )
     quiet = squealing_modes(pad, samples=samples, workers=1)
     assert list(quiet.kind.values) == [Kind.steady_sliding]
     for name in (
@@ -151,8 +164,14 @@ def test_nothing_of_a_push_is_left_in_what_is_quiet(samples, recwarn):
 
 def test_nothing_of_a_transient_is_left_in_the_largest_force_of_a_cycle():
     """Lightly damped, against an integrator apart that runs on; it was 1.5 % too large."""
-    pad = of_a_pad(np.radians((22.0, 46.0)), (0.45, 1e7, 1e7, 7e6), (8.5, 8.5), 5.714e-4,
-                   mu=0.5, belt_speed=2.0)  # fmt: skip
+    pad = of_a_pad(
+        np.radians((22.0, 46.0)),
+        (0.45, 1e7, 1e7, 7e6),
+        (8.5, 8.5),
+        5.714e-4,
+        mu=0.5,
+        belt_speed=2.0,
+    )
     loud = squealing_modes(pad, samples=2, workers=1)
     assert list(loud.kind.values) == [Kind.cycle]
     at_end = loud.isel(attractor=0)
@@ -169,8 +188,15 @@ def test_a_structure_leaves_a_cycle_that_a_second_mode_destabilizes():
     """
     table = "linear 0.0:0.52 0.5:0.5 1.0:0.47 2.0:0.43 4.0:0.38 10.0:0.34"
     dashpots = 19.595917942265427, 16.970562748477143
-    pad = of_a_pad(np.radians((55.0, 30.0)), (0.32, 1.2e7, 0.9e7, 1e7), dashpots, 4e-4,
-                   mu=1.0, friction_law=table, belt_speed=-5.0 / 3.6)  # fmt: skip
+    pad = of_a_pad(
+        np.radians((55.0, 30.0)),
+        (0.32, 1.2e7, 0.9e7, 1e7),
+        dashpots,
+        4e-4,
+        mu=1.0,
+        friction_law=table,
+        belt_speed=-5.0 / 3.6,
+    )
     found = squealing_modes(pad, samples=1, workers=1)
     assert found.sizes["attractor"] == 1
     assert found.peak_force.values == pytest.approx(0.74763, rel=2e-3)
@@ -255,8 +281,13 @@ def two_pads():
         Contact("outer", {3: 1.0}, {2: 1.0}, stiffness=5e7, preload=2e3),
     ]
     return Structure(
-        0.4 * np.eye(4), stiffness, modal_damping=0.01, contacts=contacts, mu=0.5, belt_speed=2.0
-    )  # fmt: skip
+        0.4 * np.eye(4),
+        stiffness,
+        modal_damping=0.01,
+        contacts=contacts,
+        mu=0.5,
+        belt_speed=2.0,
+    )
 
 
 def test_a_quasi_periodic_motion_of_two_contacts_is_told_without_a_search_for_its_cycle():

@@ -77,9 +77,14 @@ def test_the_mass_on_two_springs_has_the_stability_of_a3():
         "k3", normal={1: 1.0}, tangential={0: 1.0}, stiffness=p.k3, preload=p.k3
     )
     structure = Structure(
-        p.mass * np.eye(2), pair(p.k1, p.k2), pair(p.damping1, p.damping2),
-        contacts=[contact], mu=p.mu, belt_speed=p.belt_speed, load=0,
-    )  # fmt: skip
+        p.mass * np.eye(2),
+        pair(p.k1, p.k2),
+        pair(p.damping1, p.damping2),
+        contacts=[contact],
+        mu=p.mu,
+        belt_speed=p.belt_speed,
+        load=0,
+    )
     modes = structure.complex_modes()
     a3 = stability_map(p, [alpha1], [alpha2])
     assert modes.growth_rate.max() == pytest.approx(a3.growth_rate.item(), rel=1e-10)
@@ -168,9 +173,15 @@ def random_structure(generator):
     ]
     law = "exponential" if generator.random() < 0.5 else "coulomb"
     return Structure(
-        mass, stiffness, damping + np.zeros((size, size)), contacts=contacts,
-        mu=generator.uniform(0.1, 0.6), mu_static=0.8, friction_law=law, friction_speed=1.5,
-    )  # fmt: skip
+        mass,
+        stiffness,
+        damping + np.zeros((size, size)),
+        contacts=contacts,
+        mu=generator.uniform(0.1, 0.6),
+        mu_static=0.8,
+        friction_law=law,
+        friction_speed=1.5,
+    )
 
 
 def slides(structure):
@@ -281,10 +292,16 @@ def test_the_stated_error_of_growth_bounds_that_of_a_force_which_all_but_vanishe
     load = preload * support / stiffness * (1.0 - 1e-9 / 3.0)
     contact = Contact("c", {0: 1.0}, {1: 1.0}, stiffness, preload)
     structure = Structure(
-        mass * np.eye(2), support * np.eye(2), contacts=[contact], load=[load, 0.0],
-        mu=0.1, mu_static=0.7, friction_law="exponential", belt_speed=1.0,
+        mass * np.eye(2),
+        support * np.eye(2),
+        contacts=[contact],
+        load=[load, 0.0],
+        mu=0.1,
+        mu_static=0.7,
+        friction_law="exponential",
+        belt_speed=1.0,
         friction_speed=0.5,
-    )  # fmt: skip
+    )
     q = (Fraction(load) + Fraction(preload)) / Fraction(support + stiffness)
     force = Fraction(preload) - Fraction(stiffness) * q
     with mpmath.workdps(30):

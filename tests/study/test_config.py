@@ -274,10 +274,19 @@ def test_a_folder_of_results_holds_nothing_else(tmp_path, monkeypatch):
 
 
 IN_OTHER_UNITS = {
-    "kg": (1e3, "g"), "m": (1e6, "µm"), "s": (1e3, "ms"), "N": (1e-3, "kN"), "Pa": (1e-5, "bar"),
-    "m s-1": (3.6, "km/h"), "N m-1": (1e-6, "kN/mm"), "N s m-1": (1e-3, "N s/mm"),
-    "m2": (1e4, "cm^2"), "m-1": (1e-3, "1/mm"), "rad": (180 / math.pi, "deg"), "1": (100.0, "%"),
-}  # fmt: skip
+    "kg": (1e3, "g"),
+    "m": (1e6, "µm"),
+    "s": (1e3, "ms"),
+    "N": (1e-3, "kN"),
+    "Pa": (1e-5, "bar"),
+    "m s-1": (3.6, "km/h"),
+    "N m-1": (1e-6, "kN/mm"),
+    "N s m-1": (1e-3, "N s/mm"),
+    "m2": (1e4, "cm^2"),
+    "m-1": (1e-3, "1/mm"),
+    "rad": (180 / math.pi, "deg"),
+    "1": (100.0, "%"),
+}
 
 
 def marks(annotation):

@@ -158,27 +158,40 @@ def test_a_script_without_a_main_guard_can_sweep(tmp_path):
 
 SCATTERED = {
     "ragged events": {
-        "task": "simulate", "vary": {"mu": [0.1, 0.6], "alpha1": [1.6, 2.0, 5 * np.pi / 6, 2.7]},
+        "task": "simulate",
+        "vary": {"mu": [0.1, 0.6], "alpha1": [1.6, 2.0, 5 * np.pi / 6, 2.7]},
         "fixed": {"alpha2": 5 * np.pi / 6, "t_end": 20.0},
     },
     "ragged branches": {
-        "task": "backbone", "vary": {"k3": [0.5, 0.75, 1.0]},
-        "fixed": {"alpha1": 0.3 * np.pi, "alpha2": 0.9 * np.pi, "mode": 1, "y_peak_max": 1.5},
+        "task": "backbone",
+        "vary": {"k3": [0.5, 0.75, 1.0]},
+        "fixed": {
+            "alpha1": 0.3 * np.pi,
+            "alpha2": 0.9 * np.pi,
+            "mode": 1,
+            "y_peak_max": 1.5,
+        },
     },
     "log range": {
-        "task": "periodic_orbit", "vary": {"mode": [1, 2], "y_peak": parse_range("1.1:4:7:log")},
+        "task": "periodic_orbit",
+        "vary": {"mode": [1, 2], "y_peak": parse_range("1.1:4:7:log")},
         "fixed": {"alpha1": 0.3 * np.pi, "alpha2": 0.9 * np.pi},
     },
     "maps over a parameter": {
         "task": "validity_map",
-        "vary": {"mu": [0.2, 0.4], "alpha1": np.linspace(0, np.pi, 5).tolist(), "alpha2": [0.5, 2]},
+        "vary": {
+            "mu": [0.2, 0.4],
+            "alpha1": np.linspace(0, np.pi, 5).tolist(),
+            "alpha2": [0.5, 2],
+        },
         "fixed": {"t_end": 20.0},
     },
     "one number a run": {
-        "task": "stability_map", "vary": {"mu": parse_range("0:0.6:5")},
+        "task": "stability_map",
+        "vary": {"mu": parse_range("0:0.6:5")},
         "fixed": {"alpha1": 1.0, "alpha2": 2.0},
     },
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", SCATTERED)
@@ -216,8 +229,12 @@ def test_runs_at_other_instants_are_not_put_on_one_axis():
         ValueError, match="time differs from run to run; fix the option 'times'"
     ):
         Sweep(task="simulate", params=FORMER, **plan)
-    Sweep(task="simulate", params=FORMER, vary={"mu": [0.1, 0.2]},
-          fixed={**plan["fixed"], "t_end": 5.0})  # fmt: skip
+    Sweep(
+        task="simulate",
+        params=FORMER,
+        vary={"mu": [0.1, 0.2]},
+        fixed={**plan["fixed"], "t_end": 5.0},
+    )
 
 
 RAGGED = {

@@ -155,15 +155,25 @@ relay = System(
         "z": r.push - (1.0 - r.free) * s.y - p.omega**2 * s.x,
     },
     switches=[
-        Switch("down", "above", lambda t, s, p, r: s.x,
-               [("slides", lambda t, s, p, r: 1.0 - s.y**2), "below"], _on_surface),
-        Switch("up", "below", lambda t, s, p, r: -s.x,
-               [("slides", lambda t, s, p, r: 1.0 - s.y**2), "above"], _on_surface),
+        Switch(
+            "down",
+            "above",
+            lambda t, s, p, r: s.x,
+            [("slides", lambda t, s, p, r: 1.0 - s.y**2), "below"],
+            _on_surface,
+        ),
+        Switch(
+            "up",
+            "below",
+            lambda t, s, p, r: -s.x,
+            [("slides", lambda t, s, p, r: 1.0 - s.y**2), "above"],
+            _on_surface,
+        ),
         Switch("lifts", "slides", lambda t, s, p, r: 1.0 - s.y, "above"),
         Switch("sinks", "slides", lambda t, s, p, r: 1.0 + s.y, "below"),
     ],
     start={"x": 0.05, "y": -0.01, "z": 0.1, "regime": "above"},
-)  # fmt: skip
+)
 """Piiroinen and Kuznetsov's: on x = 0 the relay's mean output, −y, keeps the motion there."""
 
 
@@ -197,26 +207,47 @@ def _cases(system, name, values, settles, **options):
 
 
 CASES = [
-    *_cases(duffing_holmes, "force", np.linspace(0.2, 0.6, 13),
-            (1, 2, 0, ANY, 0, ANY, 0, 0, 0, 0, 0, ANY, 1)),
+    *_cases(
+        duffing_holmes,
+        "force",
+        np.linspace(0.2, 0.6, 13),
+        (1, 2, 0, ANY, 0, ANY, 0, 0, 0, 0, 0, ANY, 1),
+    ),
     *_cases(ueda, "force", (0.5, 1.0, 2.0, 5.0, 7.5, 12.0), (1, 1, 1, 2, 3, 1)),
     # it turns over and over at 1.35 and 1.47, so that its angle never comes back
-    *_cases(forced_pendulum, "force", (0.5, 0.9, 1.07, 1.15, 1.35, 1.47), (1, 1, 2, 0, 0, 0)),
+    *_cases(
+        forced_pendulum, "force", (0.5, 0.9, 1.07, 1.15, 1.35, 1.47), (1, 1, 2, 0, 0, 0)
+    ),
     *_cases(van_der_pol, "mu", (0.2, 1.0, 3.0, 8.0), (1, 1, 1, 1)),
     *_cases(brusselator, "b", (2.2, 3.0, 4.0), (1, 1, 1)),
     *_cases(fitzhugh_nagumo, "current", (0.4, 0.7, 1.0), (1, 1, 1)),
     *_cases(roessler, "c", (2.5, 3.5, 4.1, 5.7), (1, 1, 1, 0)),
     *_cases(lorenz, "r", (28.0, 160.0), (0, 1)),
     *_cases(lotka_volterra, "rate", (0.5, 1.0), (1, 1), family=True),
-    *(Case(impact_oscillator, {"omega": 2.1, "amplitude": a}, number) for a, number in
-      ((2.5, 1), (3.0, 1), (3.3, 1), (3.48, 0), (3.49, 16), (3.5, 2), (3.8, 1))),
+    *(
+        Case(impact_oscillator, {"omega": 2.1, "amplitude": a}, number)
+        for a, number in (
+            (2.5, 1),
+            (3.0, 1),
+            (3.3, 1),
+            (3.48, 0),
+            (3.49, 16),
+            (3.5, 2),
+            (3.8, 1),
+        )
+    ),
     *_cases(buck, "supply", (18.0, 20.0, 23.0, 26.0, 30.0, 33.5), (1, 1, 1, 2, 2, 0)),
     *_cases(walker, "slope", (0.004, 0.009, 0.013), (1, 1, 1)),
     # from farther away it falls over
-    Case(walker, {"slope": 0.0165}, 2, {"theta": 0.235, "phi": 0.47, "w": -0.235, "u": -0.0255}),
+    Case(
+        walker,
+        {"slope": 0.0165},
+        2,
+        {"theta": 0.235, "phi": 0.47, "w": -0.235, "u": -0.0255},
+    ),
     Case(relay, {"damping": 0.05}, 7, longest=4e-3),
     Case(relay, {"damping": 0.2}, 1),
-]  # fmt: skip
+]
 """Sixty-two. Without events every smooth cycle has one return."""
 
 

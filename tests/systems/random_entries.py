@@ -31,9 +31,12 @@ def height(rng, names, others):
         total = sum(w * getattr(s, n) for w, n in zip(weights, names, strict=True))
         lifted = sum(getattr(r, other).lift for other in others) if others else r.lift
         return (
-            total + 0.4 * bend * tanh(steep * getattr(s, names[0])) + 0.6 * lift * lifted
-            + 0.3 * level + 0.1 * swing * sin(2.0 * t)
-        )  # fmt: skip
+            total
+            + 0.4 * bend * tanh(steep * getattr(s, names[0]))
+            + 0.6 * lift * lifted
+            + 0.3 * level
+            + 0.1 * swing * sin(2.0 * t)
+        )
 
     return surface
 
@@ -78,9 +81,10 @@ def drawn(rng, with_components):
         push = sum(part.push for part in parts)
         return {
             name: sum(a * v for a, v in zip(row, values, strict=True))
-            + f * (push + p.drive * cos(1.3 * t)) - 0.2 * tanh(2.0 * values[i])
+            + f * (push + p.drive * cos(1.3 * t))
+            - 0.2 * tanh(2.0 * values[i])
             for i, (name, row, f) in enumerate(zip(names, matrix, pushes, strict=True))
-        }  # fmt: skip
+        }
 
     def regimes():
         numbers = range(int(rng.integers(2, 5)))
@@ -91,9 +95,11 @@ def drawn(rng, with_components):
 
     parts = {owner: regimes() for owner in owners}
     switches = {
-        owner: switches_between(rng, list(parts[owner]), names, with_components and owners)
+        owner: switches_between(
+            rng, list(parts[owner]), names, with_components and owners
+        )
         for owner in owners
-    }  # fmt: skip
+    }
     if with_components:
         own = {
             "components": {
@@ -244,9 +250,15 @@ class Run:
         while not self.trapped and len(self.events) < MOST_EVENTS:
             watched = self.watched()
             leg = solve_ivp(
-                self.slope, (self.t, T_END), self.z, "DOP853", rtol=1e-12, atol=1e-12,
-                max_step=self.step, events=[self.guard(*each) for each in watched],
-            )  # fmt: skip
+                self.slope,
+                (self.t, T_END),
+                self.z,
+                "DOP853",
+                rtol=1e-12,
+                atol=1e-12,
+                max_step=self.step,
+                events=[self.guard(*each) for each in watched],
+            )
             self.t, self.z = float(leg.t[-1]), leg.y[:, -1].copy()
             if leg.status != 1:
                 break

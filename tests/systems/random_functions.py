@@ -88,10 +88,13 @@ def random_functions(seed):
     def field(t, s, p, r):
         return {
             "x": s.v,
-            "v": -k * s.x - c * s.v - first(w * s.x) + p.drive * f.cos(omega * t)
+            "v": -k * s.x
+            - c * s.v
+            - first(w * s.x)
+            + p.drive * f.cos(omega * t)
             + r.push * second(s.z),
             "z": third(w * s.v) - s.z + 0.3 * r.push * fourth(s.x),
-        }  # fmt: skip
+        }
 
     def when(name):
         return lambda t, s, p, r: outer[name](inner[name](s))

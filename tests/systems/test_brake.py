@@ -42,9 +42,13 @@ def test_a_mass_at_belt_speed_that_nothing_holds_or_pulls_slides_below_it():
     """Eq. (4) as printed repels from belt speed; without friction nothing happens there."""
     at_belt = {"initial_state": (0.0, 0.0, 3.0, 0.0), "times": np.array([0.0, 0.01])}
     printed = simulate(
-        Parameters(belt_speed=3.0), math.pi / 2, math.pi / 2, t_end=1.0, model="A1-as-printed",
+        Parameters(belt_speed=3.0),
+        math.pi / 2,
+        math.pi / 2,
+        t_end=1.0,
+        model="A1-as-printed",
         **at_belt,
-    )  # fmt: skip
+    )
     assert printed.vx[1] < 3.0
     assert (printed.event_time > 0.0).all()
     at_belt["initial_state"] = (0.0, 0.5, 3.0, 0.0)

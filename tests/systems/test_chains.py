@@ -62,10 +62,15 @@ class Blocks:
             # a block that leaves the belt's speed may be back at once
             for length, step in ((0.02, 5e-4), (50.0, 0.02)):
                 leg = solve_ivp(
-                    self.rates, (time, time + length), self.state, method="DOP853",
+                    self.rates,
+                    (time, time + length),
+                    self.state,
+                    method="DOP853",
                     events=[height for _, _, height in guards],
-                    rtol=3e-14, atol=1e-15, max_step=step,
-                )  # fmt: skip
+                    rtol=3e-14,
+                    atol=1e-15,
+                    max_step=step,
+                )
                 time, self.state = leg.t[-1], leg.y[:, -1]
                 if leg.status == 1:
                     break

@@ -34,10 +34,13 @@ def copy(tmp_path):
 
 def _run(folder, **environment):
     return subprocess.Popen(
-        [sys.executable, "-B", "-c", PROGRAM], cwd=folder, stdout=subprocess.PIPE,
+        [sys.executable, "-B", "-c", PROGRAM],
+        cwd=folder,
+        stdout=subprocess.PIPE,
         env={**os.environ, "PYTHONPATH": str(folder), **environment},
-        stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
+        stderr=subprocess.PIPE,
+        text=True,
+    )
 
 
 def _omega(process):

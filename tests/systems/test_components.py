@@ -20,14 +20,21 @@ def combined():
     def switches(name, side, other):
         return [
             Switch(
-                f"{name}_lifts", ("both", name), lambda t, s, p, r: approach(side, s, p),
-                to=[(other, lambda t, s, p, r: getattr(r, other).contact - 0.5), "neither"],
+                f"{name}_lifts",
+                ("both", name),
+                lambda t, s, p, r: approach(side, s, p),
+                to=[
+                    (other, lambda t, s, p, r: getattr(r, other).contact - 0.5),
+                    "neither",
+                ],
             ),
             Switch(
-                f"{name}_lands", (other, "neither"), lambda t, s, p, r: -approach(side, s, p),
+                f"{name}_lands",
+                (other, "neither"),
+                lambda t, s, p, r: -approach(side, s, p),
                 to=[("both", lambda t, s, p, r: getattr(r, other).contact - 0.5), name],
             ),
-        ]  # fmt: skip
+        ]
 
     def nested(function):
         """The same function, of flat constants."""
@@ -99,18 +106,25 @@ def pair():
             {"free": {}},
             [
                 Switch(
-                    "impact", "free", lambda t, s, p, r: p.gap - getattr(s, f"x{name}"), "free",
-                    reset=lambda t, s, p, r: {f"v{name}": -p.restitution * getattr(s, f"v{name}")},
+                    "impact",
+                    "free",
+                    lambda t, s, p, r: p.gap - getattr(s, f"x{name}"),
+                    "free",
+                    reset=lambda t, s, p, r: {
+                        f"v{name}": -p.restitution * getattr(s, f"v{name}")
+                    },
                 )
             ],
-        )  # fmt: skip
+        )
 
     def field(t, s, p, r):
         force = p.amplitude * cos(p.omega * t)
         return {
-            "x1": s.v1, "v1": force - p.damping * s.v1 - s.x1,
-            "x2": s.v2, "v2": force - 2.0 * p.damping * s.v2 - s.x2,
-        }  # fmt: skip
+            "x1": s.v1,
+            "v1": force - p.damping * s.v1 - s.x1,
+            "x2": s.v2,
+            "v2": force - 2.0 * p.damping * s.v2 - s.x2,
+        }
 
     return System(
         "two impact oscillators",

@@ -51,8 +51,9 @@ def trace(omega, amplitude, damping):
 
 
 def fold(omega):
-    _, fixed, by_speed = (each / [1.0, omega] if each.ndim == 1 else each
-                          for each in one_impact(omega))  # fmt: skip
+    _, fixed, by_speed = (
+        each / [1.0, omega] if each.ndim == 1 else each for each in one_impact(omega)
+    )
     return amplitude(omega, -(fixed @ by_speed) / (by_speed @ by_speed))
 
 
@@ -183,11 +184,18 @@ def test_folds_of_a_hardening_spring_are_born_in_the_cusp():
             "x": s.v,
             "v": p.force * cos(p.omega * t) - p.damping * s.v - s.x - s.x * s.x * s.x,
         },
-        switches=[Switch("far", leaves="free", when=lambda t, s, p, r: 50.0 - s.x, to="free",
-                         reset=lambda t, s, p, r: {"v": -s.v})],
+        switches=[
+            Switch(
+                "far",
+                leaves="free",
+                when=lambda t, s, p, r: 50.0 - s.x,
+                to="free",
+                reset=lambda t, s, p, r: {"v": -s.v},
+            )
+        ],
         start={"x": 0.0, "v": 0.0},
         period=lambda p: 2 * np.pi / p.omega,
-    )  # fmt: skip
+    )
 
     def branch_at(force):
         return system.cycle_branch("omega", 1.0, start=system.limit_cycle(force=force))

@@ -131,12 +131,17 @@ def test_the_cycle_of_the_relief_valve_shrinks_to_rest_at_its_hopf_point():
 def test_a_system_without_switches_has_branches_with_tori():
     """A forced van der Pol oscillator loses its lock: a complex pair is on the unit circle."""
     van_der_pol = System(
-        "van der Pol", states={"x": "1", "v": "1"}, parameters={"force": 3.0}, regimes={"one": {}},
+        "van der Pol",
+        states={"x": "1", "v": "1"},
+        parameters={"force": 3.0},
+        regimes={"one": {}},
         field=lambda t, s, p, r: {
-            "x": s.v, "v": 0.3 * (1.0 - s.x * s.x) * s.v - s.x + p.force * cos(1.6 * t),
+            "x": s.v,
+            "v": 0.3 * (1.0 - s.x * s.x) * s.v - s.x + p.force * cos(1.6 * t),
         },
-        start={"x": 1.0, "v": 0.0}, period=lambda p: 2.0 * np.pi / 1.6,
-    )  # fmt: skip
+        start={"x": 1.0, "v": 0.0},
+        period=lambda p: 2.0 * np.pi / 1.6,
+    )
     branch = van_der_pol.cycle_branch("force", 0.2, start=van_der_pol.limit_cycle())
     (force,) = special(branch, Label.torus)
     (at,) = np.flatnonzero(branch.label == Label.torus)
@@ -185,15 +190,23 @@ def test_samples_of_a_cycle_resolve_its_impacts():
         parameters={"stiffness": 1e8, "omega": 1.9},
         regimes={"free": {"touch": 0.0}, "contact": {"touch": 1.0}},
         field=lambda t, s, p, r: {
-            "x": s.v, "v": cos(p.omega * t) - s.x - 0.1 * s.v - r.touch * p.stiffness * (s.x - 0.2),
+            "x": s.v,
+            "v": cos(p.omega * t)
+            - s.x
+            - 0.1 * s.v
+            - r.touch * p.stiffness * (s.x - 0.2),
         },
         switches=[
-            Switch("hit", leaves="free", when=lambda t, s, p, r: 0.2 - s.x, to="contact"),
-            Switch("left", leaves="contact", when=lambda t, s, p, r: s.x - 0.2, to="free"),
+            Switch(
+                "hit", leaves="free", when=lambda t, s, p, r: 0.2 - s.x, to="contact"
+            ),
+            Switch(
+                "left", leaves="contact", when=lambda t, s, p, r: s.x - 0.2, to="free"
+            ),
         ],
         start={"x": 0.0, "v": 0.0},
         period=lambda p: 2.0 * np.pi / p.omega,
-    )  # fmt: skip
+    )
     cycle = next(
         c
         for n in (1, 2, 3, 4, 5)
@@ -325,12 +338,21 @@ def test_no_label_of_a_random_branch_is_lost_between_dense_samples(seed, monkeyp
 @pytest.mark.parametrize(
     ("system", "times", "given", "names"),
     [
-        (leine_oscillator, (0.0, 17.0, 30.0), {"belt_speed": 0.25}, ("belt_speed", "x0")),
-        (impact_oscillator, (0.0, 15.0), {"amplitude": 0.6, "omega": 1.2},
-         ("amplitude", "omega", "x0", "v0")),
+        (
+            leine_oscillator,
+            (0.0, 17.0, 30.0),
+            {"belt_speed": 0.25},
+            ("belt_speed", "x0"),
+        ),
+        (
+            impact_oscillator,
+            (0.0, 15.0),
+            {"amplitude": 0.6, "omega": 1.2},
+            ("amplitude", "omega", "x0", "v0"),
+        ),
     ],
     ids=["stick", "impacts"],
-)  # fmt: skip
+)
 def test_derivatives_through_events_are_those_of_differences(
     system, times, given, names
 ):

@@ -57,13 +57,16 @@ def test_a_reset_that_leads_beyond_a_surface_is_followed_by_its_switch():
         field=lambda t, s, p, r: {"x": 1.0, "y": 1.0},
         switches=[
             Switch(
-                "jump", "up", lambda t, s, p, r: 1.0 - s.x, "up",
+                "jump",
+                "up",
+                lambda t, s, p, r: 1.0 - s.x,
+                "up",
                 reset=lambda t, s, p, r: {"x": 0.0, "y": -1.0},
             ),
             Switch("sink", "up", lambda t, s, p, r: s.y, "down"),
         ],
         start={"x": 0.0, "y": 0.5, "regime": "up"},
-    )  # fmt: skip
+    )
     run = jumps.simulate(3.0)
     assert list(labels(run.event_kind).values) == ["jump", "sink"]
     np.testing.assert_allclose(run.event_time, [1.0, 1.0], rtol=1e-14)
@@ -78,13 +81,22 @@ def test_a_latch_that_catches_more_than_it_holds_lets_go_at_once():
         regimes={"free": {"free": 1.0}, "held": {"free": 0.0}},
         field=lambda t, s, p, r: {"x": r.free * s.v, "v": -r.free * p.stiffness * s.x},
         switches=[
-            Switch("caught", "free", lambda t, s, p, r: 1.0 - s.x, "held",
-                   reset=lambda t, s, p, r: {"v": 0.0}),
-            Switch("lets_go", "held",
-                   lambda t, s, p, r: p.limit - p.stiffness * s.x, "free"),
+            Switch(
+                "caught",
+                "free",
+                lambda t, s, p, r: 1.0 - s.x,
+                "held",
+                reset=lambda t, s, p, r: {"v": 0.0},
+            ),
+            Switch(
+                "lets_go",
+                "held",
+                lambda t, s, p, r: p.limit - p.stiffness * s.x,
+                "free",
+            ),
         ],
         start={"x": 0.0, "v": 2.0, "regime": "free"},
-    )  # fmt: skip
+    )
     omega = np.sqrt(1.57)
     caught = np.arcsin(0.5 * omega) / omega
     run = latch.simulate(caught + 0.75 * np.pi / omega)
@@ -171,9 +183,12 @@ class Sticks:
             sum(w[i][j] * (elastic[j] + slip[j]) for j in range(n)) for i in range(n)
         ]
         matrix = [
-            [stuck[i] * w[i][j] * stuck[j] + (i == j) * (1.0 - stuck[i]) for j in range(n)]
+            [
+                stuck[i] * w[i][j] * stuck[j] + (i == j) * (1.0 - stuck[i])
+                for j in range(n)
+            ]
             for i in range(n)
-        ]  # fmt: skip
+        ]
         held = solved(matrix, [-1.0 * (stuck[i] * free[i]) for i in range(n)])
         return elastic, [slip[i] + held[i] for i in range(n)]
 
@@ -217,19 +232,37 @@ class Sticks:
                 },
                 [
                     Switch(
-                        "turn", ("slower", "faster"),
-                        lambda t, s, p, r: side(t, s, p, r) * (self.belt - getattr(s, f"v{i}")),
+                        "turn",
+                        ("slower", "faster"),
+                        lambda t, s, p, r: (
+                            side(t, s, p, r) * (self.belt - getattr(s, f"v{i}"))
+                        ),
                         to=[
-                            ("stick", lambda t, s, p, r: limit**2 - hold(t, s, p, r)**2, "stick"),
-                            ("faster", side, "reversal"), ("slower", None, "reversal"),
+                            (
+                                "stick",
+                                lambda t, s, p, r: limit**2 - hold(t, s, p, r) ** 2,
+                                "stick",
+                            ),
+                            ("faster", side, "reversal"),
+                            ("slower", None, "reversal"),
                         ],
                         reset=lambda t, s, p, r: {f"v{i}": float(self.belt)},
                     ),
-                    Switch("down", "stick", lambda t, s, p, r: limit - hold(t, s, p, r), "slower"),
-                    Switch("up", "stick", lambda t, s, p, r: limit + hold(t, s, p, r), "faster"),
+                    Switch(
+                        "down",
+                        "stick",
+                        lambda t, s, p, r: limit - hold(t, s, p, r),
+                        "slower",
+                    ),
+                    Switch(
+                        "up",
+                        "stick",
+                        lambda t, s, p, r: limit + hold(t, s, p, r),
+                        "faster",
+                    ),
                 ],
                 ["slower"],
-            )  # fmt: skip
+            )
 
         states = [f"{q}{i}" for q in "xv" for i in n]
         return System(
@@ -300,9 +333,15 @@ class Sticks:
             if which is None:
                 guards = [guard(k) for k in range(len(here))]
                 run = solve_ivp(
-                    rates, (t, t_end), z, "DOP853", rtol=1e-12, atol=1e-13, max_step=0.05,
+                    rates,
+                    (t, t_end),
+                    z,
+                    "DOP853",
+                    rtol=1e-12,
+                    atol=1e-13,
+                    max_step=0.05,
                     events=guards,
-                )  # fmt: skip
+                )
                 t, z = run.t[-1], run.y[:, -1].copy()
                 if run.status != 1:
                     break
@@ -314,9 +353,13 @@ class Sticks:
 
 
 @pytest.mark.parametrize("held", [False, True])
-@pytest.mark.parametrize("seed", [
-    *range(3), *(pytest.param(n, marks=pytest.mark.release) for n in some(range(3, 30))),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "seed",
+    [
+        *range(3),
+        *(pytest.param(n, marks=pytest.mark.release) for n in some(range(3, 30))),
+    ],
+)
 def test_sticking_contacts_are_let_go_in_order_until_nothing_is_violated(seed, held):
     sticks = Sticks(seed)
     x, v = sticks.start

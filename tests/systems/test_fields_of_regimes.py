@@ -21,12 +21,15 @@ tank = System(
     },
     switches=[
         Switch(
-            "low", "above", lambda t, s, p, r: s.h - 0.01, "below",
+            "low",
+            "above",
+            lambda t, s, p, r: s.h - 0.01,
+            "below",
             reset=lambda t, s, p, r: {"h": -s.h},
         )
     ],
     start={"h": 1.0, "regime": "above"},
-)  # fmt: skip
+)
 
 
 def test_torricellis_tank_drains_by_the_root_of_its_own_side():

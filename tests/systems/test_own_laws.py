@@ -15,8 +15,13 @@ ANGLES = (1.0, 2.2)
 STICKING = (0.1, 1.5)
 """Angles at which the mass sticks again and again."""
 PAD = {
-    "mass": 0.5, "k1": 1e7, "k2": 1.3e7, "preload": 2e-5, "length1": 0.02, "length2": 0.03,
-}  # fmt: skip
+    "mass": 0.5,
+    "k1": 1e7,
+    "k2": 1.3e7,
+    "preload": 2e-5,
+    "length1": 0.02,
+    "length2": 0.03,
+}
 FRICTION = "linear 0:0.55 0.3:0.5 0.5:0.35 0.9:0.4 2:0.2"
 SOFTENING = "linear 0:0 1e-5:20 3e-5:140 5e-5:300"
 
@@ -58,9 +63,15 @@ def reference(params, angles, times, start, friction, contact):
 
     z = np.array(start) / [unit, unit, unit / time, unit / time]
     found = solve_ivp(
-        rates, (0.0, times[-1] / time), z, "DOP853", times / time, rtol=1e-12, atol=1e-12,
+        rates,
+        (0.0, times[-1] / time),
+        z,
+        "DOP853",
+        times / time,
+        rtol=1e-12,
+        atol=1e-12,
         max_step=0.02,
-    )  # fmt: skip
+    )
     return found.y * np.array([[unit], [unit], [unit / time], [unit / time]])
 
 

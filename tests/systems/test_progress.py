@@ -32,13 +32,21 @@ LONG = {
         Parameters(), *AT, vx=np.linspace(-5, 5, 300), t_end=300.0, workers=1
     ),
     "propensity": lambda: propensity(
-        Parameters(), *AT, samples=64, t_end=300.0, workers=1,
+        Parameters(),
+        *AT,
+        samples=64,
+        t_end=300.0,
+        workers=1,
         distributions={"mu": {"distribution": "uniform", "low": 0.1, "high": 0.9}},
     ),
-    "backbone": lambda: backbone(Parameters(), 0.9, 2.8, mode=1, method="hbm", n_harmonics=4),
+    "backbone": lambda: backbone(
+        Parameters(), 0.9, 2.8, mode=1, method="hbm", n_harmonics=4
+    ),
     "cycle": lambda: limit_cycle(STICK_SLIP, *AT, t_settle=4e4),
-    "branch": lambda: cycle_branch(STICK_SLIP, *AT, parameter="belt_speed", to=0.6, n_points=12),
-}  # fmt: skip
+    "branch": lambda: cycle_branch(
+        STICK_SLIP, *AT, parameter="belt_speed", to=0.6, n_points=12
+    ),
+}
 
 
 @pytest.mark.parametrize("name", LONG)
@@ -63,9 +71,21 @@ def test_parts_share_the_whole_and_who_works_alone_shows_for_all():
 
 
 COMMAND = [
-    sys.executable, "-m", "squealpipe", "basin", "0.4pi", "0.6pi", "--vx=-5:5:100",
-    "--t-end", "600", "--workers", "2", "-o", "b.nc", "--force",
-]  # fmt: skip
+    sys.executable,
+    "-m",
+    "squealpipe",
+    "basin",
+    "0.4pi",
+    "0.6pi",
+    "--vx=-5:5:100",
+    "--t-end",
+    "600",
+    "--workers",
+    "2",
+    "-o",
+    "b.nc",
+    "--force",
+]
 
 
 @pytest.mark.release

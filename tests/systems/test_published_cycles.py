@@ -109,9 +109,13 @@ def test_an_unstable_cycle_with_one_impact_has_its_closed_form():
 
     place, speed = motion(2.0 * np.pi / omega)  # from the impact at phase/ω on
     cycle = impact_oscillator.limit_cycle(
-        guess={"x": place, "v": speed}, omega=omega, amplitude=1.0, damping=0.0,
-        gap=0.0, restitution=restitution,
-    )  # fmt: skip
+        guess={"x": place, "v": speed},
+        omega=omega,
+        amplitude=1.0,
+        damping=0.0,
+        gap=0.0,
+        restitution=restitution,
+    )
     assert cycle.outcome == Outcome.converged
     assert int(cycle.stable) == 0
     assert float(cycle.event_time[0]) == pytest.approx(phase / omega, abs=1e-7)

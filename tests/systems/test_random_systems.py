@@ -63,11 +63,13 @@ def patches(rng, names):
 
     switches = [
         Switch(
-            "fall", keys[0], height,
+            "fall",
+            keys[0],
+            height,
             to=[(keys[-1], lambda t, s, p, r: s.s1, "aside"), keys[len(keys) // 2]],
             reset=lambda t, s, p, r: {"s0": -0.7 * s.s0 + 0.05},
         )
-    ]  # fmt: skip
+    ]
     if len(keys) > 1:
         back = lambda t, s, p, r: 0.2 - height(t, s, p, r)  # noqa: E731
         switches.append(Switch("back", tuple(keys[1:]), back, to=keys[0]))
@@ -103,23 +105,30 @@ def stick(rng, names):
         "field": field,
         "switches": [
             Switch(
-                "turn", ("up", "down"), lambda t, s, p, r: r.side * s.s1,
+                "turn",
+                ("up", "down"),
+                lambda t, s, p, r: r.side * s.s1,
                 to=[
                     ("held", lambda t, s, p, r: limit**2 - pull(t, s, p) ** 2, "stick"),
-                    ("down", lambda t, s, p, r: r.side), "up",
+                    ("down", lambda t, s, p, r: r.side),
+                    "up",
                 ],
                 reset=lambda t, s, p, r: {"s1": 0.0},
             ),
             Switch("slip_up", "held", lambda t, s, p, r: limit - pull(t, s, p), "up"),
-            Switch("slip_down", "held", lambda t, s, p, r: limit + pull(t, s, p), "down"),
             Switch(
-                "impact", ("up", "down"), lambda t, s, p, r: height(t, s, p, r) + 1.0,
+                "slip_down", "held", lambda t, s, p, r: limit + pull(t, s, p), "down"
+            ),
+            Switch(
+                "impact",
+                ("up", "down"),
+                lambda t, s, p, r: height(t, s, p, r) + 1.0,
                 to=[("up", lambda t, s, p, r: r.side), "down"],
                 reset=lambda t, s, p, r: {"s0": -0.7 * s.s0 + 0.05},
             ),
         ],
         "start": {**dict.fromkeys(names, 0.5), "regime": "up"},
-    }  # fmt: skip
+    }
 
 
 def random_system(seed):
@@ -127,9 +136,12 @@ def random_system(seed):
     rng = np.random.default_rng(seed)
     names = [f"s{i}" for i in range(int(rng.integers(2, 7)))]
     return System(
-        f"random {seed}", states=dict.fromkeys(names, "1"), parameters={"drive": 1.0, "omega": 1.3},
-        **(patches, stick)[seed % 2](rng, names), period=lambda p: 2.0 * np.pi / p.omega,
-    )  # fmt: skip
+        f"random {seed}",
+        states=dict.fromkeys(names, "1"),
+        parameters={"drive": 1.0, "omega": 1.3},
+        **(patches, stick)[seed % 2](rng, names),
+        period=lambda p: 2.0 * np.pi / p.omega,
+    )
 
 
 def target_of(switch, t, s, p, r):
@@ -180,9 +192,15 @@ def independent_run(system, start, parameters, max_step):
             switch = beyond[0]
         else:
             run = solve_ivp(
-                rates, (t, T_END), z, "DOP853", rtol=1e-12, atol=1e-12, max_step=max_step,
+                rates,
+                (t, T_END),
+                z,
+                "DOP853",
+                rtol=1e-12,
+                atol=1e-12,
+                max_step=max_step,
                 events=[guard(s) for s in here],
-            )  # fmt: skip
+            )
             t, z = run.t[-1], run.y[:, -1]
             if run.status != 1:
                 break
@@ -197,9 +215,14 @@ def independent_run(system, start, parameters, max_step):
 
 @pytest.mark.parametrize(
     ("seed", "draws"),
-    [*((n, 1) for n in range(6)),
-     *(pytest.param(n, DRAWS, marks=pytest.mark.release) for n in some(range(6, 60)))],
-)  # fmt: skip
+    [
+        *((n, 1) for n in range(6)),
+        *(
+            pytest.param(n, DRAWS, marks=pytest.mark.release)
+            for n in some(range(6, 60))
+        ),
+    ],
+)
 def test_events_of_random_systems_are_those_of_dop853(seed, draws):
     """Some runs of one structure, event by event."""
     system = random_system(seed)
@@ -213,8 +236,16 @@ def test_events_of_random_systems_are_those_of_dop853(seed, draws):
         run = system.simulate(T_END, start=start, **given)
         kinds = run.event_kind.attrs["flag_meanings"].split()
         mine = [kinds[int(k)] for k in run.event_kind]
-        growth = abs(float(system.ensemble(T_END, start=start, horizon=True, **given)
-                           .lyapunov_exponent)) * T_END  # fmt: skip
+        growth = (
+            abs(
+                float(
+                    system.ensemble(
+                        T_END, start=start, horizon=True, **given
+                    ).lyapunov_exponent
+                )
+            )
+            * T_END
+        )
         if growth > np.log(1e6):
             continue  # chaotic: the lists need not agree to the end
         accumulates, trapped = int(run.outcome) == Outcome.accumulation, False
@@ -384,12 +415,14 @@ def test_one_switch_may_lead_on_through_256_regimes():
         field=lambda t, s, p, r: {"x": 1.0},
         switches=[
             Switch(
-                "up", [f"r{i}" for i in numbers][:-1], lambda t, s, p, r: r.end - s.x,
+                "up",
+                [f"r{i}" for i in numbers][:-1],
+                lambda t, s, p, r: r.end - s.x,
                 to=[*((f"r{i + 1}", leaves(i)) for i in numbers[:-1]), "r0"],
             )
         ],
         start={"x": 0.0, "regime": "r0"},
-    )  # fmt: skip
+    )
     run = stairs.simulate(300.0)
     np.testing.assert_array_equal(run.event_time, np.arange(1, 256))
     np.testing.assert_array_equal(run.event_regime, np.arange(1, 256))
@@ -438,10 +471,13 @@ def test_instants_outside_the_run_and_a_period_below_zero_are_refused():
 def test_a_run_starts_in_the_regime_that_it_is_given():
     """Without surfaces both regimes fit; the first is taken unless another is named."""
     system = System(
-        "growth or decay", states={"x": "1"}, parameters={},
+        "growth or decay",
+        states={"x": "1"},
+        parameters={},
         regimes={"grows": {"rate": 1.0}, "decays": {"rate": -1.0}},
-        field=lambda t, s, p, r: {"x": r.rate * s.x}, start={"x": 1.0},
-    )  # fmt: skip
+        field=lambda t, s, p, r: {"x": r.rate * s.x},
+        start={"x": 1.0},
+    )
     for start, end in (({}, np.e), ({"regime": "decays"}, 1.0 / np.e)):
         assert float(system.ensemble(1.0, start=start).x) == pytest.approx(
             end, rel=1e-14

@@ -78,10 +78,19 @@ def test_an_exponential_law_acts_where_the_speed_is_nearly_the_belts():
     """First event by DOP853 from the equations of motion, from far outside its layer."""
     speed = 1e-4 * np.sqrt(2e7)
     params = Parameters(
-        mass=1.0, k1=1.0, k2=1.0, k3=0.65, preload=1.0, length1=15.0, length2=15.0,
-        mu=0.3, mu_static=0.4, friction_law="exponential",
-        friction_speed=0.004 / speed, belt_speed=0.47 / speed,
-    )  # fmt: skip
+        mass=1.0,
+        k1=1.0,
+        k2=1.0,
+        k3=0.65,
+        preload=1.0,
+        length1=15.0,
+        length2=15.0,
+        mu=0.3,
+        mu_static=0.4,
+        friction_law="exponential",
+        friction_speed=0.004 / speed,
+        belt_speed=0.47 / speed,
+    )
     start = {"x": 2.0, "y": -0.55, "vx": -2.1, "vy": -2.25}
     run = brake_of(params).simulate(
         3.0, start=start, **parameters_of_run(params, 2.84, 1.10)
@@ -114,9 +123,14 @@ def test_surfaces_composed_with_monotone_functions_fire_when_dop853_says():
 
     own = solve_ivp(
         lambda t, z: [z[1], -np.sin(z[0]) + 0.2 * np.cos(1.7 * z[1])],
-        (0.0, 10.0), [-1.0, 0.3], "DOP853", rtol=1e-12, atol=1e-12, max_step=0.05,
+        (0.0, 10.0),
+        [-1.0, 0.3],
+        "DOP853",
+        rtol=1e-12,
+        atol=1e-12,
+        max_step=0.05,
         events=lambda t, z: 0.4 - z[0],
-    )  # fmt: skip
+    )
     exact = own.t_events[0][0]
     for f in (
         lambda u: u,

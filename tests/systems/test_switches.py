@@ -85,15 +85,20 @@ def test_resets_of_components_go_by_their_own_regimes():
                     "land",
                     "flies",
                     lambda t, s, p, r: getattr(s, f"x{name}"),
-                    to=[("flies", lambda t, s, p, r: -getattr(s, f"v{name}") - 1.5), "rests"],
+                    to=[
+                        ("flies", lambda t, s, p, r: -getattr(s, f"v{name}") - 1.5),
+                        "rests",
+                    ],
                     reset={
-                        "flies": lambda t, s, p, r: {f"v{name}": -0.5 * getattr(s, f"v{name}")},
+                        "flies": lambda t, s, p, r: {
+                            f"v{name}": -0.5 * getattr(s, f"v{name}")
+                        },
                         "rests": lambda t, s, p, r: {f"v{name}": 0.0},
                     },
                 )
             ],
             ["flies"],
-        )  # fmt: skip
+        )
 
     balls = System(
         "two balls",

@@ -146,9 +146,15 @@ def test_a_rigid_pad_lifts_and_lands_when_dop853_says():
 
     start = [0.1 if name == "theta" else 0.0 for name in names]
     own = solve_ivp(
-        rates, (0.0, 30.0), start, "DOP853", rtol=1e-12, atol=1e-12, max_step=0.02,
+        rates,
+        (0.0, 30.0),
+        start,
+        "DOP853",
+        rtol=1e-12,
+        atol=1e-12,
+        max_step=0.02,
         events=[gap(LEADING), gap(TRAILING)],
-    )  # fmt: skip
+    )
     for name, times in zip(("leading", "trailing"), own.t_events, strict=True):
         found = [times_of(run, f"{name}_{what}") for what in ("lifts", "lands")]
         found = np.sort(np.concatenate(found))

@@ -33,11 +33,16 @@ def random_runs(count, seed):
     time_unit = np.sqrt(mass / k1)
     speeds = rng.choice([0.0, -0.05, 0.05, 0.5, 5.0, 100.0, -20.0], count)
     parameters = {
-        "mass": mass, "k1": k1, "k2": k1 * spread(0.1, 10), "k3": k1 * spread(0.01, 1e3),
+        "mass": mass,
+        "k1": k1,
+        "k2": k1 * spread(0.1, 10),
+        "k3": k1 * spread(0.01, 1e3),
         "mu": rng.choice([0.0, 0.05, 0.3, 0.8, 2.0], count),
-        "belt_speed": speeds * preload / time_unit, "preload": preload,
-        "length1": preload * spread(0.5, 100), "length2": preload * spread(0.5, 100),
-    }  # fmt: skip
+        "belt_speed": speeds * preload / time_unit,
+        "preload": preload,
+        "length1": preload * spread(0.5, 100),
+        "length2": preload * spread(0.5, 100),
+    }
     special = rng.random(count) < 0.3
     angles = rng.uniform(0, 2 * np.pi, (2, count))
     angles[:, special] = rng.choice(np.arange(9) * np.pi / 4, (2, special.sum()))

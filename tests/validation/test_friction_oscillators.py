@@ -21,9 +21,14 @@ from tests.oracles.friction_oscillators import ANGLES, BSTAB, LEINE, STEADY, osc
 def stick_slip_cycle(params, x, tol):
     """(period, slip time) of the cycle that a run settles on; the last three cycles agree."""
     run = run_ensemble(
-        params, *ANGLES, t_end=300.0, log_events=400,
-        initial_state=(x, STEADY, params.belt_speed, 0.0), workers=1, tol=tol,
-    )  # fmt: skip
+        params,
+        *ANGLES,
+        t_end=300.0,
+        log_events=400,
+        initial_state=(x, STEADY, params.belt_speed, 0.0),
+        workers=1,
+        tol=tol,
+    )
     assert run.outcome == Outcome.converged
     assert run.separations == 0
     kinds = run.event_kinds[run.event_kinds >= 0]

@@ -67,9 +67,13 @@ def test_the_whirl_at_the_lowest_speed_sticks_and_is_chaotic_or_a_cycle():
     scene = SCENES["F3"]
     starts = np.random.default_rng(0).uniform(-1e-6, 1e-6, (96, 4))
     run = run_ensemble(
-        BASELINE.with_(belt_speed=1.0), scene.alpha1, scene.alpha2,
-        t_end=6000.0, t_late=5000.0, initial_state=starts,
-    )  # fmt: skip
+        BASELINE.with_(belt_speed=1.0),
+        scene.alpha1,
+        scene.alpha2,
+        t_end=6000.0,
+        t_late=5000.0,
+        initial_state=starts,
+    )
     assert (run.late_max_x > 7.0).all()
     assert (run.late_max_x < 8.1).all()
     assert (run.sticks > 100).all()

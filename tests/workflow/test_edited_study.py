@@ -8,8 +8,12 @@ from squealpipe.store.whole_files import checksum
 TINY = "workflow/config/tiny.yaml"
 EDIT = "dynamics: {hammering_points: 12}\n"
 STALE = {
-    "map_hammering", "write_explorer", "draw_dynamics", "judge_claims", "write_report",
-}  # fmt: skip
+    "map_hammering",
+    "write_explorer",
+    "draw_dynamics",
+    "judge_claims",
+    "write_report",
+}
 DATASETS = {"hammering_map", "claims"}
 """What those rules make; the verdicts read the map, though none may turn over."""
 

@@ -9,9 +9,18 @@ from squealpipe.study.report import answer
 from tests.conftest import ROOT, run_snakemake, text_of_page
 
 PAD = {
-    "mass": 0.45, "k1": 1e7, "k2": 1e7, "k3": 7e6, "preload": 5.714e-4, "mu": 0.4,
-    "belt_speed": 2.0, "length1": 0.1, "length2": 0.1, "damping1": 42.4, "damping2": 42.4,
-}  # fmt: skip
+    "mass": 0.45,
+    "k1": 1e7,
+    "k2": 1e7,
+    "k3": 7e6,
+    "preload": 5.714e-4,
+    "mu": 0.4,
+    "belt_speed": 2.0,
+    "length1": 0.1,
+    "length2": 0.1,
+    "damping1": 42.4,
+    "damping2": 42.4,
+}
 FALLING = {"mu": 0.37, "mu_static": 0.55, "friction_speed": 1.7}
 SPEEDS = (0, 0.1, 0.3, 0.5, 0.8, 1.1, 1.4, 1.7, 2, 2.5, 3.5, 5)
 TABLE = "speed,coefficient\n" + "".join(
@@ -35,9 +44,17 @@ CUBIC_CONTACT = {
 CONTACT_DASHPOT = {"contact_law": "dashpot", "damping3": 20.0}
 UNDAMPED = {"damping1": 0.0, "damping2": 0.0}
 SCALED = {
-    "mass": 1.0, "k1": 1.0, "k2": 1.0, "k3": 0.7, "preload": 1.0, "length1": 175.0,
-    "length2": 175.0, "belt_speed": 0.75, "damping1": 0.02, "damping2": 0.02,
-}  # fmt: skip
+    "mass": 1.0,
+    "k1": 1.0,
+    "k2": 1.0,
+    "k3": 0.7,
+    "preload": 1.0,
+    "length1": 175.0,
+    "length2": 175.0,
+    "belt_speed": 0.75,
+    "damping1": 0.02,
+    "damping2": 0.02,
+}
 STUDIES = {
     "Coulomb, belt at rest": {"belt_speed": 0.0},
     "static limit, cubic contact table, the other way": {
@@ -95,10 +112,12 @@ for name, law in friction_laws.LAWS.items():  # one that is added has a study of
         STUDIES[name] = {"friction_law": name, **read}
 
 COARSE = {
-    "paper": False, "results": "results/mine",
+    "paper": False,
+    "results": "results/mine",
     "scenes": {"mine": {"alpha1": "22deg", "alpha2": "46deg", "start": {"vx": 1e-3}}},
-    "dynamics": {"hammering_points": 3}, "explorer": {"points": 3},
-}  # fmt: skip
+    "dynamics": {"hammering_points": 3},
+    "explorer": {"points": 3},
+}
 
 
 def test_each_option_has_a_study():

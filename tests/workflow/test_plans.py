@@ -12,9 +12,13 @@ results: results/own
 scenes: {mine: {alpha1: 30deg, alpha2: 140deg}}
 """
 RULES = {
-    "assess_scenes", "map_verdicts", "draw_own", "write_own_report", "compute_explorer",
+    "assess_scenes",
+    "map_verdicts",
+    "draw_own",
+    "write_own_report",
+    "compute_explorer",
     "write_explorer",
-}  # fmt: skip
+}
 SCATTERED = {"share_verdicts", "compute_scene_propensity", "draw_propensity"}
 """Rules of a study that configures distributions; none is assumed."""
 
@@ -47,11 +51,20 @@ STUDIES = {
     "law": "parameters: {friction_law: exponential, mu_static: 0.6, friction_speed: 10.0}",
 }
 NOT_CARRIED = {
-    "trace_backbones", "follow_doublings", "compare_harmonic_forms", "compare_a1_with_a4",
-    "infer_parameters", "map_model_ladder",
-    "measure_frequencies", "compute_explorer", "write_explorer",
-    "draw_backbones", "draw_inference", "check_assumptions", "chart_regimes",
-}  # fmt: skip
+    "trace_backbones",
+    "follow_doublings",
+    "compare_harmonic_forms",
+    "compare_a1_with_a4",
+    "infer_parameters",
+    "map_model_ladder",
+    "measure_frequencies",
+    "compute_explorer",
+    "write_explorer",
+    "draw_backbones",
+    "draw_inference",
+    "check_assumptions",
+    "chart_regimes",
+}
 """Rules of levels with the paper's friction alone, and what reads nothing but their datasets."""
 
 

@@ -76,9 +76,13 @@ def extended(new_checkout, tmp_path_factory):
 def python(folder, script):
     """Run a script with the package of the copy."""
     run = subprocess.run(
-        [sys.executable, "-c", script], cwd=folder, env={**os.environ, "PYTHONPATH": str(folder)},
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
+        [sys.executable, "-c", script],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(folder)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert run.returncode == 0, run.stderr[-4000:]
     return run.stdout
 
@@ -242,9 +246,13 @@ def test_the_gates_find_nothing_once_written_files_are_renewed(extended):
     folder, _ = extended
     for words in GATES:
         run = subprocess.run(
-            [sys.executable, "-m", *words], cwd=folder, capture_output=True,
-            env={**os.environ, "PYTHONPATH": str(folder)}, text=True, check=False,
-        )  # fmt: skip
+            [sys.executable, "-m", *words],
+            cwd=folder,
+            capture_output=True,
+            env={**os.environ, "PYTHONPATH": str(folder)},
+            text=True,
+            check=False,
+        )
         assert run.returncode == 0, run.stdout[-4000:] + run.stderr[-1000:]
 
 

@@ -32,9 +32,12 @@ def planned(tmp_path_factory):
     folder = tmp_path_factory.mktemp("plan")
     words = ["-m", "snakemake", "--summary", "--directory", str(folder)]
     subprocess.run(
-        [sys.executable, *words, "--configfile", "workflow/config/tiny.yaml"], cwd=ROOT,
-        env={**os.environ, PLAN: str(folder / "plan.json")}, capture_output=True, check=True,
-    )  # fmt: skip
+        [sys.executable, *words, "--configfile", "workflow/config/tiny.yaml"],
+        cwd=ROOT,
+        env={**os.environ, PLAN: str(folder / "plan.json")},
+        capture_output=True,
+        check=True,
+    )
     return json.loads((folder / "plan.json").read_text()).values()
 
 
@@ -95,11 +98,13 @@ def test_of_the_figures_of_a_rule_an_edit_of_one_reaches_that_one_alone(planned)
     assert len(drawn) > 8
     reached = [row for row in drawn if edited in row["imports"]]
     assert {row["key"].rpartition("/")[2] for row in reached} == {
-        "critical_friction.png", "critical_friction.svg",
-    }  # fmt: skip
+        "critical_friction.png",
+        "critical_friction.svg",
+    }
     assert {path.rpartition("/")[2] for row in reached for path in row["reads"]} == {
-        "critical_friction_map.nc", "critical_damping_map.nc",
-    }  # fmt: skip
+        "critical_friction_map.nc",
+        "critical_damping_map.nc",
+    }
 
 
 NO_INPUTS = ("results/", ".snakemake/", ".git/")

@@ -53,14 +53,34 @@ sweeps:
 """
 """Laid over the tiny study."""
 SMALL_RULES = [
-    "simulate_scenes", "simulate_corrected_scenes", "map_linear", "map_corrected_linear",
-    "refine_validity", "follow_whirl", "infer_parameters", "compare_harmonic_forms",
-    "compare_a1_with_a4", "follow_cycles", "follow_doublings", "follow_impacts", "map_basins",
-    "measure_disturbances", "measure_frequencies", "check_assumptions", "compute_explorer",
-    "map_critical_friction", "map_model_ladder", "trace_backbones", "judge_balances",
-    "run_benchmark", "chart_regimes", "compute_propensity", "judge_robustness",
-    "follow_boundary", "follow_corrected_boundary",
-]  # fmt: skip
+    "simulate_scenes",
+    "simulate_corrected_scenes",
+    "map_linear",
+    "map_corrected_linear",
+    "refine_validity",
+    "follow_whirl",
+    "infer_parameters",
+    "compare_harmonic_forms",
+    "compare_a1_with_a4",
+    "follow_cycles",
+    "follow_doublings",
+    "follow_impacts",
+    "map_basins",
+    "measure_disturbances",
+    "measure_frequencies",
+    "check_assumptions",
+    "compute_explorer",
+    "map_critical_friction",
+    "map_model_ladder",
+    "trace_backbones",
+    "judge_balances",
+    "run_benchmark",
+    "chart_regimes",
+    "compute_propensity",
+    "judge_robustness",
+    "follow_boundary",
+    "follow_corrected_boundary",
+]
 TWO_PARTS = [
     *PROFILE,
     *("--set-scatter", "maps=2"),
@@ -88,8 +108,11 @@ SCATTERED = {
     "run_sweep_orbits",
 }
 JOINS = {
-    "join_validity_map", "join_corrected_validity_map", "join_hammering_map", "join_sweep_orbits",
-}  # fmt: skip
+    "join_validity_map",
+    "join_corrected_validity_map",
+    "join_hammering_map",
+    "join_sweep_orbits",
+}
 
 
 def ready():
@@ -142,16 +165,25 @@ def environment(checkout):
 
 def on_slurm(checkout, *arguments, profile=PROFILE):
     return subprocess.run(
-        command(*arguments, profile=profile), cwd=checkout, env=environment(checkout),
-        capture_output=True, text=True, timeout=1500, check=False,
-    )  # fmt: skip
+        command(*arguments, profile=profile),
+        cwd=checkout,
+        env=environment(checkout),
+        capture_output=True,
+        text=True,
+        timeout=1500,
+        check=False,
+    )
 
 
 def start(checkout):
     return subprocess.Popen(
-        command(MAP), cwd=checkout, env=environment(checkout), stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
+        command(MAP),
+        cwd=checkout,
+        env=environment(checkout),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
 
 
 def jobs(state=""):

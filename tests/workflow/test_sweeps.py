@@ -33,10 +33,25 @@ def test_parts_equal_the_whole_and_the_command_line(checkout, snakemake, monkeyp
     )
     assert parts.returncode == 0, parts.stderr[-4000:]
     monkeypatch.chdir(checkout)
-    assert run([
-        "sweep", "simulate", "--vary", "mu=0.2,0.4", "--vary", "alpha1=1.6,2,5pi/6,2.7",
-        "--alpha2", "5pi/6", "--option", "t_end=20", "-o", "runs.nc",
-    ]) == 0  # fmt: skip
+    assert (
+        run(
+            [
+                "sweep",
+                "simulate",
+                "--vary",
+                "mu=0.2,0.4",
+                "--vary",
+                "alpha1=1.6,2,5pi/6,2.7",
+                "--alpha2",
+                "5pi/6",
+                "--option",
+                "t_end=20",
+                "-o",
+                "runs.nc",
+            ]
+        )
+        == 0
+    )
     for name in ("runs", "maps"):
         found = [
             load(f"results/{place}data/sweeps/{name}.nc") for place in ("", "parts/")

@@ -23,13 +23,33 @@ FIRST_PARAMETER = 3
 _SWEEPS = 19
 """Picard's iterations for a step whose length times the rate is 1: 1/19! is round-off."""
 ARRAYS = (
-    "rows", "series", "inverses", "units", "bent", "constants", "initial", "starts", "durations",
-    "kept", "steps", "counts", "lanes",
-)  # fmt: skip
+    "rows",
+    "series",
+    "inverses",
+    "units",
+    "bent",
+    "constants",
+    "initial",
+    "starts",
+    "durations",
+    "kept",
+    "steps",
+    "counts",
+    "lanes",
+)
 SIZES = (
-    "n_terms", "n_legs", "n_states", "n_variables", "n_kept", "n_parameters", "n_constants",
-    "n_series", "n_steps", "take_step", "shorten",
-)  # fmt: skip
+    "n_terms",
+    "n_legs",
+    "n_states",
+    "n_variables",
+    "n_kept",
+    "n_parameters",
+    "n_constants",
+    "n_series",
+    "n_steps",
+    "take_step",
+    "shorten",
+)
 TABLE = np.dtype([(name, "i8") for name in (*ARRAYS, *SIZES)])
 
 

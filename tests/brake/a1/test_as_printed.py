@@ -11,9 +11,16 @@ from tests.oracles.a1_scipy import simulate_scipy
 
 PAPER = Parameters(k3=0.65, mu=0.3, belt_speed=100.0, length1=15.0, length2=15.0)
 PAD = Parameters(
-    mass=0.5, k1=1e7, k2=2e7, k3=7e6, mu=0.3, preload=1e-4, length1=1e-3, length2=2e-3,
+    mass=0.5,
+    k1=1e7,
+    k2=2e7,
+    k3=7e6,
+    mu=0.3,
+    preload=1e-4,
+    length1=1e-3,
+    length2=2e-3,
     belt_speed=0.1,
-)  # fmt: skip
+)
 
 
 @pytest.mark.parametrize(

@@ -25,11 +25,21 @@ def random_cases(count, seed, **fixed):
         speed = rng.choice([-1, 1]) * rng.uniform(0.05, 1.0) * length / unit
         length1, length2 = length * rng.uniform(2, 8, 2)
         params = FORMER.with_(
-            mass=mass, k1=k1, k2=k2, k3=k3, mu=mu, belt_speed=speed, preload=length,
-            length1=length1, length2=length2, damping1=c1, damping2=c2,
-            friction_law=str(rng.choice(list(LAWS))), mu_static=mu + rng.uniform(0.0, 0.6),
+            mass=mass,
+            k1=k1,
+            k2=k2,
+            k3=k3,
+            mu=mu,
+            belt_speed=speed,
+            preload=length,
+            length1=length1,
+            length2=length2,
+            damping1=c1,
+            damping2=c2,
+            friction_law=str(rng.choice(list(LAWS))),
+            mu_static=mu + rng.uniform(0.0, 0.6),
             friction_speed=rng.uniform(0.05, 2.0) * length / unit,
-        )  # fmt: skip
+        )
         start = rng.uniform(-0.5, 0.5, 4) * [
             length,
             length,
@@ -103,11 +113,16 @@ def test_growth_of_a_perturbation_is_that_of_a_nearby_run(law):
         scale = scale_of(params)
         low, run, high = (
             run_ensemble(
-                params, alpha1, alpha2, t_end=t_end, log_events=60, tangent=True,
+                params,
+                alpha1,
+                alpha2,
+                t_end=t_end,
+                log_events=60,
+                tangent=True,
                 initial_state=start + side * 0.5 * step * scale,
             )
             for side in (-1, 0, 1)
-        )  # fmt: skip
+        )
         if (
             not low.event_kinds.tolist()
             == run.event_kinds.tolist()

@@ -26,10 +26,15 @@ ENDS = RNG.uniform(1.0, 60.0, SIZE)
 
 def _run(order=slice(None), *, tangent=True, **options):
     return run_ensemble(
-        {name: values[order] for name, values in MIXED.items()}, ANGLES[0][order],
-        ANGLES[1][order], t_end=ENDS[order], tangent=tangent, log_events=40,
-        times=np.linspace(0, 1.0, 7), **options,
-    )  # fmt: skip
+        {name: values[order] for name, values in MIXED.items()},
+        ANGLES[0][order],
+        ANGLES[1][order],
+        t_end=ENDS[order],
+        tangent=tangent,
+        log_events=40,
+        times=np.linspace(0, 1.0, 7),
+        **options,
+    )
 
 
 def assert_identical(first, second, rows=slice(None), but=()):

@@ -22,16 +22,31 @@ def drawn(number):
     rng = np.random.default_rng(number)
     mu = rng.uniform(0.1, 0.5)
     numbers = {
-        "mass": 1.0, "k1": 1.0, "k2": rng.uniform(0.3, 3.0), "k3": rng.uniform(0.3, 2.0),
-        "preload": 1.0, "length1": rng.uniform(5.0, 20.0), "length2": rng.uniform(5.0, 20.0),
-        "mu": mu, "mu_static": mu + rng.uniform(0.05, 0.4), "belt_speed": rng.uniform(0.1, 2.0),
-        "damping1": 0.02, "damping2": 0.02, "friction_law": "exponential",
+        "mass": 1.0,
+        "k1": 1.0,
+        "k2": rng.uniform(0.3, 3.0),
+        "k3": rng.uniform(0.3, 2.0),
+        "preload": 1.0,
+        "length1": rng.uniform(5.0, 20.0),
+        "length2": rng.uniform(5.0, 20.0),
+        "mu": mu,
+        "mu_static": mu + rng.uniform(0.05, 0.4),
+        "belt_speed": rng.uniform(0.1, 2.0),
+        "damping1": 0.02,
+        "damping2": 0.02,
+        "friction_law": "exponential",
         "friction_speed": 10.0 ** rng.uniform(-4.0, -2.0),
-    }  # fmt: skip
+    }
     angles = rng.uniform(0.2, 3.0, 2).tolist()
     start = rng.uniform([-2.0, -2.0, -2.5, -2.5], [2.0, 0.9, 2.5, 2.5]).tolist()
-    return {name: each if isinstance(each, str) else float(each)
-            for name, each in numbers.items()}, angles, start  # fmt: skip
+    return (
+        {
+            name: each if isinstance(each, str) else float(each)
+            for name, each in numbers.items()
+        },
+        angles,
+        start,
+    )
 
 
 def named(before, after):
@@ -64,9 +79,15 @@ def events_by_dop853(numbers, angles, start, tol):
                 longest = min(longest, 2.0 * pad.p.friction_speed / change)
                 end = min(end, time + 30.0 * longest)
         leg = solve_ivp(
-            pad.field(mode), (time, end), z, "DOP853", events=watched,
-            rtol=tol, atol=tol, max_step=longest,
-        )  # fmt: skip
+            pad.field(mode),
+            (time, end),
+            z,
+            "DOP853",
+            events=watched,
+            rtol=tol,
+            atol=tol,
+            max_step=longest,
+        )
         time, z = float(leg.t[-1]), leg.y[:, -1].copy()
         hits = [i for i, times in enumerate(leg.t_events) if len(times)]
         if hits in ([], [2]):

@@ -115,16 +115,24 @@ def resting_runs(count, seed):
         unit = np.sqrt(mass / k1)
         mu = rng.uniform(0.0, 0.6)
         params = FORMER.with_(
-            mass=mass, k1=k1, k2=k1 * np.exp(rng.uniform(-2.0, 2.0)),
-            k3=k1 * np.exp(rng.uniform(-1.5, 4.0)), mu=mu,
-            belt_speed=rng.choice([-1, 1]) * np.exp(rng.uniform(-2.0, 4.0)) * length / unit,
-            preload=length, length1=length * rng.uniform(1.0, 20.0),
+            mass=mass,
+            k1=k1,
+            k2=k1 * np.exp(rng.uniform(-2.0, 2.0)),
+            k3=k1 * np.exp(rng.uniform(-1.5, 4.0)),
+            mu=mu,
+            belt_speed=rng.choice([-1, 1])
+            * np.exp(rng.uniform(-2.0, 4.0))
+            * length
+            / unit,
+            preload=length,
+            length1=length * rng.uniform(1.0, 20.0),
             length2=length * rng.uniform(1.0, 20.0),
             damping1=np.exp(rng.uniform(-4.0, 1.0)) * k1 * unit,
             damping2=np.exp(rng.uniform(-4.0, 1.0)) * k1 * unit,
-            friction_law=str(rng.choice(list(LAWS))), mu_static=mu + rng.uniform(0.0, 0.6),
+            friction_law=str(rng.choice(list(LAWS))),
+            mu_static=mu + rng.uniform(0.0, 0.6),
             friction_speed=np.exp(rng.uniform(-3.0, 1.0)) * length / unit,
-        )  # fmt: skip
+        )
         angles = rng.uniform(0.0, np.pi, 2)
         found = steady_sliding(CycleScene(params, *angles))
         if found is None:
@@ -144,9 +152,12 @@ def test_growth_of_a_motion_that_dies_out_is_that_of_the_linear_system():
         *resting_runs(150, 41), strict=True
     )
     run = run_ensemble(
-        {name: [getattr(p, name) for p in params] for name in PHYSICAL}, *np.transpose(angles),
-        t_end=np.array(times) * units, initial_state=np.array(starts), tangent=True,
-    )  # fmt: skip
+        {name: [getattr(p, name) for p in params] for name in PHYSICAL},
+        *np.transpose(angles),
+        t_end=np.array(times) * units,
+        initial_state=np.array(starts),
+        tangent=True,
+    )
     assert not run.events.any()
     for job, (matrix, time) in enumerate(zip(matrices, times, strict=True)):
         growth = np.linalg.norm(expm(matrix * time) @ HALVES)

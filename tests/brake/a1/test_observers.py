@@ -72,9 +72,14 @@ def test_no_sample_exceeds_an_extremum():
     kept = [*FOUND_BY_SEARCH, *range(200)]
     times = np.linspace(0.0, 30.0, 6001)
     run = run_ensemble(
-        {name: values[kept] for name, values in ratio.items()}, alpha1[kept], alpha2[kept],
-        t_end=30.0, model="A1-linear-springs", times=times, t_late=15.0,
-    )  # fmt: skip
+        {name: values[kept] for name, values in ratio.items()},
+        alpha1[kept],
+        alpha2[kept],
+        t_end=30.0,
+        model="A1-linear-springs",
+        times=times,
+        t_late=15.0,
+    )
     done = run.outcome == Outcome.converged
     assert done[: len(FOUND_BY_SEARCH)].all()
     x, y = run.samples[done, :, 0], run.samples[done, :, 1]
@@ -90,9 +95,14 @@ def test_forces_and_speeds_of_returns_and_sums_on_the_way():
     times = np.linspace(0.0, 200.0, 40_001)
     parameters = {"k3": 0.75, "length1": 5.0, "length2": 5.0}
     run = run_ensemble(
-        parameters, *angles.T, t_end=200.0, times=times, sums=True, t_late="return",
+        parameters,
+        *angles.T,
+        t_end=200.0,
+        times=times,
+        sums=True,
+        t_late="return",
         log_events=500,
-    )  # fmt: skip
+    )
     assert (run.peak_contact_force >= 1.0).all()
     assert (run.return_peak_contact_force[:3] != run.peak_contact_force[:3]).any()
     assert np.isnan(run.impact_speed[3])

@@ -22,10 +22,15 @@ def test_a_table_of_one_coefficient_gives_the_ensemble_of_coulombs_law(damping):
     table = plain.with_(friction_law="linear 0:0.35 0.3:0.35 1:0.35", mu=DEFAULT_MU)
     t_end = 12.0
     given = {
-        "t_end": t_end, "t_late": 0.6 * t_end, "initial_state": STARTS, "tangent": True,
-        "log_events": 30, "times": np.linspace(0.0, t_end, 5), "sums": True,
+        "t_end": t_end,
+        "t_late": 0.6 * t_end,
+        "initial_state": STARTS,
+        "tangent": True,
+        "log_events": 30,
+        "times": np.linspace(0.0, t_end, 5),
+        "sums": True,
         "workers": 1,
-    }  # fmt: skip
+    }
     ours, other = (run_ensemble(p, 0.9, 2.0, **given) for p in (table, plain))
     for name, member in vars(Ensemble).items():
         if name[0] == "_" or name in STEPWISE or callable(member):
@@ -42,10 +47,16 @@ DEFAULT_MU = Parameters().mu
 
 def test_simulate_takes_the_parameters_of_a_pad_with_measured_laws():
     pad = Parameters(
-        mass=0.5, k1=1e7, k2=1.3e7, preload=2e-5, length1=0.02, length2=0.03, belt_speed=0.05,
+        mass=0.5,
+        k1=1e7,
+        k2=1.3e7,
+        preload=2e-5,
+        length1=0.02,
+        length2=0.03,
+        belt_speed=0.05,
         friction_law="linear 0:0.55 0.03:0.5 0.05:0.35 0.2:0.2",
         contact_law="linear 0:0 1e-5:20 3e-5:140 5e-5:300",
-    )  # fmt: skip
+    )
     run = simulate(pad, 0.1, 1.5, t_end=0.02, initial_state=(3e-5, 0, 0, 0))
     assert int(run.outcome) == 0
     knots = np.array([0.0, 1e-5, 3e-5, 5e-5]), np.array([0.0, 20.0, 140.0, 300.0])
@@ -62,9 +73,16 @@ def test_simulate_takes_the_parameters_of_a_pad_with_measured_laws():
 def test_a_table_in_si_units_is_carried_by_runs_side_by_side():
     """A step of no length, after an event at the very end of another, is one without a crossing."""
     pad = Parameters(
-        mass=0.5, k1=1e7, k2=1e7, k3=7e6, belt_speed=2.0, preload=2e-5, length1=0.02, length2=0.02,
+        mass=0.5,
+        k1=1e7,
+        k2=1e7,
+        k3=7e6,
+        belt_speed=2.0,
+        preload=2e-5,
+        length1=0.02,
+        length2=0.02,
         friction_law="linear 0:0.52 0.05:0.47 0.2:0.41 1:0.36 5:0.34",
-    )  # fmt: skip
+    )
     angles = np.linspace(0.1, 3.0, 4)
     run = run_ensemble(
         pad, angles[:, None], angles, t_end=25.0 * pad.time_unit, workers=1
@@ -87,18 +105,24 @@ CONTACT = "linear 0:0 0.5:0.1 1:0.65 2:3"
         {"friction_law": OWN, "mu": np.array([0.3, 0.5, 0.8])},
         {"contact_law": "dashpot", "damping3": np.array([0.1, 0.0, 0.4])},
         {"contact_law": CONTACT, "mu": np.array([0.3, 0.5, 0.8])},
-        {"contact_law": "dashpot", "damping3": 0.2, "friction_law": "exponential",
-         "mu_static": np.array([0.4, 0.3, 0.6])},
+        {
+            "contact_law": "dashpot",
+            "damping3": 0.2,
+            "friction_law": "exponential",
+            "mu_static": np.array([0.4, 0.3, 0.6]),
+        },
         {"contact_law": CONTACT, "friction_law": OWN},
     ],
     ids=["table", "python", "dashpot", "contact table", "falling and dashpot", "both"],
-)  # fmt: skip
+)
 def test_numbers_may_vary_under_laws_of_the_users_own(laws):
     """As for uncertain parameters: one ensemble, and one run for each set."""
     given = {
-        "k1": np.array([1.0, 2.5, 0.6]), "mass": np.array([0.7, 1.0, 1.6]), "belt_speed": 0.4,
+        "k1": np.array([1.0, 2.5, 0.6]),
+        "mass": np.array([0.7, 1.0, 1.6]),
+        "belt_speed": 0.4,
         **laws,
-    }  # fmt: skip
+    }
     start = (0.0, 0.3, 0.5, -0.2)
     many = run_ensemble(given, 0.9, 2.0, t_end=20.0, initial_state=start, workers=1)
     assert (many.outcome == Outcome.converged).all()
@@ -125,9 +149,17 @@ def test_under_a_table_of_contact_the_preload_is_one():
 def test_a_law_in_python_reads_speeds_in_si_units():
     """In the engine's units it gives what the system in SI units gives, and a table of it."""
     pad = Parameters(
-        mass=0.5, k1=1e7, k2=1.3e7, k3=7e6, preload=2e-5, length1=0.02, length2=0.03,
-        belt_speed=0.4, mu=0.5, friction_law=OWN,
-    )  # fmt: skip
+        mass=0.5,
+        k1=1e7,
+        k2=1.3e7,
+        k3=7e6,
+        preload=2e-5,
+        length1=0.02,
+        length2=0.03,
+        belt_speed=0.4,
+        mu=0.5,
+        friction_law=OWN,
+    )
     t_end = 30.0 * pad.time_unit
     times = np.linspace(0.0, t_end, 7)
     run = simulate(

@@ -64,8 +64,12 @@ def test_two_crossings_inside_a_step(exponent, phase):
         flight, rel=0.1 + 3e-15 / depth
     )
     near = 10.0**-13 if exponent < -12 else depth
-    missed = (0.0, REST + (1.0 - near - REST) * np.cos(phase), 0.0,
-              (1.0 - near - REST) * OMEGA * np.sin(phase))  # fmt: skip
+    missed = (
+        0.0,
+        REST + (1.0 - near - REST) * np.cos(phase),
+        0.0,
+        (1.0 - near - REST) * OMEGA * np.sin(phase),
+    )
     assert (
         run_ensemble(FRICTIONLESS, **options | {"initial_state": missed}).separations
         == 0

@@ -25,10 +25,21 @@ from squealpipe.vibration.settling import FOR_NUMBERS, FOR_VERDICTS
 from tests.oracles.pad import Pad, strongest_line
 
 NUMBERS = {
-    "mass": 0.45, "k1": 1e7, "k2": 1e7, "k3": 7e6, "preload": 5.714e-4, "mu": 0.37,
-    "mu_static": 0.55, "friction_speed": 1.7, "friction_law": "exponential", "belt_speed": 2.0,
-    "length1": 0.1, "length2": 0.1, "damping1": 42.4, "damping2": 42.4,
-}  # fmt: skip
+    "mass": 0.45,
+    "k1": 1e7,
+    "k2": 1e7,
+    "k3": 7e6,
+    "preload": 5.714e-4,
+    "mu": 0.37,
+    "mu_static": 0.55,
+    "friction_speed": 1.7,
+    "friction_law": "exponential",
+    "belt_speed": 2.0,
+    "length1": 0.1,
+    "length2": 0.1,
+    "damping1": 42.4,
+    "damping2": 42.4,
+}
 PAD = Parameters(**NUMBERS)
 HAMMER, SQUEAL = np.radians((22.0, 46.0)), np.radians((30.0, 60.0))
 
@@ -197,12 +208,21 @@ def test_damping_that_outweighs_a_slight_fall_of_friction_has_a_closed_form(spee
 def test_a_stretch_of_noise_between_two_quiet_values_is_seen():
     """By a program of its own growth is −6e-5 of the rate at 0.65 rad, 4e-4 at 0.6525 rad."""
     pad = Parameters(
-        mass=0.8546612717532482, k1=12832986.9379285, k2=15873947.766090406, k3=3597655.482289341,
-        preload=0.0003321601047244889, belt_speed=1.1419970167674642, length1=0.1880677603348185,
-        length2=0.1902241108442873, damping1=83.84215411195765, damping2=84.27815570538593,
-        mu=0.4903284252276046, friction_law="hyperbolic", mu_static=0.5166729296583626,
+        mass=0.8546612717532482,
+        k1=12832986.9379285,
+        k2=15873947.766090406,
+        k3=3597655.482289341,
+        preload=0.0003321601047244889,
+        belt_speed=1.1419970167674642,
+        length1=0.1880677603348185,
+        length2=0.1902241108442873,
+        damping1=83.84215411195765,
+        damping2=84.27815570538593,
+        mu=0.4903284252276046,
+        friction_law="hyperbolic",
+        mu_static=0.5166729296583626,
         friction_speed=2.063646776673715,
-    )  # fmt: skip
+    )
     cures = cures_of(Design(pad, 0.4362176191815051, 0.7838847933211535))
     intervals = linear_intervals(cures["alpha1"], growth_margin)
     present = next(each for each in intervals if each.contains(cures["alpha1"].value))
@@ -258,13 +278,29 @@ def test_growth_about_a_knot_at_belt_speed_is_that_of_a_run():
 
 
 SOFT = NUMBERS | {
-    "mass": 0.147, "k1": 2.99e6, "k2": 1.55e7, "k3": 2.48e6, "preload": 1.73e-3, "mu_static": None,
-    "friction_law": "coulomb", "length1": 0.127, "length2": 0.0802,
-}  # fmt: skip
+    "mass": 0.147,
+    "k1": 2.99e6,
+    "k2": 1.55e7,
+    "k3": 2.48e6,
+    "preload": 1.73e-3,
+    "mu_static": None,
+    "friction_law": "coulomb",
+    "length1": 0.127,
+    "length2": 0.0802,
+}
 PAPER = SOFT | {
-    "mass": 1.0, "k1": 1.0, "k2": 1.0, "k3": 0.65, "preload": 1.0, "mu": 0.3, "belt_speed": 100.0,
-    "length1": 15.0, "length2": 15.0, "damping1": 0.0, "damping2": 0.0,
-}  # fmt: skip
+    "mass": 1.0,
+    "k1": 1.0,
+    "k2": 1.0,
+    "k3": 0.65,
+    "preload": 1.0,
+    "mu": 0.3,
+    "belt_speed": 100.0,
+    "length1": 15.0,
+    "length2": 15.0,
+    "damping1": 0.0,
+    "damping2": 0.0,
+}
 
 
 @pytest.mark.parametrize(
@@ -307,10 +343,18 @@ def test_a_belt_at_rest_has_no_steady_sliding():
 
 
 SLOWLY = Parameters(
-    mass=0.32, k1=1.2e7, k2=0.9e7, k3=1e7, preload=4e-4, belt_speed=-5.0 / 3.6, length1=0.1,
-    length2=0.1, damping1=19.595917942265427, damping2=16.970562748477143,
+    mass=0.32,
+    k1=1.2e7,
+    k2=0.9e7,
+    k3=1e7,
+    preload=4e-4,
+    belt_speed=-5.0 / 3.6,
+    length1=0.1,
+    length2=0.1,
+    damping1=19.595917942265427,
+    damping2=16.970562748477143,
     friction_law="linear 0.0:0.52 0.5:0.5 1.0:0.47 2.0:0.43 4.0:0.38 10.0:0.34",
-)  # fmt: skip
+)
 """Its second mode, at 1.25 kHz, grows by 0.4 % in a period beneath stick–slip at 940 Hz."""
 
 
@@ -391,8 +435,17 @@ def test_a_run_that_ends_at_once_is_undetermined_without_a_warning(recwarn):
 
 
 def test_an_undamped_brake_is_quiet_where_a_push_stays_small():
-    brake = Parameters(mass=0.45, k1=1e7, k2=1e7, k3=7e6, preload=5.714e-4, mu=0.1,
-                       belt_speed=2.0, length1=0.1, length2=0.1)  # fmt: skip
+    brake = Parameters(
+        mass=0.45,
+        k1=1e7,
+        k2=1e7,
+        k3=7e6,
+        preload=5.714e-4,
+        mu=0.1,
+        belt_speed=2.0,
+        length1=0.1,
+        length2=0.1,
+    )
     design = Design(brake, math.radians(80), math.radians(20))
     (settled,) = settle([pushed(design, Sliding.of(design))], tol=1e-12)
     assert settled.verdict is Verdict.quiet

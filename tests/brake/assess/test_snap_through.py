@@ -10,19 +10,30 @@ from squealpipe.brake.assess.snap_through import snap_throughs
 from squealpipe.parameters import Parameters
 
 PAD = Parameters(
-    mass=0.3, k1=66e3, k2=276e3, k3=695e3, mu=0.43, belt_speed=-3.0, preload=0.66e-3,
-    length1=0.11, length2=0.13, damping1=30.0, damping2=30.0,
-)  # fmt: skip
+    mass=0.3,
+    k1=66e3,
+    k2=276e3,
+    k3=695e3,
+    mu=0.43,
+    belt_speed=-3.0,
+    preload=0.66e-3,
+    length1=0.11,
+    length2=0.13,
+    damping1=30.0,
+    damping2=30.0,
+)
 ANGLES = np.radians([130.0, 66.6])
 
 
 def fold(guess):
     """Where the balance of A1's forces has a double root in x and y, over mu."""
     (a, b), p = ANGLES, PAD
-    ends = np.array([
-        [p.length1 * np.cos(a), p.length1 * np.sin(a)],
-        [-p.length2 * np.cos(b), p.length2 * np.sin(b)],
-    ])  # fmt: skip
+    ends = np.array(
+        [
+            [p.length1 * np.cos(a), p.length1 * np.sin(a)],
+            [-p.length2 * np.cos(b), p.length2 * np.sin(b)],
+        ]
+    )
 
     def force(x, y, mu):
         total = p.k3 * (p.preload - y) * np.array([-mu, 1.0])

@@ -112,8 +112,13 @@ def test_steps_twenty_times_finer_follow_the_same_branches():
         seed = grazing_start(scene, mode)
         control = seed.settings()
         steps = 0.05 * control.longest_step, min(control.first_step, 5e-4)
-        fine = replace(control, longest_step=steps[0], first_step=steps[1], least_cosine=0.995,
-                       max_points=40_000)  # fmt: skip
+        fine = replace(
+            control,
+            longest_step=steps[0],
+            first_step=steps[1],
+            least_cosine=0.995,
+            max_points=40_000,
+        )
         start = scene.system, seed.point, seed.direction, peak
         both = (orbit_on_branch(*start, settings) for settings in (control, fine))
         orbits, ends = zip(*both, strict=True)

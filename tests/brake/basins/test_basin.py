@@ -86,7 +86,11 @@ def test_late_extremes_begin_at_t_late():
         )
         for start, largest in zip(starts, found.late_max_x.values, strict=True):
             run = simulate(
-                params, 1.1, 0.6, t_end=50.0, initial_state=(start, 0, 0, 0),
+                params,
+                1.1,
+                0.6,
+                t_end=50.0,
+                initial_state=(start, 0, 0, 0),
                 times=np.linspace(late, 50.0, 20_001),
-            )  # fmt: skip
+            )
             assert largest == pytest.approx(np.abs(run.x).max().item(), rel=1e-4)

@@ -23,9 +23,13 @@ def random_case(direction):
     while True:
         k1, k2, k3 = RNG.uniform(0.5, 4.0, 3)
         params = FORMER.with_(
-            mass=RNG.uniform(0.5, 3), k1=k1, k2=k2, k3=k3, preload=RNG.uniform(0.5, 2),
+            mass=RNG.uniform(0.5, 3),
+            k1=k1,
+            k2=k2,
+            k3=k3,
+            preload=RNG.uniform(0.5, 2),
             belt_speed=direction * RNG.uniform(0.5, 50),
-        )  # fmt: skip
+        )
         alpha1, alpha2 = RNG.uniform(0.0, math.pi, 2)
         onset = float(critical_friction(params, alpha1, alpha2)[1])
         params = params.with_(mu=RNG.uniform(0.1, 0.8) * min(onset, 1.0))
@@ -180,9 +184,12 @@ def test_steady_sliding_is_found_in_any_units():
         params, alpha1, alpha2 = random_case(1 if number % 2 else -1)
         unit = 10.0 ** RNG.uniform(-9, 9)
         params = params.with_(
-            mass=params.mass * 1e4, preload=params.preload * unit,
-            length1=1e6 * unit, length2=1e6 * unit, belt_speed=params.belt_speed * unit,
-        )  # fmt: skip
+            mass=params.mass * 1e4,
+            preload=params.preload * unit,
+            length1=1e6 * unit,
+            length2=1e6 * unit,
+            belt_speed=params.belt_speed * unit,
+        )
         found = steady_sliding(CycleScene(params, alpha1, alpha2))
         assert found is not None
         expected = steady_state(params, alpha1, alpha2)

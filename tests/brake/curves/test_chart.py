@@ -121,10 +121,16 @@ def test_onset_of_the_whirl_and_of_its_stick():
     scene = params.with_(mu=0.3), *angles
     branch = squealpipe.cycle_branch(*scene, parameter="mu", to=0.003, start=start)
     whirl, stick = (
-        squealpipe.cycle_curve(*scene, label=label, parameters=("mu", "k3"), start=branch,
-                               to={"k3": (0.6, 0.7)}, n_points=400)
+        squealpipe.cycle_curve(
+            *scene,
+            label=label,
+            parameters=("mu", "k3"),
+            start=branch,
+            to={"k3": (0.6, 0.7)},
+            n_points=400,
+        )
         for label in ("fold", "stick_onset")
-    )  # fmt: skip
+    )
     chart = squealpipe.regime_chart(
         params, *angles, t_end=5.0, kappa=kappa, mu=mu, whirl=whirl, stick=stick
     )

@@ -14,21 +14,35 @@ BASELINE = Parameters()
 SETS = {
     "baseline": (BASELINE, "A1-as-printed"),
     "unequal springs": (BASELINE.with_(k2=1.8, length2=12.0, mu=0.45, k3=0.5), "A1"),
-    "slow belt, sticking": (BASELINE.with_(belt_speed=-0.6, k2=0.6, length1=8.0, mu=0.2), "A1"),
+    "slow belt, sticking": (
+        BASELINE.with_(belt_speed=-0.6, k2=0.6, length1=8.0, mu=0.2),
+        "A1",
+    ),
     "dashpots, falling friction": (
         BASELINE.with_(
-            damping1=0.02, damping2=0.01, belt_speed=2.0, friction_law="exponential", mu_static=0.4
+            damping1=0.02,
+            damping2=0.01,
+            belt_speed=2.0,
+            friction_law="exponential",
+            mu_static=0.4,
         ),
         "A1",
     ),
     "a brake in SI units": (
         Parameters(
-            mass=0.5, k1=1e7, k2=1.2e7, k3=6e6, mu=0.35, belt_speed=3.0, preload=1e-4,
-            length1=1e-3, length2=1.2e-3,
+            mass=0.5,
+            k1=1e7,
+            k2=1.2e7,
+            k3=6e6,
+            mu=0.35,
+            belt_speed=3.0,
+            preload=1e-4,
+            length1=1e-3,
+            length2=1.2e-3,
         ),
         "A1",
     ),
-}  # fmt: skip
+}
 
 
 def disagreement(boundary, uniform):

@@ -72,11 +72,17 @@ def test_stick_of_no_length_is_an_onset_of_stick(sticking):
 
 def test_branch_ends_on_the_cycle_of_half_the_period():
     params = FORMER.with_(
-        k1=0.8787958456924088, k2=1.3068838111256635, k3=1.266242024044932,
-        mu=0.3036800352221386, belt_speed=-1.885, damping1=0.02744740168299363,
-        damping2=0.026220449336112735, friction_law="exponential",
-        mu_static=0.42515204931099404, friction_speed=0.7,
-    )  # fmt: skip
+        k1=0.8787958456924088,
+        k2=1.3068838111256635,
+        k3=1.266242024044932,
+        mu=0.3036800352221386,
+        belt_speed=-1.885,
+        damping1=0.02744740168299363,
+        damping2=0.026220449336112735,
+        friction_law="exponential",
+        mu_static=0.42515204931099404,
+        friction_speed=0.7,
+    )
     angles = (1.8416983400284646, 1.1767777127079984)
     first = limit_cycle(
         params, *angles, guess=(-1.7125886, 9.9902116, 2.3424566, -0.1426892)
@@ -101,11 +107,16 @@ def test_branch_ends_on_the_cycle_of_half_the_period():
 def test_a_touch_of_stick_that_would_jump_ends_the_branch():
     """With a static coefficient of its own, a mass that touches belt speed stays there."""
     params = FORMER.with_(
-        k1=1.3685895636278969, k2=1.1717696456380882, k3=1.165372514053258,
-        mu=0.4863140547913525, belt_speed=0.17, length2=4.167532071016394,
-        damping1=0.011181702363416656, damping2=0.02593450195002516,
+        k1=1.3685895636278969,
+        k2=1.1717696456380882,
+        k3=1.165372514053258,
+        mu=0.4863140547913525,
+        belt_speed=0.17,
+        length2=4.167532071016394,
+        damping1=0.011181702363416656,
+        damping2=0.02593450195002516,
         mu_static=0.9015819524317354,
-    )  # fmt: skip
+    )
     angles = (0.9903645711198943, 0.2685180420617395)
     guess = (-0.0007415, 0.5437495, -0.1917294, -0.1816512)
     branch = cycle_branch(params, *angles, parameter="belt_speed", to=0.27, start=guess)
@@ -146,9 +157,13 @@ def test_a_branch_ends_where_the_cycle_shrinks_to_rest():
     )
     large = born.isel(point=-1)
     back = cycle_branch(
-        params.with_(mu=float(large.mu)), 0.22, 0.96, parameter="mu", to=0.0,
+        params.with_(mu=float(large.mu)),
+        0.22,
+        0.96,
+        parameter="mu",
+        to=0.0,
         start=tuple(start_of(large)),
-    )  # fmt: skip
+    )
     assert back.end == Outcome.equilibrium
     np.testing.assert_allclose(back.mu[-1], born.mu[0], rtol=1e-2)
 
@@ -156,10 +171,20 @@ def test_a_branch_ends_where_the_cycle_shrinks_to_rest():
 def test_a_hammering_cycle_shrinks_to_rest_at_the_edge_of_contact():
     """It keeps both its events: the springs alone then balance just where contact begins."""
     params = FORMER.with_(
-        mass=0.36, k1=0.11, k2=0.89, k3=0.21, mu=0.8, belt_speed=0.0122, preload=0.0311,
-        length1=0.1057, length2=0.065, damping1=0.00237, friction_law="exponential",
-        mu_static=1.209, friction_speed=0.0291,
-    )  # fmt: skip
+        mass=0.36,
+        k1=0.11,
+        k2=0.89,
+        k3=0.21,
+        mu=0.8,
+        belt_speed=0.0122,
+        preload=0.0311,
+        length1=0.1057,
+        length2=0.065,
+        damping1=0.00237,
+        friction_law="exponential",
+        mu_static=1.209,
+        friction_speed=0.0291,
+    )
     angles = (2.512, 2.953)
     start = (0.02881478, 0.06621683, 0.02418213, 0.00180263)
     branch = cycle_branch(params, *angles, parameter="alpha2", to=3.75, start=start)

@@ -53,11 +53,14 @@ def test_trivial_multiplier_and_differences_of_the_return_map():
     checked = 0
     while checked < 8:
         params = FORMER.with_(
-            k2=generator.uniform(0.6, 1.6), length2=generator.uniform(3.0, 8.0),
-            mu=generator.uniform(0.3, 0.7), damping1=generator.uniform(0.01, 0.05),
+            k2=generator.uniform(0.6, 1.6),
+            length2=generator.uniform(3.0, 8.0),
+            mu=generator.uniform(0.3, 0.7),
+            damping1=generator.uniform(0.01, 0.05),
             belt_speed=generator.choice([-1.0, 1.0]) * generator.uniform(0.3, 3.0),
-            damping2=generator.uniform(0.01, 0.05), mu_static=generator.uniform(0.7, 0.9),
-        )  # fmt: skip
+            damping2=generator.uniform(0.01, 0.05),
+            mu_static=generator.uniform(0.7, 0.9),
+        )
         angles = generator.uniform(0.2, 2.9, 2)
         cycle = limit_cycle(params, *angles, t_settle=6000.0)
         if cycle.outcome != Outcome.converged:
@@ -107,19 +110,32 @@ def test_a_settled_state_of_rest_is_no_cycle_and_without_damping_there_is_none()
     assert cycle.outcome == Outcome.equilibrium
     assert np.isnan(cycle.period)
     params = FORMER.with_(
-        k1=0.3369548162926997, k2=0.33121791549130847, k3=0.2689114661069115,
-        mu=0.10066315042153495, belt_speed=-13.002080446037427,
-        length1=20.94848468313279, length2=72.09643764912789,
-    )  # fmt: skip
+        k1=0.3369548162926997,
+        k2=0.33121791549130847,
+        k3=0.2689114661069115,
+        mu=0.10066315042153495,
+        belt_speed=-13.002080446037427,
+        length1=20.94848468313279,
+        length2=72.09643764912789,
+    )
     cycle = limit_cycle(params, 2.2920388457758087, 1.6485212416566715, t_settle=100.0)
     assert cycle.outcome != Outcome.equilibrium
 
 
 REST = FORMER.with_(
-    k1=2.2, k2=2.8, k3=0.8, mu=0.15, mu_static=0.18, friction_law="exponential",
-    friction_speed=0.24, belt_speed=-6.6, length1=8.7, length2=49.0,
-    damping1=0.005, damping2=0.2,
-)  # fmt: skip
+    k1=2.2,
+    k2=2.8,
+    k3=0.8,
+    mu=0.15,
+    mu_static=0.18,
+    friction_law="exponential",
+    friction_speed=0.24,
+    belt_speed=-6.6,
+    length1=8.7,
+    length2=49.0,
+    damping1=0.005,
+    damping2=0.2,
+)
 
 
 @pytest.mark.parametrize("settle", [1000.0, 1500.0, 5000.0])
@@ -159,9 +175,18 @@ def test_a_smooth_cycle_around_a_state_of_rest_is_found_from_any_phase(speed):
 @pytest.mark.release
 def test_a_stiff_dashpot_does_not_drive_the_search_for_rest_off():
     params = FORMER.with_(
-        k1=0.65, k2=1.13, k3=0.46, mu=1.05, mu_static=2.76, friction_law="exponential",
-        friction_speed=1.82, belt_speed=0.2837, length1=9.25, length2=24.5, damping1=1e8,
-    )  # fmt: skip
+        k1=0.65,
+        k2=1.13,
+        k3=0.46,
+        mu=1.05,
+        mu_static=2.76,
+        friction_law="exponential",
+        friction_speed=1.82,
+        belt_speed=0.2837,
+        length1=9.25,
+        length2=24.5,
+        damping1=1e8,
+    )
     cycle = limit_cycle(params, math.pi, 2.4033, guess=(0.1, 0.0, 0.0, 0.0))
     assert cycle.outcome != Outcome.converged
 
@@ -250,14 +275,27 @@ def test_a_cycle_under_a_table_of_friction_does_not_depend_on_the_units():
     speed = preload / time
     table = ((0.0, 0.6), (0.5, 0.45), (1.0, 0.4), (3.0, 0.35))
     one = Parameters(
-        k3=0.7, belt_speed=0.2, damping1=0.02, damping2=0.02, length1=1000.0, length2=1000.0,
+        k3=0.7,
+        belt_speed=0.2,
+        damping1=0.02,
+        damping2=0.02,
+        length1=1000.0,
+        length2=1000.0,
         friction_law="linear " + " ".join(f"{v}:{mu}" for v, mu in table),
-    )  # fmt: skip
+    )
     pad = Parameters(
-        mass=mass, k1=k1, k2=k1, k3=0.7 * k1, preload=preload, length1=0.02, length2=0.02,
-        belt_speed=0.2 * speed, damping1=0.02 * mass / time, damping2=0.02 * mass / time,
+        mass=mass,
+        k1=k1,
+        k2=k1,
+        k3=0.7 * k1,
+        preload=preload,
+        length1=0.02,
+        length2=0.02,
+        belt_speed=0.2 * speed,
+        damping1=0.02 * mass / time,
+        damping2=0.02 * mass / time,
         friction_law="linear " + " ".join(f"{v * speed!r}:{mu}" for v, mu in table),
-    )  # fmt: skip
+    )
     angles = 0.1 * math.pi, 0.5 * math.pi
     here, there = limit_cycle(one, *angles), limit_cycle(pad, *angles)
     assert here.outcome == there.outcome == Outcome.converged

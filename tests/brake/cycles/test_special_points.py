@@ -79,11 +79,14 @@ def test_grazing_points_at_random_parameters_just_touch():
     touched = 0
     while touched < 6:
         params = FORMER.with_(
-            k2=generator.uniform(0.8, 1.3), k3=generator.uniform(0.5, 1.2), mu=0.0,
-            length2=generator.uniform(4.0, 8.0), damping1=generator.uniform(0.005, 0.02),
+            k2=generator.uniform(0.8, 1.3),
+            k3=generator.uniform(0.5, 1.2),
+            mu=0.0,
+            length2=generator.uniform(4.0, 8.0),
+            damping1=generator.uniform(0.005, 0.02),
             damping2=generator.uniform(0.005, 0.02),
             belt_speed=generator.uniform(20.0, 100.0),
-        )  # fmt: skip
+        )
         angles = generator.uniform((0.15, 0.8), (0.3, 1.1))
         branch = cycle_branch(
             params, *angles, parameter="mu", to=0.9, start="onset", n_points=60
@@ -101,10 +104,20 @@ def test_grazing_points_at_random_parameters_just_touch():
 @pytest.mark.release
 def test_special_points_do_not_depend_on_units():
     """Time 1000 √(m/k1), force 1e-6: what tells a touch from either side has another unit."""
-    params, unit = FORMER.with_(
-        k1=1.596, k2=0.391, k3=2.894, mu=0.336, belt_speed=-1.103, length1=5.49, length2=5.574,
-        damping1=0.0045, damping2=0.071,
-    ), np.array([1e-3, 1e-3, 1e-6, 1e-6])  # fmt: skip
+    params, unit = (
+        FORMER.with_(
+            k1=1.596,
+            k2=0.391,
+            k3=2.894,
+            mu=0.336,
+            belt_speed=-1.103,
+            length1=5.49,
+            length2=5.574,
+            damping1=0.0045,
+            damping2=0.071,
+        ),
+        np.array([1e-3, 1e-3, 1e-6, 1e-6]),
+    )
     scaled = {
         "mass": 1e3,
         "length1": 1e-3,
@@ -133,10 +146,17 @@ def test_special_points_do_not_depend_on_units():
     places = [b.alpha1[at] for b, at in zip(branches, special, strict=True)]
     np.testing.assert_allclose(*places, rtol=1e-9)
     curves = [
-        cycle_curve(given, *angles, label="stick_onset", parameters=("k3", "belt_speed"), start=b,
-                    n_points=20, to={"k3": (0.999 * given.k3, 1.001 * given.k3)})
+        cycle_curve(
+            given,
+            *angles,
+            label="stick_onset",
+            parameters=("k3", "belt_speed"),
+            start=b,
+            n_points=20,
+            to={"k3": (0.999 * given.k3, 1.001 * given.k3)},
+        )
         for given, b in zip((params, other), branches, strict=True)
-    ]  # fmt: skip
+    ]
     for name, of in (
         ("k3", scaled["k3"]),
         ("belt_speed", scaled["belt_speed"]),
@@ -156,16 +176,31 @@ def test_a_curve_goes_through_each_located_onset_of_stick():
     assert len(onsets) > 2
     for speed, point in zip(branch.belt_speed.values[onsets], onsets, strict=True):
         curve = cycle_curve(
-            slow, *angles, label="stick_onset", parameters=("belt_speed", "mu"),
-            start=branch.isel(point=point), n_points=3,
-        )  # fmt: skip
+            slow,
+            *angles,
+            label="stick_onset",
+            parameters=("belt_speed", "mu"),
+            start=branch.isel(point=point),
+            n_points=3,
+        )
         there = int(np.abs(curve.mu.values - slow.mu).argmin())
         assert float(curve.mu[there]) == slow.mu
         assert float(curve.belt_speed[there]) == pytest.approx(speed, rel=1e-9)
 
 
-FLUTTER = (FORMER.with_(k3=0.65, mu=0.01, length1=15.0, length2=15.0, belt_speed=-100.0,
-                        damping1=0.02, damping2=0.02), 0.305, 0.07)  # fmt: skip
+FLUTTER = (
+    FORMER.with_(
+        k3=0.65,
+        mu=0.01,
+        length1=15.0,
+        length2=15.0,
+        belt_speed=-100.0,
+        damping1=0.02,
+        damping2=0.02,
+    ),
+    0.305,
+    0.07,
+)
 
 
 @pytest.mark.parametrize(
@@ -188,9 +223,13 @@ def test_curves_end_where_branches_have_the_special_point(
         return cycle_branch(params, *angles, parameter="mu", to=to, start=first)
 
     curve = cycle_curve(
-        params, *angles, label=label, parameters=("mu", other), to={other: ends},
+        params,
+        *angles,
+        label=label,
+        parameters=("mu", other),
+        to={other: ends},
         start=branch_at(params, *angles),
-    )  # fmt: skip
+    )
     assert list(curve.outcome.values) == [Outcome.converged] * 2
     assert (curve.made_by, curve.model) == ("squealpipe.cycle_curve", "A1")
     assert float(curve.residual.max()) < 1e-9
@@ -209,12 +248,17 @@ def test_curves_end_where_branches_have_the_special_point(
 def test_a_curve_of_folds_goes_on_with_another_order_of_events():
     """Round two cusps, until it ends with what changes the order."""
     params, *angles = ONE_WAY[0], 0.4 * math.pi, 0.6 * math.pi
-    branch = cycle_branch(params, *angles, parameter="mu", to=0.05,
-                          start=limit_cycle(params, *angles))  # fmt: skip
+    branch = cycle_branch(
+        params, *angles, parameter="mu", to=0.05, start=limit_cycle(params, *angles)
+    )
     curve = cycle_curve(
-        params, *angles, label="fold", parameters=("mu", "k3"), start=branch,
+        params,
+        *angles,
+        label="fold",
+        parameters=("mu", "k3"),
+        start=branch,
         to={"mu": (0.05, 1.0), "k3": (0.34, 2.0)},
-    )  # fmt: skip
+    )
     assert len(set(curve.events.values)) > 1
     assert (curve.label == Meeting.cusp).sum() == 2
     assert set(curve.outcome.values) == {Outcome.converged, Outcome.order_changes}
@@ -230,11 +274,16 @@ def test_round_off_of_a_start_does_not_decide_whether_a_grazing_curve_goes_on():
     at = branch.isel(point=int(np.flatnonzero(branch.label == Label.grazing)[0]))
     curves = [
         cycle_curve(
-            params, *angles, label="grazing", parameters=("mu", "alpha1"), n_points=9,
-            start=at.assign(mu=at.mu * (1.0 + moved)), to={"alpha1": (0.955, 0.9603)},
+            params,
+            *angles,
+            label="grazing",
+            parameters=("mu", "alpha1"),
+            n_points=9,
+            start=at.assign(mu=at.mu * (1.0 + moved)),
+            to={"alpha1": (0.955, 0.9603)},
         )
         for moved in (0.0, 1e-12, 1e-11, 1e-10, 1e-9)
-    ]  # fmt: skip
+    ]
     for curve in curves:
         assert list(curve.outcome.values) == [Outcome.converged] * 2
         np.testing.assert_allclose(curve.mu[[0, -1]], curves[0].mu[[0, -1]], rtol=1e-9)
@@ -246,8 +295,14 @@ def test_where_folds_are_onsets_of_stick_round_off_makes_no_special_points():
     The stick of no length leaves the return map without a derivative all along, and multipliers
     that round-off had made told of a fold–flip, twice.
     """
-    params = FORMER.with_(k3=0.65, belt_speed=-100.0, length1=15.0, length2=15.0,
-                          damping1=0.02, damping2=0.02)  # fmt: skip
+    params = FORMER.with_(
+        k3=0.65,
+        belt_speed=-100.0,
+        length1=15.0,
+        length2=15.0,
+        damping1=0.02,
+        damping2=0.02,
+    )
     angles = (0.83 * math.pi, 0.83 * math.pi)
 
     def branch_of(params, start):
@@ -256,9 +311,13 @@ def test_where_folds_are_onsets_of_stick_round_off_makes_no_special_points():
         )
 
     curve = cycle_curve(
-        params, *angles, label="fold", parameters=("mu", "k3"), to={"k3": (0.06, 0.7)},
+        params,
+        *angles,
+        label="fold",
+        parameters=("mu", "k3"),
+        to={"k3": (0.06, 0.7)},
         start=branch_of(params, [-6.12, 45.1, 101.48, -0.1]),
-    )  # fmt: skip
+    )
     special = [Meeting.regular, Meeting.stick_onset, Meeting.end]
     assert set(curve.label.values) == set(special)
     low = int(curve.k3.values.argmin())

@@ -7,11 +7,14 @@ from squealpipe.brake.dynamics.linear_response import response_from_rest
 from squealpipe.brake.ladder.modal_bounds import modal_motion
 
 MATRICES = {
-    "symmetric": [[2.0, 0.3], [0.3, 1.0]], "not symmetric": [[1.0, 0.9], [0.2, 1.7]],
-    "defective": [[1.0, 1.0], [0.0, 1.0]], "flutter": [[1.0, 0.5], [-0.5, 1.0]],
-    "divergence": [[-0.1, 0.2], [0.2, 1.0]], "singular": [[1.0, 1.0], [1.0, 1.0]],
+    "symmetric": [[2.0, 0.3], [0.3, 1.0]],
+    "not symmetric": [[1.0, 0.9], [0.2, 1.7]],
+    "defective": [[1.0, 1.0], [0.0, 1.0]],
+    "flutter": [[1.0, 0.5], [-0.5, 1.0]],
+    "divergence": [[-0.1, 0.2], [0.2, 1.0]],
+    "singular": [[1.0, 1.0], [1.0, 1.0]],
     "zero": [[0.0, 0.0], [0.0, 0.0]],
-}  # fmt: skip
+}
 LOAD = np.array([0.3, 0.75])
 STEP, STEPS = 0.05, 200
 

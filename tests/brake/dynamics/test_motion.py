@@ -95,11 +95,22 @@ def si_parameters(rng, *, damped):
     c1, c2 = critical * 10.0 ** rng.uniform(-4.0, -0.7, 2) if damped else (0.0, 0.0)
     length1, length2 = preload * 10.0 ** rng.uniform(0.4, 1.8, 2)
     return FORMER.with_(
-        mass=mass, k1=k1, k2=k1 * 10.0 ** rng.uniform(-0.5, 0.5),
-        k3=k1 * 10.0 ** rng.uniform(-0.6, 0.4), mu=rng.uniform(0.0, 0.6) if damped else 0.0,
-        belt_speed=rng.choice([-1, 1]) * 10.0 ** rng.uniform(-1, 2) * preload * critical / mass,
-        preload=preload, length1=length1, length2=length2, damping1=c1, damping2=c2,
-    )  # fmt: skip
+        mass=mass,
+        k1=k1,
+        k2=k1 * 10.0 ** rng.uniform(-0.5, 0.5),
+        k3=k1 * 10.0 ** rng.uniform(-0.6, 0.4),
+        mu=rng.uniform(0.0, 0.6) if damped else 0.0,
+        belt_speed=rng.choice([-1, 1])
+        * 10.0 ** rng.uniform(-1, 2)
+        * preload
+        * critical
+        / mass,
+        preload=preload,
+        length1=length1,
+        length2=length2,
+        damping1=c1,
+        damping2=c2,
+    )
 
 
 @pytest.mark.parametrize(
@@ -140,11 +151,18 @@ def random_parameters(seed, *, equal):
     k1, k2 = rng.uniform(0.4, 2.5, 2)
     length1, length2 = rng.uniform(3.0, 20.0, 2)
     return FORMER.with_(
-        mass=rng.uniform(0.2, 5.0), k1=k1, k2=k1 if equal else k2, k3=rng.uniform(0.3, 1.5),
-        mu=rng.uniform(0.0, 0.6), belt_speed=rng.choice([-1, 1]) * rng.choice([0.4, 3.0, 50.0]),
-        preload=rng.uniform(0.5, 2.0), length1=length1, length2=length1 if equal else length2,
-        damping1=0.0, damping2=0.0 if equal else 0.03,
-    )  # fmt: skip
+        mass=rng.uniform(0.2, 5.0),
+        k1=k1,
+        k2=k1 if equal else k2,
+        k3=rng.uniform(0.3, 1.5),
+        mu=rng.uniform(0.0, 0.6),
+        belt_speed=rng.choice([-1, 1]) * rng.choice([0.4, 3.0, 50.0]),
+        preload=rng.uniform(0.5, 2.0),
+        length1=length1,
+        length2=length1 if equal else length2,
+        damping1=0.0,
+        damping2=0.0 if equal else 0.03,
+    )
 
 
 @pytest.mark.parametrize("equal", [True, False])
@@ -153,10 +171,14 @@ def test_a_system_and_its_mirror_image_have_the_same_labels(seed, equal):
     """x → −x: (α1, α2, V, k1, k2, L1, L2) and (α2, α1, −V, k2, k1, L2, L1)."""
     params = random_parameters(seed, equal=equal)
     image = params.with_(
-        belt_speed=-params.belt_speed, k1=params.k2, k2=params.k1,
-        length1=params.length2, length2=params.length1,
-        damping1=params.damping2, damping2=params.damping1,
-    )  # fmt: skip
+        belt_speed=-params.belt_speed,
+        k1=params.k2,
+        k2=params.k1,
+        length1=params.length2,
+        length2=params.length1,
+        damping1=params.damping2,
+        damping2=params.damping1,
+    )
     assert linear_time(image) == linear_time(params)
     first, second = np.random.default_rng(seed).uniform(0.0, np.pi, (2, 6))
     t_end = 150.0 * linear_time(params)

@@ -65,9 +65,12 @@ def test_an_island_that_the_sample_finds_is_followed(monkeypatch):
     monkeypatch.setattr(refinement, "_check_inherited", counting)
     monkeypatch.setattr(refinement, "SAMPLE", 2000)
     params = FORMER.with_(
-        k3=0.48023366024799824, mu=0.1390424912331886, belt_speed=-2.0,
-        length1=22.18325523692714, length2=22.18325523692714,
-    )  # fmt: skip
+        k3=0.48023366024799824,
+        mu=0.1390424912331886,
+        belt_speed=-2.0,
+        length1=22.18325523692714,
+        length2=22.18325523692714,
+    )
     angles = np.linspace(0.0, np.pi, 81)
     refined = refine_validity_map(params, resolution=81, coarse=6, t_end=200.0)
     uniform = validity_map(params, angles, angles, t_end=200.0)

@@ -11,9 +11,16 @@ from squealpipe import Parameters, load, save, simulate, spectrum, stability_map
 from squealpipe.cli import run
 
 PAD = Parameters(
-    mass=0.45, k1=1e7, k2=1e7, k3=7e6, preload=5.7e-4, mu=0.1, belt_speed=50.0, length1=0.1,
+    mass=0.45,
+    k1=1e7,
+    k2=1e7,
+    k3=7e6,
+    preload=5.7e-4,
+    mu=0.1,
+    belt_speed=50.0,
+    length1=0.1,
     length2=0.1,
-)  # fmt: skip
+)
 ANGLES = np.radians((80.0, 20.0))
 
 
@@ -31,9 +38,13 @@ def test_amplitudes_are_those_of_scipy(motion):
     centred = signal - np.average(signal, weights=window)
     step = float(motion.time[1])
     frequency, power = periodogram(
-        centred, 1 / step, window="hann", nfft=8 * signal.size, detrend=False,
+        centred,
+        1 / step,
+        window="hann",
+        nfft=8 * signal.size,
+        detrend=False,
         scaling="spectrum",
-    )  # fmt: skip
+    )
     np.testing.assert_allclose(found.frequency, frequency, atol=1e-9)
     # power of a sinusoid is half the square of its amplitude
     np.testing.assert_allclose(

@@ -90,9 +90,16 @@ def test_a_start_off_the_belt_has_lost_contact_at_once_for_every_function():
 
 def test_a_real_brake_is_summed_up_in_millimetres_and_hertz():
     pad = Parameters(
-        mass=0.45, k1=1e7, k2=1e7, k3=7e6, mu=0.4, belt_speed=2, preload=5.7e-4, length1=0.1,
+        mass=0.45,
+        k1=1e7,
+        k2=1e7,
+        k3=7e6,
+        mu=0.4,
+        belt_speed=2,
+        preload=5.7e-4,
+        length1=0.1,
         length2=0.1,
-    )  # fmt: skip
+    )
     motion = simulate(pad, np.radians(22), np.radians(46), t_end=0.04)
     summary = summarize(motion)
     words = "\n".join(summary_lines(motion, summary))
@@ -104,9 +111,16 @@ def test_a_real_brake_is_summed_up_in_millimetres_and_hertz():
 
 def test_a_force_that_ends_for_good_has_no_frequency():
     pad = Parameters(
-        mass=0.5, k1=1e7, k2=1e7, k3=7e6, mu=0.4, belt_speed=2, preload=2e-5, length1=0.02,
+        mass=0.5,
+        k1=1e7,
+        k2=1e7,
+        k3=7e6,
+        mu=0.4,
+        belt_speed=2,
+        preload=2e-5,
+        length1=0.02,
         length2=0.02,
-    )  # fmt: skip
+    )
     motion = simulate(pad, np.radians(35), np.radians(145), t_end=0.0447)
     assert float(motion.normalized_contact_force[-1]) == 0.0
     assert summarize(motion).sizes["peak"] == 0
@@ -128,9 +142,12 @@ def test_a_drift_is_no_line_and_no_line_comes_twice(drift):
 
 def test_a_mass_that_reaches_belt_speed_without_stick_does_so_once():
     motion = simulate(
-        FORMER.with_(belt_speed=0.1), np.pi * 0.1, np.pi * 0.5, t_end=9.0,
+        FORMER.with_(belt_speed=0.1),
+        np.pi * 0.1,
+        np.pi * 0.5,
+        t_end=9.0,
         model="A1-no-stick",
-    )  # fmt: skip
+    )
     assert int(motion.outcome) == Outcome.accumulation
     assert motion.sizes["event"] == 1
     assert int(motion.event_kind[0]) == Event.reversal

@@ -84,11 +84,16 @@ def random_parameters(generator):
     unit = np.sqrt(mass / stiffness)
     k2, free = between(0.2, 5.0), between(2.5, 1000.0)
     params = FORMER.with_(
-        mass=mass, k1=stiffness, k2=k2 * stiffness, preload=length,
-        k3=between(0.05, 5.0) * 0.5 * (1.0 + k2) * stiffness, mu=generator.uniform(0.0, 0.8),
+        mass=mass,
+        k1=stiffness,
+        k2=k2 * stiffness,
+        preload=length,
+        k3=between(0.05, 5.0) * 0.5 * (1.0 + k2) * stiffness,
+        mu=generator.uniform(0.0, 0.8),
         belt_speed=generator.choice([-1, 1]) * between(0.1, 300.0) * length / unit,
-        length1=free * length, length2=free * between(0.4, 2.5) * length,
-    )  # fmt: skip
+        length1=free * length,
+        length2=free * between(0.4, 2.5) * length,
+    )
     return params, between(30.0, 400.0) * unit
 
 
@@ -156,7 +161,12 @@ def test_no_rule_outside_the_range_of_the_sample():
     inside = FORMER.with_(length1=100.0, length2=100.0)
     assert keeps_contact(inside, *sure, 200.0)
     for changes in (
-        {"mu": 0.81}, {"k3": 0.04}, {"k3": 5.1}, {"length1": 2.9}, {"k1": 6.0}, {"k2": 0.19},
-    ):  # fmt: skip
+        {"mu": 0.81},
+        {"k3": 0.04},
+        {"k3": 5.1},
+        {"length1": 2.9},
+        {"k1": 6.0},
+        {"k2": 0.19},
+    ):
         assert not keeps_contact(inside.with_(**changes), *sure, 200.0)
     assert not keeps_contact(inside, *sure, 401.0)

@@ -21,9 +21,15 @@ LINEAR_FORCE = symbols.function(symbols.LINEAR_FORCE)
 CONTACT_FORCE = symbols.function(symbols.CONTACT_FORCE)
 K11, K12, K22, K3, MU, M = sp.symbols("k11 k12 k22 k3 mu m")
 PRINTED_ROOT = (
-    K11**2 - 2 * K11 * K22 + K22**2 + 4 * K12**2 - 2 * K11 * K3 + 4 * MU * K12 * K3
-    + 2 * K22 * K3 + K3**2
-)  # fmt: skip
+    K11**2
+    - 2 * K11 * K22
+    + K22**2
+    + 4 * K12**2
+    - 2 * K11 * K3
+    + 4 * MU * K12 * K3
+    + 2 * K22 * K3
+    + K3**2
+)
 
 
 @pytest.mark.parametrize(("params", "state"), DRAWS)

@@ -71,9 +71,12 @@ def test_levels_that_cannot_carry_a_contact_law_say_so():
 
 
 CHANGES = [
-    {"damping1": 0.1}, {"damping2": 0.1}, {"mu_static": 0.5}, {"friction_law": "exponential"},
+    {"damping1": 0.1},
+    {"damping2": 0.1},
+    {"mu_static": 0.5},
+    {"friction_law": "exponential"},
     {"friction_law": "hyperbolic", "mu_static": 0.2},
-]  # fmt: skip
+]
 LEVELS: dict[str, Callable[[Parameters], object]] = {
     "simulate": lambda p: simulate(p, 1.0, 2.0, t_end=1.0, model="A4"),
     "orbit": lambda p: periodic_orbit(p, 1.0, 2.0, mode=1, y_peak=2.0),

@@ -26,19 +26,30 @@ def random_parameters():
     """Unequal springs, both belt directions, any law, damping from none to overcritical."""
     mu = RNG.uniform(0, 1)
     return FORMER.with_(
-        mass=RNG.uniform(0.2, 5), k1=RNG.uniform(0.2, 5), k2=RNG.uniform(0.2, 5),
-        k3=RNG.uniform(0.2, 5), mu=mu, belt_speed=RNG.choice([-1, 1]) * RNG.uniform(0.1, 5),
-        preload=RNG.uniform(0.3, 3), damping1=RNG.choice([0.0, 1e-6, 0.1, 5.0]),
-        damping2=RNG.uniform(0, 2), friction_law=str(RNG.choice(list(LAWS))),
-        mu_static=mu + RNG.uniform(0, 1), friction_speed=RNG.uniform(0.1, 5),
-    )  # fmt: skip
+        mass=RNG.uniform(0.2, 5),
+        k1=RNG.uniform(0.2, 5),
+        k2=RNG.uniform(0.2, 5),
+        k3=RNG.uniform(0.2, 5),
+        mu=mu,
+        belt_speed=RNG.choice([-1, 1]) * RNG.uniform(0.1, 5),
+        preload=RNG.uniform(0.3, 3),
+        damping1=RNG.choice([0.0, 1e-6, 0.1, 5.0]),
+        damping2=RNG.uniform(0, 2),
+        friction_law=str(RNG.choice(list(LAWS))),
+        mu_static=mu + RNG.uniform(0, 1),
+        friction_speed=RNG.uniform(0.1, 5),
+    )
 
 
 @pytest.mark.parametrize(
     ("count", "change", "digits"),
-    [(60, {}, 1e-12), (20, {"damping1": 1e5}, 1e-13), (20, {"damping1": 1e8}, 1e-13),
-     pytest.param(200, {}, 1e-12, marks=pytest.mark.release)],
-)  # fmt: skip
+    [
+        (60, {}, 1e-12),
+        (20, {"damping1": 1e5}, 1e-13),
+        (20, {"damping1": 1e8}, 1e-13),
+        pytest.param(200, {}, 1e-12, marks=pytest.mark.release),
+    ],
+)
 def test_eigenvalues_of_random_sets_to_twelve_digits(count, change, digits):
     """One stiff dashpot costs none: det C is no difference of two products of its square."""
     for _ in range(count):
@@ -142,8 +153,12 @@ def test_hoffmann_and_gaul_damping_destabilizes():
                 tiny.with_(mu=between), angle, angle
             ).growth_rate.item()
             assert growth > 0
-            assert stability_map(params.with_(damping1=0, damping2=0, mu=between), angle, angle
-                                 ).regime_linear.item() == 0  # fmt: skip
+            assert (
+                stability_map(
+                    params.with_(damping1=0, damping2=0, mu=between), angle, angle
+                ).regime_linear.item()
+                == 0
+            )
 
 
 def test_the_map_over_dashpots_is_that_over_the_angles_cell_by_cell():
@@ -217,8 +232,15 @@ def test_critical_friction_where_a_mode_moves_hardly_a_dashpot(angles, dashpots,
 @pytest.mark.parametrize("scale", [1.0, 0.3, 7.1])
 def test_where_sliding_diverges_first_dashpots_lower_nothing(scale):
     """There the critical friction is that of det K = 0, which has no dashpots in it."""
-    params = Parameters(mass=scale, k1=scale, k2=scale, k3=0.75 * scale, belt_speed=-100.0,
-                        damping1=0.05 * scale, damping2=0.05 * scale)  # fmt: skip
+    params = Parameters(
+        mass=scale,
+        k1=scale,
+        k2=scale,
+        k3=0.75 * scale,
+        belt_speed=-100.0,
+        damping1=0.05 * scale,
+        damping2=0.05 * scale,
+    )
     angles = np.linspace(0.0, math.pi, 181)
     found = critical_friction_map(params, angles, angles)
     alpha1, alpha2 = angles[:, None], angles

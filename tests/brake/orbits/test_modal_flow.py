@@ -10,13 +10,16 @@ from squealpipe.brake.orbits.modal_flow import advance, next_crossing, propagato
 from squealpipe.brake.orbits.piecewise_linear import LinearState
 
 MATRICES = {
-    "distinct": ((1.4, 0.3), (0.2, 0.7)), "equal, diagonal": ((1.0, 0.0), (0.0, 1.0)),
+    "distinct": ((1.4, 0.3), (0.2, 0.7)),
+    "equal, diagonal": ((1.0, 0.0), (0.0, 1.0)),
     "equal, defective": ((1.0, 0.5), (0.0, 1.0)),
     "nearly equal, nearly defective": ((1.0 + 1e-9, 0.5), (1e-18, 1.0)),
-    "close": ((1.0, 0.02), (0.03, 1.01)), "zero frequency": ((1.0, -0.5), (-0.5, 0.25)),
-    "both near zero": ((1e-14, 0.0), (0.0, 1.0)), "flutter": ((1.0, 0.4), (-0.3, 1.1)),
+    "close": ((1.0, 0.02), (0.03, 1.01)),
+    "zero frequency": ((1.0, -0.5), (-0.5, 0.25)),
+    "both near zero": ((1e-14, 0.0), (0.0, 1.0)),
+    "flutter": ((1.0, 0.4), (-0.3, 1.1)),
     "divergence": ((1.5, 0.9), (0.9, 0.2)),
-}  # fmt: skip
+}
 LOAD = (0.3, -0.7)
 
 

@@ -43,9 +43,15 @@ def compute_evidence(params, reading="along_plus_x", *, beside=False):
         mended = of_the_paper(for_linear(params, other), READINGS[other].a1_model)
         found |= {f"corrected/{name}": dataset for name, dataset in mended.items()}
     found["parameter_inference"] = infer_parameters(
-        params, samples=24, reading=reading, kappa=(0.55, 0.7), mu=(0.28, 0.31),
-        length_ratio=(8.0, 16.0), speed_ratio=(90.0, 110.0), workers=1,
-    )  # fmt: skip
+        params,
+        samples=24,
+        reading=reading,
+        kappa=(0.55, 0.7),
+        mu=(0.28, 0.31),
+        length_ratio=(8.0, 16.0),
+        speed_ratio=(90.0, 110.0),
+        workers=1,
+    )
     return (
         found
         | of_one_sign(corrected(params, reading))

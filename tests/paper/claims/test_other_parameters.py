@@ -20,9 +20,17 @@ def test_verdicts_and_dimensionless_values_do_not_depend_on_the_units(
     evidence, baseline
 ):
     params = Parameters(
-        mass=4.0, k1=100.0, k2=100.0, k3=65.0, mu=baseline.mu, preload=0.25, length1=3.75,
-        length2=3.75, belt_speed=125.0, sigma=4000.0,
-    )  # fmt: skip
+        mass=4.0,
+        k1=100.0,
+        k2=100.0,
+        k3=65.0,
+        mu=baseline.mu,
+        preload=0.25,
+        length1=3.75,
+        length2=3.75,
+        belt_speed=125.0,
+        sigma=4000.0,
+    )
     assert np.isclose(params.speed_ratio, baseline.speed_ratio)
     scaled = compute_evidence(params, "as_printed", beside=True)
     first, second = (

@@ -16,17 +16,27 @@ from matplotlib.patches import Patch
 from matplotlib.text import Text
 
 HUES = {
-    "red": (0.94, 1.09), "orange": (0.09, 0.17), "green": (0.3, 0.5), "blue": (0.5, 0.7),
+    "red": (0.94, 1.09),
+    "orange": (0.09, 0.17),
+    "green": (0.3, 0.5),
+    "blue": (0.5, 0.7),
     "purple": (0.75, 0.94),
-}  # fmt: skip
+}
 """From where to where on the wheel of colours a name goes; red goes past its end."""
 TONES = {"black": (0.0, 0.25), "grey": (0.3, 0.95), "white": (0.97, 1.0)}
 COLOURLESS = 0.1
 """Saturation up to which a colour is black, grey or white."""
 MARKERS = {
-    "circles?": "o", "circled": "o", "rings?": "o", "dots?": ".o", "triangles?": "^v<>",
-    "cross(es)?": "xX", "crossed out": "xX", "stars?": "*", "squares": "s",
-}  # fmt: skip
+    "circles?": "o",
+    "circled": "o",
+    "rings?": "o",
+    "dots?": ".o",
+    "triangles?": "^v<>",
+    "cross(es)?": "xX",
+    "crossed out": "xX",
+    "stars?": "*",
+    "squares": "s",
+}
 DASHES = {"dotted": "dotted", "dashed": "dashed"}
 
 
@@ -101,8 +111,12 @@ def colours_of(figure: Figure) -> np.ndarray:
         rows += [_rgb([to_rgb(line.get_color())])]
         if line.get_marker() not in {"None", "none", "", " ", None}:
             faces = (line.get_markerfacecolor(), line.get_markeredgecolor())
-            rows += [_rgb([to_rgb(c)]) for c in faces if isinstance(c, str | tuple)
-                     and not (isinstance(c, str) and c == "none")]  # fmt: skip
+            rows += [
+                _rgb([to_rgb(c)])
+                for c in faces
+                if isinstance(c, str | tuple)
+                and not (isinstance(c, str) and c == "none")
+            ]
     return np.unique(np.concatenate(rows), axis=0)
 
 

@@ -32,12 +32,19 @@ def benchmark():
         {"problem": ["two gates", "long run"], "tol": [1e-6, 1e-12]},
     )
     data = {
-        "group": ["order", "chaos"], "role": [Role.ours, Role.public], "verdict": verdict,
-        "missed": np.where(verdict == 3, 2, 0), "spurious": np.where(verdict == 2, 1, 0),
-        "out_of_order": 0 * ones, "time_error": 0 * ones, "evaluations": 1000 * ones,
-        "error": np.where(verdict > 0, 1e-9 * verdict, np.nan), "cpu_time": ones,
-        "cpu_ratio": ones, "message": np.full(ones.shape, ""),
-    }  # fmt: skip
+        "group": ["order", "chaos"],
+        "role": [Role.ours, Role.public],
+        "verdict": verdict,
+        "missed": np.where(verdict == 3, 2, 0),
+        "spurious": np.where(verdict == 2, 1, 0),
+        "out_of_order": 0 * ones,
+        "time_error": 0 * ones,
+        "evaluations": 1000 * ones,
+        "error": np.where(verdict > 0, 1e-9 * verdict, np.nan),
+        "cpu_time": ones,
+        "cpu_ratio": ones,
+        "message": np.full(ones.shape, ""),
+    }
     attributes = {"platform": "a machine", "libraries": '{"scipy": "1.0"}'}
     return build(
         BENCHMARK, data, {**axes, "solver": ["squealpipe", "theirs"]}, attributes
@@ -66,10 +73,12 @@ def test_pareto_front_keeps_exactly_the_unbeaten():
 def test_atlas_prints_verdicts_and_counts(benchmark):
     verdict = [[1, 3, 0], [2, 1, 0], [0, 0, 1]]
     data = {
-        "verdict": verdict, "error": np.where(np.array(verdict) > 0, 1e-5, np.nan),
-        "message": [[""] * 3, ["careful", "careful", ""], [""] * 3], "tolerance": [1e-3] * 3,
+        "verdict": verdict,
+        "error": np.where(np.array(verdict) > 0, 1e-5, np.nan),
+        "message": [[""] * 3, ["careful", "careful", ""], [""] * 3],
+        "tolerance": [1e-3] * 3,
         "role": [Role.ours, Role.public, Role.ours],
-    }  # fmt: skip
+    }
     axes = {
         "scene": ["grazing", "chaos", "onset"],
         "solver": ["ours", "theirs", "closed form"],
@@ -124,11 +133,16 @@ def test_bars_tell_hindsight_from_what_is_known_beforehand():
         "level": [level.name for level in Level],
     }
     data = {
-        "error": np.zeros((4, len(Level), 2, 2)), "cheapest": cheapest,
-        "chosen": [[Level.a3, Level.a1], [Level.a1, Level.a1]], "tolerance": 0.05,
-        "chosen_wrong": np.zeros((2, 2), bool), "always_cpu_time": 2.0, "chosen_cpu_time": 1.0,
-        "belt_reached": np.zeros((2, 2), bool), "outcome": np.zeros((2, 2)),
-    }  # fmt: skip
+        "error": np.zeros((4, len(Level), 2, 2)),
+        "cheapest": cheapest,
+        "chosen": [[Level.a3, Level.a1], [Level.a1, Level.a1]],
+        "tolerance": 0.05,
+        "chosen_wrong": np.zeros((2, 2), bool),
+        "always_cpu_time": 2.0,
+        "chosen_cpu_time": 1.0,
+        "belt_reached": np.zeros((2, 2), bool),
+        "outcome": np.zeros((2, 2)),
+    }
     ladder = build(MODEL_LADDER, data, axes)
     assert model_needed.shares_of_a3(ladder) == (75.0, 25.0)
     text = written(model_needed.draw(ladder))

@@ -64,12 +64,15 @@ def test_all_are_drawn_for_any_study(params, tmp_path):
     }
     figures = {
         "fig02": fig02.draw(*list(runs.values())[:4]),
-        "fig03": fig03.draw({"simulate/F3": runs["F3"]}), "fig04": fig04.draw(runs["F4"]),
-        "fig05": fig05.draw(runs["F5a"], runs["F5a"]), "fig07": fig07.draw(of_fig07),
+        "fig03": fig03.draw({"simulate/F3": runs["F3"]}),
+        "fig04": fig04.draw(runs["F4"]),
+        "fig05": fig05.draw(runs["F5a"], runs["F5a"]),
+        "fig07": fig07.draw(of_fig07),
         "hammering": hammering_map.draw(hammering),
         "predictability": predictability.draw(hammering),
-        "refined": refined_boundary.draw(refined, boundary), "whirl": whirl.draw(runs["F3"], sizes),
-    }  # fmt: skip
+        "refined": refined_boundary.draw(refined, boundary),
+        "whirl": whirl.draw(runs["F3"], sizes),
+    }
     assert "nan" not in fig07.caption(of_fig07)
     for name, figure in figures.items():
         save_figure(figure, [tmp_path / f"{name}.png"])

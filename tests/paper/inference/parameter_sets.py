@@ -13,11 +13,16 @@ def random_sets(generator, count, *, equal):
         k2, length2 = (k1, 1.0) if equal else np.exp(generator.uniform(-1, 1, 2))
         reach = preload * np.exp(generator.uniform(0.7, 3.5))
         params = Parameters(
-            mass=mass, k1=k1, k2=k2, k3=k1 * generator.uniform(0.1, 3.0),
-            mu=generator.uniform(0.0, 0.9), preload=preload,
-            length1=reach * (1.0 if equal else length1), length2=reach * length2,
+            mass=mass,
+            k1=k1,
+            k2=k2,
+            k3=k1 * generator.uniform(0.1, 3.0),
+            mu=generator.uniform(0.0, 0.9),
+            preload=preload,
+            length1=reach * (1.0 if equal else length1),
+            length2=reach * length2,
             belt_speed=generator.choice([-1, 1]) * np.exp(generator.uniform(-2, 5)),
-        )  # fmt: skip
+        )
         sets.append(params)
     return sets
 

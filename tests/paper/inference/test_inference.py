@@ -127,9 +127,11 @@ def test_the_pulling_contact_loses_exactly_what_a1_loses():
 @pytest.mark.release
 def test_samples_cover_the_ranges_evenly(inference):
     for name, scale, *ends in (
-        ("kappa", float, 0.3, 1.3), ("mu", float, 0.02, 0.8),
-        ("length_ratio", math.log, 2, 100), ("speed_ratio", math.log, 0.1, 316),
-    ):  # fmt: skip
+        ("kappa", float, 0.3, 1.3),
+        ("mu", float, 0.02, 0.8),
+        ("length_ratio", math.log, 2, 100),
+        ("speed_ratio", math.log, 0.1, 316),
+    ):
         values, (low, high) = list(map(scale, inference[name].values)), map(scale, ends)
         assert abs(np.histogram(values, 8, (low, high))[0] - 32).max() <= 3
 

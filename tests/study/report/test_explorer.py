@@ -102,9 +102,14 @@ def test_the_command_repeats_what_is_shown(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     params = Parameters(mass=2.0, k1=1.5, k3=0.9, mu=0.2, belt_speed=-3.0, preload=0.1)
     made = explorer_data(
-        params, ANGLES[3:5], history_time=9.0, spectrum_time=20.0, samples=31, branch_points=3,
+        params,
+        ANGLES[3:5],
+        history_time=9.0,
+        spectrum_time=20.0,
+        samples=31,
+        branch_points=3,
         workers=1,
-    )  # fmt: skip
+    )
     command = ["simulate", "pi/2", "2pi/3", *run_options(made).split(), "-q"]
     assert run(command) == 0
     again = load("run.nc")
@@ -309,9 +314,16 @@ class TestInBrowser:
 def own_page(tmp_path_factory):
     """Of a study without the paper, with a friction law that A4 does not carry."""
     pad = Parameters(
-        mass=0.5, k1=1e7, k2=1e7, k3=7e6, belt_speed=2.0, preload=2e-5, length1=0.02,
-        length2=0.02, friction_law="linear 0.0:0.48 1.0:0.36",
-    )  # fmt: skip
+        mass=0.5,
+        k1=1e7,
+        k2=1e7,
+        k3=7e6,
+        belt_speed=2.0,
+        preload=2e-5,
+        length1=0.02,
+        length2=0.02,
+        friction_law="linear 0.0:0.48 1.0:0.36",
+    )
     times = {
         "history_time": 30.0,
         "spectrum_time": 60.0,

@@ -31,9 +31,16 @@ from squealpipe.study.report.tables import write_tables
 from tests.conftest import ROOT
 
 PAD = Parameters(
-    mass=0.5, k1=1e7, k2=1e7, k3=7e6, mu=0.4, belt_speed=2.0, preload=2e-5, length1=0.02,
+    mass=0.5,
+    k1=1e7,
+    k2=1e7,
+    k3=7e6,
+    mu=0.4,
+    belt_speed=2.0,
+    preload=2e-5,
+    length1=0.02,
     length2=0.02,
-)  # fmt: skip
+)
 REST = {"x": 0.0, "y": 0.0, "vx": 0.0, "vy": 0.0}
 
 
@@ -118,9 +125,14 @@ def test_report_begins_with_the_answer_and_has_no_paper(answers, tmp_path):
     for absent in ("paper", "Fig.", "None", " nan", "rad/s", "κ"):
         assert absent not in words
     told = list(answer.lines(answers["mine"]))
-    for present in (*told[:3], "mine", "What changes it", "this part",
-                    "preload_force = 4 kN: preload = 0.5714 mm",
-                    "dynamics.hammering_points 91 5"):  # fmt: skip
+    for present in (
+        *told[:3],
+        "mine",
+        "What changes it",
+        "this part",
+        "preload_force = 4 kN: preload = 0.5714 mm",
+        "dynamics.hammering_points 91 5",
+    ):
         assert present in words
     assert words.index(told[0]) < words.rindex("What changes it")
     assert "With scattered parameters" not in words

@@ -109,13 +109,21 @@ def test_the_answer_comes_first_and_says_mode_sound_cause_and_remedy(
         number(each, 4) for each in onsets()
     ]
     content = {
-        "title": "Report of a structure", "set": "", "verdict": "hammers", "headline": said,
-        "lines": [cause, words.level(answer)], "quiet": False, "stops": stops,
-        "fates": list(words.modes(answer)), "ends": list(words.attractors(answer)),
-        "onsets": report.onsets(modes), "contacts": report.contacts(answer),
-        "structure": report.structure(modes, answer), "rest": report.not_examined(answer),
+        "title": "Report of a structure",
+        "set": "",
+        "verdict": "hammers",
+        "headline": said,
+        "lines": [cause, words.level(answer)],
+        "quiet": False,
+        "stops": stops,
+        "fates": list(words.modes(answer)),
+        "ends": list(words.attractors(answer)),
+        "onsets": report.onsets(modes),
+        "contacts": report.contacts(answer),
+        "structure": report.structure(modes, answer),
+        "rest": report.not_examined(answer),
         "figures": {},
-    }  # fmt: skip
+    }
     page = tmp_path / "index.html"
     write_document("structure", content, {}, page=page, pdf=tmp_path / "report.pdf")
     text = page.read_text(encoding="utf-8")
@@ -125,9 +133,9 @@ def test_the_answer_comes_first_and_says_mode_sound_cause_and_remedy(
 def test_a_quiet_structure_is_told_with_its_margin(section, tmp_path, answer):
     pads = Structure.read(section["file"])
     modes = pads.complex_modes(mu=[0.0, 0.1, 0.2, 0.3, 0.4])
-    quiet = modes.assign_attrs(parameters=modes.attrs["parameters"].replace(
-        '"mu": 0.5', '"mu": 0.2'
-    ))  # fmt: skip
+    quiet = modes.assign_attrs(
+        parameters=modes.attrs["parameters"].replace('"mu": 0.5', '"mu": 0.2')
+    )
     still = answer.copy()
     still["pole_growth_rate"] = -np.abs(answer.pole_growth_rate)
     assert report.cause(quiet, still) == (
