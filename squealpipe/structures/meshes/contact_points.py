@@ -349,8 +349,8 @@ def _refuse_gaps(
         raise ValueError(
             f"{face.surface}: {len(far)} of {len(members)} nodes have no partner on {face.against} "
             f"within the size of its facets; node {mesh.numbers[node]} is "
-            f"{engineering(distance, 'm')} from it, its facet is {engineering(size, 'm')} long. "
-            "Move the bodies together, leave these nodes out of the surface, or state the units of "
+            f"{engineering(distance, 'm')} from it, its facet is {engineering(size, 'm')} long; "
+            "move the bodies together, leave these nodes out of the surface, or state the units of "
             "the mesh"
         )
 

@@ -1,0 +1,305 @@
+"""Broken inputs of meshes and faces: each ends in one sentence with numbers and a remedy."""
+
+import gzip
+
+import numpy as np
+import pytest
+
+from squealpipe import Face, Structure
+from tests.oracles import mesh_contacts as oracle
+
+NODES, HEXAHEDRA, FACES = oracle.brake()
+DECK = oracle.deck(NODES, HEXAHEDRA, FACES)
+NAMES = [f"{node}.{direction}" for node in NODES for direction in (1, 2, 3)]
+YAML = """\
+mass: M.mas
+stiffness: M.sti
+mesh: brake.inp
+contacts:
+  lining:
+    surface: PAD
+    against: DISC
+    stiffness: 2 kN/mm
+    pressure: 0.5 MPa
+rotation: {axis: [0, 0, 1], through: [0, 0, 0], speed: 20 rad/s, body: DISC}
+"""
+
+
+def write_brake(folder):
+    """A brake whose matrices are diagonal, with the mass of its volume in cast iron."""
+    mass, _ = oracle.solid_matrices(NODES, HEXAHEDRA)
+    lumped = mass.sum(axis=1)
+    for name, values in (("M.mas", lumped), ("M.sti", np.full(len(lumped), 1e9))):
+        rows = [f"{i} {i} {float(v)!r}" for i, v in enumerate(values, 1)]
+        (folder / name).write_text("\n".join(rows) + "\n")
+    (folder / "M.dof").write_text("\n".join(NAMES) + "\n")
+    (folder / "brake.inp").write_text(DECK)
+    (folder / "brake.yaml").write_text(YAML)
+
+
+def replaced(file, old, new):
+    """Spoil a file by replacing a text that it has."""
+
+    def spoil(folder):
+        content = (folder / file).read_text()
+        assert old in content, (old, file)
+        (folder / file).write_text(content.replace(old, new))
+
+    return spoil
+
+
+def yaml(old, new):
+    return replaced("brake.yaml", old, new)
+
+
+def deck(old, new):
+    return replaced("brake.inp", old, new)
+
+
+def appended(text):
+    return lambda folder: (folder / "brake.inp").write_text(DECK + text)
+
+
+def removed(file):
+    return lambda folder: (folder / file).unlink()
+
+
+def pad_moved(folder, by):
+    lines = []
+    for line in DECK.splitlines():
+        cells = line.split(", ")
+        if line.startswith("50") and len(cells) == 4:
+            moved = [float(c) + b for c, b in zip(cells[1:], by, strict=True)]
+            line = ", ".join([cells[0], *map(repr, moved)])
+        lines.append(line)
+    (folder / "brake.inp").write_text("\n".join(lines) + "\n")
+
+
+def in_millimetres(folder):
+    lines = []
+    for line in DECK.splitlines():
+        cells = line.split(", ")
+        if len(cells) == 4 and cells[0].isdigit() and "." in cells[1]:
+            line = ", ".join([cells[0], *(repr(1e3 * float(c)) for c in cells[1:])])
+        lines.append(line)
+    (folder / "brake.inp").write_text("\n".join(lines) + "\n")
+
+
+def cut_off_gzip(folder):
+    packed = gzip.compress((folder / "brake.inp").read_bytes())
+    (folder / "brake.inp").write_bytes(packed[:-20])
+
+
+def without_a_direction(folder):
+    """The degrees of freedom of a pad's node are condensed by an equation."""
+    drop = NAMES.index("5001.1")
+    for name in ("M.mas", "M.sti"):
+        rows = (folder / name).read_text().splitlines()
+        values = [row.split()[2] for i, row in enumerate(rows) if i != drop]
+        (folder / name).write_text(
+            "".join(f"{i} {i} {v}\n" for i, v in enumerate(values, 1))
+        )
+    (folder / "M.dof").write_text("\n".join(n for n in NAMES if n != "5001.1"))
+    appended("*EQUATION\n2\n5001, 1, 1., 5002, 1, -1.\n")(folder)
+
+
+def pressures(text):
+    def spoil(folder):
+        (folder / "p.txt").write_text(text)
+        yaml("pressure: 0.5 MPa", "pressures: p.txt")(folder)
+
+    return spoil
+
+
+BROKEN = [
+    (yaml("PAD", "LINING"), r"no surface or node set 'LINING'; .*(DISC|PAD)"),
+    (yaml("against: DISC", "against: DSC"), r"no surface or node set 'DSC'.*DISC"),
+    (yaml("body: DISC", "body: WHEEL"), "no surface or node set 'WHEEL'"),
+    (yaml("pressure: 0.5 MPa", "pressure: 0"), "pressure = 0: .*nothing presses"),
+    (yaml("pressure: 0.5 MPa", "pressure: 0.5 N"), "pressure"),
+    (yaml("pressure: 0.5 MPa", "force: -3 N"), "force = -3: must be greater than 0"),
+    (yaml("    pressure: 0.5 MPa\n", ""), "pressure is missing; give it, or force"),
+    (yaml("    stiffness: 2 kN/mm\n", ""), "stiffness is missing"),
+    (yaml("2 kN/mm", "2 kN"), "stiffness = '2 kN'"),
+    (yaml("pressure:", "presure:"), "'presure' is unknown; did you mean 'pressure'"),
+    (yaml("against: DISC", "against: PAD"), "cannot rub against itself"),
+    (yaml("speed: 20 rad/s", "speed: 0"), "speed = 0: nothing slides"),
+    (yaml("speed: 20 rad/s", "speed: 2 m/s"), "rotation: speed = '2 m/s'"),
+    (yaml("axis: [0, 0, 1]", "axis: [0, 0, 0]"), "axis"),
+    (yaml("axis", "axle"), "'axle' is unknown; did you mean 'axis'"),
+    (
+        yaml("through: [0, 0, 0]", "through: [0.06, 0, 0]"),
+        r"axis of rotation goes through PAD at node 5001 .*(where nothing slides).*through",
+    ),
+    (
+        yaml(
+            "axis: [0, 0, 1], through: [0, 0, 0]", "axis: [1, 0, 0], through: [0, 0, 0]"
+        ),
+        "moves along its normal at node|axis of rotation goes through",
+    ),
+    (
+        replaced("brake.yaml", YAML.splitlines()[-1], ""),
+        "nothing says how DISC moves; give a rotation",
+    ),
+    (yaml("mesh: brake.inp", "mesh: disc.inp"), "mesh: no file .*disc.inp"),
+    (yaml("mesh: brake.inp\n", ""), "faces of a mesh, which is missing"),
+    (
+        removed("M.dof"),
+        "degrees_of_freedom is missing: .*198 rows.* 66 nodes; .*brake.dof",
+    ),
+    (
+        yaml("mesh:", "degrees_of_freedom: other.dof\nmesh:"),
+        "degrees_of_freedom: no file .*other.dof",
+    ),
+    (
+        lambda folder: (folder / "M.dof").write_text("\n".join(NAMES[:-1])),
+        "rows, but|labelled",
+    ),
+    (replaced("M.dof", "5003.2", "5003.1"), "5003.1 .*twice"),
+    (
+        lambda folder: (folder / "M.dof").write_text(
+            "\n".join(f"{70000 + i}.1" for i in range(len(NAMES)))
+        ),
+        "none is in both",
+    ),
+    (
+        lambda folder: pad_moved(folder, (0, 0, 0.2)),
+        "9 of 9 nodes have no partner on DISC within .*node 5009 is 0.2 m from it",
+    ),
+    (
+        lambda folder: pad_moved(folder, (0.5, 0, 0)),
+        "nodes have no partner on DISC within",
+    ),
+    (in_millimetres, r"do not have the same units: .* kg/m³; state the units"),
+    (yaml("mass: M.mas", "units: mm-t-s\nmass: M.mas"), "do not have the same units"),
+    (deck("*SURFACE, NAME=PAD", "*SURFACE, NAME=DISC"), "surface DISC is there twice"),
+    (
+        appended("*NODE\n5001, 0.0, 0.0, 0.5\n"),
+        r"node 5001 is there twice, at \(0.06, 0, 0\) and \(0, 0, 0.5\)",
+    ),
+    (appended("*ELEMENT, TYPE=C3D8\n1, 1,2,3,4,5,6,7,8\n"), "element 1 is there twice"),
+    (
+        appended("*ELEMENT, TYPE=C3D8\n99, 1,2,3,4,5,6,7\n"),
+        "element 99 has 7 nodes, .*8",
+    ),
+    (
+        appended("*ELEMENT, TYPE=C3D8\n99, 1,2,3,4,5,6,7,777\n"),
+        "element 99 has node 777, which no",
+    ),
+    (appended("*INCLUDE, INPUT=more.inp\n"), "no file .*more.inp"),
+    (appended("*INCLUDE, INPUT=brake.inp\n"), "includes itself"),
+    (appended("*NGEN\n1, 9, 1\n"), "NGEN makes nodes that the deck does not list"),
+    (
+        appended("*INSTANCE, NAME=A, PART=B\n0., 0., 1.\n"),
+        "INSTANCE: parts that are moved",
+    ),
+    (appended("*SYSTEM\n1., 0., 0.\n"), "coordinate system of their own"),
+    (
+        appended("*TRANSFORM, NSET=ALL, TYPE=C\n0,0,0,0,0,1\n"),
+        r"node \d+ has directions of its",
+    ),
+    (deck("*Node, nset=all", "*NODE, SYSTEM=C"), "coordinate system of their own"),
+    (deck("5001, 0.06, 0.0", "5001; 0.06; 0.0"), "no node; its number and three"),
+    (deck("*HEADING", "HEADING"), "before the first keyword"),
+    (
+        deck("*SURFACE, NAME=PAD, TYPE=ELEMENT", "*SURFACE, NAME=PAD, TYPE=CYLINDER"),
+        "TYPE=CYLINDER: only surfaces of elements and of nodes",
+    ),
+    (deck("NAME=PAD, TYPE=ELEMENT\n", "NAME=PAD, TYPE=ELEMENT\n1, S7\n"), "no face S7"),
+    (
+        deck("NAME=PAD, TYPE=ELEMENT\n", "NAME=PAD, TYPE=ELEMENT\n888, S1\n"),
+        "no element 888",
+    ),
+    (
+        deck("NAME=PAD, TYPE=ELEMENT\n", "NAME=PAD, TYPE=ELEMENT\nSHOE, S1\n"),
+        "set SHOE",
+    ),
+    (
+        # the pad's back in place of its front
+        deck("S1\n", "S2\n"),
+        r"do not face each other at .*apart|no partner on",
+    ),
+    (cut_off_gzip, "packed by gzip but damaged"),
+    (without_a_direction, r"node 5001 has no degree of freedom 5001.1.*\*EQUATION"),
+    (
+        pressures("5001 1e5\n5002 1e5\n"),
+        "7 nodes of PAD have none, node 5003 the first",
+    ),
+    (pressures("5001 1e5\n5001 2e5\n"), "line 2: 5001 is there twice"),
+    (pressures("5001\n"), "a node and its pressure are needed"),
+    (
+        pressures("".join(f"{n} 0\n" for n in NODES if n > 5000)),
+        "pressures: 0 at node 5001; .* greater than 0 somewhere",
+    ),
+    (yaml("contacts:\n  lining:", "contacts:\n  lining 1:"), "letters, digits and _"),
+    (yaml("surface: PAD", "points: 2.5\n    surface: PAD"), "points = 2.5"),
+    (yaml("surface: PAD", "mu: -1\n    surface: PAD"), "mu = -1"),
+    (
+        yaml("surface: PAD", "direction: [1, 0, 0]\n    surface: PAD"),
+        "direction and rotation are both given",
+    ),
+]
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("whole")
+    write_brake(folder)
+    return folder
+
+
+def test_the_brake_that_is_spoilt_below_is_whole(whole):
+    structure = Structure.read(whole / "brake.yaml")
+    assert len(structure.contacts) == 9
+    assert structure.preloads.sum() > 0
+
+
+@pytest.mark.parametrize(("spoil", "words"), BROKEN)
+def test_broken_input_ends_in_one_sentence(whole, tmp_path, spoil, words):
+    for file in whole.iterdir():
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    spoil(tmp_path)
+    with pytest.raises((ValueError, FileNotFoundError), match=words) as caught:
+        Structure.read(tmp_path / "brake.yaml")
+    text = str(caught.value)
+    assert "\n" not in text
+    assert "Traceback" not in text
+
+
+FACE = Face("foot", stiffness=1e8, pressure=1e5, direction=[1, 0, 0])
+SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
+FOOT = {"foot": [[0, 3, 2, 1]]}
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"mesh": 3}, "a file, a mesh of meshio, or"),
+        ({"mesh": (SQUARE[:, :2], FOOT)}, "shape"),
+        ({"mesh": (SQUARE, {"foot": [[0, 1, 9]]})}, "facet of foot has node 9"),
+        ({"mesh": (SQUARE, {"foot": [[0, 1]]})}, "3, 4, 6 or 8 nodes"),
+        ({"mesh": (SQUARE, [[0, 1, 2]])}, "name: facets"),
+        (
+            {"mesh": (SQUARE, {"foot": [[0, 3, 2], [0, 1, 2]]})},
+            "look in opposite directions",
+        ),
+        ({"contacts": [FACE]}, "name: Face"),
+        ({"contacts": {"f": "foot"}}, "name: Face"),
+        ({"rotation": 20.0}, "Rotation is needed"),
+        ({"degrees_of_freedom": ["1.1"]}, "1 rows, but the matrices have 12"),
+        ({"degrees_of_freedom": ["a"] * 12}, "'a' is no node with its direction"),
+        ({"degrees_of_freedom": 3}, "degrees_of_freedom = 3"),
+        ({"units": "mm"}, "length, mass and time"),
+        ({"mass": np.eye(11), "stiffness": np.eye(11)}, "11 rows without names"),
+    ],
+)
+def test_wrong_arguments_of_python_are_named(changes, words):
+    given = {
+        "mass": np.eye(12),
+        "stiffness": np.eye(12),
+        "mesh": (SQUARE, FOOT),
+        "contacts": {"f": FACE},
+        **changes,
+    }
+    with pytest.raises(ValueError, match=words):
+        Structure.from_mesh(**given)
