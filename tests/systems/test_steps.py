@@ -209,3 +209,78 @@ def test_a_surface_of_any_scale_is_the_same_surface():
     oscillator = crossing(lambda t, s, p, r: p.scale * (s.x + 0.3 * s.v))
     run = oscillator.ensemble(5.0, scale=np.array([1e-200, 1e-165, 1.0, 1e150]))
     np.testing.assert_allclose(run.first_pass, np.arctan(1.0 / 0.3), rtol=1e-14)
+
+
+BALL = System(
+    "ball over a floor",
+    states={"y": "m", "v": "m/s"},
+    parameters={"floor": 0.0, "restitution": 0.9},
+    regimes={"flight": {}},
+    field=lambda t, s, p, r: {"y": s.v, "v": -9.81},
+    switches=[
+        Switch(
+            "impact",
+            "flight",
+            lambda t, s, p, r: s.y - p.floor,
+            "flight",
+            reset=lambda t, s, p, r: {"v": -p.restitution * s.v},
+        )
+    ],
+    start={"y": 1.0, "v": 0.0},
+)
+
+
+@pytest.mark.parametrize("floor", [0.0, 1.0, 1e3, 1e5])
+def test_impacts_accumulate_wherever_zero_is_and_however_soon_the_run_ends(floor):
+    """The last impacts fall on round-off of the height; their times are a geometric series."""
+    for ratio in (0.3, 0.6, 0.9, 0.97):
+        exact = np.sqrt(2.0 / 9.81) * (1.0 + ratio) / (1.0 - ratio)
+        for later in (1e-3, 1e-2, 0.1, 1.0):
+            run = BALL.simulate(
+                exact * (1.0 + later),
+                times=np.zeros(1),
+                start={"y": floor + 1.0},
+                floor=floor,
+                restitution=ratio,
+            )
+            assert run.outcome == Outcome.accumulation
+            assert abs(run.end_time - exact) < 1e-4 * exact
+
+
+PAIR = System(
+    "pair that chatters",
+    states={"x": "m", "u": "m/s", "y": "m", "v": "m/s"},
+    parameters={"restitution": 0.61},
+    regimes={"free": {}},
+    field=lambda t, s, p, r: {
+        "x": s.u,
+        "u": (0.97 - 6.8 * s.x) / 7.0,
+        "y": s.v,
+        "v": -(1.69 + 1.17 * s.y) / 5.3,
+    },
+    switches=[
+        Switch(
+            "impact",
+            "free",
+            lambda t, s, p, r: s.y - s.x + 0.28,
+            "free",
+            reset=lambda t, s, p, r: {
+                "u": s.u + 5.3 / 12.3 * (1.0 + p.restitution) * (s.v - s.u),
+                "v": s.v - 7.0 / 12.3 * (1.0 + p.restitution) * (s.v - s.u),
+            },
+        )
+    ],
+    start={"x": 0.01, "u": 1.6, "y": 2.0, "v": 0.5},
+)
+
+
+@pytest.mark.parametrize("restitution", [0.2, 0.4, 0.61, 0.8, 0.9])
+def test_a_pair_that_chatters_does_so_whatever_time_its_run_has_left(restitution):
+    """One of 10,000 random pairs ended as a hidden event, just before the end of its run."""
+    options = {"times": np.zeros(1), "restitution": restitution}
+    long = PAIR.simulate(200.0, **options)
+    assert long.outcome == Outcome.accumulation
+    for later in np.geomspace(1e-3, 1.0, 30):
+        run = PAIR.simulate(float(long.end_time) + later, **options)
+        assert run.outcome == Outcome.accumulation
+        assert abs(run.end_time - long.end_time) < 1e-6

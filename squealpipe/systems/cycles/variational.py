@@ -20,8 +20,10 @@ from squealpipe.systems.cycles.legs import Path, Vector
 from squealpipe.systems.taylor.legs import transfer
 from squealpipe.systems.taylor.series import gauss
 
-_TOGETHER, _FINEST = 20_000, 64
-"""Most pieces of steps that are computed at once, and most pieces of one step."""
+_TOGETHER, _ALIKE, _FINEST = 20_000, 1_250, 64
+"""Most pieces of steps that are computed at once, most steps that are cut into equally many pieces
+(of a stiff motion the one that needs most needs twice as many as the others), and most pieces of
+one step."""
 
 LONGEST = 1.0
 """Longest step of the variational equations times a bound of its rate."""
@@ -38,7 +40,7 @@ def leg_derivatives(flow: Flow, values: Mapping[str, float], path: Path) -> Vect
     steps, first = len(path.steps), 0
     while first < steps:
         # a step of a stiff motion needs many pieces; that of most motions needs one
-        block = slice(first, min(first + _TOGETHER, steps))
+        block = slice(first, min(first + _ALIKE, steps))
         slopes, lengths = _slopes_along(flow, values, path, block, 1)
         rate = _largest_rate(slopes[:, : flow.size])
         with np.errstate(invalid="ignore"):

@@ -33,9 +33,12 @@ BY_EVENT, BY_TURNS = 98, 99
     DELAY,
     GAP,
     ORIGIN,
+    NATURAL,
     FIXED_ROWS,
-) = range(16)
+) = range(17)
 """Rows of numbers of the lanes that every system has; those of a system follow.
+
+``NATURAL`` is the step that the series allow, before the end of the run cuts it short.
 
 ``REACH`` and ``ACROSS`` follow ``STEP`` for ``shorten``: the longest step of late, and whether the
 step leads across what may be a jump."""

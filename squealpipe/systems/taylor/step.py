@@ -10,6 +10,7 @@ from squealpipe.systems.taylor import layout
 from squealpipe.systems.taylor.lanes import call
 from squealpipe.systems.taylor.roots import (
     UNDECIDED,
+    UNSURE,
     Watch,
     evaluate,
     evaluate_twice,
@@ -40,6 +41,9 @@ FITS = 4
 """Times that a step is fitted to the size of a series, which depends on the step."""
 SUSPECT = 1e6
 """A root that this many times the round-off would hide may be hidden by that of its terms."""
+SOON = 1e-2
+"""Share of a step: a surface that returns to zero by then may chatter. Its root is uncertain by no
+more than half of this time."""
 LEAST = 0.1
 """Share of a step to which it may be shortened where round-off hides a surface at its end."""
 FADING = 0.95
@@ -210,10 +214,11 @@ def take_step(t: Any, m: Any, parameters: int) -> Any:
             step = smaller(
                 step, reach(base + (t.n_variables + each) * terms * ROW, terms)
             )
+    natural = left = step
     if t.shorten or m.share[2] != 0.0:
         left = load(at + layout.T_END * ROW) - load(at + layout.CLOCK * ROW)
-        step = smaller(step, left - load(at + layout.CORRECTION * ROW))
-        step = shorten_steps(t, m, step)
+        left = left - load(at + layout.CORRECTION * ROW)
+        step = shorten_steps(t, m, smaller(step, left))
     if t.shorten:
         reached = load(at + layout.REACH * ROW) * splat(FADING)
         store(at + layout.REACH * ROW, larger(reached, step))
@@ -226,6 +231,7 @@ def take_step(t: Any, m: Any, parameters: int) -> Any:
         store(at + layout.ACROSS * ROW, across)
         step = larger(short, least)
     store(at + layout.STEP * ROW, step)
+    store(at + layout.NATURAL * ROW, choose_below(step, left, step, natural))
     lost = step
     for variable in range(t.n_variables):
         value = at_end(base + variable * terms * ROW, terms, step)
@@ -295,17 +301,26 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
 def _is_hidden(
     t: Any, m: Any, c: Any, lane: int, surface: int, step: float, root: float
 ) -> bool:
-    """Whether round-off of a surface's series, or of its terms, hides where it is crossed."""
+    """Whether round-off of a surface's series, or of its terms, hides where it is crossed.
+
+    What is uncertain is compared with the step that the series allow, not with one that the end of
+    the run cuts short. A surface that has started from zero and soon returns, as where impacts
+    accumulate, is crossed there if it is clear of round-off halfway and half as long again.
+    """
     index = t.n_variables + surface
-    floor = hidden_below(c, index, lane, step)
-    if not is_hidden(c, index, lane, step, root, SUSPECT * floor):
+    span = min(m.rows[layout.NATURAL, lane], m.rows[layout.T_END, lane])
+    within = step
+    if m.fresh[surface] & (1 << lane) and root <= SOON * span:
+        span, within = max(span, 0.5 * root / UNSURE), min(step, 2.0 * root)
+    floor = hidden_below(c, index, lane, within)
+    if not is_hidden(c, index, lane, span, root, SUSPECT * floor):
         return False
     for variable in range(t.n_variables):
         value = evaluate(c, variable, lane, root)
         m.scratch[0, variable], m.scratch[1, variable] = value, abs(value)
     gauge(t, lane, m.scratch.shape[1])
     floor = max(floor, NOISE * m.scratch[2, 3 * surface + 1])
-    return bool(is_hidden(c, index, lane, step, root, floor))
+    return bool(is_hidden(c, index, lane, span, root, floor))
 
 
 @part
