@@ -20,7 +20,7 @@ from squealpipe.systems.tracing import TracedSystem as System
 LARGEST = "largest "
 
 MOST_STEPS, MOST_EVENTS = 10_000_000, 10_000_000
-"""Of a run, by default."""
+"""A run has at most so many by default, alone, in an ensemble or on the way to a cycle."""
 
 
 def symbolic(system: System) -> HybridSystem:

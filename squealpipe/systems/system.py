@@ -40,7 +40,7 @@ class System(TracedSystem):  # noqa: D101 (that of the definition)
             guess: states near the cycle instead; at t = 0 of the forcing.
             periods: of the forcing; without it, returns to the rarest event.
             t_settle: s; 200 forcing periods or time scales by default.
-            options: ``max_steps`` of a run (1,000,000), and parameters by their names.
+            options: ``max_steps`` of a run (10⁷), and parameters by their names.
 
         Returns:
             Dataset of :func:`squealpipe.systems.cycles.cycle.limit_cycle`: ``period``, extremes,

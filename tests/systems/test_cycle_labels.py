@@ -1,5 +1,7 @@
 """Labels of settled motions that can be checked from outside: chaos, tori, families, symmetry."""
 
+from inspect import signature
+
 import numpy as np
 import pytest
 from numba import njit
@@ -10,6 +12,7 @@ from squealpipe import Switch, System
 from squealpipe.functions import cos
 from squealpipe.schema import Outcome, meanings
 from squealpipe.systems.branch_labels import Label
+from squealpipe.systems.cycles.cycle import limit_cycle as system_cycle
 from squealpipe.systems.cycles.event_map import EventMap
 from squealpipe.systems.cycles.find import find_cycle, labelled
 from squealpipe.systems.cycles.solution import Cycle
@@ -310,6 +313,13 @@ def test_the_step_limit_is_an_argument():
     few = van_der_pol.limit_cycle(mu=100.0, max_steps=2000)
     assert outcome(few) == "step_limit"
     assert "raise max_steps" in few.outcome.comment
+
+
+def test_the_step_limit_has_one_default():
+    """A run took 10⁷ steps by default, one on the way to a cycle 10⁶."""
+    calls = System.simulate, System.ensemble, System.basin, system_cycle
+    defaults = {signature(call).parameters["max_steps"].default for call in calls}
+    assert defaults == {10**7}
 
 
 def test_a_guess_on_the_slow_manifold_is_near_the_cycle():

@@ -14,8 +14,9 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, blank, build
 from squealpipe.schema.origin import recorded
 from squealpipe.systems.cycles.event_map import FREE
-from squealpipe.systems.cycles.find import MOST_STEPS, find_cycle
+from squealpipe.systems.cycles.find import find_cycle
 from squealpipe.systems.cycles.solution import Cycle
+from squealpipe.systems.integrate import MOST_STEPS
 from squealpipe.systems.taylor.layout import STOPPED
 from squealpipe.validation import Angle, Natural, Positive, State, one_of
 

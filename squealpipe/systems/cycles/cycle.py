@@ -9,10 +9,11 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.systems.cycles.described import dataset
-from squealpipe.systems.cycles.find import MOST_STEPS, find_cycle
+from squealpipe.systems.cycles.find import find_cycle
 from squealpipe.systems.cycles.legs import Vector
 from squealpipe.systems.grid import call_values, scalar
 from squealpipe.systems.inputs.gate import Natural, Positive, Values, checked
+from squealpipe.systems.integrate import MOST_STEPS
 
 if TYPE_CHECKING:
     from squealpipe.systems.tracing import TracedSystem as System

@@ -15,12 +15,11 @@ from squealpipe.systems.cycles.free import near_free, settled_free
 from squealpipe.systems.cycles.legs import Vector
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.datasets import Outcome
+from squealpipe.systems.integrate import MOST_STEPS
 
 if TYPE_CHECKING:
     from squealpipe.systems.tracing import TracedSystem as System
 
-MOST_STEPS = 1_000_000
-"""Steps after which a run is given up by default."""
 _BESIDE = 1e-9
 """Relative change of the parameters next to a change of the events."""
 _AT_CHANGE = 1e-6
