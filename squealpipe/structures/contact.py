@@ -1,7 +1,7 @@
 """A contact of a structure with the belt: where it acts, how stiff it is and what presses it on."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -42,7 +42,8 @@ class Contact:
 
     Args:
         name: for events and outputs.
-        normal: n, {degree of freedom: coefficient}, counted from 0, or an array of all.
+        normal: n, {degree of freedom: coefficient}, counted from 0, or by its name ``"12.1"`` where
+            the structure has names, or an array of all.
         tangential: t, likewise.
         stiffness: N/m, or a text like ``7 kN/mm``; greater than 0.
         preload: normal force where nᵀq = 0, N, or a text like ``0.2 kN``.
@@ -157,6 +158,38 @@ class Contact:
         if not vector.any():
             raise self._refusal(which, given, "a coefficient other than 0 is needed")
         return vector
+
+
+def by_rows(contact: Contact, names: Sequence[str] | None) -> Contact:
+    """Return a contact whose directions name rows of the matrices by their numbers.
+
+    Args:
+        names: of the rows, ``node.direction``; None: they have none.
+
+    Raises:
+        ValueError: a name that no row has.
+    """
+    changed: dict[str, Any] = {}
+    for which in ("normal", "tangential", "across"):
+        given = getattr(contact, which)
+        if not isinstance(given, Mapping):
+            continue
+        named = {place for place in given if isinstance(place, str)}
+        if not named:
+            continue
+        row_of = {name: row for row, name in enumerate(names or ()) if name in named}
+        if missing := named - row_of.keys():
+            known = (
+                f"where they are named like {names[0]}"
+                if names
+                else "which has no names; count rows from 0"
+            )
+            raise ValueError(
+                f"contact {contact.name}: {which}: no degree of freedom {min(missing)!r} in the "
+                f"structure, {known}"
+            )
+        changed[which] = {row_of.get(k, k): value for k, value in given.items()}
+    return replace(contact, **changed) if changed else contact
 
 
 def directions(contacts: Sequence[Contact], size: int) -> tuple[np.ndarray, np.ndarray]:

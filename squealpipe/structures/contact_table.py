@@ -3,33 +3,45 @@
 Text in any encoding, with commas, semicolons or tabs between its cells, or an Excel sheet.
 """
 
+import csv
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from squealpipe.laws.numerals import Numeral, decimal_sign, numeral, plain
 from squealpipe.laws.rows import FileRows, text_rows
 from squealpipe.laws.sheets import IS_TIME, sheet
 from squealpipe.parameters import finite_number
-from squealpipe.structures.contact import Contact
+from squealpipe.store.whole_files import whole_file
+from squealpipe.structures.contact import Contact, PointOrigin
 from squealpipe.structures.units import Scales
 from squealpipe.systems.inputs.values import brief
 from squealpipe.text import suggestion
 
 CONTACT_COLUMNS = ("name", "normal", "tangential", "stiffness", "preload")
-KNOWN = (*CONTACT_COLUMNS, "speed", "mu", "mu_static", "across")
+ORIGIN = ("nodes", "against", "area", "gap", "x", "y", "z")
+"""Columns that say where a contact of a mesh comes from."""
+KNOWN = (*CONTACT_COLUMNS, "speed", "mu", "mu_static", "across", *ORIGIN)
 HEADER = f"its first row must name the columns, like {','.join(CONTACT_COLUMNS)}"
 
 
 def read_contacts(
-    path: Path, labels: list[str] | None, size: int, scales: Scales
+    path: Path,
+    labels: list[str] | None,
+    size: int,
+    scales: Scales,
+    *,
+    turning: bool = False,
 ) -> list[Contact]:
     """The contacts of a table, in SI units.
 
     Args:
         labels: of the matrices' rows, ``node.direction``, where they have some.
         size: degrees of freedom.
+        turning: whether what rubs turns, so that ``speed`` is a radius.
 
     Raises:
         FileNotFoundError: no such file.
@@ -52,7 +64,14 @@ def read_contacts(
         for name in row.keys() - {"name"}:
             table.refuse_doubtful(path, line, row[name])
         lines.append(
-            _Line(where, row["name"], _terms(where, row), _numerals(where, row))
+            _Line(
+                where,
+                row["name"],
+                _terms(where, row),
+                _numerals(where, row),
+                _nodes(where, row),
+                turning,
+            )
         )
     # all cells together tell whether numbers have a decimal point or comma
     written = (cell for line in lines for cell in line.written())
@@ -74,6 +93,8 @@ class _Line(NamedTuple):
     name: str
     directions: dict[str, list[_Term]]
     numerals: dict[str, Numeral]
+    nodes: dict[str, tuple[int, ...]]
+    turning: bool
 
     def written(self) -> Iterator[tuple[str, str]]:
         """Yield where each number stands, and its text."""
@@ -94,23 +115,45 @@ class _Line(NamedTuple):
             }
             # who names the direction across asks for friction's damping along it
             transverse = "across" in arguments
-            arguments |= self._values(sign, scales)
+            values = self._values(sign, scales)
+            arguments |= {k: v for k, v in values.items() if k not in ORIGIN}
+            arguments["origin"] = self._origin(values)
             return Contact(self.name, **arguments, transverse_damping=transverse)
         except ValueError as error:
             raise ValueError(f"{self.where}: {error}") from error
 
     def _values(self, sign: str, scales: Scales) -> dict[str, float]:
-        factors = {"stiffness": scales.stiffness, "preload": scales.force}
+        factors = {
+            "stiffness": scales.stiffness,
+            "preload": scales.force,
+            "area": scales.length**2,
+            **dict.fromkeys(("gap", "x", "y", "z"), scales.length),
+        }
+        units = dict(UNITS)
+        if self.turning:
+            factors["speed"], units["speed"] = scales.length, "m"
         values = {}
         for key, each in self.numerals.items():
             text = plain(each.text, sign)
             # a cell has a unit of its own, or is a number in the units of the file
             values[key] = (
-                finite_number(key, f"{text} {each.unit}", UNITS[key])
+                finite_number(key, f"{text} {each.unit}", units[key])
                 if each.unit
-                else finite_number(key, float(text), UNITS[key]) * factors.get(key, 1.0)
+                else finite_number(key, float(text), units[key]) * factors.get(key, 1.0)
             )
         return values
+
+    def _origin(self, values: Mapping[str, float]) -> PointOrigin | None:
+        """Return where the contact comes from, if the row says all of it."""
+        if not self.nodes.get("nodes") or not {"area", "x", "y", "z"} <= values.keys():
+            return None
+        return PointOrigin(
+            self.nodes["nodes"],
+            self.nodes.get("against", ()),
+            values["area"],
+            values.get("gap", 0.0),
+            (values["x"], values["y"], values["z"]),
+        )
 
 
 UNITS = {
@@ -119,6 +162,8 @@ UNITS = {
     "speed": "1",
     "mu": "1",
     "mu_static": "1",
+    "area": "m2",
+    **dict.fromkeys(("gap", "x", "y", "z"), "m"),
 }
 """Columns of numbers → CF unit."""
 
@@ -135,6 +180,73 @@ def _numeral(where: str, text: str) -> Numeral:
             f"{where} = {brief(text)}: a number is needed, like 1.5 or 2e7"
         )
     return number
+
+
+def _nodes(where: str, row: Mapping[str, str]) -> dict[str, tuple[int, ...]]:
+    """The numbers of nodes in the columns that have some."""
+    nodes = {}
+    for key in ("nodes", "against"):
+        words = row.get(key, "").split()
+        if not all(word.isdecimal() for word in words):
+            raise ValueError(
+                f"{where}: {key} = {row[key]}: numbers of nodes are needed, like 12 40"
+            )
+        nodes[key] = tuple(map(int, words))
+    return nodes
+
+
+def write_contacts(
+    contacts: Sequence[Contact],
+    names: Sequence[str],
+    path: Path,
+    *,
+    turning: bool = False,
+) -> None:
+    """Write contacts as a table that :func:`read_contacts` reads back to the same numbers.
+
+    Args:
+        names: of the degrees of freedom, ``node.direction``, or their numbers from 1.
+        turning: whether ``speed`` is a radius.
+        path: a text file (.csv).
+    """
+    rows = []
+    for each in contacts:
+        row = {"name": each.name}
+        for which in ("normal", "tangential", "across"):
+            if getattr(each, which) is not None:
+                vector = each.direction(which, len(names))
+                row[which] = " ".join(
+                    f"{names[place]}:{float(vector[place])!r}"
+                    for place in np.flatnonzero(vector).tolist()
+                )
+        row |= {
+            "stiffness": f"{each.stiffness!r} N/m",
+            "preload": f"{each.preload!r} N",
+            "speed": f"{each.speed!r} m" if turning else repr(each.speed),
+        }
+        for key in ("mu", "mu_static"):
+            if getattr(each, key) is not None:
+                row[key] = repr(getattr(each, key))
+        if (origin := each.origin) is not None:
+            row |= {
+                "nodes": " ".join(map(str, origin.nodes)),
+                "against": " ".join(map(str, origin.against)),
+                "area": f"{origin.area!r} m^2",
+                "gap": f"{origin.gap!r} m",
+                **{
+                    axis: f"{value!r} m"
+                    for axis, value in zip("xyz", origin.position, strict=True)
+                },
+            }
+        rows.append(row)
+    columns = [key for key in KNOWN if any(key in row for row in rows)]
+    with (
+        whole_file(path) as temporary,
+        temporary.open("w", encoding="utf-8", newline="") as file,
+    ):
+        writer = csv.DictWriter(file, columns, restval="")
+        writer.writeheader()
+        writer.writerows(rows)
 
 
 def _rows(path: Path) -> tuple[list[str], FileRows]:

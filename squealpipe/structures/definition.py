@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from squealpipe.parameters import finite_number
-from squealpipe.structures.contact import Contact, directions, transversals
+from squealpipe.structures.contact import Contact, by_rows, directions, transversals
 from squealpipe.structures.friction import Friction, default_mu, friction_of, has_own_mu
 from squealpipe.structures.matrices import checked_mass, real_square
 from squealpipe.structures.meshes.faces import Rotation
@@ -56,6 +56,8 @@ class ContactStructure:
         friction_law, mu_static, friction_speed: as in ``Parameters``.
         load: f, (n,), N; None: −Σ nᵢ preloadᵢ, which balances the preloads at rest; 0: none.
         mesh: nodes, facets and what each degree of freedom is, for names and pictures.
+        names: of the degrees of freedom, ``"12.1"`` (node.direction) each, which contacts may then
+            use in place of numbers; None: those of the mesh.
         rotation: of the body that rubs, about an axis.
 
     Raises:
@@ -79,7 +81,14 @@ class ContactStructure:
         load: Any = None,
         mesh: StructureMesh | None = None,
         rotation: Rotation | None = None,
+        names: Sequence[str] | None = None,
     ) -> None:
+        self.mesh = _fitting_mesh(mesh)
+        """Nodes, facets and degrees of freedom; of a reduced structure those of the whole."""
+        if names is None and self.mesh is not None:
+            names = self.mesh.names
+        self.names = _distinct(names)
+        """Names ``node.direction`` of the degrees of freedom; None where they have none."""
         mass, stiffness, damping = (
             numbers_in_si(name, matrix, units)
             for name, matrix, units in (
@@ -88,9 +97,10 @@ class ContactStructure:
                 ("damping", damping, "N s m-1"),
             )
         )
-        self.mass = checked_mass(real_square("mass", mass))
+        self.mass = checked_mass(real_square("mass", mass), self.names)
         self.size = int(self.mass.shape[0])
         """Degrees of freedom n."""
+        self._refuse_other_sizes()
         self.stiffness = real_square("stiffness", stiffness, self.size)
         nothing = sp.csr_array((self.size, self.size))
         self.damping = (
@@ -113,6 +123,7 @@ class ContactStructure:
         for contact in self.contacts:
             if not isinstance(contact, Contact):
                 raise ValueError(f"contacts: {brief(contact)} is no Contact")  # noqa: TRY004
+        self.contacts = tuple(by_rows(each, self.names) for each in self.contacts)
         self.normals, self.tangentials = directions(self.contacts, self.size)
         self.transversals = transversals(self.contacts, self.normals, self.tangentials)
         self.friction = Friction(
@@ -131,14 +142,24 @@ class ContactStructure:
         """Of each contact: its own law and coefficients, or the structure's."""
         self.given_load = numbers_in_si("load", load, "N")
         self.load = self._load(self.given_load)
-        self.mesh = _fitting(mesh, self.size)
-        """Nodes, facets and degrees of freedom; of a reduced structure those of the whole."""
         self.modes: np.ndarray | None = None
         """Of a reduced structure, (n of the whole, n): amplitudes → displacements."""
         self.record: dict[str, Any] = {}
         """Of a reduced structure: how many modes were kept, and their errors."""
         self.reduced_from: ReducedFrom | None = None
         """Of a reduced structure: its origin."""
+
+    def _refuse_other_sizes(self) -> None:
+        """Raise if mesh or names are of another number of degrees of freedom."""
+        for key, given in (
+            ("mesh", None if self.mesh is None else self.mesh.degree_of_freedom),
+            ("names", self.names),
+        ):
+            if given is not None and len(given) != self.size:
+                raise ValueError(
+                    f"{key}: {len(given)} degrees of freedom are named, but the matrices have "
+                    f"{self.size}"
+                )
 
     @property
     def mu(self) -> float:
@@ -245,6 +266,7 @@ class ContactStructure:
             "load": self.given_load,
             "mesh": self.mesh if self.modes is None else None,
             "rotation": self.rotation,
+            "names": self.names if self.modes is None else None,
         }
 
     def as_dict(self) -> dict[str, Any]:
@@ -282,16 +304,26 @@ class ContactStructure:
         }
 
 
-def _fitting(mesh: StructureMesh | None, size: int) -> StructureMesh | None:
-    """Return the mesh if it has the degrees of freedom of the matrices."""
+def _fitting_mesh(mesh: StructureMesh | None) -> StructureMesh | None:
     if mesh is not None and not isinstance(mesh, StructureMesh):
         raise ValueError(f"mesh = {brief(mesh)}: a StructureMesh is needed")
-    if mesh is not None and len(mesh.degree_of_freedom) != size:
-        raise ValueError(
-            f"mesh: it says what {len(mesh.degree_of_freedom)} degrees of freedom are, but the "
-            f"matrices have {size}"
-        )
     return mesh
+
+
+def _distinct(names: Sequence[str] | None) -> tuple[str, ...] | None:
+    """Return names of degrees of freedom, each of which is there once."""
+    if names is None:
+        return None
+    if not isinstance(names, list | tuple) or not all(
+        isinstance(each, str) for each in names
+    ):
+        raise ValueError(
+            f"names = {brief(names)}: a list of names like '12.1' is needed"
+        )
+    if len(set(names)) < len(names):
+        twice = next(each for each in names if names.count(each) > 1)
+        raise ValueError(f"names: {twice!r} is there twice; each row needs its own")
+    return tuple(names)
 
 
 def _ratios(given: Any, size: int) -> np.ndarray:

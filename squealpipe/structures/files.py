@@ -99,10 +99,13 @@ def read(path: str | PathLike[str], form: type[Form]) -> Form:
     if isinstance(content.get("contacts"), str):
         table = folder / content["contacts"]
         size = matrices["mass"].shape[0]
-        arguments["contacts"] = _contacts(table, labels, size, scales)
+        turning = rotation is not None
+        arguments["contacts"] = _contacts(table, labels, size, scales, turning=turning)
     arguments |= _numbers(content, folder, scales, rotation)
     if "load" in content:
         arguments["load"] = _load(content["load"], folder, scales)
+    if labels is not None and "mesh" not in arguments:
+        arguments["names"] = [str(each) for each in labels]
     try:
         return form(**arguments, rotation=rotation)
     except ValueError as error:
@@ -223,10 +226,10 @@ def _rotation(content: Mapping[str, Any], scales: Scales) -> Rotation | None:
 
 
 def _contacts(
-    table: Path, labels: list[str] | None, size: int, scales: Scales
+    table: Path, labels: list[str] | None, size: int, scales: Scales, *, turning: bool
 ) -> list[Contact]:
     """Those of a table that has some."""
-    contacts = read_contacts(table, labels, size, scales)
+    contacts = read_contacts(table, labels, size, scales, turning=turning)
     if not contacts:
         raise ValueError(f"{table} has no row; leave `contacts` out if there are none")
     return contacts

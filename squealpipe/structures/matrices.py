@@ -1,5 +1,6 @@
 """Matrices of a structure as they are kept: square, real, finite, sparse by rows."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -62,8 +63,13 @@ def real_square(name: str, given: Any, size: int | None = None) -> sp.csr_array:
     return matrix
 
 
-def checked_mass(mass: sp.csr_array) -> sp.csr_array:
+def checked_mass(
+    mass: sp.csr_array, names: Sequence[str] | None = None
+) -> sp.csr_array:
     """A mass that is symmetric and positive definite.
+
+    Args:
+        names: of its rows, for messages; None: they are counted from 0.
 
     Raises:
         ValueError: it is not; names degrees of freedom without mass.
@@ -83,16 +89,21 @@ def checked_mass(mass: sp.csr_array) -> sp.csr_array:
             )
         )
     mass = sp.csr_array(0.5 * (mass + mass.T))
+    if names is None or len(names) != mass.shape[0]:
+        names, counted = list(map(str, range(mass.shape[0]))), ", counted from 0"
+    else:
+        counted = ""
     negative = np.flatnonzero(mass.diagonal() < 0)
     if negative.size:
         raise ValueError(
-            f"mass is negative at degree of freedom {negative[0]}, counted from 0: change its sign"
+            f"mass is negative at degree of freedom {names[negative[0]]}{counted}: change its sign"
         )
     bare = np.flatnonzero(mass.diagonal() == 0)
     if bare.size:
-        few = ", ".join(map(str, bare[:5])) + (", …" if bare.size > 5 else "")
+        few = ", ".join(names[place] for place in bare[:5])
+        few += ", …" if bare.size > 5 else ""
         raise ValueError(
-            f"mass is singular: {bare.size} degrees of freedom have none ({few}, counted from 0); "
+            f"mass is singular: {bare.size} degrees of freedom have none ({few}{counted}); "
             "condense them in your finite-element program, or give them a small mass"
         )
     if not _is_positive(mass):

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from squealpipe.structures.complex_modes import complex_modes
+from squealpipe.structures.contact_table import write_contacts
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.files import from_mesh, read
 from squealpipe.structures.meshes.faces import Face, Rotation
@@ -73,6 +75,32 @@ class Structure(ContactStructure):  # noqa: D101 (that of the definition)
             units,
             arguments,
         )
+
+    def write_contacts(self, path: str | PathLike[str]) -> None:
+        """Write the contacts as a table (.csv) that the key ``contacts`` of a file takes.
+
+        Beside directions, stiffness, preload and speed the columns say how each contact of a mesh
+        came about: its nodes and those that it meets, area, gap and position. Numbers have units,
+        so that the table is right in files of any; a friction law of a contact's own is refused.
+
+        Raises:
+            ValueError: a reduced structure, whose contacts act on modes; or such a law.
+        """
+        if self.modes is not None:
+            raise ValueError(
+                "contacts of a reduced structure act on its modes; write those of the whole"
+            )
+        with_law = [
+            each.name for each in self.contacts if each.friction_law is not None
+        ]
+        if with_law:
+            raise ValueError(
+                f"contact {with_law[0]} has a friction_law of its own, which a table of contacts "
+                "cannot hold"
+            )
+        names = self.names or [str(row) for row in range(1, self.size + 1)]
+        turning = self.rotation is not None
+        write_contacts(self.contacts, names, Path(path), turning=turning)
 
     def system(self, displacements: Mapping[str, Any] | None = None) -> System:
         """As a system; see :func:`squealpipe.structures.motion_system.system`."""

@@ -55,6 +55,7 @@ def in_coordinates(
             "contacts": contacts,
             "load": load,
             "mesh": None,
+            "names": None,
         }
     )
 

@@ -7,9 +7,9 @@ from typing import Any
 
 from squealpipe.laws.numerals import decimal_sign, numeral, plain
 from squealpipe.laws.rows import text_rows
-from squealpipe.parameters import brief, is_finite_number
 from squealpipe.structures.meshes.faces import Face
 from squealpipe.structures.units import SI, Scales
+from squealpipe.systems.inputs.values import brief, is_finite_number
 from squealpipe.text import suggestion
 
 KEYS = tuple(each.name for each in fields(Face))

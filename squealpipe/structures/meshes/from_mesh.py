@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from squealpipe.parameters import brief
 from squealpipe.structures.contact import Contact
 from squealpipe.structures.meshes.contact_points import Freedoms, contacts_of
 from squealpipe.structures.meshes.element_mesh import ElementMesh
@@ -16,6 +15,7 @@ from squealpipe.structures.meshes.faces import Face, Rotation
 from squealpipe.structures.meshes.finite_elements import KINDS
 from squealpipe.structures.meshes.sources import mesh_of_source
 from squealpipe.structures.meshes.structure_mesh import NO_NODE, StructureMesh
+from squealpipe.systems.inputs.values import brief
 from squealpipe.units import engineering
 
 DENSITIES = (10.0, 1e5)

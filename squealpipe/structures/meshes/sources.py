@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.parameters import brief
 from squealpipe.structures.meshes.deck import read_deck
 from squealpipe.structures.meshes.element_mesh import ElementMesh, Surface, joined
 from squealpipe.structures.meshes.finite_elements import CORNERS
 from squealpipe.structures.packed import plain_name
+from squealpipe.systems.inputs.values import brief
 from squealpipe.validation import real_array
 
 DECKS = (".inp",)

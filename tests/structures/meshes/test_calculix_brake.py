@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squealpipe import Face, Rotation, Structure
+from squealpipe import Contact, Face, Rotation, Structure
 
 DATA = Path(__file__).parent / "calculix_brake"
 YAML = """\
@@ -138,3 +138,47 @@ def test_mesh_of_the_brake_names_its_degrees_of_freedom(brake):
     assert len(brake.mesh.facets) == 498
     normal = brake.contacts[0].direction("normal", brake.size)
     assert {names[place] for place in np.flatnonzero(normal)} == {"5001.3", "362.3"}
+
+
+def test_table_of_contacts_is_read_back_to_the_same_numbers(brake, tmp_path):
+    table = tmp_path / "contacts.csv"
+    brake.write_contacts(table)
+    assert "362.3:-1.0 5001.3:1.0" in table.read_text()
+    for file in ("brake.mas.gz", "brake.sti.gz", "brake.dof.gz"):
+        shutil.copy(DATA / file, tmp_path)
+    head, _, rest = YAML.partition("mesh:")
+    (tmp_path / "brake.yaml").write_text(
+        head + "contacts: contacts.csv\n" + rest[rest.index("rotation") :]
+    )
+    back = Structure.read(tmp_path / "brake.yaml")
+    assert back.names == brake.names
+    for name in ("normals", "tangentials", "stiffnesses", "preloads", "speeds"):
+        np.testing.assert_array_equal(getattr(back, name), getattr(brake, name))
+    assert [each.mu for each in back.contacts] == [0.4] * 20
+    assert [each.origin for each in back.contacts] == [
+        each.origin for each in brake.contacts
+    ]
+    again = tmp_path / "again.csv"
+    back.write_contacts(again)
+    assert again.read_text() == table.read_text()
+    with pytest.raises(ValueError, match="write those of the whole"):
+        back.reduce(n_modes=30, frequency_max=4000).write_contacts(again)
+
+
+def test_contacts_may_name_degrees_of_freedom(brake):
+    by_name = Contact("a", {"5001.3": 1.0, "362.3": -1.0}, {"5001.2": 1.0}, 1e8, 10.0)
+    structure = brake.with_(contacts=[by_name])
+    row = brake.names.index("362.3")
+    assert structure.normals[row, 0] == -1.0
+    wrong = Contact("a", {"5001.7": 1.0}, {0: 1.0}, 1e8, 10.0)
+    with pytest.raises(ValueError, match=r"no degree of freedom '5001.7'.*like 2\.1"):
+        brake.with_(contacts=[wrong])
+
+
+def test_messages_name_nodes(brake):
+    mass = brake.mass.tolil()
+    row = brake.names.index("5003.2")
+    mass[row, :] = 0.0
+    mass[:, row] = 0.0
+    with pytest.raises(ValueError, match=r"1 degrees of freedom have none \(5003.2\)"):
+        brake.with_(mass=mass)
