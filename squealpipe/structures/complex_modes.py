@@ -1,5 +1,7 @@
 """Complex modes of a structure as a dataset: growth, frequency and critical friction by mode."""
 
+import functools
+import inspect
 import json
 import warnings
 from contextlib import nullcontext
@@ -8,10 +10,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.inputs import takes_units
+from squealpipe.inputs import UNITS, with_units
 from squealpipe.schema import Outcome, build, find
 from squealpipe.structures.band import COMPLETE
 from squealpipe.structures.confirming import ConfirmedWay
+from squealpipe.structures.critical_speeds import critical_speeds
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.factors import Asked, asked_of, with_factors
 from squealpipe.structures.meshes.datasets import mesh_variables
@@ -28,7 +31,20 @@ STEPS = 9
 FLOATS = ("growth_rate", "growth_rate_error", "frequency", "damping_ratio", "residual")
 
 
-@takes_units
+def _in_units_of_structure(function: Any) -> Any:
+    """Have a function read its arguments, of which the belt speed of a rotation is in rad/s."""
+    names = list(inspect.signature(function).parameters)
+
+    @functools.wraps(function)
+    def run(structure: ContactStructure, *args: Any, **kwargs: Any) -> Any:
+        units = UNITS | {"belt_speed": structure.speed_unit}
+        given, named = with_units(names, (structure, *args), kwargs, units)
+        return function(*given, **named)
+
+    return run
+
+
+@_in_units_of_structure
 def complex_modes(
     structure: ContactStructure,
     *,
@@ -46,7 +62,8 @@ def complex_modes(
             dimension. None: the structure's. A mapping like ``{"lining": [0.2, 0.4]}`` varies that
             of one contact or of one face, the contacts ``lining_1``, ``lining_2``, …; where every
             contact has its own and nothing is varied, ``critical_scale`` is of all together.
-        belt_speed: likewise, m/s.
+        belt_speed: likewise in any order, m/s, or with a rotation rad/s. An array also has
+            ``critical_speed``.
         frequency_max: modes up to there, Hz.
         n_modes: so many modes, by frequency. One of both is needed beyond 1000 degrees of freedom;
             with neither, all modes are computed.
@@ -72,8 +89,10 @@ def complex_modes(
         or, with damping, comes near where one of both turns unstable; of several the first, so that
         a third mode may name one of two that name each other. A mode is a pair of eigenvalues, or
         one real eigenvalue; it keeps its number along ``mu``, and from one value of a factor to the
-        next, by its shape. ``normal_force`` by contact is 0 where one is open; open contacts are
-        left out.
+        next, by its shape. ``critical_speed``: the smallest of the speeds in the range of
+        ``belt_speed`` at which growth passes zero, NaN with the reason in ``speed_onset``; beyond
+        1000 degrees of freedom only of the reduced structure. ``normal_force`` by contact is 0
+        where one is open; open contacts are left out.
 
     Raises:
         ValueError: an argument; there is no steady sliding anywhere.
@@ -151,6 +170,8 @@ def _dataset(structure: ContactStructure, asked: Asked) -> xr.Dataset:
     modes = {
         name: _over(arrays, ways.shape, *scalar) for name, arrays in tables.items()
     }
+    if asked.critical and speeds.ndim and structure.size <= DENSE:
+        modes |= _critical_speeds(ways, asked)
     dims = tuple(
         name
         for name in ("mu", "belt_speed", *varied)
@@ -181,7 +202,12 @@ def _dataset(structure: ContactStructure, asked: Asked) -> xr.Dataset:
         ),
         **versions(),
     }
-    return build(find(name_over(dims)), modes | of_mesh, coords, attrs)
+    dataset = build(find(name_over(dims)), modes | of_mesh, coords, attrs)
+    if structure.rotation is not None:
+        for name in {"belt_speed", "critical_speed"} & set(dataset.variables):
+            dataset[name].attrs["units"] = structure.speed_unit
+        dataset.belt_speed.attrs["long_name"] = "speed of rotation"
+    return dataset
 
 
 def _ways(structure: ContactStructure, asked: Asked) -> np.ndarray:
@@ -213,6 +239,25 @@ def _ways(structure: ContactStructure, asked: Asked) -> np.ndarray:
             way.follow(path.tolist(), _neighbour(ways, place))
         ways[place], top = way, way.top
     return ways
+
+
+def _critical_speeds(ways: np.ndarray, asked: Asked) -> dict[str, np.ndarray]:
+    """Critical speeds over (mu, further factors, mode), scalars left out."""
+    rows = np.atleast_1d(asked.mu).tolist()
+    numbers = _numbers(list(ways.ravel()), rows)
+    located = [
+        [
+            critical_speeds(list(along), asked.belt_speed, mu, numbers)
+            for along in ways.reshape(len(ways), -1).T
+        ]
+        for mu in rows
+    ]
+    shape = (*([len(rows)] if asked.mu.ndim else []), *ways.shape[1:], len(numbers))
+    each = [one for row in located for modes in row for one in modes]
+    return {
+        "critical_speed": np.array([one.speed for one in each]).reshape(shape),
+        "speed_onset": np.array([one.onset for one in each], np.int8).reshape(shape),
+    }
 
 
 def _neighbour(ways: np.ndarray, place: tuple[int, ...]) -> Way | None:

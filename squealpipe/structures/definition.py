@@ -1,5 +1,6 @@
 """What a structure is: matrices of mass, damping and stiffness with contacts on a moving belt."""
 
+import copy
 import hashlib
 from collections.abc import Sequence
 from typing import Any, NamedTuple, Self
@@ -13,6 +14,7 @@ from squealpipe.structures.friction import Friction, default_mu, friction_of, ha
 from squealpipe.structures.matrices import checked_mass, real_square
 from squealpipe.structures.meshes.faces import Rotation
 from squealpipe.structures.meshes.structure_mesh import StructureMesh
+from squealpipe.structures.speed_terms import SpeedTerms
 from squealpipe.systems.inputs.values import brief, numbers_in_si
 from squealpipe.validation import real_array
 
@@ -59,6 +61,10 @@ class ContactStructure:
         names: of the degrees of freedom, ``"12.1"`` (node.direction) each, which contacts may then
             use in place of numbers; None: those of the mesh.
         rotation: of the body that rubs, about an axis.
+        speed_terms: parts of damping and stiffness that change with speed, gyroscopic and
+            centrifugal ones: ``{"damping": [(matrix, power), …], "stiffness": [(matrix, power),
+            …]}`` adds each matrix times (Ω/Ω₀)^power, where Ω is ``belt_speed`` and Ω₀ that of the
+            rotation, or without one the structure's ``belt_speed``; powers are whole numbers.
 
     Raises:
         ValueError: matrices that do not fit each other, a mass that is not positive definite,
@@ -82,6 +88,7 @@ class ContactStructure:
         mesh: StructureMesh | None = None,
         rotation: Rotation | None = None,
         names: Sequence[str] | None = None,
+        speed_terms: Any = None,
     ) -> None:
         self.mesh = _fitting_mesh(mesh)
         """Nodes, facets and degrees of freedom; of a reduced structure those of the whole."""
@@ -101,11 +108,13 @@ class ContactStructure:
         self.size = int(self.mass.shape[0])
         """Degrees of freedom n."""
         self._refuse_other_sizes()
-        self.stiffness = real_square("stiffness", stiffness, self.size)
+        self.given_stiffness = real_square("stiffness", stiffness, self.size)
+        """K without speed terms."""
         nothing = sp.csr_array((self.size, self.size))
-        self.damping = (
+        self.given_damping = (
             nothing if damping is None else real_square("damping", damping, self.size)
         )
+        """C without speed terms."""
         self.modal_damping = _ratios(modal_damping, self.size)
         if rotation is not None and not isinstance(rotation, Rotation):
             raise ValueError(f"rotation = {brief(rotation)}: a Rotation is needed")
@@ -115,6 +124,10 @@ class ContactStructure:
             belt_speed = 2.0 if rotation is None else rotation.speed
         unit = "m s-1" if rotation is None else "rad s-1"
         self.belt_speed = finite_number("belt_speed", belt_speed, unit)
+        reference = self.belt_speed if rotation is None else rotation.speed
+        self.speed_terms = SpeedTerms.of(speed_terms, self.size, reference)
+        """Parts of damping and stiffness that change with speed."""
+        self.assemble()
         if not isinstance(contacts, Sequence):
             raise ValueError(  # noqa: TRY004 (of all arguments mistakes are values)
                 f"contacts = {brief(contacts)}: a list of Contact is needed"
@@ -206,10 +219,41 @@ class ContactStructure:
         return np.array([each.speed for each in self.contacts])
 
     @property
+    def speed_unit(self) -> str:
+        """CF unit of ``belt_speed``."""
+        return "m s-1" if self.rotation is None else "rad s-1"
+
+    def assemble(self) -> None:
+        """Add the speed terms at the belt's speed to the matrices."""
+        terms, speed = self.speed_terms, self.belt_speed
+        self.stiffness: Any = self.given_stiffness
+        self.damping: Any = self.given_damping
+        if terms.stiffness:
+            whole = self.given_stiffness + terms.at("stiffness", speed)
+            self.stiffness = sp.csr_array(whole)
+        if terms.damping:
+            whole = self.given_damping + terms.at("damping", speed)
+            self.damping = sp.csr_array(whole)
+
+    def at_speed(self, belt_speed: float) -> Self:
+        """Return the structure with the matrices of a speed; itself if they do not change with it.
+
+        Raises:
+            ValueError: a speed of 0 where a term has a negative power.
+        """
+        if not self.speed_terms.vary or belt_speed == self.belt_speed:
+            return self
+        other = copy.copy(self)
+        other.belt_speed = float(belt_speed)
+        other.assemble()
+        return other
+
+    @property
     def stiffness_at_rest(self) -> sp.csr_array:
-        """K + Σ kᵢ nᵢnᵢᵀ, the symmetric part."""
+        """K + Σ kᵢ nᵢnᵢᵀ without what changes with speed, the symmetric part."""
         scaled = sp.csr_array(self.normals * self.stiffnesses)
-        whole = self.stiffness + scaled @ sp.csr_array(self.normals).T
+        whole = self.given_stiffness + scaled @ sp.csr_array(self.normals).T
+        whole = whole + self.speed_terms.still("stiffness")
         return sp.csr_array(0.5 * (whole + whole.T))
 
     def _load(self, load: Any) -> np.ndarray:
@@ -254,8 +298,8 @@ class ContactStructure:
         friction = self.friction
         return {
             "mass": self.mass,
-            "stiffness": self.stiffness,
-            "damping": self.damping,
+            "stiffness": self.given_stiffness,
+            "damping": self.given_damping,
             "modal_damping": self.modal_damping,
             "contacts": self.contacts,
             "mu": friction.mu,
@@ -267,12 +311,13 @@ class ContactStructure:
             "mesh": self.mesh if self.modes is None else None,
             "rotation": self.rotation,
             "names": self.names if self.modes is None else None,
+            "speed_terms": self.speed_terms,
         }
 
     def as_dict(self) -> dict[str, Any]:
         """Numbers and names as JSON takes them; of the matrices and directions a hash."""
         content = hashlib.sha256()
-        for matrix in (self.mass, self.damping, self.stiffness):
+        for matrix in (self.mass, self.given_damping, self.given_stiffness):
             for part in (matrix.indptr, matrix.indices, matrix.data):
                 content.update(np.ascontiguousarray(part).tobytes())
         for array in (self.normals, self.tangentials, self.load, self.transversals):
@@ -301,6 +346,7 @@ class ContactStructure:
             "mu_static": self.friction.mu_static,
             "friction_speed": self.friction.friction_speed,
             **({} if self.rotation is None else {"rotation": self.rotation.as_dict()}),
+            **({"speed_terms": self.speed_terms.as_list()} if self.speed_terms else {}),
         }
 
 

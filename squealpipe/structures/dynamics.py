@@ -37,6 +37,8 @@ class Numbers:
         normals, tangentials: (n, c).
         pushes, drags: M⁻¹ n and M⁻¹ t, (n, c).
         mobility: tᵀM⁻¹t, (c, c).
+        by_speed: M⁻¹ times each part of ``stiffness`` or ``damping`` that changes with speed, with
+            which of both it is part of and its power. Both hold them at the structure's own speed.
     """
 
     stiffness: np.ndarray
@@ -48,6 +50,7 @@ class Numbers:
     pushes: np.ndarray
     drags: np.ndarray
     mobility: np.ndarray
+    by_speed: list[tuple[str, np.ndarray, int]]
 
     @classmethod
     def of(cls, structure: ContactStructure) -> Self:
@@ -69,6 +72,12 @@ class Numbers:
             pushes=la.cho_solve(factor, structure.normals),
             drags=drags,
             mobility=structure.tangentials.T @ drags,
+            by_speed=[
+                (what, la.cho_solve(factor, matrix.toarray()), power)
+                for what in ("stiffness", "damping")
+                for matrix, power in getattr(structure.speed_terms, what)
+                if power
+            ],
         )
 
 
@@ -163,7 +172,17 @@ class Motion:
             + total(-direction @ n.stiffness, self.displacements)
             + total(-direction @ n.damping, self.velocities)
             + total(direction @ n.pushes, self._relieved)
+            + sum(self._by_speed(direction))
         )
+
+    def _by_speed(self, direction: np.ndarray) -> Iterable[Any]:
+        """Yield components of what other speeds than the structure's own change, m/s²."""
+        terms = self.structure.speed_terms
+        for what, matrix, power in self.numbers.by_speed:
+            ratio = self.p.belt_speed * (1.0 / terms.reference)
+            change = ratio**power - terms.factor(power, self.structure.belt_speed)
+            of_what = self.displacements if what == "stiffness" else self.velocities
+            yield change * total(-direction @ matrix, of_what)
 
     @cached_property
     def _relieved(self) -> list[Any]:

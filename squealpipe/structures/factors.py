@@ -15,8 +15,6 @@ from squealpipe.systems.inputs.values import brief, is_whole_number
 from squealpipe.text import suggestion
 from squealpipe.validation import real_array
 
-MATRICES = ("mass", "damping", "stiffness")
-
 
 @dataclass(frozen=True)
 class Asked:
@@ -62,12 +60,16 @@ def asked_of(
         raise ValueError(f"mu = {brief(mu)}: numbers of 0 or greater are needed")
     if frictions.ndim and (np.diff(frictions) <= 0).any():
         raise ValueError(f"mu = {brief(mu)}: it must ascend")
-    speeds = structure.belt_speed if belt_speed is None else belt_speed
+    speeds = real_line(
+        "belt_speed", structure.belt_speed if belt_speed is None else belt_speed
+    )
+    for speed in np.atleast_1d(speeds).tolist():
+        structure.at_speed(speed)  # refuses a speed at which a term has no value
     checked = checked_factors(structure, further)
     return Asked(
         _limits(structure, frequency_max, n_modes),
         frictions,
-        real_line("belt_speed", speeds),
+        speeds,
         {name: values for name, values in checked.items() if values.ndim},
         {name: float(values) for name, values in checked.items() if not values.ndim},
         friction,
@@ -140,9 +142,15 @@ def with_factors(
     changes: dict[str, Any] = {
         name: factors[name] for name in ARGUMENTS if name in factors
     }
-    for name in MATRICES:
-        if name in factors:
-            changes[name] = getattr(structure, name) * factors[name]
+    if "mass" in factors:
+        changes["mass"] = structure.mass * factors["mass"]
+    for name in ("damping", "stiffness"):
+        if (factor := factors.get(name)) is not None:
+            changes[name] = structure.arguments[name] * factor
+            terms = changes.get("speed_terms", structure.speed_terms)
+            changes["speed_terms"] = terms.mapped(
+                lambda each, factor=factor: each * factor, name
+            )
     return structure.with_(
         **changes,
         contacts=[

@@ -32,6 +32,7 @@ MATRICES = ("mass", "stiffness", "damping")
 NUMBERS = ("mu", "belt_speed", "mu_static", "friction_speed")
 KEYS = (
     *MATRICES,
+    "speed_terms",
     *NUMBERS,
     "contacts",
     "modal_damping",
@@ -44,6 +45,12 @@ KEYS = (
     "rotation",
 )
 TRIANGLES = ("mirror", "keep")
+CHANGING = ("damping", "stiffness")
+"""Matrices that may have parts that change with speed."""
+SPEED_TERMS = (
+    "lists of matrix and power are needed, like {damping: [{matrix: DG.mtx, power: 1}]}; "
+    "factor is optional"
+)
 NOTHING = 1e-13
 """Entries below this share of the scale of their rows are round-off."""
 
@@ -52,16 +59,18 @@ def read(path: str | PathLike[str], form: type[Form]) -> Form:
     """A structure from its file.
 
     The file has the keys ``mass`` and ``stiffness``, and where needed ``damping``: names of matrix
-    files beside it, or ``{file: NAME, variable: NAME}``; ``contacts``, a table (text or .xlsx) with
-    the columns name, normal, tangential, stiffness, preload and optionally speed, ``mu`` and
-    ``mu_static`` (of that contact; an empty cell leaves it to the structure), where a direction is
-    ``12:1 40:-1``, degrees of freedom counted from 1, or ``31.2:1``, node and direction, where the
-    matrix file has them; ``mu``, ``belt_speed``, ``friction_law``, ``mu_static``,
-    ``friction_speed``, ``modal_damping`` and ``load`` (a file with one number a line, or 0) as of
-    :class:`Structure`; ``units`` (``m-kg-s``; all numbers of a file with ``mm-t-s`` are in mm, t, s
-    and N and become SI's; a rotation then counts as the displacement at an arm of one unit of
-    length); ``triangle``: ``mirror`` where a file has one triangle of a symmetric matrix, ``keep``
-    where it is meant as it is.
+    files beside it, or ``{file: NAME, variable: NAME}``; ``speed_terms``, like ``{damping:
+    [{matrix: DG.mtx, power: 1}], stiffness: [{matrix: KG.mtx, power: 2, factor: -1}]}``, matrices
+    that are added times factor (1 without it) and a power of the speed; ``contacts``, a table (text
+    or .xlsx) with the columns name, normal, tangential, stiffness, preload and optionally speed,
+    ``mu`` and ``mu_static`` (of that contact; an empty cell leaves it to the structure), where a
+    direction is ``12:1 40:-1``, degrees of freedom counted from 1, or ``31.2:1``, node and
+    direction, where the matrix file has them; ``mu``, ``belt_speed``, ``friction_law``,
+    ``mu_static``, ``friction_speed``, ``modal_damping`` and ``load`` (a file with one number a
+    line, or 0) as of :class:`Structure`; ``units`` (``m-kg-s``; all numbers of a file with
+    ``mm-t-s`` are in mm, t, s and N and become SI's; a rotation then counts as the displacement at
+    an arm of one unit of length); ``triangle``: ``mirror`` where a file has one triangle of a
+    symmetric matrix, ``keep`` where it is meant as it is.
 
     With ``mesh`` (a deck of CalculiX or Abaqus, or what meshio reads) ``contacts`` may be a mapping
     of faces, with the arguments of :class:`Face` each; ``degrees_of_freedom`` names a ``.dof`` file
@@ -80,8 +89,10 @@ def read(path: str | PathLike[str], form: type[Form]) -> Form:
     content = _content(source)
     folder = source.parent
     scales = scales_of(content["units"]) if "units" in content else SI
+    entries = {key: content[key] for key in MATRICES if key in content}
+    speed_terms = _speed_terms(content, source)
     matrices, labels = read_matrices(
-        {key: content[key] for key in MATRICES if key in content},
+        entries | {key: entry["matrix"] for key, entry in speed_terms.items()},
         folder,
         scales,
         content.get("triangle"),
@@ -90,7 +101,16 @@ def read(path: str | PathLike[str], form: type[Form]) -> Form:
         labels = names_of(
             _file_name("degrees_of_freedom", content["degrees_of_freedom"]), folder
         )
-    arguments: dict[str, Any] = {**matrices}
+    arguments: dict[str, Any] = {key: matrices[key] for key in entries}
+    if speed_terms:
+        arguments["speed_terms"] = {
+            what: [
+                (matrices[key] * entry.get("factor", 1.0), entry["power"])
+                for key, entry in speed_terms.items()
+                if what in key
+            ]
+            for what in CHANGING
+        }
     rotation = _rotation(content, scales)
     try:
         arguments |= _of_mesh(content, folder, scales, arguments, labels, rotation)
@@ -110,6 +130,34 @@ def read(path: str | PathLike[str], form: type[Form]) -> Form:
         return form(**arguments, rotation=rotation)
     except ValueError as error:
         raise ValueError(f"{source}: {error}") from error
+
+
+def _speed_terms(
+    content: Mapping[str, Any], source: Path
+) -> dict[str, Mapping[str, Any]]:
+    """Return the entries of ``speed_terms``, checked, by names that say what they are part of."""
+    given = content.get("speed_terms", {})
+    if not isinstance(given, Mapping):
+        raise ValueError(  # noqa: TRY004 (of all arguments mistakes are values)
+            f"{source}: speed_terms = {brief(given)}: {SPEED_TERMS}"
+        )
+    terms = {}
+    for what, entries in given.items():
+        if what not in CHANGING:
+            near = suggestion(str(what), CHANGING)
+            raise ValueError(f"{source}: speed_terms: {what!r}: {near}")
+        for number, entry in enumerate(entries if isinstance(entries, list) else [0]):
+            name = f"speed_terms: {what} {number + 1}"
+            if not isinstance(entry, Mapping) or not (
+                {"matrix", "power"} <= set(entry) <= {"matrix", "power", "factor"}
+            ):
+                raise ValueError(f"{source}: {name} = {brief(entry)}: {SPEED_TERMS}")
+            if not is_finite_number(entry.get("factor", 1.0)):
+                raise ValueError(
+                    f"{source}: {name}: factor = {brief(entry['factor'])}: a number is needed"
+                )
+            terms[name] = entry
+    return terms
 
 
 def _numbers(
@@ -262,23 +310,38 @@ def read_matrices(
     """Return matrices in SI units, in one order, and the labels of their rows.
 
     Args:
-        entries: by name (mass, stiffness, damping) a file, ``{file: NAME, variable: NAME}``, or a
-            matrix.
+        entries: by name (mass, stiffness, damping, or what ends in such a name and a number) a
+            file, ``{file: NAME, variable: NAME}``, or a matrix.
         triangle: ``mirror`` or ``keep``, as of :func:`read`.
     """
     if triangle is not None and triangle not in TRIANGLES:
         raise ValueError(
             f"triangle = {triangle!r}: {suggestion(str(triangle), TRIANGLES)}"
         )
+    # one triangle of a gyroscopic matrix has the other sign on the other side
+    is_mirrored = triangle == "mirror"
     read_in = {
-        key: _matrix(key, entry, folder, triangle) for key, entry in entries.items()
+        key: _matrix(
+            key,
+            entry,
+            folder,
+            None
+            if is_mirrored and key.startswith("speed_terms: damping")
+            else triangle,
+        )
+        for key, entry in entries.items()
     }
     _refuse_orders(read_in)
     labels = next((each.labels for each in read_in.values() if each.labels), None)
     return {
-        key: _in_order(key, each, labels) * getattr(scales, key)
+        key: _in_order(key, each, labels) * getattr(scales, _part_of(key))
         for key, each in read_in.items()
     }, labels
+
+
+def _part_of(key: str) -> str:
+    """Return which matrix one is or is a part of."""
+    return next(name for name in MATRICES if name in key)
 
 
 def _matrix(key: str, entry: Any, folder: Path, triangle: str | None) -> Labelled:
@@ -365,7 +428,7 @@ def _in_order(key: str, given: Labelled, labels: list[str] | None) -> Any:
             f"{key} has {unknown[0]} (node.direction), which the mass has not; condense what has "
             "no mass in your program, or give it a small one"
         )
-    if key != "damping" and len(given.labels) < len(labels):
+    if key in ("mass", "stiffness") and len(given.labels) < len(labels):
         missing = next(label for label in labels if label not in set(given.labels))
         raise ValueError(
             f"{key} lacks {missing} (node.direction), which the mass has; if its file is whole, "

@@ -112,9 +112,12 @@ class Kept:
         modes = self.modes
         at_rest = modes.T @ (structure.stiffness_at_rest @ modes)
         # round-off of the modes would couple them
-        self.stiffness = modes.T @ (structure.stiffness @ modes)
+        self.stiffness = modes.T @ (structure.given_stiffness @ modes)
         self.stiffness += np.diag(self.omega**2) - at_rest
-        self.damping = modes.T @ (structure.damping @ modes)
+        self.damping = modes.T @ (structure.given_damping @ modes)
+        self.speed_terms = structure.speed_terms.mapped(
+            lambda each: modes.T @ (each @ modes)
+        )
         ratios = np.zeros(number)
         asked = (
             np.broadcast_to(structure.modal_damping, number)
@@ -157,6 +160,7 @@ class Kept:
                 self.transversals[:number],
             ),
             None if self.balanced else self.load[:number],
+            self.speed_terms.mapped(lambda each: each[:number, :number]),
         )
 
     def values(self, number: int) -> np.ndarray:
@@ -176,11 +180,10 @@ class Kept:
         state = steady_sliding(reduced, reduced.mu, reduced.belt_speed)
         acting = acting_directions(reduced, state.closed, state.drag)
         springs = contact_stiffness(reduced, state.closed, acting)
-        stiffness = self.stiffness[:number, :number] + springs.toarray()
+        stiffness = (reduced.stiffness + springs).toarray()
         along = self.tangentials[:number]
         damping = (
-            self.damping[:number, :number]
-            + along * (state.force * state.slope) @ along.T
+            reduced.damping.toarray() + along * (state.force * state.slope) @ along.T
         )
         damping = damping + np.diag(2.0 * added * self.omega[:number])
         if not damping.any():

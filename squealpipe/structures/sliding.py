@@ -72,6 +72,7 @@ def steady_sliding(
         NoSlidingError: a belt at rest; a structure that nothing holds; or contacts of which none
             can be open or closed (as where friction jams).
     """
+    structure = structure.at_speed(belt_speed)
     if not np.ndim(mu):
         mu = np.where(structure.has_own_mu, structure.mu_of_contacts, mu)
     speeds = structure.speeds * belt_speed

@@ -142,6 +142,7 @@ class Solver:
     _known: dict[float, Spectrum] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        self.structure = self.structure.at_speed(self.belt_speed)
         self.modal = modal_damping_of(
             self.structure,
             None if self.is_dense else self.limits.n_modes,

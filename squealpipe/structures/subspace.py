@@ -17,6 +17,7 @@ from squealpipe.structures.modes import modes_at_rest
 from squealpipe.structures.pencil import LowRank
 from squealpipe.structures.sliding import static_answers
 from squealpipe.structures.spectrum import Spectrum
+from squealpipe.structures.speed_terms import SpeedTerms
 
 DEPENDENT = 1e-12
 """Share of a vector's square that others leave of it, below which it adds nothing."""
@@ -28,12 +29,15 @@ def in_coordinates(
     damping: np.ndarray,
     directions: tuple[np.ndarray, np.ndarray, np.ndarray],
     load: np.ndarray | None,
+    speed_terms: SpeedTerms,
 ) -> ContactStructure:
     """A structure in coordinates of which the mass is 1.
 
     Args:
+        stiffness, damping: there, without speed terms.
         directions: normal, tangential and transversal ones there, (m, contacts) each.
         load: there; None balances the preload.
+        speed_terms: there.
     """
     normals, tangentials, transversals = directions
     contacts = [
@@ -54,6 +58,7 @@ def in_coordinates(
             "modal_damping": 0.0,
             "contacts": contacts,
             "load": load,
+            "speed_terms": speed_terms,
             "mesh": None,
             "names": None,
         }
@@ -108,10 +113,10 @@ def projected(
         modal: damping of single modes of the whole.
     """
     at_rest = basis.T @ (whole.stiffness_at_rest @ basis)
-    stiffness = basis.T @ (whole.stiffness @ basis)
+    stiffness = basis.T @ (whole.given_stiffness @ basis)
     # round-off would couple the modes at rest
     stiffness += np.diag(np.diag(at_rest)) - at_rest
-    damping = basis.T @ (whole.damping @ basis)
+    damping = basis.T @ (whole.given_damping @ basis)
     if modal is not None:
         columns = basis.T @ modal.columns
         damping = damping + (columns * modal.weights) @ columns.T
@@ -125,4 +130,5 @@ def projected(
         damping,
         (normals, tangentials, transversals),
         None if whole.given_load is None else basis.T @ whole.load,
+        whole.speed_terms.mapped(lambda each: basis.T @ (each @ basis)),
     )

@@ -8,7 +8,7 @@ from typing import Any, Self
 import numpy as np
 
 from squealpipe.structures.definition import ContactStructure
-from squealpipe.systems.inputs.values import brief
+from squealpipe.systems.inputs.values import brief, numbers_in_si
 from squealpipe.text import suggestion
 
 
@@ -105,6 +105,7 @@ def varied_by(structure: ContactStructure, mu: Any) -> tuple[VariedFriction, Any
                 "their mu in the structure"
             )
         ((name, values),) = mu.items()
+        values = numbers_in_si("mu", values, "1")
         varied = VariedFriction.named(structure, str(name))
         return varied, varied.now(structure) if values is None else values
     if mu is None:

@@ -52,6 +52,16 @@ class Onset(IntEnum):
     not_sought = 4
 
 
+class SpeedOnset(IntEnum):
+    """Why a critical speed is what it is."""
+
+    stable = 0
+    turns_unstable = 1
+    unstable_throughout = 2
+    not_followed = 3
+    turns_stable = 4
+
+
 def name_over(dims: tuple[str, ...]) -> str:
     """The schema's name for modes over these factors."""
     return f"{NAME} over {', '.join(dims)}" if dims else NAME
@@ -60,6 +70,7 @@ def name_over(dims: tuple[str, ...]) -> str:
 def _modes(dims: tuple[str, ...]) -> DatasetSchema:
     mode, contact = (*dims, "mode"), (*dims, "contact")
     along = tuple(dim for dim in dims if dim != "mu")
+    across = tuple(dim for dim in dims if dim != "belt_speed")
     return DatasetSchema(
         name=name_over(dims),
         title="Complex modes of a structure about steady sliding",
@@ -128,6 +139,26 @@ def _modes(dims: tuple[str, ...]) -> DatasetSchema:
                 "of several; 0: none",
                 *along,
                 "mode",
+            ),
+            **(
+                {
+                    "critical_speed": or_nan(
+                        "smallest speed at which growth passes zero",
+                        "m s-1",
+                        (*across, "mode"),
+                        rtol=1e-8,
+                        optional=True,
+                    ),
+                    "speed_onset": flag(
+                        "why the critical speed is what it is",
+                        SpeedOnset,
+                        *across,
+                        "mode",
+                        optional=True,
+                    ),
+                }
+                if "belt_speed" in dims
+                else {}
             ),
             "normal_force": or_nan(
                 "normal force in steady sliding, 0 where open",
