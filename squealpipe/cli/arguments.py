@@ -60,6 +60,8 @@ def _parse_friction(text: str) -> list[float] | dict[str, list[float]]:
     return {name.strip(): numbers} if equals else numbers
 
 
+SpeedTexts = Annotated[str | None, _signed(str, "RANGE", negative="")]
+"""A number, a list of them or first:last:count of speeds, read where their unit is known."""
 Frictions = Annotated[Any, _signed(_parse_friction, "[NAME=]RANGE", negative="")]
 """Friction of a structure, or of one of its contacts or faces."""
 Ranges = Annotated[list[str], Parameter(metavar="NAME=RANGE", negative="")]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ from squealpipe.cli.arguments import (
     Frictions,
     Output,
     Ranges,
-    Speeds,
+    SpeedTexts,
     Switch,
     Time,
     Tolerance,
@@ -29,6 +30,7 @@ from squealpipe.cli.output import (
     write,
 )
 from squealpipe.cli.signatures import errors_in_options, in_options, options_of
+from squealpipe.inputs import parse_number
 from squealpipe.ranges import parse_range
 
 if TYPE_CHECKING:
@@ -45,7 +47,7 @@ def modes(
     /,
     *,
     mu: Frictions = None,
-    belt_speed: Speeds = None,
+    belt_speed: SpeedTexts = None,
     frequency_max: Frequency = None,
     n_modes: Whole | None = None,
     critical: bool = True,
@@ -62,7 +64,8 @@ def modes(
         mu: friction, a number or first:last:count; that of the file by default. It is that of the
             contacts that have none of their own; lining=0:0.6:13 is that of one contact or of a
             face, the contacts lining_1, lining_2, ….
-        belt_speed: likewise, m/s.
+        belt_speed: likewise, m/s, or rad/s (also 200 rpm) where the file has a rotation. Over
+            several speeds, those at which a mode turns unstable or stable are located too.
         frequency_max: highest frequency of the modes, Hz; 20 kHz where neither limit is given.
         n_modes: number of modes; one of these two limits is needed beyond 1000 degrees of freedom.
         critical: locate where modes turn unstable; --no-critical leaves that out, which is most of
@@ -75,7 +78,7 @@ def modes(
     """
     asked: dict[str, Any] = {
         "mu": _friction(mu),
-        "belt_speed": _one_or_more(belt_speed),
+        "belt_speed": belt_speed,
         "frequency_max": frequency_max,
         "n_modes": n_modes,
         "critical": critical,
@@ -95,6 +98,9 @@ def modes(
 
     def complex_modes(structure: Any, **options: Any) -> xr.Dataset:
         nonlocal shown
+        if text := options.pop("belt_speed", None):
+            read = partial(parse_number, units=structure.speed_unit)
+            options["belt_speed"] = _one_or_more(parse_range(text, one=read))
         values = [*options.values(), *_values_of(options.get("mu"))]
         points = math.prod(len(each) for each in values if isinstance(each, list))
         told = library.cost_beforehand(structure, points, options.get("n_modes"))
@@ -159,20 +165,30 @@ def _values_of(mu: Any) -> list[Any]:
 
 
 def _line(mode: Any) -> str:
-    """A mode where it grows fastest, and its critical friction."""
+    """A mode where it grows fastest, and its critical friction and speed."""
     fastest = mode.growth_rate.where(mode.unstable).argmax(...)
     at = mode.isel(fastest)
     words = (
         f"mode {int(mode.mode)}: {at.frequency.item():.6g} Hz, growth rate "
         f"{at.growth_rate.item():.6g} 1/s"
     )
-    if "critical_scale" in at:  # every contact has its own friction
-        scale = at.critical_scale.item()
-        return words + (f", from {scale:.6g} mu on" if scale == scale else "")
-    critical, of = at.critical_mu.item(), mode.attrs.get("mu_of")
-    name = f"mu of {of}" if of else "mu"
-    onset = f", from {name} = {critical:.6g} on" if critical == critical else ""
-    return f"{words} at {name} = {at.mu.item():g}{onset}"
+    name = f"mu of {mode.attrs['mu_of']}" if "mu_of" in mode.attrs else "mu"
+    rubs = "contact" in mode.coords
+    shown = [dim for dim in mode.growth_rate.dims if dim != "mu" or not rubs]
+    if rubs and "mu" in at.coords:
+        shown = ["mu", *shown]
+    if shown:
+        words += " at " + ", ".join(
+            f"{name if dim == 'mu' else dim} = {at[dim].item():g}" for dim in shown
+        )
+    onsets = [
+        (at.critical_mu, f", from {name} = {{:.6g}} on"),
+        # every contact has its own friction
+        (at.get("critical_scale"), ", from {:.6g} mu on"),
+        (at.get("critical_speed"), ", turns at belt_speed = {:.6g}"),
+    ]
+    located = [(each.item(), text) for each, text in onsets if each is not None]
+    return words + "".join(text.format(x) for x, text in located if x == x)
 
 
 @options_of("squealing_modes")

@@ -4,8 +4,9 @@ import functools
 import inspect
 import json
 import warnings
+from collections.abc import Callable
 from contextlib import nullcontext
-from typing import Any
+from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -26,20 +27,25 @@ from squealpipe.structures.spectrum import ALL, Solver, Spectrum
 from squealpipe.systems.datasets.versions import versions
 from squealpipe.systems.progress import with_progress
 
+Given = ParamSpec("Given")
+Result = TypeVar("Result")
 STEPS = 9
 """Frictions on the way from none to one friction."""
 FLOATS = ("growth_rate", "growth_rate_error", "frequency", "damping_ratio", "residual")
 
 
-def _in_units_of_structure(function: Any) -> Any:
+def _in_units_of_structure(
+    function: Callable[Given, Result],
+) -> Callable[Given, Result]:
     """Have a function read its arguments, of which the belt speed of a rotation is in rad/s."""
     names = list(inspect.signature(function).parameters)
 
     @functools.wraps(function)
-    def run(structure: ContactStructure, *args: Any, **kwargs: Any) -> Any:
+    def run(*args: Given.args, **kwargs: Given.kwargs) -> Result:
+        structure: Any = args[0]
         units = UNITS | {"belt_speed": structure.speed_unit}
-        given, named = with_units(names, (structure, *args), kwargs, units)
-        return function(*given, **named)
+        given, named = with_units(names, args, kwargs, units)
+        return function(*given, **named)  # type: ignore[arg-type]
 
     return run
 

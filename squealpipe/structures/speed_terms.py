@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Self
 
 import numpy as np
@@ -107,17 +107,12 @@ class SpeedTerms:
 
     def mapped(self, change: Callable[[Any], Any], *what: str) -> Self:
         """Return the terms with every matrix changed, or those of ``what`` alone."""
-        names = what or tuple(UNITS)
-        return replace(
-            self,
-            **{
-                name: tuple(
-                    (sp.csr_array(change(each)), power)
-                    for each, power in getattr(self, name)
-                )
-                for name in names
-            },
-        )
+        parts = {name: getattr(self, name) for name in UNITS}
+        for name in what or tuple(UNITS):
+            parts[name] = tuple(
+                (sp.csr_array(change(each)), power) for each, power in parts[name]
+            )
+        return type(self)(self.reference, parts["damping"], parts["stiffness"])
 
     def as_list(self) -> list[dict[str, Any]]:
         """Return the terms as JSON takes them; of the matrices a hash."""
