@@ -37,9 +37,12 @@ def listen(
     Example: `squealpipe listen run.nc -o run.wav`
 
     Args:
-        file: run that `squealpipe simulate -o` wrote.
+        file: run that `squealpipe simulate -o` or `squealpipe squeal --run` wrote, or an answer of
+            `squealpipe assess -o`.
         output: sound to write (.wav); by default FILE.wav, here.
-        at: component of the velocity, x (along the belt) or y; by default the louder one.
+        at: component of a pad's velocity, x (along the belt) or y; of a structure a contact by its
+            name, a node by its number, or like 12.2 its displacement along y. By default the
+            loudest.
         seconds: length of the sound, s.
         slow: play it so many times slower, for squeal beyond hearing: 10 makes 40 kHz 4 kHz.
         fast: play it so many times faster, for motions below hearing, as those of the paper's
@@ -86,7 +89,7 @@ def animate(
     dpi: Dpi = None,
     force: Force = False,
 ) -> int:
-    """Write a film of the end of a run: the pad on its springs, contact force and path.
+    """Write a film of the end of a run: pad on its springs or deformed mesh, force and path.
 
     Contacts are coloured by what they do: slip, stick or open. Without ffmpeg (`pip install
     imageio-ffmpeg`) only .gif and .html can be written.
@@ -94,7 +97,8 @@ def animate(
     Example: `squealpipe animate run.nc -o run.mp4`
 
     Args:
-        file: run that `squealpipe simulate -o` or `squealpipe assess -o` wrote.
+        file: run that `squealpipe simulate -o` or `squealpipe squeal --run` wrote, or an answer of
+            `squealpipe assess -o`.
         output: film to write (.mp4, .gif or .html); by default FILE.mp4, here.
         seconds: length of the film, s.
         periods: periods of the strongest line that are shown; by default one in each second.

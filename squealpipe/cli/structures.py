@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
 
 from squealpipe.cli.arguments import (
     FILES,
@@ -203,6 +205,7 @@ def squeal(
     n_modes: Whole | None = None,
     frequency_max: Frequency = None,
     onset: Switch,
+    run: Annotated[Path | None, Parameter(negative="")] = None,
     output: Output = Path("squeal.nc"),
     files: Files = FILES,
 ) -> int:
@@ -226,8 +229,12 @@ def squeal(
             needed beyond 1000 degrees of freedom.
         onset: also lower the friction until the squeal dies, to see whether it lasts below the
             critical friction, and how far; costs about as much as the rest.
+        run: also write the motion that a small push ends in over time (.nc), which `squealpipe
+            listen` and `squealpipe animate` take.
     """
     refuse_existing(output, force=files.force)
+    if run is not None:
+        check_output(run, force=files.force, kinds=(".nc",), option="--run")
 
     from squealpipe import squealing_modes
     from squealpipe.structures.squeal.plant import carried, check_modes
@@ -240,13 +247,34 @@ def squeal(
             reduced = carried(structure, limit)
         else:
             reduced = structure.reduce(n_modes=number, frequency_max=limit)
+        reductions.append(reduced)
         return squealing_modes(reduced, **options)
 
+    reductions: list[Any] = []
     asked = {"n_modes": n_modes, "frequency_max": frequency_max}
     asked |= {"samples": samples, "seed": seed, "tol": tol, "t_end": t_end}
     dataset = _compute(squeal, file, asked | {"onset": onset or None}, output, files)
     answer(*map(in_options, lines(dataset)))
+    if run is not None:
+        _write_run(reductions[0], dataset, run, tol)
     return DONE if int(dataset.verdict) == 0 else ANSWER_IS_NO
+
+
+def _write_run(structure: Any, told: xr.Dataset, path: Path, tol: float) -> None:
+    """Write the motion that a structure settles to, if it moves."""
+    from squealpipe.store.identity import dataset_id
+    from squealpipe.structures.squeal.settled_run import (
+        moving_attractors,
+        squealing_run,
+    )
+
+    if not moving_attractors(told).size:
+        answer(f"{path} is not written: nothing moves in the end")
+        return
+    config = {"parameters": structure.as_dict(), "answer": dataset_id(told)}
+    with working("run"):
+        write(lambda: squealing_run(structure, told, tol=tol), path, config=config)
+    say(f"wrote {path}")
 
 
 @options_of("squeal_ladder")

@@ -7,13 +7,18 @@ from collections.abc import Callable
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
 from squealpipe.plotting.film import FRAMES_PER_SECOND, Film
+from squealpipe.plotting.mesh_scene import Body, StructureScene
 from squealpipe.plotting.pad_motion import PadMotion
-from squealpipe.plotting.pad_scene import Geometry, Instants, Mechanism, PadScene
+from squealpipe.plotting.pad_scene import Geometry, Mechanism, PadScene
+from squealpipe.plotting.structure_motion import SCHEMA as STRUCTURE_RUN
+from squealpipe.plotting.structure_motion import StructureMotion
 from squealpipe.text import number
+from squealpipe.units import shown_in
 from squealpipe.vibration.spectrum import amplitude_spectrum, strongest_lines
 
 SAMPLES_PER_PERIOD = 16
@@ -32,7 +37,7 @@ def film_of(
     """Make a film of the end of a run.
 
     Args:
-        run: dataset ``simulation`` or ``assess``.
+        run: dataset ``simulation``, ``assess`` or ``structure_run``.
         seconds: length of the film, s.
         periods: of the strongest line that are shown; by default one in each second of film.
         begin: instant of the run at which the film begins, s; by default so that it ends with the
@@ -49,6 +54,8 @@ def film_of(
     periods = seconds if periods is None else periods
     if not (math.isfinite(periods) and periods > 0):
         raise ValueError(f"periods = {periods!r}: a number above 0 is needed")
+    if run.attrs.get("schema") == STRUCTURE_RUN:
+        return _film_of_structure(run, seconds, periods, begin, dpi)
     motion = PadMotion.read(run)
     period = period_of(motion)
     first, last = float(motion.time[0]), float(motion.time[-1])
@@ -77,6 +84,26 @@ def film_of(
     return Film(PadScene(around, shown, seconds / span), count, dpi)
 
 
+def _film_of_structure(
+    run: xr.Dataset, seconds: float, periods: float, begin: float | None, dpi: int
+) -> Film:
+    """Make a film of a structure of the stored instants that are nearest to its frames."""
+    motion = StructureMotion.read(run)
+    period, first, last = 1.0 / motion.frequency, motion.time[0], motion.time[-1]
+    span = min(periods * period, last - first)
+    start = last - span if begin is None else begin
+    if not first <= start < last:
+        raise ValueError(
+            f"begin = {start!r} s: the run is from {first:.6g} to {last:.6g} s"
+        )
+    span = min(span, last - start)
+    seconds *= span / (periods * period)
+    count = max(round(seconds * FRAMES_PER_SECOND), 2)
+    instants = start + span * np.arange(count) / count
+    frames = np.searchsorted(0.5 * (motion.time[1:] + motion.time[:-1]), instants)
+    return Film(StructureScene(motion, frames, seconds / span), count, dpi)
+
+
 def period_of(motion: PadMotion) -> float:
     """Return the period of the strongest line of the velocity in the later half, s.
 
@@ -102,23 +129,46 @@ def phases(run: xr.Dataset, count: int = 8) -> Figure:
     """Draw the last period of a motion as a strip of phases, for paper.
 
     Args:
-        run: dataset ``simulation`` or ``assess``.
+        run: dataset ``simulation``, ``assess`` or ``structure_run``.
         count: of phases, in rows of four.
     """
+    if run.attrs.get("schema") == STRUCTURE_RUN:
+        return _phases_of_structure(run, count)
     motion = PadMotion.read(run)
     period, last = period_of(motion), float(motion.time[-1])
     shown = motion.at(last - period * (1.0 - np.arange(count) / count))
     around = motion.from_(last - period)
     geometry = Geometry(around if around.time.size > 3 else motion)
-    rows = -(-count // 4)
-    figure, axes = style.new_figure(style.PAGE, 1.75 * rows, nrows=rows, ncols=4)
-    instants = Instants(period)
-    for place, panel in enumerate(axes.flat):
-        if place >= count:
-            panel.set_axis_off()
-            continue
+    figure, panels = _strip(count)
+    factor, unit = shown_in(period, "s")
+    for place, panel in enumerate(panels):
         Mechanism(panel, geometry, shown, small=True).show(place)
-        time = instants.factor * period * place / count
-        panel.set_title(f"{number(time, 3)} {instants.unit}", fontsize=7)
+        time = factor * period * place / count
+        panel.set_title(f"{number(time, 3)} {unit}", fontsize=7)
     figure.suptitle(f"one period; motion drawn {geometry.told}", fontsize=8)
     return figure
+
+
+def _phases_of_structure(run: xr.Dataset, count: int) -> Figure:
+    motion = StructureMotion.read(run)
+    period, last = 1.0 / motion.frequency, float(motion.time[-1])
+    instants = last - period * (1.0 - np.arange(count) / count)
+    frames = np.searchsorted(0.5 * (motion.time[1:] + motion.time[:-1]), instants)
+    figure, panels = _strip(count, 1.25)
+    factor, unit = shown_in(period, "s")
+    for place, panel in enumerate(panels):
+        body = Body(panel, motion, frames, small=True)
+        body.show(place)
+        time = factor * period * place / count
+        panel.set_title(f"{number(time, 3)} {unit}", fontsize=7)
+    figure.suptitle(f"one period; vibration drawn {body.told}", fontsize=8)
+    return figure
+
+
+def _strip(count: int, height: float = 1.75) -> tuple[Figure, list[Axes]]:
+    """Panels in rows of four."""
+    rows = -(-count // 4)
+    figure, axes = style.new_figure(style.PAGE, height * rows, nrows=rows, ncols=4)
+    for panel in axes.flat[count:]:
+        panel.set_axis_off()
+    return figure, list(axes.flat[:count])

@@ -8,24 +8,24 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
-from matplotlib.patches import Circle, Patch
+from matplotlib.patches import Circle
 from matplotlib.text import Text
 
 from squealpipe.codes import Regime
 from squealpipe.plotting import style
-from squealpipe.plotting.cycles import joined
 from squealpipe.plotting.mechanism import arrow, coil, displaced_springs
+from squealpipe.plotting.motion_panels import (
+    COLOURS_IN_WORDS,
+    CONTACT,
+    Panels,
+    Traces,
+    contact_legend,
+    round_down,
+    speed_in_words,
+)
 from squealpipe.plotting.pad_motion import PadMotion
 from squealpipe.text import number
-from squealpipe.units import engineering, shown_in
-
-CONTACT = {
-    Regime.slip_slower: ("slip", style.BLUE),
-    Regime.slip_faster: ("slip", style.BLUE),
-    Regime.stick: ("stick", style.ORANGE),
-    Regime.separated: ("open", style.RED),
-}
-"""State of a contact in a word, and its colour."""
+from squealpipe.units import engineering
 
 
 class Geometry:
@@ -48,7 +48,7 @@ class Geometry:
         shortest = min(motion.lengths)
         extent = float(np.abs(motion.place - self.mean).max())
         # beside a spring the motion is seen well, and the mass stays off its pivots
-        self.scale = max(_round(0.22 * shortest / max(extent, 1e-300)), 1.0)
+        self.scale = max(round_down(0.22 * shortest / max(extent, 1e-300)), 1.0)
         points = np.concatenate([self.drawn(motion.place), self.ends])
         self.size = float(np.ptp(points, axis=0).max())
         self.radius = 0.04 * self.size
@@ -87,14 +87,6 @@ class Geometry:
                 [-second * math.cos(b), second * math.sin(b)],
             ]
         )
-
-
-def _round(value: float) -> float:
-    """The largest of 1, 2 and 5 times a power of ten that is no larger than a value."""
-    power = 10.0 ** math.floor(math.log10(value))
-    return power * max(
-        step for step in (1.0, 2.0, 5.0) if step * power <= value * 1.000001
-    )
 
 
 class Mechanism:
@@ -216,22 +208,9 @@ class PadScene:
             8.0, 4.5, ncols=2, width_ratios=[1.35, 1.0]
         )
         left = axes[0, 0]
-        grid = (
-            axes[0, 1].get_gridspec()[0, 1].subgridspec(2, 1, height_ratios=[1, 1.25])
-        )
-        axes[0, 1].remove()
-        force, path = (self.figure.add_subplot(grid[row, 0]) for row in (0, 1))
         geometry = Geometry(motion)
         self.mechanism = Mechanism(left, geometry, shown)
-        self.instants = Instants(float(shown.time[-1]))
-        words = dict(CONTACT.values())
-        left.legend(
-            handles=[Patch(color=colour, label=word) for word, colour in words.items()],
-            loc="lower center",
-            bbox_to_anchor=(0.5, -0.02),
-            ncols=3,
-            title="contact",
-        )
+        contact_legend(left)
         first, second = (f"{number(math.degrees(angle))}°" for angle in shown.angles)
         left.set_title(
             f"α₁ = {first}, α₂ = {second}; motion drawn {geometry.told}", fontsize=8
@@ -239,19 +218,16 @@ class PadScene:
         self.clock: Text = left.text(
             0.0, 0.98, "", transform=left.transAxes, va="top", fontsize=10
         )
-        self.past, self.now = self._draw_force(force, motion, shown)
-        self.dot = self._draw_path(path, motion)
-        self.moving = [
-            *self.mechanism.moving,
-            self.clock,
-            self.past,
-            self.now,
-            self.dot,
-        ]
+        all_of_it, frames = (
+            Traces(each.time, each.force, each.place, each.regimes, each.preload)
+            for each in (motion, shown)
+        )
+        self.panels = Panels(self.figure, axes[0, 1], all_of_it, frames)
+        self.moving = [*self.mechanism.moving, self.clock, *self.panels.moving]
         self.caption = (
             f"{engineering(float(shown.time[-1] - shown.time[0]), 's', 3)} of the motion, played "
-            f"{_speed(slower)}; displacements are drawn {geometry.told} "
-            "beside the springs. Blue: the contact slips; orange: it sticks; red: it is open."
+            f"{speed_in_words(slower)}; displacements are drawn {geometry.told} "
+            f"beside the springs. {COLOURS_IN_WORDS}"
         )
         open_, stuck = (
             f"{100 * np.mean(shown.regimes == each):.0f} %"
@@ -263,75 +239,8 @@ class PadScene:
             "over time and the path of the mass."
         )
 
-    def _draw_force(
-        self, axes: Axes, motion: PadMotion, shown: PadMotion
-    ) -> tuple[Line2D, Line2D]:
-        kept = (motion.time >= shown.time[0]) & (motion.time <= shown.time[-1])
-        self.force_time = self.instants.factor * motion.time[kept]
-        self.force = motion.force[kept]
-        top = 1.1 * max(float(np.nanmax(self.force)), 1e-12)
-        axes.plot(self.force_time, self.force, color=style.LIGHT, lw=0.8)
-        margin = 0.03 * (self.force_time[-1] - self.force_time[0])
-        axes.axhline(0.0, color=style.GREY, lw=0.5)
-        axes.set(
-            xlim=(self.force_time[0] - margin, self.force_time[-1] + margin),
-            ylim=(-0.06 * top, top),
-            xlabel=f"time ({self.instants.unit})",
-            ylabel="contact force over preload",
-        )
-        axes.locator_params(axis="x", nbins=4)
-        past: Line2D = axes.plot([], [], color=style.BLACK, lw=1.0)[0]
-        now: Line2D = axes.plot([], [], "o", color=style.BLACK, ms=5)[0]
-        return past, now
-
-    def _draw_path(self, axes: Axes, motion: PadMotion) -> Line2D:
-        self.unit_factor, unit = shown_in(float(np.abs(motion.place).max()), "m")
-        x, y = self.unit_factor * motion.place.T
-        for word, colour in dict(CONTACT.values()).items():
-            codes = [code for code, (name, _) in CONTACT.items() if name == word]
-            shown = np.where(joined(np.isin(motion.regimes, codes)), y, np.nan)
-            axes.plot(x, shown, color=colour, lw=0.7)
-        limit = self.unit_factor * motion.preload
-        if y.min() < limit < 1.2 * max(y.max(), 0.0):
-            axes.axhline(limit, color=style.GREY, lw=0.8, linestyle=":")
-        axes.set(xlabel=f"along the belt ({unit})", ylabel=f"away from it ({unit})")
-        axes.set_aspect("equal", adjustable="datalim")
-        axes.locator_params(nbins=5)
-        dot: Line2D = axes.plot([], [], "o", color=style.BLACK, ms=6, zorder=5)[0]
-        return dot
-
     def show(self, frame: int) -> None:
         """Move all to an instant of the film."""
         self.mechanism.show(frame)
-        time = float(self.shown.time[frame])
-        self.clock.set_text(self.instants.told(time))
-        before = self.force_time <= self.instants.factor * time
-        at = self.instants.factor * time, float(self.shown.force[frame])
-        self.past.set_data(
-            np.append(self.force_time[before], at[0]),
-            np.append(self.force[before], at[1]),
-        )
-        colour = CONTACT[Regime(int(self.shown.regimes[frame]))][1]
-        self.now.set_data([at[0]], [at[1]])
-        x, y = self.unit_factor * self.shown.place[frame]
-        self.dot.set_data([x], [y])
-        for mark in (self.now, self.dot):
-            mark.set_color(colour)
-
-
-class Instants:
-    """Times of a motion in words that keep their length."""
-
-    def __init__(self, last: float) -> None:
-        self.factor, self.unit = (1e3, "ms") if last < 10.0 else (1.0, "s")
-        self.digits = max(5 - len(str(int(self.factor * last))), 0)
-
-    def told(self, time: float) -> str:
-        """Return an instant with its unit."""
-        return f"t = {self.factor * time:.{self.digits}f} {self.unit}"
-
-
-def _speed(slower: float) -> str:
-    if slower >= 1.0:
-        return f"{number(slower, 2)} times slower than in reality"
-    return f"{number(1.0 / slower, 2)} times faster than in reality"
+        self.panels.show(frame)
+        self.clock.set_text(self.panels.told(frame))

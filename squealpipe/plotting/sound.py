@@ -28,6 +28,8 @@ from scipy.signal import correlate, resample
 
 from squealpipe.codes import Regime
 from squealpipe.plotting.pad_motion import PadMotion
+from squealpipe.plotting.structure_motion import SCHEMA as STRUCTURE_RUN
+from squealpipe.plotting.structure_motion import StructureMotion
 from squealpipe.store.whole_files import whole_file
 from squealpipe.text import number
 from squealpipe.units import engineering
@@ -184,8 +186,9 @@ def sound(
     """Make the settled part of a run audible.
 
     Args:
-        run: dataset ``simulation``, or the settled motion of ``assess``.
-        at: ``x`` or ``y``; by default the one with the larger rms velocity.
+        run: dataset ``simulation`` or ``structure_run``, or the settled motion of ``assess``.
+        at: ``x`` or ``y`` of a pad, a node or contact of a structure; by default what has the
+            largest rms velocity.
         seconds: length that the sound will be repeated to, s; a loop is no longer.
         speed: how many times faster than in reality it is played.
         again: integrates the run again, given instants (n,), s; used where the run is sampled too
@@ -200,24 +203,7 @@ def sound(
         raise ValueError(f"seconds = {seconds!r}: a time above 0 is needed")
     if not (math.isfinite(speed) and speed > 0):
         raise ValueError(f"speed = {speed!r}: a factor above 0 is needed")
-    motion = _audible(run)
-    name = _component(motion, at)
-    if not motion.settled:
-        motion = _settled_part(motion)
-    step = (motion.time[-1] - motion.time[0]) / (motion.time.size - 1)
-    for _ in range(int(math.log2(LISTENING.finest)) // 2 + 1):
-        missing = _missing(motion)
-        if missing is None:
-            break
-        if again is None or motion.settled:
-            raise TooCoarseError(missing)
-        step /= 4.0
-        count = math.ceil((motion.time[-1] - motion.time[0]) / step) + 1
-        instants = np.linspace(motion.time[0], motion.time[-1], count)
-        motion = PadMotion.read(again(instants))
-    else:
-        raise TooCoarseError(missing)
-    time, signal = motion.time, motion.velocity[:, COMPONENTS.index(name)]
+    time, signal, words = _signal(run, at, again)
     signal = signal - signal.mean()
     frequency = _strongest(signal, step_of(time))
     periods = frequency * (time[-1] - time[0])
@@ -229,7 +215,37 @@ def sound(
         )
     _check_audible(frequency, speed)
     loop, correlation = _loop(signal, step_of(time), seconds * speed, speed)
-    return Sound(loop, WORDS[name], frequency, speed, correlation)
+    return Sound(loop, words, frequency, speed, correlation)
+
+
+def _signal(
+    run: xr.Dataset, at: str | None, again: Callable[[np.ndarray], xr.Dataset] | None
+) -> tuple[np.ndarray, np.ndarray, str]:
+    """Return instants and velocity of what is heard, both (n,), and words for it."""
+    if run.attrs.get("schema") == STRUCTURE_RUN:
+        structure = StructureMotion.read(run)
+        signal, words = structure.heard(at)
+        if (missing := _missing(structure.time, signal)) is not None:
+            raise TooCoarseError(missing)
+        return structure.time, signal, words
+    motion = _audible(run)
+    name = _component(motion, at)
+    column = COMPONENTS.index(name)
+    if not motion.settled:
+        motion = _settled_part(motion)
+    step = (motion.time[-1] - motion.time[0]) / (motion.time.size - 1)
+    for _ in range(int(math.log2(LISTENING.finest)) // 2 + 1):
+        missing = _missing(motion.time, motion.velocity[:, column])
+        if missing is None:
+            return motion.time, motion.velocity[:, column], WORDS[name]
+        if again is None or motion.settled:
+            break
+        step /= 4.0
+        count = math.ceil((motion.time[-1] - motion.time[0]) / step) + 1
+        motion = PadMotion.read(
+            again(np.linspace(motion.time[0], motion.time[-1], count))
+        )
+    raise TooCoarseError(missing)
 
 
 def _audible(run: xr.Dataset) -> PadMotion:
@@ -287,27 +303,23 @@ def _levels(motion: PadMotion, part: np.ndarray) -> WindowLevels:
     return WindowLevels(rms, separated, stuck, peaks=np.zeros(1))
 
 
-def _missing(motion: PadMotion) -> str | None:
-    """Return what is missing in the samples of a run to be heard; None if nothing is."""
+def _missing(time: np.ndarray, signal: np.ndarray) -> str | None:
+    """Return what is missing in samples to be heard; None if nothing is."""
     try:
-        step = step_of(motion.time)
+        step = step_of(time)
     except ValueError as error:
         return str(error)
-    needed = 0.0
-    for values in motion.velocity.T:
-        omega, amplitude = amplitude_spectrum(values, step)
-        loud = omega[amplitude > LISTENING.audible * amplitude.max()]
-        needed = max(
-            needed, LISTENING.samples_per_period * float(loud.max(initial=0.0))
-        )
-    needed /= 2.0 * math.pi
+    omega, amplitude = amplitude_spectrum(signal, step)
+    loud = omega[amplitude > LISTENING.audible * amplitude.max()]
+    highest = float(loud.max(initial=0.0)) / (2.0 * math.pi)
+    needed = LISTENING.samples_per_period * highest
     if 1.0 / step >= needed:
         return None
     # what is between the samples may lie higher still
-    points = math.ceil(2.0 * needed * motion.time[-1])
+    points = math.ceil(2.0 * needed * time[-1])
     return (
         f"the run is sampled too coarsely to be heard: {engineering(1.0 / step, 'Hz', 3)}, and its "
-        f"lines reach {engineering(needed / LISTENING.samples_per_period, 'Hz', 3)}; simulate it "
+        f"lines reach {engineering(highest, 'Hz', 3)}; simulate it "
         f"with --points {points} or more"
     )
 

@@ -1,0 +1,161 @@
+"""Panels beside a film: contact force over time and path of the contact, drawn along."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from squealpipe.codes import Regime
+from squealpipe.plotting import style
+from squealpipe.plotting.cycles import joined
+from squealpipe.text import number
+from squealpipe.units import shown_in
+
+CONTACT = {
+    Regime.slip_slower: ("slip", style.BLUE),
+    Regime.slip_faster: ("slip", style.BLUE),
+    Regime.stick: ("stick", style.ORANGE),
+    Regime.separated: ("open", style.RED),
+}
+"""State of a contact in a word, and its colour."""
+COLOURS_IN_WORDS = "Blue: the contact slips; orange: it sticks; red: it is open."
+
+
+@dataclass(frozen=True)
+class Traces:
+    """Motion of one contact.
+
+    Attributes:
+        time: (n,), s.
+        force: over the preload, (n,).
+        place: along and across the belt, (n, 2), m.
+        regimes: codes, (n,).
+        limit: height at which contact is lost, m; NaN: it is not known.
+    """
+
+    time: np.ndarray
+    force: np.ndarray
+    place: np.ndarray
+    regimes: np.ndarray
+    limit: float = np.nan
+
+
+class Panels:
+    """Force and path of one contact in a column of axes.
+
+    Args:
+        column: axes that both panels take the place of.
+        motion: all that the path shows.
+        shown: instants of the frames.
+        force_label: of the force.
+    """
+
+    def __init__(
+        self,
+        figure: Figure,
+        column: Axes,
+        motion: Traces,
+        shown: Traces,
+        force_label: str = "contact force over preload",
+    ) -> None:
+        spec = column.get_subplotspec()
+        assert spec is not None  # noqa: S101 (axes of a grid have one)
+        grid = spec.subgridspec(2, 1, height_ratios=[1, 1.25])
+        column.remove()
+        force, path = (figure.add_subplot(grid[row, 0]) for row in (0, 1))
+        self.shown = shown
+        last = float(shown.time[-1])
+        self.factor, self.unit = (1e3, "ms") if last < 10.0 else (1.0, "s")
+        self.digits = max(5 - len(str(int(self.factor * last))), 0)
+        self.past, self.now = self._draw_force(force, motion, force_label)
+        self.dot = self._draw_path(path, motion)
+        self.moving = [self.past, self.now, self.dot]
+
+    def told(self, frame: int) -> str:
+        """Return the instant of a frame in words that keep their length."""
+        time = self.factor * float(self.shown.time[frame])
+        return f"t = {time:.{self.digits}f} {self.unit}"
+
+    def _draw_force(
+        self, axes: Axes, motion: Traces, label: str
+    ) -> tuple[Line2D, Line2D]:
+        first, last = self.shown.time[0], self.shown.time[-1]
+        kept = (motion.time >= first) & (motion.time <= last)
+        self.force_time = self.factor * motion.time[kept]
+        self.force = motion.force[kept]
+        top = 1.1 * max(float(np.nanmax(self.force)), 1e-12)
+        axes.plot(self.force_time, self.force, color=style.LIGHT, lw=0.8)
+        axes.axhline(0.0, color=style.GREY, lw=0.5)
+        margin = 0.03 * self.factor * (last - first)
+        axes.set(
+            xlim=(self.factor * first - margin, self.factor * last + margin),
+            ylim=(-0.06 * top, top),
+            xlabel=f"time ({self.unit})",
+            ylabel=label,
+        )
+        axes.locator_params(axis="x", nbins=4)
+        past: Line2D = axes.plot([], [], color=style.BLACK, lw=1.0)[0]
+        now: Line2D = axes.plot([], [], "o", color=style.BLACK, ms=5)[0]
+        return past, now
+
+    def _draw_path(self, axes: Axes, motion: Traces) -> Line2D:
+        self.unit_factor, unit = shown_in(float(np.abs(motion.place).max()), "m")
+        x, y = self.unit_factor * motion.place.T
+        for word, colour in dict(CONTACT.values()).items():
+            codes = [code for code, (name, _) in CONTACT.items() if name == word]
+            shown = np.where(joined(np.isin(motion.regimes, codes)), y, np.nan)
+            axes.plot(x, shown, color=colour, lw=0.7)
+        limit = self.unit_factor * motion.limit
+        if y.min() < limit < 1.2 * max(y.max(), 0.0):
+            axes.axhline(limit, color=style.GREY, lw=0.8, linestyle=":")
+        axes.set(xlabel=f"along the belt ({unit})", ylabel=f"away from it ({unit})")
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.locator_params(nbins=5)
+        dot: Line2D = axes.plot([], [], "o", color=style.BLACK, ms=6, zorder=5)[0]
+        return dot
+
+    def show(self, frame: int) -> None:
+        """Move all to an instant of the film."""
+        shown = self.shown
+        time, force = self.factor * float(shown.time[frame]), float(shown.force[frame])
+        before = self.force_time <= time
+        self.past.set_data(
+            np.append(self.force_time[before], time),
+            np.append(self.force[before], force),
+        )
+        self.now.set_data([time], [force])
+        x, y = self.unit_factor * shown.place[frame]
+        self.dot.set_data([x], [y])
+        for mark in (self.now, self.dot):
+            mark.set_color(CONTACT[Regime(int(shown.regimes[frame]))][1])
+
+
+def contact_legend(axes: Axes) -> None:
+    """Name the colours of contacts below axes."""
+    words = dict(CONTACT.values())
+    axes.legend(
+        handles=[Patch(color=colour, label=word) for word, colour in words.items()],
+        loc="lower center",
+        bbox_to_anchor=(0.5, -0.02),
+        ncols=3,
+        title="contact",
+    )
+
+
+def speed_in_words(slower: float) -> str:
+    """Return how many times slower or faster than in reality a film is."""
+    if slower >= 1.0:
+        return f"{number(slower, 2)} times slower than in reality"
+    return f"{number(1.0 / slower, 2)} times faster than in reality"
+
+
+def round_down(value: float) -> float:
+    """Return the largest of 1, 2 and 5 times a power of ten that is no larger than a value."""
+    power = 10.0 ** np.floor(np.log10(value))
+    steps = (step for step in (1.0, 2.0, 5.0) if step * power <= value * 1.000001)
+    return float(power) * max(steps)
