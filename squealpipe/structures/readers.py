@@ -1,7 +1,8 @@
 """Matrices from files that other programs write, with the names of their degrees of freedom.
 
 Matrix Market, ``.npz`` of scipy.sparse or of arrays, ``.npy``, MATLAB ``.mat`` (5 and 7.3), Abaqus
-``*MATRIX OUTPUT`` and ``*SUBSTRUCTURE MATRIX OUTPUT``, CalculiX ``.sti``, ``.mas`` and ``.dof``.
+``*MATRIX OUTPUT`` and ``*SUBSTRUCTURE MATRIX OUTPUT``, CalculiX ``.sti``, ``.mas`` and ``.dof``,
+Nastran ``.op4`` and DMIG (``.pch``), Harwell–Boeing with Ansys's mapping; each also packed by gzip.
 """
 
 import io
@@ -18,7 +19,9 @@ import pandas as pd
 import scipy.io
 import scipy.sparse as sp
 
+from squealpipe.structures.harwell_boeing import read_harwell_boeing, read_mapping
 from squealpipe.structures.matrix_market import BANNER, UNENDED, read_matrix_market
+from squealpipe.structures.nastran_matrices import read_dmig, read_op4
 from squealpipe.structures.packed import plain_name, text_of, unpacked
 
 DAMAGED = (
@@ -30,6 +33,7 @@ DAMAGED = (
     EOFError,
     NotImplementedError,
     AssertionError,
+    RuntimeError,
     zipfile.BadZipFile,
     zlib.error,
 )
@@ -39,6 +43,8 @@ MARKS = {
     b"\xff\xfe": "is UTF-16; save it as UTF-8 without byte order mark",
 }
 """First bytes of files that no reader of matrices takes, and what to do."""
+HARWELL_BOEING = (".hb", ".rsa", ".rua", ".matrix")
+"""Endings of matrices in the Harwell–Boeing format; Ansys's is the last."""
 EXTRA = "install squealpipe[fe] to read it"
 
 
@@ -103,6 +109,13 @@ def _read(plain: Path, path: Path, key: str, variable: str | None) -> Labelled:
         ".mat": lambda: Labelled(_matlab(plain, key, variable)),
         ".sti": lambda: _calculix(plain, path),
         ".mas": lambda: _calculix(plain, path),
+        ".op4": lambda: Labelled(
+            read_op4(plain, lambda names: _chosen(names, key, variable))
+        ),
+        ".pch": lambda: Labelled(
+            *read_dmig(plain, lambda names: _chosen(names, key, variable))
+        ),
+        **dict.fromkeys(HARWELL_BOEING, lambda: _harwell_boeing(plain, path)),
     }
     with plain.open("rb") as file:
         start = file.read(3)
@@ -216,8 +229,18 @@ def _calculix(plain: Path, path: Path) -> Labelled:
     return Labelled(_of_triplets(_numbers(plain), len(labels or ())), labels, True)
 
 
+def _harwell_boeing(plain: Path, path: Path) -> Labelled:
+    """A matrix in the Harwell–Boeing format; labels from Ansys's mapping beside it."""
+    matrix, halved = read_harwell_boeing(plain)
+    mapping = plain_name(path).with_suffix(".mapping")
+    labels = read_mapping(mapping) if mapping.is_file() else None
+    return Labelled(matrix, labels, halved)
+
+
 def read_names(path: Path) -> list[str]:
-    """Return the names ``node.direction`` of a ``.dof`` file of CalculiX, one a row."""
+    """Return the names ``node.direction`` of the rows: a ``.dof`` file, or Ansys's mapping."""
+    if plain_name(path).suffix.lower() == ".mapping":
+        return read_mapping(path)
     return [_without_zeros(word, path) for word in text_of(path).split()]
 
 
@@ -339,8 +362,13 @@ def _chosen(names: list[str], key: str, variable: str | None) -> str:
         return names[0]
     if variable in names:
         return str(variable)
-    usual = {"mass": "M", "damping": "C", "stiffness": "K"}
-    called = [name for name in (key, usual.get(key)) if name in names]
+    usual = {
+        # Nastran's names follow the set of degrees of freedom
+        "mass": ("M", "mxx", "maa", "mgg", "maax"),
+        "damping": ("C", "bxx", "baa", "bgg", "baax"),
+        "stiffness": ("K", "kxx", "kaa", "kgg", "kaax"),
+    }
+    called = [name for name in (key, *usual.get(key, ())) if name in names]
     if variable is None and len(called) == 1:
         return str(called[0])
     listed = ", ".join(names)
