@@ -1,4 +1,4 @@
-"""What ran: the processor, and the packages of the solvers."""
+"""Description of the machine: the processor, and the packages of the solvers."""
 
 import platform
 from collections.abc import Iterable
@@ -9,7 +9,7 @@ from squealpipe.benchmark.adapters import SOLVERS
 
 
 def processor() -> str:
-    """What the processor calls itself; the machine's kind where it does not say."""
+    """Return the processor's name for itself, or the machine's kind where it has none."""
     try:
         lines = Path("/proc/cpuinfo").read_text("utf-8").splitlines()
     except OSError:

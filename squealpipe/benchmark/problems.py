@@ -23,7 +23,7 @@ class OutOfPatienceError(RuntimeError):
 
 
 class Transition(NamedTuple):
-    """What ends a regime: a surface, and what happens where it falls through zero.
+    """End of a regime: a surface, and the reset where it falls through zero.
 
     Attributes:
         when: (t, y, regime) → the surface's value.
@@ -114,7 +114,7 @@ class Problem:
         return scope["made"]
 
     def per_regime(self, texts: Any) -> dict[str, Callable[[Any, Any], Any]]:
-        """The same texts with the constants of each regime."""
+        """Return the texts with the constants of each regime inserted."""
         return {
             name: self.function(texts, constants)
             for name, constants in self.regimes.items()

@@ -1,4 +1,4 @@
-"""What an answer is worth: its events against the reference's, its error over the growth."""
+"""Score of an answer: its events against the reference's, its error over the growth."""
 
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -36,7 +36,7 @@ REFERENCE_TOLERANCE = 1e-8
 
 
 class Score(NamedTuple):
-    """What one answer is worth; names as in the dataset."""
+    """Score of one answer; names as in the dataset."""
 
     verdict: Reliability
     missed: int = -1

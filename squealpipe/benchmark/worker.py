@@ -27,7 +27,7 @@ class Worker(Generic[Answer]):
         self.pipe: Connection | None = None
 
     def ask(self, **arguments: Any) -> Answer:
-        """What the function gives.
+        """Run the function in the child process, and return its result.
 
         Raises:
             TimeoutError: it gave nothing in time.

@@ -76,8 +76,6 @@ COMMANDS: dict[str, Callable[..., int]] = {
     "find": find,
     "deposit": deposit,
 }
-FORESEEN = (CycloptsError, ValueError, OSError, RuntimeError, MemoryError)
-"""Errors whose message says what to do."""
 
 
 def application() -> App:
@@ -142,7 +140,10 @@ def _message(error: Exception) -> str:
     """An error in a sentence."""
     if isinstance(error, UnusedCliTokensError):
         return f"too many arguments: {' '.join(error.unused_tokens or [])}"
-    if isinstance(error, FORESEEN):
+    # errors whose message says what to do; others are bugs, and show a traceback
+    if isinstance(
+        error, (CycloptsError, ValueError, OSError, RuntimeError, MemoryError)
+    ):
         return str(error)
     what = " ".join(f"{type(error).__name__}: {error}".split())
     return f"unexpected error ({what}); -v or {TRACEBACK}=1 shows where"

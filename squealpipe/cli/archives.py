@@ -13,9 +13,6 @@ from squealpipe.cli.console import ANSWER_IS_NO, DONE, working
 if TYPE_CHECKING:
     from squealpipe.study.catalogue import StoredRun
 
-SHOWN = 4
-"""Changed parameters of a run that a line shows."""
-
 
 def list_runs(*, json_: AsJson = False) -> int:
     """List archives and folders of results: date, commit, size, state, changed parameters.
@@ -115,8 +112,9 @@ def _warn(found: list[StoredRun]) -> None:
 
 def _changes(changed: dict[str, Any]) -> str:
     physical = sorted(changed, key=lambda key: (not key.startswith("parameters."), key))
+    # the line of a run stays within a terminal's width
     stated = [
-        f"{key.removeprefix('parameters.')}={changed[key]}" for key in physical[:SHOWN]
+        f"{key.removeprefix('parameters.')}={changed[key]}" for key in physical[:4]
     ]
     more = len(physical) - len(stated)
     return ", ".join([*stated, *([f"and {more} more"] if more else [])]) or "nothing"

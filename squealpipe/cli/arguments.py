@@ -17,7 +17,7 @@ from squealpipe.units import has_unit, in_si
 
 
 def _reader(read: Callable[[str], Any]) -> Callable[[Any, Sequence[Any]], Any]:
-    """What gives cyclopts the value of one text."""
+    """Return the converter that cyclopts applies to one text."""
     return lambda _, tokens: read(tokens[0].value)
 
 
@@ -103,7 +103,6 @@ Speeds = Annotated[
 Frequency = Annotated[
     float | None, _signed(partial(parse_number, units="Hz"), "FREQUENCY", negative="")
 ]
-INCH = 0.0254
 
 
 def parse_state(text: str) -> list[float]:
@@ -123,7 +122,8 @@ def parse_size(text: str) -> tuple[float, float]:
         raise ValueError(
             f"{text!r} is no size of a picture; write for instance 90mmx60mm"
         )
-    width, height = (in_si(side, "m") / INCH for side in sides)
+    # Matplotlib counts in inches
+    width, height = (in_si(side, "m") / 0.0254 for side in sides)
     if not (0.5 <= width <= 100 and 0.5 <= height <= 100):
         raise ValueError(f"{text!r}: each side must be between 13 mm and 2.5 m")
     return width, height
@@ -245,7 +245,7 @@ Picture = Annotated[
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Look:
-    """How a command draws its picture."""
+    """Options of the look of a picture."""
 
     figure_size: FigureSize = None
     dpi: Dpi = None
@@ -263,7 +263,7 @@ class Drawn(Look, Written):
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Files(Look):
-    """What a command on a file writes beside its dataset."""
+    """Options of the files that a command on a file writes beside its dataset."""
 
     picture: Picture = None
     force: Force = False

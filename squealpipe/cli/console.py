@@ -1,4 +1,4 @@
-"""What a command says, and how much of it; the exit codes of every command."""
+"""Output of every command: its exit codes, its verbosity, and its progress."""
 
 import os
 import re
@@ -21,8 +21,6 @@ TRACEBACK = "SQUEALPIPE_TRACEBACK"
 """Environment variable that asks for tracebacks, as -v does."""
 LOG_EVERY = 30.0
 """Time between two lines of progress in a log, s."""
-OPTION = re.compile(r"--?[A-Za-z]")
-SWITCHES = {"-q": "quiet", "--quiet": "quiet", "-v": "verbose", "--verbose": "verbose"}
 
 
 AGAIN = "run the same command again"
@@ -58,8 +56,14 @@ def session(arguments: Sequence[str]) -> Iterator[list[str]]:
     """Apply -q and -v, which every command takes, and give the other arguments."""
     arguments = _options_first(arguments)
     end = arguments.index("--") if "--" in arguments else len(arguments)
-    switches = {SWITCHES[each] for each in arguments[:end] if each in SWITCHES}
-    kept = [each for each in arguments[:end] if each not in SWITCHES]
+    meanings = {
+        "-q": "quiet",
+        "--quiet": "quiet",
+        "-v": "verbose",
+        "--verbose": "verbose",
+    }
+    switches = {meanings[each] for each in arguments[:end] if each in meanings}
+    kept = [each for each in arguments[:end] if each not in meanings]
     SESSION.quiet = "quiet" in switches
     SESSION.verbose = "verbose" in switches or os.environ.get(TRACEBACK, "0") not in {
         "",
@@ -79,7 +83,9 @@ def _options_first(arguments: Sequence[str]) -> list[str]:
         return words
     end = words.index("--")
     rest = words[end + 1 :]
-    first = next((at for at, word in enumerate(rest) if OPTION.match(word)), 0)
+    first = next(
+        (at for at, word in enumerate(rest) if re.match(r"--?[A-Za-z]", word)), 0
+    )
     return [*words[:end], *rest[first:], "--", *rest[:first]] if first else words
 
 
@@ -143,7 +149,7 @@ def working(what: str) -> Iterator[None]:
 
 
 def _lines_of_a_log(what: str) -> Callable[[float], None]:
-    """What writes a line on how much is done and how long the rest takes, twice a minute."""
+    """Return a function that writes progress and remaining time into a log, twice a minute."""
     from squealpipe.text import duration
 
     started = told = time.monotonic()

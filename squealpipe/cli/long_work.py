@@ -1,4 +1,4 @@
-"""What a big map will take, before it is begun."""
+"""Estimates of the memory and time of a big map, before it is begun."""
 
 from __future__ import annotations
 
@@ -20,8 +20,6 @@ COPIES = 3
 """Arrays of the size of the result that are in memory at once, about."""
 SHARE = 0.8
 """Part of the machine's memory that a map may take."""
-SAMPLE = 12
-"""Angles on each axis of the map by which the time is measured."""
 
 
 def say_what_it_takes(
@@ -49,7 +47,8 @@ def say_what_it_takes(
         )
     import squealpipe
 
-    few = [list(each)[:: max(1, len(each) // SAMPLE)] for each in angles]
+    # a map of 12 × 12 angles tells the time of the whole well enough
+    few = [list(each)[:: max(1, len(each) // 12)] for each in angles]
     task = getattr(squealpipe, function)
     task(params, few[0][:2], few[1][:2], **options)  # what is compiled first
     started = time.perf_counter()

@@ -38,8 +38,6 @@ Kind = Literal[
     "critical-friction",
     "frequencies",
 ]
-TIMED = ("validity", "hammering")
-"""Maps that take a horizon."""
 
 
 @options_of("validity_map")
@@ -70,7 +68,10 @@ def map_angles(
     name = {"frequencies": "natural_frequencies"}.get(
         kind, f"{kind.replace('-', '_')}_map"
     )
-    options: dict[str, Any] = {"t_end": t_end, "tol": tol} if kind in TIMED else {}
+    # linear models have no horizon
+    options: dict[str, Any] = (
+        {"t_end": t_end, "tol": tol} if kind in ("validity", "hammering") else {}
+    )
     return _counted(compute(name, brake, alpha1, alpha2, output=output, **options))
 
 

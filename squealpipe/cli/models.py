@@ -31,9 +31,6 @@ from squealpipe.parameters import HORIZON
 Question = Literal[
     "contact_lost", "frequency", "peak_contact_force", "max_displacement"
 ]
-DISTRIBUTIONS = (
-    "write for instance mu=uniform:0.1:0.9, k1=normal:1:0.05 or k3=lognormal:0.65:0.1"
-)
 
 
 @options_of("choose_model")
@@ -184,7 +181,8 @@ def _distribution(text: str) -> tuple[str, dict[str, str | float]]:
     name, parts = name.strip().replace("-", "_"), words.split(":")
     if len(parts) != 3 or parts[0] not in KINDS:
         raise ValueError(
-            f"--distribution {text!r} is not a distribution; {DISTRIBUTIONS}"
+            f"--distribution {text!r} is not a distribution; write for instance "
+            "mu=uniform:0.1:0.9, k1=normal:1:0.05 or k3=lognormal:0.65:0.1"
         )
     numbers = {
         key: (parse_number if key == "log_std" else reader(name))(text)

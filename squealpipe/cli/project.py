@@ -14,8 +14,6 @@ from squealpipe.cli.output import check_output
 from squealpipe.parameters import DEFAULTS, TABLE, Row
 from squealpipe.text import duration
 
-NOT_IN_NAMES = re.compile(r"[^A-Za-z0-9._-]+")
-"""What no folder of results has in its name."""
 HEAD = """\
 # A study of your own, laid over the paper's: what stands here replaces what stands there.
 # Edit the parameters; for other keys take away the "# " of the key and of its section.
@@ -88,7 +86,8 @@ def init(
     check_output(file, force=force, kinds=(".yaml", ".yml"), option="FILE")
     if own and structure:
         raise ValueError("--own and --structure are two studies; choose one")
-    stem = NOT_IN_NAMES.sub("_", file.stem)
+    # other characters do not belong in the name of a folder
+    stem = re.sub(r"[^A-Za-z0-9._-]+", "_", file.stem)
     folder = results or f"results/{stem}"
     if structure:
         parts = file.parent / stem
@@ -205,7 +204,7 @@ def _found_by_snakemake(folders: Iterable[str]) -> dict[str, str]:
 
 
 def _caches() -> dict[str, str]:
-    """Where Snakemake and Matplotlib keep their caches if the home folder cannot be written."""
+    """Give Snakemake and Matplotlib a folder for caches if the home folder cannot be written."""
     if os.access(Path.home(), os.W_OK):
         return {}
     kept = str(Path(".snakemake/cache").resolve())

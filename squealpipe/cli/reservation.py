@@ -4,9 +4,6 @@ import os
 from contextlib import ExitStack, suppress
 from pathlib import Path
 
-TAKEN = (BlockingIOError, PermissionError)
-"""What POSIX locks raise where another process has one."""
-
 
 def reserve(path: Path, held: ExitStack, option: str) -> None:
     """Keep a name until ``held`` is closed; the lock ends with the process, however that ends.
@@ -30,9 +27,10 @@ def reserve(path: Path, held: ExitStack, option: str) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         while True:
             handle = os.open(lock, os.O_RDWR | os.O_CREAT, 0o666)
+            # POSIX raises the first, Windows the second, where another process holds the lock
             try:
                 fcntl.lockf(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except TAKEN as error:
+            except (BlockingIOError, PermissionError) as error:
                 os.close(handle)
                 raise ValueError(
                     f"{option} {path} is being written by another command; wait for it, or choose "

@@ -70,13 +70,10 @@ def options_of(task: str) -> Callable[[Command], Command]:
     return filled
 
 
-OF_STRUCTURES = ("n_modes", "frequency_max", "t_end")
-"""Arguments of structures' tasks that messages and answers name, as options are named."""
-
-
 def in_options(text: str) -> str:
     """The words of a task in those of a terminal: ``--n-modes 32`` for ``n_modes=32``."""
-    for name in OF_STRUCTURES:
+    # arguments of structures that messages name are named as the options are
+    for name in ("n_modes", "frequency_max", "t_end"):
         option = f"--{name.replace('_', '-')}"
         text = re.sub(rf"\b{name} ?= ?(?=[\w'.+-])", f"{option} ", text)
         text = re.sub(rf"(?<![\w-]){name}\b", option, text)

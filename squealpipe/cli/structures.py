@@ -38,11 +38,6 @@ from squealpipe.ranges import parse_range
 if TYPE_CHECKING:
     import xarray as xr
 
-AUDIBLE = 20e3
-"""Frequency up to which modes are shown where no limit is given, Hz; higher ones are not heard."""
-LISTED = 20
-"""Unstable modes that are printed."""
-
 
 def modes(
     file: Path,
@@ -98,6 +93,9 @@ def modes(
 
     shown = "modes"
 
+    # Hz: without a limit only modes that are heard are shown; a mesh has many beyond
+    audible = 20e3
+
     def complex_modes(structure: Any, **options: Any) -> xr.Dataset:
         nonlocal shown
         if text := options.pop("belt_speed", None):
@@ -110,9 +108,9 @@ def modes(
             say(told)
         if not {"frequency_max", "n_modes"} & options.keys():
             highest = highest_frequency(structure)
-            if highest is not None and highest > AUDIBLE:
-                options["frequency_max"] = AUDIBLE
-                shown = f"modes up to {AUDIBLE / 1e3:g} kHz"
+            if highest is not None and highest > audible:
+                options["frequency_max"] = audible
+                shown = f"modes up to {audible / 1e3:g} kHz"
                 say(
                     f"{shown}; the highest is at {highest / 1e3:.4g} kHz. Whether modes above "
                     "grow is not examined: --frequency-max shows them"
@@ -124,7 +122,8 @@ def modes(
     ever = unstable.any([dim for dim in unstable.dims if dim != "mode"])
     beyond = "" if shown == "modes" else "; those above were not examined"
     answer(f"{int(ever.sum())} of {ever.size} {shown} are unstable somewhere{beyond}")
-    for number in dataset.mode.values[ever.values][:LISTED]:
+    # more unstable modes than twenty are a table for a file, not for a terminal
+    for number in dataset.mode.values[ever.values][:20]:
         answer(_line(dataset.sel(mode=number)))
     return DONE
 
@@ -132,7 +131,7 @@ def modes(
 def _compute(
     task: Any, file: Path, options: dict[str, Any], output: Path, files: Files
 ) -> xr.Dataset:
-    """What a task makes of the structure in a file; its dataset and its picture are written.
+    """Run a task on the structure in a file; write its dataset and its picture.
 
     Args:
         options: of the task; those that are None are left to their defaults.

@@ -5,7 +5,6 @@ from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-UNKNOWN = "unknown"
 
 
 @cache
@@ -15,16 +14,17 @@ def commit(root: Path = ROOT) -> str:
     Archives below ``results`` are not code: one that takes the place of another marks nothing.
     """
     package = "squealpipe/__init__.py"
+    unknown = "unknown"
     if (
         _git(root, "rev-parse", "--show-prefix")
         or _git(root, "ls-files", package) != package
     ):
-        return UNKNOWN
+        return unknown
     if not (
         root / "Snakefile"
     ).is_file():  # installed below a repository of someone else's
-        return UNKNOWN
-    described = _git(root, "describe", "--always", "--abbrev=12") or UNKNOWN
+        return unknown
+    described = _git(root, "describe", "--always", "--abbrev=12") or unknown
     changes = ("status", "--porcelain", "--untracked-files=no", "--", ".", ":!results")
     return f"{described}-dirty" if _git(root, *changes) else described
 

@@ -9,7 +9,6 @@ from typing import Any
 from squealpipe.store.sealed import attributes
 
 METADATA = "ro-crate-metadata.json"
-TYPES = {".nc": "application/x-netcdf", ".yaml": "application/yaml"}
 
 
 def describe(
@@ -44,7 +43,9 @@ def describe(
     }
     files = {}
     for path, listed in sums.items():
-        kind = TYPES.get(Path(path).suffix) or mimetypes.guess_type(path)[0]
+        kind = {".nc": "application/x-netcdf", ".yaml": "application/yaml"}.get(
+            Path(path).suffix
+        ) or mimetypes.guess_type(path)[0]
         about = {"contentSize": str(listed["bytes"]), "sha256": listed["sha256"]}
         about["encodingFormat"] = kind or "application/octet-stream"
         if path.endswith(".nc"):

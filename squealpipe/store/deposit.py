@@ -7,15 +7,6 @@ from pathlib import Path
 from squealpipe.store.runs import locate, verify
 from squealpipe.store.whole_files import whole_file
 
-SOURCES = (
-    "squealpipe",
-    "workflow",
-    "Snakefile",
-    "pyproject.toml",
-    "requirements.lock",
-    "LICENSE",
-    "README.md",
-)
 README = """\
 # An archived run of squealpipe
 
@@ -48,7 +39,18 @@ def bundle(
     }
     contents |= {
         f"code/{path}": path
-        for source in map(Path, SOURCES)
+        for source in map(
+            Path,
+            (
+                "squealpipe",
+                "workflow",
+                "Snakefile",
+                "pyproject.toml",
+                "requirements.lock",
+                "LICENSE",
+                "README.md",
+            ),
+        )
         for path in [source, *source.rglob("*")]
         if "__pycache__" not in path.parts
     }

@@ -63,7 +63,7 @@ def _table(path: Path) -> xr.Dataset:
 
 
 def _form(path: Path) -> dict[str, Any]:
-    """What pandas is told of a table: separator, decimal sign, and where its names stand.
+    """Return pandas' options for a table: separator, decimal sign, row of the names.
 
     Raises:
         ValueError: a comma of some number is decimal or separates thousands.

@@ -1,4 +1,4 @@
-"""What a dataset is: the id of its values, and the digest that ties a key to its content."""
+"""Identity of a dataset: the id of its values, and the digest that ties a key to its content."""
 
 import hashlib
 import warnings

@@ -1,4 +1,4 @@
-"""Whether files of a run are what they should be: whole, there, and made from this and no other."""
+"""Checks that the files of a run are whole, present, and made from this configuration and code."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -17,7 +17,8 @@ def stated_key(path: str | Path) -> str | None:
 
 
 def misfits(keys: Mapping[str, str], root: Path = Path()) -> list[str]:
-    """Which files are missing, damaged or not of this configuration and code, with the reason.
+    """Return the files that are missing, damaged or not of this configuration and code, with the
+    reason.
 
     Args:
         keys: file → the key that it must state.

@@ -33,8 +33,6 @@ KEYWORDS = frozenset(
         "while",
     }
 )
-STRUCTURES = ("units", "meanings", "attributes", "names")
-"""What a file holds beside its arrays; no array takes their names."""
 
 
 def write_matlab(dataset: xr.Dataset, about: Mapping[str, str], path: Path) -> None:
@@ -46,7 +44,8 @@ def write_matlab(dataset: xr.Dataset, about: Mapping[str, str], path: Path) -> N
     from scipy.io import savemat
 
     variables = {str(name): variable for name, variable in dataset.variables.items()}
-    names = matlab_names(variables, STRUCTURES)
+    # a file holds these beside its arrays; no array takes their names
+    names = matlab_names(variables, ("units", "meanings", "attributes", "names"))
     content: dict[str, object] = {
         names[name]: variable.values.astype(object)
         if variable.dtype.kind in "UO"

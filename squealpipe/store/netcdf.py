@@ -24,9 +24,6 @@ from squealpipe.store.whole_files import (
 )
 from squealpipe.validation import AnyPath, checked
 
-ATTRIBUTE_NAME = re.compile(r"(?!_NC)[^\W\d][\w .@+-]{0,99}")
-STORED_NUMBERS = ("i1", "i2", "i4", "i8", "u1", "u2", "u4", "u8", "f4", "f8")
-
 DAMAGED = (
     OSError,
     RuntimeError,
@@ -113,7 +110,9 @@ def refuse_odd_attributes(dataset: xr.Dataset) -> None:
     }
     for place, attrs in places.items():
         for key, value in attrs.items():
-            if isinstance(key, str) and ATTRIBUTE_NAME.fullmatch(key):
+            if isinstance(key, str) and re.fullmatch(
+                r"(?!_NC)[^\W\d][\w .@+-]{0,99}", key
+            ):
                 if _is_text_or_numbers(value):
                     continue
                 remedy = f"write {place}.attrs[{key!r}] = {str(value)!r}"
@@ -130,7 +129,18 @@ def _is_text_or_numbers(value: Any) -> bool:
         values = np.asarray(value)
     except ValueError:  # lists of different lengths
         return False
-    stored = values.dtype.kind == "U" or values.dtype.str[1:] in STORED_NUMBERS
+    stored = values.dtype.kind == "U" or values.dtype.str[1:] in (
+        "i1",
+        "i2",
+        "i4",
+        "i8",
+        "u1",
+        "u2",
+        "u4",
+        "u8",
+        "f4",
+        "f8",
+    )
     return stored and values.ndim < 2
 
 
@@ -140,7 +150,7 @@ def made_now() -> str:
 
 
 def read(path: str | os.PathLike[str]) -> xr.Dataset:
-    """As :func:`load`, but not held against its schema, which may have changed since."""
+    """Read a dataset like :func:`load`, without its schema, which may have changed since."""
     source = verified(path)
     try:
         with xr.open_dataset(source, engine="netcdf4", decode_times=False) as opened:

@@ -1,4 +1,4 @@
-"""Where a dataset comes from: configuration slice, code, libraries, inputs, and its own id."""
+"""Provenance of a dataset: configuration slice, code, libraries, inputs, and its own id."""
 
 import os
 import platform
@@ -51,7 +51,7 @@ def stamped(
     inputs: Iterable[str | os.PathLike[str]] = (),
     started: float | None = None,
 ) -> xr.Dataset:
-    """What a task makes, with its provenance and wall time, not yet saved."""
+    """Return the dataset of a task with its provenance and wall time, not yet saved."""
     started = time.perf_counter() if started is None else started
     # before the task reads them: what is there afterwards may be others
     ids = {str(path): load(path).attrs["dataset_id"] for path in inputs}

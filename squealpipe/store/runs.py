@@ -1,4 +1,4 @@
-"""What a name on the command line stands for: an archive, a run, a folder or one file."""
+"""Names on the command line resolved to an archive, a run, a folder or one file."""
 
 import fnmatch
 import json
@@ -19,7 +19,7 @@ LEFT_OUT = "left_out"
 
 @dataclass(frozen=True)
 class Verification:
-    """What is changed, missing or extra in an archive by its manifest; nothing: it is intact."""
+    """Files of an archive that its manifest shows as changed, missing or extra, if any."""
 
     folder: Path
     files: int
@@ -27,7 +27,7 @@ class Verification:
 
     @property
     def intact(self) -> bool:
-        """Whether every byte is as it was frozen."""
+        """Return whether every byte is as it was frozen."""
         return not self.findings
 
     def lines(self) -> list[str]:
@@ -39,7 +39,7 @@ class Verification:
 
 
 def matches_any(name: str, patterns: Iterable[str]) -> bool:
-    """Whether a path in an archive, like ``data/whirl.nc``, fits one of some patterns."""
+    """Return whether a path in an archive, like ``data/whirl.nc``, fits one of some patterns."""
     return any(fnmatch.fnmatchcase(name, pattern) for pattern in patterns)
 
 

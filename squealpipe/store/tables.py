@@ -18,9 +18,6 @@ from squealpipe.validation import AnyPath, checked
 
 NEEDS = {".csv": None, ".mat": None, ".xlsx": "openpyxl", ".parquet": "pyarrow"}
 """Form → the library of the extra ``export`` that writes it."""
-RECORDED = ("title", "config", "parameters", "system", "package_version", "commit")
-"""Attributes of a dataset that go with its tables."""
-CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f]")
 
 
 @checked
@@ -141,9 +138,13 @@ def _write_sheets(dataset: xr.Dataset, path: Path) -> list[Path]:
 
 def _plain_text(frame: pd.DataFrame) -> pd.DataFrame:
     """The table without control characters in its texts, which no sheet takes."""
+    # Excel refuses them
+    control_characters = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f]")
     return frame.map(
-        lambda value: CONTROL.sub("?", value) if isinstance(value, str) else value
-    ).rename(columns=lambda name: CONTROL.sub("?", str(name)))
+        lambda value: (
+            control_characters.sub("?", value) if isinstance(value, str) else value
+        )
+    ).rename(columns=lambda name: control_characters.sub("?", str(name)))
 
 
 def _sheet_name(name: str, taken: set[str]) -> str:
@@ -176,8 +177,18 @@ def _numbers(dataset: xr.Dataset) -> dict[str, str]:
 
 
 def _about(dataset: xr.Dataset) -> dict[str, str]:
+    # attributes of a dataset that go with its tables
     return {
-        str(key): str(dataset.attrs[key]) for key in RECORDED if key in dataset.attrs
+        str(key): str(dataset.attrs[key])
+        for key in (
+            "title",
+            "config",
+            "parameters",
+            "system",
+            "package_version",
+            "commit",
+        )
+        if key in dataset.attrs
     }
 
 

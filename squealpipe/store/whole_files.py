@@ -23,7 +23,7 @@ def archive_around(path: Path) -> Path | None:
 
 
 def _is_archive(folder: Path) -> bool:
-    """Whether a folder is an archive, also one that was moved, or has lost its manifest."""
+    """Return whether a folder is an archive, also one that was moved, or has lost its manifest."""
     if folder.name.startswith("."):  # the draft of one
         return False
     in_place = folder.parent.parts[-2:] == ARCHIVES.parts

@@ -1,4 +1,4 @@
-"""What runs there are: archives and folders of results, found again by their parameters."""
+"""Catalogue of runs: archives and folders of results, searched by their parameters."""
 
 import json
 import math
@@ -19,8 +19,6 @@ from squealpipe.store.whole_files import ARCHIVES, MANIFEST
 from squealpipe.store.yaml_files import flat
 from squealpipe.study.configuration.settings import PAPER, Study, read_study
 from squealpipe.text import nearest
-
-EXAMPLE = "write for instance 'mu == 0.25 and L1 > 4'"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,16 +71,17 @@ def matching(expression: str, found: list[StoredRun]) -> list[str]:
     known = [run for run in found if run.config]
     rows = [_row(run.config) for run in known] or [_row({})]
     text = re.sub(r"\b[a-z]\w*(\.\w+)+", lambda key: f"`{key[0]}`", expression)
+    example = "write for instance 'mu == 0.25 and L1 > 4'"
     try:
         holds = pd.DataFrame(rows).eval(text, engine="python")
     except Exception as error:
         unknown = re.search(r"name '(\w+)' is not defined", str(error))
         near = nearest(unknown[1], list(rows[0])) if unknown else None
         hint = f"; did you mean {near!r}?" if near else ""
-        raise ValueError(f"{expression!r}: {error}{hint}; {EXAMPLE}") from error
+        raise ValueError(f"{expression!r}: {error}{hint}; {example}") from error
     if not isinstance(holds, pd.Series) or holds.dtype.kind != "b":
         raise ValueError(
-            f"{expression!r}: it is not a condition that is true or false; {EXAMPLE}"
+            f"{expression!r}: it is not a condition that is true or false; {example}"
         )
     return [run.name for run, held in zip(known, holds, strict=False) if held]
 

@@ -77,7 +77,7 @@ class Chunks:
 
 
 def beside(output: Path, key: str) -> Chunks:
-    """Where the runs of a sweep are kept until its dataset is written."""
+    """Return the folder that keeps the runs of a sweep until its dataset is written."""
     return Chunks(output.with_name(f".{output.name}.runs"), key)
 
 
@@ -106,5 +106,5 @@ def _one_by_one(chunk: Mapping[str, np.ndarray], count: int) -> list[Run]:
 
 
 def _is_whole(path: Path) -> bool:
-    """Whether a chunk is as it was written."""
+    """Return whether a chunk still has the bytes that were written."""
     return path.stem.endswith(f"-{checksum(path)}")

@@ -1,4 +1,4 @@
-"""How long the jobs of a study took, and how long several take together."""
+"""Durations of a study's jobs when they last ran, and of several together."""
 
 import json
 from collections.abc import Sequence
@@ -19,5 +19,5 @@ def job_times(directory: Path) -> dict[str, float]:
 
 
 def together(jobs: Sequence[float], cores: int) -> float:
-    """What jobs of known lengths take, s: shared by all cores, but at least the longest."""
+    """Return the time that jobs take together, s: shared by all cores, but at least the longest."""
     return max([sum(jobs) / cores, *jobs])

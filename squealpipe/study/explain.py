@@ -1,4 +1,4 @@
-"""What `snakemake` would do now: which rules run, why, which figures change, how long it takes.
+"""Forecast of the next run of `snakemake`: rules, their reasons, changed figures, duration.
 
 Snakemake gives its summary of every file and its records of earlier runs; the workflow gives what
 each file should be made from. Nothing is read from text that Snakemake writes for people.
@@ -26,10 +26,7 @@ from squealpipe.study.configuration.settings import PAPER, Study, read_study
 from squealpipe.study.durations import job_times, together
 from squealpipe.text import duration
 
-QUICK = PAPER.with_name("quick.yaml")
 FIGURE = re.compile(r"figures/([\w-]+)\.\w+$")
-MOST_NAMES = 4
-"""Files or keys that a line names."""
 
 
 class WorkflowError(RuntimeError):
@@ -189,7 +186,7 @@ def snakemake_command(
     refuse_other_package(Path(directory))
     given = [Path(path).absolute() for path in configs]
     full = read_study(PAPER, *given)
-    paths = [*([QUICK] if quick else []), *given]
+    paths = [*([PAPER.with_name("quick.yaml")] if quick else []), *given]
     changes = {}
     if quick:
         beside = full.results == Study().results
@@ -281,5 +278,6 @@ def _changed_code(output: Path, sources: list[str]) -> str:
 
 
 def _some(files: list[str]) -> str:
-    more = len(files) - MOST_NAMES
-    return ", ".join(files[:MOST_NAMES]) + (f" and {more} more" if more > 0 else "")
+    most_names = 4
+    more = len(files) - most_names
+    return ", ".join(files[:most_names]) + (f" and {more} more" if more > 0 else "")

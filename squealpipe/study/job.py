@@ -1,4 +1,4 @@
-"""What a rule of the workflow gives its script: a slice of the study, parameters, files."""
+"""Contents of a workflow rule as its script sees them: slice of the study, parameters, files."""
 
 import time
 from collections.abc import Callable, Iterable
@@ -22,7 +22,7 @@ class Job:
     """
 
     def __init__(self, snakemake: Any) -> None:
-        """From the object of that name in a script."""
+        """Wrap the object ``snakemake`` of a script."""
         self.settings, self.out = snakemake.params.get("settings", {}), snakemake.output
         self.key = snakemake.params.key
         self.item = snakemake.wildcards.get("scatteritem", "1-of-1")

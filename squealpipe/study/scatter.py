@@ -29,7 +29,9 @@ def scattered_rows(rows: int, item: str) -> slice:
 def scattered_values(
     vary: Mapping[str, Sequence[float]], item: str
 ) -> dict[str, Sequence[float]]:
-    """What a part of a scattered sweep varies: all, with some of the values of the longest name."""
+    """Return the values that one part of a scattered sweep varies: all names, and a share of the
+    values of the longest one.
+    """
     cut = longest(vary)
     return {**vary, cut: vary[cut][scattered_rows(len(vary[cut]), item)]}
 

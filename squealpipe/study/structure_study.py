@@ -1,4 +1,4 @@
-"""What a study of a structure computes: complex modes over friction, and which of them squeal."""
+"""Computations of a structure's study: complex modes over friction, and which of them squeal."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -11,12 +11,6 @@ from squealpipe.structures.schema.squealing import MOST_MODES
 from squealpipe.structures.squeal.plant import carried, check_modes
 from squealpipe.structures.squeal.squealing_modes import squealing_modes
 from squealpipe.structures.structure import Structure
-
-BEYOND = 2.0
-"""Largest friction of the modes, over the structure's."""
-POINTS = ((MOST_MODES, 41), (DENSE, 13))
-"""Degrees of freedom up to which there are so many frictions; odd, so that one is its own."""
-FEWEST = 5
 
 
 def read_structure(section: Mapping[str, Any]) -> Structure:
@@ -41,8 +35,13 @@ def read_structure(section: Mapping[str, Any]) -> Structure:
 
 def modes_over_friction(structure: Structure, section: Mapping[str, Any]) -> xr.Dataset:
     """Complex modes of the whole structure, from no friction to twice its own."""
-    points = next((n for size, n in POINTS if structure.size <= size), FEWEST)
-    frictions = np.linspace(0.0, BEYOND * structure.mu or 1.0, points)
+    # frictions by the degrees of freedom that are solved for each; odd numbers, so that the
+    # structure's own friction is one of them
+    points = next(
+        (n for size, n in ((MOST_MODES, 41), (DENSE, 13)) if structure.size <= size), 5
+    )
+    # up to twice the structure's friction: where modes turn unstable is seen from both sides
+    frictions = np.linspace(0.0, 2.0 * structure.mu or 1.0, points)
     allowed = frictions[frictions <= structure.friction.largest_mu]
     return structure.complex_modes(
         mu=allowed, frequency_max=_band(structure, section["frequency_max"])
@@ -57,7 +56,7 @@ def _band(structure: Structure, frequency_max: float | None) -> float | None:
 def squealing(
     structure: Structure, section: Mapping[str, Any], workers: int
 ) -> xr.Dataset:
-    """Which unstable modes squeal, of the structure reduced as its section says."""
+    """Return the unstable modes that squeal, of the structure reduced as its section says."""
     number, limit = section["n_modes"], _band(structure, section["frequency_max"])
     check_modes(number)
     return squealing_modes(

@@ -76,7 +76,9 @@ def remove_stale_lock(folder: Path = Path()) -> str:
 
 
 def standing_lock(folder: Path = Path()) -> str:
-    """What to do about a lock that stays, for its holder may live; empty: there is none."""
+    """Return the remedy for a lock that stays, for its holder may live; empty text if there is
+    none.
+    """
     locks = folder / LOCKS
     if not locks.is_dir() or not any(locks.iterdir()):
         return ""
@@ -98,7 +100,7 @@ def _stated(holders: Iterable[Path]) -> list[dict[str, Any]]:
 
 
 def _works_in(folder: Path) -> bool:
-    """Whether a Snakemake of this machine works in a folder."""
+    """Return whether a Snakemake of this machine works in a folder."""
     import psutil
 
     for process in psutil.process_iter(["cmdline", "cwd"]):
@@ -121,7 +123,7 @@ def end_group(number: int) -> None:
 
 
 def _only_zombies(group: int) -> bool:
-    """Whether the processes of a group have all ended, one of them perhaps unread."""
+    """Return whether all processes of a group have ended; one may not have been waited for."""
     import psutil
 
     for process in psutil.process_iter(["status"]):

@@ -50,13 +50,8 @@ from squealpipe.text import suggestion
 from squealpipe.units import holds_units
 from squealpipe.validation import Line, Workers, checked
 
-EVERY = 5.0
-"""Time after which finished runs go to disk, s."""
 MOST = 2000
 """Finished runs that are held in memory."""
-BATCH, BATCH_TIME = 32, 0.5
-"""Most runs that a process gets at once, since handing over each short run alone costs more than
-the run; and most time that they take, s, since an interruption loses runs under way."""
 
 
 @checked
@@ -72,7 +67,7 @@ def _gate(
 
 @dataclass(frozen=True, kw_only=True)
 class Sweep:
-    """What to run: a task, what stays fixed, and what is varied over which values.
+    """A sweep: a task, fixed arguments, and the values of those that vary.
 
     Attributes:
         task: name of the task, for instance ``"periodic_orbit"``.
@@ -245,7 +240,8 @@ def run_sweep(
             for number, run in enumerate(_runs(sweep, workers, done), done + 1):
                 made.append(run)
                 show(number / total)
-                if kept and (time.monotonic() - written > EVERY or len(made) >= MOST):
+                # after 5 s of new results they go to disk: a stopped sweep loses no more
+                if kept and (time.monotonic() - written > 5.0 or len(made) >= MOST):
                     kept.save(number - len(made), made)
                     made, written = [], time.monotonic()
         finally:
@@ -257,7 +253,7 @@ def run_sweep(
 
 
 def _runs(sweep: Sweep, workers: int | None, first: int) -> Iterator[Run]:
-    """What the runs from one on gave, in order."""
+    """Yield the results of the runs from one on, in order."""
     points = sweep.points[first:]
     number = min(workers or available_cores(), len(points))
     if number < 2 or "fork" not in get_all_start_methods():
@@ -265,7 +261,8 @@ def _runs(sweep: Sweep, workers: int | None, first: int) -> Iterator[Run]:
             yield _arrays(sweep, point, workers)
         return
     others = set(active_children())
-    most = max(1, min(BATCH, len(points) // (8 * number)))
+    # handing over a short run costs more than the run: up to 32 go together
+    most = max(1, min(32, len(points) // (8 * number)))
     size, at = 1, 0
     with ProcessPoolExecutor(
         number, get_context("fork"), leave_interrupts_to_the_parent
@@ -280,9 +277,8 @@ def _runs(sweep: Sweep, workers: int | None, first: int) -> Iterator[Run]:
                     at += size
                 runs, seconds = ahead.popleft().result()
                 # so that handing them over costs little, and an interruption loses little
-                size = min(
-                    max(1, int(len(runs) * BATCH_TIME / max(seconds, 1e-9))), most
-                )
+                # s: an interruption loses the runs under way
+                size = min(max(1, int(len(runs) * 0.5 / max(seconds, 1e-9))), most)
                 yield from runs
         except BrokenProcessPool as error:
             raise RuntimeError(

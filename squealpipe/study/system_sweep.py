@@ -26,13 +26,11 @@ from squealpipe.text import suggestion
 
 FIRST, MOST = LANES, 8192
 """Runs of the first block, and of the largest."""
-EVERY = 5.0
-"""Time that a block should take, s."""
 WAYS = {"ensemble": runs.ensemble, "basin": basin.basin}
 
 
 def is_system(task: str) -> bool:
-    """Whether a task is a system in a file."""
+    """Return whether a task is a system in a file."""
     return ":" in task
 
 
@@ -54,7 +52,7 @@ def find_system(place: str) -> System:
 
 
 def _run(file: str) -> dict[str, Any]:
-    """What a file defines; whatever it raises becomes an error that says where."""
+    """Execute a file; whatever it raises becomes an error that says where."""
     try:
         with without_neighbours():
             return runpy.run_path(file)
@@ -142,7 +140,8 @@ class SystemSweep:
                 part = self._block({along: self.vary[along][chosen]}, used)
             kept.save(done, _rows(part, along))
             done += count
-            quick = time.monotonic() - started < EVERY
+            # a block of runs should take about 5 s, so that a stopped sweep loses little
+            quick = time.monotonic() - started < 5.0
             size = min(2 * size, MOST) if quick else max(size // 2, FIRST)
         if part is None:  # all were there, but for what names and describes them
             part = self._block({along: self.vary[along][:1]}, workers)
@@ -204,7 +203,7 @@ class SystemSweep:
 
 
 def _rows(part: xr.Dataset, along: str) -> list[Run]:
-    """What a part holds, one value of a name after another."""
+    """Yield the values of one part of the sweep, one after another for each name."""
     values = {
         str(name): np.moveaxis(variable.values, variable.dims.index(along), 0)
         for name, variable in part.variables.items()

@@ -26,9 +26,6 @@ from squealpipe.store.runs import (
 )
 from squealpipe.store.yaml_files import flat
 
-PHYSICAL_KEY = re.compile(r"(parameters\.|alpha\d|mode\b|scene\b|vary\.|fixed\.)")
-"""Configuration keys that say what is computed; the others say how, and on which grid."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class DatasetDifference:
@@ -151,8 +148,13 @@ def compare(
         datasets.append(compare_datasets(name, first, second))
         if first.attrs["schema"] == second.attrs["schema"] == "claims":
             statements = changed_statements(first, second)
+    # keys that say what is computed come first; the others say how, and on which grid
     physical_first = sorted(
-        parameters, key=lambda key: (not PHYSICAL_KEY.match(key), key)
+        parameters,
+        key=lambda key: (
+            not re.match(r"(parameters\.|alpha\d|mode\b|scene\b|vary\.|fixed\.)", key),
+            key,
+        ),
     )
     return Comparison(
         a=str(a),
@@ -228,7 +230,9 @@ def _judged(name: str, aligned: Aligned, entry: Variable) -> VariableDifference:
 def _unmatched_entries(
     a: xr.Dataset, b: xr.Dataset, aligned: Aligned, schema: DatasetSchema
 ) -> list[VariableDifference]:
-    """What lists of results have on one side alone; fillers must lie on the other's curve."""
+    """List the entries that lists of results have on one side alone; fillers must lie on the
+    other's curve.
+    """
     unmatched = []
     for dim, how in schema.lists.items():
         if dim not in aligned.alone:

@@ -11,9 +11,6 @@ from squealpipe.schema import DatasetSchema, Variable
 from squealpipe.store.comparison.differences import Agreement, VariableDifference
 from squealpipe.systems.datasets.agreement import Listing
 
-BETWEEN = 0.01
-"""Largest error of an interpolation that is believed, over the extent of a variable."""
-
 
 @dataclass(frozen=True)
 class _Column:
@@ -33,12 +30,14 @@ class _Column:
 
     @property
     def jumps(self) -> bool:
-        """Whether it is a label or a count, which has no values between its neighbours'."""
+        """Return whether the column is a label or a count, which has no values between its
+        neighbours'.
+        """
         return self.entry.flags is not None or self.entry.stored.kind != "f"
 
     @property
     def places(self) -> bool:
-        """Whether it tells where on the curve a point lies."""
+        """Return whether the column tells where on the curve a point lies."""
         both = np.concatenate([self.left, self.right])
         # several numbers a point, such as multipliers, may meet and change places
         if self.jumps or len(self.entry.dims) > 1 or not np.isfinite(both).all():
@@ -58,12 +57,12 @@ def beside_the_curve(
     schema: DatasetSchema,
     unmatched: tuple[np.ndarray, np.ndarray],
 ) -> list[VariableDifference]:
-    """How far points that have no counterpart lie from the other side's curve, by variable.
+    """Return how far points without a counterpart lie from the other side's curve, by variable.
 
     The curve is the cubic through the four points of the other side around the nearest place. Its
     error is taken for twice the difference from the parabolas through three of them, and for no
-    more than :data:`BETWEEN`. Several numbers a point, such as multipliers, meet and change places
-    between points: these are compared at shared points alone.
+    more than 1 % of the extent. Several numbers a point, such as multipliers, meet and change
+    places between points: these are compared at shared points alone.
 
     Args:
         unmatched: places of such points along ``dim`` on both sides.
@@ -137,6 +136,9 @@ def _gaps(
         length = np.linalg.norm((chord / extents)[placing])
         moved = np.linalg.norm((error / extents)[placing]) / length if length else 0.0
         error = 2 * (error + chord * moved)
+    # an interpolation that is further off, over the extent of the variable, is not believed: the
+    # curve has a corner there
+    most_off = 0.01
     for column, value, curved, off, near, extent in zip(
         columns, point, cubic, error, around, extents, strict=True
     ):
@@ -145,7 +147,7 @@ def _gaps(
             yield column.name, 0.0 if same else np.inf, 0.0
             continue
         allowed = column.entry.atol + column.entry.rtol * max(abs(value), abs(curved))
-        yield column.name, abs(value - curved), allowed + min(off, BETWEEN * extent)
+        yield column.name, abs(value - curved), allowed + min(off, most_off * extent)
 
 
 def _equal(one: float, other: float, entry: Variable) -> bool:

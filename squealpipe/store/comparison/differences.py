@@ -1,4 +1,4 @@
-"""How one variable of two datasets differs, judged by the tolerance that its schema states."""
+"""Differences of one variable of two datasets, judged by the tolerance that its schema states."""
 
 from collections import Counter
 from dataclasses import dataclass, field, replace
@@ -14,10 +14,6 @@ from squealpipe.systems.datasets.agreement import ComparedAs, RoundOff
 
 SMALLEST_CHANCE = 1e-6
 """Two samples of one distribution are taken for different ones at this probability or less."""
-LONGEST = 60
-"""Characters of a text that an account of flips quotes."""
-UNIT = 1e-14
-"""Error over the size of a motion at which growth begins: fifty units of round-off."""
 
 
 class Agreement(IntEnum):
@@ -31,7 +27,7 @@ class Agreement(IntEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class VariableDifference:
-    """Where and by how much a variable differs.
+    """Difference of one variable: where, and by how much.
 
     Attributes:
         verdict: equal, within tolerance, different; not judged further if volatile.
@@ -92,7 +88,8 @@ def judge(
             for side in (a, b)
         )
         growth = max(float(a[how.by]), float(b[how.by]), 1.0)
-        entry = replace(entry, atol=entry.atol + UNIT * growth * size)
+        # growth begins at fifty units of round-off, relative to the size of the motion
+        entry = replace(entry, atol=entry.atol + 1e-14 * growth * size)
     judged = difference(name, a[name], b[name], entry)
     allowed = {ComparedAs.unjudged: 1.0, ComparedAs.most: how.share}.get(
         how.compared, 0.0
@@ -129,7 +126,7 @@ def difference(
 
 
 def outside_tolerance(a: np.ndarray, b: np.ndarray, entry: Variable) -> np.ndarray:
-    """Where two arrays differ by more than the schema allows; NaN equals NaN only."""
+    """Return where two arrays differ by more than the schema allows; NaN equals NaN only."""
     if _discrete(a, b, entry):
         return np.asarray(a != b)
     with np.errstate(invalid="ignore", over="ignore"):
@@ -217,7 +214,7 @@ def _flipped(a: xr.DataArray, b: xr.DataArray, entry: Variable) -> dict[str, Any
     count = int(differing.sum())
     words = {} if entry.flags is None else flag_table(entry.flags)
     flips = Counter(
-        " → ".join(shortened(str(words.get(value, value)), LONGEST) for value in pair)
+        " → ".join(shortened(str(words.get(value, value)), 60) for value in pair)
         for pair in zip(
             a.values[differing].tolist(), b.values[differing].tolist(), strict=True
         )

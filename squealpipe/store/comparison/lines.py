@@ -13,8 +13,6 @@ from squealpipe.store.comparison.differences import (
 from squealpipe.store.comparison.statements import StatementChange
 from squealpipe.systems.datasets.agreement import ComparedAs
 
-WIDTH = 100
-
 
 def lines(comparison: Comparison, *, every: bool = False) -> list[str]:
     """The answer, changed parameters, changed statements, what differs (worst first); for people.
@@ -52,9 +50,10 @@ def lines(comparison: Comparison, *, every: bool = False) -> list[str]:
         stated += [heading, *(f"  {line}" for line in shown)] if shown else []
     if every:
         return stated
+    width = 100
     return [
-        shortened(stated[0], 3 * WIDTH),
-        *(shortened(line, WIDTH) for line in stated[1:]),
+        shortened(stated[0], 3 * width),
+        *(shortened(line, width) for line in stated[1:]),
     ]
 
 

@@ -8,11 +8,6 @@ import xarray as xr
 from squealpipe.schema import DatasetSchema
 from squealpipe.systems.datasets.agreement import RAGGED, Listing
 
-SAME_PLACE = 1e-9
-"""Positions of filling entries of a list that differ by less, relative, are the same."""
-ALIGNED = 1e-9
-"""Grid points that differ by less, relative to the extent of the grid, are the same point."""
-
 
 @dataclass(frozen=True)
 class Aligned:
@@ -110,11 +105,12 @@ def match(
             _positions(each, how, dim, at)
             for each, at in zip((a, b), places, strict=True)
         )
+        # positions closer than this, relative, differ by round-off alone
         pairs += [
             (int(places[0][i]), int(places[1][j]))
             for i, j in _nearest_of_each_other(left, right)
             if not fills
-            or abs(left[i] - right[j]) <= SAME_PLACE * max(abs(left[i]), abs(right[j]))
+            or abs(left[i] - right[j]) <= 1e-9 * max(abs(left[i]), abs(right[j]))
         ]
     at = np.array(sorted(pairs), int).reshape(-1, 2)
     by = how.position or ("kind and order" if how.kinds else "order")
@@ -123,7 +119,7 @@ def match(
 
 
 def is_filler(dataset: xr.Dataset, how: Listing, dim: str) -> np.ndarray:
-    """Which entries of a list lie where a method's steps happened to end."""
+    """Return which entries of a list lie where a method's steps happened to end."""
     if not how.fillers:
         return np.zeros(dataset.sizes[dim], bool)
     return np.isin(dataset[how.kinds[0]].values, how.fillers)
@@ -176,7 +172,8 @@ def _pairs_of_points(left: np.ndarray, right: np.ndarray) -> list[np.ndarray]:
     tolerance = 0.0
     if numbers:
         extent = max((np.ptp(side) for side in (left, right) if side.size), default=0.0)
-        tolerance = ALIGNED * float(extent)
+        # grid points closer than this, over the extent of the grid, are the same point
+        tolerance = 1e-9 * float(extent)
     else:
         left, right = left.astype(str), right.astype(str)
     orders = np.argsort(left, kind="stable"), np.argsort(right, kind="stable")

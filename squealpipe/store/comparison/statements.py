@@ -1,4 +1,4 @@
-"""Which of the paper's statements changed their verdict or their value between two runs."""
+"""Statements of the paper whose verdict or value changed between two runs."""
 
 import math
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ class StatementChange:
 
     @property
     def verdict_changed(self) -> bool:
-        """Whether more than the measured value changed."""
+        """Return whether more than the measured value changed."""
         return self.verdicts[0] != self.verdicts[1]
 
 

@@ -1,1 +1,1 @@
-"""Which results an edit makes stale, and what will be computed again."""
+"""Prediction of the results that an edit makes stale, and of the work to renew them."""

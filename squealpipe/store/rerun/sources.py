@@ -1,4 +1,4 @@
-"""Which source files a script depends on, from the imports that they state, and their code."""
+"""Source files that a script depends on, from the imports that they state, and their code."""
 
 import ast
 import hashlib

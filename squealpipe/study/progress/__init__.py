@@ -1,1 +1,1 @@
-"""What `squealpipe run` says while Snakemake works."""
+"""Progress of `squealpipe run` while Snakemake works."""

@@ -1,4 +1,4 @@
-"""How long the jobs of a study still take, from what they took when they last ran."""
+"""Remaining time of a study's jobs, from the time that each took when it last ran."""
 
 from collections import Counter
 from collections.abc import Mapping

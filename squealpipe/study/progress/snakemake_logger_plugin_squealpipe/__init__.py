@@ -88,7 +88,7 @@ class LogHandler(LogHandlerBase):
 
     @property
     def has_filter(self) -> bool:
-        """What is written is decided here."""
+        """Tell Snakemake that this handler chooses its messages by itself."""
         return True
 
     @property
