@@ -8,8 +8,6 @@ from squealpipe.benchmark.adapters import installed
 from squealpipe.benchmark.results import shipped_answers
 from squealpipe.benchmark.scoring import TOLERANCES, benchmark
 
-OURS = "squealpipe"
-
 
 def benchmark_beside_peers(
     solvers: Sequence[str],
@@ -33,7 +31,7 @@ def benchmark_beside_peers(
     stored = {
         name: found
         for name in solvers
-        if name != OURS and not run_peers
+        if name != "squealpipe" and not run_peers
         if (found := shipped_answers(name, tolerances)) is not None
     }
     scored = benchmark(

@@ -11,11 +11,7 @@ import yaml
 
 INPUT_FILES = ("problems.yaml", "references.json")
 """Read below: every result that uses this module depends on them."""
-SHARED = ("regimes", "field", "switches", "smoothed", "stepping")
-"""What makes a system; a problem may take them from an earlier one, its ``system``."""
 FUNCTIONS = ("cos", "sin", "exp", "log", "tanh")
-PATIENCE = 200_000
-"""Calls of the field after which a solver is stopped; its answer then counts as flagged."""
 
 
 class OutOfPatienceError(RuntimeError):
@@ -80,7 +76,8 @@ class Problem:
         }
         self.regimes: dict[str, dict[str, float]] = data["regimes"]
         self.derivative = data.get("derivative")
-        self.calls, self.patience = 0, PATIENCE
+        # after so many calls of the field a solver is stopped; its answer then counts as flagged
+        self.calls, self.patience = 0, 200_000
         self._names = {
             name: getattr(functions, name) for name in FUNCTIONS
         } | self.parameters
@@ -157,8 +154,14 @@ def all_data() -> list[dict[str, Any]]:
     text = (files("squealpipe.benchmark") / "problems.yaml").read_text("utf-8")
     entries = yaml.safe_load(text)
     named = {entry["name"]: entry for entry in entries}
+    # what makes a system; a problem may take them from an earlier one, its ``system``
     shared = {
-        name: {key: e[key] for key in SHARED if key in e} for name, e in named.items()
+        name: {
+            key: e[key]
+            for key in ("regimes", "field", "switches", "smoothed", "stepping")
+            if key in e
+        }
+        for name, e in named.items()
     }
     return [shared.get(entry.get("system"), {}) | entry for entry in entries]
 

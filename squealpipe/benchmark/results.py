@@ -19,8 +19,6 @@ SHIPPED = "shipped"
 """Stands for the results that come with the package, in place of a file's name."""
 COUNTS = ("missed", "spurious", "out_of_order", "evaluations")
 NUMBERS = ("error", "time_error", "cpu_ratio")
-DIGITS = 3
-"""Of errors and CPU times."""
 
 
 def results_as_json(datasets: Iterable[xr.Dataset]) -> str:
@@ -76,10 +74,12 @@ def _entry(dataset: xr.Dataset, problem: xr.DataArray, solver: str) -> dict[str,
     entry: dict[str, Any] = {"problem": str(problem.item()), "solver": solver}
     entry["verdict"] = [Reliability(v).name for v in cells.verdict.values.tolist()]
     entry |= {name: cells[name].values.tolist() for name in COUNTS}
+    # three digits: errors and CPU times are compared by their decades
+    digits = 3
     for name in NUMBERS:
         values = cells[name].values.tolist()
         entry[name] = [
-            float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None
+            float(f"{value:.{digits}g}") if math.isfinite(value) else None
             for value in values
         ]
     return entry | {"message": cells.message.values.tolist()}

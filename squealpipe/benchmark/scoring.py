@@ -25,14 +25,6 @@ judged otherwise: from 3 on, no events and no derivative are no answer where the
 TIME_LIMIT = 120.0
 """Wall time for one answer, s."""
 TOLERANCES = (1e-6, 1e-8, 1e-10, 1e-12)
-ALLOWED = 100.0
-"""Error over growth, in tolerances, up to which an answer is right."""
-NEVER = 1e300
-"""Stands for an event time that is not a finite number."""
-APART = 0.1
-"""An event is known whose time the allowed error moves by less of the way to the next one."""
-REFERENCE_TOLERANCE = 1e-8
-"""Of DOP853, whose CPU time is the unit of ``cpu_ratio``."""
 
 
 class Score(NamedTuple):
@@ -117,21 +109,26 @@ def score(
         unanswered.append("gives no derivative")
     error = largest(state, reference["state"], reference["growth"])
     missed = spurious = swapped = -1
-    time_error, wrong, allowed = np.nan, False, ALLOWED * tol
+    # an answer is right up to a hundred tolerances, times the growth of a perturbation
+    time_error, wrong, allowed = np.nan, False, 100.0 * tol
+    # stands for an event time that is not a finite number
+    never = 1e300
     if times is not None:
         if len(times) != len(kinds):
             raise ValueError(f"{len(times)} times, but {len(kinds)} kinds of events")
         truth, growth = np.array(reference["times"]), np.array(reference["time_growth"])
         mine = np.nan_to_num(
-            np.array(times, float), nan=NEVER, posinf=NEVER, neginf=-NEVER
+            np.array(times, float), nan=never, posinf=never, neginf=-never
         )
         i, j = matched(reference, mine, kinds).T
         missed, spurious = len(truth) - len(i), len(mine) - len(j)
         swapped = out_of_order(j, truth[i], allowed * growth[i])
         judged = allowed <= reference["margin"]
-        known = judged | (allowed * growth <= APART * spacing(truth))
+        # an event is known if the allowed error moves its time by less than a tenth of the way to
+        # the next one
+        known = judged | (allowed * growth <= 0.1 * spacing(truth))
         errors = np.abs(mine[j] - truth[i]) / np.maximum(1.0, truth[i])
-        errors[np.abs(mine[j]) == NEVER] = np.inf
+        errors[np.abs(mine[j]) == never] = np.inf
         time_error = errors.max(initial=0.0)
         error = (errors / growth[i]).max(initial=error, where=known[i])
         order = out_of_order(
@@ -283,7 +280,8 @@ def benchmark(
     for data in chosen:
         unit = np.nan
         if workers:
-            unit = measure(data, reference_solver, REFERENCE_TOLERANCE).cpu_time
+            # DOP853 at 10⁻⁸: its CPU time is the unit of ``cpu_ratio``
+            unit = measure(data, reference_solver, 1e-8).cpu_time
         cells.append([])
         for name, worker in workers.items():
             _ask(worker, data, tolerances[0])  # compiles before any stopwatch runs

@@ -27,7 +27,7 @@ def reserve(path: Path, held: ExitStack, option: str) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         while True:
             handle = os.open(lock, os.O_RDWR | os.O_CREAT, 0o666)
-            # POSIX raises the first, Windows the second, where another process holds the lock
+            # POSIX allows either where another process holds the lock
             try:
                 fcntl.lockf(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except (BlockingIOError, PermissionError) as error:

@@ -12,8 +12,6 @@ from assimulo.solvers import CVode
 
 from squealpipe.benchmark.problems import Problem, run
 
-QUIET = 50
-
 
 def solve(problem: Problem, tol: float) -> Any:
     """Times, kinds, state, evaluations."""
@@ -36,7 +34,8 @@ def solve(problem: Problem, tol: float) -> Any:
         if watched:
             asked.state_events, asked.handle_event = surfaces, stop
         solver = CVode(asked)
-        solver.discr, solver.verbosity = "Adams", QUIET
+        # 50: no messages of the solver
+        solver.discr, solver.verbosity = "Adams", 50
         solver.rtol, solver.atol = tol, tol
         if t < problem.t_end:
             solver.simulate(problem.t_end, 0, problem.times_after(t))

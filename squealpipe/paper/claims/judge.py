@@ -20,8 +20,6 @@ from squealpipe.study.evidence import Evidence, MissingDataError
 
 BESIDE = "corrected/"
 """Folder of the datasets of the corrected physics, where it differs from the reading."""
-DECIDED = 0.1
-"""Share of the feasible set, or of its rest, below which exceptions are at the set's margin."""
 
 
 def judge(
@@ -68,7 +66,9 @@ def _row(statement: Statement, run: Evidence, second: Evidence) -> dict[str, Any
     verdict_here = ClaimVerdict.holds_only_as_printed if printed else judgement.verdict
     verdict, corrected_verdict = verdict_here, mended.verdict
     # The paper prints no parameters: what divides the feasible set depends on those one takes.
-    if DECIDED < share < 1.0 - DECIDED and verdict != ClaimVerdict.cannot_be_decided:
+    # exceptions in less than a tenth of the feasible set, or of its rest, lie at the set's margin
+    margin = 0.1
+    if margin < share < 1.0 - margin and verdict != ClaimVerdict.cannot_be_decided:
         verdict = ClaimVerdict.depends_on_the_parameters
         if mended.verdict == judgement.verdict:
             corrected_verdict = verdict
@@ -96,7 +96,7 @@ def _row(statement: Statement, run: Evidence, second: Evidence) -> dict[str, Any
 
 
 def standing(statement: Statement, run: Evidence) -> tuple[Basis, float, int]:
-    """How a statement stands to the inference of a run.
+    """Return how a statement stands to the inference of a run.
 
     Returns:
         Whether it was fitted or is predicted (unknown without an inference), the share of the

@@ -52,7 +52,7 @@ def angle_sum_over_pi(dataset: xr.Dataset | xr.DataArray) -> xr.DataArray:
 def is_multiple(
     values: xr.DataArray, of: float = 1.0, *, odd: bool = False
 ) -> xr.DataArray:
-    """Where values are a whole (or odd) multiple, to a millionth."""
+    """Return where values are a whole (or odd) multiple, to a millionth."""
     ratio = values / of
     whole: xr.DataArray = abs(ratio - ratio.round()) < 1e-6
     return whole & (ratio.round() % 2 == 1) if odd else whole

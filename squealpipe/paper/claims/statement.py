@@ -35,7 +35,7 @@ class Statement:
 
     @property
     def measure(self) -> str:
-        """What the check measures, in words: the first paragraph of its docstring."""
+        """Return what the check measures in words: the first paragraph of its docstring."""
         words = " ".join(str(self.check.__doc__).partition("\n\n")[0].split())
         return words[0].lower() + words[1:].removesuffix(".")
 

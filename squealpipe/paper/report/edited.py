@@ -1,4 +1,4 @@
-"""What a page says of any study: its friction, its counts, and what an edit changed."""
+"""Sentences for the page of any study: its friction, its counts, and what an edit changed."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -15,21 +15,18 @@ from squealpipe.parameters import (
 from squealpipe.reading import for_linear, reading_of
 from squealpipe.text import number
 
-PHYSICS = ("parameters.", "reading")
-"""Beginnings of the keys that change what is computed, not how finely."""
-SIDES = {1: "+x", -1: "−x"}
-
 
 def friction_in_words(parameters: Parameters, reading: str) -> str:
-    """Which friction A1 has, beside that of the linear models."""
+    """Describe the friction of A1 beside that of the linear models."""
     belt = direction_of(for_linear(parameters, reading).belt_speed)
+    sides = {1: "+x", -1: "−x"}
     if reading_of(reading).a1_model == "A1-as-printed":
         way = (
             f"A1 has Eq. (4) as printed, which pushes a mass slower than the belt along "
-            f"{SIDES[-belt]}; the linear models are dragged along {SIDES[belt]}"
+            f"{sides[-belt]}; the linear models are dragged along {sides[belt]}"
         )
     else:
-        way = f"Friction drags along {SIDES[belt]} in A1 and in the linear models"
+        way = f"Friction drags along {sides[belt]} in A1 and in the linear models"
     values = {
         name: value
         for name, value in parameters.as_dict().items()
@@ -42,8 +39,9 @@ def friction_in_words(parameters: Parameters, reading: str) -> str:
 
 
 def is_physical(key: str) -> bool:
-    """Whether a key of the configuration changes the physics."""
-    return key.startswith(PHYSICS)
+    """Return whether a key of the configuration changes the physics."""
+    # the other keys change how finely the study computes
+    return key.startswith(("parameters.", "reading"))
 
 
 def what_changed(changed: Sequence[tuple[str, Any, Any]]) -> str:

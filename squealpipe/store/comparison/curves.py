@@ -136,8 +136,7 @@ def _gaps(
         length = np.linalg.norm((chord / extents)[placing])
         moved = np.linalg.norm((error / extents)[placing]) / length if length else 0.0
         error = 2 * (error + chord * moved)
-    # an interpolation that is further off, over the extent of the variable, is not believed: the
-    # curve has a corner there
+    # an interpolation's own error is allowed for up to 1 % of the variable's extent
     most_off = 0.01
     for column, value, curved, off, near, extent in zip(
         columns, point, cubic, error, around, extents, strict=True

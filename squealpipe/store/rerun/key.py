@@ -38,8 +38,6 @@ STARTED = "SQUEALPIPE_STARTED"
 PLAN = "SQUEALPIPE_PLAN"
 """Environment variable with the file into which the workflow writes what its results should be."""
 
-SHOWN = 3
-"""Names of files that a message has at most."""
 
 MARK = b"squealpipe key: "
 
@@ -143,10 +141,11 @@ def refuse_edited(output: str | os.PathLike[str]) -> None:
         for path in sorted(own_files)
         if not path.exists() or started < path.stat().st_mtime <= now
     ]
+    shown = 3
     if edited:
-        more = f" and {len(edited) - SHOWN} more" if len(edited) > SHOWN else ""
+        more = f" and {len(edited) - shown} more" if len(edited) > shown else ""
         raise RuntimeError(
-            f"{output} is not written: {', '.join(edited[:SHOWN])}{more} changed in "
+            f"{output} is not written: {', '.join(edited[:shown])}{more} changed in "
             f"{PACKAGE.parent} while it was computed, by an edit or a new installation; "
             "run the same command again"
         )

@@ -20,10 +20,6 @@ WORKFLOW = (PACKAGE / "workflow").resolve()
 """Rules, scripts and configurations: in a checkout a folder of its own, in a wheel within."""
 
 
-LAWS = ("friction_laws", "contact_laws")
-"""Folders with one module for each law; where one is imported, all are."""
-
-
 class Source(NamedTuple):
     """Package modules that a file imports and reads, and the digest of its code.
 
@@ -72,9 +68,10 @@ def read_source(path: Path) -> Source:
 @cache
 def law_files() -> dict[Path, str]:
     """Return the modules of single laws, each with the law's name."""
+    # where one law is imported, all are: they are found by name
     return {
         path: path.stem
-        for folder in LAWS
+        for folder in ("friction_laws", "contact_laws")
         for path in sorted(PACKAGE.glob(f"laws/{folder}/*.py"))
         if path.stem != "__init__"
     }

@@ -24,12 +24,6 @@ NAMES = {
     "belt_speed": "belt speed",
 }
 """Words for what is changed."""
-NO_FRICTION = 1e-3
-"""Friction over the present one below which none is left; an undamped flutter needs that."""
-ROUND_OFF = 1e-7
-"""Growth rate over the highest frequency, rad/s, that is the round-off of an undamped motion."""
-FAR = 10.0
-"""Distance of steady sliding from rest, over the preload, from which it is told."""
 NOT_FOUND = "none"
 """In place of a value that was not found within the range searched."""
 CHEAPEST = 3
@@ -144,7 +138,8 @@ def _cause(answer: xr.Dataset) -> str:
 def _far(answer: xr.Dataset) -> str:
     away = math.hypot(float(answer.x_sliding), float(answer.y_sliding))
     preloads = away / float(answer.preload)
-    if not preloads > FAR:
+    # from here on the reader is told how far steady sliding is from rest
+    if not preloads > 10.0:
         return ""
     return (
         f"Friction carries the mass {engineering(away, 'm')} from where its springs are unloaded, "
@@ -154,7 +149,7 @@ def _far(answer: xr.Dataset) -> str:
 
 
 def level(answer: xr.Dataset) -> str:
-    """How loud, in one sentence."""
+    """Return the level of the noise in one sentence."""
     verdict = verdict_of(answer)
     if verdict is Verdict.quiet:
         return f"Level: none; the contact force is {_force(answer)}."
@@ -200,7 +195,7 @@ def impacts(answer: xr.Dataset) -> str:
 
 
 def sudden(answer: xr.Dataset) -> str:
-    """What the other start leads to."""
+    """Return in words what the start at rest under the whole preload leads to."""
     if Mechanism(int(answer.mechanism)) is Mechanism.no_sliding_state:
         return "Pressed on suddenly: the same."
     told = headline(answer, "sudden_")
@@ -237,7 +232,7 @@ def of_a_push(answer: xr.Dataset) -> list[CureWords]:
 
 
 def stops(answer: xr.Dataset) -> str:
-    """What the table of cures tells."""
+    """Return the sentences that the table of cures supports."""
     if verdict_of(answer) is not Verdict.quiet:
         return "What stops it"
     if bool(answer.quiet_unless_struck):
@@ -246,7 +241,7 @@ def stops(answer: xr.Dataset) -> str:
 
 
 def not_cures(answer: xr.Dataset) -> list[tuple[str, str]]:
-    """What was changed in vain, and the range that was searched."""
+    """Return the changes that cure nothing, each with the range that was searched."""
     found = _found(answer)
     return [
         (NAMES[str(name)], _range(answer.sel(cure=name)))
@@ -319,7 +314,7 @@ def _snap_line(answer: xr.Dataset) -> Iterator[str]:
 
 
 def snap_throughs(answer: xr.Dataset) -> list[str]:
-    """Where steady sliding of a quiet brake snaps to another place, which may be quiet too."""
+    """Tell where steady sliding of a quiet brake snaps to another place, which may be quiet too."""
     if "snaps_from" not in answer:
         return []  # of version 1.0.0
     told = []
@@ -334,9 +329,11 @@ def snap_throughs(answer: xr.Dataset) -> list[str]:
 
 
 def _is_neutral(answer: xr.Dataset) -> bool:
-    """Whether small motions about steady sliding keep their size, apart from round-off."""
+    """Return whether small motions about steady sliding keep their size, apart from round-off."""
     fastest = 2.0 * math.pi * float(answer.mode_frequency.max())
-    return abs(float(answer.sliding_growth_rate)) <= ROUND_OFF * fastest
+    # an undamped motion grows or decays by round-off alone; relative to the highest frequency,
+    # rad/s
+    return abs(float(answer.sliding_growth_rate)) <= 1e-7 * fastest
 
 
 def _found(answer: xr.Dataset) -> list[str]:
@@ -351,7 +348,9 @@ def _found(answer: xr.Dataset) -> list[str]:
 def _words(cure: xr.Dataset) -> CureWords:
     name = str(cure.cure.item())
     unit = str(cure.unit.item())
-    is_none = name == "mu" and float(cure.quiet_from) <= NO_FRICTION * float(cure.value)
+    # less than a thousandth of the present friction is none: only an undamped flutter needs so
+    # little
+    is_none = name == "mu" and float(cure.quiet_from) <= 1e-3 * float(cure.value)
     return CureWords(
         name,
         NAMES[name],

@@ -18,9 +18,6 @@ from squealpipe.store.whole_files import whole_file
 
 TEMPLATES = Path(str(files("squealpipe.study.report"))) / "templates"
 
-SPACING_ACCENTS = {0x0307: "\u02d9", 0x0308: "\u00a8"}
-"""Dots over a symbol: as combining characters they land beside it where no mathematics font is."""
-
 
 def _typeset(source: Path, target: Literal["html", "pdf"]) -> bytes:
     """The document in one format; the PDF with the fonts that come with Typst."""
@@ -78,7 +75,10 @@ def _page(content: Mapping[str, Any], made: str) -> str:
     shell = environment.from_string(
         (TEMPLATES / "page.html.j2").read_text(encoding="utf-8")
     )
-    body = _between(made, "<body>", "</body>").translate(SPACING_ACCENTS)
+    # dots over a symbol: as combining characters they land beside it where no mathematics font is
+    body = _between(made, "<body>", "</body>").translate(
+        {0x0307: "\u02d9", 0x0308: "\u00a8"}
+    )
     return shell.render(
         title=content["title"],
         # a page without a formula has none

@@ -1,4 +1,4 @@
-"""Which rule makes which dataset from which others, read off the workflow's rules.
+"""Lineage of the datasets: which rule makes each from which others, read off the workflow's rules.
 
 Knows no workflow engine: a rule is anything with ``name``, ``input`` and ``output``.
 """

@@ -1,4 +1,4 @@
-"""What the report of a study of one's own shows, as plain data."""
+"""Contents of the report of a study of one's own, as plain data."""
 
 import json
 import math
@@ -90,7 +90,7 @@ def scene(name: str, told: xr.Dataset, started: xr.Dataset) -> dict[str, Any]:
 
 
 def _nearest(told: xr.Dataset) -> str | None:
-    """Where the nearest other verdict lies in the plane of both angles, in words."""
+    """Describe where the nearest other verdict lies in the plane of both angles."""
     now = [math.degrees(float(told[f"alpha{i}"])) for i in (1, 2)]
     there = [math.degrees(float(told[f"quiet_alpha{i}"])) for i in (1, 2)]
     if not np.isfinite(there).all():
@@ -151,7 +151,7 @@ def _written(value: float, unit: str) -> str:
 
 
 def _from_start(run: xr.Dataset) -> dict[str, str]:
-    """What the run from the scene's own start does."""
+    """Describe the run from the scene's own start."""
     apart = intervals(run, Regime.separated)
     return {
         "first_loss": engineering(float(apart[0, 0]), "s") if len(apart) else "none",

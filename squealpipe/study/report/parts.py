@@ -19,7 +19,7 @@ from squealpipe.units import shown_in
 
 @dataclass(frozen=True, kw_only=True)
 class Made:
-    """How one file of the run came to be."""
+    """Origin of one file of the run."""
 
     path: Path
     rule: str

@@ -11,17 +11,11 @@ from squealpipe.systems.datasets.outcomes import Outcome
 from squealpipe.text import number
 from squealpipe.units import engineering
 
-WORDS = {
-    PushAnswer.right: "rightly",
-    PushAnswer.other_mode: "which is another mode",
-    PushAnswer.quiet_instead: "which is wrong",
-    PushAnswer.rings_instead: "which is wrong",
-    PushAnswer.not_known: "of which the finest run says nothing",
-}
-
 
 def lines(ladder: xr.Dataset) -> list[str]:
-    """What the finest run says, what each method says beside it, and their cost."""
+    """Return the answer of the finest run, that of each method beside it, and their cost, as
+    sentences.
+    """
     finest = int(np.flatnonzero(ladder.role.values == Role.our_setting)[0])
     truth = ladder.isel(run=finest)
     told = [f"Finest: exact events in {truth.setting.item()}."]
@@ -39,7 +33,7 @@ def _pushes(one: xr.Dataset) -> Iterator[str]:
 
 
 def rings(end: xr.Dataset) -> str:
-    """What rings after a push, in words."""
+    """Describe the vibration after a push."""
     if int(end.outcome) == Outcome.no_convergence:
         return "is not followed to the end"
     is_quiet = bool(np.isnan(end.frequency))
@@ -51,14 +45,21 @@ def rings(end: xr.Dataset) -> str:
 
 
 def method_line(one: xr.Dataset) -> str:
-    """What a method says of each push, how far off it is, and what it costs."""
+    """Return a method's answer to each push, its error and its cost in one sentence."""
     parts = []
+    words_of = {
+        PushAnswer.right: "rightly",
+        PushAnswer.other_mode: "which is another mode",
+        PushAnswer.quiet_instead: "which is wrong",
+        PushAnswer.rings_instead: "which is wrong",
+        PushAnswer.not_known: "of which the finest run says nothing",
+    }
     for place in range(one.sizes["mode"]):
         end = one.isel(mode=place)
         answer = PushAnswer(int(end.answer))
         said = f"mode {int(end.mode)} {rings(end)}"
-        if answer in WORDS:
-            said += f", {WORDS[answer]}"
+        if answer in words_of:
+            said += f", {words_of[answer]}"
         elif answer is PushAnswer.no_such_mode:
             said = f"it has no mode {int(end.mode)}"
         parts.append(said)

@@ -20,8 +20,6 @@ from squealpipe.units import engineering
 
 LISTED = 8
 """Attractors and modes that are told."""
-EXACT = 1e-6
-"""Relative error that is not told: of a structure that was not reduced."""
 
 
 def lines(answer: xr.Dataset) -> list[str]:
@@ -146,7 +144,8 @@ def _named(mode: xr.Dataset, prefix: str = "") -> str:
         for name in ("frequency", "growth_rate")
     )
     told = engineering(frequency, "Hz", 4), number(growth)
-    if prefix or max(off / max(frequency, 1e-300), apart / abs(growth)) < EXACT:
+    # the error of a structure that was not reduced is round-off, and is not told
+    if prefix or max(off / max(frequency, 1e-300), apart / abs(growth)) < 1e-6:
         return f"{told[0]}, growth rate {told[1]} 1/s"
     if not np.isfinite(apart):
         return f"{told[0]}, growth rate {told[1]} 1/s of unknown error"
@@ -197,7 +196,7 @@ def _near(answer: xr.Dataset, motion: xr.Dataset) -> str:
 
 
 def level(answer: xr.Dataset) -> str:
-    """How loud what a small push ends in is, and where contact is lost, in one sentence."""
+    """Return the level of what a small push ends in, and where contact is lost, in one sentence."""
     if answer.attrs.get("not_run") or not agrees(answer):
         return "Level: not known."
     if Verdict(int(answer.verdict)) is Verdict.quiet:
@@ -214,7 +213,7 @@ def level(answer: xr.Dataset) -> str:
 
 
 def beside(answer: xr.Dataset) -> str | None:
-    """What random starts end in other than what a small push does, in one sentence."""
+    """Name the motions that random starts end in and a small push does not, in one sentence."""
     end = _end(answer)
     others = [
         one
@@ -235,7 +234,7 @@ def beside(answer: xr.Dataset) -> str | None:
 
 
 def modes(answer: xr.Dataset) -> Iterator[str]:
-    """What becomes of each unstable mode."""
+    """Return a row for each unstable mode: its growth, and the motion that it grows into."""
     if not answer.sizes["mode"]:
         kept = "" if agrees(answer) else f" in the {int(answer.n_modes)} modes kept"
         yield f"No mode of steady sliding is unstable{kept}."
@@ -263,7 +262,7 @@ def modes(answer: xr.Dataset) -> Iterator[str]:
 
 
 def attractors(answer: xr.Dataset) -> Iterator[str]:
-    """What random starts end in."""
+    """Return a row for each motion that random starts end in."""
     if answer.attrs.get("not_run"):
         return
     size = answer.sizes["sample"]
@@ -338,7 +337,7 @@ def onset(answer: xr.Dataset, of_whole: float | None = None) -> Iterator[str]:
 
 
 def _lasts(answer: xr.Dataset) -> bool:
-    """Whether squeal that began at more friction lasts where no mode is unstable."""
+    """Return whether squeal that began at more friction lasts where no mode is unstable."""
     if "onset_kind" not in answer or answer.sizes["mode"]:
         return False
     if not bool(answer.squeals_below_critical):
@@ -348,7 +347,7 @@ def _lasts(answer: xr.Dataset) -> bool:
 
 
 def _kind(answer: xr.Dataset) -> str:
-    """What becomes of the motion that begins there."""
+    """Name the motion that begins at the onset."""
     match OnsetKind(int(answer.onset_kind)):
         case OnsetKind.supercritical:
             return "What squeals just above dies there (supercritical)."
@@ -360,7 +359,7 @@ def _kind(answer: xr.Dataset) -> str:
 
 
 def _end_of(one: xr.Dataset, critical: float) -> str:
-    """Where a motion that was followed dies."""
+    """Describe where a motion that was followed over friction dies."""
     dies = float(one.mu_dies)
     if not np.isfinite(dies):
         lowest = number(float(np.nanmin(one.track_mu.values)), 3)

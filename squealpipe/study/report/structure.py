@@ -1,4 +1,4 @@
-"""What the report of a structure shows, as plain data: the answer first."""
+"""Contents of the report of a structure, as plain data: the answer first."""
 
 import json
 from collections.abc import Mapping
@@ -18,15 +18,6 @@ from squealpipe.study.report.parts import Made, pictures
 from squealpipe.study.report.sections import STRUCTURE
 from squealpipe.text import number, percent
 from squealpipe.units import engineering
-
-LASTING = (
-    "Whether a vibration that lasts dies out as well where small motions do: less friction and "
-    "more damping are judged by small motions."
-)
-DAMPED = (
-    "Whether a vibration that lasts dies out as well where small motions do: more damping is "
-    "judged by small motions."
-)
 
 
 def gather_structure(
@@ -102,7 +93,7 @@ def _beyond(answer: xr.Dataset) -> str:
 
 
 def _origin(modes: xr.Dataset, mode: xr.Dataset) -> str:
-    """What feeds a mode, by where it comes from."""
+    """Name the source of a mode's growth."""
     frequency = float(mode.frequency[_own_friction(modes)])
     if not frequency > 0:
         return "a mode that does not oscillate grows (divergence)"
@@ -132,7 +123,7 @@ def _origin(modes: xr.Dataset, mode: xr.Dataset) -> str:
 
 
 def stops(modes: xr.Dataset, answer: xr.Dataset) -> list[str]:
-    """What stops it, or how far from noise it is."""
+    """Return sentences on what stops the squeal, or how far it is."""
     own = float(modes.mu[_own_friction(modes)])
     critical, damping = _critical(modes), float(answer.added_damping)
     if not _unstable(modes) and (beyond := _beyond(answer)):
@@ -178,7 +169,7 @@ def _unresolved(answer: xr.Dataset) -> bool:
 
 
 def squeal_below(answer: xr.Dataset, own: float) -> str:
-    """How far below the critical friction squeal lasts, beside a structure's own friction."""
+    """Tell how far below the critical friction squeal lasts, and where the own friction lies."""
     dies = float(answer.onset_mu - answer.hysteresis)
     lasts = float(np.nanmin(answer.track_mu.values))
     if dies <= lasts:
@@ -264,7 +255,7 @@ def _number_or_dash(value: xr.DataArray) -> str:
 
 
 def structure(modes: xr.Dataset, answer: xr.Dataset) -> dict[str, Any]:
-    """What was run: size, friction, contacts."""
+    """Return the size, friction and contacts of the structure that was run."""
     whole = json.loads(modes.attrs["parameters"])
     static = whole["mu_static"]
     damping = np.atleast_1d(whole["modal_damping"])
@@ -297,12 +288,20 @@ def structure(modes: xr.Dataset, answer: xr.Dataset) -> dict[str, Any]:
 
 
 def not_examined(answer: xr.Dataset) -> list[str]:
-    """What the answer does not cover, in sentences."""
+    """Return what the answer does not cover, in sentences."""
     errors = [float(answer.frequency_error), float(answer.growth_rate_error)]
+    judged_by_small_motions = (
+        "less friction and more damping are"
+        if "onset_kind" not in answer
+        else "more damping is"
+    )
     rest = [
         "Wear, heat, the sound that is radiated, and parameters that scatter.",
         "Starts of more energy than the preload stores in the contacts.",
-        LASTING if "onset_kind" not in answer else DAMPED,
+        (
+            "Whether a vibration that lasts dies out as well where small motions do: "
+            f"{judged_by_small_motions} judged by small motions."
+        ),
     ]
     if max(errors) > 0:
         rest.insert(

@@ -17,9 +17,6 @@ from squealpipe.store.whole_files import whole_file
 from squealpipe.study.report import answer
 from squealpipe.units import plain_unit
 
-LONGEST_NAME = 31
-"""Characters of a sheet's name that Excel allows."""
-
 CURES = {
     "now": "value",
     "quiet from": "quiet_from",
@@ -51,7 +48,8 @@ def write_tables(
         ),
     )
     for name, told in answers.items():
-        sheet = book.create_sheet(f"Spectrum {name}"[:LONGEST_NAME])
+        # Excel allows 31 characters in the name of a sheet
+        sheet = book.create_sheet(f"Spectrum {name}"[:31])
         columns = {
             "frequency (Hz)": told.line_frequency,
             "velocity along (m/s)": told.velocity_spectrum_along,

@@ -13,8 +13,6 @@ rows = StatementRows("abstract", "fig02")
 
 LEVELS = ("A1", "A2", "A3", "A4")
 
-ABOVE = 1.0 + 1e-6
-"""Force after a return, in preloads, from which an impact presses harder than the mass at rest."""
 
 IMPULSE = 0.5
 """Force after a return, in preloads, from which it is an impulse and not a touch."""
@@ -62,13 +60,15 @@ def hammering_occurs(run: Evidence) -> Finding:
     hammering = run["hammering_map"]
     strikes = (hammering.impact_rate > 0).values
     forces = hammering.return_peak_contact_force.values[strikes]
+    # preloads: from here an impact presses harder than the mass at rest
+    above = 1.0 + 1e-6
     return finding(
         (force, "≥", IMPULSE),
         f"At (0.83π, 0.83π) the mass returns to the belt {returns} times, at up to {speed:.3g} "
         f"l_pre √(k1/m), and is pressed by up to {force:.3g} of the load k3 l_pre from which it "
         f"starts; from {IMPULSE:g} of it a return counts as an impulse. Over all angles it returns "
         f"in {100 * strikes.mean():.3g} % of {strikes.size} cells, with a larger force than that "
-        f"at the start in {int((forces > ABOVE).sum())}, "
+        f"at the start in {int((forces > above).sum())}, "
         f"{forces.max(initial=0.0):.3g} of it at most.",
         also=returns >= 2,
     )

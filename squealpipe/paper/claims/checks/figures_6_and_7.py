@@ -21,9 +21,6 @@ rows = StatementRows("6", "fig06")
 SMALLEST_RATE = 1e-9
 """Growth rate, times the unit of time, up to which a linear motion does not grow."""
 
-ADEQUATE_AGREEMENT = 0.95
-"""Share of cells in which A3 would have to agree with A1 to be of use."""
-
 
 @rows.add(
     "F6a",
@@ -189,8 +186,9 @@ def linear_analysis_misleads(run: Evidence) -> Finding:
     lost = validity.separates == 1
     unstable = validity.regime_linear > 0
     agree = share(unstable == lost)
+    # A3 would have to agree with A1 in 95 % of the cells to be of use
     return finding(
-        (agree, "<", ADEQUATE_AGREEMENT),
+        (agree, "<", 0.95),
         f"A3 and A1 agree in {100 * agree:.3g} % of the cells: A3 calls "
         f"{int((~unstable & lost).sum())} cells stable that lose contact in A1, and "
         f"{int((unstable & ~lost).sum())} unstable that keep it.",

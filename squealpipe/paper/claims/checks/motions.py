@@ -9,9 +9,6 @@ from squealpipe.codes import Event
 from squealpipe.paper.schema.growth import HORIZON, WINDOW, WINDOWS
 from squealpipe.study.evidence import Evidence, MissingDataError
 
-FEWEST_RETURNS = 8
-"""Returns to the belt without which nothing can be said of repetition."""
-
 
 def scene(run: Evidence, name: str) -> xr.Dataset:
     """The A1 motion of a scene of the paper."""
@@ -24,7 +21,7 @@ def events(motion: xr.Dataset, kind: Event) -> np.ndarray:
 
 
 def until(run: Evidence, motion: xr.Dataset) -> str:
-    """Where a run ends, for sentences: ``t = 50 √(m/k1)``."""
+    """Return the end of a run for sentences: ``t = 50 √(m/k1)``."""
     return f"t = {float(motion.time[-1]) / run.parameters.time_unit:g} √(m/k1)"
 
 
@@ -50,7 +47,7 @@ def windows(run: Evidence, motion: xr.Dataset) -> np.ndarray:
 
 
 def repetition(motion: xr.Dataset) -> tuple[float, int, int]:
-    """How nearly a motion repeats, from its states at the returns to the belt.
+    """Return how nearly a motion repeats, from its states at the returns to the belt.
 
     Returns:
         The largest change of x or a velocity from one return to another, as a share of its range
@@ -58,7 +55,8 @@ def repetition(motion: xr.Dataset) -> tuple[float, int, int]:
         it is least; that number; and the number of all returns.
     """
     instants = events(motion, Event.contact)
-    if instants.size < FEWEST_RETURNS:
+    # fewer than eight returns to the belt tell nothing about repetition
+    if instants.size < 8:
         raise MissingDataError(f"the run has {instants.size} returns to the belt")
     time = motion.time.values
     tracks = [

@@ -115,7 +115,7 @@ def medians(benchmark: xr.Dataset) -> xr.Dataset:
     runs = asked.median("problem")
     runs["worth"] = benchmark.verdict.max("problem")
     runs = runs.stack(run=("solver", "tol"))
-    # the ring marks the package's default tolerance
+    # the ring marks the tolerance of the package's maps
     ours = (runs.solver == "squealpipe") & (runs.tol == 1e-12)
     role = np.where(ours, Role.our_setting, Role.public)
     plain = runs.drop_vars(["run", "solver", "tol"])

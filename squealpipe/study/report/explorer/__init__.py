@@ -21,8 +21,6 @@ from squealpipe.study.report.explorer.layers import Layer
 from squealpipe.units import engineering
 
 HERE = Path(str(files("squealpipe.study.report.explorer")))
-HISTORIES = ("x", "y", "normalized_contact_force", "force_spectrum")
-BRANCHES = ("omega", "x_amplitude", "y_peak", "stability_index")
 
 
 def write_explorer(
@@ -75,7 +73,7 @@ def page(
 
 
 def belt_in_words(explorer: xr.Dataset, *, paper: bool) -> str:
-    """Which belt all motions of the page have."""
+    """Describe the belt of all motions on the page."""
     speed = parameter(explorer, "belt_speed")
     side = "+x" if direction_of(speed) > 0 else "−x"
     told = f"The belt runs along {side} at {engineering(abs(speed), 'm s-1')}, in all models."
@@ -99,14 +97,17 @@ def in_script(content: Mapping[str, Any]) -> str:
 def blocks(explorer: xr.Dataset, layers: Mapping[str, Layer]) -> dict[str, str]:
     """Numbers as text that the page decodes when a pair or layer is chosen, not before."""
     return {
-        **{name: packed_curves(explorer[name].values) for name in HISTORIES},
+        **{
+            name: packed_curves(explorer[name].values)
+            for name in ("x", "y", "normalized_contact_force", "force_spectrum")
+        },
         **{
             name: _records(
                 np.asarray(explorer[name].values, "<f4").reshape(
                     explorer.outcome.size, -1
                 )
             )
-            for name in BRANCHES
+            for name in ("omega", "x_amplitude", "y_peak", "stability_index")
             if name in explorer
         },
         **{
@@ -123,7 +124,7 @@ def payload(
     layers: Mapping[str, Layer],
     scenes: Mapping[str, Mapping[str, Any]],
 ) -> dict[str, Any]:
-    """What the script needs at once, ready for JSON."""
+    """Return the data that the script needs at once, ready for JSON."""
     return {
         "angles": [explorer.alpha1.values.tolist(), explorer.alpha2.values.tolist()],
         "time": _encode(explorer.time.values.astype("<f4")),

@@ -1,4 +1,4 @@
-"""What the explorer's map can show: one quantity over both angles, from a stored dataset."""
+"""Layers of the explorer's map: one quantity over both angles, from a stored dataset."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
