@@ -83,7 +83,8 @@ class BeltContact:
     def landing(
         self, kind: str, speed: Surface, stays: Surface | None = None
     ) -> list[Any]:
-        """Where a contact that begins leads, by the sliding speed: targets of a switch.
+        """Return the targets of a switch by which contact begins: the regime depends on the sliding
+        speed.
 
         Args:
             kind: of the event.
@@ -101,7 +102,7 @@ class BeltContact:
         reset: Surface,
         press: int = 0,
     ) -> Iterator[Switch]:
-        """Where the contact reaches belt speed, and where stick ends.
+        """Return the switches at which the contact reaches belt speed, and at which stick ends.
 
         Args:
             holds: whether friction can hold it there, ≥ 0.
@@ -132,7 +133,7 @@ class BeltContact:
             yield Switch(f"{name}{tail}", stick, surface, [(target, None, "slip")])
 
     def friction_knots(self) -> Iterator[Switch]:
-        """Where a table of friction goes over from one of its pieces to the next."""
+        """Return the switches at which a table of friction goes over from one piece to the next."""
 
         def past(end: str) -> Surface:
             def surface(t: Any, s: Any, p: Any, r: Any) -> Any:

@@ -31,7 +31,7 @@ MOST_COMPONENTS = 16
 
 @dataclass(frozen=True)
 class Switch:
-    """What ends a regime.
+    """End of a regime of a component: a surface, a target and a reset.
 
     Attributes:
         name: of the event.
@@ -169,7 +169,7 @@ class Composition:
         return numbers_of
 
     def chosen(self, numbers: Sequence[int]) -> str | dict[str, str]:
-        """What a start gives as ``regime`` for the regimes of all components."""
+        """Return the regimes of all components that a start names as ``regime``."""
         names = [list(self.regimes)[number] for number in numbers]
         if self.names == ("",):
             return names[0]

@@ -1,4 +1,4 @@
-"""Whether switches make progress, and whether fields have a Taylor series where they are entered.
+"""Checks where regimes are entered: switches make progress, and fields have a Taylor series there.
 
 Both are tried on random states of a switch's surface.
 """
@@ -35,7 +35,7 @@ Values = dict[str, Any]
 
 
 class Entries:
-    """How the regimes of a system are entered."""
+    """Ways in which the regimes of a system are entered."""
 
     def __init__(self, tracer: Tracer, traced: Traced) -> None:
         self.tracer, self.traced = tracer, traced
@@ -67,7 +67,9 @@ class Entries:
     def _fires_again(
         self, switch: SwitchSymbols, regime: int, leaves: Sequence[int]
     ) -> np.ndarray:
-        """Whether it does, for each state in which its surface falls through zero."""
+        """Return whether the switch fires again, for each state in which its surface falls through
+        zero.
+        """
         traced, surface = self.traced, switch.surface
         slope: Any = symbol(0.0)
         for variable, rate in zip(traced.variables, traced.rates, strict=True):
@@ -192,7 +194,7 @@ def constants_of(traced: Traced, regime: int) -> dict[str, float]:
 
 
 def _vanishes(base: np.ndarray) -> bool:
-    """Whether a base is zero but for round-off at every entry, and not a small number there."""
+    """Return whether a base is zero but for round-off at every entry, and not just small."""
     if not base.size or not (np.abs(base) < VANISHES).all():
         return False
     return bool(np.ptp(base) >= ALIKE * np.abs(base).max())

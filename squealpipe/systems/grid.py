@@ -1,4 +1,4 @@
-"""What a call gives: single values, or an outer product of starts and parameters."""
+"""Arguments of a call: single values, or an outer product of starts and parameters."""
 
 import math
 from collections.abc import Mapping
@@ -66,7 +66,7 @@ def outer_product(
 
 
 def duration_of(t_start: float, t_end: float) -> float:
-    """How long runs take; refuses an end before the start."""
+    """Return how long runs take; refuse an end before the start."""
     if t_end < t_start:
         raise ValueError(f"t_end = {t_end!r}: a time not before {t_start:g} is needed")
     return t_end - t_start

@@ -11,7 +11,7 @@ from squealpipe.systems.trace import TIME, Traced
 
 
 class Joint:
-    """What a system does while each of its components is in one regime.
+    """Equations of a system while each of its components is in one regime.
 
     Numbers stand for one regime of each component; with one component they are those of its
     regimes. Only what motions meet is numbered: there may be 4¹⁶.
@@ -32,7 +32,7 @@ class Joint:
             self.number([int(regimes[0]) for regimes in firsts])
 
     def number(self, regimes: Sequence[int]) -> int:
-        """Of a regime of each component."""
+        """Return the number of a combination of the components' regimes."""
         key = tuple(int(each) for each in regimes)
         if key not in self._numbers:
             self._numbers[key] = len(self._rows)

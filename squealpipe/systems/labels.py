@@ -1,4 +1,4 @@
-"""What the datasets of systems have in common: labels, flags and what they record of a system."""
+"""Parts that all datasets of systems share: labels, flags, and the record of the system."""
 
 import json
 from collections.abc import Mapping
@@ -79,7 +79,7 @@ def explained(
 def attributes_of(
     system: System, what: str, given: Mapping[str, float], tol: float
 ) -> dict[str, Any]:
-    """What a dataset records of its system and its run."""
+    """Return the attributes that record a dataset's system and run."""
     return {
         "title": f"{system.name}: {what}",
         "schema": SYSTEM + what,

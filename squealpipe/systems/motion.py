@@ -1,4 +1,4 @@
-"""What the motions of many runs have become: rest, a cycle, or neither.
+"""Classification of the motions of many runs: rest, a cycle, or neither.
 
 A cycle is shown by returns of the whole state: the extremes of a torus repeat too, and the events
 of one part of a system do not know of the beat of another.
@@ -306,7 +306,7 @@ def _near_returns(
 
 
 def _zeros(places: np.ndarray, heights: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Where each row of samples first rises through zero, by a straight line; else another."""
+    """Return the place at which each row first rises through zero; ``other`` where none does."""
     rises = (heights[:, :-1] < 0.0) & (heights[:, 1:] >= 0.0)
     row, at = np.arange(len(places)), np.argmax(rises, axis=1)
     low, high = heights[row, at], heights[row, at + 1]

@@ -17,7 +17,7 @@ _SWEEPS = 4
 
 
 class _Asked(NamedTuple):
-    """What a regime asks of the state: a function, its arguments, and the sign that it needs.
+    """Condition of a regime on the state: a function, its arguments, and the sign that it needs.
 
     The sign is 0 where it must vanish.
     """
@@ -35,7 +35,7 @@ class Starts:
         self.entries = [self._entries(k) for k in range(traced.n_components)]
 
     def with_constants(self, traced: Traced, composition: Composition) -> Self:
-        """The same for a system that differs by its regimes' constants alone."""
+        """Return the conditions of a system that differs by its regimes' constants alone."""
         other = copy(self)
         other.traced, other.composition = traced, composition
         return other

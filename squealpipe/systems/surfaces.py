@@ -35,7 +35,7 @@ def simplest(surface: Symbol) -> Symbol:
 
 
 def _factors(product: Symbol) -> Iterator[Symbol]:
-    """What is multiplied, as often as it is."""
+    """Return the factors of a product, each as often as it occurs."""
     if product.kind == "*":
         for factor in product.arguments:
             yield from _factors(factor)

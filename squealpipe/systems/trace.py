@@ -100,7 +100,7 @@ class Traced:
         )
 
     def with_derived(self) -> Self:
-        """The same as the integrator takes it: what is constant for long stands apart."""
+        """Return the system as the integrator takes it: what is constant for long stands apart."""
         once, derived = self.set_apart(REGIME, DERIVED)
         made, switched = once.set_apart(None, SWITCHED)
         names = [f"{DERIVED}{i}" for i in range(len(derived))]
@@ -114,7 +114,7 @@ class Traced:
     def set_apart(
         self, skipped: str | None, prefix: str
     ) -> tuple[Self, tuple[Symbol, ...]]:
-        """The same with its constant parts as parameters of their own, and those parts.
+        """Return the system with its constant parts as parameters of their own, and those parts.
 
         Args:
             skipped: beginning of the names of parameters that do not count. Without it only

@@ -51,7 +51,7 @@ def brake_of(params: Parameters, model: str = "A1") -> System:
 
 
 def has_own_laws(params: Any) -> bool:
-    """Whether a law is none of the formulas that A1's own loop has."""
+    """Return whether a law is none of the formulas that A1's own loop has."""
     return isinstance(params, Parameters) and not (
         params.friction_law in friction_laws.LAWS and params.contact_law == LINEAR
     )

@@ -1,4 +1,5 @@
-"""Whether a solution of an event map is a motion of the system, and what is about to change.
+"""Margins by which a solution of an event map is a motion of the system; the least one changes
+next.
 
 A solution is a motion while every margin is positive: each watched surface inside a leg and at
 its ends, the speed at which each event's surface is crossed, the length of each leg, and the
@@ -17,12 +18,10 @@ from squealpipe.systems.cycles.solution import Cycle
 
 MARGIN_ROUND_OFF = ZERO_ROUND_OFF
 """Margin below zero that is round-off."""
-_LATE = 1e-6
-"""Share of a leg after which a surface that it starts from is watched."""
 
 
 class MarginKind(IntEnum):
-    """What a margin is of."""
+    """Quantity that a margin measures."""
 
     touch = 0
     """the least of a surface inside a leg"""
@@ -37,7 +36,7 @@ class MarginKind(IntEnum):
 
 
 class Margin(NamedTuple):
-    """Which margin: of a leg (or the event at its end) and a surface (or a condition)."""
+    """One margin: of a leg (or the event at its end) and a surface (or a condition)."""
 
     kind: MarginKind
     leg: int
@@ -71,7 +70,9 @@ def margins(cycle: Cycle) -> dict[Margin, float]:
                     found |= _next_tick(cycle, leg, int(s), sign)
                     continue
                 fresh = entry.surface == s or held[s]
-                begin = _LATE * duration if fresh else 0.0
+                # a surface that a leg starts from is watched after the leg's first millionth
+                # alone
+                begin = 1e-6 * duration if fresh else 0.0
                 inside = [
                     sign * turn.value
                     for turn in path.turns[first + s]
@@ -118,7 +119,7 @@ def _next_tick(
 
 
 def _conditions(cycle: Cycle, leg: int) -> dict[Margin, float]:
-    """What chose the regime that a leg's event leads to."""
+    """Return the conditions that chose the regime that a leg's event leads to."""
     event, found, number = cycle.map.events[leg], {}, 0
     if event.switch == FREE:
         return {}
@@ -139,5 +140,5 @@ def _conditions(cycle: Cycle, leg: int) -> dict[Margin, float]:
 
 
 def is_motion(cycle: Cycle) -> bool:
-    """Whether a solution is a motion of the system, to round-off."""
+    """Return whether a solution is a motion of the system, to round-off."""
     return all(value >= -MARGIN_ROUND_OFF for value in margins(cycle).values())

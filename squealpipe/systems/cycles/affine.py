@@ -20,14 +20,14 @@ Rates = Callable[[Vector], Vector]
 
 
 def is_affine(rates: Sequence[Symbol]) -> bool:
-    """Whether rates are sums of constants and of multiples of the states, in every regime."""
+    """Return whether rates are sums of constants and multiples of the states, in every regime."""
     return all(degree(rate) <= 1.0 for rate in rates)
 
 
 def derivatives(
     field: Rates, by: Rates, sizes: Vector, units: Vector, start: Vector, length: float
 ) -> Vector:
-    """Of the state after a leg by its start and parameters, (n, n + p).
+    """Return the derivatives of the state after a leg by its start and parameters, (n, n + p).
 
     Args:
         field: rates of the states, (n, many).

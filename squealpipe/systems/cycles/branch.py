@@ -35,10 +35,6 @@ if TYPE_CHECKING:
     from squealpipe.systems.tracing import TracedSystem as System
 
 
-_CORNERS = {Label.grazing, Label.stick_onset, Label.border_collision}
-"""Where the return map has no derivative."""
-
-
 @checked
 def cycle_branch(
     system: Any, parameter: str, to: Number, *, start: Any, n_points: Several = 100
@@ -129,7 +125,8 @@ def in_rows(
         if point.label not in {Label.regular, Label.end}:
             isolated = point.label != Label.family_member
             row["stable"] = rows[max(i - 1, 0)]["stable"] if isolated else 0
-        if point.label in _CORNERS:
+        # the return map has no derivative there
+        if point.label in {Label.grazing, Label.stick_onset, Label.border_collision}:
             row |= {
                 name: row[name] * np.nan
                 for name in ("multiplier_real", "multiplier_imag")

@@ -8,9 +8,6 @@ import numpy as np
 
 from squealpipe.systems.cycles.legs import Vector
 
-BEYOND = 1e-11
-"""Of a surface's terms, below which round-off hides that a state is beyond it."""
-
 
 @dataclass(frozen=True)
 class Crossing:
@@ -38,13 +35,14 @@ class Crossing:
 
     @property
     def speed(self) -> float:
-        """How fast the surface changes along the motion, before the event."""
+        """Return the rate of the surface along the motion, before the event."""
         return float(self.height_by_state @ self.rate) + self.height_by_time
 
     def is_beyond(self, state: Vector, sizes: Vector) -> bool:
-        """Whether a state lay beyond the surface, so that the switch fired at once."""
+        """Return whether a state lay beyond the surface, so that the switch fired at once."""
         size = np.maximum(np.abs(state), sizes)
-        return bool(abs(self.height) > BEYOND * (np.abs(self.height_by_state) @ size))
+        # relative to the surface's terms: closer, round-off hides that a state is beyond it
+        return bool(abs(self.height) > 1e-11 * (np.abs(self.height_by_state) @ size))
 
     @property
     def delay(self) -> Vector:
@@ -58,7 +56,7 @@ class Crossing:
 
     @property
     def jump(self) -> Vector:
-        """Of a motion's later state by the time of the event."""
+        """Return the derivative of a motion's later state by the time of the event."""
         return np.asarray(
             self.after_by_state @ self.rate + self.after_by_time - self.rate_after
         )

@@ -29,9 +29,6 @@ if TYPE_CHECKING:
     from squealpipe.systems.tracing import TracedSystem as System
 
 
-LABELS = (*RETURNS, Label.grazing, Label.stick_onset)
-
-
 def check(
     known: Iterable[str],
     label: str,
@@ -39,7 +36,7 @@ def check(
     to: Mapping[str, Sequence[float]],
 ) -> None:
     """Raise if the requested curve does not exist."""
-    names = [each.name for each in LABELS]
+    names = [each.name for each in (*RETURNS, Label.grazing, Label.stick_onset)]
     if label not in names:
         raise ValueError(f"label {label!r}: {suggestion(str(label), names)}")
     if len(set(parameters)) != 2 or len(parameters) != 2:

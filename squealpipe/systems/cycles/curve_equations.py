@@ -25,11 +25,6 @@ from squealpipe.systems.cycles.legs import LegEnd, Vector
 from squealpipe.systems.cycles.line import flip
 from squealpipe.systems.cycles.solution import Cycle
 
-_DIFFERENCE = 1e-7
-_NEAR = 1e-4
-"""Margin of a start below which it is taken for the one that vanishes."""
-_SAME = 1e-6
-"""Largest change of extremes, or negative margin, where a leg has only just vanished."""
 _NO_MARGIN = Margin(MarginKind.length, -1, FREE)
 RETURNS = {Label.fold: 0.0, Label.period_doubling: np.pi, Label.torus: np.nan}
 """By which angle a disturbance is turned in a period; NaN where it is an unknown."""
@@ -72,7 +67,7 @@ class Curve:
         return found
 
     def factor(self, point: Vector) -> complex:
-        """What multiplies a disturbance in a period."""
+        """Return the factor by which a disturbance is multiplied in a period."""
         angle = RETURNS[self.label]
         return (
             complex(np.exp(1j * point[-1])) if np.isnan(angle) else float(np.cos(angle))
@@ -140,16 +135,18 @@ class Curve:
         )
 
     def _along(self, point: Vector, direction: Vector) -> Vector:
-        """How the Jacobian changes along a direction of the cycle's unknowns."""
+        """Return the change of the Jacobian along a direction of the cycle's unknowns."""
         here = self.known(point)
         step = np.append(direction, np.zeros(2))
         size = max(float(np.linalg.norm(step)), 1e-300)
-        step *= _DIFFERENCE / size
+        # relative step of the forward difference: about the root of round-off
+        difference = 1e-7
+        step *= difference / size
         change = self.map.evaluate(here + step)[1] - self.map.evaluate(here)[1]
-        return np.asarray(change * (size / _DIFFERENCE))
+        return np.asarray(change * (size / difference))
 
     def _margin(self, point: Vector) -> tuple[float, Vector]:
-        """What a margin is of, as a function of the end of its leg, and its row."""
+        """Return the quantity of a margin as a function of the end of its leg, and its row."""
         equations, leg = self.map, self.own.leg
         if self.own.kind == MarginKind.length:
             at = equations.legs * equations.flow.size + leg
@@ -171,7 +168,7 @@ class Curve:
         return value / size, row / size
 
     def tests(self) -> dict[Meeting, Test]:
-        """What changes sign where something else happens."""
+        """Return the functions that change sign where something else happens."""
         if self.label == Label.fold:
             return {Meeting.cusp: self._cusp, Meeting.fold_flip: self._flip}
         if self.label == Label.period_doubling:
@@ -222,15 +219,17 @@ def _without_vanished_legs(cycle: Cycle) -> Cycle:
     speeds of both and the length of the leg between them stay zero along the curve, and might be
     taken for its end.
     """
+    # largest change of extremes, or negative margin, where a leg has only just vanished
+    vanished = 1e-6
     for equations, guess in without_brief_legs(cycle):
         point = equations.solve(guess)
         if point is None:
             continue
         shorter = Cycle.at(equations, point)
         moved = np.abs(shorter.extremes - cycle.extremes)[:, : equations.flow.size]
-        same = bool((moved <= _SAME * cycle.extent).all())
+        same = bool((moved <= vanished * cycle.extent).all())
         least = min(margins(shorter).values(), default=0.0)
-        if same and shorter.period > 0.0 and least > -_SAME:
+        if same and shorter.period > 0.0 and least > -vanished:
             return _without_vanished_legs(shorter)
     return cycle
 
@@ -245,10 +244,11 @@ def curve_of(cycle: Cycle, label: Label) -> tuple[Curve, Vector]:
         return Curve(equations, label), cycle.point
     cycle = _without_vanished_legs(cycle)
     equations = cycle.map
+    # a margin of the start that is smaller is taken for the one that vanishes on the curve
     near = {
         k: abs(v)
         for k, v in margins(cycle).items()
-        if abs(v) < _NEAR and k.kind != MarginKind.edge
+        if abs(v) < 1e-4 and k.kind != MarginKind.edge
     }
     near = {k: v for k, v in near.items() if label_of(cycle, {k: 0.0}) == label}
     if not near:

@@ -25,14 +25,8 @@ from squealpipe.systems.cycles.legs import Vector
 from squealpipe.systems.cycles.line import PRECISE, STEPS
 from squealpipe.systems.cycles.solution import Cycle
 
-_JUMP = 1.0
-"""Change of the parameters, over a step, beyond which a point is not next to the change."""
 ENDS = ("point_limit", "end_of_range", "curve_lost", "multipliers_are_real")
 """Why a curve ends where the order of the events does not change."""
-GRAZINGS = {
-    Label.fold: Meeting.fold_grazing,
-    Label.period_doubling: Meeting.flip_grazing,
-}
 
 
 @dataclass(frozen=True)
@@ -45,7 +39,7 @@ class CurvePoint:
 
 
 class _End(NamedTuple):
-    """Where a curve ends within a step, and whether it may go on with other events."""
+    """End of a curve within a step, and whether it may go on with other events."""
 
     share: float
     label: Meeting
@@ -168,7 +162,9 @@ class _Way:
                     new.point[size : size + 2]
                     - here[0].point[old.map.size : old.map.size + 2]
                 )
-                near = np.abs(moved).max() < _JUMP * line.reach + 10.0 * beyond
+                # beyond this change of the parameters over a step a point is not next to the
+                # change of the events
+                near = np.abs(moved).max() < 1.0 * line.reach + 10.0 * beyond
                 if near and self._is_cycle(new) and is_motion(self._cycle(new)):
                     return new
         self.curve = old
@@ -210,7 +206,10 @@ class _Way:
         elif label == Label.stick_onset:
             met = Meeting.stick_onset
         elif label == Label.grazing:
-            met = GRAZINGS.get(self.curve.label, met)
+            met = {
+                Label.fold: Meeting.fold_grazing,
+                Label.period_doubling: Meeting.flip_grazing,
+            }.get(self.curve.label, met)
         system, event = cycle.map.flow.system, cycle.map.events[key.leg]
         watched = (system.joint.falls, system.joint.rises)
         number = event.switch

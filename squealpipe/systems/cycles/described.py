@@ -77,7 +77,9 @@ def described(name: str, system: System) -> dict[str, str]:
 
 
 def outcome_of(system: System, dims: Any, values: Any) -> Any:
-    """How a cycle was found, with the system's own stops and motions of more periods."""
+    """Return the outcome of a search for a cycle, with the system's own stops and motions of more
+    periods.
+    """
     table = flag_table(Outcome)
     more = np.unique(np.asarray(values)[np.asarray(values) > SETTLED_ON])
     table |= {int(k): f"settled_on_{int(k) - SETTLED_ON}_periods" for k in more}

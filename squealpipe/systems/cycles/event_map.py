@@ -20,8 +20,6 @@ from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.legs import LegEnd, Path, Vector
 from squealpipe.systems.cycles.variational import leg_derivatives
 
-_KEPT = 8
-"""Points whose legs are kept."""
 LONG_CHAIN = 150
 """Unknowns from which on a Newton step is taken by sparse elimination."""
 FREE = -1
@@ -30,7 +28,9 @@ FREE = -1
 
 @dataclass(frozen=True)
 class PhaseCondition:
-    """What fixes the phase of a cycle without events: a plane through a state, or an instant."""
+    """Condition that fixes the phase of a cycle without events: a plane through a state, or an
+    instant.
+    """
 
     state: Vector
     normal: Vector
@@ -117,7 +117,9 @@ class EventMap:
         """The legs at some unknowns, F and its Jacobian; those of the last points are kept."""
         key = z.tobytes()
         if key not in self._latest:
-            if len(self._latest) >= _KEPT:
+            # Newton's method and its line search come back to the last points: their legs are
+            # kept
+            if len(self._latest) >= 8:
                 del self._latest[next(iter(self._latest))]
             with np.errstate(all="ignore"):
                 parts = self._legs_at(z)

@@ -1,4 +1,4 @@
-"""Where the order of a cycle's events changes: what that is called, and how a branch goes on."""
+"""Changes of the order of a cycle's events: their names, and how a branch goes on from there."""
 
 from __future__ import annotations
 
@@ -34,14 +34,9 @@ from squealpipe.systems.cycles.solution import Cycle
 if TYPE_CHECKING:
     from squealpipe.systems.tracing import TracedSystem as System
 
-_WEAK = 0.1
-"""Speed or length of an event, over the least of the others, at which it has only just begun."""
-_JUMP = 1e-2
-"""Change of the extremes, over the extent, beyond which a solution is not next to the change."""
-
 
 def label_of(cycle: Cycle, zero: dict[Margin, float]) -> Label:
-    """What a change of the events is called, from the margins that vanish."""
+    """Return the label of a change of the events, from the margins that vanish."""
     system = cycle.map.flow.system
     joint, found = system.joint, Label.regular
     for margin in zero:
@@ -64,7 +59,9 @@ def label_of(cycle: Cycle, zero: dict[Margin, float]) -> Label:
 
 
 def _of_hold(system: System, switch: int, among: int) -> bool:
-    """Whether a switch may lead to where its surface is held, as to stick, or ends that alone."""
+    """Return whether a switch may lead to where its surface is held, as to stick, or ends that
+    alone.
+    """
     t, joint = system.traced, system.joint
     if not 0 <= switch < len(t.switches):
         return False
@@ -85,7 +82,7 @@ def least_margin(_: ContinuationState | None, cycle: Cycle) -> float:
 
 @dataclass
 class NewOrder:
-    """How a branch goes on from where the order of its events changes."""
+    """Continuation of a branch from where the order of its events changes."""
 
     line: Line[Cycle]
     share: float
@@ -101,12 +98,15 @@ class NewOrder:
         return None
 
     def _jumps(self, cycle: Cycle) -> bool:
-        """Whether a solution is not next to the change: a reset of the state may end the branch."""
+        """Return whether a solution is not next to the change: a reset of the state may end the
+        branch.
+        """
         change = self.there[1]
         moved = (cycle.extremes - change.extremes)[
             :, : len(change.map.scale)
         ] / change.map.scale
-        return bool(np.abs(moved).max() > _JUMP)
+        # beyond 1 % of the extent a solution is not next to the change of the events
+        return bool(np.abs(moved).max() > 1e-2)
 
     def _runs(self) -> Iterator[tuple[EventMap, Vector]]:
         """Motions of the system from just beyond, with the events that they have."""
@@ -126,7 +126,7 @@ class NewOrder:
                 yield found
 
     def _without(self) -> Iterator[tuple[EventMap, Vector]]:
-        """The same motion without events that have vanished, one or two at once."""
+        """Return the same motion without events that have vanished, one or two at once."""
         cycle = self.there[1]
         for margin in self.zero:
             event = cycle.map.events[margin.leg]
@@ -144,7 +144,9 @@ class NewOrder:
         known = margins(self.there[1]).items()
         kinds = {MarginKind.speed, MarginKind.length}
         usual = min((v for k, v in known if k.kind in kinds and v > 1e-6), default=1.0)
-        most = _WEAK * min(1.0, usual)
+        # an event whose speed or length is less than a tenth of the least of the others has only
+        # just begun
+        most = 0.1 * min(1.0, usual)
         weak = {k: v for k, v in near.items() if k.kind in kinds and v < most}
         algorithm = replace(ALONG, settings=replace(STEPS, max_iterations=12))
         normal = np.eye(len(guess))[-1]

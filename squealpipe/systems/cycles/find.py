@@ -20,11 +20,6 @@ from squealpipe.systems.integrate import MOST_STEPS
 if TYPE_CHECKING:
     from squealpipe.systems.tracing import TracedSystem as System
 
-_BESIDE = 1e-9
-"""Relative change of the parameters next to a change of the events."""
-_AT_CHANGE = 1e-6
-"""Margin below zero of a cycle that is at the change."""
-
 
 def find_cycle(
     system: System,
@@ -85,7 +80,9 @@ def _beside(values: Mapping[str, float]) -> Iterator[dict[str, float]]:
     Changed alike, all forces of a system may keep their proportions.
     """
     shares = np.linspace(1.0, 2.0, max(len(values), 2))
-    for sign in (-_BESIDE, _BESIDE):
+    # relative change of the parameters next to a change of the events
+    beside = 1e-9
+    for sign in (-beside, beside):
         yield {
             name: value * (1.0 + sign * share)
             for (name, value), share in zip(values.items(), shares, strict=False)
@@ -99,4 +96,5 @@ def _brought(cycle: Cycle, values: Mapping[str, float]) -> Cycle | None:
     if point is None:
         return None
     there = Cycle.at(equations, point)
-    return there if min(margins(there).values(), default=1.0) > -_AT_CHANGE else None
+    # a cycle whose margin is below zero by less is at the change
+    return there if min(margins(there).values(), default=1.0) > -1e-6 else None

@@ -38,15 +38,6 @@ from squealpipe.systems.trace import TIME_UNIT, Names
 if TYPE_CHECKING:
     from squealpipe.systems.tracing import TracedSystem as System
 
-TOLERANCE = 1e-16
-ROOM = 48
-"""Steps of a leg kept at first; one that has more is run again with room for all."""
-MOST_STEPS = 3000
-"""Of a leg; one that needs more has no end, so that Newton's method gives up.
-
-A stiff motion may need more: the run that its cycle is guessed from says how many.
-"""
-
 
 class Flow:
     """A system's legs and switches as functions of states and parameters."""
@@ -60,8 +51,11 @@ class Flow:
         fixed = [parameter(name) for name in (*t.parameters, *t.constants)]
         self.arguments = [*t.variables, *fixed]
         self._functions: dict[Any, Any] = {}
-        self._room, self._legs = ROOM, 0
-        self.most_steps = MOST_STEPS
+        # steps of a leg that are kept at first; one that has more is run again with room for all
+        self._room, self._legs = 48, 0
+        # a leg of more steps has no end, so that Newton's method gives up; a stiff motion may
+        # need more: the run that its cycle is guessed from says how many
+        self.most_steps = 3000
         directions = [*t.variables[: t.size], *self.by, *([self.time] * self.timed)]
         self._directions, self.columns = directions, len(directions)
         self.is_affine = not self.timed and is_affine(t.rates[: t.size])
@@ -135,7 +129,7 @@ class Flow:
         state: Vector,
         time: float,
     ) -> Vector:
-        """What a function of :attr:`arguments` gives at a state."""
+        """Evaluate a function of :attr:`arguments` at a state."""
         at = [*state, *([np.float64(time)] * self.timed)]
         return np.array(function(*at, *self.numbers(values, regime)), float)
 
@@ -210,7 +204,7 @@ class Flow:
         state: Vector,
         time: float,
     ) -> Vector:
-        """How fast an event's surface changes before it, or a condition of its switch.
+        """Return the rate of an event's surface before it, or a condition of its switch.
 
         With its derivatives by the states, the time if it is explicit, and the followed parameters.
         """
@@ -241,7 +235,8 @@ class Flow:
 
     def _prepare(self, legs: int) -> None:
         t, code = self.system.integrated, compiled(self.system, tangent=False, few=True)
-        terms, constants = taylor_terms(TOLERANCE), len(t.all_constants)
+        # Taylor steps to round-off: Newton's method converges to the last digit
+        terms, constants = taylor_terms(1e-16), len(t.all_constants)
         kept = len(t.variables) + len(t.surfaces) + len(t.outputs)
         self._legs = legs
         sizes = {

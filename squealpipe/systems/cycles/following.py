@@ -41,18 +41,33 @@ from squealpipe.systems.cycles.trail import GONE, BranchPoint, Trail
 from squealpipe.systems.datasets import Outcome
 from squealpipe.systems.progress import alone
 
-_CHANGE = 1.0
-"""Largest change of a multiplier between neighbouring points."""
-_COARSE = 1e-6
-"""Step below which a branch is taken as it is."""
-_CLOSE = 1e-5
-"""Share of a step before a change of the events in which a fold is that change."""
-_VERTICAL = 1e-9
-"""Change of the parameter, over that of the cycle, where a branch is a family at one value."""
-_UNRESOLVED = 1e-8
-"""Relative distance from a homoclinic orbit within which round-off decides the multipliers."""
-_BEFORE = 1e-9
-"""Share before it up to which multipliers are followed."""
+
+@dataclass(frozen=True)
+class BranchFollowing:
+    """Limits of the steps along a branch of cycles. Steps are without units; shares are of one
+    step.
+    """
+
+    multiplier_change: float = 1.0
+    """A multiplier may change by so much, relative to itself, in a step; more, and a special point
+    might be passed unseen."""
+    finest_step: float = 1e-6
+    """A shorter step is taken as it is, whatever its multipliers do: next to a singular point they
+    change at any step."""
+    fold_at_change: float = 1e-5
+    """A fold closer than this before a change of the events is that change."""
+    vertical: float = 1e-9
+    """Where the parameter changes by less than this over the cycle, the branch is a family of
+    cycles at one value."""
+    homoclinic: float = 1e-8
+    """Relative distance of the parameter from a homoclinic orbit within which round-off decides
+    the multipliers."""
+    before_change: float = 1e-9
+    """Multipliers are followed up to this share before a change of the events; a grazing takes
+    them through infinity there."""
+
+
+limits = BranchFollowing()
 
 
 def _changes_sign(
@@ -66,14 +81,14 @@ def _changes_sign(
 
 def _is_vertical(state: ContinuationState, cycle: Cycle) -> bool:
     """Tell whether a branch goes on at one value of the parameter, through a family of cycles."""
-    return abs(float(state.tangent[-1])) <= _VERTICAL and cycle.is_family_member
+    return abs(float(state.tangent[-1])) <= limits.vertical and cycle.is_family_member
 
 
 def _jumps(line: Line[Cycle], share: float, beyond: Cycle) -> bool:
-    """Whether the stability is another one beyond a change of the events."""
-    if share <= _BEFORE:
+    """Return whether the stability is another one beyond a change of the events."""
+    if share <= limits.before_change:
         return False
-    return line.at(share - _BEFORE)[1].is_stable != beyond.is_stable
+    return line.at(share - limits.before_change)[1].is_stable != beyond.is_stable
 
 
 def _closeness(offset: Vector, parts: int, _: ContinuationState, cycle: Cycle) -> float:
@@ -82,7 +97,7 @@ def _closeness(offset: Vector, parts: int, _: ContinuationState, cycle: Cycle) -
 
 @dataclass(frozen=True)
 class BranchStep:
-    """What a step has led past, where to, whether that is a point, and whether the branch ends."""
+    """Result of one step: special points passed, new state, whether to record it, end reason."""
 
     special: list[BranchPoint]
     state: ContinuationState
@@ -118,10 +133,10 @@ class Follower:
                 for point in self.points[-2:]
             ]
         if end == Outcome.family_member:
-            self._clear_labels(_VERTICAL)
+            self._clear_labels(limits.vertical)
             self.points[-1] = replace(self.points[-1], label=Label.family_member)
         if end == Outcome.period_unbounded:
-            self._clear_labels(_UNRESOLVED)
+            self._clear_labels(limits.homoclinic)
         if not self.points[-1].label:
             self.points[-1] = replace(self.points[-1], label=Label.end)
         return end
@@ -173,7 +188,7 @@ class Follower:
                 self.points[i] = replace(point, label=Label.regular)
 
     def _share(self) -> float:
-        """How much of the way to the end of the range is gone, or of the points."""
+        """Return the share of the range that is followed, or of the points, whichever is larger."""
         first, here = (self.points[i].parameter for i in (0, -1))
         rooms = (self.high - first, first - self.low)
         way = max(abs(here - first) / room for room in rooms if room > 0)
@@ -210,7 +225,7 @@ class Follower:
         following: ContinuationState,
         reached: Cycle,
     ) -> bool:
-        """Whether a step is too long to be sure of what lies in it."""
+        """Return whether a step is too long to be sure of what lies in it."""
         if (
             reached.period <= 0.0
             or float(following.tangent @ state.tangent) < STEPS.least_cosine
@@ -225,14 +240,16 @@ class Follower:
             <= self.high + MARGIN_ROUND_OFF
         ):
             return True
-        if state.step < _COARSE:
+        if state.step < limits.finest_step:
             return False
         if hides_folds(state, following):
             return True
         one, other = cycle.multipliers, reached.multipliers
         finite = np.isfinite(one).all() and np.isfinite(other).all()
         small = finite and max(np.abs(one).max(), np.abs(other).max()) < 100.0
-        return bool(small and multiplier_change(cycle, reached) > _CHANGE)
+        return bool(
+            small and multiplier_change(cycle, reached) > limits.multiplier_change
+        )
 
     def _examined(
         self,
@@ -258,13 +275,13 @@ class Follower:
         if last < 1.0 or after < MARGIN_ROUND_OFF < 0.5 * before:
             return self._changed(line, found, last)
         near, share = self._shorter(line, cycle, reached)
-        if near and share is None and state.step > _COARSE:
+        if near and share is None and state.step > limits.finest_step:
             return None
         if share is not None:
             special = [
                 BranchPoint(*line.at(at), label)
                 for at, label in found
-                if at < share - _CLOSE
+                if at < share - limits.fold_at_change
             ]
             there = line.at(share)
             return BranchStep(
@@ -282,7 +299,7 @@ class Follower:
         if self.trail.has_shrunk(reached[1]):
             return []
         # a grazing takes multipliers through infinity: they are followed up to it alone
-        before = 1.0 if last >= 1.0 else last - _BEFORE
+        before = 1.0 if last >= 1.0 else last - limits.before_change
         for label, test in TESTS:
             end = 1.0 if label == Label.fold else before
             if end <= 0.0:
@@ -300,12 +317,14 @@ class Follower:
                 continue
             if label == Label.pitchfork:
                 label = branching_label(line.at(share)[1])
-            if share < last - _CLOSE * (label == Label.fold and last < 1.0):
+            if share < last - limits.fold_at_change * (
+                label == Label.fold and last < 1.0
+            ):
                 found.append((share, label))
         return sorted(found) if self._explains(line, before, found) else None
 
     def _is_new(self, label: Label, line: Line[Cycle], end: float) -> bool:
-        """Whether a sign change is not that of a fold, or the noise of a family of cycles."""
+        """Return whether a sign change is neither a fold nor the noise of a family of cycles."""
         if label != Label.pitchfork:
             return True
         ends = line.known[0.0], line.at(end)
@@ -315,9 +334,9 @@ class Follower:
     def _explains(
         self, line: Line[Cycle], end: float, found: list[tuple[float, Label]]
     ) -> bool:
-        """Whether the labels are why the number of unstable multipliers changes."""
+        """Return whether the labels explain why the number of unstable multipliers changes."""
         (state, cycle), (_, reached) = line.known[0.0], line.known[1.0]
-        if end <= 0.0 or state.step < _COARSE:
+        if end <= 0.0 or state.step < limits.finest_step:
             return True
         if end < 1.0:
             reached = line.at(end)[1]
@@ -355,7 +374,9 @@ class Follower:
     def _shorter(
         self, line: Line[Cycle], cycle: Cycle, reached: Cycle
     ) -> tuple[bool, float | None]:
-        """Whether a cycle of a part of the period may lie in a step, and where it is met."""
+        """Return whether a cycle of a part of the period may lie in a step, and at which share it
+        is met.
+        """
         for parts in (2, 3):
             offset, later = cycle.after_part(parts), reached.after_part(parts)
             if offset @ later < -0.2 * float(offset @ offset):
@@ -366,7 +387,7 @@ class Follower:
 
 
 def renewed(state: ContinuationState, cycle: Cycle) -> tuple[ContinuationState, Cycle]:
-    """The same point of a branch without events, with a section of its own."""
+    """Return the same point of a branch without events, with a section of its own."""
     equations = cycle.map
     if equations.section is None:
         return state, cycle

@@ -24,23 +24,44 @@ from squealpipe.systems.record import RunRecord
 
 SETTLE = 200.0
 """Forcing periods, or units of time, after which a run counts as settled."""
-MOST_PERIODS = 64
-"""Most forcing periods after which a settled motion is looked for again."""
-_WATCHED, _SAMPLES = 128, 16
-"""Periods over which its returns are followed, and samples in each."""
-_LONGER, _EXTENSIONS = 4, 3
-"""A run that still changes goes on for so many times as long, no more often than this."""
-_LONG = 100_000
-"""Steps of a run that is not made longer."""
-_FAR = 0.3
-"""A return as far as this, over the motion's extent, is none."""
-_TRIED = 4
-_MOST_EVENTS = 48
-"""Events of a cycle of several periods beyond which none is sought: each try takes seconds."""
-_LEFT_OUT = 2
-"""Legs that are left out before a solution is given up: the run has the cycle's own events."""
-_SURE = 1e-6
-"""Share of a period between an event and an end of that period that is not round-off."""
+
+
+@dataclass(frozen=True)
+class ForcedCycleSearch:
+    """Limits of the search for a cycle of a forced system. Lengths count forcing periods,
+    distances are relative to the motion's extent.
+    """
+
+    most_periods: int = 64
+    """A settled motion is compared with itself after up to so many periods; no longer cycle is
+    found.
+    """
+    watched_periods: int = 128
+    """Last periods of a run that are compared; twice the longest cycle, so that each is seen
+    twice."""
+    samples: int = 16
+    """Samples of each period; the median over them ignores those next to an event."""
+    extension: int = 4
+    """A run that still changes goes on for so many times as long."""
+    most_extensions: int = 3
+    """Extensions of a run, unless its length is given."""
+    most_steps: int = 100_000
+    """Steps beyond which a run is not extended."""
+    far_return: float = 0.3
+    """A return as far as this is none."""
+    tries: int = 4
+    """Numbers of periods that are tried: the shortest, and those that return most closely."""
+    most_events: int = 48
+    """No cycle of several periods with more events is sought: each try takes seconds."""
+    legs_left_out: int = 2
+    """Legs that are left out of a solution before it is given up: the run has the cycle's own
+    events."""
+    sure: float = 1e-6
+    """Share of a period by which an event is surely not at the period's end; closer, round-off
+    decides."""
+
+
+search = ForcedCycleSearch()
 
 
 def forcing_period(flow: Flow, values: Mapping[str, float]) -> float:
@@ -80,37 +101,39 @@ class Watched:
 
     @property
     def rests(self) -> bool:
-        """Whether nothing moves."""
+        """True if nothing moves."""
         largest = np.abs(self.states).max(axis=0) + 1e-300
         return bool((np.ptp(self.states, axis=0) <= 1e-6 * largest).all())
 
     def lags(self) -> list[int]:
         """Numbers of periods after which all states of the second half may have come back."""
-        half = _WATCHED // 2 * _SAMPLES
+        half = search.watched_periods // 2 * search.samples
         late = self.states[half:-1]
-        found = np.empty(MOST_PERIODS)
-        for lag in range(1, MOST_PERIODS + 1):
-            before = self.states[half - lag * _SAMPLES : -1 - lag * _SAMPLES]
+        found = np.empty(search.most_periods)
+        for lag in range(1, search.most_periods + 1):
+            before = self.states[
+                half - lag * search.samples : -1 - lag * search.samples
+            ]
             off = np.abs((late - before) / self.extent).max(axis=1)
             found[lag - 1] = _typical(off)[()]
-        near = np.flatnonzero(found < _FAR) + 1
-        best = near[np.argsort(found[near - 1], kind="stable")][:_TRIED]
+        near = np.flatnonzero(found < search.far_return) + 1
+        best = near[np.argsort(found[near - 1], kind="stable")][: search.tries]
         # at first the distance may be less after several periods: one is always tried
-        return sorted({1, *near[:_TRIED].tolist(), *best.tolist()})
+        return sorted({1, *near[: search.tries].tolist(), *best.tolist()})
 
     def cycle(self, periods: int) -> Cycle | None:
         """The cycle of some forcing periods next to the last ones of the run."""
         duration, origin = periods * self.forcing, self.origin(periods)
-        path = self.states[-1 - 2 * periods * _SAMPLES :]
+        path = self.states[-1 - 2 * periods * search.samples :]
         first, count = _one_period(self.motion.times, origin, duration)
-        if periods > 1 and count > _MOST_EVENTS:
+        if periods > 1 and count > search.most_events:
             return None
         scale = scale_of(path, self.flow.system.sizes_in(self.values))
         repeat = Repeat(duration, periods, scale, first, count, origin)
         found = guess_of(self.flow, self.values, self.motion, path[0], repeat)
         point = None if found is None else found[0].solve(found[1])
         if found is not None and point is not None:
-            return as_motion(Cycle.at(found[0], point), tries=_LEFT_OUT)
+            return as_motion(Cycle.at(found[0], point), tries=search.legs_left_out)
         if periods > 1:
             return None
         at = np.searchsorted(self.motion.times, origin, side="right")
@@ -128,7 +151,7 @@ class Watched:
         clock = self.times - self.origin(periods)
         off = distances_in_step(cycle, clock[:-1], self.states[:-1])
         quarters = np.array([_typical(part) for part in np.split(off, QUARTERS)])
-        return approach(cycle, quarters, _WATCHED / QUARTERS / periods)
+        return approach(cycle, quarters, search.watched_periods / QUARTERS / periods)
 
 
 def _typical(distances: Vector) -> Vector:
@@ -136,7 +159,7 @@ def _typical(distances: Vector) -> Vector:
 
     Beside an event two motions are far apart however close they are: one has jumped already.
     """
-    return np.asarray(np.median(distances.reshape(-1, _SAMPLES).max(axis=0)))
+    return np.asarray(np.median(distances.reshape(-1, search.samples).max(axis=0)))
 
 
 def _one_period(times: Vector, origin: float, duration: float) -> tuple[int, int]:
@@ -156,9 +179,9 @@ def _one_period(times: Vector, origin: float, duration: float) -> tuple[int, int
 
 
 def _is_unsure(times: Vector, duration: float) -> bool:
-    """Whether an event is at an end of a period."""
+    """Return whether an event is at an end of a period."""
     off = np.minimum(times % duration, -times % duration)
-    return bool((off < _SURE * duration).any())
+    return bool((off < search.sure * duration).any())
 
 
 def _watch(
@@ -166,8 +189,8 @@ def _watch(
 ) -> Watched | int:
     """A run of so many periods, seen in its last ones; an outcome where it ends early."""
     forcing = forcing_period(flow, values)
-    number = np.arange(_WATCHED * _SAMPLES + 1)
-    times = (last - _WATCHED + number / _SAMPLES) * forcing
+    number = np.arange(search.watched_periods * search.samples + 1)
+    times = (last - search.watched_periods + number / search.samples) * forcing
     duration = float(times[-1])
     run = follow(flow, values, state, duration, times=times, most_steps=most_steps)
     if run.outcome or not np.isfinite(run.path).all():
@@ -186,9 +209,9 @@ def settled_forced(
     """The cycle that a run from a state settles on, and an outcome."""
     forcing = forcing_period(flow, values)
     rounds = SETTLE if t_settle is None else max(1.0, np.ceil(t_settle / forcing))
-    longer, steps = _WATCHED, 0
-    for _ in range(1 + _EXTENSIONS * (t_settle is None)):
-        if steps * _LONGER > _LONG:
+    longer, steps = search.watched_periods, 0
+    for _ in range(1 + search.most_extensions * (t_settle is None)):
+        if steps * search.extension > search.most_steps:
             break
         watched = _watch(flow, values, state, int(rounds) + longer, most_steps)
         if isinstance(watched, int):
@@ -208,7 +231,7 @@ def settled_forced(
                 return cycle, Outcome.converged
             place, regime = cycle.start()
             return near_forced(flow, values, place, regime, periods)
-        longer, steps = longer * _LONGER, watched.motion.steps
+        longer, steps = longer * search.extension, watched.motion.steps
     return None, Outcome.unsettled
 
 

@@ -34,25 +34,48 @@ from squealpipe.systems.motion import AT_REST
 from squealpipe.systems.record import RunRecord
 from squealpipe.systems.recurrence import crossings
 
-_WINDOWS = (40.0, 160.0, 640.0)
-"""Times, in units, within which a return is looked for."""
-_LONGER = 4.0
-"""Factor by which a run goes on: once, if it comes nearer to a cycle but is still far from it; as
-often as its steps allow, if it has not come back."""
-_NEAR, _FAR = 0.05, 0.3
-"""A return this close, over the motion's extent, ends the search; one this far is none."""
-_ASTRAY = 0.5
-"""A cycle this far from the state that was to be near it, over the motion's extent, is another."""
-_TRIES, _SAMPLES, _COMPARED = 4, 2000, 16
-_AGAIN = 3.0
-"""Factor by which a settled run may be farther off after two periods than after one."""
-_MOST_EVENTS = 48
-"""A cycle of more events is sought only if the run goes through it twice and returns closely."""
-_CLOSE = 1e-3
-"""Largest distance of a close return, over the motion's extent."""
-_AT_REST = 1e-9
-_SOON = 10.0
-"""A motion comes to rest only if it will be there within so many times as long as it has run."""
+
+@dataclass(frozen=True)
+class FreeCycleSearch:
+    """Limits of the search for a cycle of a system without forcing. Times are in the system's
+    unit of time, distances relative to the motion's extent.
+    """
+
+    windows: tuple[float, ...] = (40.0, 160.0, 640.0)
+    """The run is searched for a return within the first time, then the next; a longer one finds
+    slower cycles, and costs as much more."""
+    extension: float = 4.0
+    """After the last window the run goes on for so many times as long: once if it comes nearer to
+    a cycle but is still far from it, as often as its steps allow if it has not come back."""
+    near_return: float = 0.05
+    """A return this close ends the search within a window. Doubled, worse guesses reach Newton's
+    method, which may lead astray."""
+    far_return: float = 0.3
+    """A return this far is none; a cycle whose period is off by this share is another one."""
+    astray: float = 0.5
+    """A cycle this far from the state that was to be near it is another one."""
+    tries: int = 4
+    """Returns that are handed to Newton's method; each try with many events takes seconds."""
+    samples: int = 2000
+    """Samples of a run, evenly; a return between two is refined."""
+    compared_samples: int = 16
+    """Samples of each quarter of a run that are compared with a cycle."""
+    second_return: float = 3.0
+    """A settled run may be so many times farther off after two periods than after one; a chaotic
+    one is farther."""
+    most_events: int = 48
+    """A cycle of more events is sought only if the run goes through it twice and returns closely:
+    a chaotic run has such returns, and Newton's method on hundreds of legs takes a minute."""
+    close_return: float = 1e-3
+    """Largest distance of such a close return."""
+    rest: float = 1e-9
+    """A motion whose extent over its size is less is at rest: round-off."""
+    soon: float = 10.0
+    """A motion comes to rest only if, at the rate at which it shrinks, it is there within so many
+    times as long as it has run; a slower one may have a cycle ahead."""
+
+
+search = FreeCycleSearch()
 
 
 @dataclass(frozen=True)
@@ -66,17 +89,19 @@ class Stretch:
     scale: Vector
 
     def rests(self) -> bool:
-        """Whether nothing moves in its second half."""
+        """Return whether nothing moves in the second half."""
         late = self.motion.path[len(self.motion.path) // 2 :]
         first = self.motion.path[0], int(self.motion.regimes[0])
         return _rests(late, sizes_at(self.flow, self.values, *first))
 
     def comes_back(self) -> bool:
-        """Whether it returns at all, near or far; a slow cycle may be longer than the stretch."""
+        """Return whether the run returns at all, near or far; a slow cycle may be longer than the
+        stretch.
+        """
         return next(_returns(self, self.motion.path[0]), None) is not None
 
     def comes_to_rest(self, ran: float) -> bool:
-        """Whether a motion in one regime shrinks towards a stable state of rest.
+        """Return whether a motion in one regime shrinks towards a stable state of rest.
 
         It has to be there, at the rate at which it shrinks, within ten times the time that it has
         run; a slower one may have a cycle ahead.
@@ -101,14 +126,18 @@ class Stretch:
         decays = rates.real.max() < -1e-9 * np.abs(rates).max()
         with np.errstate(divide="ignore"):
             rate = np.log(second / np.maximum(first, 1e-300)) * 2.0 / self.times[-1]
-        shrinks = (second <= 1e-12 * scale) | (_SOON * ran * rate <= np.log(AT_REST))
+        shrinks = (second <= 1e-12 * scale) | (
+            search.soon * ran * rate <= np.log(AT_REST)
+        )
         return bool(decays and shrinks.all())
 
     def approach(self, cycle: Cycle) -> Approach:
-        """How the run goes on beside a cycle."""
+        """Return how the run goes on next to a cycle: it settles, comes nearer, or leaves."""
         path = self.motion.path
         quarter = len(path) // QUARTERS
-        inside = np.linspace(0, quarter, _COMPARED, endpoint=False, dtype=int)
+        inside = np.linspace(
+            0, quarter, search.compared_samples, endpoint=False, dtype=int
+        )
         places = (np.arange(QUARTERS)[:, None] * quarter + inside).ravel()
         off = distances_from_orbit(cycle, path[places])
         # a sample next to an event may be measured poorly
@@ -136,18 +165,18 @@ def settled_free(
     if run.outcome:
         return None, run.outcome
     at_rest, ran = False, settle
-    window: float | None = _WINDOWS[0]
+    window: float | None = search.windows[0]
     while window is not None:
         regime = int(run.regimes[-1])
         stretch = _stretch(flow, values, run.final, regime, window * unit, most_steps)
-        if stretch == Outcome.step_limit and window > _WINDOWS[0]:
+        if stretch == Outcome.step_limit and window > search.windows[0]:
             break  # it has settled on nothing for as long as that
         if isinstance(stretch, int):
             return None, stretch
         ran += window * unit
         at_rest = stretch.comes_to_rest(ran)
         nears = False
-        far = _NEAR if window < _WINDOWS[-1] else _FAR
+        far = search.near_return if window < search.windows[-1] else search.far_return
         for cycle in _cycles(stretch, far, [], settled=True):
             if _rests(cycle.extremes[:, : flow.size], 0.0):
                 continue  # where it comes to rest, if it does; the run has not
@@ -160,7 +189,11 @@ def settled_free(
                     (None, SETTLED_ON + number) if many else (cycle, Outcome.converged)
                 )
         back = stretch.comes_back()
-        if window >= _WINDOWS[-1] and back and (not nears or window > _WINDOWS[-1]):
+        if (
+            window >= search.windows[-1]
+            and back
+            and (not nears or window > search.windows[-1])
+        ):
             break
         run = stretch.motion
         window = _next_window(window, run.steps, most_steps)
@@ -178,20 +211,24 @@ def near_free(
     """A cycle near a state, and an outcome."""
     tried: list[float] = []
     at_rest = False
-    window: float | None = _WINDOWS[0]
+    window: float | None = search.windows[0]
     while window is not None:
         stretch = _stretch(flow, values, state, regime, window * unit, most_steps)
-        if stretch == Outcome.step_limit and window > _WINDOWS[-1]:
+        if stretch == Outcome.step_limit and window > search.windows[-1]:
             break
         if isinstance(stretch, int):
             return None, stretch
         at_rest = stretch.comes_to_rest(window * unit)
-        for cycle in _cycles(stretch, _NEAR if window < _WINDOWS[-1] else _FAR, tried):
+        for cycle in _cycles(
+            stretch,
+            search.near_return if window < search.windows[-1] else search.far_return,
+            tried,
+        ):
             if _rests(cycle.extremes[:, : flow.size], 0.0):
                 return None, Outcome.equilibrium
             if not _is_astray(cycle, state, stretch.scale):
                 return cycle, Outcome.converged
-        if window >= _WINDOWS[-1] and stretch.comes_back():
+        if window >= search.windows[-1] and stretch.comes_back():
             break
         window = _next_window(window, stretch.motion.steps, most_steps)
     return None, Outcome.equilibrium if at_rest else Outcome.no_convergence
@@ -199,9 +236,9 @@ def near_free(
 
 def _next_window(window: float, steps: int, most_steps: int) -> float | None:
     """Return the next time, in units, to look for a return in; None if steps do not suffice."""
-    if window in _WINDOWS[:-1]:
-        return _WINDOWS[_WINDOWS.index(window) + 1]
-    return window * _LONGER if steps * _LONGER <= most_steps else None
+    if window in search.windows[:-1]:
+        return search.windows[search.windows.index(window) + 1]
+    return window * search.extension if steps * search.extension <= most_steps else None
 
 
 def _stretch(
@@ -213,7 +250,7 @@ def _stretch(
     most_steps: int,
 ) -> Stretch | int:
     """A run from a state; an outcome where it ends early or at rest."""
-    times = np.linspace(0.0, duration, _SAMPLES)
+    times = np.linspace(0.0, duration, search.samples)
     options = {"regime": regime, "times": times, "most_steps": most_steps}
     run = follow(flow, values, state, duration, **options)
     if run.outcome or not np.isfinite(run.path).all():
@@ -245,24 +282,27 @@ def _cycles(
         repeat = Repeat(period, 0, stretch.scale, events=count)
         found = guess_of(flow, values, stretch.motion, state, repeat)
         cycle = None if found is None else solved(*found)
-        if cycle is not None and abs(cycle.period - period) <= _FAR * period:
+        if (
+            cycle is not None
+            and abs(cycle.period - period) <= search.far_return * period
+        ):
             yield once_round(cycle)
 
 
 def _is_astray(cycle: Cycle, state: Vector, scale: Vector) -> bool:
-    """Whether Newton's method has led to another motion than the one that was meant."""
+    """Return whether Newton's method has led to another motion than the one that was meant."""
     off = distances_from_orbit(cycle, state[None]) * cycle.extent.max()
-    return bool(off[0] > _ASTRAY * scale.max())
+    return bool(off[0] > search.astray * scale.max())
 
 
 def _rests(path: Vector, sizes: Any) -> bool:
-    """Whether a motion is within round-off."""
+    """Return whether a motion is within round-off."""
     largest = np.maximum(np.abs(path).max(axis=0), sizes)
-    return bool((np.ptp(path, axis=0) <= _AT_REST * largest).all())
+    return bool((np.ptp(path, axis=0) <= search.rest * largest).all())
 
 
 def _least(events: tuple[LegEnd, ...]) -> int:
-    """How often the rarest event of a cycle occurs: its returns to a section."""
+    """Return how often the rarest event of a cycle occurs: its returns to a section."""
     kinds = [(event.switch, event.after) for event in events]
     return min((kinds.count(kind) for kind in kinds), default=1)
 
@@ -303,9 +343,17 @@ def _returns(
         for count in (np.flatnonzero((keys[1:] == keys[0]).all(axis=1)) + 1).tolist():
             again = 2 * count
             once = again >= len(off)
-            if settled and not once and off[again] > _AGAIN * off[count] + ON_IT:
+            if (
+                settled
+                and not once
+                and off[again] > search.second_return * off[count] + ON_IT
+            ):
                 continue
-            if settled and count > _MOST_EVENTS and (once or off[count] > _CLOSE):
+            if (
+                settled
+                and count > search.most_events
+                and (once or off[count] > search.close_return)
+            ):
                 continue
             found.append(
                 (count, float(run.times[count] - run.times[0]), float(off[count]))
@@ -323,4 +371,4 @@ def _returns(
     found.sort(
         key=lambda each: (each[2] >= nearest, each[1] if each[2] < nearest else each[2])
     )
-    yield from found[:_TRIES]
+    yield from found[: search.tries]

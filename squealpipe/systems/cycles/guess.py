@@ -20,12 +20,6 @@ from squealpipe.systems.record import RunRecord, single_run
 if TYPE_CHECKING:
     from squealpipe.systems.tracing import TracedSystem as System
 
-_BRIEF = 1e-3
-"""Share of the period below which a leg may have vanished."""
-MOST_ROUNDS = 32
-_ROOM = 4
-"""Steps that a leg may need, over those of a whole period in the run that it is guessed from."""
-
 
 def follow(
     flow: Flow,
@@ -118,7 +112,7 @@ def marked_at_once(
 
 
 class Repeat(NamedTuple):
-    """How a run nearly repeats.
+    """Near repetition of a run: its period, events and units.
 
     Attributes:
         period: after which it does, s.
@@ -149,7 +143,8 @@ def guess_of(
     """
     period, periods, scale, first, count, origin = repeat
     count = len(motion.times) if count is None else count
-    needed = _ROOM * motion.steps * period / max(motion.reached, period)
+    # a leg may need four times the steps that the run took for a whole period
+    needed = 4 * motion.steps * period / max(motion.reached, period)
     flow.most_steps = max(flow.most_steps, int(needed))
     units = np.array([max(abs(values[name]), 1e-300) for name in flow.followed])
     followed = np.array([values[name] for name in flow.followed])
@@ -224,7 +219,8 @@ def as_motion(cycle: Cycle, tries: int = 8) -> Cycle | None:
 def without_brief_legs(cycle: Cycle) -> Iterator[tuple[EventMap, Vector]]:
     """Equations and guess without one of the legs that may have vanished."""
     events = cycle.map.events
-    for leg in np.flatnonzero(cycle.parts.durations < _BRIEF * cycle.period).tolist():
+    # a leg of less than a thousandth of the period may have vanished
+    for leg in np.flatnonzero(cycle.parts.durations < 1e-3 * cycle.period).tolist():
         if events[leg - 1].before == events[leg].after and len(events) > 1:
             yield merged(cycle, (leg - 1) % len(events), 2)
 
@@ -248,11 +244,12 @@ def merged(cycle: Cycle, leg: int, count: int) -> tuple[EventMap, Vector]:
 
 
 def once_round(cycle: Cycle) -> Cycle:
-    """The same cycle run through once, where it was found after several rounds."""
+    """Return the cycle run through once, where it was found after several rounds."""
     equations, parts = cycle.map, cycle.parts
     times = np.arange(8) / 8.0 * cycle.period
     here, _ = cycle.states_at(times)
-    for rounds in range(MOST_ROUNDS, 1, -1):
+    # a cycle may be run through up to 32 times in the period that was guessed
+    for rounds in range(32, 1, -1):
         after, _ = cycle.states_at((times + cycle.period / rounds) % cycle.period)
         if equations.legs % rounds and cycle.events:
             continue

@@ -12,11 +12,10 @@ from numpy.typing import NDArray
 from squealpipe.systems.zeros import bracketed
 
 Vector = NDArray[np.float64]
-_PLACES = np.linspace(0.0, 1.0, 9)
 
 
 class LegEnd(NamedTuple):
-    """How a leg ends.
+    """End of a leg: a switch, and the regimes before and after it.
 
     Attributes:
         switch: its number, or :data:`squealpipe.systems.cycles.event_map.FREE`.
@@ -88,7 +87,8 @@ class Path:
         scaled = self.scaled
         orders = np.arange(1, scaled.shape[2])
         rates = scaled[..., 1:] * orders
-        values = rates @ _PLACES ** (orders[:, None] - 1)
+        places = np.linspace(0.0, 1.0, 9)
+        values = rates @ places ** (orders[:, None] - 1)
         found: list[list[Turn]] = [[] for _ in range(scaled.shape[1])]
         hits = np.nonzero(values[..., :-1] * values[..., 1:] < 0.0)
         if not len(hits[0]):
@@ -102,7 +102,7 @@ class Path:
             powers = np.vander(place, len(orders), increasing=True)
             return (slopes * powers).sum(axis=1), (bends * powers[:, :-1]).sum(axis=1)
 
-        ends = (_PLACES[left], _PLACES[left + 1])
+        ends = (places[left], places[left + 1])
         place = bracketed(
             rate_at, ends, (first, last), 1e-6
         )  # the height is quadratic in it

@@ -30,17 +30,7 @@ ALONG, AT = (
     for steps in (STEPS, PRECISE)
 )
 """Along a branch, and at a special point, which is located to round-off."""
-_NEUTRAL = 1e-6
-"""Distance of a multiplier from the unit circle on which it counts as on it."""
-_ASIDE = 1e-4
-"""Step over which the equations' curvature is taken, without units."""
-_EVEN = 1e-3
-"""Share of the curvature that is none, at a pitchfork."""
 
-_EASY, _GROWTH = 3, 3.0
-"""With no more than so many iterations the next step may grow, by no more than this factor."""
-_TURN = 0.7
-"""Turn of the branch over the largest one that the next step is meant for."""
 
 Test = Callable[[ContinuationState, Cycle], float]
 
@@ -59,7 +49,7 @@ def pairs(cycle: Cycle) -> float:
 
 
 def is_torus(cycle: Cycle) -> bool:
-    """Whether, where :func:`pairs` is zero, a complex pair is on the unit circle."""
+    """Return whether, where :func:`pairs` is zero, a complex pair is on the unit circle."""
     rest = cycle.nontrivial
     return bool(
         ((np.abs(np.abs(rest) - 1.0) < 1e-6) & (np.abs(rest.imag) > 1e-9)).any()
@@ -80,12 +70,13 @@ TESTS: tuple[tuple[Label, Test], ...] = (
 
 
 def unstable(cycle: Cycle) -> int:
-    """How many multipliers are outside the unit circle."""
-    return int((np.abs(cycle.nontrivial) > 1.0 + _NEUTRAL).sum())
+    """Count the multipliers outside the unit circle."""
+    # a multiplier this close to the unit circle is on it, apart from round-off
+    return int((np.abs(cycle.nontrivial) > 1.0 + 1e-6).sum())
 
 
 def explains(change: int, labels: Sequence[Label]) -> bool:
-    """Whether special points may be why so many multipliers have left the unit circle.
+    """Return whether special points may be why so many multipliers have left the unit circle.
 
     Where none has, they need no reason: next to a cycle of a part of the period a branch turns
     back on itself, and its multipliers with it.
@@ -95,7 +86,7 @@ def explains(change: int, labels: Sequence[Label]) -> bool:
 
 
 def branching_label(cycle: Cycle) -> Label:
-    """What is at a point where two branches cross: a pitchfork is one by symmetry.
+    """Return the label of a point where two branches cross: a pitchfork is one by symmetry.
 
     There the reduced equation has no quadratic term (Kuznetsov, Elements of Applied Bifurcation
     Theory, ch. 7).
@@ -103,18 +94,24 @@ def branching_label(cycle: Cycle) -> Label:
     equations, size = cycle.map, cycle.map.size
     left, _, right = np.linalg.svd(equations.evaluate(cycle.point)[1][:, :size])
     step = np.zeros_like(cycle.point)
-    step[:size] = _ASIDE * right[-1]
+    # without units: the curvature is a central difference over this step
+    aside = 1e-4
+    step[:size] = aside * right[-1]
     ahead, behind = (
         equations.evaluate(cycle.point + sign * step)[1][:, :size]
         for sign in (1.0, -1.0)
     )
-    bend = (ahead - behind) @ right[-1] / (2.0 * _ASIDE)
-    symmetric = abs(left[:, -1] @ bend) <= _EVEN * np.linalg.norm(bend) + _EVEN
+    bend = (ahead - behind) @ right[-1] / (2.0 * aside)
+    # share of the curvature that is round-off where symmetry makes it zero
+    even = 1e-3
+    symmetric = abs(left[:, -1] @ bend) <= even * np.linalg.norm(bend) + even
     return Label.pitchfork if symmetric else Label.transcritical
 
 
 def hides_folds(before: ContinuationState, after: ContinuationState) -> bool:
-    """Whether the parameter, interpolated by Hermite's cubic, turns twice between two points."""
+    """Return whether the parameter, interpolated by Hermite's cubic, turns twice between two
+    points.
+    """
     step = after.point - before.point
     first, last = float(before.tangent[-1]), float(after.tangent[-1])
     mean = float(step[-1] / np.linalg.norm(step))
@@ -136,8 +133,10 @@ def next_length(state: ContinuationState, following: ContinuationState) -> float
     """The step after this one: longer, but not so that the branch turns by too much in it."""
     most = np.arccos(STEPS.least_cosine)
     turn = float(np.linalg.norm(following.tangent - state.tangent))
-    growth = _GROWTH if following.iterations <= _EASY else 1.0
-    length = state.step * float(np.clip(_TURN * most / max(turn, 1e-300), 0.5, growth))
+    # after few iterations the next step may grow, but by no more than three times
+    growth = 3.0 if following.iterations <= 3 else 1.0
+    # the next step is meant for 0.7 of the largest turn, so that few steps are refused
+    length = state.step * float(np.clip(0.7 * most / max(turn, 1e-300), 0.5, growth))
     return min(length, STEPS.longest_step)
 
 

@@ -18,9 +18,6 @@ from squealpipe.systems.record import RunRecord
 if TYPE_CHECKING:
     from squealpipe.systems.tracing import TracedSystem as System
 
-_TOGETHER = 64
-"""Legs that are run at once."""
-
 
 def sensitivities(
     system: System,
@@ -65,11 +62,13 @@ def sensitivities(
         clock = time
         states = motion.path[i] if sampled else motion.states[i]
         regime = regime if sampled else int(motion.regimes[i + 1])
-    for first in range(0, len(stops), _TOGETHER):
-        part = legs[first : first + _TOGETHER]
+    # legs that are run at once: memory grows with them
+    together = 64
+    for first in range(0, len(stops), together):
+        part = legs[first : first + together]
         begins = np.array([leg[0] for leg in part])
         lengths = (
-            np.array([stop[0] for stop in stops[first : first + _TOGETHER]]) - begins
+            np.array([stop[0] for stop in stops[first : first + together]]) - begins
         )
         path = flow.run(
             values,
@@ -79,7 +78,7 @@ def sensitivities(
             lengths,
         )
         slopes = leg_derivatives(flow, values, path)
-        for leg, (time, sampled, i) in enumerate(stops[first : first + _TOGETHER]):
+        for leg, (time, sampled, i) in enumerate(stops[first : first + together]):
             total = slopes[leg][:, :n] @ total
             total[:, columns] += slopes[leg][:, n : n + len(columns)]
             if sampled:

@@ -1,4 +1,4 @@
-"""Whether a run has settled on a cycle: judged by its further returns, not by one near return.
+"""Decision that a run has settled on a cycle: by its further returns, not by one near return.
 
 A chaotic motion and a torus come as near to themselves as one likes if one waits for it, and next
 to a near return there is often a cycle, which the motion only passes. So the distance between the
@@ -18,15 +18,10 @@ from squealpipe.systems.cycles.solution import Cycle
 QUARTERS = 4
 ON_IT = 1e-6
 """Distance from a cycle, over its extent, of a motion that is on it."""
-_NEAR = 0.05
-"""The same of one that shrinks, within which a cycle is the only one."""
-_FACTOR = 2.0
-"""Between the rate at which it shrinks and the multipliers' own, at any distance."""
-_REFINED = 4
 
 
 class Approach(IntEnum):
-    """How a run goes on beside a cycle."""
+    """Course of a run next to a cycle."""
 
     leaves = 0
     """it does not come nearer, or the cycle is unstable"""
@@ -36,7 +31,7 @@ class Approach(IntEnum):
 
 
 def approach(cycle: Cycle, distances: Vector, periods: float) -> Approach:
-    """How a run goes on beside a cycle.
+    """Return the course of a run next to a cycle.
 
     Args:
         distances: over the cycle's extent in each quarter, (4,).
@@ -44,7 +39,9 @@ def approach(cycle: Cycle, distances: Vector, periods: float) -> Approach:
     """
     if distances[-1] <= ON_IT:
         return Approach.settles
-    if cycle.is_family_member and distances.max() <= _NEAR:
+    # distance over the extent within which a shrinking motion has no other cycle to go to
+    near = 0.05
+    if cycle.is_family_member and distances.max() <= near:
         return Approach.settles  # nothing settles there: the motion is next to a member
     with np.errstate(divide="ignore", invalid="ignore"):
         rates = np.log(distances[1:] / distances[:-1])
@@ -53,8 +50,10 @@ def approach(cycle: Cycle, distances: Vector, periods: float) -> Approach:
     own = periods * np.log(
         max(float(np.abs(cycle.nontrivial).max(initial=0.0)), 1e-300)
     )
-    alike = ((rates > _FACTOR * own) & (rates < own / _FACTOR)).all()
-    return Approach.settles if alike or distances[-1] <= _NEAR else Approach.nears
+    # the rate at which the motion shrinks may differ so much from the multipliers' own
+    factor = 2.0
+    alike = ((rates > factor * own) & (rates < own / factor)).all()
+    return Approach.settles if alike or distances[-1] <= near else Approach.nears
 
 
 def distances_in_step(cycle: Cycle, times: Vector, states: Vector) -> Vector:
@@ -76,7 +75,8 @@ def distances_from_orbit(cycle: Cycle, states: Vector) -> Vector:
     low, high = (times[np.clip(nearest + k, 0, len(times) - 1)] for k in (-1, 1))
     best = np.abs(offsets[np.arange(len(states)), nearest]).max(axis=1)
     at, small = times[nearest], 1e-6 * cycle.period
-    for _ in range(_REFINED):
+    # four refinements: each divides the spacing of the nearest samples
+    for _ in range(4):
         # Gauss and Newton's step along the orbit; beside an event it may be a poor one
         ends = [
             cycle.states_at((cycle.phase + at + k * small) % cycle.period)[0]

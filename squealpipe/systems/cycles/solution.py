@@ -12,24 +12,10 @@ from squealpipe.systems.cycles.event_map import FREE, LONG_CHAIN, EventMap, Part
 from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.legs import LegEnd, Vector
 
-_LEAST = 0.05
-"""Least unit of a state over the largest, both over the states' sizes."""
 _FAMILY = 1e-6
 """A second multiplier this close to 1 may belong to a family of cycles."""
-_ASIDE = 0.02
-"""Step, over the cycle's extent, after which another member is looked for."""
 CLOSING_TOLERANCE = 2e-14
 """Closing error, over the extent, that is always round-off; larger ones are checked."""
-_NEIGHBOURS, _SPREAD = 6, 8.0
-"""Points next to a solution at which round-off is measured, and how many times that is allowed."""
-_CLOSING_STEPS = 4
-"""Newton steps by which a long chain of legs is closed."""
-_NEUTRAL = 1e-9
-"""Distance of a multiplier from 1 that is round-off."""
-_TURNED = 1e-2
-"""By how much a cycle's derivative may map its own direction elsewhere, over its length."""
-_SAMPLES, _INSIDE, _MOST_STEPS = 400, 4, 3000
-"""Samples of a cycle, evenly, and in each step of the integrator, of so many steps at most."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,14 +99,15 @@ class Cycle:
 
     @cached_property
     def keeps_its_direction(self) -> bool:
-        """Whether a free motion's own direction is mapped onto itself, as it has to be.
+        """True if a free motion's own direction is mapped onto itself, as it has to be.
 
         Of very stiff cycles round-off takes it, and all multipliers with it.
         """
         if self.map.periods or not np.isfinite(self.monodromy).all():
             return True
         off = self.monodromy @ self.heading - self.heading
-        return bool(np.linalg.norm(off) <= _TURNED * np.linalg.norm(self.heading))
+        # the derivative may map the cycle's own direction elsewhere by 1 % of its length
+        return bool(np.linalg.norm(off) <= 1e-2 * np.linalg.norm(self.heading))
 
     @property
     def heading(self) -> Vector:
@@ -138,7 +125,7 @@ class Cycle:
 
     @cached_property
     def is_family_member(self) -> bool:
-        """Whether there are others like it at the same parameters, as without damping.
+        """True if there are others like it at the same parameters, as without damping.
 
         Next to it a multiplier is 1, as at a fold or a pitchfork. There Newton's method leads back
         from a step along the direction that returns; in a family it stays.
@@ -149,7 +136,9 @@ class Cycle:
         jacobian = self.map.evaluate(self.point)[1][:, : self.map.size]
         direction = np.linalg.svd(jacobian)[2][-1]
         step = np.zeros_like(self.point)
-        for length in (_ASIDE, -_ASIDE, 0.1 * _ASIDE):
+        # step over the cycle's extent after which another member of a family is looked for
+        aside = 0.02
+        for length in (aside, -aside, 0.1 * aside):
             # one may lead where Newton's method fails, though there are members
             step[: self.map.size] = length * direction
             beside = self.map.solve(self.point + step)
@@ -169,13 +158,15 @@ class Cycle:
         equations, size = self.map, self.map.size
         values, jacobian = equations.evaluate(self.point)
         number, largest = np.arange(size), 0.0
-        for neighbour in range(1, _NEIGHBOURS + 1):
+        # round-off is measured at points next to the solution
+        for neighbour in range(1, 6 + 1):
             moved = self.point.copy()
             moved[:size] *= 1.0 + 2.0**-50 * np.sin(number * neighbour + neighbour)
             other = equations.evaluate(moved)[0]
             off = other - values - jacobian @ (moved - self.point)
             largest = max(largest, float(np.abs(off).max()))
-        return max(CLOSING_TOLERANCE, _SPREAD * largest)
+        # round-off may be eight times what the neighbours show
+        return max(CLOSING_TOLERANCE, 8.0 * largest)
 
     @cached_property
     def drifts(self) -> bool:
@@ -188,21 +179,23 @@ class Cycle:
         return bool(off < _FAMILY and self.residual > self.closing_round_off)
 
     def closed(self) -> Cycle:
-        """The same, closed as well as it can be.
+        """Return the cycle closed as well as it can be.
 
         Of a long chain of legs Newton's method does not take the smallest correction, without which
         closing errors next to a family are not those of the motion.
         """
         if self.map.size < LONG_CHAIN or not self.drifts:
             return self
-        point = self.map.solve(self.point, _CLOSING_STEPS, smallest=True)
+        # Newton steps that close a long chain of legs
+        point = self.map.solve(self.point, 4, smallest=True)
         return self if point is None else Cycle.at(self.map, point)
 
     @property
     def is_stable(self) -> bool:
-        """Whether small disturbances decay."""
+        """True if small disturbances decay."""
         largest = np.abs(self.nontrivial).max(initial=0.0)
-        return bool(largest < 1.0 - _NEUTRAL and not self.is_family_member)
+        # a multiplier closer to 1 is there by round-off
+        return bool(largest < 1.0 - 1e-9 and not self.is_family_member)
 
     @cached_property
     def extent(self) -> Vector:
@@ -234,13 +227,13 @@ class Cycle:
         )
 
     def after_part(self, parts: int) -> Vector:
-        """How far a part of the period is from the one before, by means over twelfths."""
+        """Return how far a part of the period is from the one before, by means over twelfths."""
         means = self._means
         return np.asarray(np.roll(means, len(means) // parts, axis=0) - means).ravel()
 
     @cached_property
     def _means(self) -> Vector:
-        """Of the states over each twelfth of the period, over the extent.
+        """Return the means of the states over each twelfth of the period, over the extent.
 
         Unlike states at instants they are continuous where an event passes from one to the next.
         """
@@ -312,16 +305,19 @@ class Cycle:
         """
         path, n = self.parts.path, self.map.flow.size
         steps = path.steps * path.unit
-        if len(steps) > _MOST_STEPS:
+        # samples inside so many steps at most: a stiff cycle has more
+        most_steps = 3000
+        if len(steps) > most_steps:
             moved = np.abs(np.diff(path.series[:, :n, 0], axis=0)) / self.extent
             along = np.append(0.0, np.cumsum(moved.max(axis=1)))
-            places = np.linspace(0.0, along[-1], _MOST_STEPS)
+            places = np.linspace(0.0, along[-1], most_steps)
             chosen = np.unique(np.searchsorted(along, places).clip(0, len(steps) - 1))
         else:
             chosen = np.arange(len(steps))
-        inside = np.outer(np.arange(_INSIDE) / _INSIDE, steps[chosen])
+        in_each_step = 4
+        inside = np.outer(np.arange(in_each_step) / in_each_step, steps[chosen])
         times = (self.step_begins[chosen] + inside - self.phase) % self.period
-        return np.union1d(np.linspace(0.0, self.period, _SAMPLES + 1), times)
+        return np.union1d(np.linspace(0.0, self.period, 400 + 1), times)
 
     def followed_in(self, flow: Flow, units: Vector) -> tuple[EventMap, Vector]:
         """Its equations with other followed parameters, scaled by it, and its unknowns there."""
@@ -346,4 +342,6 @@ def scale_of(path: Vector, sizes: Vector) -> Vector:
     """
     extent = np.ptp(path, axis=0) / sizes
     largest = float(extent.max()) or float(np.abs(path / sizes).max()) or 1.0
-    return np.asarray(sizes * np.maximum(extent, _LEAST * largest))
+    # a state that hardly moves gets a twentieth of the largest extent as its unit, or its noise
+    # would dominate
+    return np.asarray(sizes * np.maximum(extent, 0.05 * largest))

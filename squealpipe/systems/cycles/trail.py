@@ -20,10 +20,6 @@ _MET = 0.03
 """Distance from a cycle of a part of the period, over its extent, where a branch ends on it."""
 GONE = 1e-5
 """The same where it is not followed any further."""
-_STILL, _GROWTH = 1e-3, 1.5
-"""A period that grows by the factor while the parameter changes by less than this is unbounded."""
-_SAME = 1e-3
-"""Distance from an older piece of the branch, over that piece, that is on it."""
 
 
 @dataclass(frozen=True)
@@ -60,13 +56,15 @@ class Trail:
         self.shapes.append(self._shape(point.cycle, point.state))
 
     def _shape(self, cycle: Cycle, state: ContinuationState) -> Vector:
-        """What does not depend on the phase: parameter, period, extremes; without units."""
+        """Return the part of a cycle that does not depend on the phase: parameter, period,
+        extremes; without units.
+        """
         first = self.points[0].cycle.map if self.points else cycle.map
         extremes = cycle.extremes[:, : len(first.scale)] / first.scale
         return np.array([state.point[-1], cycle.period / first.time, *extremes.ravel()])
 
     def meets(self) -> Outcome | None:
-        """Whether the last step lies on an older piece of the branch."""
+        """Return whether the last step lies on an older piece of the branch."""
         shapes = np.array(self.shapes)
         if len(shapes) < 6:
             return None
@@ -77,13 +75,15 @@ class Trail:
         distance = np.linalg.norm(offset - share[:, None] * pieces, axis=1)
         length = max(float(np.linalg.norm(ahead)), 1e-300)
         cosine = (pieces @ ahead) / np.sqrt(squared) / length
-        near = distance < _SAME * np.minimum(np.sqrt(squared), length)
+        # a point this close to an older piece of the branch, over that piece, is on it: the
+        # branch is closed
+        near = distance < 1e-3 * np.minimum(np.sqrt(squared), length)
         if (near & (cosine > 0.99)).any():
             return Outcome.closed
         return Outcome.retraced if (near & (cosine < -0.99)).any() else None
 
     def is_met(self, point: BranchPoint) -> bool:
-        """Whether a fold is where the branch ends on a cycle of a part of the period."""
+        """Return whether a fold is where the branch ends on a cycle of a part of the period."""
         near = (
             min(float(np.linalg.norm(point.cycle.after_part(n))) for n in (2, 3)) < _MET
         )
@@ -111,21 +111,24 @@ class Trail:
         Next to a homoclinic orbit the period grows as the logarithm of the distance.
         """
         values, periods = np.array(self.shapes)[:, :2].T
-        near = np.abs(values - values[-1]) <= _STILL * abs(values[-1])
+        # a period that grows by half while the parameter stands still is unbounded: a homoclinic
+        # orbit
+        near = np.abs(values - values[-1]) <= 1e-3 * abs(values[-1])
         first = 0 if near.all() else len(near) - int(np.argmin(near[::-1]))
         # the last points are so close that round-off makes their periods fall a little
         rises = bool((np.diff(periods[first:]) > -1e-6 * periods[-1]).all())
-        return rises and bool(periods[-1] >= _GROWTH * periods[first])
+        return rises and bool(periods[-1] >= 1.5 * periods[first])
 
     def has_shrunk(self, cycle: Cycle, share: float = _AT_REST) -> bool:
-        """Whether a cycle without forcing is next to a state of rest."""
+        """Return whether a cycle without forcing is next to a state of rest."""
         if cycle.map.periods:
             return False
         sizes = _sizes_of([*self.shapes, self._shape(cycle, self.points[-1].state)])
         return bool(sizes[-1] < share * sizes[:-1].max())
 
     def rest(self) -> float | None:
-        """Where a shrinking cycle is at rest: the parameter is smooth in the square of its size.
+        """Return the parameter at which a shrinking cycle is at rest: it is smooth in the square of
+        the size.
 
         Of the smallest cycles round-off decides the parameter.
         """

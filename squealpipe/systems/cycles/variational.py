@@ -67,7 +67,7 @@ def _largest_rate(slopes: Vector) -> Vector:
 
 
 def _affine(flow: Flow, values: Mapping[str, float], path: Path) -> Vector:
-    """The same where all rates are affine in the states."""
+    """Return the derivatives where all rates are affine in the states."""
     first = np.searchsorted(path.leg, np.arange(len(path.regimes)))
     starts = path.series[first, : flow.size, 0]
     followed = np.array([values[name] for name in flow.followed])
