@@ -88,7 +88,7 @@ def _changes(labels: np.ndarray) -> np.ndarray:
 
 
 def _refined(values: np.ndarray, between: object) -> np.ndarray:
-    """The same values at half the spacing, another one at new points."""
+    """Return the same values at half the spacing, with another value at new points."""
     spread = np.full((2 * values.shape[0] - 1,) * 2, between, values.dtype)
     spread[::2, ::2] = values
     return spread

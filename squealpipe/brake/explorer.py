@@ -1,4 +1,4 @@
-"""What the explorer page shows of each pair of angles: a motion, its spectrum, two backbones."""
+"""Data of the explorer page for each pair of angles: a motion, its spectrum, two backbones."""
 
 import json
 from typing import Any

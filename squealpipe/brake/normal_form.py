@@ -56,7 +56,7 @@ class NormalForm:
 
 
 def exchanged(params: Parameters) -> Parameters:
-    """The same parameters with the properties of springs 1 and 2 exchanged."""
+    """Return the same parameters with the properties of springs 1 and 2 exchanged."""
     other = {"1": "2", "2": "1"}
     names = [item.name for item in fields(params) if item.name[-1] in other]
     return params.with_(**{n: getattr(params, n[:-1] + other[n[-1]]) for n in names})

@@ -32,7 +32,7 @@ LONG = 64
 
 @dataclass(frozen=True, kw_only=True)
 class Run:
-    """How the pads are run.
+    """Settings of the pads' runs.
 
     Attributes:
         mu, modal_damping: of the pad.
@@ -133,7 +133,9 @@ def _pad(
 def _of_motion(
     plant: Plant, answer: xr.Dataset, places: np.ndarray, most: int, tol: float
 ) -> dict[str, Any]:
-    """What a small push ends in: level, and contact by contact."""
+    """Return level and contact loss, contact by contact, of the motion that a small push settles
+    on.
+    """
     count = len(places)
 
     def padded(values: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""How far each verdict carries: the paper's statements with damping, other laws, other starts."""
+"""Robustness of each verdict: the paper's statements with damping, other laws, other starts."""
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
@@ -78,7 +78,7 @@ def verdict_robustness(
     tol: Tolerance = 1e-12,
     workers: Workers = None,
 ) -> xr.Dataset:
-    """Whether each statement of Figs. 2 to 9 holds, setting by setting.
+    """Return whether each statement of Figs. 2 to 9 holds, setting by setting.
 
     Statements are those of the inference, with its criteria and thresholds; starts at rest, but for
     the last variants, where a share of random starts is given with its 95 % interval (Wilson).

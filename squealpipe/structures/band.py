@@ -42,7 +42,7 @@ class Region(NamedTuple):
     height: float
 
     def holds(self, value: complex, margin: float = 0.0) -> bool:
-        """Whether a value is within, or outside by no more than a relative margin."""
+        """Return whether a value is within, or outside by no more than a relative margin."""
         outside = max(
             abs(value.real) / self.half_width,
             value.imag / self.height,

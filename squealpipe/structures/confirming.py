@@ -94,7 +94,7 @@ class ConfirmedWay(Way):
         self.steps[mu] = Step(spectrum, numbers)
 
     def _places(self, mu: float, spectrum: Spectrum) -> dict[int, int]:
-        """From the place of a mode of the whole to its number in the subspace."""
+        """Return the number in the subspace of each mode of the whole."""
         step = None if self.within is None else self.within.steps.get(mu)
         if step is None or not spectrum.pairs:
             return {}
@@ -117,7 +117,7 @@ class ConfirmedWay(Way):
         }
 
     def critical(self, number: int) -> Critical:
-        """Where growth of one mode leaves zero, in the whole structure."""
+        """Return the friction at which growth of one mode leaves zero, in the whole structure."""
         inner = self._number_within.get(number)
         lost = Critical(np.nan, Onset.not_followed)
         if self.within is None or inner is None:
@@ -163,7 +163,9 @@ class ConfirmedWay(Way):
         return known is not None and isinstance(getattr(known, "roots", None), list)
 
     def _located_at_change(self, crossing: Crossing) -> float | None:
-        """Where a contact opens or closes, and with it the mode turns unstable."""
+        """Return the friction at which a contact opens or closes, and with it the mode turns
+        unstable.
+        """
         solver = self.solver
         low = max(crossing.low - BESIDE_A_CHANGE, 0.0)
         high = crossing.high + BESIDE_A_CHANGE
@@ -180,7 +182,9 @@ class ConfirmedWay(Way):
         return None
 
     def _grows_from_the_start(self, inner: int) -> bool:
-        """Whether a mode grows in the whole at the first friction at which the subspace has it."""
+        """Return whether a mode grows in the whole at the first friction at which the subspace has
+        it.
+        """
         assert self.within is not None  # noqa: S101 (its modes are asked for)
         for mu, step in self.within.steps.items():
             if (pair := step.pair(inner)) is not None:

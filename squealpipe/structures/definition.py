@@ -1,4 +1,4 @@
-"""What a structure is: matrices of mass, damping and stiffness with contacts on a moving belt."""
+"""Structures: matrices of mass, damping and stiffness with contacts on a moving belt."""
 
 import copy
 import hashlib
@@ -205,12 +205,12 @@ class ContactStructure:
 
     @property
     def preloads(self) -> np.ndarray:
-        """Of each contact, N."""
+        """Preload of each contact, N."""
         return np.array([each.preload for each in self.contacts])
 
     @property
     def stiffnesses(self) -> np.ndarray:
-        """Of each contact, N/m."""
+        """Stiffness of each contact, N/m."""
         return np.array([each.stiffness for each in self.contacts])
 
     @property
@@ -294,7 +294,7 @@ class ContactStructure:
 
     @property
     def arguments(self) -> dict[str, Any]:
-        """What it is made of, by the names of its arguments."""
+        """Return the arguments that make this structure, by name."""
         friction = self.friction
         return {
             "mass": self.mass,

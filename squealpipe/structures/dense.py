@@ -250,7 +250,9 @@ def _of_real_square(
 def _error_of_square(
     pencil: Pencil, right: np.ndarray, left: np.ndarray, scale: float
 ) -> float:
-    """Of λ by LAPACK: round-off of the largest one, over the angle of both vectors."""
+    """Return the error of λ by LAPACK: round-off of the largest one, over the angle of both
+    vectors.
+    """
     carried = pencil.mass @ right
     angle = abs(np.vdot(left, carried)) / np.linalg.norm(carried)
     backward = BACKWARD * np.finfo(float).eps
@@ -293,7 +295,7 @@ def _damped_slowly(pencil: Pencil) -> list[Eigenpair]:
 
 
 def _damped(pencil: Pencil) -> list[Eigenpair]:
-    """Of the linearization in coordinates x = Lᵀv, M = LLᵀ, with (ω x, s x) as its vector."""
+    """Return the linearization in coordinates x = Lᵀv, M = LLᵀ, with (ω x, s x) as its vector."""
     mass, damping, stiffness = pencil.dense
     size = pencil.size
     lower = la.cholesky(mass, lower=True)

@@ -28,7 +28,7 @@ ROUND_OFF = 1e-15
 
 @dataclass(frozen=True, eq=False)
 class Numbers:
-    """What the equations of motion hold besides parameters; n states of c contacts.
+    """Constants of the equations of motion besides parameters; n states of c contacts.
 
     Attributes:
         stiffness: M⁻¹ (K + Σ kᵢ nᵢnᵢᵀ), (n, n): diagonal in coordinates of modes.
@@ -256,7 +256,7 @@ def law_in_use(friction: Friction) -> str:
 
 
 def reads_speed(friction: Friction) -> bool:
-    """Whether ``friction_speed`` is a parameter of the law in use."""
+    """Return whether ``friction_speed`` is a parameter of the law in use."""
     law = friction_laws.LAWS.get(law_in_use(friction))
     return law is not None and "friction_speed" in law.PARAMETERS
 
@@ -280,7 +280,9 @@ def coefficients_of(structure: ContactStructure, place: int) -> dict[str, float]
 def friction_at(
     structure: ContactStructure, place: int, p: Any, regime: Any = None
 ) -> Any:
-    """What friction laws read of a contact: parameters and, of a table, the piece of a regime."""
+    """Return what friction laws read of a contact: parameters and, of a table, the piece of a
+    regime.
+    """
     friction = structure.frictions[place]
     law = law_in_use(friction)
     mu, static, *_ = [

@@ -1,4 +1,4 @@
-"""What modes can be computed over besides friction and belt speed, and the structure with it."""
+"""Quantities besides friction and belt speed over which modes are computed, and their structure."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -18,7 +18,7 @@ from squealpipe.validation import real_array
 
 @dataclass(frozen=True)
 class Asked:
-    """What modes are asked for.
+    """Request of modes: the frictions, speeds and factors to compute them at.
 
     Attributes:
         mu, belt_speed: a number or a 1-D array each.

@@ -64,7 +64,7 @@ def _keep_twins(places: np.ndarray, first: Spectrum, second: Spectrum) -> None:
 
 
 def _order_merged(places: np.ndarray, first: Spectrum, second: Spectrum) -> None:
-    """Of two modes that have merged, which have one shape, let the first grow."""
+    """Let the first of two modes that have merged, and so have one shape, be the one that grows."""
     was_still = first.values.real == 0
     of_place = {int(place): row for row, place in enumerate(places) if place >= 0}
     for place, value in enumerate(second.values):

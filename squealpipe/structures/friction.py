@@ -38,7 +38,7 @@ class Friction:
 
     @property
     def factor(self) -> float:
-        """Of the law's coefficient: ``mu`` where the law is a table."""
+        """Factor of the law's coefficient: ``mu`` where the law is a table."""
         return self.mu if is_table(self.friction_law) else 1.0
 
     @property

@@ -47,7 +47,7 @@ def pencil_about(
 
 
 def _uncertain(structure: ContactStructure, state: SteadySliding) -> Uncertain | None:
-    """What rounding of forces and of friction leaves open in damping and stiffness."""
+    """Return the uncertainty of damping and stiffness from rounding of forces and of friction."""
     rounding = OF_FRICTION * np.finfo(float).eps
     closed = state.closed
     if not closed.any():

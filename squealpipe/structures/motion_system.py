@@ -146,7 +146,7 @@ class Equations:
         return outputs
 
     def _shape(self, name: str, given: Any) -> np.ndarray:
-        """What a displacement of the whole structure is of each state's."""
+        """Return a named displacement of the structure per unit of each state."""
         modes = self.structure.modes
         if modes is None:
             modes = np.eye(self.structure.size)
@@ -241,12 +241,12 @@ class _Contact:
         return self.equations.at(s, p, r).holding(self.place)
 
     def _holds(self, t: Any, s: Any, p: Any, r: Any) -> Any:
-        """Whether friction can, ≥ 0, whatever its sign."""
+        """Return whether friction can, ≥ 0, whatever its sign."""
         hidden = HIDDEN * self.force
         return self.limit(t, s, p, r) ** 2 + hidden**2 - self._holding(t, s, p, r) ** 2
 
     def _margin(self, sign: float) -> Surface:
-        """What the friction of stick lacks to its limit, on one side."""
+        """Return the distance of the friction of stick from its limit, on one side."""
         friction = self.equations.of_contact("stick_friction", self.place)
         return lambda t, s, p, r: self.limit(t, s, p, r) - sign * friction(t, s, p, r)
 

@@ -32,7 +32,7 @@ class Step:
     numbers: np.ndarray
 
     def place(self, number: int) -> int | None:
-        """Where the mode of a number is; None if it is not here."""
+        """Return the index of the mode with a number, or None if it is not among these."""
         places = np.flatnonzero(self.numbers == number)
         return int(places[0]) if places.size else None
 
@@ -43,7 +43,7 @@ class Step:
 
 
 class Critical(NamedTuple):
-    """Where a mode turns unstable.
+    """Onset of one mode: the friction at which it turns unstable.
 
     Attributes:
         mu: friction, NaN if there is none.
@@ -145,7 +145,7 @@ class Way:
         return True
 
     def _loses_one(self, passed: dict[float, Step]) -> bool:
-        """Whether a mode within the limits cannot be followed to where it turns unstable."""
+        """Return whether a mode within the limits cannot be followed to where it turns unstable."""
         for (low, before), (high, after) in pairwise(passed.items()):
             within = after.numbers[self.solver.selected(after.spectrum)]
             for number in map(int, within):
@@ -165,7 +165,9 @@ class Way:
         stable: tuple[float, Eigenpair],
         grown: tuple[float, Eigenpair],
     ) -> Crossing | None:
-        """Where a mode turns unstable between two frictions; None where it cannot be followed."""
+        """Return the friction between two at which a mode turns unstable; None where it cannot be
+        followed.
+        """
         key = number, stable[0], grown[0]
         if key not in self._onsets:
             self._onsets[key] = onset(self.solver.pencil, stable, grown)
@@ -191,7 +193,9 @@ class Way:
         return carried
 
     def criticals(self, numbers: list[int]) -> list[Critical]:
-        """Where growth of each of these modes leaves zero, and with which other it meets."""
+        """Return the friction at which growth of each of these modes leaves zero, and the mode that
+        it meets.
+        """
         if not self.between:
             return [Critical(np.nan, Onset.not_sought) for _ in numbers]
         criticals = {number: self.critical(number) for number in numbers}
@@ -206,7 +210,7 @@ class Way:
         return list(criticals.values())
 
     def critical(self, number: int) -> Critical:
-        """Where growth of one mode leaves zero."""
+        """Return the friction at which growth of one mode leaves zero."""
         last: tuple[float, Eigenpair] | None = None
         for mu, step in self.steps.items():
             pair = step.pair(number)

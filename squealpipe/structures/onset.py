@@ -1,4 +1,4 @@
-"""Where on the way of friction a mode turns unstable, to 1e-10.
+"""Onset of instability: the friction at which a mode turns unstable, to 1e-10.
 
 Without damping two modes merge: their eigenvalues there depend on friction by a square root, but
 the 2 × 2 matrix of both, λ of K v = λ M v on their common subspace, is smooth, and its discriminant
@@ -40,7 +40,7 @@ AROUND = 1e-3, 1e-2, 1e-1, 1.0
 
 
 class Crossing(NamedTuple):
-    """Where a mode turns unstable.
+    """Friction at which a mode turns unstable.
 
     Attributes:
         mu: friction.
@@ -63,7 +63,7 @@ def onset(
     stable: tuple[float, Eigenpair],
     unstable: tuple[float, Eigenpair],
 ) -> Crossing | None:
-    """Where between two frictions the mode turns unstable.
+    """Return the friction between two at which the mode turns unstable.
 
     Args:
         pencil_at: pencil of a friction.
@@ -92,7 +92,7 @@ def onset(
 def confirmed(
     pencil_at: Callable[[float], Pencil], found: Crossing, basis: np.ndarray
 ) -> float | None:
-    """Where the whole structure turns unstable near what was found in a subspace.
+    """Return where the whole structure turns unstable near the onset of a subspace.
 
     Args:
         pencil_at: pencil of the whole structure at a friction.
@@ -135,7 +135,7 @@ def _measure_of_whole(
 
 
 def grows(pencil: Pencil, pair: Eigenpair, basis: np.ndarray) -> bool | None:
-    """Whether the mode of a subspace grows in the whole; None if it is none there."""
+    """Return whether the mode of a subspace grows in the whole; None if it is none there."""
     try:
         whole = _polished_as(pencil, pair, basis)
     except RuntimeError:
@@ -157,7 +157,7 @@ def _polished_as(pencil: Pencil, pair: Eigenpair, basis: np.ndarray) -> Eigenpai
 
 
 def _zero(measure: Callable[[float], float], low: float, high: float) -> float | None:
-    """Where the measure turns positive, sought from the upper end."""
+    """Return where the measure turns positive, searched from the upper end."""
     if not measure(high) > 0:
         return None
     # from the unstable side: the subspace at each place starts from that of the last
@@ -199,7 +199,7 @@ class _Followed:
         self.pencil_at, self.known = pencil_at, known
 
     def nearest(self, mu: float) -> Any:
-        """What is known at the nearest friction."""
+        """Return the state at the known friction that is nearest."""
         return self.known[min(self.known, key=lambda each: abs(each - mu))]
 
     def __call__(self, mu: float) -> float:
@@ -220,7 +220,7 @@ class _Followed:
         self._reach(mu, halvings - 1)
 
     def _moved(self, near: float, mu: float) -> Any:
-        """What is known at a friction from what is at another; None if it may be another mode."""
+        """Return the state at a friction from that at another; None if it may be another mode."""
         raise NotImplementedError
 
     def _measure(self, mu: float) -> float:

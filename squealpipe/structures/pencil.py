@@ -90,12 +90,12 @@ class Pencil:
 
     @property
     def is_dense(self) -> bool:
-        """Whether dense algebra is used."""
+        """True if dense algebra is used."""
         return self.size <= DENSE
 
     @property
     def is_undamped(self) -> bool:
-        """Whether s enters by its square alone."""
+        """True if s enters by its square alone."""
         return not self.damping.nnz and self.modal is None
 
     @cached_property

@@ -90,7 +90,7 @@ def error_of_forces(pencil: Pencil, pair: Eigenpair) -> float:
 def _shift(
     pencil: Pencil, moved: float, right: np.ndarray, left: np.ndarray, rate: complex
 ) -> float:
-    """Of an eigenvalue where wᴴ Q v changes by so much."""
+    """Return the shift of an eigenvalue where wᴴ Q v changes by so much."""
     # next to a double eigenvalue the shift is a square root instead; without damping wᴴMv vanishes
     # there as well, and the sizes of its terms stand in for it
     mass = float(np.abs(left) @ (abs(pencil.mass) @ np.abs(right))) or np.inf

@@ -128,7 +128,7 @@ def _range(values: Any) -> str:
 
 
 def _sought(structure: ContactStructure, drag: np.ndarray) -> np.ndarray | None:
-    """Which contacts are closed in a state that fits, of all combinations; None if none does.
+    """Return the closed contacts of a state that fits, of all combinations; None if none does.
 
     With springs kᵢ at all contacts the nearing uᵢ = nᵢᵀq is linear in u itself and in the forces
     of the closed contacts, so that each combination is a small system.
@@ -164,7 +164,7 @@ def _sought(structure: ContactStructure, drag: np.ndarray) -> np.ndarray | None:
 def changes(
     sliding: Callable[[float], SteadySliding], low: float, high: float
 ) -> list[tuple[float, float]]:
-    """Where contacts open or close on the way from one friction to another.
+    """Return where contacts open or close on the way from one friction to another.
 
     Args:
         sliding: steady sliding at a friction.

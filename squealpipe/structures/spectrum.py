@@ -51,12 +51,12 @@ class Spectrum:
 
     @cached_property
     def errors(self) -> np.ndarray:
-        """Of the eigenvalues, rad/s."""
+        """Errors of the eigenvalues, rad/s."""
         return np.array([each.error for each in self.pairs])
 
     @property
     def growth_errors(self) -> np.ndarray:
-        """Of the growth rates, 1/s: none of an undamped mode that does not grow."""
+        """Errors of the growth rates, 1/s: none of an undamped mode that does not grow."""
         still = (
             self.pencil.is_undamped & (self.values.real == 0) & (self.values.imag > 0)
         )
@@ -100,7 +100,7 @@ class Spectrum:
 
 @dataclass(frozen=True)
 class Limits:
-    """What is asked for.
+    """Limits of the modes that are asked for.
 
     Attributes:
         frequency_max: Hz.
@@ -151,7 +151,7 @@ class Solver:
 
     @property
     def is_dense(self) -> bool:
-        """Whether all eigenvalues are computed."""
+        """True if all eigenvalues are computed."""
         return self.structure.size <= DENSE
 
     @property
@@ -170,7 +170,7 @@ class Solver:
         return steady_sliding(self.structure, coefficients, self.belt_speed)
 
     def pencil(self, mu: float) -> Pencil:
-        """Of small motions at this friction."""
+        """Return the matrices of small motions at this friction."""
         return pencil_about(self.structure, self.sliding(mu), self.modal)
 
     def at(self, mu: float) -> Spectrum:
@@ -207,7 +207,7 @@ class Solver:
             reach *= 1.3
 
     def selected(self, spectrum: Spectrum) -> np.ndarray:
-        """Which modes are within the limits, (modes,)."""
+        """Return which modes are within the limits, (modes,)."""
         frequency = spectrum.values.imag / (2 * np.pi)
         chosen = np.ones(len(frequency), bool)
         if self.limits.frequency_max is not None:

@@ -103,7 +103,9 @@ class Structure(ContactStructure):  # noqa: D101 (that of the definition)
         write_contacts(self.contacts, names, Path(path), turning=turning)
 
     def system(self, displacements: Mapping[str, Any] | None = None) -> System:
-        """As a system; see :func:`squealpipe.structures.motion_system.system`."""
+        """Return the structure as a system; see
+        :func:`squealpipe.structures.motion_system.system`.
+        """
         from squealpipe.structures.motion_system import system
 
         return system(self, displacements)

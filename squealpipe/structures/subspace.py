@@ -92,7 +92,7 @@ def subspace(
 def _added(
     whole: ContactStructure, basis: np.ndarray, vectors: np.ndarray
 ) -> np.ndarray:
-    """What vectors add to a basis, orthonormal by mass to it and among themselves."""
+    """Return the part of vectors beyond a basis, orthonormal by mass to it and among themselves."""
     # twice, since the first time leaves round-off of what was taken away
     for _ in range(2):
         sizes = np.sqrt(np.einsum("ij,ij->j", vectors, whole.mass @ vectors))

@@ -398,7 +398,9 @@ def _clocks(
 
 
 def is_clock(surface: Symbol) -> bool:
-    """Whether a surface depends on the time alone, parameters and regimes' constants aside."""
+    """Return whether a surface depends on the time alone, parameters and
+    regimes' constants aside.
+    """
     moving = [
         node.arguments[0] for node in in_order([surface]) if node.kind == "variable"
     ]

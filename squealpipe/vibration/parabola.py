@@ -6,7 +6,9 @@ import numpy as np
 
 
 def vertex(before: Any, here: Any, after: Any) -> tuple[np.ndarray, np.ndarray]:
-    """How many steps the vertex lies after the middle sample, and its value; a line has none."""
+    """Return how many steps the vertex lies after the middle sample, and its value; a line has
+    none.
+    """
     curvature = before - 2.0 * here + after
     shift = np.where(curvature == 0.0, 0.0, 0.5 * (before - after)) / np.where(
         curvature == 0.0, 1.0, curvature
@@ -15,7 +17,7 @@ def vertex(before: Any, here: Any, after: Any) -> tuple[np.ndarray, np.ndarray]:
 
 
 def neighbours(samples: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Of (…, n) samples the one before each index, that at it, and the one after."""
+    """Return, of (…, n) samples, the one before each index, that at it, and the one after."""
     places = at[..., None]
     return tuple(
         np.take_along_axis(samples, places + k, axis=-1)[..., 0] for k in (-1, 0, 1)

@@ -103,17 +103,17 @@ class SettledRun:
 
     @property
     def quiet(self) -> bool:
-        """Whether it has died out to steady sliding."""
+        """True if it has died out to steady sliding."""
         return self.verdict is Verdict.quiet
 
     @property
     def agrees(self) -> bool:
-        """Whether it has settled at all."""
+        """True if it has settled at all."""
         return self.verdict is not Verdict.undetermined
 
     @property
     def lasts(self) -> bool:
-        """Whether a motion is known to last, or has at least not lost its events by the horizon.
+        """True if a motion is known to last, or has at least not lost its events by the horizon.
 
         What slides in contact by then, and has only not become small, dies out with small motions.
         """

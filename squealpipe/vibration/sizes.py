@@ -12,7 +12,7 @@ STRUCTURES = ("complex_modes", "squealing_modes")
 
 
 def is_real(dataset: xr.Dataset) -> bool:
-    """Whether a dataset is of a brake with the size of a real one, not of scaled numbers."""
+    """Return whether a dataset is of a brake with the size of a real one, not of scaled numbers."""
     if str(dataset.attrs.get("schema")).startswith(STRUCTURES):
         return True
     text = dataset.attrs.get("parameters")

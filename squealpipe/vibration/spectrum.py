@@ -27,7 +27,7 @@ def step_of(time: NDArray[np.float64]) -> float:
 
 
 def lasts(force: NDArray[np.float64]) -> bool:
-    """Whether a contact force acts in the second half of its run, so that it has a spectrum.
+    """Return whether a contact force acts in the second half of its run, so that it has a spectrum.
 
     That of a force that ends for good shows its end, not an oscillation.
     """

@@ -54,7 +54,7 @@ class Windows:
 
     @property
     def losses(self) -> int:
-        """How often the contact is lost that is lost most often, of one run."""
+        """Count the losses of the contact that is lost most often, in one run."""
         return int(np.max(self.separations, initial=0))
 
     def levels(self, period: float) -> WindowLevels:

@@ -169,7 +169,7 @@ class Ensemble:
         return self._shaped(found.astype(np.int8))
 
     def _next_to_pivot(self) -> np.ndarray:
-        """Whether each run ended next to the fixed end of a spring."""
+        """Return whether each run ended next to the fixed end of a spring."""
         away = self._raw["final"][:, None, :2] - self._raw["points"]
         lengths = np.stack(
             [self.jobs.values[name] for name in ("length1", "length2")], axis=-1
@@ -254,7 +254,7 @@ class Ensemble:
 
     @property
     def logged(self) -> np.ndarray:
-        """Whether the log holds all events of a run."""
+        """True if the log holds all events of a run."""
         return np.asarray(self.events <= self._raw["event_times"].shape[1])
 
     @property

@@ -68,7 +68,7 @@ def regimes_of(system: System) -> list[Regime]:
 def parameters_of_run(
     params: Parameters, alpha1: float, alpha2: float
 ) -> dict[str, float]:
-    """What a run of :func:`brake` is given."""
+    """Return the parameters of a run of :func:`brake`."""
     found = {name: getattr(params, name) for name in NUMBERS_OF_A1}
     return {**found, "alpha1": alpha1, "alpha2": alpha2}
 
@@ -261,7 +261,9 @@ class _Laws:
         return ["separated", *(["released"] * (self.contact_law == "dashpot"))]
 
     def landing(self, kind: str, holds: Any) -> list[Any]:
-        """Where a contact that begins leads, by the sliding speed: targets of a switch."""
+        """Return the targets of a switch by which contact begins: the regime depends on the sliding
+        speed.
+        """
 
         def speed(t: Any, s: Any, p: Any, r: Any) -> Any:
             return p.belt_speed - s.vx * self.rules.reverses
@@ -272,7 +274,7 @@ class _Laws:
         return self.belt.landing(kind, speed, stays)
 
     def contact_switches(self, free: Any, holds: Any) -> list[Switch]:
-        """Where contact is lost and found."""
+        """Return the switches at which contact is lost and found."""
         if not self.rules.separates:
             return []
         belt = self.belt
@@ -295,7 +297,7 @@ class _Laws:
         ]
 
     def belt_switches(self, holds: Any, limit: Any, pull: Any) -> Iterator[Switch]:
-        """Where the mass reaches belt speed, and where stick ends."""
+        """Return the switches at which the mass reaches belt speed, and at which stick ends."""
         if not self.rules.reverses:
             return
         for j in range(len(self.contacts)):
@@ -316,7 +318,7 @@ class _Laws:
             )
 
     def knots(self) -> Iterator[Switch]:
-        """Where a law goes over from one of its pieces to the next."""
+        """Return the switches at which a law goes over from one of its pieces to the next."""
 
         def presses(end: str) -> Surface:
             return lambda t, s, p, r: (

@@ -16,7 +16,7 @@ _SPACING = 0.02
 def doubled_start(
     scene: ScaledSystem, orbit: Orbit
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Where and in which direction the doubled branch leaves at a period doubling.
+    """Return the place and direction in which the doubled branch leaves a period doubling.
 
     With two periods as one the conditions of rest lose rank at one of the two instants of rest:
     there, and with both instants moving apart at constant period, the new orbits begin.

@@ -87,7 +87,7 @@ def isolated_orbits(scene: ScaledSystem, mode: int, x_max: float) -> list[Orbit]
 
 
 def pole_number(scene: ScaledSystem, half_period: float) -> int:
-    """How many internal resonances ω = ω_x/n lie above this motion's ω, where K12 = 0."""
+    """Count the internal resonances ω = ω_x/n above this motion's ω, where K12 = 0."""
     return int(half_period * math.sqrt(scene.system.below.matrix[0][0]) / math.pi)
 
 

@@ -94,7 +94,9 @@ def linear_orbit(scene: ScaledSystem, mode: int, y_peak: float) -> Orbit:
 
 @dataclass(frozen=True)
 class GrazingStart:
-    """Where the linear mode touches the end of contact, and the branch's direction there."""
+    """Start of a branch: the linear mode that touches the end of contact, and the direction from
+    there.
+    """
 
     point: NDArray[np.float64]
     direction: NDArray[np.float64]
@@ -133,7 +135,7 @@ SHAPE = (
 def orbit_values(
     scene: ScaledSystem, params: Parameters, point: NDArray[np.float64]
 ) -> dict[str, Any]:
-    """What a dataset says of an orbit's shape, in the user's units."""
+    """Return the stored description of an orbit's shape, in the user's units."""
     x_amplitude, y_amplitude, speed = shape(scene.system, point)
     largest_speed = speed * scene.length * scene.frequency
     return {

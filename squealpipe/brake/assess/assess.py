@@ -30,7 +30,8 @@ SEARCHED = 1e-9
 def assess(
     params: Parameters, alpha1: Angle, alpha2: Angle, *, tol: Tolerance = 1e-12
 ) -> xr.Dataset:
-    """Whether a brake squeals or hammers, at which frequency, how loud, why, and what stops it.
+    """Return whether a brake squeals or hammers, at which frequency, how loud, why, and what stops
+    it.
 
     Two starts are told: steady sliding, pushed by 1 % of the static compression in the direction
     in which small motions grow fastest, and (prefix ``sudden_``) rest under the whole preload at

@@ -279,7 +279,9 @@ def _path(design: Design, run: Ensemble, times: np.ndarray) -> dict[str, Any]:
 
 
 def _repeats(run: Ensemble, times: np.ndarray, frequency: float) -> bool:
-    """Whether the motion is periodic: by its events, or, where it has none, by its states."""
+    """Return whether the motion is periodic: by its events, or, where it has
+    none, by its states.
+    """
     if not np.isfinite(frequency):
         return False
     count = min(int(run.events), MOST_EVENTS)

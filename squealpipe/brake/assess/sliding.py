@@ -99,7 +99,7 @@ class Sliding:
 
     @property
     def is_unstable(self) -> bool:
-        """Whether small motions grow."""
+        """True if small motions grow."""
         return self.margin > 0.0
 
     @cached_property

@@ -1,4 +1,4 @@
-"""What model A1 does when it starts on a periodic motion of model A4."""
+"""Runs of model A1 that start on periodic motions of model A4."""
 
 import math
 from collections.abc import Mapping, Sequence

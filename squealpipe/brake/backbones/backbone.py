@@ -183,7 +183,7 @@ def exact_variables(
     outcomes: Sequence[Outcome],
     end: Outcome,
 ) -> dict[str, Any]:
-    """What a dataset says of the exact orbits of a branch."""
+    """Return the variables that a dataset holds of the exact orbits of a branch."""
     shapes = [orbit_values(scene, params, orbit.point) for orbit in orbits]
     return {
         **{name: np.array([shape[name] for shape in shapes]) for name in SHAPE},
@@ -260,7 +260,7 @@ def special_beyond_contact(
 def special_variables(
     scene: ScaledSystem, found: Sequence[tuple[SpecialPoint, Orbit]]
 ) -> dict[str, Any]:
-    """What a dataset says of the special points of a branch."""
+    """Return the variables that a dataset holds of the special points of a branch."""
     return {
         "special_kind": [int(kind) for kind, _ in found],
         "special_y_peak": np.array([orbit.point[1] for _, orbit in found])

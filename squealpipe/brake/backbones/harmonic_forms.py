@@ -1,4 +1,4 @@
-"""What the paper's own form of harmonic balance finds, beside exact orbits."""
+"""The paper's own form of harmonic balance against exact orbits."""
 
 import math
 from collections.abc import Mapping

@@ -55,7 +55,7 @@ def contact_angles(
 
 
 def _hidden_dips(gap: Vector, above: NDArray[np.bool_], grid: Vector) -> Vector:
-    """Where a parabola through three neighbours on one side of the level crosses it."""
+    """Return where a parabola through three neighbours on one side of the level crosses it."""
     size = np.abs(gap)
     inner = np.flatnonzero(
         (size[1:-1] <= size[:-2])

@@ -43,7 +43,7 @@ def derivative_matrix(n_harmonics: int) -> Vector:
 
 @dataclass(frozen=True)
 class SampledSolution:
-    """Where Newton's method of Eq. (35) stopped.
+    """Result of Newton's method for Eq. (35).
 
     Attributes:
         x, y: Fourier coefficients (2 N_h + 1,), constant first, then sine, cosine pairs.

@@ -1,4 +1,4 @@
-"""What model A1 does from many starts at one configuration."""
+"""Basins of model A1: motions from many starts at one configuration."""
 
 from __future__ import annotations
 

@@ -58,7 +58,7 @@ def smallest_disturbance(
     tol: Tolerance = 1e-9,
     workers: Workers = None,
 ) -> xr.Dataset:
-    """How far a state may be from steady sliding before contact is lost, or the mass whirls.
+    """Find the smallest disturbance of steady sliding that leads to contact loss, or to the whirl.
 
     A disturbance (x, y, ẋ, ẏ) has the norm √((x² + y²)/l_pre² + (ẋ² + ẏ²)/(l_pre ω)²) with
     ω² = (k1 + k2)/(2m). The smallest one that was found is an upper bound on the smallest there is:

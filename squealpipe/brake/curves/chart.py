@@ -1,4 +1,4 @@
-"""What separates the regimes of a design over two parameters, as lines."""
+"""Regime charts: lines over two parameters that separate the regimes of a design."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ def split(chords: Indices, middle: Indices) -> Indices:
 
 
 def cross(a: Vector, b: Vector) -> Vector:
-    """Of pairs of vectors in the plane."""
+    """Return the cross products of pairs of vectors in the plane."""
     return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
 
 
@@ -51,24 +51,26 @@ class Chords:
         self.mark, self._mark, self.jump = np.empty(0), mark, jump
 
     def jumps(self, chords: Indices) -> Any:
-        """Whether chords join two branches, as far as the marks of their ends are known."""
+        """Return whether chords join two branches, as far as the marks of their ends are known."""
         return np.abs(np.diff(self.mark[chords], axis=1)[:, 0]) > self.jump
 
     def bent(self, chords: Indices) -> Vector:
-        """What a cubic leaves beside a chord of one branch: the third power of its turn."""
+        """Return the distance of a cubic from a chord of one branch: the third
+        power of its turn.
+        """
         slopes = self.slopes(chords)[2]
         turn = np.abs(slopes).max(axis=1)
         skew = SKEW * slopes.sum(axis=1) ** 2 / np.maximum(turn, ROUGH)
         return np.asarray(BENT * self.length(chords) ** 2 * (turn**3 + skew + ROUGH))
 
     def marks(self, points: Indices) -> Vector:
-        """What tells branches apart, at some points."""
+        """Return the quantities that tell branches apart, at some points."""
         new = np.unique(points[np.isnan(self.mark[points])])
         self.mark[new] = self._mark(self.place[new], self.slope[new])
         return np.asarray(self.mark[points])
 
     def length(self, chords: Indices) -> Vector:
-        """Of each chord."""
+        """Return the length of each chord."""
         return np.asarray(
             np.linalg.norm(np.diff(self.place[chords], axis=1)[:, 0], axis=1)
         )
@@ -86,7 +88,7 @@ class Chords:
         return chord[:, 0], left[:, 0], np.nan_to_num(slopes)
 
     def meeting(self, chords: Indices) -> tuple[Vector, Vector]:
-        """Where the tangent at the first end, forwards, meets that at the last, backwards.
+        """Return where the tangent at the first end, forwards, meets that at the last, backwards.
 
         Returns:
             The share of its way from end to end, 0.5 where there is none, and the place, NaN there.

@@ -182,7 +182,7 @@ def contact_boundary(
     workers: Workers = None,
     **ranges: Line,
 ) -> xr.Dataset:
-    """Where model A1, started at rest, just keeps contact until t_end, over two parameters.
+    """Trace where model A1, started at rest, just keeps contact until t_end, over two parameters.
 
     Two of the arguments are arrays: both angles, or others under their own names, as ``mu``,
     ``belt_speed`` or the ratios ``kappa`` = k3/k1 and ``lambda_`` = L1/l_pre (L2 keeps its
@@ -247,7 +247,7 @@ def nearest_on(
 
 @recorded(method="nearest point of the outlines of a contact_boundary")
 def boundary_distance(boundary: xr.Dataset, design: Mapping[str, Number]) -> xr.Dataset:
-    """How far a design is from losing contact, or from keeping it.
+    """Find how far a design is from losing contact, or from keeping it.
 
     Args:
         boundary: dataset ``contact_boundary``.

@@ -41,7 +41,9 @@ def chains_of(pairs: Indices) -> list[list[int]]:
 
 
 def inside(loops: Sequence[Vector], x: Vector, y: Vector) -> np.ndarray:
-    """Whether the points of a grid lie inside closed lines, (x, y): an odd number around them."""
+    """Return whether the points of a grid lie inside closed lines, (x, y): an odd number around
+    them.
+    """
     odd = np.zeros((len(x), len(y)), bool)
     for line in loops:
         after = np.roll(line, -1, axis=0)
@@ -118,7 +120,7 @@ def loops_of(lines: ZeroLines, *, positive: bool, flat: float = FLAT) -> list[Lo
 
 
 def holds(lines: ZeroLines, x: Vector, y: Vector) -> np.ndarray:
-    """Whether the function is positive at the points of a grid, (x, y)."""
+    """Return whether the function is positive at the points of a grid, (x, y)."""
     return inside([loop.outline for loop in loops_of(lines, positive=True)], x, y)
 
 

@@ -1,4 +1,4 @@
-"""Where model A3 changes its regime over two parameters, as lines.
+"""Lines over two parameters at which model A3 changes its regime.
 
 Undamped both lines are zeros of closed forms. Damped, steady sliding loses its stability where
 Routh–Hurwitz's number or the determinant is zero; flutter turns into divergence where the leading
@@ -36,7 +36,7 @@ both angles, from 0 to π, the springs are in line and upright and three regimes
 
 
 class Regimes:
-    """What A3 does over a square of two parameters."""
+    """Regime of A3 over a square of two parameters."""
 
     def __init__(self, square: Square) -> None:
         self.square = square
@@ -139,7 +139,8 @@ def _damped_edge(s: damped.DampedSystem, which: ChartLine) -> Vector:
 
 
 def _distinction(roots: np.ndarray) -> tuple[Vector, np.ndarray]:
-    """How far the leading eigenvalue is from being real, or one of a pair, and whether it is one.
+    """Return how far the leading eigenvalue is from being real, or one of a pair, and whether it is
+    one.
 
     A pair that becomes real is the zero of its discriminant; one that another root overtakes, that
     of the difference of real parts.

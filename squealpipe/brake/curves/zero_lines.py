@@ -304,7 +304,7 @@ class ZeroLines(Chords):
         self.unresolved = max([self.unresolved, *length[long]])
 
     def _astray(self, chords: Indices, middle: Indices) -> Any:
-        """Whether chords have a sharp corner beside them, or middles may lie beyond one.
+        """Return whether chords have a sharp corner beside them, or middles may lie beyond one.
 
         Where two regions touch, a zero beside such a chord may be that of a line that leads
         elsewhere. The line through such a middle runs back, or does not meet the branch of one end.

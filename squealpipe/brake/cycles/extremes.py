@@ -1,4 +1,4 @@
-"""Where runs from many starts end: the brute-force counterpart of a branch."""
+"""Ends of runs from many starts: the brute-force counterpart of a branch."""
 
 from __future__ import annotations
 

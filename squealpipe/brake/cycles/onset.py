@@ -1,4 +1,4 @@
-"""Where steady sliding loses its stability and a branch of cycles is born."""
+"""Onset of squeal: steady sliding loses its stability and a branch of cycles is born."""
 
 import numpy as np
 import scipy

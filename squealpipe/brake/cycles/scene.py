@@ -128,7 +128,7 @@ class CycleScene:
         return sum(self.kinds[event.kind] is not None for event in cycle.events)
 
     def is_singular(self, places: np.ndarray) -> bool:
-        """Whether one of some places, (…, 2), is next to a pivot, where d = 0."""
+        """Return whether one of some places, (…, 2), is next to a pivot, where d = 0."""
         p = self.scaled
         x1, y1, x2, y2 = fixed_ends(p, geometry(self.alpha1, self.alpha2))
         return any(

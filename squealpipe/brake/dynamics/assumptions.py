@@ -1,4 +1,4 @@
-"""What each model level takes for granted, checked along the motion that it computes itself."""
+"""Assumptions of each model level, checked along the motion that it computes itself."""
 
 from collections.abc import Iterable
 from typing import Any, NamedTuple
@@ -122,7 +122,7 @@ def check_assumptions(params: Parameters, scenes: Iterable[Scene] = ()) -> xr.Da
 def linear_pull_map(
     params: Parameters, alpha1: Angles, alpha2: Angles, *, t_end: Positive | None = None
 ) -> xr.Dataset:
-    """How far the linear model (Eqs. 6, 7) lets the contact spring pull, started at rest.
+    """Map how far the linear model (Eqs. 6, 7) lets the contact spring pull, started at rest.
 
     Args:
         t_end: end of the motion, s; 50 √(m/k1) by default.

@@ -71,7 +71,9 @@ def regular_growth(time: Any) -> Any:
 
 
 def whirls(run: Ensemble) -> np.ndarray:
-    """Whether each run of an ensemble turns around both fixed ends, returns to the belt aside."""
+    """Return whether each run of an ensemble turns around both fixed ends, returns to the belt
+    aside.
+    """
     turns = np.abs(run.turns)
     return np.asarray(
         (turns >= LEAST_TURNS) & (turns > TURNS_PER_RETURN * run.contacts)

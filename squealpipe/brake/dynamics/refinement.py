@@ -37,7 +37,7 @@ def refine_validity_map(
     tol: Tolerance = 1e-12,
     workers: Workers = None,
 ) -> xr.Dataset:
-    """Where model A1 keeps contact, over both angles from 0 to π, at full resolution.
+    """Map where model A1 keeps contact, over both angles from 0 to π, at full resolution.
 
     Cells are run on a coarse grid, along every boundary, and around cells where a region too thin
     for the grid may hide: those that separate late, and those whose lowest contact force is small

@@ -168,7 +168,7 @@ def validity_map(
     tol: Tolerance = 1e-12,
     workers: Workers = None,
 ) -> xr.Dataset:
-    """Where model A1, started at rest, keeps contact until ``t_end``.
+    """Map where model A1, started at rest, keeps contact until ``t_end``.
 
     A cell's run stops at its first separation, so a map of mostly separating cells is cheap.
 

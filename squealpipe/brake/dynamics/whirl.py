@@ -1,4 +1,4 @@
-"""What becomes of the paper's growing and bounded responses in the long run.
+"""The paper's growing and bounded responses in the long run.
 
 At (0.4π, 0.6π) and (0.2π, 0.8π) both springs share one fixed end. The mass goes round it, and
 each pass over the belt adds energy until the mass is as fast as the belt.

@@ -1,1 +1,1 @@
-"""How much model a question needs."""
+"""The cheapest model level that suffices for a question."""

@@ -127,12 +127,14 @@ def choose_models(
 
 
 def _has_rule(params: Parameters, question: str) -> bool:
-    """Whether a rule may answer: it holds neither with dashpots nor with another friction law."""
+    """Return whether a rule may answer: it holds neither with dashpots nor with another friction
+    law.
+    """
     return question == "contact_lost" and not extensions(params)
 
 
 def keeps_contact(p: Any, alpha1: Any, alpha2: Any, t_end: Any) -> np.ndarray:
-    """Where the linear motion says that A1, from rest, keeps contact up to ``t_end``.
+    """Return where the linear motion predicts that A1, from rest, keeps contact up to ``t_end``.
 
     The springs' geometry changes the slower mode by the reach over the shorter spring, times
     (ω2/ω1)². No answer is given where the motion grows, outruns the belt, is near a resonance or
@@ -154,7 +156,7 @@ def keeps_contact(p: Any, alpha1: Any, alpha2: Any, t_end: Any) -> np.ndarray:
 
 
 def _in_range(p: Any, t_end: Any) -> np.ndarray:
-    """Whether parameters and horizon lie within the range of the random sample."""
+    """Return whether parameters and horizon lie within the range of the random sample."""
     mean = 0.5 * (np.asarray(p.k1) + p.k2)
     contact = p.k3 / mean
     return np.asarray(

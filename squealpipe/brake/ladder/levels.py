@@ -1,4 +1,4 @@
-"""How each level of the model ladder answers over a map."""
+"""Answers of each level of the model ladder over a map."""
 
 from typing import Any, NamedTuple
 
@@ -17,7 +17,7 @@ from squealpipe.schema import Outcome
 
 
 class Scenes(NamedTuple):
-    """What every level is asked about: cells of the map, V not negative; times in s."""
+    """Cells of the map that every level is asked about: V not negative; times in s."""
 
     params: Parameters
     alpha1: np.ndarray

@@ -1,4 +1,4 @@
-"""How far an undamped linear motion from rest can go, ever: bounds from its two modes.
+"""Bounds on how far an undamped linear motion from rest can ever go, from its two modes.
 
 With A = λ1 P1 + λ2 P2 the motion is u* − Σ cos(ω_i t) P_i u*, so each coordinate stays within
 its equilibrium plus and minus the sum of its modal amplitudes, whatever the time.

@@ -37,7 +37,7 @@ DIGITS = 40
 def quasi_static_map(
     params: Parameters, alpha1: Angles, alpha2: Angles, *, sigma: Positive | None = None
 ) -> xr.Dataset:
-    """Where quasi-static sliding exists (A2), in both readings, and the state of Eq. (15).
+    """Map where quasi-static sliding exists (A2), in both readings, and the state of Eq. (15).
 
     Args:
         alpha1, alpha2: 1-D arrays of angles, rad.

@@ -36,7 +36,7 @@ class State(NamedTuple):
 
 
 class Suspension(NamedTuple):
-    """How the springs are described.
+    """Form in which the springs are described.
 
     Attributes:
         linear: K r in place of the exact geometry.

@@ -49,7 +49,7 @@ def actuation(p: Any, sigma: Any = None) -> Any:
 
 
 def coupling_is_zero(stiffness: Stiffness) -> Any:
-    """Whether K12 vanishes to round-off (E3)."""
+    """Return whether K12 vanishes to round-off (E3)."""
     return np.abs(stiffness.k12) <= FEW_ULPS * (stiffness.k11 + stiffness.k22)
 
 

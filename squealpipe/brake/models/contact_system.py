@@ -22,7 +22,7 @@ def with_drag(fields: Mapping[str, Any]) -> SimpleNamespace:
 
 
 class ContactSystem(NamedTuple):
-    """What the linear levels know of a pair of angles.
+    """Stiffness and static state of a pair of angles, for the linear levels.
 
     Attributes:
         stiffness: K11, K12, K22, N/m.

@@ -53,7 +53,9 @@ class DampedSystem(NamedTuple):
 
 
 def is_undamped(p: Any) -> Any:
-    """Whether C = 0, so that the closed form of A3 holds: of numbers, or of each of an array."""
+    """Return whether C = 0, so that the closed form of A3 holds: of numbers, or of each of an
+    array.
+    """
     dashpots = (p.damping1 == 0) & (p.damping2 == 0) & (p.damping3 == 0)
     return dashpots & (slope(np.abs(p.belt_speed), p) == 0)
 
@@ -164,7 +166,7 @@ class LinearStability(NamedTuple):
 
 
 def stability(s: DampedSystem) -> LinearStability:
-    """How small motions grow: flutter where the fastest growing pair is complex."""
+    """Return how small motions grow: flutter where the fastest growing pair is complex."""
     found = eigenvalues(s)
     leading = np.take_along_axis(
         found, np.argmax(found.real, axis=-1)[..., None], axis=-1
@@ -274,7 +276,7 @@ def critical_friction(
 
 
 def dashpots_lower(damped: Any, undamped: Any) -> Any:
-    """Whether one critical friction is the smaller by more than their round-off.
+    """Return whether one critical friction is the smaller by more than their round-off.
 
     Where steady sliding diverges first, both are one number that is formed in two ways.
     """

@@ -1,10 +1,10 @@
-"""What each variant of A1, and A4, leaves out of it."""
+"""Variants of A1, and A4: each leaves something out of it."""
 
 from typing import NamedTuple
 
 
 class Rules(NamedTuple):
-    """What a variant leaves out (True: the variant has it).
+    """Parts that a variant keeps (True) or leaves out.
 
     Friction that does not drag is Eq. (4) as printed: both coefficients change their sign. Belt
     speed then repels: it is never held, and a mass exactly at it with |x-force of the springs| < μN

@@ -182,7 +182,7 @@ def _jerk_bound(
 def _stays(
     distance: float, slope: float, curvature: float, jerk: float, step: float
 ) -> bool:
-    """Whether Taylor's bound keeps the distance positive in (0, step]."""
+    """Return whether Taylor's bound keeps the distance positive in (0, step]."""
     if slope >= 0.0 and 0.5 * curvature - jerk * step / 6.0 > 0.0:
         return True
     # the secant slope ė + ½ëτ − ⅙Jτ² is concave in τ, so its minimum is at an end

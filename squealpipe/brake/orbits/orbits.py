@@ -51,7 +51,7 @@ class Orbit:
         return float(math.pi / self.point[2])
 
     def from_higher_rest(self) -> Orbit:
-        """The same orbit, described from its instant of rest with the larger y."""
+        """Return the same orbit, described from its instant of rest with the larger y."""
         if self.rest[1] <= self.point[1]:
             return self
         point = np.array([*self.rest, self.point[2]])
@@ -113,7 +113,9 @@ class OrbitEquations:
         )
 
     def sense(self, state: ContinuationState) -> float:
-        """Whether a branch runs along the vector across both gradients, 1, or against it, −1."""
+        """Return whether a branch runs along the vector across both gradients, 1, or against it,
+        −1.
+        """
         gradients = self._shot(state.point).gradients
         return float(np.sign(np.linalg.det([*gradients, state.tangent])))
 
@@ -149,7 +151,7 @@ class Across(PseudoArclength):
     def correct(
         self, problem: Any, guess: Vector, normal: Vector
     ) -> tuple[Vector, Vector, int, float] | None:
-        """As of :class:`PseudoArclength`, for :class:`OrbitEquations`."""
+        """Correct a guess as :class:`PseudoArclength` does, for :class:`OrbitEquations`."""
         point, tangent = np.array(guess, dtype=float), np.empty(3)
         work = np.empty((MAX_SEGMENTS, 9)), np.empty(MAX_SEGMENTS), np.empty(4)
         unit = normal / np.linalg.norm(normal)

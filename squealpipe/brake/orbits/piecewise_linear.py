@@ -68,5 +68,5 @@ class PiecewiseLinearSystem:
 
     @property
     def decoupled(self) -> bool:
-        """Whether y moves independently of x in both states."""
+        """True if y moves independently of x in both states."""
         return self.below.matrix[1][0] == 0.0 and self.above.matrix[1][0] == 0.0

@@ -1,4 +1,4 @@
-"""Where a branch of symmetric orbits meets shorter ones, of half the period down to a seventh."""
+"""Meetings of a branch of symmetric orbits with shorter ones, of half the period to a seventh."""
 
 import math
 
@@ -26,7 +26,7 @@ def _apart(system: PiecewiseLinearSystem, orbit: Orbit) -> NDArray[np.float64]:
 def is_primitive(
     system: PiecewiseLinearSystem, orbit: Orbit, near: float = _SAME_STATE
 ) -> bool:
-    """Whether an orbit is not a shorter one that is run through several times.
+    """Return whether an orbit is not a shorter one that is run through several times.
 
     ``near`` is the distance over 1 + |z| below which two states count as one.
     """
@@ -35,7 +35,7 @@ def is_primitive(
 
 
 def about_to_meet(system: PiecewiseLinearSystem, orbit: Orbit) -> bool:
-    """Whether an orbit is a shorter one run through several times, or nearly and next to it.
+    """Return whether an orbit is a shorter one run through several times, or nearly and next to it.
 
     Where its branch meets that one's the stability index is 2.
     """
@@ -49,7 +49,7 @@ def about_to_meet(system: PiecewiseLinearSystem, orbit: Orbit) -> bool:
 def shorter_orbit_between(
     system: PiecewiseLinearSystem, first: Orbit, last: Orbit
 ) -> bool:
-    """Whether a branch of shorter orbits lies between two orbits or holds the second.
+    """Return whether a branch of shorter orbits lies between two orbits or holds the second.
 
     At a shorter orbit the state after T/n is the initial one; its distance turns round there.
     """

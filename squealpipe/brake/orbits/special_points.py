@@ -68,7 +68,7 @@ def _between(
 
 
 def _measures(state: ContinuationState, orbit: Orbit) -> Vector:
-    """What changes its sign at each kind of special point."""
+    """Return the quantities that change sign at each kind of special point."""
     index = orbit.stability_index
     return np.array([index + 2.0, index - 2.0, state.tangent[1]])
 

@@ -178,7 +178,7 @@ class _Trace:
             self.sense = self.equations.sense(state)
 
     def _accepts(self, here: Orbit, trial: ContinuationState) -> bool:
-        """Whether a step is sure to stay on the branch, or has come to one that it meets."""
+        """Return whether a step is sure to stay on the branch, or has come to one that it meets."""
         if not self.settings.strict:
             return True
         moved, fastest = trial.point - here.point, self.equations.fastest
@@ -204,7 +204,9 @@ class _Trace:
     def _from_higher_rest(
         self, state: ContinuationState, orbit: Orbit
     ) -> tuple[ContinuationState, Orbit]:
-        """The same point of the branch, described from its instant of rest with the larger y."""
+        """Return the same point of the branch, described from its instant of rest with the larger
+        y.
+        """
         described = orbit.from_higher_rest()
         if described is orbit:
             return state, orbit
@@ -215,13 +217,15 @@ class _Trace:
         ), described
 
     def _diverges(self, point: Vector) -> bool:
-        """Whether x0 is many times as large as y0 and as x0 of the linear mode."""
+        """Return whether x0 is many times as large as y0 and as x0 of the linear mode."""
         peak, settings = max(float(point[1]), 1.0), self.settings
         linear = settings.linear_x + settings.linear_slope * (peak - 1.0)
         return bool(abs(point[0]) > settings.largest_x * (peak + linear))
 
     def _room(self, _: ContinuationState | None, orbit: Orbit) -> float:
-        """How far the larger y of the instants of rest is below that at which the trace ends."""
+        """Return how far the larger y of the instants of rest is below that at which the trace
+        ends.
+        """
         return self.y_stop - max(float(orbit.point[1]), float(orbit.rest[1]))
 
     def _way_to_peak(self, line: Line[Orbit]) -> float | None:

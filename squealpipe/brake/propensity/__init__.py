@@ -1,1 +1,1 @@
-"""How far verdicts carry, and how parameters spread into results."""
+"""Uncertain parameters spread into results: propensities and their sensitivity."""

@@ -61,7 +61,7 @@ def propensity(
     tol: Tolerance = 1e-9,
     workers: Workers = None,
 ) -> xr.Dataset:
-    """How often flutter, contact loss, irregular hammering and whirl occur, and why.
+    """Estimate how often flutter, contact loss, irregular hammering and whirl occur, and why.
 
     Args:
         params: the parameters that are not distributed.
@@ -172,7 +172,7 @@ def _events(
     tol: float,
     workers: int | None,
 ) -> np.ndarray:
-    """Whether each quantity that needs a run occurs, (quantities − 1, size)."""
+    """Return whether each quantity that needs a run occurs, (quantities − 1, size)."""
     run = run_ensemble(
         fields,
         alpha1,
@@ -240,7 +240,7 @@ def _indices(judged: Sequence[np.ndarray], parts: int) -> dict[str, np.ndarray]:
 def _judged_matrices(
     judge: Any, frozen: Mapping[str, Any], size: int, seed: int
 ) -> np.ndarray:
-    """What is judged at Saltelli's samples, (2 + inputs, quantities, size)."""
+    """Return the judged quantities at Saltelli's samples, (2 + inputs, quantities, size)."""
     return np.stack(
         [
             judge(

@@ -42,7 +42,7 @@ def share_interval(happens: np.ndarray) -> tuple[float, float]:
 
 
 def _half_width(replicates: np.ndarray) -> np.ndarray:
-    """Of the mean over the last axis, by Student's t."""
+    """Return the half-width of the mean's interval over the last axis, by Student's t."""
     number = replicates.shape[-1]
     error = replicates.std(axis=-1, ddof=1) / np.sqrt(number)
     return np.asarray(scipy.stats.t.ppf(0.5 + 0.5 * CONFIDENCE, number - 1) * error)

@@ -26,7 +26,7 @@ class Assumption(IntEnum):
 
 
 def _orbit_variables(*dims: str) -> dict[str, Variable]:
-    """What one periodic orbit carries, over some dimensions."""
+    """Return the variables of one periodic orbit, over some dimensions."""
 
     def real(units: str, long_name: str, **kwargs: object) -> Variable:
         return or_nan(dims=dims, units=units, long_name=long_name, **kwargs)  # type: ignore[arg-type]

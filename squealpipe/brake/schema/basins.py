@@ -75,7 +75,7 @@ BASIN_MAPS = tuple(
 
 
 class LeadsTo(IntEnum):
-    """What a disturbance leads to."""
+    """Result of a disturbance."""
 
     contact_lost = 0
     whirl = 1

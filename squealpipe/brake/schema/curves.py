@@ -18,7 +18,7 @@ from squealpipe.systems.datasets.outcomes import Outcome
 
 
 class PointKind(IntEnum):
-    """What a point of a boundary is."""
+    """Kind of a boundary's point."""
 
     arc = 0
     corner = 1
@@ -26,7 +26,7 @@ class PointKind(IntEnum):
 
 
 class ChartLine(IntEnum):
-    """What changes across a line of a regime chart."""
+    """Change across a line of a regime chart."""
 
     flutter = 0
     divergence = 1

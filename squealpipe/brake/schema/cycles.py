@@ -28,7 +28,7 @@ class Stability(IntEnum):
 
 
 def _cycle_variables(*dims: str) -> dict[str, Variable]:
-    """What one cycle carries, over some dimensions."""
+    """Return the variables of one cycle, over some dimensions."""
 
     def real(units: str, long_name: str) -> Variable:
         return or_nan(long_name, units, dims, rtol=1e-7, atol=1e-9)

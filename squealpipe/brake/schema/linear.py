@@ -134,7 +134,7 @@ NATURAL_FREQUENCIES = DatasetSchema(
 
 
 class BoundaryCurve(IntEnum):
-    """Which curve a boundary point belongs to."""
+    """Curve that a boundary point belongs to."""
 
     flutter = 0
     divergence = 1

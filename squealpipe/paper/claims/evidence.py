@@ -1,4 +1,4 @@
-"""What one check found: the deciding number, its comparison and the verdict."""
+"""Findings of the checks: the deciding number, its comparison and the verdict."""
 
 from operator import ge, gt, le, lt
 from typing import NamedTuple
@@ -11,7 +11,7 @@ from squealpipe.text import as_people_write
 
 
 class Finding(NamedTuple):
-    """What one check found.
+    """Result of one check.
 
     Attributes:
         value, relation, threshold: the deciding number and the comparison that it passes or not.
@@ -25,7 +25,9 @@ class Finding(NamedTuple):
 
 
 def passes(value: float, relation: str, threshold: float) -> bool:
-    """Whether the comparison is true; an equality includes its tolerance in the threshold."""
+    """Return whether the comparison is true; an equality includes its
+    tolerance in the threshold.
+    """
     return bool({"<": lt, "≤": le, ">": gt, "≥": ge}[relation](value, threshold))
 
 

@@ -83,7 +83,7 @@ CASES = (
 
 
 class Answer(NamedTuple):
-    """What a method said: NaN where it gave no answer; its warning, empty where it gave none."""
+    """Answer of a method: NaN where it gave none; its warning, empty where it gave none."""
 
     value: np.ndarray | float
     flag: str = ""

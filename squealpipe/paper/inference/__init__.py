@@ -1,1 +1,1 @@
-"""Which parameters agree with the paper's statements."""
+"""Inference of the parameters that agree with the paper's statements."""

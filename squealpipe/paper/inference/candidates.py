@@ -61,7 +61,7 @@ class Candidates:
         return cls(fields, tol, workers)
 
     def read(self, name: str) -> Self:
-        """The same sets in one reading of the sign of friction."""
+        """Return the same sets in one reading of the sign of friction."""
         reading = reading_of(name)
         fields = {
             **self.fields,
@@ -86,7 +86,7 @@ class Candidates:
 
     @property
     def size(self) -> int:
-        """How many sets there are."""
+        """Number of sets."""
         return len(self.fields["mu"])
 
     @cached_property

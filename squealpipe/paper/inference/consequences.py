@@ -18,7 +18,7 @@ CONSEQUENCES: dict[str, str] = {
 
 
 def judge_consequences(candidates: Candidates) -> dict[str, np.ndarray]:
-    """Whether each consequence holds at each parameter set: key → booleans."""
+    """Return whether each consequence holds at each parameter set: key → booleans."""
     pairs = zip(candidates.sets, candidates.unstable, strict=True)
     per_pair = [_linear(params, cells) for params, cells in pairs]
     return {
@@ -39,7 +39,7 @@ def _linear(params: Parameters, cells: Unstable) -> dict[str, bool]:
 
 
 def first_is_largest_on_lines(params: Parameters, k3: float) -> bool:
-    """Whether the largest real ω1 lies on α1 + α2 = nπ/2, n odd.
+    """Return whether the largest real ω1 lies on α1 + α2 = nπ/2, n odd.
 
     The trace is the same at all angles, so ω1² grows as |Z − c| falls towards the radius of the
     disc of flutter. Those lines are the inner edge |Z| = |k1 − k2| of all reachable Z.

@@ -1,4 +1,4 @@
-"""Which parameters agree with the paper's statements, and in which reading of the sign of friction.
+"""Inference of the parameters, and of the reading of friction's sign, that agree with the paper.
 
 The paper prints no numbers. Equal springs are assumed (Fig. 5 and the isolated x mode of Fig. 12
 need them); κ, μ, λ and v are left.

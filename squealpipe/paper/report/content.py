@@ -1,4 +1,4 @@
-"""What the pages show, gathered from the files of one run as plain data."""
+"""Contents of the paper's report, gathered from the files of one run as plain data."""
 
 import os
 from collections.abc import Mapping, Sequence

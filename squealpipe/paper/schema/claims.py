@@ -6,7 +6,7 @@ from squealpipe.schema import DatasetSchema, Variable, count, flag, or_nan, text
 
 
 class ClaimVerdict(IntEnum):
-    """What the data say about a statement."""
+    """Verdict of the data on a statement."""
 
     holds = 0
     holds_only_as_printed = 1

@@ -28,7 +28,7 @@ RULE = (
 
 
 class Growth(IntEnum):
-    """What a long run says."""
+    """Verdict of a long run: it grows without bound, has stopped growing, or is undecided."""
 
     saturates = 0
     grows = 1

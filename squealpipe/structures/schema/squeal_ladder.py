@@ -20,7 +20,7 @@ RUN, PUSHED, AT = ("run",), ("run", "mode"), ("run", "mode", "contact")
 
 
 class PushAnswer(IntEnum):
-    """What a method says becomes of a push along an unstable mode, beside the finest run."""
+    """Answer of a method to a push along an unstable mode, compared with the finest run."""
 
     right = 0
     other_mode = 1

@@ -1,4 +1,4 @@
-"""Which unstable modes of a structure squeal: modes, attractors, and random starts."""
+"""Schema of the unstable modes of a structure that squeal: modes, attractors, random starts."""
 
 from enum import IntEnum
 from typing import Any
@@ -42,7 +42,7 @@ class Kind(IntEnum):
 
 
 class OnsetKind(IntEnum):
-    """What becomes, below the onset of instability, of the motion that squeals just above."""
+    """Fate, below the onset of instability, of the motion that squeals just above."""
 
     undetermined = 0
     supercritical = 1

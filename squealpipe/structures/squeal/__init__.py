@@ -1,1 +1,1 @@
-"""Which unstable modes of a structure squeal: starts, settled motions, attractors."""
+"""Squeal of a structure: starts, settled motions, attractors of its unstable modes."""

@@ -74,12 +74,12 @@ class Track:
 
     @property
     def lasts(self) -> TrackState:
-        """Where friction is smallest."""
+        """Return the motion at the smallest friction."""
         return min(self.states, key=lambda each: each.mu)
 
     @property
     def ordered(self) -> list[TrackState]:
-        """From the largest friction down."""
+        """Return the motions from the largest friction down."""
         return sorted(self.states, key=lambda each: -each.mu)
 
 
@@ -105,7 +105,7 @@ def followed_down(plant: Plant, start: TrackState, onset: float, how: Running) -
 
 
 def width_of(track: Track, onset: float) -> float:
-    """How narrow its end is to be."""
+    """Return the width to which the end is to be located."""
     return NARROW * min(onset, track.states[0].mu)
 
 
@@ -165,7 +165,7 @@ def _run_on(
 
 
 def just_above(onset: FirstOnset, plant: Plant, how: Running) -> TrackState | None:
-    """What a small push ends in just above the onset; None where it is not at its end in time."""
+    """Return what a small push settles on just above the onset; None where it has not in time."""
     above = onset.above
     place = int(above.unstable[0])
     period = 1.0 / above.slowest

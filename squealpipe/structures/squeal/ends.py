@@ -1,4 +1,4 @@
-"""What a push along a mode has ended in, read off the last windows of its runs."""
+"""Motions that a push along a mode ends in, read off the last windows of its runs."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -34,7 +34,7 @@ FEWEST_SAMPLES, MOST_SAMPLES = 2**14, 2**16
 
 @dataclass(frozen=True, kw_only=True)
 class PushEnd:
-    """What a push has ended in, as a method says.
+    """Motion that a push ends in, by one method.
 
     Attributes:
         frequency: of the strongest line, Hz; NaN where nothing rings.
@@ -65,7 +65,7 @@ def nothing(structure: ContactStructure) -> dict[str, Any]:
 
 
 def without_mode(structure: ContactStructure) -> PushEnd:
-    """Where the method has no mode near the one that was asked for."""
+    """Return the answer of a method that has no mode near the one that was asked for."""
     return PushEnd(outcome=Outcome.converged, has_mode=False, **nothing(structure))
 
 
@@ -85,7 +85,9 @@ def exact_ends(
     count: int,
     tol: float,
 ) -> list[PushEnd]:
-    """Of each push, over the starts that belong to it; the frequency from a run behind."""
+    """Return the end of each push, over the starts that belong to it; the frequency from a run
+    behind.
+    """
     step = 1.0 / (FINEST * plant.fastest)
     length = int(min(np.ceil(float(now.length[0]) / step), MOST_SAMPLES))
     times = step * np.arange(1, length + 1)
@@ -141,7 +143,7 @@ def exact_ends(
 def smoothed_end(
     plant: Plant, samples: Samples, width: float, belt: np.ndarray, step: float
 ) -> PushEnd:
-    """Of one push without events, from the samples of its run.
+    """Return the end of one push without events, from the samples of its run.
 
     Args:
         width: sliding speed below which the contact counts as stuck, m/s.

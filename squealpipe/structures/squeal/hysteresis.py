@@ -1,4 +1,4 @@
-"""Where squeal begins and where it dies as friction changes: what eigenvalues cannot see."""
+"""Hysteresis of squeal: the frictions at which it begins and at which it dies."""
 
 import math
 from collections.abc import Sequence
@@ -74,7 +74,7 @@ def _locate_folds(plant: Plant, tracks: list[Track], onset: float) -> None:
 
 
 def _kind_of(track: Track, onset: float) -> OnsetKind:
-    """Whether what squeals just above the onset lasts below it."""
+    """Return whether what squeals just above the onset lasts below it."""
     if not track.narrow:
         return OnsetKind.undetermined
     lasts = _lasts_below(track, onset)

@@ -158,7 +158,7 @@ def _apart(
 
 
 def _repeats(raw: dict[str, np.ndarray], length: float, within: float) -> bool:
-    """Whether the second half has a period, by its events."""
+    """Return whether the second half has a period, by its events."""
     count = int(raw["n_events"][0])
     at, kinds = raw["event_times"][0, :count], raw["event_kinds"][0, :count]
     late = at > 0.5 * length

@@ -1,4 +1,4 @@
-"""What each method says of a structure's squeal, against the finest run, and what it costs."""
+"""Ladder of methods: the answer of each on a structure's squeal, its error and its cost."""
 
 from __future__ import annotations  # help shows Angle, not its checks
 
@@ -145,7 +145,9 @@ def _plant(
 
 
 def _horizon(plant: Plant, places: np.ndarray, t_end: float | None) -> Horizon:
-    """As long as the slowest push needs to grow, and twice the first window of statistics."""
+    """Return the length of the runs: until the slowest push has grown, and
+    twice the first window.
+    """
     if t_end is not None:
         horizon(plant, t_end)  # says what is too short
         window = min(FIRST / plant.slowest, t_end / FEWEST)
@@ -158,7 +160,7 @@ def _horizon(plant: Plant, places: np.ndarray, t_end: float | None) -> Horizon:
 
 
 def _judged(plant: Plant, end: PushEnd, truth: PushEnd) -> PushAnswer:
-    """What one method says of one push, beside what the finest run says."""
+    """Judge one method's answer to one push against that of the finest run."""
     if truth.outcome != Outcome.converged:
         return PushAnswer.not_known
     if not end.has_mode:
@@ -184,7 +186,7 @@ def _verdict(answers: list[PushAnswer]) -> Reliability:
 
 
 def _errors(end: PushEnd, truth: PushEnd) -> tuple[float, float, float]:
-    """Of frequency, speed and shares of time without contact; NaN: not said."""
+    """Return the errors of frequency, speed and shares of time without contact; NaN: not said."""
     if end.quiet and truth.quiet:
         return 0.0, 0.0, 0.0
     if not end.has_mode or end.quiet or truth.quiet:
@@ -203,7 +205,9 @@ def _errors(end: PushEnd, truth: PushEnd) -> tuple[float, float, float]:
 def _uncertainties(
     told: list[Told], errors: np.ndarray, verdicts: list[Reliability], reference: int
 ) -> np.ndarray:
-    """Of the finest run: its scatter, or its change from the next smaller number of modes."""
+    """Return the finest run's uncertainty: its scatter, or its change from the next smaller
+    reduction.
+    """
     scatter = np.array([end.scatter for end in told[reference].ends]).max(axis=0)
     before = reference - 1
     if told[before].method != told[reference].method or (

@@ -57,13 +57,13 @@ class Horizon:
 
     @property
     def end(self) -> float:
-        """Of all runs, s."""
+        """Return the time at which all runs end, s."""
         return self.growing + 2.0 * self.window
 
 
 @dataclass(frozen=True, kw_only=True)
 class Told:
-    """What one method says at one setting, and what that costs.
+    """Answer of one method at one setting, and its cost.
 
     Attributes:
         ends: of the push along each mode that was asked for.
@@ -87,7 +87,7 @@ def complex_modes_told(
     frequency_max: float | None,
     repeats: int,
 ) -> Told:
-    """Of the whole structure, or of its lowest modes.
+    """Return the answer of complex modes, of the whole structure or of its lowest modes.
 
     Args:
         number: modes; None: all.

@@ -1,4 +1,4 @@
-"""Where steady sliding turns unstable as friction grows."""
+"""First onset: the friction at which steady sliding turns unstable as friction grows."""
 
 import math
 from dataclasses import dataclass
@@ -61,7 +61,7 @@ def confirmed_onset(plant: Plant) -> FirstOnset | Outcome:
 
 
 def first_onset(plant: Plant) -> FirstOnset | Outcome:
-    """Where it is; or why it is not known.
+    """Return the friction of the first onset, or why it is not known.
 
     Already unstable: without friction. Not reached: up to twice the structure's friction, or to
     what its limit of stick allows, no mode turns unstable. Unresolved: it could not be located.

@@ -129,7 +129,7 @@ class Plant:
 
     @cached_property
     def system(self) -> System:
-        """As a system, whose states are displacements, then velocities."""
+        """Return the structure as a system, whose states are displacements, then velocities."""
         return system(self.structure)
 
     @cached_property
@@ -155,7 +155,7 @@ class Plant:
 
     @cached_property
     def decays(self) -> bool:
-        """Whether small motions about steady sliding die out."""
+        """True if small motions about steady sliding die out."""
         return bool((self.spectrum.values.real < -self.spectrum.growth_errors).all())
 
     @property
@@ -167,7 +167,7 @@ class Plant:
 
     @property
     def is_linear(self) -> bool:
-        """Whether motions during which no contact switches are linear: friction is constant."""
+        """True if motions during which no contact switches are linear: friction is constant."""
         return self.structure.friction.friction_law == COULOMB
 
     @cached_property
@@ -184,7 +184,7 @@ class Plant:
 
     @cached_property
     def energy(self) -> float:
-        """What the preloads store in the contact springs, J."""
+        """Return the energy that the preloads store in the contact springs, J."""
         force = self.structure.preloads
         if not force.any():
             force = self.spectrum.state.force
@@ -244,7 +244,7 @@ class Plant:
 
     @cached_property
     def frequencies(self) -> np.ndarray:
-        """Of the modes about steady sliding, Hz."""
+        """Return the frequencies of the modes about steady sliding, Hz."""
         return np.asarray(self.spectrum.values.imag / (2.0 * np.pi))
 
     @cached_property
@@ -273,7 +273,7 @@ class Plant:
 
     @cached_property
     def _from_ball(self) -> np.ndarray:
-        """From coordinates whose squares sum to the energy to states."""
+        """Turn coordinates whose squares sum to the energy into states."""
         omega, modes = self.rest
         # a rigid body moves without energy: its place is not drawn, its velocity is
         along = np.where(omega > 0, 1.0 / np.where(omega > 0, omega, 1.0), 0.0)

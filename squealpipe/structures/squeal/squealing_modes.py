@@ -1,4 +1,4 @@
-"""Which unstable modes of a structure squeal, as a dataset."""
+"""The unstable modes of a structure that squeal, as a dataset."""
 
 from __future__ import annotations  # help shows Angle, not its checks
 
@@ -46,7 +46,8 @@ def squealing_modes(
     tol: Tolerance = 1e-12,
     workers: Workers = None,
 ) -> xr.Dataset:
-    """Which unstable modes squeal: run from small pushes and from random starts until they settle.
+    """Find the unstable modes that squeal: run from small pushes and random starts until they
+    settle.
 
     A start of 1 % is pushed along each unstable mode of steady sliding (its energy is 1e-4 of what
     the preload stores in the contacts). ``samples`` more are uniform in the ball of that energy.
@@ -269,7 +270,7 @@ def _members(settled: list[SettledRun], numbers: np.ndarray) -> list[list[Settle
 def _of_modes(
     plant: Plant, settled: list[SettledRun], numbers: np.ndarray, found: list[Described]
 ) -> dict[str, Any]:
-    """What becomes of each unstable mode."""
+    """Return, for each unstable mode, the attractor that a small push along it settles on."""
     count = len(plant.unstable)
     ends = numbers[:count]
     frequency = plant.frequencies[plant.unstable]

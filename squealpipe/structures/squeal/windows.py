@@ -27,7 +27,7 @@ BLOCKS = 64
 
 @dataclass(frozen=True)
 class Running:
-    """How windows are run.
+    """Settings of the windows' runs.
 
     Attributes:
         tol: tolerance of the Taylor integrator.
@@ -225,7 +225,7 @@ def statistics_of(
 
 
 def _regimes(plant: Plant, word: str) -> list[list[int]]:
-    """Of each contact, the numbers of its regimes of a kind."""
+    """Return, for each contact, the numbers of its regimes of a kind."""
     # by owner: of contacts p and p_stick, the second one's regimes begin like the first one's
     owners = plant.system.traced.component_of.tolist()
     numbered = list(enumerate(zip(plant.system.regimes, owners, strict=True)))

@@ -1,4 +1,4 @@
-"""What a user's own scenes do, as configured and with one thing changed.
+"""Schemas of a user's own scenes, as configured and with one thing changed.
 
 Studies of 1.0.0 hold it; ``assess`` answers in its place, and it is still read.
 """

@@ -89,7 +89,7 @@ def ragged_dims(base: DatasetSchema) -> list[str]:
 
 
 def is_ragged(entry: Variable) -> bool:
-    """Whether a variable has such a dimension."""
+    """Return whether a variable has such a dimension."""
     return any(dim in RAGGED for dim in entry.dims)
 
 

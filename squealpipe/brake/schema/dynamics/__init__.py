@@ -1,1 +1,1 @@
-"""What is computed in time: single runs and their summaries, maps of long runs, assumptions."""
+"""Schemas of computations in time: single runs, their summaries, maps of long runs, assumptions."""

@@ -1,1 +1,1 @@
-"""How far verdicts carry, and how parameters spread into results."""
+"""Figures of the robustness of verdicts, and of how uncertain parameters spread into results."""
