@@ -15,8 +15,6 @@ from squealpipe.schema.origin import recorded
 from squealpipe.systems.progress import with_progress
 from squealpipe.validation import Angle, Line, NotNegative, Positive, Tolerance, Workers
 
-RUNS_AT_ONCE = 2000
-
 
 @recorded(model="A1", method="Taylor series with located events")
 def basin_map(
@@ -57,18 +55,19 @@ def basin_map(
     shape = tuple(axis.size for axis in axes.values() if axis.ndim)
     grid = np.meshgrid(*(np.atleast_1d(axis) for axis in axes.values()), indexing="ij")
     starts = np.stack([part.ravel() for part in grid], axis=-1)
+    runs_at_once = 2000
     blocks = [
         _block(
             params,
             alpha1,
             alpha2,
-            starts[at : at + RUNS_AT_ONCE],
+            starts[at : at + runs_at_once],
             t_end,
             late,
             tol,
             workers,
         )
-        for at in with_progress(range(0, len(starts), RUNS_AT_ONCE))
+        for at in with_progress(range(0, len(starts), runs_at_once))
     ]
     columns = {
         name: np.concatenate([block[name] for block in blocks]).reshape(shape)

@@ -36,12 +36,6 @@ from squealpipe.validation import (
     one_of,
 )
 
-T_END = 200.0
-"""Default horizon, in units of √(2m/(k1 + k2))."""
-BOUNDS = {LeadsTo.contact_lost: 3.0, LeadsTo.whirl: 15.0}
-"""Default largest disturbance, in the norm of :func:`smallest_disturbance`."""
-CONFIDENCE = 0.95
-
 
 @recorded(method="random directions, bisection, local search")
 def smallest_disturbance(
@@ -84,9 +78,15 @@ def smallest_disturbance(
     """
     _check_goal(leads_to, model)
     time = linear_time(params)
-    horizon = T_END * time if t_end is None else t_end
+    # default horizon, in units of √(2m/(k1 + k2))
+    horizon = 200.0 * time if t_end is None else t_end
     goal = LeadsTo[leads_to]
-    largest = BOUNDS[goal] if bound is None else bound
+    # default largest disturbance, in the norm of this function
+    largest = (
+        {LeadsTo.contact_lost: 3.0, LeadsTo.whirl: 15.0}[goal]
+        if bound is None
+        else bound
+    )
     scene = CycleScene(params, alpha1, alpha2, model=model)
     sliding = steady_sliding(scene) if params.belt_speed != 0.0 else None
     numbers = np.unique(
@@ -166,6 +166,7 @@ def _described(
     """The variables of a search."""
     lowest = np.minimum.accumulate(found.radius)[numbers - 1]
     move = scale * found.vector
+    # with 95 % confidence
     return {
         "distance": float(np.linalg.norm(found.vector)),
         **{
@@ -176,7 +177,7 @@ def _described(
         "improved_distance": np.where(
             np.isfinite(found.improved), found.improved, np.nan
         ),
-        "share_below": 1.0 - (1.0 - CONFIDENCE) ** (1.0 / found.radius.size),
+        "share_below": 1.0 - (1.0 - 0.95) ** (1.0 / found.radius.size),
     }
 
 

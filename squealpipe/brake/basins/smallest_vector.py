@@ -20,23 +20,8 @@ Array = NDArray[np.float64]
 Happens = Callable[[Array], NDArray[np.bool_]]
 """(n, size) vectors → whether it happens for each."""
 
-GAIN = 1e-3
-"""A step counts as better where it still happens at a radius smaller by this share."""
-SHRINK = 0.5
-FIRST_STEP = 0.5
-"""Length of the first random steps on the unit sphere."""
-
-RADII, HALVINGS = 16, 8
-"""Evenly spaced radii at which each direction is tried; halvings of the interval below."""
-IMPROVED, ROUNDS = 4, 14
+IMPROVED = 4
 """How many of the best directions are improved, and in how many rounds of random steps."""
-TRIES, FOLLOWED, FINE = 16, 3, 2
-"""Steps from each of them in a round, how many of those that are better are bisected, and times
-as many halvings as for a direction."""
-PHASE = 0.02
-"""Step of the scan in time of :func:`smallest_linear`, over the shortest time scale."""
-MOST_STEPS = 5e6
-"""Of that scan: 160 MB of rows, and seconds."""
 
 
 class SearchResult(NamedTuple):
@@ -80,7 +65,7 @@ def _normalized(vectors: Array) -> Array:
 
 def _along(happens: Happens, unit: Array, bound: float) -> Array:
     """Radius along each direction at which it first happens, to the last halving, or ∞."""
-    levels = bound * np.arange(1, RADII + 1) / RADII
+    levels = bound * np.arange(1, search.radii + 1) / search.radii
     first = np.full(len(unit), np.inf)
     for level in levels:
         left = np.flatnonzero(np.isinf(first))
@@ -88,7 +73,7 @@ def _along(happens: Happens, unit: Array, bound: float) -> Array:
             first[left[happens(level * unit[left])]] = level
     rows = np.flatnonzero(np.isfinite(first))
     first[rows] = _bisect(
-        happens, unit[rows], first[rows] - levels[0], first[rows], HALVINGS
+        happens, unit[rows], first[rows] - levels[0], first[rows], search.halvings
     )
     return first
 
@@ -110,20 +95,20 @@ def _improve(
 ) -> tuple[Array, Array]:
     """Directions moved by random steps to smaller radii, all of them side by side."""
     unit, radius = unit.copy(), radius.copy()
-    step = np.full(len(unit), FIRST_STEP)
-    for _ in range(ROUNDS):
-        moves = generator.standard_normal((len(unit), TRIES, unit.shape[1]))
+    step = np.full(len(unit), search.first_step)
+    for _ in range(search.rounds):
+        moves = generator.standard_normal((len(unit), search.tries, unit.shape[1]))
         tried = _normalized(unit[:, None] + step[:, None, None] * _normalized(moves))
-        below = (1.0 - GAIN * step / FIRST_STEP) * radius
+        below = (1.0 - search.gain * step / search.first_step) * radius
         works = happens((below[:, None, None] * tried).reshape(-1, unit.shape[1]))
-        works = works.reshape(len(unit), TRIES)
-        owner, which = np.nonzero(works & (np.cumsum(works, axis=1) <= FOLLOWED))
+        works = works.reshape(len(unit), search.tries)
+        owner, which = np.nonzero(works & (np.cumsum(works, axis=1) <= search.followed))
         found = _bisect(
             happens,
             tried[owner, which],
             0.5 * below[owner],
             below[owner],
-            FINE * HALVINGS,
+            search.refinement * search.halvings,
         )
         for row in range(len(unit)):
             mine = np.flatnonzero(owner == row)
@@ -131,7 +116,7 @@ def _improve(
                 best = mine[np.argmin(found[mine])]
                 unit[row], radius[row] = tried[row, which[best]], found[best]
             else:
-                step[row] *= SHRINK
+                step[row] *= search.shrink
     return unit, radius
 
 
@@ -142,12 +127,16 @@ def smallest_linear(matrix: Array, row: Array, level: float, t_end: float) -> fl
     level/|c exp(A t)|, and the largest of these rows decides.
     """
     rate = max(float(np.abs(np.linalg.eigvals(matrix)).max()), 1.0 / t_end)
-    if not rate * t_end <= MOST_STEPS * PHASE:
+    # step of the scan in time, over the shortest time scale
+    phase = 0.02
+    # 160 MB of rows, and seconds
+    most_steps = 5e6
+    if not rate * t_end <= most_steps * phase:
         raise ValueError(
             f"the linear motion changes within 1/{rate * t_end:.2g} of the horizon, at most "
-            f"1/{MOST_STEPS * PHASE:.0e} is scanned; shorten t_end, or weaken a dashpot or a spring"
+            f"1/{most_steps * phase:.0e} is scanned; shorten t_end, or weaken a dashpot or a spring"
         )
-    count = int(np.ceil(rate * t_end / PHASE)) + 1
+    count = int(np.ceil(rate * t_end / phase)) + 1
     step = t_end / count
     move, rows = scipy.linalg.expm(step * matrix), np.empty((count + 1, len(row)))
     rows[0] = row

@@ -20,13 +20,6 @@ from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
 from squealpipe.validation import Line, Positive, Tolerance, Workers
 
-FINEST, OFF, FLAT, RESIDUAL = (60, 120), 6e-7, 3e-7, 4e-8
-"""As those of a boundary, for lines that are right to 1e-6 of the ranges, from few runs.
-
-In the middle of a chord a line is off by about twice as much as on average. The second grid is
-taken where the first one cuts a tongue.
-"""
-
 
 @recorded(model="A1", method="zeros of closed forms and of the lowest contact force")
 def regime_chart(
@@ -78,8 +71,11 @@ def regime_chart(
 
     regimes = Regimes(square)
     coarse = max(each.size for each in axes.values())
-    for finest in FINEST:
-        contact = contact_lines(square, coarse, finest, off=OFF, residual=RESIDUAL)
+    # the second, finer grid is taken where the first one cuts a tongue
+    for finest in (60, 120):
+        # lines are right to 1e-6 of the ranges from few runs: in the middle of a chord a line is
+        # off by about twice as much as on average
+        contact = contact_lines(square, coarse, finest, off=6e-7, residual=4e-8)
         if not contact.unresolved:
             break
     lines = {**regimes.lines(), ChartLine.contact_lost: contact}
@@ -115,7 +111,7 @@ def regime_chart(
         loops = {
             which: [
                 square.values(loop.outline)
-                for loop in loops_of(each, positive=True, flat=FLAT)
+                for loop in loops_of(each, positive=True, flat=3e-7)
             ]
             for which, each in lines.items()
         } | {which: [] for which in asked}

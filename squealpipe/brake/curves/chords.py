@@ -14,11 +14,6 @@ Indices = NDArray[np.int64]
 
 Mark = Callable[[Vector, Vector], Vector]
 """Places and slopes there → what jumps from one branch of a function to another."""
-BENT, SKEW, ROUGH = 0.6, 0.08, 1e-6
-"""Area beside a chord of one arc that is doubted, over its length squared and its turn cubed; what
-a curvature that changes along it, and the error of the tangents, add to that."""
-STEEPEST = 3.0
-"""Largest slope over a chord in the area beside it."""
 
 
 def split(chords: Indices, middle: Indices) -> Indices:
@@ -60,8 +55,12 @@ class Chords:
         """
         slopes = self.slopes(chords)[2]
         turn = np.abs(slopes).max(axis=1)
-        skew = SKEW * slopes.sum(axis=1) ** 2 / np.maximum(turn, ROUGH)
-        return np.asarray(BENT * self.length(chords) ** 2 * (turn**3 + skew + ROUGH))
+        # error of the tangents, over the turn of a chord
+        rough = 1e-6
+        # a curvature that changes along the chord adds to it
+        skew = 0.08 * slopes.sum(axis=1) ** 2 / np.maximum(turn, rough)
+        # area beside a chord of one arc, over its length squared and the cube of its turn
+        return np.asarray(0.6 * self.length(chords) ** 2 * (turn**3 + skew + rough))
 
     def marks(self, points: Indices) -> Vector:
         """Return the quantities that tell branches apart, at some points."""
@@ -83,8 +82,11 @@ class Chords:
         forward, aside = (
             (self.slope[chords] * way).sum(axis=-1) for way in (left, -chord)
         )
+        # largest slope over a chord in the area beside it: steeper tangents tell nothing about
+        # the area
+        steepest = 3.0
         with np.errstate(all="ignore"):
-            slopes = np.clip(aside / np.maximum(forward, 0.0), -STEEPEST, STEEPEST)
+            slopes = np.clip(aside / np.maximum(forward, 0.0), -steepest, steepest)
         return chord[:, 0], left[:, 0], np.nan_to_num(slopes)
 
     def meeting(self, chords: Indices) -> tuple[Vector, Vector]:

@@ -30,12 +30,8 @@ from squealpipe.systems.inputs.values import brief
 from squealpipe.text import suggestion
 from squealpipe.validation import Line, Number, Positive, Tolerance, Workers, one_of
 
-FINEST = 900
-"""Cells per side, at least, of the grid on whose edges the curves begin."""
 BESIDE = 1e-8
 """How far beside the boundary contact is lost in the run that says when."""
-JUMP = 0.1
-"""Of the touch time along a curve, over √(m/k1): another maximum of y is the first to touch."""
 
 
 class Square:
@@ -159,11 +155,13 @@ def contact_lines(
 ) -> ZeroLines:
     """The boundary of kept contact, begun on a grid of at least ``finest`` cells per side."""
     finer = 2 ** max(0, int(np.ceil(np.log2(finest / (coarse - 1)))))
+    # over √(m/k1): where the time of touching changes by more, another maximum of y is the first
+    # to touch
     return ZeroLines(
         square.reserve,
         square.touch_time,
         FirstGrid(coarse, finer),
-        jump=JUMP,
+        jump=0.1,
         touching=False,
         mirrored=square.is_its_mirror_image(),
         **accuracy,
@@ -221,7 +219,8 @@ def contact_boundary(
     }
     square = Square(params, fixed, axes, options, model)
     coarse = max(each.size for each in axes.values())
-    return _dataset(square, contact_lines(square, coarse, FINEST), axes)
+    # cells per side, at least, of the grid on whose edges the curves begin
+    return _dataset(square, contact_lines(square, coarse, 900), axes)
 
 
 def nearest_on(

@@ -27,12 +27,6 @@ EDGES = {
     ChartLine.divergence: LinearRegime.divergence,
 }
 """Lines of a chart that are the edge of a regime."""
-ASIDE, NEXT = np.array([2e-9, 1e-9]), 1e-7
-"""Shift of places, without which a grid's points all lie where the springs are in line, so that
-the static force vanishes and friction's slope with it; way from a line to what is beside it."""
-OFF_CENTRE = 2 * GRID
-"""Points per side of the grid on which regimes change, if damped: none is in the middle, where over
-both angles, from 0 to π, the springs are in line and upright and three regimes meet."""
 
 
 class Regimes:
@@ -44,11 +38,13 @@ class Regimes:
 
     def lines(self) -> dict[ChartLine, ZeroLines]:
         """The edges of flutter and of divergence."""
+        # an even number of points has none in the middle, where over both angles, from 0 to π,
+        # the springs are in line and upright, and three regimes meet
         return {
             which: ZeroLines(
                 partial(self._edge, which=which),
                 self._outside,
-                FirstGrid(OFF_CENTRE if self.damped else GRID, 1),
+                FirstGrid((2 * GRID) if self.damped else GRID, 1),
                 jump=0.5,
                 touching=self.damped,
             )
@@ -68,7 +64,8 @@ class Regimes:
         """The regime on the outer side of a line, which changes at its corners."""
         if not self.damped:
             return 0.0 * places[:, 0]
-        step = NEXT * slope / np.linalg.norm(slope, axis=1)[:, None]
+        # way from a line to the regimes on both of its sides
+        step = 1e-7 * slope / np.linalg.norm(slope, axis=1)[:, None]
         return self.beside(places + step).astype(float)
 
     def at(self, places: Vector) -> np.ndarray:
@@ -86,8 +83,12 @@ class Regimes:
 
     def _edge(self, places: Vector, which: ChartLine) -> Vector:
         """A function that is negative in one regime alone, of order one, zero at its edge."""
+        # All points of a grid would lie where the springs are in line, so that the static force
+        # vanishes and friction's slope with it: places are shifted.
         p = self._fields(
-            places + ASIDE * (1.0 - 2.0 * places) if self.damped else places
+            places + np.array([2e-9, 1e-9]) * (1.0 - 2.0 * places)
+            if self.damped
+            else places
         )
         invariants = contact_system(p, p.alpha1, p.alpha2).invariants
         quantity = (

@@ -33,8 +33,6 @@ LIMITS = {
 largest turn of a spring (rad), largest error of the linear spring force relative to the largest
 spring force, smallest length of a spring over its free length."""
 
-BELOW = ("angles are constant", "springs are linear")
-"""Assumptions that hold while their measure is below the limit; the others, above it."""
 
 NEEDS = {
     "A1": ("mass stays off the pivots",),
@@ -53,8 +51,6 @@ NEEDS = {
     ),
     "A4": ("belt is faster", "angles are constant", "springs are linear"),
 }
-
-STEPS_PER_TIME_UNIT = 20
 
 
 class LevelMotion(NamedTuple):
@@ -98,7 +94,10 @@ def check_assumptions(params: Parameters, scenes: Iterable[Scene] = ()) -> xr.Da
             for name, values in sizes.items():
                 values[row, column] = getattr(motion, name)
     limits = np.array([LIMITS[name] for name in names])
-    below = np.array([name in BELOW for name in names])
+    # these hold while their measure is below the limit; the others, above it
+    below = np.array(
+        [name in ("angles are constant", "springs are linear") for name in names]
+    )
     return build(
         ASSUMPTIONS,
         {
@@ -239,9 +238,8 @@ def _linear_response(
 def _steps(params: Parameters, t_end: float) -> tuple[float, int]:
     """Step length and number of steps up to t_end, short enough for the stiffest spring."""
     stiffest = max(1.0, (params.k2 + params.k3) / params.k1)
-    steps = int(
-        np.ceil(STEPS_PER_TIME_UNIT * np.sqrt(stiffest) * t_end / params.time_unit)
-    )
+    # twenty samples for each radian of the stiffest spring
+    steps = int(np.ceil(20 * np.sqrt(stiffest) * t_end / params.time_unit))
     return t_end / steps, steps
 
 

@@ -9,9 +9,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-TERMS = 14
-"""Terms of the power series; the rest is under round-off where h √‖A‖ is at most ½."""
-
 
 def response_from_rest(
     matrix: np.ndarray, load: np.ndarray, step: float, steps: int
@@ -38,7 +35,8 @@ def _series(scaled: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
     """cos(√A h) and (I − cos(√A h)) A⁻¹ from their power series in A h²."""
     identity = np.broadcast_to(np.eye(scaled.shape[-1]), scaled.shape)
     cosine, push, power, factor = identity.copy(), np.zeros(scaled.shape), identity, 1.0
-    for term in range(1, TERMS):
+    # fourteen terms: the rest of the series is under round-off where h √‖A‖ is at most ½
+    for term in range(1, 14):
         factor /= -(2 * term - 1) * (2 * term)
         push = push - factor * power
         power = power @ scaled

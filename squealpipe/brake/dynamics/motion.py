@@ -1,5 +1,6 @@
 """The kind of motion of model A1, judged from the second half of a run."""
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,34 +15,44 @@ from squealpipe.systems.recurrence import (
     repeats_after,
 )
 
-MARKS = (0.5, 0.75)
-"""Shares of a run between which, and its end, its quarters are judged."""
-LEAST_TURNS = 3
-"""Net turns in a run from which a motion can be a whirl."""
-AT_REST = 1e-3
-"""A mass rests that stays this close to where it ends, over its largest displacement."""
-SAME_STATISTICS = 0.1
-"""Largest Kolmogorov–Smirnov distance of both halves' intervals on a torus, where it falls like
-1/n; the limit of random samples, 2.3/√n, lets the slow drift of damped motion pass."""
-LEAST_COMPARED = 30
-"""Intervals of each kind in each half from which a torus keeps to that distance."""
-TURNS_PER_RETURN = 0.5
-"""Net turns for each return to the belt from which it is one: a pendulum that goes over the top
-and back makes none, however long it lasts."""
-REGULAR_GROWTH_POWER = 2.0
-"""A perturbation of a regular motion grows like a power of time, of a chaotic one exponentially."""
-LEAST_EVENTS = 4 * LEAST_REPEATS
-"""Events in the later half of a run from which a repetition is sought."""
-CALM = (MotionFlag.contact_kept, MotionFlag.hammered_then_contact, MotionFlag.at_rest)
-EVENTS_PER_TIME = 0.5
-"""Events in a :func:`linear_time` that a log has room for at first; the baseline has 0.35."""
-MOST_LOGGED = 1024
-"""Events of a run that are logged at first, at most."""
+
+@dataclass(frozen=True)
+class MotionClassification:
+    """Limits by which the motion of a run of A1 is classified."""
+
+    marks: tuple[float, float] = (0.5, 0.75)
+    """Shares of a run between which, and its end, its quarters are judged; where they differ, the
+    motion has changed."""
+    least_turns: int = 3
+    """Net turns in a run from which a motion can be a whirl."""
+    at_rest: float = 1e-3
+    """A mass rests that stays this close to where it ends, over its largest displacement."""
+    same_statistics: float = 0.1
+    """Largest Kolmogorov–Smirnov distance of both halves' intervals on a torus, where it falls
+    like 1/n; the limit of random samples, 2.3/√n, would let the slow drift of damped motion
+    pass."""
+    least_compared: int = 30
+    """Intervals of each kind in each half from which a torus keeps to that distance."""
+    turns_per_return: float = 0.5
+    """Net turns for each return to the belt from which a motion is a whirl: a pendulum that goes
+    over the top and back makes none, however long it lasts."""
+    regular_growth_power: float = 2.0
+    """A perturbation of a regular motion grows like this power of time at most; of a chaotic one,
+    exponentially."""
+    least_events: int = 4 * LEAST_REPEATS
+    """Events in the later half of a run from which a repetition is sought."""
+    events_per_time: float = 0.5
+    """Events in a :func:`linear_time` that a log has room for at first; the baseline has 0.35."""
+    most_logged: int = 1024
+    """Events of a run that are logged at first, at most."""
+
+
+limits = MotionClassification()
 
 
 def as_judged(t_end: Any) -> dict[str, Any]:
     """Arguments of ``run_ensemble`` for runs that :func:`classify_motion` is given."""
-    times = np.multiply.outer(np.asarray(t_end, float), MARKS)
+    times = np.multiply.outer(np.asarray(t_end, float), limits.marks)
     return {"t_end": t_end, "times": times, "sums": True, "tangent": True}
 
 
@@ -52,8 +63,8 @@ def with_log(t_end: float, params: Any) -> dict[str, Any]:
 
 def room_for_events(t_end: float, params: Any) -> int:
     """Events that the log of a run has room for, so that few are made again."""
-    expected = EVENTS_PER_TIME * t_end / linear_time(params)
-    return int(min(LEAST_EVENTS + expected, MOST_LOGGED))
+    expected = limits.events_per_time * t_end / linear_time(params)
+    return int(min(limits.least_events + expected, limits.most_logged))
 
 
 def linear_time(params: Any) -> Any:
@@ -67,7 +78,7 @@ def linear_time(params: Any) -> Any:
 
 def regular_growth(time: Any) -> Any:
     """Most that ln of a perturbation grows in a regular motion; time in :func:`linear_time`."""
-    return REGULAR_GROWTH_POWER * np.log1p(time)
+    return limits.regular_growth_power * np.log1p(time)
 
 
 def whirls(run: Ensemble) -> np.ndarray:
@@ -76,7 +87,7 @@ def whirls(run: Ensemble) -> np.ndarray:
     """
     turns = np.abs(run.turns)
     return np.asarray(
-        (turns >= LEAST_TURNS) & (turns > TURNS_PER_RETURN * run.contacts)
+        (turns >= limits.least_turns) & (turns > limits.turns_per_return * run.contacts)
     )
 
 
@@ -111,10 +122,16 @@ def classify_motion(run: Ensemble, params: Any) -> tuple[Any, np.ndarray]:
             ``final_state`` decides their shape.
         params: their parameters, numbers or arrays.
     """
-    first, second, last = range(len(MARKS) + 1)
+    first, second, last = range(len(limits.marks) + 1)
     quarters = (_label(run, params, first, second), _label(run, params, second, last))
     # a motion that keeps contact may well come to rest
-    changed = np.not_equal(*(np.where(np.isin(q, CALM), CALM[0], q) for q in quarters))
+    # labels of motions that no longer lose contact count as one here
+    calm = (
+        MotionFlag.contact_kept,
+        MotionFlag.hammered_then_contact,
+        MotionFlag.at_rest,
+    )
+    changed = np.not_equal(*(np.where(np.isin(q, calm), calm[0], q) for q in quarters))
     return _label(run, params, first, last), changed
 
 
@@ -122,7 +139,7 @@ def _label(run: Any, params: Any, start: int, end: int) -> np.ndarray:
     """Labels by what happens between two marks; the last one is the end of the run."""
 
     def at(name: str, mark: int) -> np.ndarray:
-        if mark == len(MARKS):
+        if mark == len(limits.marks):
             return np.asarray(getattr(run, "final_state" if name == "state" else name))
         if name == "state":
             return np.asarray(run.samples[..., mark, :])
@@ -131,18 +148,18 @@ def _label(run: Any, params: Any, start: int, end: int) -> np.ndarray:
     def during(name: str) -> np.ndarray:
         return np.asarray(at(name, end) - at(name, start))
 
-    shares = (*MARKS, 1.0)
+    shares = (*limits.marks, 1.0)
     share = shares[end] - shares[start]
     unit = linear_time(params)
     scale = np.stack(np.broadcast_arrays(1.0, 1.0, unit, unit), axis=-1)
     length = np.asarray(run.max_displacement)[..., None]
     moved = np.abs(at("state", start) - run.final_state * [1.0, 1.0, 0.0, 0.0]) * scale
     speeds = np.abs(at("state", end) * [0.0, 0.0, 1.0, 1.0]) * scale
-    rests = (np.maximum(moved, speeds) < AT_REST * length).all(axis=-1)
+    rests = (np.maximum(moved, speeds) < limits.at_rest * length).all(axis=-1)
     kept = (during("separations") == 0) & (during("separated_time") == 0)
     turns = np.abs(during("turns"))
-    whirling = (turns >= share * LEAST_TURNS) & (
-        turns > TURNS_PER_RETURN * during("contacts")
+    whirling = (turns >= share * limits.least_turns) & (
+        turns > limits.turns_per_return * during("contacts")
     )
     return np.select(
         [
@@ -178,7 +195,7 @@ def regular_kind(times: np.ndarray, kinds: np.ndarray, t_end: float) -> MotionFl
     ran = times <= t_end
     times, kinds = times[ran], kinds[ran]
     late = times > 0.5 * t_end
-    if np.count_nonzero(late) < LEAST_EVENTS:
+    if np.count_nonzero(late) < limits.least_events:
         return MotionFlag.undetermined
     if repeats_after(times[late], kinds[late], REPEATED):
         return MotionFlag.periodic_hammering
@@ -186,8 +203,8 @@ def regular_kind(times: np.ndarray, kinds: np.ndarray, t_end: float) -> MotionFl
     for kind in np.unique(kinds):
         halves = after[(kinds == kind) & ~late], after[(kinds == kind) & late]
         if (
-            min(map(len, halves)) < LEAST_COMPARED
-            or _distance(*halves) > SAME_STATISTICS
+            min(map(len, halves)) < limits.least_compared
+            or _distance(*halves) > limits.same_statistics
         ):
             return MotionFlag.undetermined
     return MotionFlag.quasi_periodic_hammering

@@ -20,11 +20,6 @@ from squealpipe.schema.origin import recorded
 from squealpipe.validation import Natural, Positive, Tolerance, Workers
 from squealpipe.vibration.shares import wilson_interval
 
-SUSPECT_SHARE = 0.1
-"""Cells that separate only after this share of t_end lie next to those that never do."""
-SAMPLE, SEED = 4000, 2021
-"""Inherited cells that are run to measure how often they are wrong."""
-
 
 @recorded(method="Taylor series with located events on an adaptive grid")
 def refine_validity_map(
@@ -78,14 +73,16 @@ def refine_validity_map(
         time[rows, columns] = run.first_separation_time
         outcome[rows, columns] = run.outcome
         lost = run.outcome == Outcome.separated
-        late = lost & (run.first_separation_time > SUSPECT_SHARE * t_end)
+        # cells that separate only after a tenth of t_end lie next to those that never do
+        late = lost & (run.first_separation_time > 0.1 * t_end)
         return lost, late, np.where(lost, np.nan, run.lowest_contact_force)
 
     grid = refine_grid(evaluate, resolution, coarse)
-    checked, wrong = _check_inherited(evaluate, grid, SEED)
+    seed = 2021
+    checked, wrong = _check_inherited(evaluate, grid, seed)
     if wrong:
         follow_boundaries(evaluate, grid)
-        checked, wrong = _check_inherited(evaluate, grid, SEED + 1)
+        checked, wrong = _check_inherited(evaluate, grid, seed + 1)
     time[~grid.computed], outcome[~grid.computed] = np.nan, Outcome.inherited
     return build(
         REFINED_VALIDITY_MAP,
@@ -111,7 +108,8 @@ def _check_inherited(
     inherited = np.flatnonzero(~grid.computed)
     if not inherited.size:
         return 0, 0
-    size = min(SAMPLE, inherited.size)
+    # inherited cells that are run to measure how often they are wrong
+    size = min(4000, inherited.size)
     chosen = inherited[
         np.random.default_rng(seed).choice(inherited.size, size, replace=False)
     ]

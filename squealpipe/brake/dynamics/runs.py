@@ -29,11 +29,6 @@ from squealpipe.validation import (
     Workers,
 )
 
-SAME_INSTANT = 1e-13
-"""Distance of events over their time, within which round-off alone tells them apart."""
-FIRST_LOG = 256
-"""Events kept at first; a run that has more is made again with room for all."""
-
 
 @recorded(method="Taylor series with located events")
 def simulate(
@@ -82,7 +77,8 @@ def simulate(
         initial_state=initial_state,
         t_late="return",
     )
-    room, logged = 0, FIRST_LOG
+    # events kept at first; a run that has more is made again with room for all
+    room, logged = 0, 256
     while room < logged:
         room = logged
         run = integrate(
@@ -97,7 +93,8 @@ def simulate(
     if int(run.outcome) == Outcome.accumulation:
         # reversals at one instant, where the variant has no stick to go over to, are one
         last = run.event_times[logged - 1]
-        at_once = run.event_times[:logged] >= last - SAME_INSTANT * max(last, 1e-300)
+        # events this close, over their time, are told apart by round-off alone
+        at_once = run.event_times[:logged] >= last - 1e-13 * max(last, 1e-300)
         logged -= int(np.count_nonzero(at_once)) - 1
     x, y, vx, vy = run.samples.T
     if times.size and times[0] == 0.0:

@@ -17,11 +17,6 @@ from squealpipe.vibration.spectrum import (
     strongest_lines,
 )
 
-PEAKS = 10
-"""Lines that are named at most."""
-PADDING = 8
-"""How much finer the grid is than the resolution."""
-
 
 @recorded()
 def spectrum(
@@ -61,10 +56,12 @@ def spectrum(
             for name in ("vx", "vy", "normal_force")
         ]
     )
-    omega, amplitude = amplitude_spectrum(signals, step, padding=PADDING)
+    # the grid is eight times finer than the resolution, so that peaks are smooth
+    omega, amplitude = amplitude_spectrum(signals, step, padding=8)
     resolution = 1.0 / (time.size * step)
+    # ten lines are named at most
     lines, heights = strongest_lines(
-        omega, amplitude[2], PEAKS, 2.0 * math.pi * resolution
+        omega, amplitude[2], 10, 2.0 * math.pi * resolution
     )
     return build(
         SPECTRUM,

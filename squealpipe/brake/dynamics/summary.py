@@ -22,11 +22,6 @@ from squealpipe.vibration.spectrum import (
     strongest_lines,
 )
 
-PEAKS = 3
-"""Dominant frequencies that are named."""
-PADDING = 8
-"""How much finer the spectrum's grid is than the resolution of the run."""
-
 
 @recorded()
 def summarize(run: xr.Dataset) -> xr.Dataset:
@@ -54,10 +49,13 @@ def summarize(run: xr.Dataset) -> xr.Dataset:
     returns = np.count_nonzero(run.event_kind.values == Event.contact)
     force = run.normalized_contact_force.values[: time.size]
     _, highest = extremes(run, "normalized_contact_force")
-    frequency, amplitude = amplitude_spectrum(force, step, padding=PADDING)
-    kept = PEAKS if lasts(force) else 0
+    # the spectrum's grid is eight times finer than the resolution of the run
+    padding = 8
+    frequency, amplitude = amplitude_spectrum(force, step, padding=padding)
+    # three dominant frequencies are named
+    kept = 3 if lasts(force) else 0
     peak_frequency, peak_amplitude = strongest_lines(
-        frequency, amplitude, kept, PADDING * float(frequency[1])
+        frequency, amplitude, kept, padding * float(frequency[1])
     )
     return build(
         RUN_SUMMARY,

@@ -17,16 +17,6 @@ from squealpipe.brake.schema.dynamics.runs import MotionFlag
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.schema import Outcome, build
 
-LATE_SHARE = 0.8
-"""Share of a run after which it counts as late."""
-FAR = 4.0
-"""Amplitude, in free lengths, from which the springs' free length is a small correction."""
-LEAST_FITTED = 3
-ESCAPE_TURNS = 10.0
-"""Net turns that a pendulum swinging back and forth over the top never makes."""
-LARGEST_PERTURBATION = 1e-9
-"""Largest |x| at the start of a transient, in l_pre."""
-
 
 def whirl_sizes(
     params: Parameters,
@@ -55,25 +45,28 @@ def whirl_sizes(
     alpha1, alpha2 = form.angles(scene.alpha1, scene.alpha2)
     speeds = np.asarray(belt_speeds, float)
 
+    # the last fifth of a run counts as late
     run = run_ensemble(
         {**form.params.as_dict(), "belt_speed": speeds},
         alpha1,
         alpha2,
         **with_log(t_end, params),
         tol=tol,
-        t_late=LATE_SHARE * t_end,
+        t_late=0.8 * t_end,
         tracked=("x", REACH),
         workers=workers,
     )
     motion, changed = judge(run, form.params, t_end, workers=workers)
     p = params
+    # in free lengths: from here the springs' free length is a small correction
     fitted = (motion == MotionFlag.whirl) & (
-        run.late_max_x > FAR * max(p.length1, p.length2)
+        run.late_max_x > 4.0 * max(p.length1, p.length2)
     )
     # of the one spring that both are together from afar
     length = (p.k1 * p.length1 + p.k2 * p.length2) / (p.k1 + p.k2)
     slope, offset, fit_range = np.nan, np.nan, [np.nan, np.nan]
-    if np.count_nonzero(fitted) >= LEAST_FITTED:
+    # two amplitudes would fit any power law
+    if np.count_nonzero(fitted) >= 3:
         fit_range = [speeds[fitted].min(), speeds[fitted].max()]
         weights = 1.0 / run.late_max_x[fitted]
         slope, offset = np.polyfit(speeds[fitted], run.late_max_x[fitted], 1, w=weights)
@@ -113,8 +106,10 @@ def transient_lifetimes(
     form, scene = NormalForm.of(params), SCENES["F4"]
     alpha1, alpha2 = form.angles(scene.alpha1, scene.alpha2)
     state = np.zeros((samples, 4))
-    start = LARGEST_PERTURBATION * params.preload * np.linspace(-1.0, 1.0, samples)
+    # in l_pre: the starts differ by less than anything that could be measured
+    start = 1e-9 * params.preload * np.linspace(-1.0, 1.0, samples)
     state[:, 0] = form.sign * start
+    # a pendulum swinging back and forth over the top never makes ten net turns
     run = run_ensemble(
         form.params,
         alpha1,
@@ -122,7 +117,7 @@ def transient_lifetimes(
         t_end=t_end,
         tol=tol,
         initial_state=state,
-        stop_at_turns=ESCAPE_TURNS,
+        stop_at_turns=10.0,
         tracked=(),
         workers=workers,
     )

@@ -9,17 +9,13 @@ from squealpipe.brake.orbits.orbit_shape import sample
 from squealpipe.brake.orbits.orbits import Orbit
 from squealpipe.brake.orbits.piecewise_linear import PiecewiseLinearSystem
 
-_COVERS = np.arange(7, 1, -1)
 _SAME_STATE, _NEARLY_SAME = 1e-8, 1e-3
 """Distance over 1 + |z| below which two states are one, or one next to where branches meet."""
-_MAY_COVER = 0.5
-"""Least stability index at which a step is checked for having met shorter orbits, which have 2
-where branches meet."""
 
 
 def _apart(system: PiecewiseLinearSystem, orbit: Orbit) -> NDArray[np.float64]:
     """States after T/n less the first one, (6, 4)."""
-    states = sample(system.rows, orbit.point, 2.0 * math.pi / _COVERS)
+    states = sample(system.rows, orbit.point, 2.0 * math.pi / np.arange(7, 1, -1))
     return np.asarray(states - [*orbit.point[:2], 0.0, 0.0])
 
 
@@ -39,7 +35,9 @@ def about_to_meet(system: PiecewiseLinearSystem, orbit: Orbit) -> bool:
 
     Where its branch meets that one's the stability index is 2.
     """
-    if not orbit.stability_index > _MAY_COVER:
+    # a step meets shorter orbits only where the stability index is near 2: below ½ none is
+    # checked for
+    if not orbit.stability_index > 0.5:
         return False
     next_to_it = abs(orbit.stability_index - 2.0) < _NEARLY_SAME
     near = _NEARLY_SAME if next_to_it else _SAME_STATE

@@ -15,12 +15,6 @@ from squealpipe.systems.continuation import ContinuationState
 
 Vector = NDArray[np.float64]
 
-_MOST_SPLITS = 6
-_CLEAR = 1e-9
-"""Below it a sign is left to round-off: where a tongue ends, the index tends to 2."""
-_ROOM = 4.0
-"""Over the bend of a measure between two points, least distance from zero that excludes a pair."""
-
 
 def special_points(
     system: PiecewiseLinearSystem, orbits: Sequence[Orbit]
@@ -37,7 +31,8 @@ def special_points(
         line = _between(equations, first, second)
         if line is None:
             continue
-        shares = [0.0, *_halved(line, 0.0, 1.0, _MOST_SPLITS), 1.0]
+        # six halvings of a step
+        shares = [0.0, *_halved(line, 0.0, 1.0, 6), 1.0]
         for left, right in pairwise(shares):
             signs = _clear_sign(*line.at(left)) * _clear_sign(*line.at(right))
             for kind in SpecialPoint:
@@ -80,7 +75,8 @@ def _measure(kind: SpecialPoint, state: ContinuationState, orbit: Orbit) -> floa
 def _clear_sign(state: ContinuationState, orbit: Orbit) -> Vector:
     """Signs of the measures; 0 within round-off, as of the direction where branches meet."""
     measures = _measures(state, orbit)
-    clear = np.abs(measures) > _CLEAR
+    # below it a sign is left to round-off: where a tongue ends, the index tends to 2
+    clear = np.abs(measures) > 1e-9
     clear[SpecialPoint.fold] &= clear[SpecialPoint.index_two]
     return np.where(clear, np.sign(measures), 0.0)
 
@@ -98,7 +94,8 @@ def _halved(line: Line[Orbit], left: float, right: float, splits: int) -> list[f
     nearest = np.minimum(np.sign(low) * half, np.minimum(abs(low), abs(high)))
     bend = abs(half - 0.5 * (low + high))
     one_side = _clear_sign(*line.at(left)) * _clear_sign(*line.at(right)) > 0.0
-    if not (one_side & (nearest < _ROOM * bend)).any():
+    # a pair of zeros is excluded where the measure stays four times its bend from zero
+    if not (one_side & (nearest < 4.0 * bend)).any():
         return []
     return [
         *_halved(line, left, middle, splits - 1),

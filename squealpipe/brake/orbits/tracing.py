@@ -31,16 +31,25 @@ from squealpipe.systems.progress import report
 
 Vector = NDArray[np.float64]
 
-_LARGEST_TURN = 0.5
-"""Phase of the fastest mode by which T/2 and the time in flight may change in one step, rad."""
-_LARGEST_CHANGE = 0.2
-"""Of (x0, y0) in one step over the distance of both instants of rest."""
-_CLOSE = 1e-2
-"""Step over the longest one below which a meeting with another branch is judged."""
-_MOST_WORK = 1e7
-"""Phase of the fastest mode in all shots of Newton's method in a trace, rad."""
-_NEAR = 1e-3
-"""How far, over 1 + |z|, an orbit moves when its peak is set right; at a fold like a root."""
+
+@dataclass(frozen=True)
+class TracingLimits:
+    """Limits of the steps along a branch of exact orbits."""
+
+    largest_turn: float = 0.5
+    """Phase of the fastest mode by which T/2 and the time in flight may change in one step, rad;
+    more, and a step might jump to another branch."""
+    largest_change: float = 0.2
+    """Change of (x0, y0) in one step, over the distance of both instants of rest."""
+    close: float = 1e-2
+    """Step over the longest one below which a meeting with another branch is judged."""
+    most_work: float = 1e7
+    """Phase of the fastest mode in all shots of Newton's method in a trace, rad: a minute."""
+    near: float = 1e-3
+    """An orbit moves so far, over 1 + |z|, when its peak is set right; at a fold like a root."""
+
+
+limits = TracingLimits()
 
 
 class TraceEnd(Enum):
@@ -141,7 +150,7 @@ class _Trace:
         )
         fastest = self.equations.fastest
         for _ in range(settings.max_points):
-            if self.equations.work > _MOST_WORK:
+            if self.equations.work > limits.most_work:
                 return
             if not fastest * state.point[2] < LONGEST_PHASE:
                 return
@@ -184,18 +193,22 @@ class _Trace:
         moved, fastest = trial.point - here.point, self.equations.fastest
         extent = np.linalg.norm(here.rest - here.point[:2])
         if (
-            fastest * abs(moved[2]) > _LARGEST_TURN
-            or np.linalg.norm(moved[:2]) > _LARGEST_CHANGE * extent > 0.0
+            fastest * abs(moved[2]) > limits.largest_turn
+            or np.linalg.norm(moved[:2]) > limits.largest_change * extent > 0.0
         ):
             return False
         orbit = self.equations.orbit(trial.point)
         first, last = (each.flight(self.system.threshold) for each in (here, orbit))
-        if not fastest * abs(last - first) < _LARGEST_TURN:
+        if not fastest * abs(last - first) < limits.largest_turn:
             return False
         turned = self.equations.sense(trial) * self.sense < 0.0
         if not (turned or about_to_meet(self.system, orbit)):
             return True
-        close = _CLOSE * self.settings.longest_step * (1.0 + np.linalg.norm(here.point))
+        close = (
+            limits.close
+            * self.settings.longest_step
+            * (1.0 + np.linalg.norm(here.point))
+        )
         self.meets = bool(np.linalg.norm(moved) < close) and shorter_orbit_between(
             self.system, here, orbit
         )
@@ -271,7 +284,7 @@ class _Trace:
         x0, _, half_period = there.point
         found = solve_orbit(self.system, np.array([x0, self.y_stop, half_period]))
         size = 1.0 + float(np.linalg.norm(there.point))
-        if found and np.abs(found.point - there.point).sum() < _NEAR * size:
+        if found and np.abs(found.point - there.point).sum() < limits.near * size:
             yield found
         else:
             self.end = TraceEnd.branch_lost
