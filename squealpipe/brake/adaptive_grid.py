@@ -17,9 +17,6 @@ import scipy
 
 Evaluate = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
 
-RESERVE_OF_CHANGE = 0.5
-"""Reserve over its change between neighbours below which it may be used up between them."""
-
 
 class RefinedGrid(NamedTuple):
     """Labels of all points, and which of them were computed (the others are inherited)."""
@@ -100,4 +97,5 @@ def _nearly_used_up(reserve: np.ndarray) -> np.ndarray:
     most = scipy.ndimage.maximum_filter(np.where(known, reserve, -np.inf), 3)
     least = scipy.ndimage.minimum_filter(np.where(known, reserve, np.inf), 3)
     with np.errstate(invalid="ignore"):
-        return np.asarray(known & (reserve < RESERVE_OF_CHANGE * (most - least)))
+        # a reserve below half of its change between neighbours may be used up between them
+        return np.asarray(known & (reserve < 0.5 * (most - least)))

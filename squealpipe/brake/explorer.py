@@ -22,12 +22,6 @@ from squealpipe.schema import build
 from squealpipe.systems.processes import run_shared
 from squealpipe.vibration.spectrum import amplitude_spectrum
 
-MODES = (1, 2)
-LARGEST, TOLERANCE = 3.0, 1e-12
-"""Peaks and amplitudes over l_pre up to which branches go; of the motions."""
-HIGHEST_FREQUENCY = 6.0
-"""Spectra are kept up to here, in units of √(k1/m): four times the highest natural frequency."""
-
 
 def explorer_data(
     params: Parameters,
@@ -57,10 +51,9 @@ def explorer_data(
         round(spectrum_time * params.time_unit / step) + 1, dtype=float
     )
     frequency, _ = amplitude_spectrum(np.zeros(times.size), step)
-    lines = int(
-        np.searchsorted(frequency * params.time_unit, HIGHEST_FREQUENCY, side="right")
-    )
-    count, modes = angles.size, () if extensions(params) else MODES
+    # in units of √(k1/m): four times the highest natural frequency
+    lines = int(np.searchsorted(frequency * params.time_unit, 6.0, side="right"))
+    count, modes = angles.size, () if extensions(params) else (1, 2)
     mirrored = springs_are_equal(
         {name: getattr(params, name) for name in PHYSICAL}
     ) and np.allclose(angles + angles[::-1], np.pi, rtol=0.0, atol=1e-13)
@@ -140,7 +133,7 @@ def _motions(
         t_end=times[-1],
         times=times,
         tracked=(),
-        tol=TOLERANCE,
+        tol=1e-12,
         workers=1,
     )
     x, y, _, vy = np.moveaxis(run.samples, -1, 0)
@@ -165,7 +158,9 @@ def _branch(
     scene: ScaledSystem,
     mode: int,
 ) -> None:
-    orbits, outcomes, end = exact_branch(scene, mode, LARGEST, LARGEST)
+    # peaks and amplitudes over l_pre up to which branches go
+    largest = 3.0
+    orbits, outcomes, end = exact_branch(scene, mode, largest, largest)
     wanted = arrays["omega"].shape[-1]
     points = len(orbits)
     if points:

@@ -18,16 +18,8 @@ from squealpipe.structures.squeal.squealing_modes import squealing_of
 from squealpipe.structures.squeal.windows import WIDE, Running, run
 from squealpipe.systems.datasets.versions import versions
 
-STIFFER = 100.0
-"""Modulus of the stiff pad, over that of friction material."""
-FRICTIONS = np.linspace(0.0, MOST_FRICTION, 11)
-"""Range in which the critical friction is looked for."""
-FEW = 4
-"""Modes of a pad that stays quiet at any friction in that range."""
 SHOWN, EACH = 4, 48
 """Periods of the forces that are kept, and their samples in each."""
-LONG = 64
-"""Periods from which delays are taken."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,7 +56,8 @@ def contact_points(
         small push ends in; over ``point`` shares of time without contact, and forces over time.
     """
     pads = [(str(count), count, YOUNG) for count in points]
-    pads.append((f"{stiff_points}, stiff", stiff_points, STIFFER * YOUNG))
+    # a hundred times the modulus of friction material: the pad hardly bends
+    pads.append((f"{stiff_points}, stiff", stiff_points, 100.0 * YOUNG))
     most = max(count for _, count, _ in pads)
     rows = [_pad(count, young, how, most, workers) for _, count, young in pads]
     return build(
@@ -97,10 +90,11 @@ def _pad(
         contacts=count, young=young, mu=how.mu, modal_damping=how.modal_damping
     )
     pad: Any = whole.reduce(n_modes=max(how.n_modes, count))
-    modes = pad.complex_modes(mu=FRICTIONS)
+    modes = pad.complex_modes(mu=np.linspace(0.0, MOST_FRICTION, 11))
     if not modes.unstable.any():
         # what only dies out needs no fast modes, whose steps are short
-        pad = pad.reduce(n_modes=min(max(count, FEW), pad.size))
+        # a pad that stays quiet at any friction is run in four modes
+        pad = pad.reduce(n_modes=min(max(count, 4), pad.size))
     onsets = modes.critical_mu.values[np.isfinite(modes.critical_mu.values)]
     plant = Plant(pad)  # its system is traced and compiled once for both
     answer = squealing_of(
@@ -183,7 +177,8 @@ def _forces(plant: Plant, motion: xr.Dataset, tol: float) -> np.ndarray:
     """Normal forces over preloads of a settled motion, (contact, instant)."""
     pad = plant.structure
     start = np.concatenate([motion.displacement.values, motion.velocity.values])
-    times = np.arange(LONG * EACH) / (EACH * float(motion.dominant_frequency))
+    # delays are taken over 64 periods
+    times = np.arange(64 * EACH) / (EACH * float(motion.dominant_frequency))
     # several at once run in code that is compiled already
     samples = run(plant, np.tile(start, (WIDE, 1)), times[1:], Running(tol))["samples"][
         0

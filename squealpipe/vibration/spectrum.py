@@ -8,11 +8,6 @@ from squealpipe.vibration.parabola import vertex
 FEWEST = 16
 """Samples from which a motion, and its spectrum, can be seen."""
 
-FEWEST_PERIODS, LINE_WIDTH, LOBES = 3.0, 2.0, 12.0
-"""Periods in a signal from which it oscillates; over 2π/T, half the main lobe of a Hann window, and
-where its side lobes have become small.
-"""
-
 
 def step_of(time: NDArray[np.float64]) -> float:
     """The step of uniform samples.
@@ -86,17 +81,21 @@ def strongest_lines(
     """The peaks that are oscillations, as :func:`highest_peaks`, each line once.
 
     Args:
-        resolution: 2π over the length of the signal. What has fewer than :data:`FEWEST_PERIODS`
-            periods in it is drift, and a peak within the width of a higher one is part of it.
+        resolution: 2π over the length of the signal. What has fewer than three periods
+            in it is drift, and a peak within the width of a higher one is part of it.
     """
-    fast = np.where(frequency >= FEWEST_PERIODS * resolution, amplitude, 0.0)
+    # periods in a signal from which it oscillates
+    fewest_periods = 3.0
+    fast = np.where(frequency >= fewest_periods * resolution, amplitude, 0.0)
     places, heights = highest_peaks(frequency, fast, len(frequency))
     kept: list[int] = []
     for i, place in enumerate(places):
         # neither the cut through a drift's flank nor its side lobes are lines
-        lobe = place < LOBES * resolution and heights[i] < 0.1 * amplitude.max()
-        is_line = place > (FEWEST_PERIODS + 0.25) * resolution and not lobe
-        apart = all(abs(place - places[k]) > LINE_WIDTH * resolution for k in kept)
+        # over 2π/T: from here the window's side lobes are small
+        lobe = place < 12.0 * resolution and heights[i] < 0.1 * amplitude.max()
+        is_line = place > (fewest_periods + 0.25) * resolution and not lobe
+        # over 2π/T: half the main lobe of a Hann window
+        apart = all(abs(place - places[k]) > 2.0 * resolution for k in kept)
         if is_line and apart and len(kept) < count:
             kept.append(i)
     return places[kept], heights[kept]

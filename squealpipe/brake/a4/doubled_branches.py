@@ -10,7 +10,6 @@ from squealpipe.brake.orbits.tracing import TraceEnd, TraceSettings, trace_branc
 OFFSETS = (1e-4, 3e-4, 1e-3, 3e-3)
 """Of the first orbits from the doubling, over 1 + |z|; there the trace cannot separate the doubled
 orbit from the one run through twice."""
-_SPACING = 0.02
 
 
 def doubled_start(
@@ -55,7 +54,8 @@ def doubled_branch_from(
         orbits.append(found)
     away = orbits[-1].point - start
     settings = TraceSettings(first_step=OFFSETS[-1], linear_x=abs(float(start[0])))
+    # spacing of the recorded points, over 1 + |z|
     beyond, end = trace_branch(
-        scene.system, orbits[-1].point, away, y_max, settings, _SPACING
+        scene.system, orbits[-1].point, away, y_max, settings, 0.02
     )
     return orbits + beyond, end

@@ -10,13 +10,6 @@ from squealpipe.brake.orbits.orbits import Orbit, decoupled_half_period, solve_o
 from squealpipe.brake.orbits.tracing import trace_branch
 from squealpipe.schema import Outcome
 
-LINEAR_POINTS = 6
-"""Points on the linear mode, from rest to grazing, with which a backbone begins."""
-_SPACING = 0.02
-"""Of the recorded points, over 1 + |z|."""
-_DECOUPLED_SPACING = 0.04
-_ISOLATED_POINTS = 24
-
 
 def exact_branch(
     scene: ScaledSystem,
@@ -39,8 +32,9 @@ def exact_branch(
         beyond = [orbit for orbit in found if orbit is not None]
     else:
         seed = grazing_start(scene, mode)
+        # spacing of the recorded points, over 1 + |z|
         beyond, why = trace_branch(
-            scene.system, seed.point, seed.direction, y_max, seed.settings(), _SPACING
+            scene.system, seed.point, seed.direction, y_max, seed.settings(), 0.02
         )
         end = Outcome[why.name]
     return orbits + beyond, outcomes + [Outcome.converged] * len(beyond), end
@@ -61,7 +55,8 @@ def linear_part(
     if not math.isfinite(scene.slope(mode)):
         return [], [], Outcome.pole
     check_peak(scene, "y_peak_max", y_max)
-    peaks = np.linspace(scene.rest[1], min(1.0, y_max), LINEAR_POINTS + 1)[1:].tolist()
+    # a backbone begins with six points on the linear mode, from rest to grazing
+    peaks = np.linspace(scene.rest[1], min(1.0, y_max), 6 + 1)[1:].tolist()
     outcomes = [
         Outcome.grazing if peak == 1.0 else Outcome.linear_mode for peak in peaks
     ]
@@ -82,7 +77,7 @@ def isolated_orbits(scene: ScaledSystem, mode: int, x_max: float) -> list[Orbit]
             index,
             0.0,
         )
-        for a in np.linspace(0.0, x_max, _ISOLATED_POINTS + 1)[1:].tolist()
+        for a in np.linspace(0.0, x_max, 24 + 1)[1:].tolist()
     ]
 
 
@@ -98,7 +93,7 @@ def decoupled_steps(
 
     y is known in closed form and drives x, up to a pole.
     """
-    count = max(8, math.ceil((y_max - 1.0) / _DECOUPLED_SPACING))
+    count = max(8, math.ceil((y_max - 1.0) / 0.04))
     peaks = 1.0 + (y_max - 1.0) * np.linspace(0.0, 1.0, count + 1)[1:] ** 1.5
     first = pole_number(scene, math.pi / math.sqrt(scene.system.below.matrix[1][1]))
     found: list[tuple[float, float]] = []

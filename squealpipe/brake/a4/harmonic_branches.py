@@ -23,10 +23,6 @@ from squealpipe.systems.progress import report
 Vector = NDArray[np.float64]
 
 _PHASES = np.linspace(0.0, math.pi, 257)
-_NEAR_EXACT = 0.05
-"""Share of ω by which an exact orbit may differ and still be the same motion."""
-_FAR = 0.05
-"""Waveform distance over l_pre beyond which a series does not stand for the exact orbit."""
 
 
 @dataclass(frozen=True)
@@ -184,7 +180,8 @@ def _judged(
     switches = balance.contact.angles(y) / omega
     values, _ = balance.evaluate(z)
     omega_exact, waveform_error = _distance(scene, balance, z, start, outcome)
-    if outcome == Outcome.converged and not waveform_error <= _FAR:
+    # beyond a distance of 0.05 l_pre a series does not stand for the exact orbit
+    if outcome == Outcome.converged and not waveform_error <= 0.05:
         outcome = Outcome.unconfirmed
     return HarmonicPoint(
         z=z,
@@ -213,7 +210,8 @@ def _distance(
     omega, point = balance.split(z)[2], start
     if outcome == Outcome.converged:
         exact = solve_orbit(scene.system, start)
-        if exact is None or abs(exact.omega - omega) > _NEAR_EXACT * omega:
+        # an exact orbit whose ω differs by more is another motion
+        if exact is None or abs(exact.omega - omega) > 0.05 * omega:
             return math.nan, math.nan
         point = exact.point
     return math.pi / float(point[2]), _apart(scene, balance, z, point, _PHASES)

@@ -21,10 +21,6 @@ from squealpipe.laws.friction import slides
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 
-_SHORT_OF_THE_PEAK = (TraceEnd.retraced, TraceEnd.tongue_end, TraceEnd.pole)
-"""Ends that leave no doubt that the branch does not reach the peak."""
-_MOST_POINTS_ACROSS = 80
-
 
 def find_orbit(
     scene: ScaledSystem, mode: int, y_peak: float, *, across: bool = False
@@ -53,7 +49,8 @@ def find_orbit(
     found, end = orbit_on_branch(
         scene.system, seed.point, seed.direction, y_peak, seed.settings()
     )
-    if across and end in _SHORT_OF_THE_PEAK:
+    # these ends leave no doubt that the branch does not reach the peak
+    if across and end in (TraceEnd.retraced, TraceEnd.tongue_end, TraceEnd.pole):
         other = orbit_across(scene, mode, y_peak)
         if other is not None:
             return other, Outcome.other_branch
@@ -64,7 +61,7 @@ def find_orbit(
 def orbit_across(scene: ScaledSystem, mode: int, y_peak: float) -> Orbit | None:
     """An orbit at a scaled peak by a trace that crosses the narrow resonances on its way."""
     seed = grazing_start(scene, mode)
-    lenient = replace(seed.settings(), strict=False, max_points=_MOST_POINTS_ACROSS)
+    lenient = replace(seed.settings(), strict=False, max_points=80)
     found, _ = orbit_on_branch(
         scene.system, seed.point, seed.direction, y_peak, lenient
     )

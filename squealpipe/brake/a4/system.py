@@ -13,14 +13,6 @@ from squealpipe.laws import springs
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 
-# The gap left to the contact at rest, over l_pre, below which the linear mode has no room.
-_LEAST_GAP = 1e-9
-_LEAST_DETERMINANT = 1e-14
-"""Of the squared half trace: below it ω1 is zero to round-off and its period without end."""
-
-_LARGEST = 1e70
-"""Of mass and stiffness and of their inverse; products of four of them are doubles."""
-
 
 @dataclass(frozen=True)
 class ScaledSystem:
@@ -69,10 +61,12 @@ def scaled_system(params: Parameters, alpha1: float, alpha2: float) -> ScaledSys
     (π/2, π) are decoupled.
     """
     refuse_extensions(params, "model A4", WHY_A4)
+    # mass, stiffness and their inverse: products of four of them are doubles
+    largest = 1e70
     for name in ("mass", "k1", "k2", "k3"):
-        if not 1.0 / _LARGEST <= getattr(params, name) <= _LARGEST:
+        if not 1.0 / largest <= getattr(params, name) <= largest:
             raise ValueError(
-                f"{name} = {getattr(params, name)!r}: between {1.0 / _LARGEST:g} and {_LARGEST:g} "
+                f"{name} = {getattr(params, name)!r}: between {1.0 / largest:g} and {largest:g} "
                 "is needed, where squares neither vanish nor overflow; choose other units"
             )
     g = springs.Geometry(
@@ -123,8 +117,11 @@ def _obstacle(invariants: a4.StiffnessSpectrum, gap: float) -> Outcome:
         return Outcome.complex_pair
     if invariants.determinant < 0.0:
         return Outcome.divergence
-    if invariants.determinant <= _LEAST_DETERMINANT * invariants.half_trace**2:
+    # relative to the squared half trace: below it ω1 is zero to round-off, and its period without
+    # end
+    if invariants.determinant <= 1e-14 * invariants.half_trace**2:
         return Outcome.rigid_mode
-    if not gap > _LEAST_GAP:
+    # closer natural frequencies are one, to round-off
+    if not gap > 1e-9:
         return Outcome.singular_static_state
     return Outcome.converged

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
@@ -18,13 +19,26 @@ from squealpipe.vibration.spectrum import amplitude_spectrum, highest_peaks
 
 Vector = NDArray[np.float64]
 
-_PERIODS = 32
-_SAMPLES = 64
-_SHOWN = 4
-"""Periods of the run, samples per period, and periods that are kept as a time history."""
-_ORDERS = 5
-_PADDING = 4
-_NEIGHBOURHOOD = 0.5
+
+@dataclass(frozen=True)
+class ComparisonRun:
+    """Run of A1 that starts on a periodic motion of A4, and its spectrum."""
+
+    periods: int = 32
+    """Periods of the run; more resolve the spectrum better."""
+    samples: int = 64
+    """Samples of each period."""
+    shown_periods: int = 4
+    """Periods that are kept as a time history."""
+    orders: int = 5
+    """Multiples of the frequency that the spectrum reaches."""
+    padding: int = 4
+    """Times that the spectrum's grid is finer than its resolution: smooth peaks."""
+    neighbourhood: float = 0.5
+    """Orders around 1 in which the strongest line is sought."""
+
+
+run_settings = ComparisonRun()
 
 
 def a1_beside_a4(
@@ -43,10 +57,14 @@ def a1_beside_a4(
         branches: name → (alpha1, alpha2, mode).
         peak: y_peak over l_pre; length_ratios: spring lengths over l_pre.
     """
-    phases = np.arange(_PERIODS * _SAMPLES) / _SAMPLES
-    kept = phases < _SHOWN
-    orders = np.arange(_ORDERS * _PERIODS * _PADDING) / (_PERIODS * _PADDING)
-    near = np.abs(orders - 1.0) < _NEIGHBOURHOOD
+    phases = (
+        np.arange(run_settings.periods * run_settings.samples) / run_settings.samples
+    )
+    kept = phases < run_settings.shown_periods
+    orders = np.arange(
+        run_settings.orders * run_settings.periods * run_settings.padding
+    ) / (run_settings.periods * run_settings.padding)
+    near = np.abs(orders - 1.0) < run_settings.neighbourhood
     shape = len(branches), len(length_ratios)
     histories = np.full((*shape, int(kept.sum())), np.nan)
     spectra = np.full((*shape, len(orders)), np.nan)
@@ -55,7 +73,9 @@ def a1_beside_a4(
     omegas, references = [], []
 
     def spectrum(history: Vector) -> Vector:
-        return amplitude_spectrum(history, 1.0, padding=_PADDING)[1][..., : len(orders)]
+        return amplitude_spectrum(history, 1.0, padding=run_settings.padding)[1][
+            ..., : len(orders)
+        ]
 
     for i, (name, (alpha1, alpha2, mode)) in enumerate(branches.items()):
         scene = scaled_system(params, alpha1, alpha2)
@@ -103,5 +123,7 @@ def a1_beside_a4(
 
 def _repeated(rows: Vector, point: Vector) -> Vector:
     """y over all periods of the run, from half a period by symmetry."""
-    half = sample(rows, point, np.linspace(0.0, math.pi, _SAMPLES // 2 + 1))[:, 1]
-    return np.tile(np.concatenate([half, half[-2:0:-1]]), _PERIODS)
+    half = sample(
+        rows, point, np.linspace(0.0, math.pi, run_settings.samples // 2 + 1)
+    )[:, 1]
+    return np.tile(np.concatenate([half, half[-2:0:-1]]), run_settings.periods)

@@ -31,9 +31,6 @@ from squealpipe.schema.origin import recorded
 from squealpipe.systems.inputs.values import brief
 from squealpipe.validation import Angle, Mode, Positive, Whole
 
-_MOST_TABLE_ENTRIES = 2**23
-"""Of the table of cosines at the samples: 64 MiB."""
-
 
 @recorded(model="A4")
 def backbone(
@@ -167,7 +164,8 @@ def with_orbits(
 
 def _check_sampling(n_harmonics: int, n_time: int | None) -> None:
     """Raise a ValueError unless the samples of a period are enough, and fit into memory."""
-    least, most = 2 * n_harmonics + 1, _MOST_TABLE_ENTRIES // (n_harmonics + 1)
+    # the table of cosines at the samples takes 64 MiB at most
+    least, most = 2 * n_harmonics + 1, (2**23) // (n_harmonics + 1)
     if n_time is not None and not least <= n_time <= most:
         raise ValueError(
             f"n_time = {brief(n_time)}: a whole number is needed, at least 2 n_harmonics + 1 = "

@@ -22,13 +22,7 @@ Vector = NDArray[np.float64]
 Branches = Mapping[str, tuple[float, float, int]]
 """Name → (alpha1, alpha2, mode)."""
 
-_INTERVALS = 2**14
-"""Intervals of half a period from which an exact orbit's cosines are taken."""
-PEAK = 2.0
-"""y_peak of the orbits, over l_pre."""
-N_HARMONICS, N_TIME = 8, 34
-_PHASES = 13
-"""Phases of the start; not a divisor of the samples, whose own symmetry would hide the spread."""
+N_HARMONICS = 8
 
 
 @dataclass(frozen=True)
@@ -52,8 +46,9 @@ def exact_motion(
             f"alpha1 = {alpha1!r}, alpha2 = {alpha2!r}, mode = {mode!r}, peak = {peak!r}: no "
             f"orbit ({outcome.name}); choose another scene, mode or peak"
         )
+    # intervals of half a period from which an exact orbit's cosines are taken
     states = sample(
-        scene.system.rows, orbit.point, np.linspace(0.0, math.pi, _INTERVALS + 1)
+        scene.system.rows, orbit.point, np.linspace(0.0, math.pi, (2**14) + 1)
     )
     return ExactMotion(scene, orbit, cosines_of(states[:, 0]), cosines_of(states[:, 1]))
 
@@ -67,13 +62,14 @@ def compare_harmonic_forms(params: Parameters, branches: Branches) -> xr.Dataset
     """
     forms = (Form.mended, Form.as_printed)
     sigma = params.sigma * params.preload
-    motions = [exact_motion(params, *branch, PEAK) for branch in branches.values()]
+    # y_peak of the orbits, over l_pre
+    motions = [exact_motion(params, *branch, 2.0) for branch in branches.values()]
     solved = []
     for motion in motions:
         system, omega = motion.scene.system, motion.orbit.omega
         balances = [
             SampledBalance(
-                system, N_HARMONICS, N_TIME, sigma, as_printed=form == Form.as_printed
+                system, N_HARMONICS, 34, sigma, as_printed=form == Form.as_printed
             )
             for form in forms
         ]
@@ -116,7 +112,9 @@ def _phase_spread(
     """(spread of the largest y, spread of ω, rank of Γ) over the phase of the start."""
     balance = SampledBalance(motion.scene.system, N_HARMONICS, n_time, sigma)
     peaks, omegas = [], []
-    for phase in 2.0 * math.pi * np.arange(_PHASES) / _PHASES:
+    # not a divisor of the samples, whose own symmetry would hide the spread
+    phases = 13
+    for phase in 2.0 * math.pi * np.arange(phases) / phases:
         start = balance.start_from_cosines(
             motion.x, motion.y, motion.orbit.omega, float(phase)
         )

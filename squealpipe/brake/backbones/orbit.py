@@ -18,11 +18,6 @@ from squealpipe.schema.origin import recorded
 from squealpipe.systems.inputs.values import brief
 from squealpipe.validation import Angle, Mode, Positive
 
-PHASES = np.linspace(0.0, math.pi, 201)
-"""Where the path of an orbit is kept."""
-MOST_PRELOADS = 1e100
-"""Lengths over l_pre beyond which squares overflow."""
-
 
 @recorded(model="A4", method="exact")
 def periodic_orbit(
@@ -55,12 +50,14 @@ def periodic_orbit(
         "sliding_assumption": Assumption.holds,
     }
     switches, path = np.empty(0), np.empty((0, 4))
+    # phases at which the path of the orbit is kept
+    path_phases = np.linspace(0.0, math.pi, 201)
     if found is not None:
         values |= orbit_values(scene, params, found.point)
         values["stability_index"] = found.stability_index
         values["residual"] = found.residual
         switches = found.switches / scene.frequency
-        path = sample(scene.system.rows, found.point, PHASES) * scene.length
+        path = sample(scene.system.rows, found.point, path_phases) * scene.length
     return build(
         PERIODIC_ORBIT,
         {
@@ -68,7 +65,7 @@ def periodic_orbit(
             "y_peak": y_peak,
             "mode": mode,
             "switching_times": switches,
-            "time": PHASES[: len(path)] / values["omega"],
+            "time": path_phases[: len(path)] / values["omega"],
             "x_path": path[:, 0],
             "y_path": path[:, 1],
             "outcome": outcome,
@@ -80,8 +77,10 @@ def periodic_orbit(
 
 def check_length(name: str, value: float, preload: float) -> None:
     """Raise a ValueError unless a length is finite over l_pre too."""
-    if not value <= MOST_PRELOADS * preload:
+    # squares of longer lengths overflow
+    most_preloads = 1e100
+    if not value <= most_preloads * preload:
         raise ValueError(
-            f"{name} = {brief(value)}: more than {MOST_PRELOADS:g} times preload = {preload!r}; "
+            f"{name} = {brief(value)}: more than {most_preloads:g} times preload = {preload!r}; "
             "give lengths in one system of units"
         )

@@ -16,10 +16,6 @@ from squealpipe.vibration.parabola import vertex
 
 Vector = NDArray[np.float64]
 
-_LAST_STEP = 1e-9
-"""Of Newton's method; its square, the error that is left, is below round-off."""
-_SAMPLES_PER_HARMONIC = 8
-
 
 def contact_angles(
     cosine: Vector, threshold: float, grid: Vector, table: Vector
@@ -51,7 +47,8 @@ def contact_angles(
         return threshold - np.cos(phase) @ cosine, np.sin(phase) @ rate
 
     left, right, first, last = found
-    return bracketed(gap_at, (left, right), (first, last), _LAST_STEP)
+    # the square of Newton's last step, the error that is left, is below round-off
+    return bracketed(gap_at, (left, right), (first, last), 1e-9)
 
 
 def _hidden_dips(gap: Vector, above: NDArray[np.bool_], grid: Vector) -> Vector:
@@ -87,9 +84,8 @@ class ClosedFormContact:
     @cached_property
     def grid(self) -> Vector:
         """Angles between which contact times are looked for."""
-        return np.linspace(
-            0.0, math.pi, max(32, _SAMPLES_PER_HARMONIC * self.n_harmonics) + 1
-        )
+        # eight samples for each harmonic show every dip
+        return np.linspace(0.0, math.pi, max(32, 8 * self.n_harmonics) + 1)
 
     @cached_property
     def _table(self) -> Vector:

@@ -19,8 +19,6 @@ from squealpipe.systems.continuation import ContinuationSettings, PseudoArclengt
 from squealpipe.vibration.parabola import largest
 
 Vector = NDArray[np.float64]
-_AUTOMATIC_SAMPLES = 16
-_SAMPLES_PER_SMOOTHING_WIDTH = 8
 
 
 def contact_of(
@@ -34,11 +32,9 @@ def contact_of(
     if n_time is None and sigma is None:
         return ClosedFormContact(n_harmonics, threshold)
     if n_time is None and sigma is not None:
-        wanted = max(
-            _AUTOMATIC_SAMPLES * n_harmonics,
-            _SAMPLES_PER_SMOOTHING_WIDTH * sigma * threshold,
-            256,
-        )
+        # sixteen samples for each harmonic
+        # eight over the width of the smoothed contact
+        wanted = max(16 * n_harmonics, 8 * sigma * threshold, 256)
         n_time = 2 ** math.ceil(math.log2(min(wanted, 2**14)))
     return SampledContact(n_harmonics, threshold, int(n_time or 0), sigma)
 

@@ -17,7 +17,6 @@ from squealpipe.brake.orbits.piecewise_linear import PiecewiseLinearSystem
 from squealpipe.laws.contact import smoothed_compression, smoothed_compression_slope
 
 Vector = NDArray[np.float64]
-_RANK_TOLERANCE = 1e-10
 
 
 def fourier_matrix(n_harmonics: int, n_time: int) -> Vector:
@@ -125,7 +124,7 @@ class SampledBalance:
         for _ in range(max_iterations):
             if not np.abs(values).max() > tolerance or not np.isfinite(eta).all():
                 break
-            eta = eta - np.linalg.lstsq(jacobian, values, rcond=_RANK_TOLERANCE)[0]
+            eta = eta - np.linalg.lstsq(jacobian, values, rcond=1e-10)[0]
             values, jacobian = self.evaluate(eta)
         count = 2 * self.n_harmonics + 1
         residual = float(np.abs(values).max())

@@ -15,7 +15,6 @@ from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.systems.processes import cpu_time
 
-WHY = "its cheaper levels have neither dashpots nor any friction but Coulomb's"
 LEVELS = tuple(Level)
 
 
@@ -32,7 +31,11 @@ def model_ladder(
     Args:
         points: cells along each angle, at the centres of equal intervals.
     """
-    refuse_extensions(params, "the model ladder", WHY)
+    refuse_extensions(
+        params,
+        "the model ladder",
+        "its cheaper levels have neither dashpots nor any friction but Coulomb's",
+    )
     horizon = HORIZON * params.time_unit if t_end is None else t_end
     angles = (np.arange(points) + 0.5) * math.pi / points
     alpha1, alpha2 = (

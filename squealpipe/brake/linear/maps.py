@@ -27,11 +27,6 @@ from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
 from squealpipe.validation import Angles, Positive
 
-CANCELLATION = 3e-4
-"""A discriminant or determinant below this share of (trace/2)² is formed in more digits."""
-
-DIGITS = 40
-
 
 @recorded(model="A2", method="closed form")
 def quasi_static_map(
@@ -194,7 +189,9 @@ def _spectrum(
     """
     system = contact_system(params, alpha1[:, None], alpha2[None, :], k3=k3)
     invariants = system.invariants
-    small = CANCELLATION * invariants.half_trace**2
+    # below this share of (trace/2)² a discriminant or determinant has lost digits, and is formed
+    # in more
+    small = 3e-4 * invariants.half_trace**2
     close = (np.abs(invariants.discriminant) < small) | (
         np.abs(invariants.determinant) < small
     )
@@ -203,7 +200,7 @@ def _spectrum(
     import mpmath  # a quarter of a second, which most jobs and commands can save
 
     rows, columns = np.nonzero(close)
-    with mpmath.workdps(DIGITS):
+    with mpmath.workdps(40):
         p = SimpleNamespace(
             **{name: _precise(getattr(params, name)) for name in NUMBERS_OF_A1}
         )

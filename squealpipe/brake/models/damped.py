@@ -24,16 +24,6 @@ from squealpipe.laws.dashpots import linear_damping
 from squealpipe.laws.friction_laws import slope
 from squealpipe.laws.springs import Stiffness, geometry, pair_determinant, sine_of_sum
 
-POLISHES = 3
-"""Newton steps in long double that take double eigenvalues to its round-off."""
-MARGINAL = 1e3
-"""Growth below this share of |s|, in units of round-off, is that of a mode that is not damped."""
-CLEAR = 1e-10
-"""Routh–Hurwitz numbers above which the sign of none of them is that of round-off."""
-
-_EQUAL = 1e-12
-"""Relative difference within which two critical frictions are one."""
-
 
 class DampedSystem(NamedTuple):
     """C and K of the mass in contact, over m: 1/s and 1/s²; their determinants. With friction
@@ -144,7 +134,8 @@ def eigenvalues(s: DampedSystem) -> np.ndarray:
     precision = np.result_type(*clean, np.complex64)
     roots = np.linalg.eigvals(matrix).astype(precision)
     p1, p2, p3, p4 = (c[..., None] for c in clean)
-    for _ in range(POLISHES):
+    # three Newton steps in long double take double eigenvalues to its round-off
+    for _ in range(3):
         value = (((roots + p1) * roots + p2) * roots + p3) * roots + p4
         rate = ((4 * roots + 3 * p1) * roots + 2 * p2) * roots + p3
         step = np.where(rate == 0, 0, value / np.where(rate == 0, 1, rate))
@@ -171,7 +162,8 @@ def stability(s: DampedSystem) -> LinearStability:
     leading = np.take_along_axis(
         found, np.argmax(found.real, axis=-1)[..., None], axis=-1
     )[..., 0]
-    marginal = MARGINAL * np.finfo(found.real.dtype).eps
+    # growth below a thousand units of round-off, over |s|, is that of a mode that is not damped
+    marginal = 1e3 * np.finfo(found.real.dtype).eps
     unstable = leading.real > marginal * np.abs(found).max(axis=-1)
     oscillates = np.abs(leading.imag) > np.sqrt(marginal) * np.abs(leading)
     return LinearStability(
@@ -212,9 +204,11 @@ def regime(s: DampedSystem) -> np.ndarray:
     Eigenvalues are found where Routh–Hurwitz does not clearly decide.
     """
     _, p = polynomial(s)
-    decided = hurwitz(p) > CLEAR
+    # Routh–Hurwitz numbers above it have a sign that is not that of round-off
+    clear = 1e-10
+    decided = hurwitz(p) > clear
     for coefficient in p:
-        decided &= coefficient > CLEAR
+        decided &= coefficient > clear
     left = DampedSystem._make(entry[~decided] for entry in s)
     found = np.full(decided.shape, LinearRegime.stable)
     found[~decided] = stability(left).regime
@@ -280,7 +274,8 @@ def dashpots_lower(damped: Any, undamped: Any) -> Any:
 
     Where steady sliding diverges first, both are one number that is formed in two ways.
     """
-    return damped < (1.0 - _EQUAL) * undamped
+    # critical frictions within this relative difference are one
+    return damped < (1.0 - 1e-12) * undamped
 
 
 def _without_round_off(matrix: Stiffness) -> Stiffness:

@@ -40,8 +40,6 @@ from squealpipe.validation import (
 )
 
 QUANTITIES = ("flutter", "contact_loss", "irregular_hammering", "whirl")
-INDEX_FACTOR = np.array([[4], [1], [1], [1]])
-"""Base sample of the indices of each quantity, over that of the shares: flutter needs no run."""
 SIZES = 6
 ORDERS = ("first_order", "total_order")
 INDICES = tuple(f"{order}{end}" for order in ORDERS for end in ("", "_low", "_high"))
@@ -121,7 +119,8 @@ def propensity(
     happens = judge(values)
     low, high = np.transpose([sobol.share_interval(each) for each in happens])
     sizes = samples >> np.arange(SIZES)[::-1]
-    index_samples = INDEX_FACTOR * sizes
+    # base sample of the indices of each quantity, over that of the shares: flutter needs no run
+    index_samples = np.array([[4], [1], [1], [1]]) * sizes
     blank = dict.fromkeys(INDICES, np.full((len(QUANTITIES), len(names)), np.nan))
     table = blank | {"half_width_by_size": np.full((len(QUANTITIES), SIZES), np.nan)}
     if not spring_correlation:

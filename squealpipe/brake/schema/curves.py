@@ -35,13 +35,15 @@ class ChartLine(IntEnum):
     stick = 4
 
 
-RATIOS = {"kappa": "k3/k1", "lambda_": "L1/l_pre, both lengths in their proportion"}
 VARIED = {
     "alpha1": Variable("angle of spring 1", "rad", ("point",), optional=True),
     "alpha2": Variable("angle of spring 2", "rad", ("point",), optional=True),
     **{
         name: Variable(what, "1", ("point",), optional=True)
-        for name, what in RATIOS.items()
+        for name, what in {
+            "kappa": "k3/k1",
+            "lambda_": "L1/l_pre, both lengths in their proportion",
+        }.items()
     },
     **{
         name: Variable(row.meaning, row.units, ("point",), optional=True)

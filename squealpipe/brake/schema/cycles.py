@@ -64,11 +64,6 @@ def _cycle_variables(*dims: str) -> dict[str, Variable]:
     }
 
 
-_PHASE = RoundOff(
-    ComparedAs.unjudged,
-    "where on a cycle its description starts follows from the way on which it was found",
-)
-
 MULTIPLIER = count("number of the multiplier", "multiplier")
 
 LIMIT_CYCLE = DatasetSchema(
@@ -137,7 +132,14 @@ CYCLE_BRANCH = DatasetSchema(
         ),
         **{
             f"{name}_start": or_nan(
-                f"{words} at time 0 of the cycle", units, ("point",), round_off=_PHASE
+                f"{words} at time 0 of the cycle",
+                units,
+                ("point",),
+                round_off=RoundOff(
+                    ComparedAs.unjudged,
+                    "where on a cycle its description starts follows from the way on which it was "
+                    "found",
+                ),
             )
             for name, (units, words) in STATE.items()
         },

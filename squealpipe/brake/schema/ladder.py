@@ -102,7 +102,6 @@ class Level(IntEnum):
 QUESTIONS = ("contact_lost", "frequency", "peak_contact_force", "max_displacement")
 """What can be asked of a scene."""
 
-_CELL = ("question", *MAP)
 
 MODEL_LADDER = DatasetSchema(
     name="model_ladder",
@@ -122,7 +121,7 @@ MODEL_LADDER = DatasetSchema(
         "cheapest": flag(
             "cheapest level within the tolerance that drops something that mattered",
             Level,
-            *_CELL,
+            *("question", *MAP),
         ),
         "chosen": flag("level that choose_model takes for contact lost", Level, *MAP),
         "chosen_wrong": whether("whether its answer is not A1's", *MAP),

@@ -36,19 +36,11 @@ TANH = "tanh balance, sampled"
 HILL, NUMERIC = "Hill's method, sampled", "numpy.linalg"
 METHODS = (EXACT, BALANCE, COLD, ARC, TANH, CORRECTED, PRINTED, HILL, NUMERIC)
 """The columns; the first two are ours."""
-TOLERANCE = 1e-5
-"""Largest error of ω that counts as right, in √(k1/m)."""
 N_HARMONICS = 16
-PAPER_SIGMA = 1e3
 TRUTH_HARMONICS = 128
 """Their ω is good to 1e-9, ten thousand times better than the tolerance."""
-HILL_HARMONICS, HILL_SAMPLES = 16, 80
+HILL_HARMONICS = 16
 NOT_CONVERGED = "Newton did not converge"
-FARTHEST = 0.01
-"""A balance point whose own distance from the exact orbit is larger, over l_pre, warns."""
-_REACHED = (Outcome.converged, Outcome.amplitude_reached, Outcome.linear_mode)
-_MOST_POINTS = 400
-_ONSET = 2.0**-40
 
 
 class BranchCase(NamedTuple):
@@ -174,7 +166,8 @@ def _branch(case: BranchCase) -> HardScene:
     }
     if case.sigma is None:
         answers[ARC] = lambda: _arc_length(scene, case, balance)
-    return HardScene(case.name, truth, TOLERANCE, answers)
+    # largest error of ω that counts as right, in √(k1/m)
+    return HardScene(case.name, truth, 1e-5, answers)
 
 
 def _exact_orbit(case: BranchCase) -> Answer:
@@ -188,11 +181,8 @@ def _our_balance(case: BranchCase) -> Answer:
     if flag or not branch.sizes["point"]:
         return Answer(math.nan, flag)
     away = float(branch.waveform_error[-1])
-    flag = (
-        ""
-        if away < FARTHEST * BASE.preload
-        else f"{away:.2g} away from the exact orbit"
-    )
+    # a balance point farther from the exact orbit, over l_pre, warns
+    flag = "" if away < 0.01 * BASE.preload else f"{away:.2g} away from the exact orbit"
     return Answer(float(branch.omega[-1]), flag)
 
 
@@ -232,12 +222,9 @@ def _paper(
 
     What is found is therefore compared with the exact orbit of its own peak, where there is one.
     """
+    # the paper's σ, where the case has none of its own
     balance = SampledBalance(
-        scene.system,
-        N_HARMONICS,
-        case.n_time,
-        case.sigma or PAPER_SIGMA,
-        as_printed=as_printed,
+        scene.system, N_HARMONICS, case.n_time, case.sigma or 1e3, as_printed=as_printed
     )
     start = balance.start_from_cosines(
         z[: N_HARMONICS + 1], z[N_HARMONICS + 1 : -1], float(z[-1])
@@ -261,7 +248,7 @@ def _arc_length(
     start = linear_series(scene, case.mode, N_HARMONICS, orbit.point)
     direction = np.zeros_like(start)
     direction[1], direction[N_HARMONICS + 2] = scene.slope(case.mode), 1.0
-    settings = ContinuationSettings(max_points=_MOST_POINTS)
+    settings = ContinuationSettings(max_points=400)
 
     def reached(state: Any) -> bool:
         return bool(balance.peak_row @ state.point >= case.y_peak)
@@ -276,7 +263,12 @@ def _arc_length(
 
 def _flag(outcome: Any) -> str:
     outcome = Outcome(int(outcome))
-    return "" if outcome in _REACHED else f"{outcome.name}: {outcome.remedy}"
+    return (
+        ""
+        if outcome
+        in (Outcome.converged, Outcome.amplitude_reached, Outcome.linear_mode)
+        else f"{outcome.name}: {outcome.remedy}"
+    )
 
 
 def _period_doubling() -> HardScene:
@@ -304,7 +296,7 @@ def _period_doubling() -> HardScene:
         if solution is None:
             return Answer(math.nan, NOT_CONVERGED)
         _, y, omega = balance.split(solution[0])
-        share = sampled_share_above(y, 1.0, HILL_SAMPLES)
+        share = sampled_share_above(y, 1.0, 80)
         multipliers = hill_multipliers(scene.system, share, omega)
         return Answer(float(np.abs(multipliers).max() > 1.0 + 1e-3))
 
@@ -342,7 +334,8 @@ def _flutter_onset() -> HardScene:
     The structure of Hoffmann et al. (2002), K11 = K22 + k3, with numbers that binary holds
     exactly and onset at μ = 1.
     """
-    stiffness, mu = Stiffness(2.0, -1.0, 1.0), 1.0 - _ONSET
+    # just below the onset of flutter, by a number that doubles hold exactly
+    stiffness, mu = Stiffness(2.0, -1.0, 1.0), 1.0 - (2.0**-40)
     a11, a12, a21, a22 = a4.contact_matrix(stiffness, 1.0, mu)
     with mpmath.workdps(60):
         half, mean = (mpmath.mpf(a11) - a22) / 2, (mpmath.mpf(a11) + a22) / 2

@@ -26,24 +26,9 @@ from squealpipe.brake.orbits.orbits import Orbit, solve_orbit
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 
-DEFAULT_HARMONICS = 16
-"""N_h of our backbones unless given otherwise."""
 MODE = 1
-COUPLED_SCENE = (0.3 * math.pi, 0.9 * math.pi)
-"""Angles at which mode 1 moves in x and y and loses contact, rad."""
-PEAKS = (1.25, 1.75, 2.25, 2.75, 3.5)
-"""y_peak over l_pre; none close to the period doubling at 3.9."""
 CORRECTED, PRINTED = "paper, Eq. (34) corrected", "paper, Eq. (34) as printed"
 PAPER_SIGMA = 1e3
-PAPER_HARMONICS = 16
-"""Most harmonics of the paper's form here: its pseudo-inverse costs the cube of their number."""
-_GUESS_SAMPLES = 512
-_STEP = 0.02
-"""The start of a solution is the orbit at a peak lower by this, as along a backbone."""
-_SHORT = 2e-3
-"""A run shorter than this, s, is called several times between two readings of the clock."""
-_LONG = 0.1
-"""A run longer than this, s, is called twice at most: it scatters little, and all cores wait."""
 
 Method = Callable[[Orbit, Orbit], tuple[Callable[[], Any], Callable[[Any], float]]]
 """(exact orbit, one before it) → what is timed, and the error of its result."""
@@ -62,9 +47,13 @@ def work_precision(
     Args:
         oversampling: N over 2 N_h; 1 is the fewest samples that keep the columns independent.
     """
-    scene = scaled_system(params, *COUPLED_SCENE)
+    # angles at which mode 1 moves in x and y and loses contact
+    scene = scaled_system(params, 0.3 * math.pi, 0.9 * math.pi)
+    # y_peak over l_pre; none close to the period doubling at 3.9
+    # the start of a solution is the orbit at a peak lower by 0.02, as along a backbone
     found = [
-        [find_orbit(scene, MODE, peak - d)[0] for d in (0.0, _STEP)] for peak in PEAKS
+        [find_orbit(scene, MODE, peak - d)[0] for d in (0.0, 0.02)]
+        for peak in (1.25, 1.75, 2.25, 2.75, 3.5)
     ]
     pairs = [(orbit, start) for orbit, start in found if orbit and start]
     rows = []
@@ -92,8 +81,9 @@ def _methods(
     oversampling: Sequence[int],
 ) -> Iterator[tuple[str, str, Role, Method]]:
     """Closed forms over N_h, sampled forces over N_h and N, smoothed ones over σ; orbits; paper."""
-    for count in sorted({*harmonics, DEFAULT_HARMONICS}):
-        role = Role.our_setting if count == DEFAULT_HARMONICS else Role.ours
+    default = 16
+    for count in sorted({*harmonics, default}):
+        role = Role.our_setting if count == default else Role.ours
         closed = partial(_cosines, scene, count, None, None)
         yield "cosines, closed-form contact", f"N_h {count}", role, closed
         for factor in oversampling:
@@ -113,7 +103,8 @@ def _methods(
         )
     name = "exact orbit (shooting)"
     yield name, "with monodromy", Role.our_setting, partial(_shooting, scene)
-    for count in (each for each in harmonics if each <= PAPER_HARMONICS):
+    # the paper's pseudo-inverse costs the cube of the number of harmonics
+    for count in (each for each in harmonics if each <= 16):
         setting = f"N_h {count}, N {4 * count + 2}, sigma {PAPER_SIGMA:g}"
         for name, printed in ((CORRECTED, False), (PRINTED, True)):
             yield (
@@ -175,7 +166,7 @@ def orbit_series(
     scene: ScaledSystem, orbit: Orbit, n_harmonics: int
 ) -> NDArray[np.float64]:
     """Unknowns of the cosine balance that describe an exact orbit."""
-    theta = np.linspace(0.0, math.pi, _GUESS_SAMPLES + 1)
+    theta = np.linspace(0.0, math.pi, 512 + 1)
     cosines = cosines_of(sample(scene.system.rows, orbit.point, theta)[:, :2])
     kept = cosines[: n_harmonics + 1]
     return np.concatenate([kept[:, 0], kept[:, 1], [orbit.omega]])
@@ -190,7 +181,9 @@ def timed(run: Callable[[], Any], repeats: int) -> tuple[Any, float]:
     started = time.perf_counter()
     result = run()
     first = time.perf_counter() - started
-    calls = 1 if first > _SHORT else 5
-    others = (min(repeats, 2) if first > _LONG else repeats) - 1
+    # s: a shorter run is called several times between two readings of the clock
+    calls = 1 if first > 2e-3 else 5
+    # s: a longer run is called twice at most: it scatters little, and all cores wait
+    others = (min(repeats, 2) if first > 0.1 else repeats) - 1
     spent = [each / calls for each in timeit.repeat(run, number=calls, repeat=others)]
     return result, statistics.median_low([first, *spent])

@@ -25,14 +25,9 @@ RIM = 192
 """Points around the disc of flutter."""
 INSIDE = 1.0 - 1e-6
 """Their distance from its centre, in radii: unstable, and at the edge where contact lasts."""
-DIVERGENT = 24
-"""Points along each arc that bounds divergence."""
-AT_ONCE = 256
-"""Sets whose cells are looked for at once, half a megabyte an array."""
 READ = ("mass", "k1", "k2", "k3")
 EQUAL = ("length1", "length2", "damping1", "damping2")
 """Parameters that the linear model reads, and others that a mirror image has to share."""
-FLUTTER = LinearRegime.flutter
 
 
 class Unstable(NamedTuple):
@@ -66,15 +61,22 @@ def unstable_along_edges(
         fields: parameters by name, and ``drag``, (sets,).
     """
     found: list[Unstable] = []
-    for first in range(0, len(fields["mass"]), AT_ONCE):
-        rows = slice(first, first + AT_ONCE)
+    # sets whose cells are looked for at once: half a megabyte an array
+    at_once = 256
+    for first in range(0, len(fields["mass"]), at_once):
+        rows = slice(first, first + at_once)
         p = SimpleNamespace(**{name: fields[name][rows, None] for name in READ})
         p.drag = np.asarray(fields["drag"])[rows, None]
         mirrored = springs_alike({n: v[rows] for n, v in fields.items()})
         alpha1, alpha2, there = _along_edges(p, mirrored, inside)
         regime = np.asarray(a3.regime(contact_system(p, alpha1, alpha2).invariants))
         found += [
-            _where(kind[known], first[known], second[known], kind[known] == FLUTTER)
+            _where(
+                kind[known],
+                first[known],
+                second[known],
+                kind[known] == LinearRegime.flutter,
+            )
             for kind, first, second, known in zip(
                 regime, alpha1, alpha2, there, strict=True
             )
@@ -124,7 +126,8 @@ def _along_edges(
     centre, radius = a3.flutter_circle(p, p.k3)
     turn = (np.arange(RIM) + 0.5) * (2.0 * np.pi / RIM)
     flutter = centre + inside * radius * np.exp(1j * turn)
-    arcs = a3.reached_arcs(p, *a3.divergence_circle(p, p.k3), DIVERGENT)
+    # points along each arc that bounds divergence
+    arcs = a3.reached_arcs(p, *a3.divergence_circle(p, p.k3), 24)
     edge = np.concatenate([arc[:, 1:-1] for arc in arcs], axis=1)
     z = np.concatenate([flutter, edge * 0.5 * (1.0 + farthest / np.abs(edge))], axis=1)
     with np.errstate(invalid="ignore"):  # NaN where the circle is not reached

@@ -17,8 +17,6 @@ JUDGED = 3
 """The last windows, whose sizes decide."""
 GROWS = 1.05
 """Least ratio of each of these sizes to the one before in growth without bound."""
-SATURATES = 1.02
-"""Largest ratio among these sizes in a motion that has stopped growing."""
 HORIZON = WINDOWS * WINDOW
 """Length of a run, √(m/k1)."""
 RULE = (
@@ -45,7 +43,8 @@ def least_growth(sizes: Any) -> np.ndarray:
 def judge_growth(sizes: Any) -> np.ndarray:
     """:class:`Growth` of runs from the largest |x| in each window, (…, ``WINDOWS``)."""
     last = np.asarray(sizes, float)[..., -JUDGED:]
-    agree = last.max(axis=-1) <= SATURATES * last.min(axis=-1)
+    # a motion whose sizes agree to 2 % has stopped growing
+    agree = last.max(axis=-1) <= 1.02 * last.min(axis=-1)
     otherwise = np.where(agree, Growth.saturates, Growth.undecided)
     return np.where(least_growth(sizes) >= GROWS, Growth.grows, otherwise)
 

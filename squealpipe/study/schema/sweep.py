@@ -31,8 +31,6 @@ OPTIONS = {
 }
 """Options of tasks that can be swept besides parameters and angles."""
 
-_NAME = re.compile(r"^sweep of (?P<task>\w+) over (?P<names>\w+(?:, \w+)*)$")
-
 
 def sweep_name(task: str, names: Sequence[str]) -> str:
     """Name of the schema of a sweep."""
@@ -53,7 +51,7 @@ def swept_coordinate(name: str) -> Variable:
 
 def derived(name: str) -> DatasetSchema | None:
     """The schema of that name if it is the name of a sweep."""
-    match = _NAME.match(name)
+    match = re.match(r"^sweep of (?P<task>\w+) over (?P<names>\w+(?:, \w+)*)$", name)
     if match is None:
         return None
     names = match["names"].split(", ")

@@ -8,10 +8,6 @@ from squealpipe.brake.schema.dynamics.runs import FREQUENCY, SIMULATION, TIME
 from squealpipe.brake.schema.linear import ANGLES, MAP, MODES
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Variable, count, outcome
 
-RUN = (*MAP, "time")
-BRANCH = (*MAP, "mode", "point")
-
-
 DRAWN: dict[str, Any] = {"dtype": "f4", "rtol": 1e-5, "atol": 1e-6}
 """Single precision: what is drawn, not computed with."""
 HISTORIES = ("x", "y", "normalized_contact_force")
@@ -31,7 +27,7 @@ EXPLORER = DatasetSchema(
         **{
             name: replace(
                 SIMULATION.variables[name],
-                dims=RUN,
+                dims=(*MAP, "time"),
                 nan_allowed=False,
                 round_off=None,
                 **DRAWN,
@@ -49,7 +45,7 @@ EXPLORER = DatasetSchema(
         **{
             name: replace(
                 BACKBONE.variables[name],
-                dims=BRANCH,
+                dims=(*MAP, "mode", "point"),
                 nan_allowed=True,
                 optional=True,
                 **DRAWN,

@@ -5,13 +5,12 @@ import xarray as xr
 
 from squealpipe.codes import Event, Regime
 
-BEGINS = {Regime.separated: Event.separation, Regime.stick: Event.stick}
-"""Regime → the event that begins it; the next event ends it."""
-
 
 def intervals(run: xr.Dataset, regime: Regime) -> np.ndarray:
     """Begin and end of each stay of a ``simulation`` in a regime, s, (stays, 2)."""
     kinds, times = run.event_kind.values, run.event_time.values
-    begins = [int(run.regime[0]) == regime, *(kinds == BEGINS[regime])]
+    # the next event ends what this one begins
+    beginning = {Regime.separated: Event.separation, Regime.stick: Event.stick}[regime]
+    begins = [int(run.regime[0]) == regime, *(kinds == beginning)]
     ends = np.append(times, float(run.time_reached))
     return np.stack([np.append(0.0, times), ends], axis=1)[begins]

@@ -19,7 +19,6 @@ _IRREGULAR = (
     "one long run, irregular where the belt is slow: the last bit of the belt speed, which the "
     "vector instructions of the processor decide, changes when each extreme is reached"
 )
-_LONG_RUN = RoundOff(ComparedAs.magnitude, _IRREGULAR, factor=1.1)
 _LONG_SAMPLE = RoundOff(ComparedAs.sample, _IRREGULAR, sample="belt_speed")
 
 WHIRL = DatasetSchema(
@@ -31,7 +30,7 @@ WHIRL = DatasetSchema(
             "largest |x| in the last fifth of the run",
             "m",
             ("belt_speed",),
-            round_off=_LONG_RUN,
+            round_off=RoundOff(ComparedAs.magnitude, _IRREGULAR, factor=1.1),
         ),
         "stick_fraction": Variable(
             "share of the time sticking to the belt",
@@ -61,11 +60,12 @@ WHIRL = DatasetSchema(
     },
 )
 
-_WHY_CHAOTIC = (
+_CHAOTIC = RoundOff(
+    ComparedAs.sample,
     "a chaotic transient multiplies round-off by e many times over before it ends: only the "
-    "distribution of its lifetimes is a result"
+    "distribution of its lifetimes is a result",
+    sample="sample",
 )
-_CHAOTIC = RoundOff(ComparedAs.sample, _WHY_CHAOTIC, sample="sample")
 TRANSIENT = DatasetSchema(
     name="transient",
     title="How long the bounded motion at (0.2 pi, 0.8 pi) lasts",

@@ -42,14 +42,17 @@ class MotionFlag(IntEnum):
 _GROWN = RoundOff(
     ComparedAs.grown, "an error of the last digit grows along the run", by="growth"
 )
-_LOST = RoundOff(
-    ComparedAs.beyond_horizon,
-    "beyond its predictability horizon a run follows the last digits of its start, which differ "
-    "from machine to machine",
-    by="outcome",
-)
 
-IN_MAP: dict[str, Any] = {"rtol": 1e-5, "atol": 1e-7, "round_off": _LOST}
+IN_MAP: dict[str, Any] = {
+    "rtol": 1e-5,
+    "atol": 1e-7,
+    "round_off": RoundOff(
+        ComparedAs.beyond_horizon,
+        "beyond its predictability horizon a run follows the last digits of its start, which "
+        "differ from machine to machine",
+        by="outcome",
+    ),
+}
 """Up to the horizon an error of the last digit may have grown to nearly l_pre/1000."""
 
 
