@@ -76,15 +76,13 @@ def read_brake(_: App, __: tuple[str, ...], arguments: ArgumentCollection) -> No
                     source=", ".join(paths) or "cli",
                 )
             )
-    if "stiffness" in written and not any(_tokens(options, ANGLES)):
+    # the angles of a command that takes them in their order
+    angle_arguments = ("ALPHA1", "ALPHA2")
+    if "stiffness" in written and not any(_tokens(options, angle_arguments)):
         springs = equal_springs(**written["stiffness"])
-        for name, angle in zip(ANGLES, springs[1:], strict=True):
+        for name, angle in zip(angle_arguments, springs[1:], strict=True):
             if name in options:
                 options[name].append(Token(value=repr(angle), source=", ".join(paths)))
-
-
-ANGLES = ("ALPHA1", "ALPHA2")
-"""The angles of a command that takes them in their order."""
 
 
 def _tokens(options: dict[str, Any], names: Sequence[str]) -> list[Any]:

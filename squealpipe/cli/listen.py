@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     import numpy as np
     import xarray as xr
 
-FILMS = (".mp4", ".gif", ".html")
-
 
 def listen(
     file: Path,
@@ -107,7 +105,7 @@ def animate(
         dpi: dots per inch of a picture of 8 by 4.5 inches; 120 by default.
     """
     target = Path(file.with_suffix(".mp4").name) if output is None else output
-    check_output(target, force=force, kinds=FILMS)
+    check_output(target, force=force, kinds=(".mp4", ".gif", ".html"))
 
     from squealpipe.plotting.animation import film_of
     from squealpipe.plotting.film import NO_FFMPEG, has_ffmpeg, write_film

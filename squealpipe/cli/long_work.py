@@ -16,10 +16,6 @@ if TYPE_CHECKING:
 
 MANY = 250_000
 """Cells of a map from which on it is said what they take."""
-COPIES = 3
-"""Arrays of the size of the result that are in memory at once, about."""
-SHARE = 0.8
-"""Part of the machine's memory that a map may take."""
 
 
 def say_what_it_takes(
@@ -37,9 +33,13 @@ def say_what_it_takes(
     if cells < MANY:
         return
     memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    needed = cells * bytes_per_cell(function) * COPIES
-    if needed > SHARE * memory:
-        side = int(sqrt(SHARE * memory / bytes_per_cell(function) / COPIES))
+    # arrays of the size of the result that are in memory at once, about
+    copies = 3
+    needed = cells * bytes_per_cell(function) * copies
+    # the rest of the machine's memory is left to others
+    share_of_memory = 0.8
+    if needed > share_of_memory * memory:
+        side = int(sqrt(share_of_memory * memory / bytes_per_cell(function) / copies))
         raise ValueError(
             f"{sizes[0]} × {sizes[1]} = {cells:,} cells would take about {needed / 1e9:.0f} GB, "
             f"this machine has {memory / 1e9:.0f}; up to about {side} × {side} fit: take fewer "

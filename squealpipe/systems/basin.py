@@ -20,9 +20,6 @@ from squealpipe.systems.labels import attributes_of, flag, labels, outcome
 from squealpipe.systems.motion import MotionKind, RepeatableRuns, drift_tolerance
 from squealpipe.systems.schema import build
 
-SAME_ATTRACTOR = 1e-3
-"""Extremes of one attractor from two starts differ by less, over those of all attractors."""
-
 
 @checked
 def basin(
@@ -124,7 +121,8 @@ def _numbered(motion: np.ndarray, extremes: np.ndarray) -> np.ndarray:
     spans = np.ptp(extremes[settled], axis=(0, 2)) if settled.size else np.empty(0)
     while settled.size:
         ends = extremes[settled]
-        off = np.abs(ends - ends[0]) <= SAME_ATTRACTOR * spans[:, None]
+        # extremes of one attractor from two starts differ by less, over those of all attractors
+        off = np.abs(ends - ends[0]) <= 1e-3 * spans[:, None]
         same = off.all(axis=(1, 2)) & (motion[settled] == motion[settled[0]])
         numbers[settled[same]] = number
         settled, number = settled[~same], number + 1

@@ -17,7 +17,6 @@ Vector = NDArray[np.float64]
 Found = TypeVar("Found")
 ZERO_ROUND_OFF = 1e-9
 """Value below zero that is round-off."""
-_ZERO = 1e-12
 
 
 class Line(Generic[Found]):
@@ -79,13 +78,14 @@ class Line(Generic[Found]):
             found = test(*self.at(share))
             return 1.0 if found == np.inf else found
 
+        tolerance = 1e-12
         try:
             first = value(begin)
             if first <= 0.0 and value(end) < 0.0:
                 return begin if first > -ZERO_ROUND_OFF else None
             return float(
                 scipy.optimize.brentq(
-                    value, begin, end, xtol=_ZERO, rtol=_ZERO, maxiter=60
+                    value, begin, end, xtol=tolerance, rtol=tolerance, maxiter=60
                 )
             )
         except (ArithmeticError, ValueError, RuntimeError):

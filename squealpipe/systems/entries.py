@@ -4,6 +4,7 @@ Both are tried on random states of a switch's surface.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -19,18 +20,33 @@ from squealpipe.systems.taylor.symbols import Symbol, derivative, symbol
 from squealpipe.systems.text import expression
 from squealpipe.systems.trace import Traced, Tracer
 
-SAMPLES, HALVINGS = 64, 55
-"""States that are tried, and halvings of the way to a surface."""
-REACHES = (3.0, 60.0, 6e4)
-"""Largest values of the random states between which a surface is looked for, one after another."""
-ENOUGH = 16
-"""States that all must fire again before a switch is refused: fewer may do so by chance."""
-MOST_REGIMES = 8
-"""Regimes of a switch in which its progress is tried."""
-STAYS = 1e-9
-"""Height, over the change in a unit of time, that leaves a surface where it was."""
-VANISHES, ALIKE = 1e-14, 1e-6
-"""A base this small vanishes, unless it has the same value within this share at every entry."""
+
+@dataclass(frozen=True)
+class EntryChecks:
+    """Effort and tolerances of the checks of how regimes are entered."""
+
+    samples: int = 64
+    """Random states that are tried on each surface; more find rarer faults."""
+    halvings: int = 55
+    """Halvings of the way between two states to the surface between them: to round-off."""
+    reaches: tuple[float, ...] = (3.0, 60.0, 6e4)
+    """Largest values of the random states between which a surface is searched, in turn."""
+    enough: int = 16
+    """States that all must fire again before a switch is refused: fewer may do so by chance."""
+    most_regimes: int = 8
+    """Regimes of a switch in which its progress is tried; a system of many components has
+    thousands."""
+    stays: float = 1e-9
+    """A reset that leaves the surface this close, over its change in a unit of time, has left it
+    where it was."""
+    vanishes: float = 1e-14
+    """A base smaller than this vanishes at an entry ..."""
+    alike: float = 1e-6
+    """... unless it has the same value within this share at every entry: then it is a small
+    number."""
+
+
+checks = EntryChecks()
 Values = dict[str, Any]
 
 
@@ -54,10 +70,10 @@ class Entries:
         marks = len(leaves) == 1 and switch.changes_nothing_in(leaves[0])
         if marks or not entered & set(leaves):
             return
-        tried = leaves[:: -(-len(leaves) // MOST_REGIMES)]
+        tried = leaves[:: -(-len(leaves) // checks.most_regimes)]
         every = [self._fires_again(switch, regime, leaves) for regime in tried]
         again = np.concatenate(every)
-        if again.size >= ENOUGH and again.all():
+        if again.size >= checks.enough and again.all():
             raise ValueError(
                 f"switch {name!r} leads back into a regime that it leaves, and its reset leaves "
                 "the state where the surface goes on falling: it would fire again at once, without "
@@ -93,7 +109,7 @@ class Entries:
             after |= constants_of(traced, into)
             with np.errstate(all="ignore"):
                 height, rate = evaluate([surface, symbol(slope)], after)
-                level = STAYS * np.abs(speed)
+                level = checks.stays * np.abs(speed)
                 fires = (height < -level) | ((np.abs(height) <= level) & (rate < 0.0))
             falls &= ~here | np.isfinite(np.asarray(height) + np.asarray(rate))
             again |= here & fires
@@ -111,7 +127,8 @@ class Entries:
             if not powers:
                 continue
             tried = (
-                self.on_surface(switch.surface, left) for left in leaves[:MOST_REGIMES]
+                self.on_surface(switch.surface, left)
+                for left in leaves[: checks.most_regimes]
             )
             states = next((each for each in tried if _count(each, self.tracer)), None)
             if states is None:  # no random line meets the surface
@@ -133,9 +150,11 @@ class Entries:
     def _on_surface(self, surface: Symbol, regime: int) -> Values:
         """States where lines between two random ones meet a surface of a regime; maybe none."""
         rng = np.random.default_rng(0)
-        known = self.tracer.samples(rng, SAMPLES) | constants_of(self.traced, regime)
-        ends = rng.uniform(-1.0, 1.0, (2, len(self.tracer.states), SAMPLES))
-        for reach in REACHES:
+        known = self.tracer.samples(rng, checks.samples) | constants_of(
+            self.traced, regime
+        )
+        ends = rng.uniform(-1.0, 1.0, (2, len(self.tracer.states), checks.samples))
+        for reach in checks.reaches:
             found = self._between(surface, known, reach * ends)
             if _count(found, self.tracer):
                 break
@@ -153,19 +172,19 @@ class Entries:
         def height(share: np.ndarray) -> Any:
             state = at(share)
             (found,) = function(*(state[name] for name in arguments))
-            return np.broadcast_to(found, SAMPLES)
+            return np.broadcast_to(found, checks.samples)
 
         with np.errstate(all="ignore"):
-            first, last = np.zeros(SAMPLES), np.ones(SAMPLES)
+            first, last = np.zeros(checks.samples), np.ones(checks.samples)
             start = np.sign(height(first))
             meets = start * np.sign(height(last)) < 0.0
-            for _ in range(HALVINGS if meets.any() else 0):
+            for _ in range(checks.halvings if meets.any() else 0):
                 middle = 0.5 * (first + last)
                 same = np.sign(height(middle)) == start
                 first = np.where(same, middle, first)
                 last = np.where(same, last, middle)
         return {
-            name: np.broadcast_to(value, SAMPLES)[meets]
+            name: np.broadcast_to(value, checks.samples)[meets]
             for name, value in at(first).items()
         }
 
@@ -195,9 +214,9 @@ def constants_of(traced: Traced, regime: int) -> dict[str, float]:
 
 def _vanishes(base: np.ndarray) -> bool:
     """Return whether a base is zero but for round-off at every entry, and not just small."""
-    if not base.size or not (np.abs(base) < VANISHES).all():
+    if not base.size or not (np.abs(base) < checks.vanishes).all():
         return False
-    return bool(np.ptp(base) >= ALIKE * np.abs(base).max())
+    return bool(np.ptp(base) >= checks.alike * np.abs(base).max())
 
 
 def _powers(tracer: Tracer, traced: Traced, regime: int) -> Iterator[Symbol]:

@@ -24,14 +24,27 @@ from squealpipe.systems.recurrence import (
 
 AT_REST = 1e-3
 """A motion rests whose states stay this close together, over their ranges in the whole run."""
-MOST_PERIODS = 32
-"""Periods of the forcing up to which a cycle is sought."""
-_SAMPLES, _PER_STEP = 4096, 8
-"""Instants at which a return without events is looked for, and how many in a step."""
-_NEAR = 0.05
-"""Distance of a sampled return, over the ranges, from which the exact one is looked for."""
-_TRIES, _AT_ONCE = 4, 256
-"""Returns that are looked at, and runs whose samples are held at once."""
+
+
+@dataclass(frozen=True)
+class CycleRecognition:
+    """Limits by which the late part of many runs is recognised as a cycle."""
+
+    most_periods: int = 32
+    """Periods of the forcing up to which a cycle is sought."""
+    samples: int = 4096
+    """Instants at which a return without events is looked for."""
+    samples_per_step: int = 8
+    """Samples in each step of the integrator."""
+    near: float = 0.05
+    """Distance of a sampled return, over the ranges, from which the exact one is looked for."""
+    tries: int = 4
+    """Returns that are looked at."""
+    runs_at_once: int = 256
+    """Runs whose samples are held in memory at once."""
+
+
+limits = CycleRecognition()
 
 
 def drift_tolerance(tol: float) -> float:
@@ -137,8 +150,8 @@ class RepeatableRuns:
                 )
             steps = whole["steps"]
             quiet = np.flatnonzero(silent)
-            for first in range(0, quiet.size, _AT_ONCE):
-                rows = quiet[first : first + _AT_ONCE]
+            for first in range(0, quiet.size, limits.runs_at_once):
+                rows = quiet[first : first + limits.runs_at_once]
                 period[rows] = self._without_events(
                     rows, spans[rows], np.maximum(steps[rows], 1)
                 )
@@ -159,11 +172,14 @@ class RepeatableRuns:
             raise ValueError(
                 f"{self.system.name}: the period of its forcing must be greater than 0"
             )
-        most = LEAST_REPEATS * MOST_PERIODS
+        most = LEAST_REPEATS * limits.most_periods
         kept = int(np.clip(0.5 * self.duration / forcing.max(), 0, most))
         quarter = (0.25 * self.duration / forcing[rows]).astype(int)[:, None]
         # also a quarter and half of the run earlier, for every number of periods that may repeat
-        counts = np.arange(MOST_PERIODS + 1), np.arange(2 * MOST_PERIODS + 1)
+        counts = (
+            np.arange(limits.most_periods + 1),
+            np.arange(2 * limits.most_periods + 1),
+        )
         back = np.hstack(
             [
                 np.tile(np.arange(kept, -1, -1), (rows.size, 1)),
@@ -192,7 +208,7 @@ class RepeatableRuns:
         row = np.arange(rows.size)
         middle, begin = (
             every[row, kept + 1 + off],
-            every[row, kept + 1 + MOST_PERIODS + 1 + 2 * off],
+            every[row, kept + 1 + limits.most_periods + 1 + 2 * off],
         )
         earlier = np.abs(middle - begin).max(axis=1, initial=0.0)
         later = np.abs(every[:, kept] - middle).max(axis=1, initial=0.0)
@@ -249,9 +265,11 @@ class RepeatableRuns:
 
         every = np.arange(rows.size)
         window = (
-            0.5 * self.duration * np.minimum(1.0, 2.0 * _SAMPLES / _PER_STEP / steps)
+            0.5
+            * self.duration
+            * np.minimum(1.0, 2.0 * limits.samples / limits.samples_per_step / steps)
         )
-        times = window[:, None] * np.linspace(0.0, 1.0, _SAMPLES)
+        times = window[:, None] * np.linspace(0.0, 1.0, limits.samples)
         path = at(every, times)
         begin = path[:, :1]
         normal = path[:, 1] - path[:, 0]
@@ -259,7 +277,7 @@ class RepeatableRuns:
             _near_returns(*each) for each in zip(times, path, normal, strict=True)
         ]
         period = np.full(rows.size, np.nan)
-        for number in range(_TRIES):
+        for number in range(limits.tries):
             which = np.array(
                 [i for i in every if np.isnan(period[i]) and len(returns[i]) > number],
                 int,
@@ -279,7 +297,7 @@ class RepeatableRuns:
                 return time
 
             time = np.array([returns[i][number] for i in which])
-            time = back_at(time, window[which] / (_SAMPLES - 1))
+            time = back_at(time, window[which] / (limits.samples - 1))
             again = time[:, None] * np.arange(1, LEAST_REPEATS + 1)
             fits = again[:, -1] <= 0.5 * self.duration
             again = np.minimum(again, 0.5 * self.duration)
@@ -301,8 +319,8 @@ def _near_returns(
 ) -> list[float]:
     """Instants at which a sampled motion crosses a plane through its first state near to it."""
     instants, there = crossings(times, path, path[0], normal)
-    near = np.abs(there - path[0]).max(axis=1, initial=0.0) < _NEAR
-    return list(instants[near][:_TRIES])
+    near = np.abs(there - path[0]).max(axis=1, initial=0.0) < limits.near
+    return list(instants[near][: limits.tries])
 
 
 def _zeros(places: np.ndarray, heights: np.ndarray, other: np.ndarray) -> np.ndarray:

@@ -21,8 +21,6 @@ import numpy as np
 from squealpipe.systems.progress import shown
 
 Work = Callable[[dict[str, np.ndarray], int, int], None]
-SIGNAL_AT_PARENTS_DEATH = 1
-"""PR_SET_PDEATHSIG of Linux's <sys/prctl.h>."""
 MINIMUM_JOBS = 64
 """Below this many jobs a process a fork costs more than it saves."""
 
@@ -102,7 +100,8 @@ def leave_interrupts_to_the_parent() -> None:
         signal.signal(signal.SIGHUP, signal.SIG_DFL)
     if sys.platform == "linux":
         parent = os.getppid()
-        ctypes.CDLL(None).prctl(SIGNAL_AT_PARENTS_DEATH, signal.SIGTERM)
+        # 1: PR_SET_PDEATHSIG of Linux's <sys/prctl.h>
+        ctypes.CDLL(None).prctl(1, signal.SIGTERM)
         if os.getppid() != parent:  # it died meanwhile
             os._exit(1)
 

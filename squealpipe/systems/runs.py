@@ -34,8 +34,6 @@ from squealpipe.systems.schema import build
 from squealpipe.systems.taylor.scalar import numpy_function
 from squealpipe.systems.trace import TIME
 
-SAMPLES_PER_STEP, MOST_SAMPLES = 4, 20_001
-
 
 @checked
 def simulate(
@@ -77,9 +75,8 @@ def simulate(
     )
     if times is None:
         steps = single_run(system, values, duration, options, tol=tol, room=0).steps
-        times = np.linspace(
-            t_start, t_end, int(np.clip(SAMPLES_PER_STEP * steps, 2, MOST_SAMPLES))
-        )
+        # four samples in each step show every curve of a run
+        times = np.linspace(t_start, t_end, int(np.clip(4 * steps, 2, 20_001)))
     elif times[0] < t_start or times[-1] > t_end or (np.diff(times) < 0.0).any():
         raise ValueError(
             f"times = {brief(times)}: they must ascend from {t_start:g} to t_end = {t_end!r}"

@@ -27,14 +27,8 @@ from squealpipe.systems.datasets import (
 from squealpipe.systems.datasets.agreement import ComparedAs, Listing, RoundOff
 
 UNIT, GRID = "<unit>", "<grid>"
-FLAG = "i2"
-"""Type of flags whose meanings are those of a system."""
 CYCLE: dict[str, Any] = {"rtol": 1e-7, "atol": 1e-9}
 """To so many digits two ways to a cycle lead to the same one."""
-_PHASE = RoundOff(
-    ComparedAs.unjudged,
-    "where on a cycle its description starts follows from the way on which it was found",
-)
 _RESIDUAL = or_nan(
     "largest residual of the equations, without units", rtol=1.0, atol=1e-8
 )
@@ -42,7 +36,8 @@ _COMPONENT = {"component": replace(text("component", "component"), optional=True
 
 
 def _flag(long_name: str, *dims: str) -> Variable:
-    return Variable(long_name, dims=dims, dtype=FLAG)
+    # type of flags whose meanings are those of a system
+    return Variable(long_name, dims=dims, dtype="i2")
 
 
 def _count(long_name: str, *dims: str) -> Variable:
@@ -156,7 +151,14 @@ def _extremes(*dims: str) -> dict[str, Variable]:
         "<name>_min": or_nan("smallest value over the period", UNIT, dims, **CYCLE),
         "<name>_max": or_nan("largest value over the period", UNIT, dims, **CYCLE),
         "<state>_start": or_nan(
-            "state at t = 0 of the cycle", UNIT, dims, round_off=_PHASE
+            "state at t = 0 of the cycle",
+            UNIT,
+            dims,
+            round_off=RoundOff(
+                ComparedAs.unjudged,
+                "where on a cycle its description starts follows from the way on which it "
+                "was found",
+            ),
         ),
     }
 

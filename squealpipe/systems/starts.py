@@ -10,11 +10,6 @@ from squealpipe.systems.components import Composition
 from squealpipe.systems.taylor.scalar import numpy_function
 from squealpipe.systems.trace import TIME_UNIT, Traced
 
-_EQUAL = 1e-15
-"""An equality holds within this of the size of what it is computed from."""
-_SWEEPS = 4
-"""Rounds over all components, for each of them, in which the others' regimes may still change."""
-
 
 class _Asked(NamedTuple):
     """Condition of a regime on the state: a function, its arguments, and the sign that it needs.
@@ -99,7 +94,8 @@ class Starts:
         )
         known = {TIME_UNIT: np.ones(size), **values}
         fits = np.ones((size, self.traced.n_components), bool)
-        for _ in range(_SWEEPS * len(open_ones)):
+        # the others' regimes may change again: four rounds over all components for each of them
+        for _ in range(4 * len(open_ones)):
             before = numbers.copy()
             for k in open_ones:
                 first = self._first_that_fits(known, numbers, k)
@@ -137,10 +133,11 @@ class Starts:
             for function, arguments, sign in checks:
                 terms = [np.asarray(values[name]) for name in arguments]
                 (value,) = function(*terms)
+                # an equality holds within round-off of what it is computed from
                 fits &= (
                     sign * value >= 0.0
                     if sign
-                    else abs(value) <= _EQUAL * sum(map(abs, terms))
+                    else abs(value) <= 1e-15 * sum(map(abs, terms))
                 )
                 if not fits.any():
                     break

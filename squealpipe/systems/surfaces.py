@@ -6,9 +6,6 @@ from collections.abc import Iterator
 
 from squealpipe.systems.taylor.symbols import Symbol, symbol
 
-INCREASING = frozenset({"tanh", "sinh", "atan", "asin"})
-"""Functions that grow, and vanish where their argument does."""
-
 
 def simplest(surface: Symbol) -> Symbol:
     """A surface that falls through zero where this one does, and whose root is a simple one.
@@ -17,7 +14,8 @@ def simplest(surface: Symbol) -> Symbol:
     says when it comes. What cannot change the sign goes: numbers, even powers of factors, and
     functions such as tanh around all.
     """
-    if surface.kind in INCREASING:
+    # these grow, and vanish where their argument does
+    if surface.kind in frozenset({"tanh", "sinh", "atan", "asin"}):
         return simplest(surface.arguments[0])
     if surface.kind != "*":
         return surface

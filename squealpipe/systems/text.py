@@ -8,9 +8,6 @@ from squealpipe.systems.taylor.scalar import REGIME
 from squealpipe.systems.taylor.symbols import FUNCTIONS, Symbol, in_order
 from squealpipe.systems.trace import Traced
 
-LONG = 20_000
-"""Characters beyond which parts that occur several times are written once, under a name."""
-
 
 def describe(
     traced: Traced,
@@ -67,7 +64,8 @@ def _written(
             uses[id(each)] += 1
     names: dict[int, str] = {}
     written: dict[str, str] = {}
-    if sum(lengths[id(each)] for each in every) > LONG:
+    # in longer texts parts that occur several times are written once, under a name
+    if sum(lengths[id(each)] for each in every) > 20_000:
         for node in nodes:
             if uses[id(node)] > 1 and lengths[id(node)] > 20:
                 text = expression(node, names)

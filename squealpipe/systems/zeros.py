@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 
 Vector = NDArray[np.float64]
 
-MOST_STEPS = 60
-
 
 def bracketed(
     function: Callable[[Vector], tuple[Vector, Vector]],
@@ -24,7 +22,7 @@ def bracketed(
     """
     (low, high), (first, last) = bracket, ends
     place = low + (high - low) * first / (first - last)
-    for _ in range(MOST_STEPS if place.size else 0):
+    for _ in range(60 if place.size else 0):
         value, slope = function(place)
         before = (value > 0.0) == (first > 0.0)
         low, high = np.where(before, place, low), np.where(before, high, place)

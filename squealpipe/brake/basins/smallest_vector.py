@@ -10,6 +10,7 @@ probability 1 − p at most a share 1 − p^(1/n) of all directions has a smalle
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +23,36 @@ Happens = Callable[[Array], NDArray[np.bool_]]
 
 IMPROVED = 4
 """How many of the best directions are improved, and in how many rounds of random steps."""
+
+
+@dataclass(frozen=True)
+class SearchEffort:
+    """Effort of the search for the smallest vector that has an effect.
+
+    More of each finds smaller vectors, at proportional cost.
+    """
+
+    radii: int = 16
+    """Evenly spaced radii at which each direction is tried."""
+    halvings: int = 8
+    """Halvings of the interval below the first radius with the effect."""
+    first_step: float = 0.5
+    """Length of the first random steps on the unit sphere."""
+    gain: float = 1e-3
+    """A step counts as better where the effect still happens at a radius smaller by this share."""
+    shrink: float = 0.5
+    """Steps shrink by this factor after a round without a better one."""
+    rounds: int = 14
+    """Rounds of random steps."""
+    tries: int = 16
+    """Steps from each of the best directions in a round."""
+    followed: int = 3
+    """Better steps of these that are bisected."""
+    refinement: int = 2
+    """Times as many halvings for these as for a direction."""
+
+
+effort = SearchEffort()
 
 
 class SearchResult(NamedTuple):
@@ -65,7 +96,7 @@ def _normalized(vectors: Array) -> Array:
 
 def _along(happens: Happens, unit: Array, bound: float) -> Array:
     """Radius along each direction at which it first happens, to the last halving, or ∞."""
-    levels = bound * np.arange(1, search.radii + 1) / search.radii
+    levels = bound * np.arange(1, effort.radii + 1) / effort.radii
     first = np.full(len(unit), np.inf)
     for level in levels:
         left = np.flatnonzero(np.isinf(first))
@@ -73,7 +104,7 @@ def _along(happens: Happens, unit: Array, bound: float) -> Array:
             first[left[happens(level * unit[left])]] = level
     rows = np.flatnonzero(np.isfinite(first))
     first[rows] = _bisect(
-        happens, unit[rows], first[rows] - levels[0], first[rows], search.halvings
+        happens, unit[rows], first[rows] - levels[0], first[rows], effort.halvings
     )
     return first
 
@@ -95,20 +126,20 @@ def _improve(
 ) -> tuple[Array, Array]:
     """Directions moved by random steps to smaller radii, all of them side by side."""
     unit, radius = unit.copy(), radius.copy()
-    step = np.full(len(unit), search.first_step)
-    for _ in range(search.rounds):
-        moves = generator.standard_normal((len(unit), search.tries, unit.shape[1]))
+    step = np.full(len(unit), effort.first_step)
+    for _ in range(effort.rounds):
+        moves = generator.standard_normal((len(unit), effort.tries, unit.shape[1]))
         tried = _normalized(unit[:, None] + step[:, None, None] * _normalized(moves))
-        below = (1.0 - search.gain * step / search.first_step) * radius
+        below = (1.0 - effort.gain * step / effort.first_step) * radius
         works = happens((below[:, None, None] * tried).reshape(-1, unit.shape[1]))
-        works = works.reshape(len(unit), search.tries)
-        owner, which = np.nonzero(works & (np.cumsum(works, axis=1) <= search.followed))
+        works = works.reshape(len(unit), effort.tries)
+        owner, which = np.nonzero(works & (np.cumsum(works, axis=1) <= effort.followed))
         found = _bisect(
             happens,
             tried[owner, which],
             0.5 * below[owner],
             below[owner],
-            search.refinement * search.halvings,
+            effort.refinement * effort.halvings,
         )
         for row in range(len(unit)):
             mine = np.flatnonzero(owner == row)
@@ -116,7 +147,7 @@ def _improve(
                 best = mine[np.argmin(found[mine])]
                 unit[row], radius[row] = tried[row, which[best]], found[best]
             else:
-                step[row] *= search.shrink
+                step[row] *= effort.shrink
     return unit, radius
 
 
