@@ -10,6 +10,9 @@ from squealpipe.brake.orbits.orbits import Orbit, decoupled_half_period, solve_o
 from squealpipe.brake.orbits.tracing import trace_branch
 from squealpipe.schema import Outcome
 
+POINT_SPACING = 0.02
+"""Distance of the recorded points of a branch, over 1 + |z|."""
+
 
 def exact_branch(
     scene: ScaledSystem,
@@ -32,9 +35,13 @@ def exact_branch(
         beyond = [orbit for orbit in found if orbit is not None]
     else:
         seed = grazing_start(scene, mode)
-        # spacing of the recorded points, over 1 + |z|
         beyond, why = trace_branch(
-            scene.system, seed.point, seed.direction, y_max, seed.settings(), 0.02
+            scene.system,
+            seed.point,
+            seed.direction,
+            y_max,
+            seed.settings(),
+            POINT_SPACING,
         )
         end = Outcome[why.name]
     return orbits + beyond, outcomes + [Outcome.converged] * len(beyond), end

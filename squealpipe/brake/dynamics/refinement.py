@@ -20,6 +20,9 @@ from squealpipe.schema.origin import recorded
 from squealpipe.validation import Natural, Positive, Tolerance, Workers
 from squealpipe.vibration.shares import wilson_interval
 
+CHECKED_CELLS = 4000
+"""Inherited cells that are run to measure how often they are wrong."""
+
 
 @recorded(method="Taylor series with located events on an adaptive grid")
 def refine_validity_map(
@@ -108,8 +111,7 @@ def _check_inherited(
     inherited = np.flatnonzero(~grid.computed)
     if not inherited.size:
         return 0, 0
-    # inherited cells that are run to measure how often they are wrong
-    size = min(4000, inherited.size)
+    size = min(CHECKED_CELLS, inherited.size)
     chosen = inherited[
         np.random.default_rng(seed).choice(inherited.size, size, replace=False)
     ]

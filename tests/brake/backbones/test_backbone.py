@@ -78,7 +78,7 @@ def test_special_points_of_random_branches_are_those_of_dense_samples(
         angles, mode = rng.uniform(0.0, PI, 2), int(rng.integers(1, 3))
         found = backbone(params, *angles, mode=mode, y_peak_max=6.0)
         with monkeypatch.context() as patch:
-            patch.setattr(exact_branches, "_SPACING", 0.001)
+            patch.setattr(exact_branches, "POINT_SPACING", 0.001)
             dense = backbone(params, *angles, mode=mode, y_peak_max=6.0)
         beyond = dense.outcome.isin([Outcome.grazing, Outcome.converged]).values
         index = dense.stability_index.values[beyond]

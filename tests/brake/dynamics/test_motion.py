@@ -1,5 +1,7 @@
 """Labels of motions say what was tested, last as long as they say, and know no left and right."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.stats import ks_2samp
@@ -233,7 +235,8 @@ def test_a_map_of_runs_that_make_no_step_gives_their_reason():
 def test_labels_do_not_depend_on_the_room_of_the_first_log(monkeypatch):
     first, second = np.array([1 / 6, 0.2, 0.5]) * np.pi, np.array([0.25, 0.8]) * np.pi
     at_once = hammering_map(FORMER, first, second, t_end=500.0)
-    monkeypatch.setattr(motions, "EVENTS_PER_TIME", 0.02)
+    short = replace(motions.limits, events_per_time=0.02)
+    monkeypatch.setattr(motions, "limits", short)
     again = hammering_map(FORMER, first, second, t_end=500.0)
     assert at_once.equals(again)
     assert TORUS in at_once.motion.values

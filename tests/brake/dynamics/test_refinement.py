@@ -63,7 +63,7 @@ def test_an_island_that_the_sample_finds_is_followed(monkeypatch):
     refinement_check = refinement._check_inherited
     monkeypatch.setattr(refinement, "refine_grid", blind)
     monkeypatch.setattr(refinement, "_check_inherited", counting)
-    monkeypatch.setattr(refinement, "SAMPLE", 2000)
+    monkeypatch.setattr(refinement, "CHECKED_CELLS", 2000)
     params = FORMER.with_(
         k3=0.48023366024799824,
         mu=0.1390424912331886,
