@@ -5,7 +5,15 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from squealpipe.cli.arguments import LOOK, Force, Look, Output, OutputElsewhere, Time
+from squealpipe.cli.arguments import (
+    LOOK,
+    Force,
+    Look,
+    Output,
+    OutputElsewhere,
+    Time,
+    Whole,
+)
 from squealpipe.cli.console import DONE, answer, say
 from squealpipe.cli.output import PICTURES, TABLES, check_output, draw, finish, write
 from squealpipe.units import engineering
@@ -17,6 +25,7 @@ def plot(
     *,
     output: OutputElsewhere = None,
     variable: str | None = None,
+    mode: Whole | None = None,
     look: Look = LOOK,
     force: Force = False,
 ) -> int:
@@ -28,13 +37,15 @@ def plot(
         file: dataset that a command or `squealpipe.save` wrote, or another program's .nc or .csv.
         output: picture to write (png, svg or pdf); by default FILE.png, here.
         variable: draw this variable instead of the usual picture.
+        mode: of complex modes, draw the shape of this one: on the mesh, undeformed grey and
+            deformed coloured, or without a mesh as arrows at its degrees of freedom.
     """
     target = Path(file.with_suffix(".png").name) if output is None else output
     check_output(target, force=force, kinds=PICTURES)
 
     from squealpipe.store.foreign import load_any
 
-    draw(load_any(file), target, look, variable=variable)
+    draw(load_any(file), target, look, variable=variable, mode=mode)
     say(f"wrote {target}")
     return DONE
 
@@ -87,15 +98,18 @@ def convert(
     output: Annotated[Path, Parameter(name=["--output", "-o"])],
     force: Force = False,
 ) -> int:
-    """Write a dataset for another program: CSV, MATLAB, Excel or Parquet, units in the header.
+    """Write a dataset for another program: CSV, MATLAB, Excel, Parquet, or ParaView for modes.
+
+    Units are in the header. Modes of a structure with a mesh can be a .vtu file, with the arrays
+    mode_N_real, mode_N_imaginary and mode_N_amplitude at the nodes.
 
     Example: `squealpipe convert run.nc -o run.mat`
 
     Args:
         file: dataset that a command or `squealpipe.save` wrote, or another program's .nc or .csv.
-        output: file that ends in .csv, .mat, .xlsx or .parquet.
+        output: file that ends in .csv, .mat, .xlsx, .parquet or .vtu.
     """
-    check_output(output, force=force, kinds=TABLES)
+    check_output(output, force=force, kinds=(*TABLES, ".vtu"))
 
     from squealpipe.store.foreign import load_any
     from squealpipe.store.tables import convert as task

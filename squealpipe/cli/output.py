@@ -112,13 +112,18 @@ def check_picture(picture: Path | None, output: Path, *, force: bool) -> Path:
 
 
 def draw(
-    dataset: xr.Dataset, path: Path, look: Look, *, variable: str | None = None
+    dataset: xr.Dataset,
+    path: Path,
+    look: Look,
+    *,
+    variable: str | None = None,
+    mode: int | None = None,
 ) -> None:
     """Write the picture of a dataset."""
     from squealpipe.plotting import picture
     from squealpipe.plotting.style import save_figure
 
-    figure = picture(dataset, variable, units=look.unit or ())
+    figure = picture(dataset, variable, mode=mode, units=look.unit or ())
     save_figure(figure, [path], size=look.figure_size, dpi=look.dpi)
 
 

@@ -12,6 +12,7 @@ from squealpipe.plotting.axis_units import in_units
 from squealpipe.plotting.contact_points import draw_onsets
 from squealpipe.plotting.curves import draw_curves
 from squealpipe.plotting.cycles import draw_backbone, draw_branch, draw_cycle
+from squealpipe.plotting.mode_shapes import draw_shape, figure_of_mode, title_of
 from squealpipe.plotting.modes import draw_modes
 from squealpipe.plotting.modes import figure as modes_figure
 from squealpipe.plotting.propensity import draw_shares
@@ -69,7 +70,11 @@ FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
 
 @checked
 def plot(
-    dataset: xr.Dataset, ax: Axes | None = None, *, variable: str | None = None
+    dataset: xr.Dataset,
+    ax: Axes | None = None,
+    *,
+    variable: str | None = None,
+    mode: int | None = None,
 ) -> Axes:
     """Draw a dataset: a run, a map, a branch, a cycle, an ensemble; its schema says which.
 
@@ -79,6 +84,7 @@ def plot(
         dataset: what a function of this package returned or :func:`squealpipe.load` read.
         ax: Matplotlib axes to draw on; by default those of a new figure.
         variable: draw this variable, over its one or two dimensions, instead of the usual picture.
+        mode: of complex modes, draw the shape of the one with this number.
 
     Returns:
         The axes.
@@ -90,14 +96,14 @@ def plot(
     import matplotlib.pyplot as plt
 
     if ax is not None:
-        _draw(ax, dataset, variable)
+        _draw(ax, dataset, variable, mode)
         return ax
     # outside of the context, which would undo what a backend sets at its first figure
     figure = plt.figure(figsize=(5.0, 3.4), layout="constrained")
     with mpl.rc_context(SETTINGS):
         ax = figure.add_subplot()
         try:
-            _draw(ax, dataset, variable)
+            _draw(ax, dataset, variable, mode)
         except ValueError:
             plt.close(figure)
             raise
@@ -105,13 +111,20 @@ def plot(
 
 
 def picture(
-    dataset: xr.Dataset, variable: str | None = None, *, units: Sequence[str] = ()
+    dataset: xr.Dataset,
+    variable: str | None = None,
+    *,
+    mode: int | None = None,
+    units: Sequence[str] = (),
 ) -> Figure:
     """The picture that a command writes: that of :func:`plot`, or one of several panels.
 
     Args:
         units: of the axes that measure such things, as :func:`in_units` takes them.
     """
+    if mode is not None:
+        _check_modes(dataset)
+        return figure_of_mode(dataset, mode)
     several = FIGURES.get(_schema(dataset))
     if several is not None and variable is None:
         figure = several(dataset)
@@ -128,7 +141,23 @@ def _schema(dataset: xr.Dataset) -> str:
     return COMPLEX_MODES if schema.startswith(f"{COMPLEX_MODES} over ") else schema
 
 
-def _draw(axes: Axes, dataset: xr.Dataset, variable: str | None) -> None:
+def _check_modes(dataset: xr.Dataset) -> None:
+    """Refuse a number of a mode where there are none."""
+    if _schema(dataset) != COMPLEX_MODES:
+        raise ValueError(
+            f"mode (--mode): {_schema(dataset)} has no modes; give what complex_modes or "
+            "`squealpipe modes` makes"
+        )
+
+
+def _draw(
+    axes: Axes, dataset: xr.Dataset, variable: str | None, mode: int | None = None
+) -> None:
+    if mode is not None:
+        _check_modes(dataset)
+        draw_shape(axes, dataset, mode)
+        axes.set_title(title_of(dataset, mode), fontsize=8)
+        return
     schema = _schema(dataset)
     if variable is None and schema in DRAWN:
         DRAWN[schema](axes, dataset)

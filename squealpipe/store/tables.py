@@ -13,6 +13,7 @@ import xarray as xr
 
 from squealpipe.schema import meanings
 from squealpipe.store.matlab import write_matlab
+from squealpipe.store.vtu import write_vtu
 from squealpipe.store.whole_files import whole_file
 from squealpipe.validation import AnyPath, checked
 
@@ -22,14 +23,16 @@ NEEDS = {".csv": None, ".mat": None, ".xlsx": "openpyxl", ".parquet": "pyarrow"}
 
 @checked
 def convert(dataset: xr.Dataset, path: AnyPath) -> list[Path]:
-    """Write a dataset for another program: ``.csv``, ``.mat``, ``.xlsx`` or ``.parquet``.
+    """Write a dataset for another program: ``.csv``, ``.mat``, ``.xlsx``, ``.parquet``, ``.vtu``.
 
     Tables have one row for each point of the dimensions that most values are over, and flags in
     words. Variables over other dimensions go to further sheets or to files beside the first
     (``run.event.csv``). Units are in the header: in lines that begin with ``#`` of CSV, else with
     the names (``x [m]``). A MATLAB file holds the arrays as they are, flags as numbers, and the
     structures ``units``, ``meanings`` and ``attributes``; a name that MATLAB does not take is
-    changed (``_x`` to ``x_``, ``θ`` to ``u3b8``), and ``names`` has the original ones.
+    changed (``_x`` to ``x_``, ``θ`` to ``u3b8``), and ``names`` has the original ones. Mode shapes
+    of a structure with a mesh go to ``.vtu``, for ParaView: ``mode_N_real``, ``mode_N_imaginary``
+    and ``mode_N_amplitude`` at the nodes.
 
     Args:
         dataset: any dataset.
@@ -42,8 +45,10 @@ def convert(dataset: xr.Dataset, path: AnyPath) -> list[Path]:
         ValueError: another ending, a table too long for Excel, or a library that is missing.
     """
     target = Path(path)
+    if target.suffix == ".vtu":
+        return [write_vtu(dataset, target)]
     if target.suffix not in NEEDS:
-        raise ValueError(f"{target}: end the name in {', '.join(NEEDS)}")
+        raise ValueError(f"{target}: end the name in {', '.join(NEEDS)}, .vtu")
     needed = NEEDS[target.suffix]
     if needed is not None and find_spec(needed) is None:
         raise ValueError(

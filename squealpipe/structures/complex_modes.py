@@ -19,6 +19,7 @@ from squealpipe.structures.critical_speeds import critical_speeds
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.factors import Asked, asked_of, with_factors
 from squealpipe.structures.meshes.datasets import mesh_variables
+from squealpipe.structures.mode_shapes import shape_variables
 from squealpipe.structures.numbering import Way
 from squealpipe.structures.pencil import DENSE, one_thread
 from squealpipe.structures.schema.structures import name_over
@@ -172,6 +173,9 @@ def _dataset(structure: ContactStructure, asked: Asked) -> xr.Dataset:
         tables["normal_force"] = _forces(every, rows, len(names))
     of_mesh, mesh_coordinates = mesh_variables(structure)
     coords |= mesh_coordinates
+    shapes = shape_variables(
+        structure, ways, rows, _own_friction(structure, asked), _numbers(every, rows)
+    )
     scalar = not frictions.ndim, not speeds.ndim
     modes = {
         name: _over(arrays, ways.shape, *scalar) for name, arrays in tables.items()
@@ -208,12 +212,20 @@ def _dataset(structure: ContactStructure, asked: Asked) -> xr.Dataset:
         ),
         **versions(),
     }
-    dataset = build(find(name_over(dims)), modes | of_mesh, coords, attrs)
+    dataset = build(find(name_over(dims)), modes | shapes | of_mesh, coords, attrs)
     if structure.rotation is not None:
         for name in {"belt_speed", "critical_speed"} & set(dataset.variables):
             dataset[name].attrs["units"] = structure.speed_unit
         dataset.belt_speed.attrs["long_name"] = "speed of rotation"
     return dataset
+
+
+def _own_friction(structure: ContactStructure, asked: Asked) -> float:
+    """Return the number of what is varied that the structure has, or the first one asked for."""
+    try:
+        return asked.friction.now(structure)
+    except ValueError:  # contacts of a face that differ
+        return float(np.atleast_1d(asked.mu)[0])
 
 
 def _ways(structure: ContactStructure, asked: Asked) -> np.ndarray:

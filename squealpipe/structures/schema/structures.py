@@ -166,6 +166,23 @@ def _modes(dims: tuple[str, ...]) -> DatasetSchema:
                 contact,
                 optional=True,
             ),
+            **{
+                f"shape_{part}": or_nan(
+                    f"{part} part of the mode's shape at one friction and speed, largest 1",
+                    "1",
+                    ("mode", "degree_of_freedom"),
+                    dtype="f4",
+                    optional=True,
+                    volatile=True,
+                )
+                for part in ("real", "imaginary")
+            },
+            "shape_mu": Variable(
+                "value along mu at which the shapes are", optional=True
+            ),
+            "shape_belt_speed": Variable(
+                "belt speed at which the shapes are", "m s-1", optional=True
+            ),
             **MESH,
         },
     )

@@ -1,0 +1,169 @@
+"""Draw shapes of complex modes: on the mesh, or as arrows at degrees of freedom."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from squealpipe.plotting import style
+from squealpipe.plotting.mesh_scene import Facets, projection
+from squealpipe.structures.meshes.datasets import mesh_of
+from squealpipe.text import number
+from squealpipe.units import engineering
+
+DRAWN = 0.08
+"""Largest displacement that is drawn, over the extent of the structure."""
+MOST_ARROWS = 40
+"""Degrees of freedom that have arrows, those that move most."""
+
+
+def shape_of(modes: xr.Dataset, mode: int) -> np.ndarray:
+    """Return the complex shape of a mode, (degrees of freedom,).
+
+    Raises:
+        ValueError: the dataset has no shapes, or none of this mode.
+    """
+    if "shape_real" not in modes:
+        raise ValueError(
+            "the dataset has no mode shapes; compute it again with this version of squealpipe"
+        )
+    numbers = modes.mode.values
+    if mode not in numbers:
+        raise ValueError(
+            f"mode = {mode!r}: the dataset has modes {numbers.min()} to {numbers.max()}"
+        )
+    one = modes.sel(mode=mode)
+    shape = one.shape_real.values.astype(float) + 1j * one.shape_imaginary.values
+    if not np.isfinite(shape).all():
+        raise ValueError(
+            f"mode = {mode!r} has no shape at mu = {float(modes.shape_mu):g}, where shapes are"
+        )
+    return np.asarray(shape)
+
+
+def draw_shape(
+    axes: Axes, modes: xr.Dataset, mode: int, *, quarter: bool = False
+) -> None:
+    """Draw a mode: undeformed grey, deformed coloured by how far each place moves.
+
+    Args:
+        mode: its number.
+        quarter: a quarter of a period after the instant of the largest displacement.
+    """
+    shape = shape_of(modes, mode)
+    moved = -shape.imag if quarter else shape.real
+    mesh = mesh_of(modes)
+    if mesh is None:
+        _draw_arrows(axes, moved)
+        return
+    nodes = mesh.displacements(moved)
+    amplitude = np.linalg.norm(np.abs(mesh.displacements(shape)), axis=1)
+    view = projection(mesh.nodes)
+    extent = float(np.ptp(mesh.nodes, axis=0).max()) or 1.0
+    scale = DRAWN * extent / max(float(amplitude.max()), 1e-300)
+    Facets(axes, mesh, view, facecolor="none", edgecolor=style.LIGHT, linewidth=0.4)
+    drawn = Facets(axes, mesh, view, cmap="cividis", edgecolor="#404040", linewidth=0.3)
+    drawn.show(mesh.nodes + scale * nodes)
+    drawn.drawn.set_array(np.array([amplitude[row].mean() for row in drawn.rows]))
+    drawn.drawn.set_clim(0.0, float(amplitude.max()))
+    flat = mesh.nodes @ view[:2].T
+    low, high = flat.min(axis=0) - DRAWN * extent, flat.max(axis=0) + DRAWN * extent
+    axes.plot(*np.stack([low, high], axis=1), alpha=0.0)
+    if "contact_position" in modes:
+        places = modes.contact_position.values
+        places = places[np.isfinite(places).all(axis=1)] @ view[:2].T
+        axes.plot(*places.T, "o", color=style.BLACK, markersize=2.5, zorder=5)
+    axes.margins(0.02)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_axis_off()
+
+
+def _draw_arrows(axes: Axes, moved: np.ndarray) -> None:
+    """Arrows at the degrees of freedom, named as Python counts them."""
+    chosen = np.sort(np.argsort(-np.abs(moved), kind="stable")[:MOST_ARROWS])
+    places = np.arange(len(chosen))
+    axes.axhline(0.0, color=style.LIGHT, linewidth=1.0)
+    axes.plot(places, 0.0 * places, "o", color=style.GREY, markersize=3)
+    axes.quiver(
+        places,
+        0.0 * places,
+        0.0 * places,
+        moved[chosen],
+        angles="xy",
+        scale_units="xy",
+        scale=1.0,
+        color=style.BLUE,
+        width=0.006,
+    )
+    axes.set_xticks(places, [str(each) for each in chosen], fontsize=6)
+    axes.set(
+        xlabel="degree of freedom, counted from 0",
+        ylabel="displacement over the largest",
+        ylim=(-1.1, 1.1),
+    )
+    axes.margins(x=0.08)
+
+
+def title_of(modes: xr.Dataset, mode: int) -> str:
+    """Return number, frequency and growth of a mode where its shape is."""
+    one = modes.sel(mode=mode)
+    at = {
+        dim: float(modes[f"shape_{dim}"])
+        for dim in ("mu", "belt_speed")
+        if dim in one.frequency.dims
+    }
+    one = one.sel(at, method="nearest") if at else one
+    one = one.isel(dict.fromkeys(one.frequency.dims, 0))
+    frequency = engineering(float(one.frequency), "Hz", 4)
+    return (
+        f"mode {mode}: {frequency}, growth rate {number(float(one.growth_rate))} 1/s "
+        f"at mu = {number(float(modes.shape_mu))}"
+    )
+
+
+def figure_of_mode(modes: xr.Dataset, mode: int) -> Figure:
+    """Draw one mode at the instant of its largest displacement and a quarter period later."""
+    made, axes = style.new_figure(style.PAGE, 2.6, ncols=2)
+    for panel, quarter in zip(axes[0], (False, True), strict=True):
+        draw_shape(panel, modes, mode, quarter=quarter)
+    style.panel_letters(axes[0], ("largest displacement", "a quarter period later"))
+    made.suptitle(title_of(modes, mode), fontsize=9)
+    return made
+
+
+def unstable_modes(modes: xr.Dataset, most: int) -> list[int]:
+    """Return the numbers of modes that grow where shapes are, the fastest first.
+
+    Where none grows they are those that are damped least.
+    """
+    if "shape_real" not in modes:
+        return []
+    at = {
+        dim: float(modes[f"shape_{dim}"])
+        for dim in ("mu", "belt_speed")
+        if dim in modes.growth_rate.dims
+    }
+    here = modes.sel(at, method="nearest") if at else modes
+    here = here.isel({dim: 0 for dim in here.growth_rate.dims if dim != "mode"})
+    has_shape = np.isfinite(modes.shape_real.values).all(axis=1)
+    known = np.flatnonzero(has_shape & np.isfinite(here.growth_rate.values))
+    order = known[np.argsort(-here.growth_rate.values[known], kind="stable")]
+    grows = [place for place in order if bool(here.unstable[place])]
+    return [int(modes.mode[place]) for place in (grows or order)[:most]]
+
+
+def figure_of_modes(modes: xr.Dataset, most: int = 4) -> Figure:
+    """Draw the shapes of the modes that grow fastest, two in a row."""
+    numbers = unstable_modes(modes, most)
+    rows = max(-(-len(numbers) // 2), 1)
+    made, axes = style.new_figure(style.PAGE, 0.2 + 1.9 * rows, nrows=rows, ncols=2)
+    for panel in axes.flat[max(len(numbers), 1) :]:
+        panel.set_axis_off()
+    if not numbers:
+        style.say_instead(axes[0, 0], "no mode has a shape")
+    for panel, mode in zip(axes.flat, numbers, strict=False):
+        draw_shape(panel, modes, mode)
+        panel.set_title(title_of(modes, mode).partition(" at mu")[0], fontsize=8)
+    return made
