@@ -66,6 +66,7 @@ def init(
     results: str | None = None,
     own: Switch = False,
     structure: Switch = False,
+    disc: Switch = False,
     force: Force = False,
 ) -> int:
     """Write a configuration to edit: the paper's parameters, and every other key as a comment.
@@ -78,27 +79,32 @@ def init(
         own: a short study of scenes of your own in SI units instead, without the paper.
         structure: a study of a structure with contacts instead, with an example of its files in a
             folder NAME beside it.
+        disc: likewise, with a disc brake as CalculiX writes it: its deck and its matrices.
     """
-    from squealpipe.cli.structure_example import FILES, STUDY
+    from squealpipe.cli.structure_example import DISC_STUDY, FILES, STUDY, disc_files
     from squealpipe.store.whole_files import whole_file
     from squealpipe.study.configuration.settings import PAPER, read_study
 
     check_output(file, force=force, kinds=(".yaml", ".yml"), option="FILE")
-    if own and structure:
-        raise ValueError("--own and --structure are two studies; choose one")
+    asked = {"--own": own, "--structure": structure, "--disc": disc}
+    if sum(asked.values()) > 1:
+        names = " and ".join(name for name, is_asked in asked.items() if is_asked)
+        raise ValueError(f"{names} are different studies; choose one")
     # other characters do not belong in the name of a folder
     stem = re.sub(r"[^A-Za-z0-9._-]+", "_", file.stem)
     folder = results or f"results/{stem}"
-    if structure:
+    if structure or disc:
         parts = file.parent / stem
         if parts.exists() and not force:
             raise ValueError(
                 f"{parts} exists; add --force to write the example's files into it, or change FILE"
             )
-        for name, content in FILES.items():
+        for name, content in (disc_files() if disc else FILES).items():
             with whole_file(parts / name) as draft:
-                draft.write_text(content, encoding="utf-8")
-        text = STUDY.format(
+                draft.write_bytes(
+                    content if isinstance(content, bytes) else content.encode()
+                )
+        text = (DISC_STUDY if disc else STUDY).format(
             file=shlex.quote(str(file)),
             results=folder,
             folder=stem,

@@ -1,4 +1,10 @@
-"""The files of ``squealpipe init --structure``: two brake pads on a disc, joined by a caliper."""
+"""The files of ``squealpipe init --structure`` and ``--disc``.
+
+Two brake pads on a disc, joined by a caliper, as four degrees of freedom; and a disc brake as
+CalculiX writes it.
+"""
+
+import gzip
 
 STUDY = """\
 # A structure of your own: which of its unstable modes squeal, how loud, why, and what stops it?
@@ -55,3 +61,63 @@ outer,4:1,3:1,5e7,2000
 """,
 }
 """Name → text. A direction is degree of freedom:coefficient, counted from 1."""
+DISC_STUDY = """\
+# A disc brake from CalculiX: which of its unstable modes squeal, how loud, and why?
+# Put your deck and what CalculiX makes of it in place of those in {folder}, then
+#   squealpipe modes {matrices} --frequency-max 5kHz   complex eigenvalues, in seconds
+#   squealpipe run --config {file}   the report, in minutes
+results: {results}
+paper: false
+
+structure:
+  file: {folder}/structure.yaml
+  frequency_max: 4 kHz # highest mode of interest
+  samples: 8 # random starts beside a push along each unstable mode
+  seed: 0 # that they follow from
+  # t_end: 1 s # longest time of a run; by default 8000 periods of the slowest unstable mode
+  # n_modes: 12 # to reduce it to; by default as many as errors below 1 % need
+"""
+DISC = """\
+# A disc, a lining and a back plate. `ccx brake` writes the matrices and the order of their rows
+# (brake.sti, brake.mas, brake.dof) from brake.inp, whose step is *FREQUENCY, SOLVER=MATRIXSTORAGE.
+units: mm-t-s
+mass: brake.mas.gz
+stiffness: brake.sti.gz
+degrees_of_freedom: brake.dof
+mesh: brake.inp # nodes, elements, surfaces
+modal_damping: 0.001 # ratio, of all modes
+contacts:
+  lining: # points lining_1, lining_2, ... at the nodes of PAD_FACE
+    surface: PAD_FACE
+    against: DISC_FACE
+    stiffness: 2.5e6 N/mm # of the whole face
+    pressure: 0.5 MPa
+    mu: 0.6
+rotation: {axis: [0, 0, 1], through: [0, 0, 0], speed: 20 rad/s, body: DISC_FACE}
+"""
+
+
+def disc_files() -> dict[str, str | bytes]:
+    """Return the files of the disc brake, name → content: the deck, and what CalculiX writes."""
+    from squealpipe.structures.shipped_disc import brake_matrices, brake_mesh, deck
+
+    mesh = brake_mesh()
+    mass, stiffness, names = brake_matrices(mesh)
+    files: dict[str, str | bytes] = {
+        "structure.yaml": DISC,
+        "brake.inp": deck(mesh),
+        "brake.dof": "".join(f"{name}\n" for name in names),
+    }
+    for ending, matrix in (("mas", mass), ("sti", stiffness)):
+        upper = matrix.tocoo()
+        rows = sorted(
+            (column, row, value)
+            for row, column, value in zip(
+                upper.row.tolist(), upper.col.tolist(), upper.data.tolist(), strict=True
+            )
+            if row <= column
+        )
+        text = "".join(f"{i + 1} {j + 1} {value:20.13e}\n" for j, i, value in rows)
+        # without the time of day, so that the same files come out
+        files[f"brake.{ending}.gz"] = gzip.compress(text.encode(), mtime=0)
+    return files

@@ -1,6 +1,7 @@
 """Structures: matrices of mass, damping and stiffness with contacts on a moving belt."""
 
 import copy
+import dataclasses
 import hashlib
 from collections.abc import Sequence
 from typing import Any, NamedTuple, Self
@@ -193,6 +194,33 @@ class ContactStructure:
     def mu_static_of_contacts(self) -> np.ndarray:
         """Largest friction over normal force in stick, of each contact, (contacts,)."""
         return np.array([each.static_mu for each in self.frictions])
+
+    def with_common_mu(self) -> Self:
+        """Return the structure with the ``mu`` of its contacts as its own, where all have one.
+
+        Contacts of a single face all have the same, and so the structure's can be varied. Where
+        they differ, or have laws or limits of stick of their own, it is itself.
+        """
+        own = {each.mu for each in self.contacts}
+        has_law = any(
+            each.friction_law is not None or each.mu_static is not None
+            for each in self.contacts
+        )
+        if len(own) != 1 or None in own or has_law or self.mu_static is not None:
+            return self
+        contacts = [dataclasses.replace(each, mu=None) for each in self.contacts]
+        other = self.with_(contacts=contacts, mu=own.pop())
+        if self.reduced_from is not None:
+            origin = self.reduced_from
+            other.modes, other.mesh = self.modes, self.mesh
+            other.record = self.record
+            other.reduced_from = origin._replace(whole=origin.whole.with_common_mu())
+        return other
+
+    @property
+    def mu_static(self) -> float | None:
+        """Limit of stick of the contacts that have the structure's friction."""
+        return self.friction.mu_static
 
     @property
     def largest_mu(self) -> float:

@@ -11,6 +11,7 @@ from squealpipe.structures.schema.squealing import MOST_MODES
 from squealpipe.structures.squeal.plant import carried, check_modes
 from squealpipe.structures.squeal.squealing_modes import squealing_modes
 from squealpipe.structures.structure import Structure
+from squealpipe.structures.varied_friction import VariedFriction, face_of
 
 
 def read_structure(section: Mapping[str, Any]) -> Structure:
@@ -20,7 +21,8 @@ def read_structure(section: Mapping[str, Any]) -> Structure:
         FileNotFoundError: a file is missing.
         ValueError: a file or a key that is wrong, or one that a large structure needs.
     """
-    structure = Structure.read(section["file"])
+    # friction of a single face is varied as that of the structure
+    structure = Structure.read(section["file"]).with_common_mu()
     if structure.size > DENSE and section["frequency_max"] is None:
         raise ValueError(
             f"structure.frequency_max: {structure.size} degrees of freedom need it; write up to "
@@ -34,18 +36,38 @@ def read_structure(section: Mapping[str, Any]) -> Structure:
 
 
 def modes_over_friction(structure: Structure, section: Mapping[str, Any]) -> xr.Dataset:
-    """Complex modes of the whole structure, from no friction to twice its own."""
+    """Complex modes of the whole structure, from no friction to twice its own.
+
+    Where contacts have different frictions of their own, that of what is pressed most is varied.
+    """
     # frictions by the degrees of freedom that are solved for each; odd numbers, so that the
     # structure's own friction is one of them
     points = next(
         (n for size, n in ((MOST_MODES, 41), (DENSE, 13)) if structure.size <= size), 5
     )
     # up to twice the structure's friction: where modes turn unstable is seen from both sides
-    frictions = np.linspace(0.0, 2.0 * structure.mu or 1.0, points)
-    allowed = frictions[frictions <= structure.friction.largest_mu]
+    name = _most_pressed(structure) if structure.has_own_mu.all() else None
+    own = structure.mu
+    if name is not None:
+        own = VariedFriction.named(structure, name).now(structure)
+    frictions = np.linspace(0.0, 2.0 * own or 1.0, points)
+    allowed = frictions[frictions <= structure.largest_mu]
     return structure.complex_modes(
-        mu=allowed, frequency_max=_band(structure, section["frequency_max"])
+        mu=allowed if name is None else {name: frictions},
+        frequency_max=_band(structure, section["frequency_max"]),
     )
+
+
+def _most_pressed(structure: Structure) -> str:
+    """Return the face with one friction, or else the contact, that has the largest preload."""
+    preloads: dict[str, float] = {}
+    frictions: dict[str, set[float]] = {}
+    for contact, mu in zip(structure.contacts, structure.mu_of_contacts, strict=True):
+        for name in {contact.name, face_of(contact.name) or contact.name}:
+            preloads[name] = preloads.get(name, 0.0) + contact.preload
+            frictions.setdefault(name, set()).add(float(mu))
+    same = [name for name, values in frictions.items() if len(values) == 1]
+    return max(same, key=lambda name: preloads[name])
 
 
 def _band(structure: Structure, frequency_max: float | None) -> float | None:
@@ -64,6 +86,6 @@ def squealing(
         if number is None
         else structure.reduce(n_modes=number, frequency_max=limit),
         **{name: section[name] for name in ("samples", "seed", "t_end")},
-        onset=True,
+        onset=not structure.has_own_mu.all(),
         workers=workers,
     )

@@ -85,6 +85,7 @@ def squealing_modes(
         ValueError: there is no steady sliding; no contact; a structure that is too large; or
             ``onset`` where every contact has a ``mu`` of its own.
     """
+    structure = structure.with_common_mu()
     if onset and structure.contacts and structure.has_own_mu.all():
         raise ValueError(
             "onset = True lowers the structure's mu, but every contact has one of its own; leave "

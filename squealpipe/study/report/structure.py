@@ -62,6 +62,13 @@ def _unstable(modes: xr.Dataset) -> list[xr.Dataset]:
 
 
 def _own_friction(modes: xr.Dataset) -> int:
+    # half of the largest: that of the structure, or of the face that was varied
+    return (
+        modes.sizes["mu"] // 2 if "mu_of" in modes.attrs else _nearest_friction(modes)
+    )
+
+
+def _nearest_friction(modes: xr.Dataset) -> int:
     return int(np.abs(modes.mu.values - parameter(modes, "mu")).argmin())
 
 
