@@ -6,11 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squealpipe.cli.structure_example import disc_files
+from squealpipe.cli import run
 from squealpipe.structures import Structure, disc_brake
 from squealpipe.structures.files import read_matrices
 from squealpipe.structures.shipped_disc import brake_mesh, deck
 from squealpipe.structures.units import scales_of
+from squealpipe.study.structure_study import read_structure
 
 CALCULIX = Path(__file__).parent / "meshes/calculix_brake"
 
@@ -76,11 +77,15 @@ def test_numbers_of_the_brake_are_arguments():
 
 
 def test_files_of_a_study_are_the_brake(tmp_path):
-    for name, content in disc_files().items():
-        (tmp_path / name).write_bytes(
-            content if isinstance(content, bytes) else content.encode()
-        )
-    read = Structure.read(tmp_path / "structure.yaml")
+    assert run(["init", str(tmp_path / "mine.yaml"), "--disc"]) == 0
+    assert run(["init", str(tmp_path / "other.yaml"), "--disc", "--own"]) == 2
+    assert (
+        read_structure(
+            {"file": tmp_path / "mine/structure.yaml", "frequency_max": 4e3}
+        ).mu
+        == 0.6
+    )
+    read = Structure.read(tmp_path / "mine/structure.yaml")
     given = disc_brake(mu=0.6, modal_damping=0.001)
     assert read.names == given.names
     assert abs(read.mass - given.mass).max() < 1e-12 * given.mass.max()

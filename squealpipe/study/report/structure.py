@@ -28,7 +28,6 @@ def gather_structure(
     modes, answer = run["structure/modes"], run["structure/squeal"]
     verdict = Verdict(int(answer.verdict))
     numbers = json.loads(modes.attrs["parameters"])
-    speed = engineering(numbers["belt_speed"], "m s-1")
     told = (
         cause(modes, answer),
         squealing.level(answer),
@@ -37,7 +36,7 @@ def gather_structure(
     )
     return {
         "title": "Which mode squeals? Report of a structure",
-        "set": f"mu = {number(numbers['mu'])}, belt speed {speed}",
+        "set": f"mu = {_frictions(numbers)}, {_speed_words(numbers)}",
         "verdict": verdict.name,
         "headline": squealing.headline(answer),
         "lines": [line for line in told if line],
@@ -270,9 +269,9 @@ def structure(modes: xr.Dataset, answer: xr.Dataset) -> dict[str, Any]:
     rows = [
         ("Degrees of freedom", str(whole["degrees_of_freedom"])),
         ("Modes in which it was run", str(int(answer.n_modes))),
-        ("Friction mu", number(whole["mu"])),
+        ("Friction mu", _frictions(whole)),
         ("Friction law", str(whole["friction_law"]).partition(" ")[0]),
-        ("Belt speed", engineering(whole["belt_speed"], "m s-1")),
+        ("Speed", _speed_words(whole)),
         (
             "Damping ratio of modes",
             f"{number(100 * ratios.pop())} %" if len(ratios) == 1 else "by mode",
@@ -282,16 +281,33 @@ def structure(modes: xr.Dataset, answer: xr.Dataset) -> dict[str, Any]:
         rows.insert(3, ("Limit of friction in stick", number(static)))
     return {
         "rows": [{"words": words, "value": value} for words, value in rows],
+        "speed": "Radius" if "rotation" in whole else "Speed over the belt's",
         "contacts": [
             {
                 "name": name,
                 "stiffness": engineering(each["stiffness"], "N m-1"),
                 "preload": engineering(each["preload"], "N"),
-                "speed": number(each["speed"]),
+                "speed": engineering(each["speed"], "m")
+                if "rotation" in whole
+                else number(each["speed"]),
             }
             for name, each in whole["contacts"].items()
         ],
     }
+
+
+def _frictions(numbers: dict[str, Any]) -> str:
+    """Return the coefficient of the contacts, or the range of those of their own."""
+    values = [each.get("mu", numbers["mu"]) for each in numbers["contacts"].values()]
+    low, high = min(values), max(values)
+    return number(low) if low == high else f"{number(low)} to {number(high)}"
+
+
+def _speed_words(numbers: dict[str, Any]) -> str:
+    """Return the speed of the belt, or of a rotation."""
+    if "rotation" in numbers:
+        return f"rotation at {engineering(numbers['belt_speed'], 'rad s-1')}"
+    return f"belt speed {engineering(numbers['belt_speed'], 'm s-1')}"
 
 
 def not_examined(answer: xr.Dataset) -> list[str]:
