@@ -132,7 +132,9 @@ def test_all_are_scaled_where_each_has_its_own():
 
 
 def test_what_nothing_has_cannot_be_varied():
-    structure = structure_of(random_case(0), own=[{"mu": 0.3}] * 3)
+    structure = structure_of(
+        random_case(0), own=[{"mu": 0.3}, {"mu": 0.3}, {"mu": 0.4}]
+    )
     with pytest.raises(
         ValueError, match=r"every contact has a mu of its own.*\{'a': …\}"
     ):
@@ -143,6 +145,18 @@ def test_what_nothing_has_cannot_be_varied():
         structure.complex_modes(mu={"a": 0.2, "b": 0.1})
     with pytest.raises(ValueError, match="every contact has one of its own"):
         squealing_modes(structure, onset=True)
+
+
+def test_a_friction_that_all_contacts_share_can_be_the_structures():
+    case = random_case(2)
+    structure = structure_of(case, own=[{"mu": 0.3}] * 3, mu=0.9)
+    common = structure.with_common_mu()
+    assert common.mu == 0.3
+    assert np.allclose(
+        common.complex_modes(mu=[0.3]).normal_force, growth(case, SIGNS * 0.3)[1]
+    )
+    different = structure_of(case, own=[{"mu": 0.3}, {"mu": 0.3}, {"mu": 0.4}])
+    assert different.with_common_mu() is different
 
 
 REFUSED = {
