@@ -32,6 +32,15 @@ class PointOrigin(NamedTuple):
     gap: float
     position: tuple[float, float, float]
 
+    def as_dict(self) -> dict[str, Any]:
+        """Return what a report says of it, as JSON takes it."""
+        return {
+            "nodes": list(self.nodes),
+            "against": list(self.against),
+            "area": self.area,
+            "gap": self.gap,
+        }
+
 
 @dataclass(frozen=True, eq=False)
 class Contact:

@@ -356,6 +356,7 @@ class ContactStructure:
                 "preload": each.preload,
                 "speed": each.speed,
             }
+            | ({} if each.origin is None else each.origin.as_dict())
             | {
                 key: getattr(each, key)
                 for key in ("mu", "friction_law", "mu_static")

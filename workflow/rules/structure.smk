@@ -20,6 +20,7 @@ rule analyse_structure:
     output:
         modes=data("structure/modes"),
         squeal=data("structure/squeal"),
+        contacts=f"{RESULTS}/report/contacts.csv",
     params:
         settings=STRUCTURE,
     threads: workflow.cores

@@ -6,6 +6,7 @@ parameter, so Snakemake runs the rule again when it changes; the results state i
 and archives can hold each file against what it should be.
 """
 
+import gzip
 import hashlib
 import json
 import os
@@ -178,6 +179,30 @@ def key_behind(path: str | Path) -> str | None:
     )
 
 
+def _beside(file: Path, within: tuple[Path, ...] = ()) -> Iterator[str]:
+    """Yield files that belong to one of a finite-element program: labels, and what a deck reads.
+
+    Args:
+        within: decks that include this one.
+    """
+    packed = file.suffix.lower() == ".gz"
+    plain = file.with_suffix("") if packed else file
+    endings = {".sti": (".dof",), ".mas": (".dof",), ".matrix": (".mapping",)}
+    for ending in endings.get(plain.suffix.lower(), ()):
+        for each in (plain.with_suffix(ending), plain.with_suffix(f"{ending}.gz")):
+            if each.is_file():
+                yield each.as_posix()
+    if plain.suffix.lower() == ".inp":
+        content = file.read_bytes()
+        text = gzip.decompress(content) if content[:2] == b"\x1f\x8b" else content
+        for match in re.finditer(rb"(?im)^\*(?!\*).*\bINPUT\s*=\s*([^,\r\n]+)", text):
+            name = match[1].decode(errors="replace").strip("\"' ")
+            included = Path(os.path.normpath(file.parent / name))
+            if included.is_file() and included not in (file, *within):
+                yield included.as_posix()
+                yield from _beside(included, (file, *within))
+
+
 def files_named_in(value: Any, folder: Path | None = None) -> Iterator[str]:
     """Files that a slice names: a table of friction, a system or a structure as FILE:NAME.
 
@@ -188,9 +213,7 @@ def files_named_in(value: Any, folder: Path | None = None) -> Iterator[str]:
         file = Path(name) if folder is None else folder / name
         if "." in name and file.is_file():
             yield name if folder is None else file.as_posix()
-            labels = file.with_suffix(".dof")
-            if file.suffix.lower() in {".sti", ".mas"} and labels.is_file():
-                yield labels.as_posix()
+            yield from _beside(file)
             if folder is None and file.suffix in {".yaml", ".yml"}:
                 content = yaml.safe_load(file.read_text(encoding="utf-8"))
                 yield from files_named_in(content, file.parent)

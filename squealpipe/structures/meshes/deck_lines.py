@@ -1,5 +1,6 @@
 """Lines of a deck of Abaqus or CalculiX as blocks: a keyword, its parameters, its data lines."""
 
+import os
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -81,7 +82,7 @@ def _with_included(block: Block, within: tuple[Path, ...]) -> Iterator[Block]:
     if beside is None:
         yield block
         return
-    path = block.path.parent / beside
+    path = Path(os.path.normpath(block.path.parent / beside))
     if not path.is_file():
         raise FileNotFoundError(f"{block.where}: no file {path}")
     if block.keyword == "INCLUDE":

@@ -293,6 +293,17 @@ def structure(modes: xr.Dataset, answer: xr.Dataset) -> dict[str, Any]:
             }
             for name, each in whole["contacts"].items()
         ],
+        "origins": [
+            {
+                "name": name,
+                "nodes": _few(each["nodes"]),
+                "against": _few(each["against"]) or "belt",
+                "area": f"{number(1e6 * each['area'])} mm²",
+                "gap": engineering(each["gap"], "m"),
+            }
+            for name, each in whole["contacts"].items()
+            if "nodes" in each
+        ],
     }
 
 
@@ -308,6 +319,12 @@ def _speed_words(numbers: dict[str, Any]) -> str:
     if "rotation" in numbers:
         return f"rotation at {engineering(numbers['belt_speed'], 'rad s-1')}"
     return f"belt speed {engineering(numbers['belt_speed'], 'm s-1')}"
+
+
+def _few(nodes: list[int]) -> str:
+    """Return numbers of nodes, the first four of many."""
+    more = ", …" if len(nodes) > 4 else ""
+    return ", ".join(map(str, nodes[:4])) + more
 
 
 def not_examined(answer: xr.Dataset) -> list[str]:

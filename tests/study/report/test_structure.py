@@ -1,5 +1,6 @@
 """The report of a structure, on the example that ``init --structure`` writes."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ from scipy.optimize import brentq
 from squealpipe import Structure
 from squealpipe.cli import run
 from squealpipe.store.mistakes import ConfigError
-from squealpipe.store.rerun.key import rule_key
+from squealpipe.store.rerun.key import files_named_in, rule_key
 from squealpipe.study.configuration.settings import PAPER, parse_study, read_study
 from squealpipe.study.report import squealing as words
 from squealpipe.study.report import structure as report
@@ -193,3 +194,44 @@ def test_the_example_is_written_once_and_whole(tmp_path, capsys):
     file = str(tmp_path / "pads/structure.yaml")
     with pytest.raises(ValueError, match="names no contacts"):
         read_structure({"file": file, "frequency_max": None})
+
+
+def test_files_that_a_deck_includes_change_the_key(tmp_path):
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "brake.inp").write_text(
+        "*INCLUDE, INPUT=parts/nodes.inp\n** *INCLUDE, INPUT=old.inp\n"
+    )
+    (tmp_path / "old.inp").write_text("*NODE\n")
+    (tmp_path / "parts/nodes.inp").write_text(
+        "*Node, Input = n.txt\n*INCLUDE, INPUT=../brake.inp\n"
+    )
+    (tmp_path / "parts/n.txt").write_text("1, 0, 0, 0\n")
+    for name in ("M.mas.gz", "M.dof"):
+        (tmp_path / name).write_bytes(b"")
+    (tmp_path / "brake.yaml").write_text("mass: M.mas.gz\nmesh: brake.inp\n")
+    named = files_named_in({"structure": {"file": str(tmp_path / "brake.yaml")}})
+    found = {Path(name).resolve().name for name in named}
+    assert found == {
+        "brake.yaml",
+        "brake.inp",
+        "nodes.inp",
+        "n.txt",
+        "M.mas.gz",
+        "M.dof",
+    }
+
+
+def test_the_report_says_how_contacts_of_a_mesh_came_about(modes, answer):
+    whole = json.loads(modes.attrs["parameters"])
+    assert report.structure(modes, answer)["origins"] == []
+    for each in whole["contacts"].values():
+        each |= {"nodes": [5, 6, 7, 8, 9], "against": [], "area": 5.21e-5, "gap": 2e-4}
+    of_mesh = modes.assign_attrs(parameters=json.dumps(whole))
+    first = report.structure(of_mesh, answer)["origins"][0]
+    assert first == {
+        "name": "inner",
+        "nodes": "5, 6, 7, 8, …",
+        "against": "belt",
+        "area": "52.1 mm²",
+        "gap": "0.2 mm",
+    }

@@ -1,5 +1,6 @@
-"""Complex modes of a structure over friction, and which of them squeal."""
+"""Complex modes of a structure over friction, which of them squeal, and its contacts as a table."""
 
+from squealpipe.store.rerun.key import state_key
 from squealpipe.study.job import Job
 from squealpipe.study.structure_study import (
     modes_over_friction,
@@ -12,3 +13,5 @@ section = job.settings["structure"]
 structure = read_structure(section)
 job.make(lambda: modes_over_friction(structure, section), job.out.modes)
 job.make(lambda: squealing(structure, section, snakemake.threads), job.out.squeal)
+structure.write_contacts(job.out.contacts)
+state_key(job.out.contacts, job.key)
