@@ -1,17 +1,19 @@
 """A structure as a system: one component for each contact, with the regimes of A1."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple, Self
 
 import numpy as np
 
+from squealpipe.laws import friction_laws
 from squealpipe.laws.tables import is_table, pieces_of
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.dynamics import (
     Motion,
     Numbers,
     coefficients_of,
+    law_in_use,
     reads_speed,
     total,
 )
@@ -21,6 +23,17 @@ from squealpipe.systems.belt_contact import FIRST, SLIP, BeltContact, Surface, n
 from squealpipe.systems.components import MOST_COMPONENTS, Component, Switch
 from squealpipe.systems.definition import MOST_STATES
 from squealpipe.systems.inputs.values import brief, is_finite_number, is_whole_number
+from squealpipe.systems.linear.matrices import (
+    COULOMB,
+    EXPONENTIAL,
+    HYPERBOLIC,
+    PIECE_FIELDS,
+    TABLE,
+    Caps,
+    ContactMatrices,
+    diagonal_if_it_is,
+)
+from squealpipe.systems.linear.system import LinearSystem
 from squealpipe.systems.system import System
 
 HIDDEN = 1e-14
@@ -40,46 +53,84 @@ def system(
     friction is a table; its outputs are ``<contact>_normal_force``, N, and ``<contact>_speed``,
     the speed of sliding, m/s.
 
+    One compiled loop runs all structures (:mod:`squealpipe.systems.linear`). Where sticking
+    contacts have dependent sliding directions their motion is unique, and of their friction forces
+    those of the least norm are taken. Cycles, branches, curves, sensitivities and the horizon of
+    predictability follow symbols, and so are limited to what :func:`component_system` can carry.
+
     Args:
         displacements: further outputs, m: name → a degree of freedom of the whole structure, or
             {degree of freedom: coefficient}, counted from 0.
 
     Raises:
-        ValueError: too many degrees of freedom or contacts; transverse damping; contacts that
-            cannot all stick at once for their sliding directions are dependent; a degree of freedom
+        ValueError: too many degrees of freedom or contacts; transverse damping; a degree of freedom
             that does not exist.
     """
-    size = structure.size
+    if not structure.contacts or not is_in_loop(structure):
+        return component_system(structure, displacements)
+    _check_size(structure, Caps())
+    equations = Equations(structure)
+    scale = Scale.of(structure)
+    shapes = {
+        name: equations.shape(name, given)
+        for name, given in (displacements or {}).items()
+    }
+    return LinearSystem(
+        f"structure of {structure.size} degrees of freedom",
+        states=_states(structure, scale),
+        parameters=_parameters(structure),
+        matrices=matrices_of(structure, equations.numbers, scale, [*shapes.values()]),
+        contacts=[each.name for each in structure.contacts],
+        coefficients=coefficient_names(structure),
+        outputs=dict.fromkeys(shapes, "m"),
+        time_scale=scale.time,
+        general=lambda: component_system(structure, displacements),
+    )
+
+
+def _check_size(structure: ContactStructure, caps: Caps) -> None:
+    """Raise if a structure is larger than can be run, or has what runs cannot have."""
+    size, count = structure.size, len(structure.contacts)
     damped = [each.name for each in structure.contacts if each.transverse_damping]
     if damped:
         raise ValueError(
             f"contact {damped[0]}: transverse_damping is a part of complex modes; in a run "
             "friction acts along the tangential direction alone: leave it out there"
         )
-    if 2 * size > MOST_STATES:
-        most = MOST_STATES // 2
+    if size > caps.modes:
         raise ValueError(
-            f"{size} degrees of freedom: a system can have {most}; "
+            f"{size} degrees of freedom: a system can have {caps.modes}; "
             + (
                 "take structure.reduce().system()"
                 if structure.modes is None
-                else f"reduce the whole structure with n_modes={most}, and see the errors in its "
-                "record"
+                else f"reduce the whole structure with n_modes={caps.modes}, and see the errors in "
+                "its record"
             )
         )
-    if len(structure.contacts) > MOST_COMPONENTS:
+    if count > caps.contacts:
+        gigabytes = 8e-9 * (3 * 16 * count**2 + 12 * count**2)
         raise ValueError(
-            f"{len(structure.contacts)} contacts: a system can have {MOST_COMPONENTS}; complex "
-            "modes take any number"
+            f"{count} contacts: a system can have {caps.contacts}, and of so many a run would take "
+            f"{gigabytes:.1f} GB; merge neighbours. Complex modes take any number"
         )
+
+
+def component_system(
+    structure: ContactStructure, displacements: Mapping[str, Any] | None = None
+) -> System:
+    """The same of components, whose functions are traced and compiled for this structure.
+
+    Raises:
+        ValueError: as :func:`system`; contacts that cannot all stick at once for their sliding
+            directions are dependent.
+    """
+    size = structure.size
+    _check_size(structure, Caps(MOST_STATES // 2, MOST_COMPONENTS))
     if conflict := conflict_in_stick(structure):
         raise ValueError(conflict)
     equations = Equations(structure)
-    scale = _Scale.of(structure)
-    unit = "m" if structure.modes is None else "kg^0.5 m"
-    places = range(1, size + 1)
-    states: dict[str, Any] = {f"q{i}": (unit, scale.displacement) for i in places}
-    states |= {f"v{i}": (f"{unit} s-1", scale.velocity) for i in places}
+    scale = Scale.of(structure)
+    states = _states(structure, scale)
     contacts = {
         each.name: _Contact(equations, place, scale.force).component()
         for place, each in enumerate(structure.contacts)
@@ -97,6 +148,76 @@ def system(
         outputs=equations.outputs(displacements or {}),
         time_scale=scale.time,
     )
+
+
+def _states(structure: ContactStructure, scale: "Scale") -> dict[str, Any]:
+    """Displacements, then velocities, with units and typical sizes."""
+    unit = "m" if structure.modes is None else "kg^0.5 m"
+    places = range(1, structure.size + 1)
+    states: dict[str, Any] = {f"q{i}": (unit, scale.displacement) for i in places}
+    return states | {f"v{i}": (f"{unit} s-1", scale.velocity) for i in places}
+
+
+def matrices_of(
+    structure: ContactStructure,
+    numbers: Numbers,
+    scale: "Scale",
+    shapes: Sequence[np.ndarray],
+) -> ContactMatrices:
+    """Return the matrices that the loop of linear structures runs."""
+    laws = [law_in_use(each) for each in structure.frictions]
+    tables = [law for law in laws if is_table(law)]
+    numbers_of_laws = {
+        "coulomb": COULOMB,
+        "exponential": EXPONENTIAL,
+        "hyperbolic": HYPERBOLIC,
+    }
+    fields = [
+        [piece[key] for key in PIECE_FIELDS]
+        for piece in (pieces_of(tables[0]).constants("mu") if tables else [])
+    ]
+    return ContactMatrices(
+        stiffness=diagonal_if_it_is(numbers.stiffness),
+        damping=diagonal_if_it_is(numbers.damping),
+        load=numbers.load,
+        balanced=numbers.balanced,
+        normals=numbers.normals,
+        tangentials=numbers.tangentials,
+        pushes=numbers.pushes,
+        drags=numbers.drags,
+        springs=structure.stiffnesses,
+        preloads=structure.preloads,
+        speeds=structure.speeds,
+        laws=np.array([numbers_of_laws.get(law, TABLE) for law in laws], np.int64),
+        pieces=np.array(fields or [[0.0] * len(PIECE_FIELDS)]),
+        hidden=HIDDEN * scale.force,
+        shapes=np.array(shapes).reshape(len(shapes), structure.size),
+    )
+
+
+def is_in_loop(structure: ContactStructure) -> bool:
+    """Tell whether the loop of linear structures has the friction of all contacts.
+
+    It has the laws of the package, and one table for all contacts; others are traced.
+    """
+    laws = {law_in_use(each) for each in structure.frictions}
+    return laws <= set(friction_laws.LAWS) or (len(laws) == 1 and is_table(*laws))
+
+
+def coefficient_names(structure: ContactStructure) -> list[tuple[str, str | None, Any]]:
+    """Return for each contact the parameters of μ, of its static limit, and of its speed.
+
+    The speed is a number where no parameter is.
+    """
+    found: list[tuple[str, str | None, Any]] = []
+    for place, friction in enumerate(structure.frictions):
+        names = [*coefficients_of(structure, place)]
+        static = names[1] if len(names) > 1 else None
+        fixed = friction.friction_speed
+        found.append(
+            (names[0], static, "friction_speed" if reads_speed(friction) else fixed)
+        )
+    return found
 
 
 def _parameters(structure: ContactStructure) -> dict[str, float]:
@@ -142,10 +263,10 @@ class Equations:
             outputs[f"{contact.name}_normal_force"] = ("N", force)
             outputs[f"{contact.name}_speed"] = ("m s-1", speed)
         for name, given in displacements.items():
-            outputs[name] = ("m", _displacement(self._shape(name, given)))
+            outputs[name] = ("m", _displacement(self.shape(name, given)))
         return outputs
 
-    def _shape(self, name: str, given: Any) -> np.ndarray:
+    def shape(self, name: str, given: Any) -> np.ndarray:
         """Return a named displacement of the structure per unit of each state."""
         modes = self.structure.modes
         if modes is None:
@@ -173,7 +294,7 @@ def _displacement(shape: np.ndarray) -> Surface:
     return displacement
 
 
-class _Scale(NamedTuple):
+class Scale(NamedTuple):
     """Typical sizes of a structure's motion, for error control and default times."""
 
     time: float

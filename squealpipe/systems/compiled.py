@@ -7,6 +7,7 @@ A function is compiled by who calls it:
   compiled in :mod:`squealpipe.systems.taylor.machine`);
 - ``part``: other compiled code calls it, so there are no wrappers to compile, and no counts of
   references to arrays (an eighth of the time), so it makes none and returns none;
+- ``views``: likewise where it makes views of memory that others keep, and returns them;
 - ``inline``: likewise in every step, where passing a dozen arrays costs as much as the work;
 - ``polynomial``: likewise with fused multiply-add, which halves the time of a Horner chain.
 
@@ -40,6 +41,7 @@ _PART: dict[str, Any] = {
 _MARK = b"from squealpipe.systems.compiled import "
 
 part = _numba.njit(**_PART)
+views = _numba.njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 inline = _numba.njit(forceinline=True, **_PART)
 polynomial = _numba.njit(fastmath={"contract"}, **_PART)
 

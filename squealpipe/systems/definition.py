@@ -95,6 +95,10 @@ class Definition:
         TypeError: a function is not smooth (a comparison, a branch), or gives what is not a number.
     """
 
+    batch: Any = None
+    """What integrates runs in place of series that are compiled for the system; None: these."""
+    most_states, most_regimes = MOST_STATES, MOST_REGIMES
+
     @checked
     def __init__(
         self,
@@ -188,8 +192,8 @@ class Definition:
 
     def _check_names(self) -> None:
         for number, most, what in (
-            (len(self.units), MOST_STATES, "states"),
-            (len(self.regimes), MOST_REGIMES, "regimes"),
+            (len(self.units), self.most_states, "states"),
+            (len(self.regimes), self.most_regimes, "regimes"),
         ):
             if not 1 <= number <= most:
                 raise ValueError(f"{number} {what}; 1 to {most} can be carried")

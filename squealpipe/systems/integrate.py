@@ -147,14 +147,17 @@ def integrate(
     Raises:
         ValueError: the system's unit of time, or a state's typical size, is not a positive number.
     """
-    batch = _Batch(system.for_exponents(values), values, t_end, options, tol)
-    loop()  # compiled before processes share the work
+    make = system.batch or Batch
+    batch = make(system.for_exponents(values), values, t_end, options, tol)
+    batch.loop()  # compiled before processes share the work
     arrays = run_shared(batch.run, batch.shapes(), jobs=len(t_end), workers=workers)
     return batch.named(arrays)
 
 
-class _Batch:
+class Batch:
     """Runs of one system with what they are given, as the compiled loop reads it."""
+
+    loop = staticmethod(loop)
 
     def __init__(
         self,
@@ -167,20 +170,15 @@ class _Batch:
         self.system, self.options, self.tol = system, options, tol
         self.size = len(t_end)
         self.unit = unit = _time_units(system, values, t_end)
-        self.initial = _table(self.size, *(values[name] for name in system.states))
+        self.initial = table_of(self.size, *(values[name] for name in system.states))
         self.sizes = _state_sizes(system, values, self.size, options.unit_sizes)
-        derive, names = system.derived
-        known = {**values, TIME_UNIT: unit}
-        derived = derive(*(known[name] for name in names))
-        self.parameters = _table(
-            self.size, *(values[name] for name in system.parameters), *derived, unit
-        )
+        self.parameters = self._parameters(values)
         self.regimes = options.regime
         if not isinstance(self.regimes, np.ndarray):
             at_start = {TIME: np.full(self.size, options.t_start), **values}
             self.regimes = system.first_regimes(at_start, self.size, self.regimes)
         self.watched = self._watched()
-        self.limits = _table(
+        self.limits = table_of(
             self.size,
             t_end / unit,
             options.t_late / unit,
@@ -200,9 +198,23 @@ class _Batch:
             else np.ascontiguousarray(options.around, float)
         )
         self.n_kinds = max(1, len(system.integrated.kinds))
+        self._compile()
+
+    def _parameters(self, values: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Return the numbers of each run as its lane has them, (runs, parameters)."""
+        derive, names = self.system.derived
+        known = {**values, TIME_UNIT: self.unit}
+        derived = derive(*(known[name] for name in names))
+        given = (values[name] for name in self.system.parameters)
+        return table_of(self.size, *given, *derived, self.unit)
+
+    def _compile(self) -> None:
+        """Compile what the system computes, and note what its steps are checked by."""
         few = self.size <= FEW
-        self.code = compiled(system, tangent=options.tangent, few=few)
-        self.written = symbolic(system)
+        code = compiled(self.system, tangent=self.options.tangent, few=few)
+        written = symbolic(self.system)
+        self.code, self.n_series = code.code, code.n_series
+        self.steep, self.bent = written.steep, written.bent
 
     def _watched(self) -> list[tuple[int, bool]]:
         """Place among variables, surfaces and outputs of what is tracked; the largest alone?"""
@@ -288,16 +300,16 @@ class _Batch:
             "late_from": number.get(options.late_from, -1),
             "n_rounds": lanes.ROUNDS,
             "tangent": int(options.tangent),
-            "take_step": code.address("series"),
-            **{name: code.address(name) for name in layout.FUNCTIONS},
-            "n_series": code.n_series,
+            "take_step": code.get("series", 0),
+            **{name: code.get(name, 0) for name in layout.FUNCTIONS},
+            "n_series": self.n_series,
             "n_rows": n_rows,
             "n_switches": len(t.switches),
         }
 
     def _memory(self, counts: dict[str, int], queue: list[int]) -> dict[str, Any]:
         """What the loop reads, and where it works, for one process."""
-        t, options, written = self.system.integrated, self.options, self.written
+        t, options = self.system.integrated, self.options
         logged = t.kinds if options.logged is None else options.logged
         n_events = len(t.surfaces) + len(t.outputs)
         # outputs are watched in all lanes, surfaces as regimes ask
@@ -310,8 +322,7 @@ class _Batch:
         return {
             "rows": lanes.aligned(counts["n_rows"], LANES),
             "integers": integers,
-            "series": lanes.aligned(self.code.n_series, counts["n_terms"], LANES),
-            "inverses": lanes.INVERSES,
+            **self._series(counts["n_terms"]),
             "sizes": self.sizes,
             "units": lanes.aligned(t.size, LANES),
             "tracked": np.array(self.watched, np.int64),
@@ -329,10 +340,11 @@ class _Batch:
             "fresh": np.zeros(len(t.surfaces), np.int64),
             "beyond": np.zeros(len(t.surfaces), np.int64),
             "exact": lanes.aligned(t.size + n_events, LANES),
-            "steep": written.steep,
-            "bent": written.bent,
-            "share": np.array([share, self.tol, written.bent.any()], float),
+            "steep": self.steep,
+            "bent": self.bent,
+            "share": np.array([share, self.tol, self.bent.any()], float),
             "noise": np.zeros((len(t.surfaces), 2, LANES)),
+            "suspects": np.full(len(t.surfaces), -1, np.int64),
             "scratch": np.zeros((6, width)),
             "between": np.zeros((len(self.watched), 2, LANES)),
             "logs": np.array([kind in logged for kind in t.kinds], np.int64),
@@ -342,6 +354,13 @@ class _Batch:
             "limits": self.limits,
             "sample_times": self.sample_times,
             "queue": np.array(queue, np.int64),
+        }
+
+    def _series(self, n_terms: int) -> dict[str, np.ndarray]:
+        """Return the room for the series, and what they are computed from."""
+        return {
+            "series": lanes.aligned(self.n_series, n_terms, LANES),
+            "inverses": lanes.INVERSES,
         }
 
     def run(self, arrays: dict[str, np.ndarray], first: int, stride: int) -> None:
@@ -370,7 +389,7 @@ class _Batch:
         )
         rows, job = memory["rows"], memory["integers"][layout.JOB]
         at = job, rows[layout.CLOCK], rows[layout.T_END], memory["queue"]
-        lanes.drive(loop(), table, lambda: lanes.share_of(*at))
+        lanes.drive(self.loop(), table, lambda: lanes.share_of(*at))
         if job.max() >= 0 or memory["queue"][0] < self.size:
             raise RuntimeError(
                 "an exception in compiled code, reported above, ended the integration before its "
@@ -435,7 +454,7 @@ def _state_sizes(
     return rows
 
 
-def _table(size: int, *columns: Any) -> np.ndarray:
+def table_of(size: int, *columns: Any) -> np.ndarray:
     """Columns side by side, each a number or an array (size,)."""
     table = np.empty((size, len(columns)))
     for place, column in enumerate(columns):

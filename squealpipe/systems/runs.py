@@ -31,8 +31,6 @@ from squealpipe.systems.labels import (
 )
 from squealpipe.systems.record import RunRecord, single_run
 from squealpipe.systems.schema import build
-from squealpipe.systems.taylor.scalar import numpy_function
-from squealpipe.systems.trace import TIME
 
 
 @checked
@@ -113,16 +111,7 @@ def _outputs_along(
     system: Any, values: Mapping[str, float], times: np.ndarray, run: RunRecord
 ) -> dict[str, Any]:
     """Each output at the instants of a run, with the constants of its regimes there."""
-    traced = system.traced
-    function, names = numpy_function(list(traced.outputs))
-    known: dict[str, Any] = {**values, TIME: times}
-    known |= dict(zip(system.states, run.path.T, strict=True))
-    for component, regimes in enumerate(run.path_regimes.T):
-        columns = traced.columns(component)
-        # where the run did not come the states are NaN, whatever the regime
-        held = traced.regimes[np.maximum(regimes, 0), columns].T
-        known |= dict(zip(traced.constants[columns], held, strict=True))
-    along = function(*(known[name] for name in names))
+    along = system.outputs_along(values, times, run.path, run.path_regimes)
     reached = np.where(run.path_regimes[:, 0] >= 0, 0.0, np.nan)
     return {
         name: ("time", value + reached, labels(f"output {name}", unit))

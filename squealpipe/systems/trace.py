@@ -8,6 +8,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from squealpipe.systems import functions  # noqa: F401 (laws call exp on symbols)
 from squealpipe.systems.components import Composition
 from squealpipe.systems.inputs.words import suggestion
 from squealpipe.systems.taylor.scalar import REGIME, SwitchSymbols

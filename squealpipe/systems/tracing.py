@@ -352,6 +352,30 @@ class TracedSystem(Definition):
         """What the system is, as text: for the attributes of its datasets."""
         return describe(self.traced, self.composition, self.states, tuple(self.outputs))
 
+    def outputs_along(
+        self,
+        values: Mapping[str, float],
+        times: np.ndarray,
+        path: np.ndarray,
+        regimes: np.ndarray,
+    ) -> Sequence[Any]:
+        """Return each output at the instants of a run.
+
+        Args:
+            path: states, (instants, states); NaN where the run did not come.
+            regimes: of each component there, (instants, components).
+        """
+        traced = self.traced
+        function, names = numpy_function(list(traced.outputs))
+        known: dict[str, Any] = {**values, TIME: times}
+        known |= dict(zip(self.states, path.T, strict=True))
+        for component, numbers in enumerate(regimes.T):
+            columns = traced.columns(component)
+            held = traced.regimes[np.maximum(numbers, 0), columns].T
+            known |= dict(zip(traced.constants[columns], held, strict=True))
+        along: Sequence[Any] = function(*(known[name] for name in names))
+        return along
+
     @cached_property
     def joint(self) -> Joint:
         """The regimes of all components at once."""

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from squealpipe import Contact, Structure
+from squealpipe.structures.motion_system import component_system
 from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.variational import leg_derivatives
 from tests.oracles.exponentials import OPEN, SLOWER, STICK, Exponentials
@@ -51,8 +52,8 @@ def after(structure, regimes, state, time):
 )
 def test_derivatives_along_a_leg_are_those_of_a_matrix_exponential(names, regimes):
     structure = two_modes(0.8, beside=True)
-    system = structure.system()
-    state = np.random.default_rng(1).standard_normal(8) * system.sizes
+    system = component_system(structure)
+    state = np.random.default_rng(1).standard_normal(8) * system.sizes_in({})
     time = 2.3 / UNITS
     flow, places = Flow(system, ("mu",)), list(system.regimes)
     number = system.joint.number(
@@ -63,7 +64,7 @@ def test_derivatives_along_a_leg_are_those_of_a_matrix_exponential(names, regime
     )
     found = leg_derivatives(flow, system.parameters, path)[0]
     end, by_state = after(structure, regimes, state, time)
-    scale = system.sizes
+    scale = system.sizes_in({})
     assert path.ends[0] / scale == pytest.approx(end / scale, abs=1e-12)
     np.testing.assert_allclose(
         found[:, :8] * scale / scale[:, None],

@@ -1,16 +1,18 @@
 """A reduced structure against eigenvalues of the whole, assembled here and solved by SciPy."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import scipy.linalg as la
 
-from squealpipe import Contact, Structure, plot, squealing_modes
+from squealpipe import Contact, Structure, labels, plot, squealing_modes
 from squealpipe.cli.signatures import in_options
 from squealpipe.codes import Verdict
 from squealpipe.structures import elastic_pad
 from squealpipe.structures.agreement import Truth
+from squealpipe.structures.motion_system import component_system
 from squealpipe.structures.reduction import Search, fewest_modes
 from squealpipe.structures.squeal.attractors import grouped
 from squealpipe.study.report.squealing import lines
@@ -89,14 +91,29 @@ def eigenvalues(structure, ratio):
     return values[values.imag >= 0]
 
 
-def test_contacts_on_one_tangent_have_complex_modes_and_are_refused_in_runs_alone():
+def test_contacts_on_one_tangent_have_complex_modes_and_share_their_friction_in_stick():
     pad = rigid_pad()
     found = pad.complex_modes()
     ours = found.growth_rate.values + 2j * np.pi * found.frequency.values
     truth = eigenvalues(pad, 0.005)
     assert np.sort_complex(ours) == pytest.approx(np.sort_complex(truth), rel=1e-9)
-    with pytest.raises(ValueError, match="dependent in the structure itself"):
-        pad.system()
+    # two contacts at one point are one with both stiffnesses and preloads
+    contact = pad.contacts[0]
+    half = [
+        replace(contact, name=name, stiffness=share * contact.stiffness,
+                preload=share * contact.preload)
+        for name, share in (("a", 0.25), ("b", 0.75))
+    ]  # fmt: skip
+    alone, twice = (
+        pad.with_(contacts=each, belt_speed=0.01).system() for each in ([contact], half)
+    )
+    end = 20.0 * alone.time_scale
+    run, pair = alone.simulate(end, times=[end]), twice.simulate(end, times=[end])
+    kinds = [set(labels(each.event_kind).values.tolist()) for each in (run, pair)]
+    assert "leading_stick" in kinds[0]
+    assert {"a_stick", "b_stick"} <= kinds[1]
+    for name in alone.states:
+        assert float(pair[name][0]) == pytest.approx(float(run[name][0]), rel=1e-9)
 
 
 @pytest.mark.parametrize("links", [3, 20])
@@ -107,18 +124,18 @@ def test_a_mirror_symmetric_structure_is_reduced_by_itself(links):
     assert np.linalg.matrix_rank(reduced.tangentials, tol=1e-6) == 2
 
 
-def test_directions_dependent_in_the_modes_kept_name_the_number_that_suffices():
+def test_directions_dependent_in_the_modes_kept_name_the_number_for_cycles():
     whole = chain(20)
     few = whole.reduce(n_modes=2)
     assert few.complex_modes().sizes["mode"] == 2
     with pytest.raises(
         ValueError, match=r"contacts left and right cannot all stick"
     ) as error:
-        few.system()
+        few.system().limit_cycle()
     enough = int(str(error.value).partition("n_modes=")[2].partition(" ")[0])
-    whole.reduce(n_modes=enough).system()
+    component_system(whole.reduce(n_modes=enough))
     with pytest.raises(ValueError, match="dependent in the"):
-        whole.reduce(n_modes=enough - 1).system()
+        component_system(whole.reduce(n_modes=enough - 1))
 
 
 def test_a_missing_mode_makes_the_verdict_undetermined_and_is_named():

@@ -178,7 +178,9 @@ def stable_cycle(
         frequency: of the motion, Hz.
         parameters: of the system, where they are not its own.
     """
-    system = plant.system
+    system = plant.traced_system
+    if system is None:
+        return None
     values: dict[str, Any] = {**system.parameters, **parameters}
     regime = system.joint.number(regimes.tolist())
     cycle, outcome = find_cycle(

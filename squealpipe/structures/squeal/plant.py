@@ -141,6 +141,14 @@ class Plant:
         named = {**values, **parameters, TIME: np.zeros(1)}
         return np.asarray(system.first_regimes(named, 1)[0])
 
+    @cached_property
+    def traced_system(self) -> System | None:
+        """The same of components, for exact cycles; None if it is larger than these can be."""
+        try:
+            return getattr(self.system, "general", self.system)
+        except ValueError:
+            return None
+
     @property
     def contacts(self) -> list[str]:
         """Names."""

@@ -90,14 +90,14 @@ def end_stalled(t: Any, m: Any, c: Any, busy: int) -> int:
     while bits:
         lane = first_bit(bits)
         bits ^= 1 << lane
-        if _stands_still(t, m, c, lane):
+        if stands_still(t, m, c, lane):
             m.integers[layout.OUTCOME, lane] = layout.DISCONTINUITY
             ended |= 1 << lane
     return ended
 
 
 @part
-def _stands_still(t: Any, m: Any, c: Any, lane: int) -> bool:
+def stands_still(t: Any, m: Any, c: Any, lane: int) -> bool:
     """Whether a lane runs on after a step that has moved no variable; the next one is the same."""
     hit, outcome = m.integers[layout.HIT, lane], m.integers[layout.OUTCOME, lane]
     if hit != -1 or outcome != layout.RUNNING:

@@ -122,6 +122,20 @@ def view(address: int, shape: Any, dtype: Any) -> Any:
     return _numba.carray(_address(address), shape, dtype)
 
 
+def record_viewer(record: np.dtype, *, of_pointer: bool = False) -> Any:
+    """Return a compiled function that gives the record of a type at an address, or a pointer."""
+
+    @_numba.njit
+    def record_at(pointer: Any) -> Any:
+        return _numba.carray(pointer, (1,), record)[0]
+
+    @_numba.njit
+    def record_at_address(address: int) -> Any:
+        return record_at(_address(address))
+
+    return record_at if of_pointer else record_at_address
+
+
 class Workspace:
     """Addresses of arrays and sizes for a compiled function, as one record; keeps the arrays."""
 
@@ -151,11 +165,13 @@ def _address_of(array: np.ndarray) -> int:
     return ctypes.addressof(_START.from_buffer(buffer))
 
 
-def compile_advance(advance: Callable[..., Any]) -> Any:
-    """A C function from ``advance(table) -> busy lanes``, stored under a digest of this folder."""
-    content = b"".join(
-        path.read_bytes() for path in sorted(Path(__file__).parent.glob("*.py"))
-    )
+def compile_advance(advance: Callable[..., Any], folder: Path | None = None) -> Any:
+    """A C function from ``advance(table) -> busy lanes``, stored under a digest of this folder.
+
+    Args:
+        folder: another one whose sources count.
+    """
+    content = _sources(folder)
     compiled = compiled_entry(advance, types.intp(types.voidptr), content)
     function: Any = ctypes.CFUNCTYPE(ctypes.c_ssize_t, ctypes.c_void_p)(
         compiled.address
@@ -163,6 +179,23 @@ def compile_advance(advance: Callable[..., Any]) -> Any:
     # The wrapper does not own the machine code.
     function.code = compiled
     return function
+
+
+def compile_called(function: Callable[..., Any], words: int, folder: Path) -> Any:
+    """A C function of addresses and numbers, which compiled code calls by its address.
+
+    Args:
+        words: number of its arguments.
+        folder: one whose sources count beside this one's.
+    """
+    signature = types.void(*[types.intp] * words)
+    return compiled_entry(function, signature, _sources(folder))
+
+
+def _sources(folder: Path | None) -> bytes:
+    folders = [Path(__file__).parent, *([] if folder is None else [folder])]
+    paths = [path for each in folders for path in sorted(each.glob("*.py"))]
+    return b"".join(path.read_bytes() for path in paths)
 
 
 def drive(

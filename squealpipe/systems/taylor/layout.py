@@ -97,6 +97,7 @@ ARRAYS = (
     "points",
     "half_turns",
     "queue",
+    "suspects",
 )
 FUNCTIONS = (
     "perturb",

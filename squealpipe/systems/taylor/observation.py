@@ -28,7 +28,7 @@ PIECES = 8
 
 
 @part
-def _extremes(c: Any, index: int, lane: int, begin: float, end: float) -> Any:
+def extremes_inside(c: Any, index: int, lane: int, begin: float, end: float) -> Any:
     """Return the least and largest value at turning points inside a part of a step."""
     low, high = math.inf, -math.inf
     step = end - begin
@@ -118,7 +118,7 @@ def observe(t: Any, m: Any, c: Any, first_extreme: int, busy: int) -> None:
         while bits:
             lane = first_bit(bits)
             bits ^= 1 << lane
-            inner_low, inner_high = _extremes(
+            inner_low, inner_high = extremes_inside(
                 c, variable, lane, 0.0, m.rows[layout.STEP, lane]
             )
             m.rows[r, lane] = min(m.rows[r, lane], inner_low)
@@ -145,7 +145,7 @@ def extremes_between(t: Any, m: Any, c: Any, lane: int) -> None:
             end = offset if due else step
         for index in range(t.n_tracked):
             quantity = m.tracked[index, 0]
-            low, high = _extremes(c, quantity, lane, begin, end)
+            low, high = extremes_inside(c, quantity, lane, begin, end)
             for time in (begin, end):
                 value = evaluate(c, quantity, lane, time)
                 low, high = min(low, value), max(high, value)

@@ -256,7 +256,7 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
     for surface in range(t.n_surfaces):
         regime = integers[layout.REGIMES + m.owner[surface], lane]
         falls, rises = m.falls[regime, surface], m.rises[regime, surface]
-        if falls < 0 and rises < 0:
+        if (falls < 0 and rises < 0) or not m.suspects[surface] & bit:
             continue
         root = 0.0
         if not m.beyond[surface] & bit:

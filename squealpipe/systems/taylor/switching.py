@@ -171,7 +171,7 @@ def _carry_over(
 
 
 @part
-def _switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
+def switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
     """Carry out the switch that ended a lane's step."""
     rows, integers = m.rows, m.integers
     which = integers[layout.HIT, lane]
@@ -253,5 +253,5 @@ def switch_all(t: Any, m: Any, c: Any, special: int, tangent_row: int) -> None:
             # a surface may be crossed at this very instant
             watch(t, m, c, lane, m.rows[layout.STEP, lane])
         elif hit >= 0 and m.integers[layout.OUTCOME, lane] == layout.RUNNING:
-            _switch(t, m, c, lane, tangent_row)
+            switch(t, m, c, lane, tangent_row)
         m.integers[layout.HIT, lane] = -1

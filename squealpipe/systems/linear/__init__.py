@@ -1,0 +1,7 @@
+"""One compiled loop for all linear structures with contacts on a moving belt.
+
+The loop knows matrices only: nothing is traced or compiled for a structure. :mod:`.matrices` holds
+what it is given, :mod:`.numbering` how regimes, switches and surfaces are numbered, :mod:`.forces`
+the equations, :mod:`.loop` the steps, :mod:`.batch` the arrays of many runs and :mod:`.system` the
+verbs.
+"""

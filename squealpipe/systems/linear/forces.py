@@ -1,0 +1,779 @@
+"""Equations of motion of contacts on a belt by their matrices, at one state or as Taylor series.
+
+Idea: in every regime the motion is M⁻¹ times matrices that do not change, so the orders of its
+series are matrix products: lifts nᵀq and sliding speeds tᵀq̇ of all contacts, forces by their
+regimes, and back. Friction in stick is T_S = −(t_Sᵀ M⁻¹ t_S)⁺ t_Sᵀ M⁻¹ (all other forces); the
+inverse over the contacts S that stick is computed where a regime is entered.
+
+Invariant: the sticking points move with the belt to round-off, whatever S is. Where directions are
+dependent the motion is still unique, and the forces are those of the least norm.
+
+Cost: an order takes four products of n × c numbers; a switch that changes S takes |S|³.
+"""
+
+import math
+from typing import Any
+
+from squealpipe.systems.compiled import inline, part
+from squealpipe.systems.linear.matrices import EXPONENTIAL, HYPERBOLIC, TABLE
+from squealpipe.systems.linear.numbering import (
+    BEFORE_END,
+    CONTACT,
+    DIRECTION,
+    FIRST_OF_PIECE,
+    IS_CLOSED,
+    IS_STUCK,
+    KNOT,
+    LAG,
+    LANDS,
+    MARGIN,
+    MARGIN_BACK,
+    PASSES,
+    PRESSING,
+    REVERSAL,
+    REVERSES,
+    SEPARATES,
+    SEPARATION,
+    SLIPS,
+    SLIPS_AWAY,
+    STICKS,
+)
+from squealpipe.systems.linear.plan import (
+    BASE,
+    BELT,
+    COEFFICIENTS,
+    PRELOAD,
+    RATE,
+    SCALE,
+)
+
+(
+    LAGS, RELIEVED, SLIP, STICK, OF_PRESS, OF_LAG, OF_STICK, CLOSED, SIDE, LIMIT, DRAG,
+    PRESS,
+) = range(12)  # fmt: skip
+"""Rows of the work by contact."""
+DEPENDENT = 1e-13
+"""Share of its own mobility that a sticking direction must add to those before it.
+
+Below it round-off decides; doubling it merges directions 1.4 times as far apart in angle.
+"""
+
+
+@inline
+def _constant(k: Any, rows: Any, contact: int, which: int) -> Any:
+    """Return a constant of a contact's regime."""
+    return rows[COEFFICIENTS + 3 * k.c + 1 + contact * k.width + which, 0]
+
+
+@part
+def _coefficients(k: Any, rows: Any, i: int) -> Any:
+    """Return μ, the coefficient of static friction and the reference speed of a contact."""
+    at = COEFFICIENTS + 3 * i
+    return rows[at, 0], rows[at + 1, 0], rows[at + 2, 0]
+
+
+@inline
+def _unit(k: Any, rows: Any) -> Any:
+    """Return the unit of time."""
+    return rows[COEFFICIENTS + 3 * k.c, 0]
+
+
+@part
+def _add_columns(matrix: Any, by: Any, total: Any) -> None:
+    """Add Σ_j matrix[j] by[j], four rows at a time in a fixed order."""
+    n, c = matrix.shape
+    j = 0
+    while j + 4 <= n:
+        a, b, d, e = matrix[j], matrix[j + 1], matrix[j + 2], matrix[j + 3]
+        x, y, z, w = by[j], by[j + 1], by[j + 2], by[j + 3]
+        for i in range(c):
+            total[i] += ((a[i] * x + b[i] * y) + d[i] * z) + e[i] * w
+        j += 4
+    while j < n:
+        a, x = matrix[j], by[j]
+        for i in range(c):
+            total[i] += a[i] * x
+        j += 1
+
+
+@part
+def _add_listed(matrix: Any, places: Any, count: int, by: Any, total: Any) -> None:
+    """Add Σ_a matrix[places[a]] by[places[a]], four rows at a time in a fixed order."""
+    n, a = total.size, 0
+    while a + 4 <= count:
+        i, j, m, o = places[a], places[a + 1], places[a + 2], places[a + 3]
+        first, second, third, fourth = matrix[i], matrix[j], matrix[m], matrix[o]
+        x, y, z, w = by[i], by[j], by[m], by[o]
+        for p in range(n):
+            total[p] += ((first[p] * x + second[p] * y) + third[p] * z) + fourth[p] * w
+        a += 4
+    while a < count:
+        first, x = matrix[places[a]], by[places[a]]
+        for p in range(n):
+            total[p] += first[p] * x
+        a += 1
+
+
+@part
+def _add_row(row: Any, factor: float, total: Any) -> None:
+    for j in range(row.size):
+        total[j] += row[j] * factor
+
+
+@part
+def _add_sizes(matrix: Any, by: Any, total: Any) -> None:
+    """Add Σ_j |matrix[j]| by[j], four rows at a time."""
+    n, c = matrix.shape
+    j = 0
+    while j + 4 <= n:
+        a, b, d, e = matrix[j], matrix[j + 1], matrix[j + 2], matrix[j + 3]
+        x, y, z, w = by[j], by[j + 1], by[j + 2], by[j + 3]
+        for i in range(c):
+            total[i] += (abs(a[i]) * x + abs(b[i]) * y) + (
+                abs(d[i]) * z + abs(e[i]) * w
+            )
+        j += 4
+    while j < n:
+        a, x = matrix[j], by[j]
+        for i in range(c):
+            total[i] += abs(a[i]) * x
+        j += 1
+
+
+@part
+def dot(a: Any, b: Any) -> Any:
+    """Return a scalar product, its four sums in a fixed order."""
+    n = a.size
+    s0, s1, s2, s3 = 0.0, 0.0, 0.0, 0.0
+    j = 0
+    while j + 4 <= n:
+        s0 += a[j] * b[j]
+        s1 += a[j + 1] * b[j + 1]
+        s2 += a[j + 2] * b[j + 2]
+        s3 += a[j + 3] * b[j + 3]
+        j += 4
+    while j < n:
+        s0 += a[j] * b[j]
+        j += 1
+    return (s0 + s1) + (s2 + s3)
+
+
+@part
+def _add_product(matrix: Any, full: int, by: Any, total: Any) -> None:
+    """Add a product with a matrix, which is transposed, or with a diagonal."""
+    if full:
+        _add_columns(matrix, by, total)
+    else:
+        diagonal = matrix[0]
+        for i in range(total.size):
+            total[i] += diagonal[i] * by[i]
+
+
+@part
+def coefficient(k: Any, rows: Any, i: int, speed: float) -> Any:
+    """Return μ at a sliding speed of a contact in its regime."""
+    mu, static, reference = _coefficients(k, rows, i)
+    lag = _constant(k, rows, i, DIRECTION) * speed
+    law = k.laws[i]
+    if law == EXPONENTIAL:
+        return mu + (static - mu) * math.exp(-lag / reference)
+    if law == HYPERBOLIC:
+        return mu + (static - mu) * reference / (reference + lag)
+    if law == TABLE:
+        at = lag / reference - _constant(k, rows, i, FIRST_OF_PIECE)
+        value = 0.0
+        for power in range(3, -1, -1):
+            value = value * at + _constant(k, rows, i, FIRST_OF_PIECE + 2 + power)
+        return mu * value
+    return mu
+
+
+@part
+def settle_stick(k: Any, rows: Any) -> None:
+    """Factorize the mobility of the contacts that stick, where they are others than before."""
+    count, same = 0, True
+    for i in range(k.c):
+        if _constant(k, rows, i, IS_STUCK) > 0.0:
+            same = same and count < k.counts[0] and k.stuck[count] == i
+            k.stuck[count] = i
+            count += 1
+    if same and count == k.counts[0]:
+        return
+    k.counts[0] = count
+    lower, gram, half = k.factor[0], k.factor[1], k.factor[2]
+    for a in range(count):
+        for b in range(count):
+            gram[a, b] = k.mobility[k.stuck[a], k.stuck[b]]
+    rank = _pivoted_cholesky(gram, lower, count)
+    k.counts[1] = count - rank
+    if rank == count:
+        _inverse_of(lower, half, k.held, count)
+        return
+    # G⁺ = L (LᵀL)⁻² Lᵀ for G = L Lᵀ with L of full column rank
+    _multiply(lower, lower, gram, count, rank, rank, True)
+    _pivoted_cholesky(gram, half, rank)
+    _inverse_of(half, k.held, gram, rank)
+    _multiply(lower, gram, half, rank, count, rank, False)
+    for i in range(count):
+        for j in range(count):
+            k.held[i, j] = dot(half[i, :rank], half[j, :rank])
+
+
+@part
+def _multiply(
+    a: Any, b: Any, product: Any, inner: int, rows: int, columns: int, turned: bool
+) -> None:
+    """Write a b, or aᵀb, of the first rows and columns."""
+    for i in range(rows):
+        product[i, :columns] = 0.0
+        for m in range(inner):
+            factor = a[m, i] if turned else a[i, m]
+            for j in range(columns):
+                product[i, j] += factor * b[m, j]
+
+
+@part
+def _pivoted_cholesky(matrix: Any, lower: Any, size: int) -> Any:
+    """Factorize a semidefinite matrix L Lᵀ, the largest of what is left first; return the rank.
+
+    Rows of L stay in the order of the matrix, whose diagonal and columns are used up.
+    """
+    for i in range(size):
+        lower[i, :size] = 0.0
+    for rank in range(size):
+        pivot, best = -1, DEPENDENT
+        for i in range(size):
+            used = 0.0
+            for a in range(rank):
+                used += lower[i, a] ** 2
+            whole = matrix[i, i]
+            if whole > 0.0 and (whole - used) / whole > best:
+                pivot, best = i, (whole - used) / whole
+        if pivot < 0:
+            return rank
+        root = math.sqrt(best * matrix[pivot, pivot])
+        for i in range(size):
+            value = matrix[i, pivot]
+            for a in range(rank):
+                value -= lower[i, a] * lower[pivot, a]
+            lower[i, rank] = value / root
+        # rows that went before stay as they are: theirs is round-off
+    return size
+
+
+@part
+def _inverse_of(lower: Any, work: Any, inverse: Any, size: int) -> None:
+    """Invert L Lᵀ of full rank; L is a triangle whose rows are permuted."""
+    for i in range(size):
+        for j in range(size):
+            work[i, j], inverse[i, j] = lower[i, j], 1.0 if i == j else 0.0
+    for column in range(size):
+        _eliminate(work, inverse, column, size)
+    # (L Lᵀ)⁻¹ = L⁻ᵀ L⁻¹
+    for i in range(size):
+        for j in range(size):
+            work[i, j] = inverse[i, j]
+    _multiply(work, work, inverse, size, size, size, True)
+
+
+@part
+def _eliminate(work: Any, inverse: Any, column: int, size: int) -> None:
+    """Do a step of Gauss and Jordan, by the largest entry of a column that is left."""
+    pivot = column
+    for i in range(column + 1, size):
+        if abs(work[i, column]) > abs(work[pivot, column]):
+            pivot = i
+    scale = 1.0 / work[pivot, column]
+    for j in range(size):
+        first, other = work[column, j], inverse[column, j]
+        work[column, j], inverse[column, j] = (
+            scale * work[pivot, j],
+            scale * inverse[pivot, j],
+        )
+        if pivot != column:
+            work[pivot, j], inverse[pivot, j] = first, other
+    for i in range(size):
+        factor = work[i, column]
+        if i != column and factor != 0.0:
+            for j in range(size):
+                work[i, j] -= factor * work[column, j]
+                inverse[i, j] -= factor * inverse[column, j]
+
+
+@part
+def state_forces(k: Any, rows: Any, z: Any, pressing: Any) -> None:
+    """Compute forces at a state: the work by contact, and accelerations without those of stick."""
+    n, c = k.n, k.c
+    q, v = z[:n], z[n : 2 * n]
+    lags, base, preload = k.by_contact[LAGS], k.by_mode[BASE], rows[PRELOAD, 0]
+    for i in range(c):
+        pressing[i], lags[i] = 0.0, 0.0
+    _add_columns(k.normals, q, pressing)
+    _add_columns(k.tangentials, v, lags)
+    for j in range(n):
+        base[j] = k.load[j] * (preload if k.balanced else 1.0)
+    _add_product(k.pull_back, k.full_stiffness, q, base)
+    _add_product(k.drag_back, k.full_damping, v, base)
+    relieved, slip = k.by_contact[RELIEVED], k.by_contact[SLIP]
+    for i in range(c):
+        lift = pressing[i]
+        pressing[i] = k.preloads[i] * preload - k.springs[i] * lift
+        lags[i] = k.speeds[i] * rows[BELT, 0] - lags[i]
+        closed = _constant(k, rows, i, IS_CLOSED) > 0.0
+        relieved[i] = k.preloads[i] * preload if closed else k.springs[i] * lift
+        direction, slip[i] = _constant(k, rows, i, DIRECTION), 0.0
+        if closed and direction != 0.0:
+            slip[i] = direction * pressing[i] * coefficient(k, rows, i, lags[i])
+    _add_columns(k.push_rows, relieved, base)
+    _add_columns(k.drag_rows, slip, base)
+    _stick_forces(k, base)
+
+
+@part
+def _stick_forces(k: Any, base: Any) -> None:
+    """Compute the friction of the contacts that stick from all other accelerations."""
+    count, stick, pulls = k.counts[0], k.by_contact[STICK], k.by_contact[RELIEVED]
+    for a in range(count):
+        pulls[a] = dot(k.tangent_rows[k.stuck[a]], base)
+    for i in range(k.c):
+        stick[i] = 0.0
+    for a in range(count):
+        stick[k.stuck[a]] = -dot(k.held[a, :count], pulls[:count])
+
+
+@part
+def add_stick(k: Any, base: Any) -> None:
+    """Add the accelerations by the friction of the contacts that stick."""
+    for a in range(k.counts[0]):
+        i = k.stuck[a]
+        _add_row(k.drag_rows[i], k.by_contact[STICK, i], base)
+
+
+@part
+def holding(k: Any, i: int) -> Any:
+    """Return the friction that would keep a contact on the belt, others staying as they are.
+
+    Forces at the state must have been computed. What slip friction lacks to it is the acceleration
+    that is left, over the mobility with the contacts held that stick. A direction that these hold
+    already needs no friction more.
+    """
+    count, held = k.counts[0], k.by_contact[RELIEVED]
+    friction = k.by_contact[SLIP, i] + k.by_contact[STICK, i]
+    for a in range(count):
+        if k.stuck[a] == i:
+            return friction
+    whole = k.mobility[i, i]
+    mobility, acceleration = whole, dot(k.tangent_rows[i], k.by_mode[BASE])
+    for a in range(count):
+        held[a] = k.mobility[i, k.stuck[a]]
+    for a in range(count):
+        mobility -= held[a] * dot(k.held[a, :count], held[:count])
+        acceleration += held[a] * k.by_contact[STICK, k.stuck[a]]
+    if mobility <= DEPENDENT * whole:
+        return friction
+    return friction - acceleration / mobility
+
+
+@part
+def holds(k: Any, rows: Any, i: int, pressing: float) -> Any:
+    """Tell whether friction can keep a contact on the belt."""
+    _, static, _ = _coefficients(k, rows, i)
+    return (static * pressing) ** 2 + k.hidden[0] ** 2 - holding(k, i) ** 2 >= 0.0
+
+
+@part
+def _sizes_of_contacts(
+    k: Any, rows: Any, of_q: Any, of_v: Any, constant: float
+) -> None:
+    """Compute the sizes of what normal forces and sliding speeds are added up from.
+
+    Args:
+        of_q, of_v: sizes of displacements and velocities, or of their rates.
+        constant: 1 where what does not change counts, 0 for rates.
+    """
+    press, lag = k.by_contact[OF_PRESS], k.by_contact[OF_LAG]
+    for i in range(k.c):
+        press[i], lag[i] = 0.0, 0.0
+    _add_sizes(k.normals, of_q, press)
+    _add_sizes(k.tangentials, of_v, lag)
+    preload, belt = constant * abs(rows[PRELOAD, 0]), constant * abs(rows[BELT, 0])
+    for i in range(k.c):
+        press[i] = abs(k.preloads[i]) * preload + k.springs[i] * press[i]
+        lag[i] += abs(k.speeds[i]) * belt
+
+
+@part
+def _sizes_of_products(matrix: Any, full: int, by: Any, total: Any) -> None:
+    """Add the sizes of a matrix, or a diagonal, times a vector."""
+    if full:
+        _add_sizes(matrix, by, total)
+    else:
+        for i in range(total.size):
+            total[i] += abs(matrix[0, i]) * by[i]
+
+
+@part
+def _sizes_of_rates(
+    k: Any, rows: Any, of_q: Any, of_v: Any, constant: float, scale: Any
+) -> None:
+    """Compute the sizes of what accelerations, without those of stick, and stick are added from.
+
+    Args:
+        scale: (n,) gets the sizes of the accelerations.
+    """
+    preload = constant * abs(rows[PRELOAD, 0])
+    press, force = k.by_contact[OF_PRESS], k.by_contact[RELIEVED]
+    for j in range(k.n):
+        scale[j] = abs(k.load[j]) * (preload if k.balanced else constant)
+    _sizes_of_products(k.pull_back, k.full_stiffness, of_q, scale)
+    _sizes_of_products(k.drag_back, k.full_damping, of_v, scale)
+    for i in range(k.c):
+        closed = _constant(k, rows, i, IS_CLOSED) > 0.0
+        force[i] = abs(k.preloads[i]) * preload if closed else press[i]
+    _add_sizes(k.push_rows, force, scale)
+    for i in range(k.c):
+        mu, static, _ = _coefficients(k, rows, i)
+        slips = _constant(k, rows, i, DIRECTION) != 0.0
+        force[i] = max(abs(mu), abs(static)) * press[i] if slips else 0.0
+    _add_sizes(k.drag_rows, force, scale)
+    count, pulls, stick = k.counts[0], k.by_contact[RELIEVED], k.by_contact[OF_STICK]
+    for a in range(count):
+        row, total = k.tangent_rows[k.stuck[a]], 0.0
+        for j in range(k.n):
+            total += abs(row[j]) * scale[j]
+        pulls[a] = total
+    for i in range(k.c):
+        stick[i] = 0.0
+    for a in range(count):
+        for b in range(count):
+            stick[k.stuck[a]] += abs(k.held[a, b]) * pulls[b]
+
+
+@part
+def _values(k: Any, rows: Any, z: Any, out: Any) -> None:
+    """Write the value of each surface, and the size of its terms."""
+    c, lags = k.c, k.by_contact[LAGS]
+    state_forces(k, rows, z, k.by_contact[PRESS])
+    for i in range(c):
+        _, static, reference = _coefficients(k, rows, i)
+        pressing, lag = (
+            k.by_contact[PRESS, i],
+            _constant(k, rows, i, DIRECTION) * lags[i],
+        )
+        of_press, of_lag = k.by_contact[OF_PRESS, i], k.by_contact[OF_LAG, i]
+        at = 3 * (PRESSING * c + i)
+        out[at], out[at + 1] = pressing, of_press
+        at = 3 * (LAG * c + i)
+        out[at], out[at + 1] = lag, of_lag
+        for which in range(2):
+            at, sign = 3 * ((MARGIN + which) * c + i), 1.0 - 2.0 * which
+            out[at] = static * pressing - sign * k.by_contact[STICK, i]
+            out[at + 1] = abs(static) * of_press + k.by_contact[OF_STICK, i]
+            if k.n_pieces > 1:
+                knot = reference * _constant(k, rows, i, FIRST_OF_PIECE + 1 - which)
+                at = 3 * ((BEFORE_END + which) * c + i)
+                out[at], out[at + 1] = lag - knot, of_lag + abs(knot)
+
+
+@part
+def _output_values(k: Any, rows: Any, z: Any, sizes: Any, out: Any) -> None:
+    """Write the value of each output, and the size of its terms."""
+    n, c = k.n, k.c
+    for i in range(c):
+        closed = _constant(k, rows, i, IS_CLOSED) > 0.0
+        at = 6 * i
+        out[at] = k.by_contact[PRESS, i] if closed else 0.0
+        out[at + 1] = k.by_contact[OF_PRESS, i]
+        out[at + 3], out[at + 4] = k.by_contact[LAGS, i], k.by_contact[OF_LAG, i]
+    for shape in range(k.n_shapes):
+        value, size = 0.0, 0.0
+        for j in range(n):
+            value += k.shapes[shape, j] * z[j]
+            size += abs(k.shapes[shape, j]) * sizes[j]
+        out[6 * c + 3 * shape], out[6 * c + 3 * shape + 1] = value, size
+
+
+@part
+def gauge_state(k: Any, rows: Any, z: Any, sizes: Any, out: Any) -> None:
+    """Write value, size of terms, and that of the rate's terms of each surface, then of outputs."""
+    n, c, unit = k.n, k.c, _unit(k, rows)
+    n_surfaces = (6 if k.n_pieces > 1 else 4) * c
+    of_q, of_v = sizes[:n], sizes[n : 2 * n]
+    _sizes_of_contacts(k, rows, of_q, of_v, 1.0)
+    _sizes_of_rates(k, rows, of_q, of_v, 1.0, k.by_mode[SCALE])
+    _values(k, rows, z, out)
+    _output_values(k, rows, z, sizes, out[3 * n_surfaces :])
+    scale, rate = k.by_mode[SCALE], k.by_mode[RATE]
+    for a in range(k.counts[0]):
+        i = k.stuck[a]
+        for j in range(n):
+            scale[j] += abs(k.drag_rows[i, j]) * k.by_contact[OF_STICK, i]
+    for j in range(n):
+        rate[j], scale[j] = unit * of_v[j], unit * scale[j]
+    _sizes_of_contacts(k, rows, rate, scale, 0.0)
+    if k.counts[0]:
+        _sizes_of_rates(k, rows, rate, scale, 0.0, k.by_mode[BASE])
+    for i in range(c):
+        _, static, _ = _coefficients(k, rows, i)
+        of_press, of_lag = k.by_contact[OF_PRESS, i], k.by_contact[OF_LAG, i]
+        out[3 * (PRESSING * c + i) + 2], out[3 * (LAG * c + i) + 2] = of_press, of_lag
+        for which in range(2):
+            of_margin = abs(static) * of_press + k.by_contact[OF_STICK, i]
+            out[3 * ((MARGIN + which) * c + i) + 2] = of_margin
+            if k.n_pieces > 1:
+                out[3 * ((BEFORE_END + which) * c + i) + 2] = of_lag
+
+
+@part
+def slip_regime(k: Any, rows: Any, i: int, speed: float) -> Any:
+    """Return the regime of slip, among those of a contact, by the sliding speed."""
+    _, _, reference = _coefficients(k, rows, i)
+    side = 0 if speed >= 0.0 else 1
+    piece = k.n_pieces - 1
+    while (
+        piece > 0
+        and abs(speed) - reference * k.table[2 * piece + side, FIRST_OF_PIECE] < 0.0
+    ):
+        piece -= 1
+    return 2 * piece + side
+
+
+@part
+def change_state(k: Any, rows: Any, which: int, z: Any, out: Any) -> None:
+    """Write the regime that a switch enters, the kind of the event, and the state after it."""
+    what, i, target = k.switches[which, 0], k.switches[which, 1], k.switches[which, 2]
+    n, regimes = k.n, k.n_regimes // k.c
+    kinds = 6 if k.n_pieces > 1 else 5
+    after = out[2 : 2 + 2 * n]
+    for j in range(2 * n):
+        after[j] = z[j]
+    regime, kind = 0, LANDS
+    if what == SEPARATION:
+        regime, kind = regimes - 1, SEPARATES
+    elif what == KNOT:
+        regime, kind = target - i * regimes, PASSES
+    elif what == SLIPS or (what != CONTACT and what != REVERSAL):
+        regime, kind = (0 if what == SLIPS else 1), SLIPS_AWAY
+    else:
+        # values go where nothing is read any more
+        pressing = k.by_contact[OF_PRESS]
+        state_forces(k, rows, z, pressing)
+        speed = k.by_contact[LAGS, i]
+        if what == CONTACT:
+            regime = slip_regime(k, rows, i, speed)
+        else:
+            for j in range(n):
+                after[n + j] += k.drag_rows[i, j] / k.mobility[i, i] * speed
+            kind = REVERSES
+            if holds(k, rows, i, pressing[i]):
+                regime, kind = regimes - 2, STICKS
+            elif _constant(k, rows, i, DIRECTION) >= 0.0:
+                regime = 1
+    out[0], out[1] = float(i * regimes + regime), float(i * kinds + kind)
+
+
+@part
+def _list_forces(k: Any, rows: Any) -> None:
+    """Note what the regimes make of each contact, and which contacts push and slip.
+
+    A closed contact's spring is in the stiffness: it pushes at order 0 alone, by its preload.
+    """
+    opened, slipping = 0, 0
+    for i in range(k.c):
+        closed = _constant(k, rows, i, IS_CLOSED) > 0.0
+        direction = _constant(k, rows, i, DIRECTION)
+        mu, static, _ = _coefficients(k, rows, i)
+        k.by_contact[CLOSED, i], k.by_contact[SIDE, i] = (
+            1.0 if closed else 0.0,
+            direction,
+        )
+        k.by_contact[LIMIT, i] = static
+        k.by_contact[DRAG, i] = direction * mu if closed else 0.0
+        if not closed:
+            k.lists[0, opened] = i
+            opened += 1
+        elif direction != 0.0:
+            k.lists[1, slipping] = i
+            slipping += 1
+    k.counts[2], k.counts[3] = opened, slipping
+
+
+@part
+def _contacts_at_order(k: Any, rows: Any, mem: Any, order: int) -> None:
+    """Compute an order of the surfaces, outputs and forces of all contacts, but for stick."""
+    n, c, row = k.n, k.c, mem[order]
+    first_output = 2 * n + (6 if k.n_pieces > 1 else 4) * c
+    pressing, lags = row[2 * n : 2 * n + c], row[2 * n + c : 2 * n + 2 * c]
+    margins = row[2 * n + 2 * c : 2 * n + 4 * c]
+    closed, side = k.by_contact[CLOSED], k.by_contact[SIDE]
+    relieved, slip, drag = (
+        k.by_contact[RELIEVED],
+        k.by_contact[SLIP],
+        k.by_contact[DRAG],
+    )
+    for i in range(c):
+        pressing[i], lags[i] = 0.0, 0.0
+        margins[i], margins[c + i] = 0.0, 0.0
+    _add_columns(k.normals, row[:n], pressing)
+    _add_columns(k.tangentials, row[n : 2 * n], lags)
+    for i in range(c):
+        relieved[i] = (1.0 - closed[i]) * (k.springs[i] * pressing[i])
+        pressing[i] = -(k.springs[i] * pressing[i])
+        lags[i] = -lags[i]
+    if order == 0:
+        for i in range(c):
+            preload = k.preloads[i] * rows[PRELOAD, 0]
+            pressing[i] += preload
+            relieved[i] += closed[i] * preload
+            lags[i] += k.speeds[i] * rows[BELT, 0]
+    for i in range(c):
+        at = first_output + 2 * i
+        row[at], row[at + 1] = closed[i] * pressing[i], lags[i]
+        lags[i] *= side[i]
+        slip[i] = drag[i] * pressing[i]
+    if k.curved:
+        _curved_slip_at_order(k, rows, mem, order)
+    if k.n_pieces > 1:
+        _knots_at_order(k, rows, row, order)
+    for shape in range(k.n_shapes):
+        row[first_output + 2 * c + shape] = dot(k.shapes[shape], row[:n])
+
+
+@part
+def _curved_slip_at_order(k: Any, rows: Any, mem: Any, order: int) -> None:
+    """Compute an order of the friction in slip of contacts whose law depends on the speed."""
+    for a in range(k.counts[3]):
+        i = k.lists[1, a]
+        if k.laws[i]:
+            slip = _slip_order(k, rows, mem, i, order)
+            k.by_contact[SLIP, i] = k.by_contact[SIDE, i] * slip
+
+
+@part
+def _knots_at_order(k: Any, rows: Any, row: Any, order: int) -> None:
+    """Compute an order of how far each sliding speed is from the ends of its piece."""
+    n, c = k.n, k.c
+    for i in range(c):
+        _, _, reference = _coefficients(k, rows, i)
+        for which in range(2):
+            knot = reference * _constant(k, rows, i, FIRST_OF_PIECE + 1 - which)
+            place = 2 * n + (BEFORE_END + which) * c + i
+            row[place] = row[2 * n + LAG * c + i] - (knot if order == 0 else 0.0)
+
+
+@part
+def _stick_at_order(k: Any, row: Any) -> None:
+    """Compute an order of the friction of the contacts that stick, and what it lacks to slip."""
+    n, c = k.n, k.c
+    _stick_forces(k, k.by_mode[BASE])
+    add_stick(k, k.by_mode[BASE])
+    for a in range(k.counts[0]):
+        i = k.stuck[a]
+        limit = k.by_contact[LIMIT, i] * row[2 * n + PRESSING * c + i]
+        row[2 * n + MARGIN * c + i] = limit - k.by_contact[STICK, i]
+        row[2 * n + MARGIN_BACK * c + i] = limit + k.by_contact[STICK, i]
+
+
+@part
+def series(k: Any, rows: Any, mem: Any) -> None:
+    """Compute the Taylor coefficients of states, surfaces and outputs, order after order.
+
+    Args:
+        mem: (orders, series): states, whose order 0 is given, surfaces and outputs.
+    """
+    terms, n, unit, base = mem.shape[0], k.n, _unit(k, rows), k.by_mode[BASE]
+    _list_forces(k, rows)
+    for order in range(terms):
+        _contacts_at_order(k, rows, mem, order)
+        if order == terms - 1 and not k.counts[0]:
+            return
+        row = mem[order]
+        q, v = row[:n], row[n : 2 * n]
+        for j in range(n):
+            base[j] = 0.0
+        if order == 0:
+            _add_row(k.load, rows[PRELOAD, 0] if k.balanced else 1.0, base)
+            _add_columns(k.push_rows, k.by_contact[RELIEVED], base)
+        else:
+            _add_listed(
+                k.push_rows, k.lists[0], k.counts[2], k.by_contact[RELIEVED], base
+            )
+        _add_product(k.pull_back, k.full_stiffness, q, base)
+        _add_product(k.drag_back, k.full_damping, v, base)
+        _add_listed(k.drag_rows, k.lists[1], k.counts[3], k.by_contact[SLIP], base)
+        if k.counts[0]:
+            _stick_at_order(k, row)
+        if order < terms - 1:
+            share, later = unit / (order + 1.0), mem[order + 1]
+            for j in range(n):
+                later[j] = share * v[j]
+                later[n + j] = share * base[j]
+
+
+@part
+def _slip_order(k: Any, rows: Any, mem: Any, i: int, order: int) -> Any:
+    """Return an order of μ(|w|) N, of a law that depends on the speed."""
+    mu, static, reference = _coefficients(k, rows, i)
+    lag, press, law = 2 * k.n + k.c + i, 2 * k.n + i, k.laws[i]
+    s, inner = k.law_series[0], k.law_series[1]
+    if law == TABLE:
+        _cubic_order(k, rows, i, order, mem[order, lag] / reference)
+        s[order, i] *= mu
+    else:
+        # of exp(−u) and of 1/(1 + u) each order follows from lower ones
+        value, first = 0.0, mem[0, lag] / reference
+        for j in range(1, order + 1):
+            weight = float(j) if law == EXPONENTIAL else 1.0
+            value -= weight * mem[j, lag] / reference * inner[order - j, i]
+        if order == 0:
+            value = math.exp(-first) if law == EXPONENTIAL else 1.0
+        if law == EXPONENTIAL:
+            inner[order, i] = value / max(order, 1)
+        else:
+            inner[order, i] = value / (1.0 + first)
+        s[order, i] = (static - mu) * inner[order, i]
+        if order == 0:
+            s[0, i] += mu
+    value = 0.0
+    for j in range(order + 1):
+        value += s[j, i] * mem[order - j, press]
+    return value
+
+
+@part
+def _cubic_order(k: Any, rows: Any, i: int, order: int, speed: float) -> None:
+    """Write an order of a piece of a table, by two convolutions in nested form."""
+    s, inner, middle, shifted = (
+        k.law_series[0],
+        k.law_series[1],
+        k.law_series[2],
+        k.law_series[3],
+    )
+    at, constant = FIRST_OF_PIECE, 1.0 if order == 0 else 0.0
+    shifted[order, i] = speed - constant * _constant(k, rows, i, at)
+    inner[order, i] = _constant(k, rows, i, at + 5) * shifted[order, i]
+    inner[order, i] += constant * _constant(k, rows, i, at + 4)
+    value = constant * _constant(k, rows, i, at + 3)
+    for j in range(order + 1):
+        value += shifted[j, i] * inner[order - j, i]
+    middle[order, i] = value
+    value = constant * _constant(k, rows, i, at + 2)
+    for j in range(order + 1):
+        value += shifted[j, i] * middle[order - j, i]
+    s[order, i] = value
+
+
+@part
+def exact_ends(k: Any, rows: Any, z: Any, exact: Any) -> None:
+    """Write rates, surfaces and outputs at a state, where friction depends on the speed."""
+    n, c, unit = k.n, k.c, _unit(k, rows)
+    pressing = k.by_contact[OF_PRESS]
+    state_forces(k, rows, z, pressing)
+    for i in range(c):
+        _, static, _ = _coefficients(k, rows, i)
+        limit, friction = static * pressing[i], k.by_contact[STICK, i]
+        exact[2 * n + MARGIN * c + i, 0] = limit - friction
+        exact[2 * n + MARGIN_BACK * c + i, 0] = limit + friction
+    add_stick(k, k.by_mode[BASE])
+    for j in range(n):
+        exact[n + j, 0] = unit * k.by_mode[BASE, j]

@@ -1,0 +1,89 @@
+"""Matrices and contacts that the loop runs: no names, no units, no structure."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+COULOMB, EXPONENTIAL, HYPERBOLIC, TABLE = range(4)
+"""Friction laws by number."""
+PIECE_FIELDS = ("mu_start", "mu_end", "mu_c0", "mu_c1", "mu_c2", "mu_c3")
+"""Constants of one piece of a table of friction."""
+
+
+class Caps(NamedTuple):
+    """Sizes up to which structures are run.
+
+    A run of the largest takes about 0.3 GB and some milliseconds a step; beyond, modes of a
+    reduction should be left out or contacts merged.
+    """
+
+    modes: int = 512
+    contacts: int = 512
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ContactMatrices:
+    """q̈ = f − K q − C q̇ + Σ (M⁻¹nᵢ Pᵢ + M⁻¹tᵢ Tᵢ), divided by the mass; n states of c contacts.
+
+    Attributes:
+        stiffness: M⁻¹ (K + Σ kᵢ nᵢnᵢᵀ), (n, n), or its diagonal (n,): with all contacts closed.
+        damping: M⁻¹ C, (n, n) or (n,).
+        load: M⁻¹ f, (n,), where the parameter ``preload`` is 1.
+        balanced: whether the load grows with that parameter.
+        normals, tangentials: (n, c).
+        pushes, drags: M⁻¹ n and M⁻¹ t, (n, c).
+        springs, preloads, speeds: (c,) stiffness, N/m, preload, N, and belt speed over that of the
+            parameter.
+        laws: (c,) friction law, by number.
+        pieces: (pieces, 6) of a table of friction, :data:`PIECE_FIELDS`; one row of zeros without.
+        hidden: friction force that round-off hides, N.
+        shapes: (outputs, n) further outputs: displacements as combinations of the states.
+    """
+
+    stiffness: np.ndarray
+    damping: np.ndarray
+    load: np.ndarray
+    balanced: bool
+    normals: np.ndarray
+    tangentials: np.ndarray
+    pushes: np.ndarray
+    drags: np.ndarray
+    springs: np.ndarray
+    preloads: np.ndarray
+    speeds: np.ndarray
+    laws: np.ndarray
+    pieces: np.ndarray
+    hidden: float
+    shapes: np.ndarray
+
+    @property
+    def n_modes(self) -> int:
+        """Number of displacements n."""
+        return len(self.load)
+
+    @property
+    def n_contacts(self) -> int:
+        """Number of contacts c."""
+        return len(self.springs)
+
+    @property
+    def n_pieces(self) -> int:
+        """Number of pieces of the table of friction."""
+        return len(self.pieces)
+
+    @property
+    def curved(self) -> bool:
+        """Whether friction depends on the sliding speed somewhere."""
+        return bool((self.laws != COULOMB).any())
+
+    @property
+    def mobility(self) -> np.ndarray:
+        """TᵀM⁻¹T, (c, c)."""
+        return np.asarray(self.tangentials.T @ self.drags)
+
+
+def diagonal_if_it_is(matrix: np.ndarray) -> np.ndarray:
+    """Return the diagonal of a matrix that has nothing else, or the matrix."""
+    diagonal = np.diag(matrix)
+    return diagonal.copy() if (matrix == np.diag(diagonal)).all() else matrix

@@ -1,0 +1,223 @@
+"""Arrays that compiled code reads of one set of matrices, and where it works, by one address.
+
+A plan is a record of addresses and sizes; its own address stands bit for bit in the first parameter
+of each run, so that functions that are called with the address of a run's parameters find it.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from squealpipe.systems.compiled import views
+from squealpipe.systems.linear.matrices import ContactMatrices
+from squealpipe.systems.linear.numbering import Numbering
+from squealpipe.systems.taylor.lanes import MOST_TERMS, Workspace, record_viewer, view
+from squealpipe.systems.taylor.simd import LANES
+
+PLAN, BELT, PRELOAD, COEFFICIENTS = range(4)
+"""Rows of the parameters of a run: the address of the plan, belt speed, factor of preload; then μ,
+its static limit and the reference speed of each contact, and last the unit of time."""
+WORK = 12
+"""Rows of work by contact."""
+BASE, SCALE, RATE = range(3)
+"""Work by displacement: accelerations without stick, and sizes of terms."""
+ARRAYS = (
+    "pull_back", "drag_back", "load", "normals", "tangentials", "push_rows", "drag_rows",
+    "tangent_rows", "mobility", "springs", "preloads", "speeds", "laws", "shapes", "table",
+    "switches", "by_contact", "by_mode", "law_series", "held", "factor", "stuck", "counts",
+    "lists", "hidden", "starts", "numbers", "opened", "scratch",
+)  # fmt: skip
+SIZES = (
+    "n", "c", "width", "n_pieces", "n_shapes", "n_regimes", "n_switches", "full_stiffness",
+    "full_damping", "balanced", "curved", "n_jobs",
+)  # fmt: skip
+TABLE = np.dtype([(name, "i8") for name in (*ARRAYS, *SIZES)])
+record_at: Any = record_viewer(TABLE)
+
+
+class Plan(NamedTuple):
+    """Arrays of a plan and its sizes; see :class:`.matrices.ContactMatrices`.
+
+    Attributes:
+        pull_back, drag_back: −M⁻¹(K + …)ᵀ and −M⁻¹Cᵀ, (n, n), or the diagonals (1, n).
+        push_rows, drag_rows, tangent_rows: (c, n).
+        table: (regimes of a contact, constants); contacts do not differ.
+        switches: (switches, 3) what, contact, target.
+        by_contact, by_mode: work.
+        law_series: (4, terms, c) orders of the coefficient of friction and of what it is made of.
+        held: (c, c) (T_SᵀM⁻¹T_S)⁺ of the contacts S that stick, in its first rows and columns.
+        stuck: (c,) these contacts.
+        counts: how many they are; how many of their directions follow from the others; numbers of
+            contacts in the lists.
+        lists: (2, c) contacts that are open, and those that slip.
+    """
+
+    n: Any
+    c: Any
+    width: Any
+    n_pieces: Any
+    n_shapes: Any
+    n_regimes: Any
+    full_stiffness: Any
+    full_damping: Any
+    balanced: Any
+    curved: Any
+    pull_back: Any
+    drag_back: Any
+    load: Any
+    normals: Any
+    tangentials: Any
+    push_rows: Any
+    drag_rows: Any
+    tangent_rows: Any
+    mobility: Any
+    springs: Any
+    preloads: Any
+    speeds: Any
+    laws: Any
+    shapes: Any
+    table: Any
+    switches: Any
+    by_contact: Any
+    by_mode: Any
+    law_series: Any
+    held: Any
+    factor: Any
+    stuck: Any
+    counts: Any
+    lists: Any
+    hidden: Any
+
+
+@views
+def plan_at(address: int) -> Any:
+    """Return the plan at an address."""
+    t = record_at(address)
+    n, c = t.n, t.c
+    square = n * n if t.full_stiffness else n
+    damping = n * n if t.full_damping else n
+    regimes = t.n_regimes // c
+    return Plan(
+        n=n,
+        c=c,
+        width=t.width,
+        n_pieces=t.n_pieces,
+        n_shapes=t.n_shapes,
+        n_regimes=t.n_regimes,
+        full_stiffness=t.full_stiffness,
+        full_damping=t.full_damping,
+        balanced=t.balanced,
+        curved=t.curved,
+        pull_back=view(t.pull_back, (square // n, n), np.float64),
+        drag_back=view(t.drag_back, (damping // n, n), np.float64),
+        load=view(t.load, (n,), np.float64),
+        normals=view(t.normals, (n, c), np.float64),
+        tangentials=view(t.tangentials, (n, c), np.float64),
+        push_rows=view(t.push_rows, (c, n), np.float64),
+        drag_rows=view(t.drag_rows, (c, n), np.float64),
+        tangent_rows=view(t.tangent_rows, (c, n), np.float64),
+        mobility=view(t.mobility, (c, c), np.float64),
+        springs=view(t.springs, (c,), np.float64),
+        preloads=view(t.preloads, (c,), np.float64),
+        speeds=view(t.speeds, (c,), np.float64),
+        laws=view(t.laws, (c,), np.int64),
+        shapes=view(t.shapes, (t.n_shapes, n), np.float64),
+        table=view(t.table, (regimes, t.width), np.float64),
+        switches=view(t.switches, (t.n_switches, 3), np.int64),
+        by_contact=view(t.by_contact, (WORK, c), np.float64),
+        by_mode=view(t.by_mode, (3, n), np.float64),
+        law_series=view(t.law_series, (4, MOST_TERMS, c), np.float64),
+        held=view(t.held, (c, c), np.float64),
+        factor=view(t.factor, (3, c, c), np.float64),
+        stuck=view(t.stuck, (c,), np.int64),
+        counts=view(t.counts, (4,), np.int64),
+        lists=view(t.lists, (2, c), np.int64),
+        hidden=view(t.hidden, (1,), np.float64),
+    )
+
+
+@views
+def n_parameters(k: Any) -> int:
+    """Return the number of parameters, which the constants of the regimes follow."""
+    return int(COEFFICIENTS + 3 * k.c + 1)
+
+
+@views
+def plan_of(parameters: int) -> Any:
+    """Return the plan of a lane, by the address of its parameters."""
+    return plan_at(view(parameters, (1,), np.int64)[0])
+
+
+@views
+def numbers_of(k: Any, parameters: int) -> Any:
+    """Return the parameters and constants of a lane, in the first column."""
+    rows = n_parameters(k) + k.c * k.width
+    return view(parameters, (rows, LANES), np.float64)
+
+
+def plan(
+    matrices: ContactMatrices,
+    numbering: Numbering,
+    starts: np.ndarray | None = None,
+    numbers: np.ndarray | None = None,
+) -> Workspace:
+    """Return the plan of some matrices; it keeps its arrays.
+
+    Args:
+        starts: (runs, parameters and states) from which to look for first regimes.
+        numbers: (runs, contacts) for these, −1 where they are to be found.
+    """
+    n, c = matrices.n_modes, matrices.n_contacts
+    switches = [(each.what, each.contact, each.target) for each in numbering.switches]
+    arrays = {
+        name: np.ascontiguousarray(getattr(matrices, name), float)
+        for name in ("load", "normals", "tangentials")
+    }
+    arrays |= {
+        name: np.ascontiguousarray(getattr(matrices, name), float)
+        for name in ("springs", "preloads", "speeds", "mobility")
+    }
+    arrays |= {
+        "pull_back": np.ascontiguousarray(-np.asarray(matrices.stiffness, float).T),
+        "drag_back": np.ascontiguousarray(-np.asarray(matrices.damping, float).T),
+        "push_rows": np.ascontiguousarray(matrices.pushes.T),
+        "drag_rows": np.ascontiguousarray(matrices.drags.T),
+        "tangent_rows": np.ascontiguousarray(matrices.tangentials.T),
+        "laws": np.ascontiguousarray(matrices.laws, np.int64),
+        "shapes": np.ascontiguousarray(matrices.shapes, float),
+        "table": numbering.row_of_constants,
+        "switches": np.array(switches, np.int64),
+        "by_contact": np.zeros((WORK, c)),
+        "by_mode": np.zeros((3, n)),
+        "law_series": np.zeros((4, MOST_TERMS, c) if matrices.curved else 1),
+        "held": np.zeros((c, c)),
+        "factor": np.zeros((3, c, c)),
+        "stuck": np.zeros(c, np.int64),
+        "counts": np.array([-1, 0, 0, 0], np.int64),
+        "lists": np.zeros((2, c), np.int64),
+        "hidden": np.array([matrices.hidden]),
+        "opened": np.zeros(c, np.int64),
+        "scratch": np.zeros((len(numbering.parameters) + c * numbering.width, LANES)),
+        "starts": np.zeros(1) if starts is None else np.ascontiguousarray(starts),
+        "numbers": np.zeros(1, np.int64) if numbers is None else numbers,
+    }
+    sizes = {
+        "n": n,
+        "c": c,
+        "width": numbering.width,
+        "n_pieces": matrices.n_pieces,
+        "n_shapes": len(matrices.shapes),
+        "n_regimes": len(numbering.component_of),
+        "n_switches": len(switches),
+        "full_stiffness": int(matrices.stiffness.ndim == 2),
+        "full_damping": int(matrices.damping.ndim == 2),
+        "balanced": int(matrices.balanced),
+        "curved": int(matrices.curved),
+        "n_jobs": 0 if starts is None else len(starts),
+    }
+    # a view of nothing has no address
+    arrays = {
+        name: each if each.size else np.zeros(1, each.dtype)
+        for name, each in arrays.items()
+    }
+    return Workspace(TABLE, arrays, sizes)

@@ -1,0 +1,119 @@
+"""Regimes in which runs start, by their states: compiled, one run after the other."""
+
+from typing import Any
+
+import numpy as np
+
+from squealpipe.systems.compiled import part
+from squealpipe.systems.linear.forces import (
+    LAGS,
+    OF_PRESS,
+    STICK,
+    holding,
+    holds,
+    settle_stick,
+    slip_regime,
+    state_forces,
+)
+from squealpipe.systems.linear.plan import (
+    BASE,
+    BELT,
+    COEFFICIENTS,
+    PRELOAD,
+    plan_at,
+    record_at,
+)
+from squealpipe.systems.taylor.lanes import view
+from squealpipe.systems.taylor.simd import LANES
+
+EQUAL = 1e-15
+"""An equality holds within this of the size of what it is computed from, as of traced systems."""
+SWEEPS = 4
+"""Rounds over all contacts, for each of them, in which the others' regimes may still change."""
+FIRST = 1e150
+"""Weight of what decides before anything else is asked."""
+
+
+@part
+def _put(k: Any, rows: Any, i: int, regime: int) -> None:
+    first = COEFFICIENTS + 3 * k.c + 1 + i * k.width
+    for which in range(k.width):
+        rows[first + which, 0] = k.table[regime, which]
+    settle_stick(k, rows)
+
+
+@part
+def _rises(k: Any, i: int, z: Any) -> Any:
+    """Return how a contact that is just closed goes on: its velocity, then its acceleration."""
+    n, velocity, acceleration = k.n, 0.0, 0.0
+    for j in range(n):
+        velocity += k.normals[j, i] * z[n + j]
+        acceleration += k.normals[j, i] * k.by_mode[BASE, j]
+        for a in range(k.counts[0]):
+            friction = k.by_contact[STICK, k.stuck[a]]
+            acceleration += k.normals[j, i] * k.drag_rows[k.stuck[a], j] * friction
+    return FIRST * velocity + acceleration
+
+
+@part
+def _first_that_fits(k: Any, rows: Any, z: Any, i: int) -> Any:
+    """Return the first regime of a contact that fits the state, the others' being as they are."""
+    n, pressing = k.n, k.by_contact[OF_PRESS]
+    last = k.n_regimes // k.c - 1
+    size_q, size_v, reach = abs(rows[PRELOAD, 0]), abs(rows[BELT, 0]), 0.0
+    for j in range(n):
+        if k.normals[j, i] != 0.0:
+            size_q += abs(z[j])
+        if k.tangentials[j, i] != 0.0:
+            size_v += abs(z[n + j])
+        reach = max(reach, abs(k.tangentials[j, i]))
+    _put(k, rows, i, last)
+    state_forces(k, rows, z, pressing)
+    press, speed = pressing[i], k.by_contact[LAGS, i]
+    if abs(press) <= EQUAL * size_q and _rises(k, i, z) >= 0.0:
+        return last
+    if -FIRST * press - 1e14 * k.hidden[0] >= 0.0:
+        return last
+    if abs(speed) <= reach * EQUAL * size_v:
+        for regime in (last - 1, 0, 1):
+            _put(k, rows, i, regime)
+            state_forces(k, rows, z, pressing)
+            if regime == last - 1:
+                fits = holds(k, rows, i, pressing[i])
+            else:
+                fits = (1.0 - 2.0 * regime) * holding(k, i) >= 0.0
+            if fits:
+                return regime
+    return slip_regime(k, rows, i, speed)
+
+
+def find_starts(address: int) -> None:
+    """Find the regimes in which the runs of a plan start; those that are given stay."""
+    k = plan_at(address)
+    t = record_at(address)
+    n, c, jobs = k.n, k.c, t.n_jobs
+    given = COEFFICIENTS + 3 * c + 1
+    starts = view(t.starts, (jobs, given + 2 * n), np.float64)
+    numbers = view(t.numbers, (jobs, c), np.int64)
+    opened = view(t.opened, (c,), np.int64)
+    rows = view(t.scratch, (given + c * k.width, LANES), np.float64)
+    for job in range(jobs):
+        for parameter in range(given):
+            rows[parameter, 0] = starts[job, parameter]
+        z, n_opened = starts[job, given:], 0
+        for i in range(c):
+            opened[i] = numbers[job, i] < 0
+            n_opened += opened[i]
+            if opened[i]:
+                numbers[job, i] = 1
+            _put(k, rows, i, numbers[job, i])
+        for _ in range(SWEEPS * n_opened):
+            changed = False
+            for i in range(c):
+                if opened[i]:
+                    regime = _first_that_fits(k, rows, z, i)
+                    changed = changed or regime != numbers[job, i]
+                    numbers[job, i] = regime
+                    _put(k, rows, i, regime)
+            if not changed or c == 1:
+                break

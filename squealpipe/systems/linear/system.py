@@ -1,0 +1,191 @@
+"""Contacts on a belt as a system: its names, and the verbs, on the loop of linear structures."""
+
+import hashlib
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
+from typing import Any, Self
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.systems.joint import Joint
+from squealpipe.systems.linear.batch import LinearBatch, first_regimes
+from squealpipe.systems.linear.matrices import Caps, ContactMatrices
+from squealpipe.systems.linear.numbering import IS_CLOSED, Numbering
+from squealpipe.systems.system import System
+
+WRITTEN = 4096
+"""Numbers of a matrix up to which a dataset holds them; of larger ones it holds a digest."""
+
+
+class LinearSystem(System):
+    """Linear structure with contacts on a belt, as a :class:`squealpipe.System`.
+
+    Args:
+        name: for titles and files.
+        states: name → (unit, typical size): n displacements, then their velocities.
+        parameters: name → default: ``mu``, ``belt_speed``, ``preload`` and what the law reads.
+        matrices: of the equations of motion.
+        contacts: names.
+        coefficients: of each contact, its parameters of friction; see
+            :func:`.batch.numbers_of_runs`.
+        outputs: name → unit, after those of the contacts.
+        time_scale: typical time, s.
+        general: makes the same system of components, for what follows derivatives by symbols:
+            cycles, branches, curves, sensitivities and the horizon of predictability.
+
+    Raises:
+        ValueError: a name is taken.
+    """
+
+    batch = LinearBatch
+    most_states, most_regimes = 2 * Caps().modes, 1 << 40
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        states: Mapping[str, tuple[str, float]],
+        parameters: Mapping[str, float],
+        matrices: ContactMatrices,
+        contacts: Sequence[str],
+        coefficients: Sequence[tuple[str, str | None, Any]],
+        outputs: Mapping[str, str],
+        time_scale: float,
+        general: Callable[[], System],
+    ) -> None:
+        numbering: Any = Numbering(
+            tuple(contacts), matrices.n_modes, matrices.pieces, len(outputs)
+        )
+        self.name, self.matrices, self._make_general = name, matrices, general
+        self.units = {key: unit for key, (unit, _) in states.items()}
+        self.typical_sizes = {key: size for key, (_, size) in states.items()}
+        self.coefficients = coefficients
+        self.parameters = dict(parameters)
+        self.start = dict.fromkeys(states, 0.0)
+        self.period, self.time_scale, self.stops = None, time_scale, {}
+        self.numbering: Numbering = numbering
+        self.composition = numbering.composition
+        self.regimes = self.composition.regimes
+        self.switches = numbering.switches
+        self.outputs: dict[str, Any] = {}
+        for contact in contacts:
+            self.outputs[f"{contact}_normal_force"] = ("N", None)
+            self.outputs[f"{contact}_speed"] = ("m s-1", None)
+        self.outputs |= {key: (unit, None) for key, unit in outputs.items()}
+        self._check_names()
+        self.traced = self.integrated = numbering
+        self.form = self
+
+    @property
+    def exponents(self) -> tuple[str, ...]:
+        """No parameter is an exponent."""
+        return ()
+
+    def for_exponents(self, values: Mapping[str, Any]) -> Self:  # noqa: ARG002
+        """Return the system itself."""
+        return self
+
+    @cached_property
+    def general(self) -> System:
+        """The same system of components, traced; see ``general`` of the class."""
+        return self._make_general()
+
+    @cached_property
+    def joint(self) -> Joint:
+        """The regimes of all contacts at once."""
+        return Joint(self.traced, self.states)
+
+    @cached_property
+    def text(self) -> dict[str, str]:
+        """Return the equations and their matrices as text, for the attributes of datasets."""
+        matrices = self.matrices
+        written = {
+            "equations": "dq/dt = v; dv/dt = preload^balanced load - stiffness q - damping v "
+            "+ sum over contacts of push P + drag T; P = preload_i preload in contact, else "
+            "spring_i normal_i.q; normal force N = preload_i preload - spring_i normal_i.q, in "
+            "contact while N > 0; w = speed_i belt_speed - tangential_i.v; T = mu(|w|) N sgn w in "
+            "slip, |T| <= mu_static N in stick, where w = 0"
+        }
+        for name in (
+            *(
+                "stiffness",
+                "damping",
+                "load",
+                "normals",
+                "tangentials",
+                "pushes",
+                "drags",
+            ),
+            *("springs", "preloads", "speeds", "laws", "pieces"),
+        ):
+            array = np.asarray(getattr(matrices, name))
+            digest = hashlib.sha256(np.ascontiguousarray(array).tobytes()).hexdigest()
+            small = array.size <= WRITTEN
+            written[name] = str(array.tolist()) if small else f"sha256 {digest}"
+        written["balanced"] = str(matrices.balanced)
+        n = matrices.n_modes
+        for place, (q, v) in enumerate(
+            zip(self.states[:n], self.states[n:], strict=True), 1
+        ):
+            written |= {f"d{q}/dt": v, f"d{v}/dt": f"row {place} of the equations"}
+        written |= dict.fromkeys(self.outputs, "see the equations")
+        for name, constants in self.regimes.items():
+            pairs = (f"{key}={value:g}" for key, value in constants.items())
+            written[f"regime {name}"] = ", ".join(pairs)
+        return written
+
+    def first_regimes(
+        self, values: Mapping[str, Any], size: int, chosen: Any = None
+    ) -> np.ndarray:
+        """Return the regime of each contact in which each run starts, (size, contacts)."""
+        chosen = self.start.get("regime") if chosen is None else chosen
+        numbers = self.composition.numbers(chosen)
+        states = np.stack([np.broadcast_to(values[n], size) for n in self.states], 1)
+        given = {n: np.broadcast_to(values[n], size) for n in self.parameters}
+        return first_regimes(
+            self.matrices, self.numbering, self.coefficients, given, states, numbers
+        )
+
+    def outputs_along(
+        self,
+        values: Mapping[str, float],
+        times: np.ndarray,  # noqa: ARG002
+        path: np.ndarray,
+        regimes: np.ndarray,
+    ) -> Sequence[Any]:
+        """Return each output at the instants of a run; see :meth:`TracedSystem.outputs_along`."""
+        m = self.matrices
+        q, v = path[:, : m.n_modes], path[:, m.n_modes :]
+        own = np.maximum(regimes, 0) % len(self.numbering.regime_names)
+        closed = self.numbering.row_of_constants[own, IS_CLOSED]
+        force = closed * (m.preloads * values["preload"] - (q @ m.normals) * m.springs)
+        speed = m.speeds * values["belt_speed"] - v @ m.tangentials
+        pairs = np.stack([force, speed], 2).reshape(len(path), -1)
+        return [*pairs.T, *(q @ m.shapes.T).T]
+
+    def simulate(self, *args: Any, **options: Any) -> xr.Dataset:
+        """One run, every switch located; see :func:`squealpipe.systems.runs.simulate`."""
+        if options.get("sensitivity"):
+            return self.general.simulate(*args, **options)
+        return super().simulate(*args, **options)
+
+    def ensemble(self, *args: Any, **options: Any) -> xr.Dataset:
+        """Many runs; see :func:`squealpipe.systems.runs.ensemble`."""
+        if options.get("horizon"):
+            return self.general.ensemble(*args, **options)
+        return super().ensemble(*args, **options)
+
+    def limit_cycle(self, **options: Any) -> xr.Dataset:
+        """Find a periodic motion; see :meth:`squealpipe.System.limit_cycle`."""
+        return self.general.limit_cycle(**options)
+
+    def cycle_branch(self, parameter: str, to: float, **options: Any) -> xr.Dataset:
+        """Follow a branch of cycles; see :meth:`squealpipe.System.cycle_branch`."""
+        return self.general.cycle_branch(parameter, to, **options)
+
+    def cycle_curve(
+        self, label: str, parameters: Sequence[str], **options: Any
+    ) -> xr.Dataset:
+        """Follow a curve in two parameters; see :meth:`squealpipe.System.cycle_curve`."""
+        return self.general.cycle_curve(label, parameters, **options)
