@@ -12,6 +12,7 @@ from squealpipe.plotting.axis_units import in_units
 from squealpipe.plotting.contact_points import draw_onsets
 from squealpipe.plotting.curves import draw_curves
 from squealpipe.plotting.cycles import draw_backbone, draw_branch, draw_cycle
+from squealpipe.plotting.mesh_scene import draw_forces
 from squealpipe.plotting.mode_shapes import draw_shape, figure_of_mode, title_of
 from squealpipe.plotting.modes import draw_modes
 from squealpipe.plotting.modes import figure as modes_figure
@@ -46,6 +47,7 @@ DRAWN: dict[str, Callable[[Axes, xr.Dataset], None]] = {
     "stability_boundaries": draw_curves,
     "propensity": draw_shares,
     "squealing_modes": draw_poles,
+    "structure_run": draw_forces,
     "squeal_ladder": draw_level,
     "contact_points": draw_onsets,
     COMPLEX_MODES: draw_modes,

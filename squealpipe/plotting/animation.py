@@ -17,8 +17,7 @@ from squealpipe.plotting.pad_motion import PadMotion
 from squealpipe.plotting.pad_scene import Geometry, Mechanism, PadScene
 from squealpipe.plotting.structure_motion import SCHEMA as STRUCTURE_RUN
 from squealpipe.plotting.structure_motion import StructureMotion
-from squealpipe.text import number
-from squealpipe.units import shown_in
+from squealpipe.units import engineering
 from squealpipe.vibration.spectrum import amplitude_spectrum, strongest_lines
 
 SAMPLES_PER_PERIOD = 16
@@ -134,19 +133,27 @@ def phases(run: xr.Dataset, count: int = 8) -> Figure:
     """
     if run.attrs.get("schema") == STRUCTURE_RUN:
         return _phases_of_structure(run, count)
+    figure, panels = _strip(count)
+    figure.suptitle(draw_phases(panels, run), fontsize=8)
+    return figure
+
+
+def draw_phases(panels: list[Axes], run: xr.Dataset) -> str:
+    """Draw the last period of a pad's motion, a phase a panel; return period and scale in words.
+
+    Args:
+        run: dataset ``simulation`` or ``assess``.
+    """
     motion = PadMotion.read(run)
     period, last = period_of(motion), float(motion.time[-1])
+    count = len(panels)
     shown = motion.at(last - period * (1.0 - np.arange(count) / count))
     around = motion.from_(last - period)
     geometry = Geometry(around if around.time.size > 3 else motion)
-    figure, panels = _strip(count)
-    factor, unit = shown_in(period, "s")
     for place, panel in enumerate(panels):
         Mechanism(panel, geometry, shown, small=True).show(place)
-        time = factor * period * place / count
-        panel.set_title(f"{number(time, 3)} {unit}", fontsize=7)
-    figure.suptitle(f"one period; motion drawn {geometry.told}", fontsize=8)
-    return figure
+        panel.set_title(engineering(period * place / count, "s"), fontsize=7)
+    return f"one period of {engineering(period, 's')}; motion drawn {geometry.told}"
 
 
 def _phases_of_structure(run: xr.Dataset, count: int) -> Figure:
@@ -155,13 +162,12 @@ def _phases_of_structure(run: xr.Dataset, count: int) -> Figure:
     instants = last - period * (1.0 - np.arange(count) / count)
     frames = np.searchsorted(0.5 * (motion.time[1:] + motion.time[:-1]), instants)
     figure, panels = _strip(count, 1.25)
-    factor, unit = shown_in(period, "s")
     for place, panel in enumerate(panels):
         body = Body(panel, motion, frames, small=True)
         body.show(place)
-        time = factor * period * place / count
-        panel.set_title(f"{number(time, 3)} {unit}", fontsize=7)
-    figure.suptitle(f"one period; vibration drawn {body.told}", fontsize=8)
+        panel.set_title(engineering(period * place / count, "s"), fontsize=7)
+    words = f"one period of {engineering(period, 's')}; vibration drawn {body.told}"
+    figure.suptitle(words, fontsize=8)
     return figure
 
 

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 import numpy as np
+import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.text import Text
@@ -25,7 +26,7 @@ from squealpipe.plotting.motion_panels import (
 from squealpipe.plotting.structure_motion import StructureMotion
 from squealpipe.structures.meshes.structure_mesh import NO_NODE, StructureMesh
 from squealpipe.text import number
-from squealpipe.units import engineering
+from squealpipe.units import engineering, shown_in
 
 LARGEST = 0.06
 """Largest displacement that is drawn, over the extent of the structure."""
@@ -215,6 +216,21 @@ class Body:
     def told(self) -> str:
         """The scale in words."""
         return f"{number(self.scale)} times larger" if self.has_mesh else "not to scale"
+
+
+def draw_forces(axes: Axes, run: xr.Dataset) -> None:
+    """Draw the normal forces of a run of a structure over its last six periods."""
+    if not run.sizes["time"]:
+        style.say_instead(axes, "the motion dies out")
+        return
+    last = float(run.time[-1])
+    shown = run.sel(time=slice(last - 6.0 / float(run.dominant_frequency), None))
+    factor, unit = shown_in(last, "s")
+    for place, name in enumerate(shown.contact.values[: len(style.PALETTE)]):
+        force = shown.normal_force[:, place]
+        axes.plot(factor * shown.time, force, color=style.PALETTE[place], label=name)
+    axes.set(xlabel=f"time ({unit})", ylabel="normal force (N)")
+    axes.legend(ncols=3)
 
 
 class StructureScene:

@@ -332,17 +332,28 @@ def _strongest(signal: np.ndarray, step: float) -> float:
     return float(lines[0]) / (2.0 * math.pi) if lines.size else math.nan
 
 
+def comfortable_speed(frequency: float) -> float:
+    """Return the gentlest power of ten of speed at which a frequency, Hz, is heard well.
+
+    It is 1 where the frequency is heard as it is.
+    """
+    low, high = LISTENING.hearing
+    if not math.isfinite(frequency) or low <= frequency <= high:
+        return 1.0
+    below, above = (math.log10(limit / frequency) for limit in LISTENING.comfortable)
+    power = math.ceil(below) if frequency < low else math.floor(above)
+    return float(10.0**power)
+
+
 def _check_audible(frequency: float, speed: float) -> None:
     """Refuse a pitch that no ear hears."""
     low, high = LISTENING.hearing
     heard = frequency * speed
     if low <= heard <= high:
         return
-    # the gentlest power of ten that leads where one hears well
-    below, above = (math.log10(limit / frequency) for limit in LISTENING.comfortable)
-    power = max(math.ceil(below), 0) if heard < low else min(math.floor(above), 0)
-    remedy = f"--fast {10**power:g}" if power >= 0 else f"--slow {10**-power:g}"
-    if power == 0:
+    better = comfortable_speed(frequency)
+    remedy = f"--fast {better:g}" if better > 1.0 else f"--slow {1.0 / better:g}"
+    if better == 1.0:
         remedy = "neither --fast nor --slow"
     side = "below" if heard < low else "beyond"
     raise ValueError(

@@ -9,6 +9,11 @@ import xarray as xr
 from squealpipe.structures.pencil import DENSE
 from squealpipe.structures.schema.squealing import MOST_MODES
 from squealpipe.structures.squeal.plant import carried, check_modes
+from squealpipe.structures.squeal.settled_run import (
+    moving_attractors,
+    resting_run,
+    squealing_run,
+)
 from squealpipe.structures.squeal.squealing_modes import squealing_modes
 from squealpipe.structures.structure import Structure
 from squealpipe.structures.varied_friction import VariedFriction, face_of
@@ -79,13 +84,28 @@ def squealing(
     structure: Structure, section: Mapping[str, Any], workers: int
 ) -> xr.Dataset:
     """Return the unstable modes that squeal, of the structure reduced as its section says."""
-    number, limit = section["n_modes"], _band(structure, section["frequency_max"])
-    check_modes(number)
     return squealing_modes(
-        carried(structure, limit)
-        if number is None
-        else structure.reduce(n_modes=number, frequency_max=limit),
+        reduced_structure(structure, section),
         **{name: section[name] for name in ("samples", "seed", "t_end")},
         onset=not structure.has_own_mu.all(),
         workers=workers,
     )
+
+
+def reduced_structure(structure: Structure, section: Mapping[str, Any]) -> Any:
+    """Return the structure in the modes in which it is run."""
+    number, limit = section["n_modes"], _band(structure, section["frequency_max"])
+    check_modes(number)
+    if number is None:
+        return carried(structure, limit)
+    return structure.reduce(n_modes=number, frequency_max=limit)
+
+
+def settled_motion(
+    structure: Structure, section: Mapping[str, Any], answer: xr.Dataset
+) -> xr.Dataset:
+    """Return the motion that a small push ends in over time, of no instants where it dies out."""
+    reduced = reduced_structure(structure, section)
+    if not moving_attractors(answer).size:
+        return resting_run(reduced)
+    return squealing_run(reduced, answer)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import center_of_mass, label
 
-from squealpipe import load, squealing_modes
+from squealpipe import load, plot, squealing_modes
 from squealpipe.cli import run
 from squealpipe.codes import Regime
 from squealpipe.plotting.animation import film_of, phases
@@ -181,6 +181,12 @@ def test_the_commands_write_run_sound_and_film_of_a_structure_in_files(
     assert run(["listen", "run.nc"]) == 0
     assert run(["animate", "run.nc", "--seconds", "0.5", "-o", "run.gif"]) == 0
     assert "Force and path are those of contact" in capsys.readouterr().out
+
+
+def test_a_run_is_drawn_by_its_forces(swaying):
+    axes = plot(swaying)
+    assert [line.get_label() for line in axes.get_lines()] == ["p1", "p2"]
+    assert axes.get_lines()[0].get_ydata().max() == 400.0
 
 
 def test_a_stored_run_is_read_back(swaying, tmp_path):

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from squealpipe.systems.shipped.brake import brake_of, parameters_of_run
 
 from squealpipe import Parameters, Switch, System
-from squealpipe.brake.a1.motion_system import brake_of, parameters_of_run
 
 
 def oscillator(size):

@@ -20,6 +20,7 @@ rule analyse_structure:
     output:
         modes=data("structure/modes"),
         squeal=data("structure/squeal"),
+        run=data("structure/run"),
         contacts=f"{RESULTS}/report/contacts.csv",
     params:
         settings=STRUCTURE,

@@ -7,6 +7,7 @@ from squealpipe.schema import (
     Variable,
     count,
     flag,
+    or_nan,
     outcome,
     text,
 )
@@ -51,8 +52,8 @@ STRUCTURE_RUN = DatasetSchema(
         "regime": flag("regime of the contact", Regime, *_OF_CONTACT, volatile=True),
         "preload": Variable("preload of the contact", "N", ("contact",)),
         "attractor": count("attractor of squealing_modes that the motion is on"),
-        "dominant_frequency": Variable("strongest line of the motion", "Hz", rtol=1e-3),
+        "dominant_frequency": or_nan("strongest line of the motion", "Hz", rtol=1e-3),
         **MESH,
-        "outcome": outcome(among=(Outcome.converged,)),
+        "outcome": outcome(among=(Outcome.converged, Outcome.not_computed)),
     },
 )

@@ -76,8 +76,48 @@ def squealing_run(
         for name in ("q", "v")
     )
     contacts = [contact.name for contact in reduced.contacts]
-    shapes = np.eye(size) if reduced.modes is None else reduced.modes
-    of_mesh, mesh_coordinates = mesh_variables(reduced)
+    forces = [run[f"{name}_normal_force"].values for name in contacts]
+    return _dataset(
+        reduced,
+        (q, v),
+        np.stack(forces, axis=1),
+        _regimes(run, contacts),
+        times,
+        attractor=chosen,
+        dominant_frequency=frequency,
+        outcome=Outcome.converged,
+    )
+
+
+def resting_run(structure: Any) -> xr.Dataset:
+    """Return a dataset ``structure_run`` of no instants, of a structure whose motion dies out."""
+    nothing = np.empty((0, structure.size))
+    forces = np.empty((0, len(structure.contacts)))
+    return _dataset(
+        structure,
+        (nothing, nothing),
+        forces,
+        forces,
+        np.empty(0),
+        attractor=NO_ATTRACTOR,
+        dominant_frequency=np.nan,
+        outcome=Outcome.not_computed,
+    )
+
+
+def _dataset(
+    structure: Any,
+    states: tuple[np.ndarray, np.ndarray],
+    forces: np.ndarray,
+    regimes: np.ndarray,
+    times: np.ndarray,
+    **scalars: Any,
+) -> xr.Dataset:
+    """Return a motion with what its structure is."""
+    q, v = states
+    shapes = np.eye(structure.size) if structure.modes is None else structure.modes
+    of_mesh, mesh_coordinates = mesh_variables(structure)
+    ways = ("along", structure.tangentials), ("across", structure.normals)
     return build(
         STRUCTURE_RUN,
         {
@@ -87,22 +127,19 @@ def squealing_run(
             **{
                 f"contact_{name}_{way}": values @ directions
                 for name, values in (("displacement", q), ("velocity", v))
-                for way, directions in (
-                    ("along", reduced.tangentials),
-                    ("across", reduced.normals),
-                )
+                for way, directions in ways
             },
-            "normal_force": np.stack(
-                [run[f"{name}_normal_force"].values for name in contacts], axis=1
-            ),
-            "regime": _regimes(run, contacts),
-            "preload": reduced.preloads,
-            "attractor": chosen,
-            "dominant_frequency": frequency,
-            "outcome": Outcome.converged,
+            "normal_force": forces,
+            "regime": regimes,
+            "preload": structure.preloads,
+            **scalars,
             **of_mesh,
         },
-        {"time": times, "contact": contacts, **mesh_coordinates},
+        {
+            "time": times,
+            "contact": [contact.name for contact in structure.contacts],
+            **mesh_coordinates,
+        },
     )
 
 

@@ -36,17 +36,21 @@ def write_document(
     *,
     page: Path,
     pdf: Path,
+    media: Mapping[str, str] | None = None,
 ) -> None:
     """Typeset one document and write both files, each whole or not at all.
 
     Args:
         pictures: path inside the source (``content["figures"][name]["path"]``) → PNG file.
+        media: name of a place for films and sounds in the template → elements of the page there.
     """
     with _source(template, content, pictures) as main, ThreadPoolExecutor(2) as pool:
         made = pool.submit(_typeset, main, "html")
         document = pool.submit(_typeset, main, "pdf")
     with whole_file(page) as temporary:
-        temporary.write_bytes(_page(content, made.result().decode()).encode())
+        temporary.write_bytes(
+            _page(content, made.result().decode(), media or {}).encode()
+        )
     with whole_file(pdf) as temporary:
         temporary.write_bytes(document.result())
 
@@ -69,7 +73,7 @@ def _source(
         yield root / f"{template}.typ"
 
 
-def _page(content: Mapping[str, Any], made: str) -> str:
+def _page(content: Mapping[str, Any], made: str, media: Mapping[str, str]) -> str:
     """Our own shell around the body and the mathematics style of Typst's page."""
     environment = Environment(undefined=StrictUndefined, autoescape=True)
     shell = environment.from_string(
@@ -79,6 +83,10 @@ def _page(content: Mapping[str, Any], made: str) -> str:
     body = _between(made, "<body>", "</body>").translate(
         {0x0307: "\u02d9", 0x0308: "\u00a8"}
     )
+    for name, elements in media.items():
+        place = re.search(rf'<div[^>]*id="media-{re.escape(name)}"[^>]*></div>', body)
+        if place is not None:
+            body = body.replace(place[0], elements)
     return shell.render(
         title=content["title"],
         # a page without a formula has none

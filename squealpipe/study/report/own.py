@@ -12,8 +12,10 @@ from squealpipe.brake.schema.assess import KICKS
 from squealpipe.brake.schema.dynamics.intervals import intervals
 from squealpipe.codes import Regime, Verdict
 from squealpipe.parameters import Parameters
+from squealpipe.store import load
 from squealpipe.study.evidence import Evidence
 from squealpipe.study.report import answer
+from squealpipe.study.report.media import media_of
 from squealpipe.study.report.parts import Made, changed_rows, parameter_table, pictures
 from squealpipe.study.report.sections import OWN
 from squealpipe.text import number, percent
@@ -52,6 +54,22 @@ def gather_own(
         "strikes": _strikes(parameters),
         "scatter": _scatter(run),
     }
+
+
+def media_of_scenes(datasets: Mapping[str, Made]) -> dict[str, str]:
+    """Film and sound of each scene whose motion lasts, by its name, as elements of the page."""
+    media = {}
+    for name, made in datasets.items():
+        room, _, scene_name = name.partition("/")
+        if room != "assess":
+            continue
+        told = load(made.path)
+        if answer.verdict_of(told) is Verdict.quiet:
+            continue
+        if np.isfinite(told.path_x.values).all():
+            started = load(datasets[f"own/{scene_name}"].path)
+            media[scene_name] = media_of(scene_name, told, [started])
+    return media
 
 
 def scene(name: str, told: xr.Dataset, started: xr.Dataset) -> dict[str, Any]:

@@ -1,7 +1,7 @@
 """Figures of the reports of studies of one's own, in order; the workflow draws exactly these."""
 
-OWN = ("own_settled", "own_map", "own_model", "own_motion", "propensity")
+OWN = ("own_settled", "own_phases", "own_map", "own_model", "own_motion", "propensity")
 """Figures of the report of a study of one's own."""
 
-STRUCTURE = ("what_squeals", "modes_over_friction")
+STRUCTURE = ("what_squeals", "squealing_phases", "mode_shapes", "modes_over_friction")
 """Figures of the report of a structure."""

@@ -14,6 +14,7 @@ from squealpipe.store import load
 from squealpipe.structures.schema.squealing import MOST_DAMPING, NO_ATTRACTOR
 from squealpipe.structures.schema.structures import Onset
 from squealpipe.study.report import squealing
+from squealpipe.study.report.media import media_of
 from squealpipe.study.report.parts import Made, pictures
 from squealpipe.study.report.sections import STRUCTURE
 from squealpipe.text import number, percent
@@ -41,6 +42,7 @@ def gather_structure(
         "headline": squealing.headline(answer),
         "lines": [line for line in told if line],
         "quiet": verdict is Verdict.quiet,
+        "moves": bool(run["structure/run"].sizes["time"]),
         "stops": stops(modes, answer),
         "fates": [*squealing.modes(answer), *squealing.missing(answer)],
         "ends": list(squealing.attractors(answer)),
@@ -50,6 +52,12 @@ def gather_structure(
         "rest": not_examined(answer),
         "figures": pictures(STRUCTURE, figures, run),
     }
+
+
+def media_of_structure(datasets: Mapping[str, Made]) -> dict[str, str]:
+    """Film and sound of the motion that a small push ends in, as elements of the page."""
+    run = load(datasets["structure/run"].path)
+    return {"structure": media_of("the structure", run)} if run.sizes["time"] else {}
 
 
 def _unstable(modes: xr.Dataset) -> list[xr.Dataset]:

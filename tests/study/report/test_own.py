@@ -89,7 +89,7 @@ def made_of(answers, folder, **further):
         )
         made[name] = Made(path=path, rule="some")
         datasets[name] = load(path)
-    for name in ("own_settled", "own_map", "own_model", "own_motion"):
+    for name in ("own_settled", "own_phases", "own_map", "own_model", "own_motion"):
         path = folder / f"{name}.png"
         save_figure(draw(name, datasets), [path])
         figures[name] = Made(path=path, rule="some", datasets=reads(name))

@@ -116,6 +116,7 @@ def test_the_answer_comes_first_and_says_mode_sound_cause_and_remedy(
         "headline": said,
         "lines": [cause, words.level(answer)],
         "quiet": False,
+        "moves": True,
         "stops": stops,
         "fates": list(words.modes(answer)),
         "ends": list(words.attractors(answer)),
@@ -126,8 +127,17 @@ def test_the_answer_comes_first_and_says_mode_sound_cause_and_remedy(
         "figures": {},
     }
     page = tmp_path / "index.html"
-    write_document("structure", content, {}, page=page, pdf=tmp_path / "report.pdf")
+    write_document(
+        "structure",
+        content,
+        {},
+        page=page,
+        pdf=tmp_path / "report.pdf",
+        media={"structure": "<video controls></video>"},
+    )
     text = page.read_text(encoding="utf-8")
+    place = text.index("Seen and heard</h2>")
+    assert place < text.index("<video controls></video>") < text.rindex("What becomes")
     assert text.index(said) < text.rindex("What becomes of each unstable mode")
 
 

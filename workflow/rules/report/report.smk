@@ -50,7 +50,7 @@ if STUDY.paper:
 
     TARGETS += rules.write_report.output
 elif STUDY.structure is not None:
-    told = {name: MADE[name] for name in ("structure/modes", "structure/squeal")}
+    told = {name: MADE[name] for name in ("structure/modes", "structure/squeal", "structure/run")}
 
     rule write_structure_report:
         input:

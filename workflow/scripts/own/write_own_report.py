@@ -9,7 +9,7 @@ from squealpipe.store.keys import refuse_misfits
 from squealpipe.store.rerun.key import state_key
 from squealpipe.store.whole_files import whole_file
 from squealpipe.study.report.build import write_document
-from squealpipe.study.report.own import gather_own
+from squealpipe.study.report.own import gather_own, media_of_scenes
 from squealpipe.study.report.parts import made_files, picture_files, provenance
 from squealpipe.study.report.tables import write_tables
 
@@ -26,7 +26,14 @@ content = gather_own(
     params.became,
 )
 pictures = picture_files(content, figures)
-write_document("study", content, pictures, page=Path(out.page), pdf=Path(out.pdf))
+write_document(
+    "study",
+    content,
+    pictures,
+    page=Path(out.page),
+    pdf=Path(out.pdf),
+    media=media_of_scenes(datasets),
+)
 write_tables(
     {
         name.removeprefix("assess/"): load(made.path)

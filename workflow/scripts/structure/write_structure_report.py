@@ -8,14 +8,21 @@ from squealpipe.store.rerun.key import state_key
 from squealpipe.store.whole_files import whole_file
 from squealpipe.study.report.build import write_document
 from squealpipe.study.report.parts import made_files, picture_files, provenance
-from squealpipe.study.report.structure import gather_structure
+from squealpipe.study.report.structure import gather_structure, media_of_structure
 
 params, out = snakemake.params, snakemake.output
 refuse_misfits(params.expected)
 datasets, figures = made_files(params.made), made_files(params.drawn)
 content = gather_structure(datasets, figures)
 pictures = picture_files(content, figures)
-write_document("structure", content, pictures, page=Path(out.page), pdf=Path(out.pdf))
+write_document(
+    "structure",
+    content,
+    pictures,
+    page=Path(out.page),
+    pdf=Path(out.pdf),
+    media=media_of_structure(datasets),
+)
 with whole_file(Path(out.provenance)) as temporary:
     temporary.write_text(
         json.dumps(provenance(datasets, figures), indent=1), encoding="utf-8"

@@ -1,0 +1,26 @@
+"""One period of the squealing motion of a structure, as a strip of eight phases."""
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from squealpipe.plotting import style
+from squealpipe.plotting.animation import phases
+from squealpipe.study.figures.declared import report_figure
+
+
+@report_figure(
+    reads=("structure/run",),
+    caption=(
+        "One period of the motion that a small push ends in, the vibration enlarged and without "
+        "the static deformation. Contacts are blue in slip, orange in stick, and red and hollow "
+        "where they are open. Without a mesh the contacts stand side by side."
+    ),
+    alt="Eight drawings of the vibrating structure with its contacts, an eighth of a period apart.",
+)
+def draw(run: xr.Dataset) -> Figure:
+    """Eight phases from the dataset ``structure/run``."""
+    if not run.sizes["time"]:
+        figure, axes = style.new_figure(style.PAGE, 0.8)
+        style.say_instead(axes[0, 0], "the motion dies out")
+        return figure
+    return phases(run)
