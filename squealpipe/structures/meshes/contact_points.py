@@ -278,6 +278,7 @@ def _points(face: Face, mesh: ElementMesh, rotation: Rotation | None) -> list[_P
         own, rubbed = _facing(own, surface.has_side, other, mesh)
         partners = list(rubbed.partners(mesh.nodes[members]))
         normals = np.array([each.normal for each in partners if each is not None])
+        _refuse_shared(partners, members, mesh, face)
         _refuse_gaps(partners, members, mesh, face)
         _refuse_facing(own.normals[members], normals, members, mesh, face)
     places = np.array(
@@ -333,6 +334,22 @@ def _refuse_opposite(
             f"{name}: facets at node {mesh.numbers[opposite[0]]} look in opposite directions "
             f"({opposite.size} nodes); give the surface one side of the body, and the nodes of its "
             "facets one sense"
+        )
+
+
+def _refuse_shared(
+    partners: list[Partner | None], members: np.ndarray, mesh: ElementMesh, face: Face
+) -> None:
+    shared = [
+        node
+        for node, partner in zip(members, partners, strict=True)
+        if partner is not None and node in partner.nodes
+    ]
+    if shared:
+        first = mesh.numbers[shared[0]]
+        raise ValueError(
+            f"{face.surface} and {face.against} share {len(shared)} nodes, {first} the first, so "
+            "that they cannot slide; give each body nodes of its own"
         )
 
 

@@ -9,6 +9,7 @@ of a point add up to 1. Cost: a tree of the nodes, and some ten facets a point.
 from typing import NamedTuple
 
 import numpy as np
+import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
 from squealpipe.structures.meshes.element_mesh import Facets
@@ -127,19 +128,39 @@ class FacetedSurface:
         found: dict[int, list[_Candidate]] = {int(index): [] for index in chosen}
         if not chosen.size:
             return found
-        # a facet nearer than the nearest node has a node within its size of its nearest point
+        # the nearest point of a facet is within its size of one of its nodes
         largest = max(float(each.max()) for each in self.sizes.values())
-        near = self._tree.query_ball_point(
-            points[chosen], distances[chosen] + 2.0 * largest
+        near = self._tree.query_ball_point(points[chosen], distances[chosen] + largest)
+        count = len(self.members)
+        lengths = [len(each) for each in near]
+        is_near = sp.csr_array(
+            (
+                np.ones(sum(lengths)),
+                np.concatenate([np.asarray(each, int) for each in near]),
+                np.concatenate([[0], np.cumsum(lengths)]),
+            ),
+            (len(chosen), count),
         )
+        place_of = np.zeros(len(self.nodes), int)
+        place_of[self.members] = np.arange(count)
         for size, rows in self.facets.items():
-            pairs = []
-            for index, members in zip(chosen, near, strict=True):
-                is_near = np.zeros(len(self.nodes), bool)
-                is_near[self.members[members]] = True
-                facets = np.flatnonzero(is_near[rows].any(axis=1))
-                pairs.append(np.column_stack([np.full(len(facets), index), facets]))
-            of_point, of_facet = np.concatenate(pairs).T
+            has = sp.csr_array(
+                (
+                    np.ones(rows.size),
+                    (place_of[rows.ravel()], np.repeat(np.arange(len(rows)), size)),
+                ),
+                (count, len(rows)),
+            )
+            of_point, of_facet = (is_near @ has).nonzero()
+            of_point = chosen[of_point]
+            # a facet that is farther than the nearest node is not tried
+            middle = self.nodes[rows].mean(axis=1)
+            radius = np.linalg.norm(self.nodes[rows] - middle[:, None], axis=2).max(
+                axis=1
+            )
+            away = np.linalg.norm(points[of_point] - middle[of_facet], axis=1)
+            tried = away <= 1.1 * radius[of_facet] + distances[of_point]
+            of_point, of_facet = of_point[tried], of_facet[tried]
             places, gaps = nearest_places(self.nodes[rows[of_facet]], points[of_point])
             for index, facet, place, gap in zip(
                 of_point.tolist(), of_facet.tolist(), places, gaps.tolist(), strict=True

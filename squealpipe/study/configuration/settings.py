@@ -205,7 +205,7 @@ def check_results_folder(results: str) -> None:
     endings = dict(
         zip(
             PARTS,
-            ((".nc",), (".png", ".svg"), (".html", ".pdf", ".json", ".xlsx")),
+            ((".nc",), (".png", ".svg"), (".html", ".pdf", ".json", ".xlsx", ".csv")),
             strict=True,
         )
     )

@@ -283,6 +283,21 @@ FOOT = {"foot": [[0, 3, 2, 1]]}
             {"mesh": (SQUARE, {"foot": [[0, 3, 2], [0, 1, 2]]})},
             "look in opposite directions",
         ),
+        (
+            {
+                "mesh": (SQUARE, FOOT | {"belt_side": [[0, 1, 2, 3]]}),
+                "contacts": {
+                    "f": Face(
+                        "foot",
+                        against="belt_side",
+                        stiffness=1e8,
+                        pressure=1e5,
+                        direction=[1, 0, 0],
+                    )
+                },
+            },
+            "foot and belt_side share 4 nodes, 1 the first",
+        ),
         ({"contacts": [FACE]}, "name: Face"),
         ({"contacts": {"f": "foot"}}, "name: Face"),
         ({"rotation": 20.0}, "Rotation is needed"),
