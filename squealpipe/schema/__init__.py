@@ -40,7 +40,7 @@ from squealpipe.systems.datasets import validate as validate
 from squealpipe.systems.datasets import whether as whether
 from squealpipe.systems.inputs.words import nearest
 
-ROOMS = ("systems", "brake", "structures", "benchmark", "study", "paper")
+ROOMS = ("systems", "vibration", "brake", "structures", "benchmark", "study", "paper")
 """Packages that hold the schemas of the datasets that they make, in ``schema``."""
 
 

@@ -13,13 +13,14 @@ from squealpipe.brake.assess.levels import levels
 from squealpipe.brake.assess.settling import pushed, settle, start_at, strikes
 from squealpipe.brake.assess.sliding import Design, Sliding
 from squealpipe.brake.linear.maps import stability_map
-from squealpipe.brake.schema.assess import ASSESS, CURES, Mechanism
+from squealpipe.brake.schema.assess import CURES
 from squealpipe.codes import Verdict
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
 from squealpipe.validation import Angle, Tolerance
 from squealpipe.vibration.boundaries import interval_table
+from squealpipe.vibration.schema import ASSESS, Mechanism
 from squealpipe.vibration.settling import FOR_NUMBERS
 
 SEARCHED = 1e-9

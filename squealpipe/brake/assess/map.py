@@ -9,13 +9,14 @@ import xarray as xr
 
 from squealpipe.brake.assess.settling import pushed, settle, start_at
 from squealpipe.brake.assess.sliding import Design, Sliding
-from squealpipe.brake.schema.assess import VERDICT_MAP, Mechanism
+from squealpipe.brake.schema.assess import VERDICT_MAP
 from squealpipe.codes import Verdict
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
 from squealpipe.systems.processes import run_shared
 from squealpipe.validation import Angles, Tolerance, Workers
+from squealpipe.vibration.schema import Mechanism
 from squealpipe.vibration.settled_runs import Start
 
 MOST = 1600.0

@@ -13,11 +13,11 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from squealpipe.brake.models import a1
-from squealpipe.brake.schema.assess import Mechanism
 from squealpipe.laws.contact import normal_force
 from squealpipe.laws.friction_laws import COULOMB
 from squealpipe.laws.springs import LONG, Geometry, geometry
 from squealpipe.parameters import Parameters
+from squealpipe.vibration.schema import Mechanism
 
 GROWS = 1e-7
 """Growth rate, over the largest |s|, above which steady sliding is unstable; below it is the

@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from squealpipe.brake.schema.assess import Mechanism, error_of
 from squealpipe.codes import Verdict
 from squealpipe.text import number, percent
 from squealpipe.units import engineering
+from squealpipe.vibration.schema import Mechanism, error_of
 
 NAMES = {
     "mu": "friction coefficient at belt speed",

@@ -9,16 +9,18 @@ from scipy.integrate import solve_ivp
 from squealpipe import Parameters, Sweep, assess, load, run_sweep, save, stability_map
 from squealpipe.brake.assess.cures import growth_margin
 from squealpipe.brake.assess.designs import cures_of
-from squealpipe.brake.assess.levels import error_of_mean, levels
+from squealpipe.brake.assess.levels import levels
 from squealpipe.brake.assess.settling import pushed, settle, start_at
 from squealpipe.brake.assess.sliding import Design, Sliding
 from squealpipe.brake.assess.windows import run_windows
-from squealpipe.brake.schema.assess import CURES, Mechanism
+from squealpipe.brake.schema.assess import CURES
 from squealpipe.cli import run
 from squealpipe.codes import Verdict
 from squealpipe.study.report.answer import first_lines
 from squealpipe.substitutes import critical_damping
 from squealpipe.vibration.boundaries import linear_intervals
+from squealpipe.vibration.levels import error_of_mean
+from squealpipe.vibration.schema import Mechanism
 from squealpipe.vibration.settled_runs import Horizon
 from squealpipe.vibration.settled_runs import settle as settle_runs
 from squealpipe.vibration.settling import FOR_NUMBERS, FOR_VERDICTS

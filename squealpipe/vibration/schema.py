@@ -1,0 +1,245 @@
+"""The dataset that answers for pads and structures: verdict, cause, frequency, level, cures."""
+
+from dataclasses import replace
+from enum import IntEnum
+
+from squealpipe.codes import Regime, Verdict
+from squealpipe.schema import (
+    DatasetSchema,
+    Outcome,
+    Variable,
+    count,
+    flag,
+    or_nan,
+    outcome,
+    text,
+    whether,
+)
+
+SAMPLES = 800
+"""Instants of the settled motion that a dataset keeps."""
+LINES = 3200
+"""Lines of its spectrum."""
+HARMONICS = 5
+REGIMES = {**{int(each): each.name for each in Regime}, -1: "not_reached"}
+"""Meaning of regime."""
+DIRECTIONS = ("along", "across")
+"""Directions of velocities at a contact: along the belt, and away from it."""
+
+
+class Mechanism(IntEnum):
+    """Why steady sliding is unstable."""
+
+    none = 0
+    falling_friction = 1
+    flutter = 2
+    divergence = 3
+    no_sliding_state = 4
+
+
+STARTS = {"": "steady sliding, pushed", "sudden_": "rest under the whole preload"}
+"""Prefix of the scalars of a start, and that start."""
+
+MEAN_SQUARES = ("velocity_rms_along", "velocity_rms_across")
+MEANS = (*MEAN_SQUARES, "impact_rate", "separated_fraction", "stick_fraction")
+WITH_ERROR = ("frequency", *MEANS)
+"""Scalars of a settled motion that have a statistical error where it does not repeat."""
+
+
+def error_of(name: str) -> str:
+    """The variable that holds the statistical error of another one."""
+    return f"{name}_error"
+
+
+def _of_motion(prefix: str, start: str) -> dict[str, Variable]:
+    """The scalars of what one start settles to."""
+
+    def real(long_name: str, units: str = "1", rtol: float = 2e-2) -> Variable:
+        return or_nan(f"{long_name}, from {start}", units, rtol=rtol, atol=1e-6)
+
+    scalars = {
+        "verdict": flag(f"what becomes of {start}", Verdict),
+        "periodic": whether(f"whether the settled motion repeats, from {start}"),
+        "frequency": real("strongest line of the velocity", "Hz", 1e-2),
+        "velocity_rms_along": real("rms velocity along the belt", "m s-1"),
+        "velocity_rms_across": real("rms velocity across the belt", "m s-1"),
+        "displacement_peak": real("largest distance from the mean position", "m"),
+        "peak_contact_force": real("largest contact force", "N"),
+        "peak_contact_force_over_preload": real("largest contact force over preload"),
+        "impact_speed": real("largest speed towards the belt at a return", "m s-1"),
+        "impact_rate": real("returns to the belt per time", "s-1"),
+        "separated_fraction": real("share of the time without contact"),
+        "stick_fraction": real("share of the time in stick"),
+        "settled_by": real("time by which the motion had settled", "s", 1e-6),
+    }
+    scalars |= {
+        error_of(name): or_nan(
+            f"statistical error (95 %, frequency: scatter) of {name}, from {start}; "
+            "0 where the motion repeats",
+            scalars[name].units,
+            volatile=True,
+            optional=True,
+        )
+        for name in WITH_ERROR
+    }
+    return {f"{prefix}{name}": entry for name, entry in scalars.items()}
+
+
+def _path(long_name: str, units: str) -> Variable:
+    return or_nan(
+        f"{long_name} of the settled motion", units, ("sample",), volatile=True
+    )
+
+
+def _optional(
+    long_name: str, units: str = "1", *dims: str, rtol: float = 1e-9
+) -> Variable:
+    return or_nan(long_name, units, dims, optional=True, rtol=rtol)
+
+
+_OF_PADS = {
+    "growth_rate": _optional("growth rate of small motions by model A3", "s-1"),
+    "x_sliding": _optional("x of steady sliding", "m"),
+    "y_sliding": _optional("y of steady sliding", "m"),
+    "sliding_force": _optional("contact force of steady sliding", "N"),
+    "quiet_alpha1": _optional(
+        "alpha1 of the nearest quiet pair of angles that was found", "rad", rtol=1e-2
+    ),
+    "quiet_alpha2": _optional("alpha2 of that pair", "rad", rtol=1e-2),
+    "alpha1": _optional("angle of spring 1", "rad"),
+    "alpha2": _optional("angle of spring 2", "rad"),
+    "preload": _optional("precompression l_pre of the contact spring", "m"),
+}
+"""Variables of pads on two springs alone."""
+_LEVEL = 2e-2
+_OF_STRUCTURES = {
+    "contact_velocity_rms": _optional(
+        "rms velocity of each contact", "m s-1", "contact", "direction", rtol=_LEVEL
+    ),
+    "contact_separated_fraction": _optional(
+        "share of the time without contact", "1", "contact", rtol=_LEVEL
+    ),
+    "contact_stick_fraction": _optional(
+        "share of the time in stick", "1", "contact", rtol=_LEVEL
+    ),
+    "contact_peak_force": _optional("largest force", "N", "contact", rtol=_LEVEL),
+    "contact_sliding_force": _optional(
+        "force in steady sliding, 0 where the contact is open", "N", "contact"
+    ),
+    "random_starts": count(
+        "random starts that were tried beside those that are told", optional=True
+    ),
+    "random_starts_noisy": count("how many of them end in a vibration", optional=True),
+    "degrees_of_freedom": count("of the whole structure", optional=True),
+    "n_modes": count("modes in which it was run", optional=True),
+}
+"""Variables of structures alone."""
+
+ASSESS = DatasetSchema(
+    name="assess",
+    title="Whether it squeals or hammers, why, how loud, and what stops it",
+    coordinates={
+        "cure": text("what is changed, by ascending change", "cure"),
+        "mode": count("mode, by ascending frequency", "mode"),
+        "contact": replace(text("name of the contact", "contact"), optional=True),
+        "direction": replace(
+            text("direction of a velocity", "direction"), optional=True
+        ),
+    },
+    variables={
+        **_of_motion("", STARTS[""]),
+        **_of_motion("sudden_", STARTS["sudden_"]),
+        "mechanism": flag("why steady sliding is unstable", Mechanism),
+        "quiet_unless_struck": whether(
+            "quiet from steady sliding, but another motion exists beside it"
+        ),
+        "mode_frequency": or_nan(
+            "frequencies of small motions (of a pad: of model A3)", "Hz", ("mode",)
+        ),
+        "sliding_growth_rate": or_nan(
+            "growth rate of small motions about steady sliding", "s-1"
+        ),
+        "frequency_resolution": or_nan("resolution of the spectrum", "Hz"),
+        "harmonic_frequency": or_nan(
+            "multiples of the strongest line", "Hz", ("harmonic",), rtol=1e-2
+        ),
+        "harmonic_velocity": or_nan(
+            "velocity amplitude there", "m s-1", ("harmonic",), rtol=5e-2, atol=1e-3
+        ),
+        "line_frequency": or_nan("frequency of the spectrum", "Hz", ("line",)),
+        "velocity_spectrum_along": or_nan(
+            "amplitude of the velocity along the belt",
+            "m s-1",
+            ("line",),
+            volatile=True,
+        ),
+        "velocity_spectrum_across": or_nan(
+            "amplitude of the velocity across the belt",
+            "m s-1",
+            ("line",),
+            volatile=True,
+        ),
+        "force_spectrum": or_nan(
+            "amplitude of the contact force over preload", "1", ("line",), volatile=True
+        ),
+        "path_time": _path("time", "s"),
+        "path_x": _path("displacement along the belt", "m"),
+        "path_y": _path("displacement across the belt", "m"),
+        "path_force": _path("contact force over preload", "1"),
+        "path_regime": flag(
+            "regime of the settled motion", REGIMES, "sample", volatile=True
+        ),
+        "value": or_nan(
+            "present value (of mu: the coefficient at belt speed)", dims=("cure",)
+        ),
+        "unit": text("unit of the values", "cure"),
+        "quiet_from": or_nan(
+            "nearest value at which the verdict changes between quiet and not",
+            dims=("cure",),
+            rtol=2e-3,
+        ),
+        "quiet_from_any_start": or_nan(
+            "the same, for the verdict from any start that was tried",
+            dims=("cure",),
+            rtol=2e-2,
+        ),
+        **{
+            f"quiet_{end}": or_nan(
+                f"{end}er end of each interval of values that are quiet after a push, the "
+                "nearest first; the end of the range searched where quiet does not end there",
+                dims=("cure", "interval"),
+                rtol=2e-3,
+                optional=True,
+            )
+            for end in ("low", "high")
+        },
+        "change": or_nan(
+            "change from the present value to quiet_from, in per cent (angles: degrees)",
+            dims=("cure",),
+            rtol=2e-2,
+        ),
+        "change_any_start": or_nan(
+            "change from the present value to quiet_from_any_start",
+            dims=("cure",),
+            rtol=5e-2,
+        ),
+        "lowest_tried": or_nan(
+            "lower end of the range that was searched", dims=("cure",)
+        ),
+        "highest_tried": or_nan("upper end of that range", dims=("cure",)),
+        "snaps_from": or_nan(
+            "nearest value at which steady sliding of a quiet brake snaps to another place",
+            dims=("cure",),
+            rtol=2e-3,
+            optional=True,
+        ),
+        "snap_distance": or_nan(
+            "distance between both places", "m", ("cure",), rtol=2e-2, optional=True
+        ),
+        **_OF_PADS,
+        **_OF_STRUCTURES,
+        "outcome": outcome(
+            among=(Outcome.converged, Outcome.unresolved, Outcome.no_sliding_state)
+        ),
+    },
+)
