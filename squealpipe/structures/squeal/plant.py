@@ -176,7 +176,7 @@ class Plant:
     @property
     def is_linear(self) -> bool:
         """True if motions during which no contact switches are linear: friction is constant."""
-        return self.structure.friction.friction_law == COULOMB
+        return all(each.friction_law == COULOMB for each in self.structure.frictions)
 
     @cached_property
     def rest(self) -> tuple[np.ndarray, np.ndarray]:
@@ -226,6 +226,18 @@ class Plant:
         v = states[..., self.size :]
         along, across = v @ self.structure.tangentials, v @ self.structure.normals
         return np.asarray(np.hypot(along, across))
+
+    def contact_motions(self, amplitudes: np.ndarray) -> np.ndarray:
+        """Displacements or velocities along and across the belt, (…, contacts, 2)."""
+        belt = np.sign(self.structure.speeds * self.structure.belt_speed)
+        along = amplitudes @ (self.structure.tangentials * belt)
+        across = amplitudes @ self.structure.normals
+        return np.stack([along, across], axis=-1)
+
+    def normal_forces(self, states: np.ndarray) -> np.ndarray:
+        """Forces of the contacts where they are closed, (…, contacts), N."""
+        nearing = states[..., : self.size] @ self.structure.normals
+        return self.structure.preloads - self.structure.stiffnesses * nearing
 
     @cached_property
     def modes(self) -> Any:

@@ -4,14 +4,16 @@ Instants at which a motion is looked at are drawn at random, one in each of many
 window, so that none of its statistics depends on a step that is in time with its period.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Self
 
 import numpy as np
 
 from squealpipe.schema import Outcome
-from squealpipe.structures.squeal.plant import Plant
+from squealpipe.structures.squeal.plant import PUSH, Plant
 from squealpipe.systems.integrate import LARGEST, RunOptions, integrate
+from squealpipe.vibration.settling import Settling, late_growth, tapered
 from squealpipe.vibration.spectrum import amplitude_spectrum, strongest_lines
 from squealpipe.vibration.windows import Windows
 
@@ -170,6 +172,78 @@ def run_windows(
         plant, states[wide], lengths[wide, None] * times, how, frictions, **options
     )
     return statistics_of(plant, raw, lengths[wide]).row(slice(count))
+
+
+OFF = 1e-8
+"""Size of a perturbation, over the motion's; ten times as much is seen beside small motions."""
+
+
+def followed_windows(
+    plant: Plant,
+    states: np.ndarray,
+    lengths: np.ndarray,
+    how: Running,
+    regimes: np.ndarray | None,
+    beside: Sequence[np.ndarray | None],
+    rules: Settling,
+) -> tuple[StructureWindows, np.ndarray]:
+    """Run states on beside neighbours, for the growth of a small perturbation.
+
+    Means are tapered over uniform instants, so that two windows of a cycle agree closely.
+
+    Args:
+        beside: direction of each perturbation, (states,); None: at random.
+        rules: which say how many instants are looked at.
+
+    Returns:
+        The windows, and the perturbations at their end.
+    """
+    count = len(states)
+    rng = np.random.default_rng(how.seed)
+    off = np.array(
+        [
+            rng.standard_normal(states.shape[1]) if each is None else each
+            for each in beside
+        ]
+    )
+    # of a state that is drawn the parts have sizes of their own
+    drawn = np.array([each is None for each in beside])
+    spread = (
+        np.sqrt(((states - plant.sliding) ** 2).mean(axis=0))
+        + np.abs(plant.sliding).max() * 1e-6
+    )
+    off[drawn] *= spread
+    extent = plant.sizes(states - plant.sliding)
+    extent = np.maximum(extent, PUSH * np.sqrt(plant.energy))
+    off *= (OFF * extent / plant.sizes(off))[:, None]
+    instants = np.arange(1, rules.samples + 1) / rules.samples
+    both = np.concatenate([states, states + off])
+    spans = np.tile(lengths, 2)
+    options = {} if regimes is None else {"regime": np.tile(regimes, (2, 1))}
+    raw = run(plant, both, spans[:, None] * instants, how, sums=True, **options)
+    ran = {name: value[:count] for name, value in raw.items()}
+    windows = statistics_of(plant, ran, lengths)
+    away = raw["samples"][count:] - raw["samples"][:count]
+    sizes = plant.sizes(away) + np.finfo(float).tiny
+    growth = np.log(sizes / plant.sizes(off)[:, None])
+    samples = ran["samples"]
+    square = plant.modal_velocities(samples) ** 2
+    steps = np.diff(ran["sample_durations"], axis=1, prepend=0.0)
+    shares = steps * (rules.samples / lengths[:, None, None])
+    separated, stuck = (
+        np.stack([shares[..., places].sum(-1) for places in _regimes(plant, word)], -1)
+        for word in ("separated", "stick")
+    )
+    ended = np.array_split(growth, 16, axis=1)[-1].mean(axis=1)
+    measured = replace(
+        windows,
+        velocities=np.sqrt(tapered(np.moveaxis(square, 1, 0))),
+        separated=tapered(np.moveaxis(separated, 1, 0)),
+        stuck=tapered(np.moveaxis(stuck, 1, 0)),
+        growth=ended,
+        late_growth=late_growth(growth.T),
+    )
+    return measured, away[:, -1]
 
 
 def statistics_of(

@@ -1,0 +1,286 @@
+"""Designs of a structure as they are run: their plants, starts, and what these settle to."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any, Self
+
+import numpy as np
+
+from squealpipe.laws.friction_laws import COULOMB
+from squealpipe.structures.definition import ContactStructure
+from squealpipe.structures.reduction import Kept
+from squealpipe.structures.sliding import NoSlidingError
+from squealpipe.structures.squeal.plant import PUSH, Plant
+from squealpipe.structures.squeal.windows import Running, followed_windows, run_windows
+from squealpipe.vibration.schema import Mechanism
+from squealpipe.vibration.settled_runs import QUIETNESS, Horizon, SettledRun, Start
+from squealpipe.vibration.settled_runs import settle as settle_runs
+from squealpipe.vibration.settling import FOR_VERDICTS, Settling
+from squealpipe.vibration.windows import joined
+
+FIRST = 50.0
+"""Length of the first two windows, in periods of the slowest mode that grows, or of any."""
+MOST = 20_000.0
+"""Periods after which a motion that has not settled is undetermined."""
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """A structure, and what is run of it.
+
+    Attributes:
+        whole: of all degrees of freedom.
+        n_modes: modes in which it is run; None: as it is.
+        running: the structure that is run, where it is known.
+    """
+
+    whole: ContactStructure
+    n_modes: int | None = None
+    running: ContactStructure | None = None
+
+    @classmethod
+    def of(cls, structure: ContactStructure) -> Self:
+        """Return the design of a structure, reduced where it has to be.
+
+        Raises:
+            NoSlidingError: there is no steady sliding.
+            ValueError: it has no contacts, or is too large.
+        """
+        running = Plant(structure).structure
+        origin = running.reduced_from
+        if origin is None:
+            return cls(running)
+        return cls(origin.whole, running.size, running)
+
+    @cached_property
+    def plant(self) -> Plant | None:
+        """The structure about its steady sliding; None where there is none."""
+        try:
+            return Plant(self._structure)
+        except NoSlidingError:
+            return None
+
+    @cached_property
+    def _structure(self) -> ContactStructure:
+        if self.running is not None:
+            return self.running
+        if self.n_modes is None:
+            return self.whole
+        kept = Kept(self.whole, self.n_modes)
+        reduced = kept.reduced(self.n_modes)
+        reduced.modes = kept.modes
+        return reduced
+
+    def changed(self, whole: ContactStructure) -> Design:
+        """Return the design of another whole structure, in as many modes of its own."""
+        return Design(whole, self.n_modes)
+
+    def slid(self, **changes: Any) -> Design:
+        """Return the design with another friction or belt speed, in the same modes at rest."""
+        running = None if self.running is None else self.running.with_(**changes)
+        return Design(self.whole.with_(**changes), self.n_modes, running)
+
+    @property
+    def margin(self) -> float:
+        """By how much small motions grow beyond their error, 1/s; infinite without sliding."""
+        if self.plant is None:
+            return np.inf
+        spectrum = self.plant.spectrum
+        return float((spectrum.values.real - spectrum.growth_errors).max())
+
+    def to_whole(self, state: np.ndarray) -> np.ndarray:
+        """Return displacements and velocities of the whole, (2 n,), of a state that is run."""
+        modes = self._structure.modes
+        if modes is None:
+            return state
+        q, v = np.split(state, 2)
+        return np.concatenate([modes @ q, modes @ v])
+
+    def from_whole(self, state: np.ndarray) -> np.ndarray:
+        """Return the state that is run next to one of the whole."""
+        modes = self._structure.modes
+        if modes is None:
+            return state
+        both = np.linalg.lstsq(modes, np.stack(np.split(state, 2), axis=1))[0]
+        return np.asarray(both.T.ravel())
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """Reason why steady sliding is unstable."""
+        if self.plant is None:
+            return Mechanism.no_sliding_state
+        if not self.plant.unstable.size:
+            return Mechanism.none
+        drag = np.abs(self.plant.spectrum.state.drag)
+        contacts = [
+            replace(each, mu=float(mu), friction_law=COULOMB, mu_static=None)
+            for each, mu in zip(self._structure.contacts, drag, strict=True)
+        ]
+        level = Plant(self._structure.with_(contacts=contacts))
+        if not level.unstable.size:
+            return Mechanism.falling_friction
+        leading = self.plant.spectrum.values[self.plant.unstable[0]]
+        # a pair that is about to split has a frequency of the size of its error
+        oscillates = abs(leading.imag) > 1e-4 * abs(leading)
+        return Mechanism.flutter if oscillates else Mechanism.divergence
+
+
+def pushed(design: Design) -> Start | None:
+    """Return steady sliding, pushed along the mode that grows fastest; None without sliding.
+
+    Of several that grow alike, as without damping, the slowest.
+    """
+    plant = design.plant
+    if plant is None:
+        return None
+    values = plant.spectrum.values
+    slack = 1e-9 * np.abs(values).max() + plant.spectrum.growth_errors.max()
+    leading = np.flatnonzero(values.real >= values.real.max() - slack)
+    place = int(leading[np.argmin(np.abs(values[leading]))])
+    return _start(design, plant, plant.pushed(place, PUSH))
+
+
+def start_at(design: Design, state: np.ndarray) -> Start | None:
+    """Return another start, at a state that is run; None without steady sliding."""
+    plant = design.plant
+    return None if plant is None else _start(design, plant, state)
+
+
+def _start(design: Design, plant: Plant, state: np.ndarray) -> Start:
+    speed = PUSH * float(np.sqrt(2.0 * plant.energy))
+
+    def measure(away: np.ndarray) -> float:
+        return float(np.sqrt(2.0) * plant.sizes(away))
+
+    if plant.spectrum.pencil.is_undamped:
+        own = measure(state - plant.sliding)
+        speed = max(speed, own / QUIETNESS.stays_small * 2.0)
+    return Start(
+        subject=design,
+        state=state,
+        sliding=plant.sliding,
+        period=1.0 / plant.slowest,
+        speed=speed,
+        rate=plant.rate,
+        is_linear=plant.is_linear,
+        measure=measure,
+    )
+
+
+@dataclass
+class Structures:
+    """Structures as the search for other motions sees them, and how they are run.
+
+    Attributes:
+        tol: tolerance of the runs.
+        samples: random starts of each design.
+        seed: of them.
+        workers: processes.
+    """
+
+    tol: float
+    samples: int
+    seed: int
+    workers: int | None = 1
+
+    def is_quiet_linearly(self, subject: Design) -> bool:
+        """Tell whether steady sliding exists, and small motions about it do not grow."""
+        return subject.margin <= 0.0
+
+    def fading(self, subject: Design) -> float:
+        """Return ln of the decay of small motions within the longest run; NaN where they grow."""
+        if subject.plant is None or subject.margin > 0.0:
+            return np.nan
+        return subject.plant.rate * MOST / subject.plant.slowest
+
+    def starts(
+        self, subject: Design, number: int, motions: Sequence[np.ndarray]
+    ) -> list[Start]:
+        """Return one kind of starts: motions, at rest under the load at once, or random ones.
+
+        Args:
+            motions: states of the whole structure.
+        """
+        plant = subject.plant
+        if plant is None:
+            return []
+        states: Sequence[np.ndarray] = [np.zeros(2 * plant.size)]
+        if number == 0:
+            states = [subject.from_whole(state) for state in motions]
+        elif number == 2:
+            states = list(plant.random_states(self.samples, self.seed))
+        return [_start(subject, plant, state) for state in states]
+
+    def settle(
+        self, starts: Sequence[Start], rules: Settling = FOR_VERDICTS
+    ) -> list[SettledRun]:
+        """Run starts until they have settled by the rules; their last states are of the whole."""
+        if not starts:
+            return []
+        return [
+            replace(run, last=_of_whole(start.subject, run.last))
+            for start, run in zip(starts, self.settled(starts, rules), strict=True)
+        ]
+
+    def settled(
+        self, starts: Sequence[Start], rules: Settling = FOR_VERDICTS
+    ) -> list[SettledRun]:
+        """Run starts until they have settled by the rules."""
+        period = np.array([start.period for start in starts])
+        first = np.array([_first_window(start) for start in starts]) * period
+        advance = _Advance(starts, Running(self.tol, self.seed, self.workers), rules)
+        return settle_runs(starts, advance, Horizon(first, first, MOST * period), rules)
+
+
+def _of_whole(design: Design, last: Any) -> Any:
+    return replace(last, final=design.to_whole(last.final))
+
+
+def _first_window(start: Start) -> float:
+    """Periods of the first window, in which small motions grow to e^½ or more."""
+    rate = abs(start.rate) * start.period
+    shown = QUIETNESS.shown / rate if rate > 0 else 0.0
+    return float(np.clip(shown, FIRST, 0.25 * MOST))
+
+
+@dataclass
+class _Advance:
+    """Run starts of several designs on, those of one design together.
+
+    Attributes:
+        perturbations: of each start, where one is followed, (states,).
+    """
+
+    starts: Sequence[Start]
+    how: Running
+    rules: Settling
+    perturbations: dict[int, np.ndarray] = field(default_factory=dict)
+
+    def __call__(
+        self,
+        rows: list[int],
+        states: np.ndarray,
+        regimes: np.ndarray | None,
+        seconds: np.ndarray,
+        turn: int,
+    ) -> Any:
+        designs: dict[int, list[int]] = {}
+        for place, row in enumerate(rows):
+            designs.setdefault(id(self.starts[row].subject), []).append(place)
+        parts = []
+        for places in designs.values():
+            plant = self.starts[rows[places[0]]].subject.plant
+            begun = None if regimes is None else regimes[places]
+            given = plant, states[places], seconds[places], self.how.turn(turn), begun
+            if not self.rules.follows_perturbation:
+                parts.append((places, run_windows(*given)))
+                continue
+            beside = [self.perturbations.get(rows[place]) for place in places]
+            windows, left = followed_windows(*given, beside, self.rules)
+            for place, perturbation in zip(places, left, strict=True):
+                self.perturbations[rows[place]] = perturbation
+            parts.append((places, windows))
+        return joined(parts)
