@@ -1,4 +1,3 @@
-from .brake.assess.assess import assess
 from .brake.backbones.backbone import backbone
 from .brake.backbones.orbit import periodic_orbit
 from .brake.basins.basin import basin_map
@@ -29,6 +28,7 @@ from .structures.meshes.faces import Face, Rotation
 from .structures.squeal.ladder import squeal_ladder
 from .structures.squeal.squealing_modes import squealing_modes
 from .structures.structure import Structure
+from .study.assess import assess
 from .study.sweep import Sweep, run_sweep
 from .systems.components import Component, Switch
 from .systems.system import System

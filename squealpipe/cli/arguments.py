@@ -79,6 +79,26 @@ Angle1 = Annotated[
     float, angle_of_spring("angle of spring 1 to +x, the way a belt of V > 0 runs")
 ]
 Angle2 = Annotated[float, angle_of_spring("angle of spring 2 to −x")]
+OptionalAngle2 = Annotated[
+    float | None, angle_of_spring("angle of spring 2 to −x; none of a structure")
+]
+
+
+def _angle_or_file(text: str) -> float | Path:
+    """Read the angle of spring 1, or the name of a structure's file."""
+    is_file = Path(text).suffix.lower() in {".yaml", ".yml"} or Path(text).is_file()
+    return Path(text) if is_file else parse_angle(text)
+
+
+Angle1OrFile = Annotated[
+    float | Path,
+    _signed(
+        _angle_or_file,
+        "ANGLE|FILE",
+        help="angle of spring 1 to +x, the way a belt of V > 0 runs: 0.4pi, 2pi/5, 72deg or "
+        "radians; or the file of a structure.",
+    ),
+]
 AngleRange = Annotated[
     list[float],
     _signed(
@@ -298,3 +318,29 @@ def pairs_of(flag: str, texts: Sequence[str]) -> dict[str, str]:
             )
         found[key] = value
     return found
+
+
+def modifications_of(texts: Sequence[str]) -> dict[str, Any]:
+    """Return modifications of a structure by name; degrees of freedom counted from 1 become 0's."""
+    found: dict[str, Any] = {}
+    for name, content in pairs_of("--modify", texts).items():
+        words = content.split()
+        if len(words) != 3:
+            raise ValueError(
+                f"--modify {name}={content}: a kind, a place and the largest amount are needed, "
+                'like "weight=added_mass 12 0.1"'
+            )
+        kind, place, amount = words
+        ends = [_freedom(each) for each in place.split(",")]
+        key = ends[0] if len(ends) == 1 else tuple(ends)
+        found[name] = {
+            kind: {key: as_number(amount) if not has_unit(amount) else amount}
+        }
+    return found
+
+
+def _freedom(text: str) -> int | str:
+    """Read a degree of freedom counted from 1, or a node and its direction like 5005.3."""
+    if text.isdigit() and int(text) > 0:
+        return int(text) - 1
+    return text

@@ -1,40 +1,84 @@
-"""``squealpipe assess``: the answer for one brake."""
+"""``squealpipe assess``: the answer for one pad or structure."""
+
+from __future__ import annotations
 
 import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from squealpipe.cli.arguments import (
     DRAWN,
-    Angle1,
-    Angle2,
+    Angle1OrFile,
     Drawn,
+    OptionalAngle2,
     OutputElsewhere,
+    Texts,
     Tolerance,
+    Whole,
+    modifications_of,
 )
 from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer, working
-from squealpipe.cli.output import compute
-from squealpipe.cli.signatures import options_of
+from squealpipe.cli.output import check_output, check_picture, compute, finish, write
+from squealpipe.cli.signatures import errors_in_options, options_of
+from squealpipe.parameters import Parameters
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 @options_of("assess")
 def assess(
-    alpha1: Angle1,
-    alpha2: Angle2,
+    alpha1: Angle1OrFile,
+    alpha2: OptionalAngle2 = None,
     /,
     *,
     tol: Tolerance,
+    modify: Texts = None,
+    samples: Whole,
+    seed: Whole,
     output: OutputElsewhere = None,
     brake: Drawn = DRAWN,
 ) -> int:
     """Say whether a brake squeals or hammers, at which frequency, how loud, why, what stops it.
 
-    Exit code 0: quiet; 1: not. Angles are counted from the belt line, both upwards: alpha1 from +x,
-    the way the belt runs, alpha2 from −x; 0deg is along the belt, 90deg is straight above the mass.
+    A pad on two springs is given by both angles and --config, a structure by its file alone. Exit
+    code 0: quiet; 1: not. Angles are counted from the belt line, both upwards: alpha1 from +x, the
+    way the belt runs, alpha2 from −x; 0deg is along the belt, 90deg is straight above the mass.
 
     Example: `squealpipe assess 22deg 46deg --config pad.yaml -o answer.nc`
 
     Args:
+        modify: a modification of a structure that is tried as a cure, with the largest amount;
+            repeat for more. "weight=added_mass 12 0.1" is up to 0.1 kg at degree of freedom 12,
+            counted from 1, "strut=spring 12,40 1e6" a spring between two, "dashpot" likewise; of a
+            structure with a mesh 5005.3 is a node and its direction.
+        samples: random starts of a structure.
+        seed: of them.
         output: also write the dataset (.nc or .csv), and a picture of the settled motion beside it.
     """
+    if isinstance(alpha1, Path):
+        if alpha2 is not None:
+            raise ValueError(
+                f"{alpha1} is the file of a structure, which has no angles; leave {alpha2!r} out"
+            )
+        if brake.params != Parameters():
+            raise ValueError(
+                "a structure has its numbers in its file; leave --config and parameters out"
+            )
+        return _assess_structure(
+            alpha1,
+            output,
+            brake,
+            modify,
+            {"samples": samples, "seed": seed, "tol": tol},
+        )
+    if alpha2 is None:
+        raise ValueError(
+            "a pad needs both angles, like `squealpipe assess 22deg 46deg`; a structure is one "
+            "file, like `squealpipe assess brake.yaml`"
+        )
+    if modify:
+        raise ValueError(f"--modify {modify[0]!r}: of a structure alone")
     if output is not None:
         verdict = compute("assess", brake, alpha1, alpha2, output=output, tol=tol)
 
@@ -45,14 +89,61 @@ def assess(
         raise ValueError("--picture is drawn beside a dataset; name that by --output")
     else:
         from squealpipe.brake.assess.assess import judge
-        from squealpipe.study.report.answer import cure_lines, first_lines
 
         with working("assess"):
             judged = judge(brake.params, alpha1, alpha2, tol=tol)
-        answer(*first_lines(judged.without_cures()))
-        # most of the time goes into the search for what stops it
-        sys.stdout.flush()
-        with working("what stops it"):
-            verdict = judged.with_cures()
-        answer(*cure_lines(verdict))
+        verdict = _told_in_turn(judged)
+    return DONE if int(verdict.verdict) == 0 else ANSWER_IS_NO
+
+
+def _told_in_turn(judged: Any) -> xr.Dataset:
+    """Print the verdict, then what stops it: most of the time goes into that search."""
+    from squealpipe.study.report.answer import cure_lines, first_lines
+
+    answer(*first_lines(judged.without_cures()))
+    sys.stdout.flush()
+    with working("what stops it"):
+        verdict: xr.Dataset = judged.with_cures()
+    answer(*cure_lines(verdict))
+    return verdict
+
+
+def _assess_structure(
+    file: Path,
+    output: Path | None,
+    brake: Drawn,
+    modify: list[str] | None,
+    options: dict[str, Any],
+) -> int:
+    """Tell the answer for the structure in a file; write it where that is asked for."""
+    if output is not None:
+        check_output(output, force=brake.force)
+        drawn = check_picture(brake.picture, output, force=brake.force)
+    elif brake.picture is not None:
+        raise ValueError("--picture is drawn beside a dataset; name that by --output")
+
+    import squealpipe
+    from squealpipe.structures.assess.assess import judge_structure
+
+    structure = squealpipe.Structure.read(file)
+    named = modifications_of(modify or [])
+    with errors_in_options():
+        if output is None:
+            with working("assess"):
+                judged = judge_structure(structure, modifications=named, **options)
+            verdict = _told_in_turn(judged)
+        else:
+            given = {**options, "modifications": named or None}
+            stated = options | {"modify": modify or []}
+            with working("assess"):
+                verdict = write(
+                    lambda: squealpipe.assess(structure, **given),
+                    output,
+                    config={"parameters": structure.as_dict(), **stated},
+                )
+            finish(verdict, output, drawn, brake)
+
+            from squealpipe.study.report.answer import lines
+
+            answer(*lines(verdict))
     return DONE if int(verdict.verdict) == 0 else ANSWER_IS_NO

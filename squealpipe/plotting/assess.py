@@ -48,7 +48,8 @@ def draw_settled_orbit(axes: Axes, answer: xr.Dataset) -> None:
             linewidth=0.7,
             label=style.flag_words(name).replace("slip slower", "slip"),
         )
-    limit = float(answer.preload)
+    # a structure's contacts are closed up to a displacement of their own
+    limit = float(answer.preload) if "preload" in answer else np.inf
     if limit < 1.2 * float(np.nanmax(y)):
         axes.axhline(factor * limit, color=style.GREY, linewidth=0.8, linestyle=":")
     axes.set(xlabel=f"along the belt, x ({unit})", ylabel=f"away from it, y ({unit})")

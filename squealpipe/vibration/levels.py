@@ -101,7 +101,7 @@ class Record:
     finished: bool
 
     @property
-    def signals(self) -> np.ndarray:
+    def signals(self) -> Any:
         """Velocities of all contacts along the belt, then across it, (2, contacts, samples)."""
         return np.moveaxis(self.velocities, 0, -1).swapaxes(0, 1)
 
@@ -195,7 +195,7 @@ def _blocks(settled: SettledRun, period: float, periodic: bool) -> int:
 
 def _known(record: Record) -> np.ndarray:
     """Samples that the run has reached, (samples,)."""
-    return np.isfinite(record.states[:, 0])
+    return np.asarray(np.isfinite(record.states[:, 0]))
 
 
 def _scalars(record: Record, loads: np.ndarray) -> dict[str, Any]:

@@ -126,6 +126,9 @@ _OF_STRUCTURES = {
     "contact_sliding_force": _optional(
         "force in steady sliding, 0 where the contact is open", "N", "contact"
     ),
+    "leading_frequency": _optional(
+        "frequency of the small motion that grows fastest or decays slowest", "Hz"
+    ),
     "random_starts": count(
         "random starts that were tried beside those that are told", optional=True
     ),

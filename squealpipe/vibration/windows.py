@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -74,7 +75,7 @@ class Windows:
         )
 
 
-def joined(parts: list[tuple[Any, Windows]]) -> Windows:
+def joined(parts: Sequence[tuple[Any, Windows]]) -> Windows:
     """Return windows of runs that were made in parts.
 
     Args:

@@ -13,11 +13,13 @@ import xarray as xr
 
 from squealpipe.codes import Verdict
 from squealpipe.schema import Outcome, build
+from squealpipe.schema.origin import recorded
 from squealpipe.structures.assess.cures import cures_of
 from squealpipe.structures.assess.designs import Design, Structures, pushed, start_at
 from squealpipe.structures.assess.records import levels
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.squeal.windows import Running
+from squealpipe.validation import Natural, Seed, Tolerance, Workers
 from squealpipe.vibration.any_start import any_start, dies_out_always, lead, sides_of
 from squealpipe.vibration.boundaries import (
     Cure,
@@ -143,6 +145,30 @@ class JudgedStructure:
         )
 
 
+@recorded(
+    model="structure with exact contact and friction",
+    method="Taylor series with located events",
+)
+def assess_structure(
+    structure: Any,
+    *,
+    modifications: Mapping[str, Any] | None = None,
+    samples: Natural = 16,
+    seed: Seed = 0,
+    tol: Tolerance = 1e-12,
+    workers: Workers = None,
+) -> xr.Dataset:
+    """Return the answer for a structure; see :func:`squealpipe.assess`."""
+    return judge_structure(
+        structure,
+        modifications=modifications,
+        samples=samples,
+        seed=seed,
+        tol=tol,
+        workers=workers,
+    ).with_cures()
+
+
 def judge_structure(
     structure: ContactStructure,
     *,
@@ -188,6 +214,7 @@ def judge_structure(
         "mechanism": design.mechanism,
         "sliding_growth_rate": float(growth.max()),
         "mode_frequency": plant.frequencies,
+        "leading_frequency": float(plant.frequencies[growth.argmax()]),
         "contact_sliding_force": plant.spectrum.state.force,
         "quiet_unless_struck": verdict is Verdict.quiet and bool(lasting),
         "random_starts": len(others),

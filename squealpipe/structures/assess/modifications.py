@@ -9,8 +9,9 @@ from typing import Any, Self
 import numpy as np
 import scipy.sparse as sp
 
-from squealpipe.parameters import brief, finite_number, is_whole_number
+from squealpipe.parameters import finite_number
 from squealpipe.structures.definition import ContactStructure
+from squealpipe.systems.inputs.values import brief, is_whole_number
 from squealpipe.text import suggestion
 
 MATRICES = {

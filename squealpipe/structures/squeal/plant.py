@@ -234,7 +234,7 @@ class Plant:
         across = amplitudes @ self.structure.normals
         return np.stack([along, across], axis=-1)
 
-    def normal_forces(self, states: np.ndarray) -> np.ndarray:
+    def normal_forces(self, states: np.ndarray) -> Any:
         """Forces of the contacts where they are closed, (…, contacts), N."""
         nearing = states[..., : self.size] @ self.structure.normals
         return self.structure.preloads - self.structure.stiffnesses * nearing

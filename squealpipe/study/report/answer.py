@@ -23,7 +23,15 @@ NAMES = {
     "preload": "preload (compression of the contact)",
     "belt_speed": "belt speed",
 }
-"""Words for what is changed."""
+"""Words for what is changed of a pad."""
+OF_STRUCTURES = {
+    "mu": "friction coefficient",
+    "contact_stiffness": "stiffness of all contacts, as a factor",
+    "preload": "preload of all contacts, as a factor",
+    "modal_damping": "damping ratio of all modes",
+    "belt_speed": "speed",
+}
+"""Words for what is changed of a structure; modifications have the names that they were given."""
 NOT_FOUND = "none"
 """In place of a value that was not found within the range searched."""
 CHEAPEST = 3
@@ -41,6 +49,20 @@ class CureWords(NamedTuple):
     any_start: str
     change_any_start: str
     tried: str
+
+
+def is_structure(answer: xr.Dataset) -> bool:
+    """Tell whether an answer is of a structure, and not of a pad on two springs."""
+    return "n_modes" in answer
+
+
+def words_of(answer: xr.Dataset, name: str) -> str:
+    """Return the words for what is changed."""
+    if not is_structure(answer):
+        return NAMES[name]
+    if name.startswith("mu_"):
+        return f"friction coefficient of {name.removeprefix('mu_')}"
+    return OF_STRUCTURES.get(name, name)
 
 
 def verdict_of(answer: xr.Dataset, prefix: str = "") -> Verdict:
@@ -98,12 +120,16 @@ def _cause(answer: xr.Dataset) -> str:
     twofold = math.log(2.0) / max(abs(float(answer.sliding_growth_rate)), 1e-300)
     time = engineering(twofold, "s")
     modes = [float(f) for f in answer.mode_frequency.values if f > 0]
+    of = "modes are at"
+    if is_structure(answer):
+        modes, of = [float(answer.leading_frequency)], "mode that decays slowest is at"
     frequencies = " and ".join(engineering(f, "Hz") for f in modes)
     mechanism = Mechanism(int(answer.mechanism))
     if mechanism is Mechanism.falling_friction:
         return (
             "Cause: friction that falls with speed feeds the vibration, which doubles every "
-            f"{time} at first; the modes are at {frequencies}."
+            f"{time} at first; the {'mode that grows is' if is_structure(answer) else 'modes are'} "
+            f"at {frequencies}."
         )
     if mechanism is Mechanism.flutter:
         if len(modes) == 2 and abs(modes[1] - modes[0]) > 0.01 * modes[0]:
@@ -116,7 +142,7 @@ def _cause(answer: xr.Dataset) -> str:
         )
     if mechanism is Mechanism.divergence:
         return (
-            "Cause: friction and contact push the mass away from steady sliding without "
+            f"Cause: friction and contact push {_what(answer)} away from steady sliding without "
             f"oscillation (divergence); its distance doubles every {time} at first."
         )
     if mechanism is Mechanism.no_sliding_state:
@@ -127,15 +153,21 @@ def _cause(answer: xr.Dataset) -> str:
             if _is_neutral(answer)
             else f"small motions halve every {time}"
         )
-        return f"Steady sliding is stable: {fades}; the modes are at {frequencies}."
+        return f"Steady sliding is stable: {fades}; the {of} {frequencies}."
     push = "hard" if verdict_of(answer) is Verdict.quiet else "small"
     return (
         f"Steady sliding is stable, but another motion exists beside it, which a {push} push "
-        f"reaches; the modes are at {frequencies}."
+        f"reaches; the {of} {frequencies}."
     )
 
 
+def _what(answer: xr.Dataset) -> str:
+    return "the structure" if is_structure(answer) else "the mass"
+
+
 def _far(answer: xr.Dataset) -> str:
+    if is_structure(answer):
+        return ""
     away = math.hypot(float(answer.x_sliding), float(answer.y_sliding))
     preloads = away / float(answer.preload)
     # from here on the reader is told how far steady sliding is from rest
@@ -207,7 +239,7 @@ def cures(answer: xr.Dataset) -> list[CureWords]:
 
     Those that are known from any start alone come last; those that were not found are left out.
     """
-    return [_words(answer.sel(cure=name)) for name in _found(answer)]
+    return [_words(answer, name) for name in _found(answer)]
 
 
 def of_a_push(answer: xr.Dataset) -> list[CureWords]:
@@ -227,7 +259,7 @@ def of_a_push(answer: xr.Dataset) -> list[CureWords]:
         return not math.isfinite(safe), safe if math.isfinite(safe) else push
 
     names = sorted(_found(answer), key=order)
-    table = [_words(answer.sel(cure=name)) for name in names]
+    table = [_words(answer, name) for name in names]
     return [cure for cure in table if cure.quiet_from != NOT_FOUND]
 
 
@@ -244,7 +276,7 @@ def not_cures(answer: xr.Dataset) -> list[tuple[str, str]]:
     """Return the changes that cure nothing, each with the range that was searched."""
     found = _found(answer)
     return [
-        (NAMES[str(name)], _range(answer.sel(cure=name)))
+        (words_of(answer, str(name)), _range(answer.sel(cure=name)))
         for name in answer.cure.values
         if str(name) not in found
     ]
@@ -269,7 +301,25 @@ def cure_line(cure: CureWords, answer: xr.Dataset) -> str:
         told = f"quiet {word} {push} unless struck"
     else:
         told = f"quiet {word} {safe}; {word} {cure.quiet_from} unless struck"
-    return f"{cure.words}: now {cure.now}, {told}"
+    return f"{cure.words}: now {cure.now}, {told}{_more_intervals(cure.name, answer)}"
+
+
+def _more_intervals(name: str, answer: xr.Dataset) -> str:
+    """Return the quiet intervals beyond the nearest one in words; none if there are none."""
+    if "quiet_low" not in answer:
+        return ""  # of a version that did not list them
+    row = answer.sel(cure=name)
+    unit = str(row.unit.item())
+    ends = [
+        (float(low), float(high))
+        for low, high in zip(row.quiet_low.values, row.quiet_high.values, strict=True)
+        if math.isfinite(low)
+    ]
+    told = [
+        f"{_value(name, low, unit)} to {_value(name, high, unit)}"
+        for low, high in ends[1:]
+    ]
+    return f"; a push also dies out at {' and '.join(told)}" if told else ""
 
 
 def lines(answer: xr.Dataset) -> Iterator[str]:
@@ -299,7 +349,8 @@ def cure_lines(answer: xr.Dataset) -> Iterator[str]:
         yield f"  {cure_line(cure, answer)}"
     others = [cure.words for cure in table[CHEAPEST:]]
     known = {cure.name for cure in table}
-    vain = [words for name, words in NAMES.items() if name not in known]
+    every = map(str, answer.cure.values) if is_structure(answer) else NAMES
+    vain = [words_of(answer, name) for name in every if name not in known]
     told = [f"also {', '.join(others)}"] if others else []
     told += [f"no answer within the range searched: {', '.join(vain)}"] if vain else []
     if told:
@@ -345,22 +396,22 @@ def _found(answer: xr.Dataset) -> list[str]:
     ]
 
 
-def _words(cure: xr.Dataset) -> CureWords:
-    name = str(cure.cure.item())
+def _words(answer: xr.Dataset, name: str) -> CureWords:
+    cure, words = answer.sel(cure=name), words_of(answer, name)
     unit = str(cure.unit.item())
     # less than a thousandth of the present friction is none: only an undamped flutter needs so
     # little
     is_none = name == "mu" and float(cure.quiet_from) <= 1e-3 * float(cure.value)
     return CureWords(
         name,
-        NAMES[name],
+        words,
         _value(name, float(cure.value), unit),
         "practically no friction"
         if is_none
         else _value(name, float(cure.quiet_from), unit),
-        _change(name, float(cure.change), float(cure.value)),
+        _change(name, float(cure.change), float(cure.value), unit),
         _value(name, float(cure.quiet_from_any_start), unit),
-        _change(name, float(cure.change_any_start), float(cure.value)),
+        _change(name, float(cure.change_any_start), float(cure.value), unit),
         _range(cure),
     )
 
@@ -376,18 +427,20 @@ def _value(name: str, value: float, unit: str) -> str:
         return NOT_FOUND
     if name.startswith("alpha"):
         return f"{number(float(np.degrees(value)))}°"
-    if name == "damping":
+    if name in ("damping", "modal_damping"):
         return percent(value, 3)
     return engineering(value if abs(value) > 1e-8 or unit != "1" else 0.0, unit)
 
 
-def _change(name: str, change: float, value: float) -> str:
+def _change(name: str, change: float, value: float, of_unit: str) -> str:
     if not math.isfinite(change):
         return "–"
     sign = "+" if change > 0 else "−"
     unit = "°" if name.startswith("alpha") else " %"
-    if value == 0.0 and name == "damping":  # of nothing there are no per cent
+    if value == 0.0 and name in ("damping", "modal_damping"):  # of nothing: no per cent
         unit = " points"
+    elif value == 0.0:
+        return f"{sign}{engineering(abs(change), of_unit)}"
     return f"{sign}{number(abs(change), 2)}{unit}"
 
 

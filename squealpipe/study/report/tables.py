@@ -107,7 +107,7 @@ def _cures(answers: Mapping[str, xr.Dataset]) -> Iterable[list[Any]]:
                 float(row[key]) * (1.0 if key == "change" else factor)
                 for key in CURES.values()
             ]
-            yield [scene, answer.NAMES[str(name)], unit, *values]
+            yield [scene, answer.NAMES.get(str(name), str(name)), unit, *values]
 
 
 def _turned(units: str) -> tuple[float, str]:
