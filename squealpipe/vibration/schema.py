@@ -217,7 +217,8 @@ ASSESS = DatasetSchema(
             for end in ("low", "high")
         },
         "change": or_nan(
-            "change from the present value to quiet_from, in per cent (angles: degrees)",
+            "change from the present value to quiet_from, in per cent (angles: degrees; of "
+            "what is 0 now: of the largest value tried)",
             dims=("cure",),
             rtol=2e-2,
         ),

@@ -170,7 +170,8 @@ def settle(
     with alone() as show:
         while rows := [row for row in range(count) if row not in settled]:
             share = float((elapsed[rows] / horizon.most[rows]).mean())
-            show(1.0 - len(rows) / count * (1.0 - share))
+            if told is not None:  # the share of one of many searches would tell nothing
+                show(1.0 - len(rows) / count * (1.0 - share))
             begun = None if regimes is None else regimes[rows]
             ran = advance(rows, states[rows], begun, length[rows], turn)
             if regimes is None:

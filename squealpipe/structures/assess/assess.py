@@ -99,10 +99,7 @@ class JudgedStructure:
         found: Mapping[str, Mapping[str, float]],
     ) -> xr.Dataset:
         nearest, anywhere = found.get("quiet", {}), found.get("any", {})
-        changes = {
-            name: _change(name, cure.value, nearest[name])
-            for name, cure in cures.items()
-        }
+        changes = {name: _change(cure, nearest[name]) for name, cure in cures.items()}
         order = sorted(
             cures,
             key=lambda name: (
@@ -127,7 +124,7 @@ class JudgedStructure:
                 "change": table([changes[name] for name in order]),
                 "change_any_start": table(
                     [
-                        _change(name, cures[name].value, value)
+                        _change(cures[name], value)
                         for name, value in zip(order, safe, strict=True)
                     ]
                 ),
@@ -243,8 +240,7 @@ def _dies_out(cures: Any, values: Any, *, family: Structures) -> list[bool]:
     return answers
 
 
-def _change(name: str, value: float, found: float) -> float:
-    """Per cent of the present value; of nothing the value itself, in its unit or in per cent."""
-    if value == 0.0 and name != "modal_damping":
-        return found if math.isfinite(found) else math.nan
-    return 100.0 * (found - value) / (value or 1.0)
+def _change(cure: Cure, found: float) -> float:
+    """Per cent of the present value; of nothing per cent of the largest that is tried."""
+    unit = abs(cure.value) or float(cure.above.max(initial=0.0)) or 1.0
+    return 100.0 * (found - cure.value) / unit

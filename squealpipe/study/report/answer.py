@@ -409,9 +409,9 @@ def _words(answer: xr.Dataset, name: str) -> CureWords:
         "practically no friction"
         if is_none
         else _value(name, float(cure.quiet_from), unit),
-        _change(name, float(cure.change), float(cure.value), unit),
+        _change(name, float(cure.change), float(cure.value)),
         _value(name, float(cure.quiet_from_any_start), unit),
-        _change(name, float(cure.change_any_start), float(cure.value), unit),
+        _change(name, float(cure.change_any_start), float(cure.value)),
         _range(cure),
     )
 
@@ -432,15 +432,15 @@ def _value(name: str, value: float, unit: str) -> str:
     return engineering(value if abs(value) > 1e-8 or unit != "1" else 0.0, unit)
 
 
-def _change(name: str, change: float, value: float, of_unit: str) -> str:
+def _change(name: str, change: float, value: float) -> str:
     if not math.isfinite(change):
         return "–"
     sign = "+" if change > 0 else "−"
     unit = "°" if name.startswith("alpha") else " %"
-    if value == 0.0 and name in ("damping", "modal_damping"):  # of nothing: no per cent
+    if value == 0.0 and name == "damping":  # of nothing there are no per cent
         unit = " points"
     elif value == 0.0:
-        return f"{sign}{engineering(abs(change), of_unit)}"
+        return f"{number(abs(change), 2)} % of the largest tried"
     return f"{sign}{number(abs(change), 2)}{unit}"
 
 

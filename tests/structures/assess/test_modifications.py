@@ -68,7 +68,7 @@ def test_linear_boundaries_of_cures_are_those_of_own_eigenvalues(cure):
     grid = cures[cure].grid
     found = sorted(edge for each in intervals for edge in each.edges())
     truth = crossings(OTHERS[cure], np.linspace(grid[0], grid[-1], 400))
-    assert truth
+    assert truth or cure == "damper"  # which does not stop it
     assert found == pytest.approx(truth, rel=1e-6)
 
 
