@@ -15,7 +15,8 @@ from squealpipe.schema import (
 from squealpipe.vibration.schema import Mechanism
 
 KICKS = ((0.0, 1.0), (-1.0, -0.5), (1.0, 2.0))
-"""Velocities of strikes along and across the belt, over l_pre √((k1 + k2)/2m)."""
+"""Velocities (along, across the belt) of three strikes by which other motions are sought, in units
+of l_pre √((k1 + k2)/2m)."""
 
 
 CURES = {
@@ -35,7 +36,11 @@ VERDICT_MAP = DatasetSchema(
     title="Whether a brake squeals or hammers, over both spring angles",
     coordinates=ANGLES,
     variables={
-        "verdict": flag("what becomes of steady sliding, pushed", Verdict, *MAP),
+        "verdict": flag(
+            "verdict on the motion that steady sliding settles on after a push",
+            Verdict,
+            *MAP,
+        ),
         "mechanism": flag("why steady sliding is unstable", Mechanism, *MAP),
         "sliding_growth_rate": or_nan(
             "growth rate of small motions of A1 about its steady sliding", "s-1", MAP

@@ -1,4 +1,8 @@
-"""A statement of the paper as data: one row, beside the check that judges it."""
+"""Statements of the paper: each is one row of the claims table, with the check that judges it.
+
+A module of checks makes a :class:`StatementRows` and decorates each check with its ``add``, so that
+the paper's sentence stands above the code that decides about it.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,19 +13,22 @@ from squealpipe.paper.schema.claims import ClaimVerdict
 from squealpipe.study.evidence import Evidence
 
 Check = Callable[[Evidence], Finding]
-"""Reads datasets only."""
+"""Function from the datasets of a run to a verdict; it computes nothing from models."""
 
 
 @dataclass(frozen=True)
 class Statement:
-    """One statement, how it is checked, and what came out at the shipped baseline.
+    """One statement of the paper and the check that judges it.
 
     Attributes:
-        recorded: what the judge finds at the shipped baseline; anything else is a regression.
-        check: reads datasets only; of the equations as they are printed.
-        physics: what is asked of the physics with one sign, where that is another question.
-        consequence: what the inference judges at each feasible parameter set and what decides
-            about this statement there; empty where it judges nothing of the kind.
+        id: short name, like ``"F6b"``.
+        section, figure: place in the paper.
+        text: the paper's sentence.
+        recorded: verdict at the shipped baseline; a different one is a regression.
+        check: judges the equations as they are printed.
+        physics: judges the corrected equations (one sign of friction), if the question differs.
+        consequence: criterion by which the inference judges this statement at each feasible
+            parameter set; empty if it does not.
     """
 
     id: str
@@ -41,7 +48,11 @@ class Statement:
 
 
 class StatementRows(list[Statement]):
-    """The statements of one module, in the paper's order: each is added where its check stands."""
+    """Statements of one module, in the paper's order.
+
+    Args:
+        section, figure, recorded: defaults of most statements of the module.
+    """
 
     def __init__(
         self,
@@ -49,17 +60,21 @@ class StatementRows(list[Statement]):
         figure: str = "",
         recorded: ClaimVerdict = ClaimVerdict.holds,
     ) -> None:
-        """With what most of them have."""
+        """Keep the defaults."""
         super().__init__()
         self.common = {"section": section, "figure": figure, "recorded": recorded}
 
     def add(self, name: str, text: str, **more: Any) -> Callable[[Check], Check]:
-        """Decorator of a check; the arguments are those of :class:`Statement`."""
+        """Return a decorator that adds a check as the statement ``name``.
 
-        def keep(check: Check) -> Check:
+        Args:
+            more: attributes of :class:`Statement` that differ from the module's defaults.
+        """
+
+        def add_check(check: Check) -> Check:
             self.append(
                 Statement(id=name, text=text, check=check, **{**self.common, **more})
             )
             return check
 
-        return keep
+        return add_check

@@ -109,14 +109,14 @@ PARAMETER_INFERENCE = DatasetSchema(
         "length_ratio": Variable("free length of the springs over l_pre", dims=SAMPLE),
         "speed_ratio": Variable("belt speed over l_pre √(k/m)", dims=SAMPLE),
         "holds": flag(
-            "whether the statement holds; undecided where starts that nobody can tell apart "
-            "disagree; not judged, so nothing is said of it, where cheaper statements had failed",
+            "whether the statement holds: undecided where indistinguishable starts disagree, "
+            "not judged where cheaper statements had already failed",
             Holds,
             *JUDGED,
             *STATEMENT,
             round_off=RoundOff(
                 ComparedAs.judged,
-                "of a set that another statement has refuted none is judged",
+                "once a statement has refuted a parameter set, the others are not judged",
                 none=int(Holds.not_judged),
             ),
         ),
@@ -129,8 +129,8 @@ PARAMETER_INFERENCE = DatasetSchema(
         "share_low": _limit("lower", "share", READING),
         "share_high": _limit("upper", "share", READING),
         "share_cut_alone": Variable(
-            "share of the samples that this statement alone excludes, of the first sixteenth; of "
-            "growth, which is judged last, of all",
+            "share of the samples that this statement alone excludes, among the first sixteenth; "
+            "for growth, which is judged last, among all",
             dims=BY_READING,
         ),
         "criterion": text("what was checked", *STATEMENT),

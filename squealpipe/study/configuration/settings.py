@@ -81,7 +81,7 @@ class Study(Section):
         return self
 
     def slice(self, *paths: str) -> dict[str, Any]:
-        """Canonical part of the configuration: numbers cast, keys in a fixed order.
+        """Return a canonical part of the configuration: numbers cast, keys in a fixed order.
 
         Args:
             paths: dotted keys, for instance ``"parameters"`` or ``"linear.points"``.
@@ -91,9 +91,9 @@ class Study(Section):
         return json.loads(json.dumps(part, sort_keys=True))  # type: ignore[no-any-return]
 
     def changes_of(self, other: Self) -> list[tuple[str, Any, Any]]:
-        """Dotted keys that differ from another study, with its value and that of this one.
+        """Return (dotted key, value there, value here) for each difference from another study.
 
-        Folders of results and sweeps do not count.
+        The folder of results and the sweeps are not compared.
         """
         theirs, ours = (
             flat(study.model_dump(mode="json", exclude={"results", "sweeps"}))
@@ -106,7 +106,7 @@ class Study(Section):
         ]
 
     def sweep(self, name: str) -> dict[str, Any]:
-        """Configuration of one of the sweeps, with the parameters that it does not name itself."""
+        """Return the configuration of a sweep, completed by the study's parameters."""
         parameters = self.parameters.model_dump(mode="json")
         return sweep_config(
             **self.sweeps[name].model_dump(mode="json"), parameters=parameters
@@ -114,10 +114,10 @@ class Study(Section):
 
 
 def read_study(*paths: str | Path, changes: Mapping[str, Any] | None = None) -> Study:
-    """A validated study from one or several YAML files, later ones laid over earlier ones.
+    """Read and validate a study from YAML files; each file overrides those before it.
 
     Args:
-        changes: keys and values laid over all of them.
+        changes: keys and values that override those of all files.
 
     Raises:
         FileNotFoundError: a file is missing.
@@ -135,9 +135,10 @@ def read_study(*paths: str | Path, changes: Mapping[str, Any] | None = None) -> 
 
 
 def _lay_over(base: dict[str, Any], top: Mapping[str, Any]) -> Iterator[str]:
-    """Lay a configuration over another, in which what says the same in other words goes; faults.
+    """Override keys of a configuration by those of another; yield the faults that this causes.
 
-    A ``preload_force`` takes the place of the ``preload`` below it, and the other way round.
+    Rivals are removed from below: ``preload_force`` above removes ``preload`` below, and the other
+    way round, since both would set the same parameter.
     """
     below, above = base.get("parameters"), top.get("parameters")
     if isinstance(below, dict) and isinstance(above, Mapping):
@@ -157,7 +158,7 @@ def _lay_over(base: dict[str, Any], top: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _read_laws(path: Path, content: dict[str, Any]) -> Iterator[str]:
-    """Put the content of the files that a configuration names as laws in their place; faults."""
+    """Replace the files that a configuration names as laws by their content; yield faults."""
     section = content.get("parameters") or {}
     for name, given, row in laws_in(section):
         try:
@@ -174,14 +175,14 @@ def _read_laws(path: Path, content: dict[str, Any]) -> Iterator[str]:
 
 
 def laws_in(section: Any) -> Iterator[tuple[str, Any, Row]]:
-    """Parameter, its entry and its row, of each law that a section names."""
+    """Yield (parameter, entry, row of the table) for each law that a section names."""
     for name, row in TABLE.items():
         if row.laws and isinstance(section, dict) and name in section:
             yield name, section[name], row
 
 
 def files_of_laws(path: Path) -> list[Path]:
-    """The files that a configuration names as laws, as it names them."""
+    """Return the files that a configuration names as laws, unresolved."""
     entries = [given for _, given, _ in laws_in(read_yaml(path).get("parameters"))]
     return [
         Path(file)
@@ -227,7 +228,14 @@ def check_results_folder(results: str) -> None:
 
 
 def parse_study(content: Mapping[str, Any], faults: Sequence[str] = ()) -> Study:
-    """Validate a configuration mapping."""
+    """Validate a configuration and return the study.
+
+    Args:
+        faults: messages about files, raised together with those of the validation.
+
+    Raises:
+        ConfigError: every mistake found, with its key, value and what is allowed.
+    """
     try:
         known = Study.model_fields  # a section without keys is the default one
         given = {
@@ -245,9 +253,9 @@ def parse_study(content: Mapping[str, Any], faults: Sequence[str] = ()) -> Study
 
 
 def _complete(content: dict[str, Any]) -> Mapping[str, float]:
-    """Give scenes without angles those of ``stiffness``; what the study's own units are.
+    """Give scenes without angles the angles of ``stiffness``; return the study's own units.
 
-    Faulty parameters are told of by the validation of the whole.
+    Faulty parameters are ignored here: the validation of the whole study reports them.
     """
     try:
         section = sections.ParametersSection.model_validate(
@@ -269,7 +277,7 @@ def _complete(content: dict[str, Any]) -> Mapping[str, float]:
 
 
 def _plain(value: Any) -> Any:
-    """Lists as tuples; keys that are numbers become text, so that they are found as unknown."""
+    """Return lists as tuples and all keys as text, so that a number as a key is reported."""
     if isinstance(value, Mapping):
         return {str(key): _plain(item) for key, item in value.items()}
     if isinstance(value, list):
@@ -278,7 +286,7 @@ def _plain(value: Any) -> Any:
 
 
 def json_schema() -> str:
-    """The text of ``workflow/config/schema.json``."""
+    """Return the text of ``workflow/config/schema.json``."""
     return json.dumps(Study.model_json_schema(), indent=2, sort_keys=True) + "\n"
 
 

@@ -361,11 +361,11 @@ def cure_lines(answer: xr.Dataset) -> Iterator[str]:
 def _snap_line(answer: xr.Dataset) -> Iterator[str]:
     """The limits at which the pad jumps and may be as quiet elsewhere, if there are any."""
     if snaps := snap_throughs(answer):
-        yield f"Steady sliding snaps to another place at {', '.join(snaps)}"
+        yield f"Steady sliding jumps to another equilibrium at {', '.join(snaps)}"
 
 
 def snap_throughs(answer: xr.Dataset) -> list[str]:
-    """Tell where steady sliding of a quiet brake snaps to another place, which may be quiet too."""
+    """Tell where steady sliding of a quiet brake jumps to another equilibrium, quiet or not."""
     if "snaps_from" not in answer:
         return []  # of version 1.0.0
     told = []

@@ -1,4 +1,4 @@
-"""Why a cell, point or run holds what it holds, and what helps."""
+"""Outcomes of cells, points and runs: a reason, and a remedy where one exists."""
 
 from enum import IntEnum
 from typing import Self
@@ -11,7 +11,7 @@ class Outcome(IntEnum):
 
     converged = 0, "none needed"
     separated = 1, "none needed: contact was lost and the question is answered"
-    not_computed = 2, "nothing was asked of it"
+    not_computed = 2, "none needed: this entry was not asked for"
     step_limit = (
         3,
         "too many steps: shorten t_end, or raise max_steps (branches: lower y_peak_max)",
@@ -47,15 +47,15 @@ class Outcome(IntEnum):
     )
     infeasible = 21, "the sample breaks a statement of the paper"
     unresolved = 22, "the check could not decide; refine the grid or the horizon"
-    real_multipliers = 23, "a torus ends where its multipliers meet on the real axis"
-    amplitude_reached = 24, "the asked amplitude was reached"
+    real_multipliers = 23, "the torus curve ends: its multipliers meet on the real axis"
+    amplitude_reached = 24, "none needed: the requested amplitude was reached"
     unconfirmed = (
         25,
         "no exact orbit is close to the series; more harmonics or method=exact",
     )
     other_branch = (
         26,
-        "an exact orbit, not reached along the mode's branch; see backbone",
+        "an exact orbit that does not lie on the mode's branch; see backbone",
     )
     equilibrium = 27, "at rest: no cycle from this start, or it has shrunk to a point"
     family_member = 28, "one of a family: without damping cycles are not isolated"
@@ -64,7 +64,7 @@ class Outcome(IntEnum):
         30,
         "not run: the answer is a neighbour's; see `inherited_error_interval`",
     )
-    not_reached = 31, "by no disturbance tried within the bound; raise bound or t_end"
+    not_reached = 31, "no disturbance within the bound reaches it; raise bound or t_end"
     already_unstable = 32, "steady sliding is unstable: any disturbance grows"
     no_sliding_state = (
         33,
@@ -78,7 +78,7 @@ class Outcome(IntEnum):
     closed = 36, "the branch is a closed curve, followed once round"
     tangency = (
         37,
-        "a surface is just touched, or stick ends so: no motion like it follows",
+        "a surface is just touched, or stick ends: no similar motion continues the branch",
     )
     accumulation = (
         38,
@@ -86,11 +86,11 @@ class Outcome(IntEnum):
     )
     unsettled = (
         39,
-        "no cycle is settled on: chaos, a torus, or slow; raise t_settle and max_steps, or guess",
+        "no settled cycle: chaos, a torus or slow; raise t_settle and max_steps, or give guess",
     )
     hidden_event = (
         40,
-        "round-off hides when a surface is crossed: give one with a simple root, u for u**3",
+        "round-off hides the crossing: write the surface with a simple root (u instead of u**3)",
     )
 
     discontinuity = (
