@@ -19,14 +19,10 @@ from squealpipe.systems.progress import with_progress
 
 GROWTH = 0.25
 """Largest |growth| of the eigenvalues looked for, over the largest angular frequency."""
-NEAREST = 40
-"""Eigenvalues computed about one point at first."""
 FIRST_AT = {"right": 0.5, "left": 0.2}
 """Where the first disc of each search lies in the band."""
 SAME = 1e-6
 """Relative distance up to which values of both searches are one eigenvalue."""
-BORDER = 1e-3
-"""Relative distance from the border within which an eigenvalue may be in one search only."""
 SEARCHES = 3
 COMPLETE = "complete: right and left eigenvectors, about other points, have the same eigenvalues"
 
@@ -76,7 +72,8 @@ def modes_in_band(pencil: Pencil, omega_max: float) -> list[Eigenpair]:
     """
     region = Region(GROWTH * omega_max, omega_max)
     for search in range(SEARCHES):
-        number = NEAREST * 2**search
+        # eigenvalues about one point at first; twice as many in each further search
+        number = 40 * 2**search
         sides = [
             list(_distinct(_covering(pencil, region, side, number, seed=search)))
             for side in with_progress(list(FIRST_AT))
@@ -109,7 +106,8 @@ def _covering(
                 break
             most = min(2 * most, 2 * pencil.size - 2)
         for value, vector in zip(values, vectors.T, strict=True):
-            if region.holds(value, BORDER):
+            # an eigenvalue next to the border, relative to itself, may be in one search only
+            if region.holds(value, 1e-3):
                 kept = factors if side == "right" else None
                 yield Near(complex(value), vector, center, kept)
         rests = ((low, center.imag - reach), (center.imag + reach, high))

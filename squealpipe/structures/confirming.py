@@ -15,15 +15,6 @@ from squealpipe.structures.sliding import LOCATED, NoSlidingError, changes
 from squealpipe.structures.spectrum import Solver, Spectrum
 from squealpipe.structures.subspace import projected, subspace
 
-FURTHER = 10
-"""Modes at rest beyond twice as many as the whole has within its limits."""
-SPECTRA = 4
-"""Frictions asked for, at most, of which the subspace has the modes of the whole."""
-MATCHED = 1.2
-"""Modes of the subspace are matched with those of the whole up to so far beyond its highest."""
-BESIDE_A_CHANGE = 1e-8
-"""Friction within which a contact opens or closes in the whole where it does in the subspace."""
-
 
 @dataclass
 class ConfirmedWay(Way):
@@ -58,11 +49,11 @@ class ConfirmedWay(Way):
     def _follow_within(self, spectra: list[Spectrum]) -> None:
         whole = self.solver.structure
         most = max(len(each.pairs) for each in spectra)
-        number = min(2 * most + FURTHER, whole.size - 1)
+        # ten modes at rest beyond twice as many as the whole has within its limits
+        number = min(2 * most + 10, whole.size - 1)
         # more frictions would only add vectors to the subspace that it has nearly
-        chosen = np.unique(
-            np.linspace(0, len(spectra) - 1, SPECTRA).round().astype(int)
-        )
+        # the subspace has the modes of the whole at four of the frictions at most
+        chosen = np.unique(np.linspace(0, len(spectra) - 1, 4).round().astype(int))
         basis = subspace(whole, [spectra[each] for each in chosen], number)
         # hundreds of contacts: what is stiffest is left out, and the whole has the last word anyway
         self.basis = basis[:, :DENSE]
@@ -98,7 +89,8 @@ class ConfirmedWay(Way):
         step = None if self.within is None else self.within.steps.get(mu)
         if step is None or not spectrum.pairs:
             return {}
-        near = step.spectrum.values.imag <= MATCHED * spectrum.values.imag.max()
+        # beyond the highest mode of the whole the subspace may have others
+        near = step.spectrum.values.imag <= 1.2 * spectrum.values.imag.max()
         pairs = [
             pair._replace(
                 right=unit_vector(self.basis @ pair.right),
@@ -167,8 +159,11 @@ class ConfirmedWay(Way):
         unstable.
         """
         solver = self.solver
-        low = max(crossing.low - BESIDE_A_CHANGE, 0.0)
-        high = crossing.high + BESIDE_A_CHANGE
+        # friction within which a contact opens or closes in the whole where it does in the
+        # subspace
+        around = 1e-8
+        low = max(crossing.low - around, 0.0)
+        high = crossing.high + around
         try:
             passed = changes(solver.sliding, low, high)
         except NoSlidingError:

@@ -22,9 +22,6 @@ from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.friction import Friction, has_own_mu
 from squealpipe.structures.modes import modal_damping_of
 
-ROUND_OFF = 1e-15
-"""Couplings below this share of what they couple are left out."""
-
 
 @dataclass(frozen=True, eq=False)
 class Numbers:
@@ -84,7 +81,8 @@ class Numbers:
 def _without_round_off(matrix: np.ndarray) -> np.ndarray:
     """A matrix without entries that are nothing beside the diagonal: modes are not coupled."""
     size = np.sqrt(np.abs(np.diag(matrix)))
-    limit = ROUND_OFF * len(matrix) * np.outer(size, size)
+    # couplings below this share of what they couple are round-off, and are left out
+    limit = 1e-15 * len(matrix) * np.outer(size, size)
     return np.where(np.abs(matrix) <= limit, 0.0, matrix)
 
 

@@ -9,12 +9,8 @@ from scipy.optimize import linear_sum_assignment
 from squealpipe.structures.sliding import NoSlidingError
 from squealpipe.structures.spectrum import Spectrum
 
-ALIKE = 0.6
-"""Least agreement of shapes (MAC) of one mode at neighbouring values of friction."""
 HALVINGS = 4
 """How often a step in friction is halved where shapes change more."""
-BY_VALUE = 0.2
-"""Weight of the distance of eigenvalues beside that of shapes."""
 
 
 def agreement(first: Spectrum, second: Spectrum) -> Any:
@@ -35,7 +31,8 @@ def successors(first: Spectrum, second: Spectrum) -> tuple[np.ndarray, np.ndarra
     # relative to the larger of both, so that each part of the spectrum counts alike
     scale = np.maximum(np.abs(first.values)[:, None], np.abs(second.values)[None, :])
     near = np.minimum(distance / np.where(scale > 0, scale, 1.0), 1.0)
-    cost = 1.0 - mac + BY_VALUE * near
+    # weight of the distance of eigenvalues, next to that of shapes
+    cost = 1.0 - mac + 0.2 * near
     places = np.full(len(first.values), -1)
     shared = np.zeros(len(first.values))
     rows, columns = linear_sum_assignment(cost)
@@ -92,7 +89,8 @@ def followed(
     first, second = at(low), at(high)
     places, shared = successors(first, second)
     kept = (places >= 0) & relevant(first)
-    if halvings == 0 or not kept.any() or shared[kept].min() >= ALIKE:
+    # least agreement of shapes (MAC) of one mode at neighbouring frictions
+    if halvings == 0 or not kept.any() or shared[kept].min() >= 0.6:
         return [(high, places)]
     middle = 0.5 * (low + high)
     try:

@@ -11,9 +11,6 @@ from scipy.sparse.linalg import splu
 from squealpipe.structures.pencil import DENSE
 from squealpipe.systems.inputs.values import brief
 
-SYMMETRIC = 1e-10
-"""Largest asymmetry of a mass that is round-off, over the geometric mean of both diagonals."""
-
 
 def real_square(name: str, given: Any, size: int | None = None) -> sp.csr_array:
     """A matrix, dense or sparse, as a sparse one.
@@ -76,9 +73,8 @@ def checked_mass(
     """
     difference = sp.coo_array(abs(mass - mass.T))
     root = np.sqrt(np.abs(mass.diagonal()))
-    if (
-        difference.data > SYMMETRIC * root[difference.row] * root[difference.col]
-    ).any():
+    # a mass this asymmetric, over the geometric mean of both diagonals, is so by round-off
+    if (difference.data > 1e-10 * root[difference.row] * root[difference.col]).any():
         half = sp.triu(mass, 1).nnz == 0 or sp.tril(mass, -1).nnz == 0
         raise ValueError(
             "mass is not symmetric"

@@ -9,9 +9,6 @@ from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.pencil import DENSE, LowRank
 from squealpipe.structures.stiff import condensation, stiff_degrees
 
-FIRST = 40
-"""Modes computed at first where it is not known how many there are up to a frequency."""
-
 
 def modes_at_rest(
     structure: ContactStructure,
@@ -87,7 +84,8 @@ def _lowest(
 ) -> tuple[np.ndarray, np.ndarray]:
     """By Lanczos about a point just below zero, where rigid bodies are no pole."""
     shift = -1e-3 * float((np.abs(stiffness.diagonal()) / mass.diagonal()).min() or 1.0)
-    wanted = number or FIRST
+    # modes computed at first where it is not known how many there are up to a frequency
+    wanted = number or 40
     start = np.random.default_rng(0).standard_normal(mass.shape[0])
     while True:
         wanted = min(wanted, mass.shape[0] - 1)

@@ -16,8 +16,6 @@ from squealpipe.systems.progress import with_progress
 
 HALVINGS = 4
 """How often a step in friction is halved on which a mode that turns unstable is lost."""
-MERGED = 0.5
-"""Two modes merge where their frequencies come nearer than this share of their first distance."""
 
 
 @dataclass(frozen=True)
@@ -256,4 +254,5 @@ class Way:
         if other is None or other not in then:
             return None
         distance = abs(then[other] - then[number])
-        return other if abs(now[other] - own) < MERGED * distance else None
+        # two modes merge where their frequencies come nearer than half of their first distance
+        return other if abs(now[other] - own) < 0.5 * distance else None

@@ -10,6 +10,7 @@ is followed from the vectors of the subspace, and its zero is located again.
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,22 +22,31 @@ from squealpipe.structures.pencil import FEW_ENTRIES, Pencil
 from squealpipe.structures.refinement import SLOW, Eigenpair, polished, unit_vector
 from squealpipe.structures.sliding import LOCATED
 
-NARROW = 2.0**-6
-"""Share of a step to which it is narrowed first, so that other modes are not nearer."""
-VANISHED = 1e-3
-"""Share of its size at both sides up to which a measure has vanished."""
-ASIDE = 1e-5
-"""Shift off the mean of two squares, relative: the factor of its square must not vanish."""
-TURNS = 6
-"""Inverse iterations for a subspace, at most; one from a place nearby takes three."""
-SETTLED = 1e-8
-"""Relative change of a subspace's eigenvalues from which it converges at once."""
-ALIKE = 0.5
-"""Cosine of the angle between shapes up to which they may be those of one mode."""
-HALVINGS = 12
-"""How often a step in friction is halved where shapes change more."""
-AROUND = 1e-3, 1e-2, 1e-1, 1.0
-"""Shares of a step in friction about what was found in a subspace, where the whole is measured."""
+
+@dataclass(frozen=True)
+class OnsetSearch:
+    """Limits of the search for the friction at which a mode turns unstable."""
+
+    first_narrowing: float = 2.0**-6
+    """Share of a step to which it is narrowed first, so that other modes are not nearer."""
+    vanished: float = 1e-3
+    """A measure has vanished at this share of its size on both sides."""
+    aside: float = 1e-5
+    """Relative shift off the mean of two squares: the factor of its square must not vanish."""
+    most_iterations: int = 6
+    """Inverse iterations for a subspace; one from a place nearby takes three."""
+    settled: float = 1e-8
+    """Relative change of a subspace's eigenvalues from which it converges in one more iteration."""
+    same_shape: float = 0.5
+    """Cosine of the angle between two shapes from which they may be those of one mode."""
+    most_halvings: int = 12
+    """A step in friction is halved so often where shapes change more."""
+    around: tuple[float, ...] = (1e-3, 1e-2, 1e-1, 1.0)
+    """Shares of a step in friction about the onset of the subspace, at which the whole structure
+    is measured."""
+
+
+limits = OnsetSearch()
 
 
 class Crossing(NamedTuple):
@@ -104,7 +114,7 @@ def confirmed(
     size = found.high - found.low
     try:
         measure = _measure_of_whole(pencil_at, found, basis)
-        for share in AROUND:
+        for share in limits.around:
             lower = max(found.mu - share * size, found.low)
             upper = min(found.mu + share * size, found.high)
             if measure(upper) > 0 >= measure(lower):
@@ -119,7 +129,7 @@ def _measure_of_whole(
 ) -> "_Followed":
     """The measure of the mode, known next to where it turned unstable in a subspace."""
     # not at the zero itself, where the root of a mode at rest vanishes
-    start = min(found.mu + AROUND[0] * (found.high - found.low), found.high)
+    start = min(found.mu + limits.around[0] * (found.high - found.low), found.high)
     pencil = pencil_at(start)
     if isinstance(found.known, Block):
         right, left = (
@@ -151,7 +161,7 @@ def _polished_as(pencil: Pencil, pair: Eigenpair, basis: np.ndarray) -> Eigenpai
     """
     right, left = (unit_vector(basis @ each) for each in (pair.right, pair.left))
     whole = polished(pencil, pair.value, right, left)
-    if abs(np.vdot(right, whole.right)) < ALIKE:
+    if abs(np.vdot(right, whole.right)) < limits.same_shape:
         raise RuntimeError("the mode has become another one")
     return whole
 
@@ -161,7 +171,7 @@ def _zero(measure: Callable[[float], float], low: float, high: float) -> float |
     if not measure(high) > 0:
         return None
     # from the unstable side: the subspace at each place starts from that of the last
-    step = NARROW * (high - low)
+    step = limits.first_narrowing * (high - low)
     upper = high
     while True:
         lower = max(upper - step, low)
@@ -184,7 +194,7 @@ def _between(
     zero = brentq(measure, lower, upper, xtol=LOCATED, rtol=4 * np.finfo(float).eps)
     # the measure jumps where the mode has become another one on the way
     largest = max(abs(measure(lower)), abs(measure(upper)))
-    return float(zero) if abs(measure(zero)) <= VANISHED * largest else None
+    return float(zero) if abs(measure(zero)) <= limits.vanished * largest else None
 
 
 class _Followed:
@@ -203,7 +213,7 @@ class _Followed:
         return self.known[min(self.known, key=lambda each: abs(each - mu))]
 
     def __call__(self, mu: float) -> float:
-        self._reach(mu, HALVINGS)
+        self._reach(mu, limits.most_halvings)
         return self._measure(mu)
 
     def _reach(self, mu: float, halvings: int) -> None:
@@ -254,7 +264,7 @@ class _Subspace(_Followed):
         if reached is None:
             return None
         alike = np.linalg.svd(start.right.T @ reached.right, compute_uv=False)
-        return reached if alike.min() >= ALIKE else None
+        return reached if alike.min() >= limits.same_shape else None
 
     def _measure(self, mu: float) -> float:
         return -self.known[mu].split  # type: ignore[no-any-return]
@@ -275,13 +285,15 @@ def _block(pair: Eigenpair) -> Block:
 def settled(pencil: Pencil, start: Block) -> Block | None:
     """The block after as many inverse iterations as it takes; None if they do not end."""
     last = start
-    for _ in range(TURNS):
+    for _ in range(limits.most_iterations):
         block = turned(pencil, last)
         size = abs(np.mean(block.roots))
         moved = abs(np.mean(block.roots) - np.mean(last.roots)) / size
         opened = abs(block.split - last.split) / size**2
         last = block
-        if max(moved, opened) <= SETTLED:  # what is left vanishes in one more turn
+        if (
+            max(moved, opened) <= limits.settled
+        ):  # what is left vanishes in one more turn
             return turned(pencil, last)
     return None
 
@@ -321,7 +333,7 @@ def _solver(
 
     About their mean alone an eigenvalue between both would come in.
     """
-    aside = ASIDE * max(float(abs(np.mean(roots))), (SLOW * pencil.unit) ** 2)
+    aside = limits.aside * max(float(abs(np.mean(roots))), (SLOW * pencil.unit) ** 2)
     is_pair = roots[0].imag != 0
     shifts = [roots[0]] if is_pair else [root.real for root in roots]
     # as of other factors: the pattern is symmetric
@@ -361,7 +373,7 @@ class _Growth(_Followed):
             value += float(mu - near) * slope
         pair = polished(self.pencil_at(mu), value, guess.right, guess.left)
         alike = abs(np.vdot(guess.right, pair.right))
-        return pair if alike >= ALIKE else None
+        return pair if alike >= limits.same_shape else None
 
     def _measure(self, mu: float) -> float:
         return self.known[mu].value.real  # type: ignore[no-any-return]

@@ -29,8 +29,6 @@ AND_LARGER = 3
 """Larger numbers of modes that must do as well: convergence is not monotonic."""
 FIRST = 64
 """Modes computed at first of a large structure; up to here every number is tried."""
-GROWS = 1e-9
-"""Growth over the modulus of an eigenvalue below which the search takes it for round-off."""
 
 
 @takes_units
@@ -246,7 +244,8 @@ class Search:
             values = kept.quick_values(number)
         except NoSlidingError:  # in these modes, not in the whole
             return False
-        grows = values.real > GROWS * np.abs(values)
+        # growth below this share of the eigenvalue's modulus is round-off
+        grows = values.real > 1e-9 * np.abs(values)
         agreement = compared(self.truth, values, grows)
         return agreement.holds and max(agreement.errors) <= tol
 

@@ -15,11 +15,8 @@ import numpy as np
 from squealpipe.structures.pencil import Factors, Pencil
 from squealpipe.systems.progress import with_progress
 
-OFFSET = 1e-9
-"""Shift of inverse iteration off the estimate, relative: at the eigenvalue Q is singular."""
 SLOW = 1e-4
 """Values below this share of the entries' frequency count as so much where shifts are chosen."""
-TURNS = 4
 ENOUGH = 1e-8
 """Error that needs no polishing, relative to the growth rate, below 1/s absolutely."""
 SURE = 4.0
@@ -113,8 +110,9 @@ def polished(
     right = right.astype(complex)
     left = right if left is None else left.astype(complex)
     change, rate = np.inf, 0j
-    for _ in range(TURNS):
-        offset = OFFSET * max(abs(value), SLOW * pencil.unit) * (1.0 + 0.5j)
+    for _ in range(4):
+        # relative: at the eigenvalue itself the matrix is singular
+        offset = 1e-9 * max(abs(value), SLOW * pencil.unit) * (1.0 + 0.5j)
         factors = pencil.factorized(value + offset)
         before = value
         for _ in range(2):

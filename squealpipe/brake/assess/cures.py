@@ -24,9 +24,6 @@ from squealpipe.vibration.boundaries import (
 )
 from squealpipe.vibration.settled_runs import SettledRun, Start
 
-RAYS = 24
-"""Directions in which the nearest quiet pair of angles is looked for."""
-
 
 class Boundary(NamedTuple):
     """What is known of one cure; values that were not found are NaN."""
@@ -153,7 +150,8 @@ def nearest_angles(
     """
     steps = STEP * np.arange(1, 1 + round(FARTHEST / STEP))
     rays = {}
-    for turn in np.linspace(0.0, 2.0 * math.pi, RAYS, endpoint=False):
+    # directions in which the nearest quiet pair of angles is sought
+    for turn in np.linspace(0.0, 2.0 * math.pi, 24, endpoint=False):
         along, across = math.cos(turn), math.sin(turn)
 
         def apply(

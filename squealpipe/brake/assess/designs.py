@@ -14,13 +14,9 @@ from squealpipe.vibration.boundaries import Cure
 
 FACTOR = 10.0
 """Largest factor that a stiffness, the preload or the belt speed is changed by, either way."""
-MOST_FRICTION = 3.0
-"""Largest factor of friction, or coefficient 1 where that is more; it goes down to 0."""
-MOST_DAMPING = 0.5
-"""Largest damping ratio."""
 FARTHEST = math.radians(60.0)
 """Largest change of an angle."""
-RATIO, STEP = 1.08, math.radians(2.0)
+STEP = math.radians(2.0)
 """Factor, and angle, between values that are looked at first."""
 
 PLAIN = """\
@@ -96,7 +92,8 @@ def _friction(design: Design) -> Cure:
             np.zeros(0),
             above,
         )
-    factors = _factors(max(MOST_FRICTION, 1.0 / mu))
+    # three times the friction, or coefficient 1 where that is more
+    factors = _factors(max(3.0, 1.0 / mu))
     # a table of zeros could not be scaled back, so 0 itself is left out
     below = np.append(mu / _factors(FACTOR), 1e-9 * mu)
     return Cure(
@@ -134,7 +131,7 @@ def _damping(design: Design) -> Cure:
 
     below = np.append(ratio / _factors(FACTOR), 0.0) if ratio > 0.0 else np.zeros(0)
     least = max(ratio, 1e-4)
-    above = np.geomspace(least, max(MOST_DAMPING, 2.0 * least), 60)
+    above = np.geomspace(least, max(0.5, 2.0 * least), 60)
     return Cure(ratio, apply, below, above[above > ratio])
 
 
@@ -145,4 +142,5 @@ def _scaled(value: float, apply: Callable[[float], Design]) -> Cure:
 
 
 def _factors(most: float) -> np.ndarray:
-    return np.geomspace(1.0, most, 1 + math.ceil(math.log(most) / math.log(RATIO)))[1:]
+    # values that are looked at first differ by 8 %
+    return np.geomspace(1.0, most, 1 + math.ceil(math.log(most) / math.log(1.08)))[1:]

@@ -14,8 +14,6 @@ from squealpipe.vibration.settling import FOR_VERDICTS, Settling
 
 PUSH = 0.01
 """Push of steady sliding, over the static compression."""
-FIRST = 50.0
-"""Length of the first two windows, in periods."""
 MOST = 20_000.0
 """Periods after which a motion that has not settled is undetermined."""
 
@@ -107,4 +105,5 @@ def _first_window(start: Start, most: float) -> float:
     """Periods of the first window, in which small motions grow to e^½ or more."""
     rate = abs(start.rate) * start.period
     shown = QUIETNESS.shown / rate if rate > 0 else 0.0
-    return float(np.clip(shown, FIRST, 0.25 * most))
+    # periods: the first two windows
+    return float(np.clip(shown, 50.0, 0.25 * most))

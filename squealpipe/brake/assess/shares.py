@@ -21,8 +21,6 @@ from squealpipe.schema.origin import recorded
 from squealpipe.validation import Angle, Seed, Tolerance, Whole
 from squealpipe.vibration.shares import wilson_interval
 
-ANGLES = ("alpha1", "alpha2")
-
 
 @recorded(model="A1", method="quasi-random sample")
 def verdict_shares(
@@ -51,7 +49,8 @@ def verdict_shares(
     for row in draws.tolist():
         given = dict(zip(frozen, row, strict=True))
         angles = [
-            given.pop(n, a) for n, a in zip(ANGLES, (alpha1, alpha2), strict=True)
+            given.pop(n, a)
+            for n, a in zip(("alpha1", "alpha2"), (alpha1, alpha2), strict=True)
         ]
         design = Design(params.with_(**given), *angles)
         sliding = Sliding.of(design)

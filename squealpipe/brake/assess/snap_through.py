@@ -15,12 +15,6 @@ import numpy as np
 from squealpipe.brake.assess.sliding import Design, Sliding
 from squealpipe.vibration.boundaries import Cure
 
-VALUES = 12
-"""Values of each side at which the place is looked up; a snap and its return between two of them
-are missed."""
-HALVINGS = 20
-"""Halvings of the interval between two values, after which the place still snaps."""
-
 
 class SnapThrough(NamedTuple):
     """The nearest snap of one cure; NaN: none in the range.
@@ -58,7 +52,9 @@ def snap_throughs(
 
 def _first_snap(cure: Cure, values: np.ndarray) -> SnapThrough:
     """The first along the values of a side, outward."""
-    places = np.unique(np.linspace(0, values.size - 1, VALUES).astype(int))
+    # values of each side at which the equilibrium is looked up; a jump and its return between two
+    # of them are missed
+    places = np.unique(np.linspace(0, values.size - 1, 12).astype(int))
     inner, before = cure.value, _place(cure.apply(cure.value))
     for value in values[places] if values.size else ():
         after = _place(cure.apply(float(value)))
@@ -78,7 +74,8 @@ def _snap(
     whole = math.dist(before, after)
     if whole < 0.1 * cure.apply(cure.value).params.preload:
         return None  # less is no snap that anybody would notice
-    for number in range(HALVINGS):
+    # after twenty halvings the equilibrium still jumps: it does so between them
+    for number in range(20):
         middle = 0.5 * (inner + outer)
         place = _place(cure.apply(middle))
         if place is None:

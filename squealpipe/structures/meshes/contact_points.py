@@ -21,12 +21,6 @@ from squealpipe.structures.meshes.pairing import FacetedSurface, Partner
 from squealpipe.structures.meshes.shape_functions import shares
 from squealpipe.units import engineering
 
-FACING = -0.5
-"""Cosine between the normals of two surfaces that face each other, at most: 60° from opposite."""
-ONE_WAY = 0.2
-"""Length of the mean of unit normals at a node, below which its facets look opposite ways."""
-NO_SHARE = 1e-9
-"""Share of the largest area of a node that counts as none: corners of quadratic triangles."""
 ON_THE_AXIS = 1e-6
 """Radius over the size of a facet, below which a point is on the axis of rotation."""
 
@@ -268,7 +262,8 @@ def _points(face: Face, mesh: ElementMesh, rotation: Rotation | None) -> list[_P
     for rows in surface.facets.values():
         np.add.at(area, rows, shares(mesh.nodes[rows]))
     members = own.members[np.argsort(mesh.numbers[own.members])]
-    members = members[np.abs(area[members]) > NO_SHARE * np.abs(area).max()]
+    # corners of quadratic triangles carry no area, but for round-off
+    members = members[np.abs(area[members]) > 1e-9 * np.abs(area).max()]
     _refuse_opposite(own, members, mesh, face.surface)
     if face.against == BELT:
         partners: list[Partner | None] = [None] * len(members)
@@ -328,7 +323,8 @@ def _turned(facets: Mapping[int, np.ndarray]) -> dict[int, np.ndarray]:
 def _refuse_opposite(
     surface: FacetedSurface, members: np.ndarray, mesh: ElementMesh, name: str
 ) -> None:
-    opposite = members[surface.agreement[members] < ONE_WAY]
+    # facets whose unit normals nearly cancel look opposite ways
+    opposite = members[surface.agreement[members] < 0.2]
     if opposite.size:
         raise ValueError(
             f"{name}: facets at node {mesh.numbers[opposite[0]]} look in opposite directions "
@@ -380,7 +376,8 @@ def _refuse_facing(
     face: Face,
 ) -> None:
     cosines = np.einsum("ij,ij->i", own, other)
-    wrong = np.flatnonzero(cosines > FACING)
+    # cosine of 120°: normals of surfaces that face each other are within 60° of opposite
+    wrong = np.flatnonzero(cosines > -0.5)
     if wrong.size:
         worst = wrong[cosines[wrong].argmax()]
         angle = np.degrees(np.arccos(np.clip(cosines[worst], -1.0, 1.0)))

@@ -25,30 +25,6 @@ from squealpipe.structures.meshes.element_mesh import (
 )
 from squealpipe.structures.meshes.finite_elements import KINDS, kind_in_deck
 
-GENERATED = {
-    "NGEN": "nodes",
-    "NFILL": "nodes",
-    "NCOPY": "nodes",
-    "NMAP": "nodes",
-    "ELGEN": "elements",
-    "ELCOPY": "elements",
-}
-"""Keywords that make nodes or elements from others."""
-BINDING = (
-    "EQUATION",
-    "MPC",
-    "TIE",
-    "RIGID BODY",
-    "COUPLING",
-    "KINEMATIC COUPLING",
-    "DISTRIBUTING COUPLING",
-    "EMBEDDED ELEMENT",
-    "CYCLIC SYMMETRY MODEL",
-)
-"""Keywords that take degrees of freedom out and let others carry them."""
-SIDES = {"SPOS": 1, "SNEG": -1, "POS": 1, "NEG": -1, "S2": 1, "S1": -1, "P": 1, "N": -1}
-"""Names of a shell's faces → 1 where its normal points, −1 on the other side."""
-
 
 def read_deck(path: Path) -> ElementMesh:
     """Return the mesh of a deck.
@@ -94,12 +70,31 @@ class _Deck:
             "INSTANCE": self._instance,
             "SYSTEM": self._refuse_system,
         }
-        if block.keyword in GENERATED:
+        # keywords that make nodes or elements from others
+        generated = {
+            "NGEN": "nodes",
+            "NFILL": "nodes",
+            "NCOPY": "nodes",
+            "NMAP": "nodes",
+            "ELGEN": "elements",
+            "ELCOPY": "elements",
+        }
+        if block.keyword in generated:
             raise ValueError(
-                f"{block.where} makes {GENERATED[block.keyword]} that the deck does not list; "
+                f"{block.where} makes {generated[block.keyword]} that the deck does not list; "
                 "write the deck anew with every node and element, as a mesher does"
             )
-        if block.keyword in BINDING:
+        if block.keyword in (
+            "EQUATION",
+            "MPC",
+            "TIE",
+            "RIGID BODY",
+            "COUPLING",
+            "KINEMATIC COUPLING",
+            "DISTRIBUTING COUPLING",
+            "EMBEDDED ELEMENT",
+            "CYCLIC SYMMETRY MODEL",
+        ):
             self.bound[f"*{block.keyword}"] = None
         if reader := readers.get(block.keyword):
             reader(block)
@@ -445,7 +440,17 @@ def _place_of_face(name: str, kind: str, number: int, where: str) -> int:
 
 
 def _side(name: str, kind: str, where: str) -> int:
-    side = SIDES.get(name.upper())
+    # names of a shell's faces: 1 where its normal points, −1 on the other side
+    side = {
+        "SPOS": 1,
+        "SNEG": -1,
+        "POS": 1,
+        "NEG": -1,
+        "S2": 1,
+        "S1": -1,
+        "P": 1,
+        "N": -1,
+    }.get(name.upper())
     if side is None:
         raise ValueError(
             f"{where}: {name} is no side of a shell; SPOS (where its normal points) or SNEG is "

@@ -13,13 +13,6 @@ from squealpipe.validation import real_array
 
 BELT = "belt"
 """Word for a rigid belt in place of a surface."""
-UNITS_OF_A_FACE = {
-    "stiffness": "N m-1",
-    "stiffness_per_area": "N m-3",
-    "pressure": "Pa",
-    "force": "N",
-}
-"""Numbers of a face → CF unit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +54,12 @@ class Face:
                 f"against = {self.against!r}: a surface cannot rub against itself; name the other "
                 f"one, or {BELT}"
             )
-        for key, units in UNITS_OF_A_FACE.items():
+        for key, units in {
+            "stiffness": "N m-1",
+            "stiffness_per_area": "N m-3",
+            "pressure": "Pa",
+            "force": "N",
+        }.items():
             if (value := getattr(self, key)) is not None:
                 object.__setattr__(self, key, _positive(key, value, units))
         if self.mu is not None:

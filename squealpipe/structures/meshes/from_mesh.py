@@ -18,9 +18,7 @@ from squealpipe.structures.meshes.structure_mesh import NO_NODE, StructureMesh
 from squealpipe.systems.inputs.values import brief
 from squealpipe.units import engineering
 
-DENSITIES = (10.0, 1e5)
-"""Mean densities of bodies, kg/m³, from foam to beyond metals; others come from mixed units."""
-DIRECTIONS = 3
+DISPLACEMENTS_OF_A_NODE = 3
 """Displacements of a node."""
 
 
@@ -73,11 +71,14 @@ def _named_rows(
 ) -> np.ndarray:
     """Return node number and direction of each row of the matrices, (n, 2)."""
     if names is None:
-        count = DIRECTIONS * len(mesh.nodes)
+        count = DISPLACEMENTS_OF_A_NODE * len(mesh.nodes)
         if size == count and mesh.counts_nodes:
-            nodes = np.repeat(mesh.numbers, DIRECTIONS)
+            nodes = np.repeat(mesh.numbers, DISPLACEMENTS_OF_A_NODE)
             return np.column_stack(
-                [nodes, np.tile(np.arange(1, DIRECTIONS + 1), len(mesh.nodes))]
+                [
+                    nodes,
+                    np.tile(np.arange(1, DISPLACEMENTS_OF_A_NODE + 1), len(mesh.nodes)),
+                ]
             )
         raise ValueError(
             f"degrees_of_freedom is missing: the matrices have {size} rows without names, and the "
@@ -128,7 +129,9 @@ def _refuse_units(mass: Any, rows: np.ndarray, mesh: ElementMesh) -> None:
     along = (rows[:, 1] == 1).astype(float)
     total = float(along @ (mass @ along))
     density = total / mesh.volume
-    if total > 0 and not DENSITIES[0] <= density <= DENSITIES[1]:
+    # kg/m³, from foam to beyond metals; other mean densities come from mixed units
+    densities = (10.0, 1e5)
+    if total > 0 and not densities[0] <= density <= densities[1]:
         raise ValueError(
             f"{mesh.source} and the mass do not have the same units: {engineering(total, 'kg')} in "
             f"{mesh.volume:.3g} m³ are {density:.3g} kg/m³; state the units of both, like "

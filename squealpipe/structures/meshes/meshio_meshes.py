@@ -21,7 +21,6 @@ from squealpipe.structures.packed import plain_name, text_of, unpacked
 
 NASTRAN = (".bdf", ".nas", ".fem", ".dat")
 """Endings of bulk data of Nastran."""
-GMSH = (".msh",)
 
 
 def read_by_meshio(path: Path) -> ElementMesh:
@@ -52,7 +51,7 @@ def read_by_meshio(path: Path) -> ElementMesh:
     if ending in NASTRAN:
         _refuse_systems(mesh, path)
         return replace(converted, numbers=np.asarray(mesh.points_id, int))
-    if ending in GMSH:
+    if ending == ".msh":
         return replace(converted, numbers=_tags_of_gmsh(path, len(mesh.points)))
     return converted
 

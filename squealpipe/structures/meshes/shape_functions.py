@@ -9,9 +9,6 @@ from functools import cache
 
 import numpy as np
 
-_SIGNS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-"""Corners of a quadrilateral."""
-
 
 def is_triangle(nodes: int) -> bool:
     """Tell whether facets of so many nodes are triangles."""
@@ -44,7 +41,8 @@ def shape(nodes: int, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             slope * following[..., None] + area[..., None] * slope[[1, 2, 0]]
         )
         return values, np.concatenate([corners, middles], axis=-2)
-    sx, sy = _SIGNS.T
+    # corners of a quadrilateral
+    sx, sy = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]).T
     along, across = 1.0 + xi[..., None] * sx, 1.0 + eta[..., None] * sy
     values = 0.25 * along * across
     slopes = np.stack([0.25 * sx * across, 0.25 * sy * along], axis=-1)

@@ -14,10 +14,6 @@ from squealpipe.structures.packed import plain_name
 from squealpipe.systems.inputs.values import brief
 from squealpipe.validation import real_array
 
-DECKS = (".inp",)
-"""Endings of decks of Abaqus and CalculiX."""
-NEEDED = "a file, a mesh of meshio, or (nodes, faces) is needed"
-
 
 def mesh_of_source(mesh: Any) -> ElementMesh:
     """Return a mesh with its surfaces.
@@ -36,7 +32,7 @@ def mesh_of_source(mesh: Any) -> ElementMesh:
         path = Path(mesh).expanduser()
         if not path.is_file():
             raise FileNotFoundError(f"mesh: no file {path}")
-        if plain_name(path).suffix.lower() in DECKS:
+        if plain_name(path).suffix.lower() == ".inp":
             return read_deck(path)
         from squealpipe.structures.meshes.meshio_meshes import read_by_meshio
 
@@ -47,7 +43,8 @@ def mesh_of_source(mesh: Any) -> ElementMesh:
         return of_meshio(mesh, "mesh", counts_nodes=True)
     if isinstance(mesh, tuple | list) and len(mesh) == 2:
         return of_arrays(*mesh)
-    raise ValueError(f"mesh = {brief(mesh)}: {NEEDED}")
+    needed = "a file, a mesh of meshio, or (nodes, faces) is needed"
+    raise ValueError(f"mesh = {brief(mesh)}: {needed}")
 
 
 def of_arrays(nodes: Any, faces: Any) -> ElementMesh:

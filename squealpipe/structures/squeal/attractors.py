@@ -7,12 +7,6 @@ from squealpipe.structures.schema.squealing import NO_ATTRACTOR
 from squealpipe.vibration.settled_runs import SettledRun
 from squealpipe.vibration.settling import FOR_VERDICTS, difference
 
-SCATTER = 3.0
-"""Multiples of a run's own change between windows within which it may be another's motion."""
-FARTHEST = 0.06
-"""Difference of statistics above which two runs never count as one motion. They always do up to the
-difference that two windows of one motion may have."""
-
 
 def grouped(settled: list[SettledRun], pushes: int) -> np.ndarray:
     """The number of the attractor of each run, those of most random starts first; −1: not settled.
@@ -46,5 +40,7 @@ def is_same(one: SettledRun, other: SettledRun) -> bool:
     if one.quiet or other.quiet:
         return one.quiet and other.quiet
     nearest = FOR_VERDICTS.agreement
-    allowed = np.clip(SCATTER * max(one.change, other.change), nearest, FARTHEST)
+    # two runs of one motion differ by up to three times their own change between windows, but
+    # runs whose statistics differ by more than 6 % are never one motion
+    allowed = np.clip(3.0 * max(one.change, other.change), nearest, 0.06)
     return bool(difference(one.last.levels(1.0), other.last.levels(1.0)) <= allowed)

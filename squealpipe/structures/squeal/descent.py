@@ -27,10 +27,6 @@ from squealpipe.vibration.settling import FOR_VERDICTS
 
 SIDE_BY_SIDE = 8
 """Frictions of one turn, run together."""
-TURNS = 12
-"""Turns after which the end is what it is."""
-DOUBLINGS = 6
-"""Windows of growing length after which a motion that still moves is taken to last."""
 
 
 @dataclass(frozen=True)
@@ -113,7 +109,8 @@ def _turns(track: Track, onset: float) -> Iterator[np.ndarray]:
     """Frictions of the next turn, falling, until the end is narrow."""
     width = width_of(track, onset)
     floor = max(onset - width, 0.0) if onset < track.lasts.mu else 0.0
-    for _ in range(TURNS):
+    # after twelve turns the end is what it is
+    for _ in range(12):
         top = track.lasts.mu
         yield np.linspace(top, floor, SIDE_BY_SIDE + 1)[1:]
         low, high = track.dies, track.lasts.mu
@@ -154,10 +151,11 @@ def _run_on(
         )
 
     unit = np.full(len(starts), first)
+    # a motion that still moves after six doublings of the window is taken to last
     ended = settle(
         starts,
         advance,
-        Horizon(unit, 2.0 * unit, (2.0**DOUBLINGS - 1.0) * unit),
+        Horizon(unit, 2.0 * unit, (2.0**6 - 1.0) * unit),
         FOR_VERDICTS,
         regimes=np.tile(start.regimes, (len(starts), 1)),
     )

@@ -24,8 +24,6 @@ from squealpipe.vibration.settling import (
 
 NEAR = 0.1
 """Distance of frequencies within which a mode of another reduction is the same one's."""
-DIED_OUT = 0.5
-"""Velocity, over that of the push, below which a motion that does not grow has died out."""
 FINEST = 12.0
 """Samples in a period of the fastest mode."""
 FEWEST_SAMPLES, MOST_SAMPLES = 2**14, 2**16
@@ -71,7 +69,8 @@ def without_mode(structure: ContactStructure) -> PushEnd:
 
 def _died_out(plant: Plant, before: float, now: float) -> bool:
     """By the velocities of all modes in two windows."""
-    return now < DIED_OUT * PUSH * np.sqrt(plant.energy) and now <= before
+    # a motion that does not grow, and has half the velocity of the push, has died out
+    return now < 0.5 * PUSH * np.sqrt(plant.energy) and now <= before
 
 
 def _agree(before: WindowLevels, now: WindowLevels) -> bool:

@@ -13,15 +13,6 @@ from squealpipe.systems.cycles.branch import first_point
 from squealpipe.systems.cycles.following import Follower
 from squealpipe.systems.cycles.trail import BranchPoint
 
-MOST_POINTS = 32
-"""Of the branch."""
-BEFORE = 1.0 - 1e-9
-"""Friction over that of the onset up to which the unstable cycle is followed."""
-SAMPLES = 512
-"""Instants of a cycle whose speeds are averaged."""
-TURNS_AT = {Label.fold, Label.border_collision}
-"""What ends a stable cycle as friction falls: smooth, and where events change."""
-
 
 def add_fold(plant: Plant, track: Track, onset: float, width: float) -> None:
     """Locate where a track dies by the cycle that it lasts in, if it is one that folds there."""
@@ -30,13 +21,18 @@ def add_fold(plant: Plant, track: Track, onset: float, width: float) -> None:
     first = first_point(cycle, "mu", 0.0) if cycle and cycle.events else None
     if first is None:
         return
-    follower = Follower(0.0, BEFORE * onset, MOST_POINTS)
+    # the unstable cycle is followed almost to the onset, where it vanishes
+    follower = Follower(0.0, (1.0 - 1e-9) * onset, 32)
     follower.run(*first)
     points = follower.points
     frictions = np.array([point.parameter for point in points])
     place = int(frictions.argmin())
     fold = float(frictions[place])
-    is_fold = points[place].label in TURNS_AT and place + 1 < len(points)
+    # a stable cycle ends smoothly, or where events change, as friction falls
+    is_fold = points[place].label in {
+        Label.fold,
+        Label.border_collision,
+    } and place + 1 < len(points)
     if not is_fold or not track.dies - width <= fold <= track.lasts.mu:
         return
     track.fold = fold
@@ -48,6 +44,7 @@ def add_fold(plant: Plant, track: Track, onset: float, width: float) -> None:
 def _speed(plant: Plant, point: BranchPoint) -> float:
     """rms speed of vibration of all contacts."""
     cycle = point.cycle
-    times = cycle.period * np.arange(SAMPLES) / SAMPLES
+    samples = 512
+    times = cycle.period * np.arange(samples) / samples
     states, _ = cycle.states_at(times)
     return float(np.sqrt((plant.contact_speeds(states) ** 2).mean()))

@@ -21,11 +21,6 @@ from squealpipe.structures.squeal.plant import Plant
 from squealpipe.structures.squeal.windows import Running
 from squealpipe.vibration.settled_runs import SettledRun
 
-FOLLOWED = 3
-"""Attractors that are followed at most, those of most random starts."""
-ALIKE = 0.05
-"""Largest difference of levels at which two tracks that end at one friction are one motion."""
-
 
 def hysteresis(plant: Plant, settled: list[SettledRun], how: Running) -> dict[str, Any]:
     """Variables of the onset and of tracks: motions followed down in friction until they die.
@@ -40,7 +35,8 @@ def hysteresis(plant: Plant, settled: list[SettledRun], how: Running) -> dict[st
     limit = onset.mu if onset else math.inf
     if decays:
         moving = [place for place, each in enumerate(settled) if not each.quiet]
-        for place in moving[:FOLLOWED]:
+        # the three motions that most random starts settle on
+        for place in moving[:3]:
             start = state_of(plant, mu, settled[place].last)
             tracks[place] = followed_down(plant, start, limit, how)
     kind = OnsetKind.undetermined
@@ -60,11 +56,12 @@ def _locate_folds(plant: Plant, tracks: list[Track], onset: float) -> None:
         if not track.narrow or not _lasts_below(track, onset):
             continue
         width, last = width_of(track, onset), track.lasts
+        # tracks that end at one friction with levels this close are one motion
         same = [
             other
             for other in ended
             if abs(other.lasts.mu - last.mu) <= width
-            and abs(other.lasts.speed - last.speed) <= ALIKE * last.speed
+            and abs(other.lasts.speed - last.speed) <= 0.05 * last.speed
         ]
         if same:
             track.fold, track.unstable = same[0].fold, same[0].unstable

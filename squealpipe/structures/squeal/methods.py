@@ -38,15 +38,6 @@ from squealpipe.structures.squeal.windows import (
 )
 from squealpipe.systems.taylor.lanes import taylor_terms
 
-APART = 0.05
-"""By how much the next of several pushes is larger, over the first."""
-STARTS = 4
-"""Runs with exact events from pushes that differ a little: their scatter is an error."""
-GROWS = 1e-9
-"""Growth rate over the modulus above which it is no round-off."""
-LONG = 4.0
-"""CPU time beyond which a run is not repeated, s: it scatters little."""
-
 
 @dataclass(frozen=True)
 class Horizon:
@@ -101,7 +92,8 @@ def complex_modes_told(
         return solver.at(structure.mu).values
 
     values, spent = _timed(ask, repeats)
-    at, grows = values.imag / (2.0 * np.pi), values.real > GROWS * np.abs(values)
+    # growth below this share of the modulus is round-off
+    at, grows = values.imag / (2.0 * np.pi), values.real > 1e-9 * np.abs(values)
     untold = nothing(structure)
     ends = []
     for frequency in frequencies:
@@ -133,10 +125,12 @@ def exact_told(
     """Runs with every event located, several at once from pushes that differ a little."""
     pushes = _pushes(plant, frequencies)
     known = [place for place in pushes if place is not None]
-    count = max(STARTS, -(-WIDE // max(len(known), 1)))
+    # runs from pushes that differ a little: their scatter is an error
+    count = max(4, -(-WIDE // max(len(known), 1)))
+    # each of several pushes is 5 % larger than the one before
     starts = np.array(
         [
-            plant.pushed(place, PUSH * (1.0 + APART * turn))
+            plant.pushed(place, PUSH * (1.0 + 0.05 * turn))
             for place in known
             for turn in range(count)
         ]
@@ -229,7 +223,8 @@ def _timed(ask: Callable[[], Any], repeats: int) -> tuple[Any, float]:
         started = time.process_time()
         result = ask()
         spent.append(time.process_time() - started)
-        if spent[0] > LONG:
+        # s of CPU: a longer run scatters little, and is not repeated
+        if spent[0] > 4.0:
             break
     return result, statistics.median(spent)
 

@@ -15,9 +15,6 @@ from squealpipe.structures.schema.squealing import MOST_DAMPING
 from squealpipe.structures.spectrum import Limits, Solver, Spectrum
 from squealpipe.structures.squeal.plant import Plant
 
-TRIED = np.geomspace(1e-4, MOST_DAMPING, 24)
-"""Ratios between which stability is taken to change once at most."""
-
 
 def added_damping(plant: Plant) -> tuple[float, Outcome]:
     """Return the smallest ratio of damping, added to every mode at rest, from which no mode grows.
@@ -67,7 +64,8 @@ def _searched(structure: ContactStructure) -> float:
     if not (now.values.real > now.growth_errors).any():
         return 0.0
     growth = _growth_over_ratio(structure)
-    tried, above = TRIED[::-1].tolist(), math.nan
+    # ratios of damping between which stability is taken to change once at most
+    tried, above = np.geomspace(1e-4, MOST_DAMPING, 24)[::-1].tolist(), math.nan
     # from the largest down to the first at which a mode grows
     for ratio in [*tried, 0.0]:
         if ratio == 0.0 or growth(ratio) > 0:

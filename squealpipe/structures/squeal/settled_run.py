@@ -16,9 +16,6 @@ from squealpipe.structures.schema.squealing import NO_ATTRACTOR, Kind
 from squealpipe.structures.schema.structure_run import STRUCTURE_RUN
 from squealpipe.validation import Natural, Tolerance
 
-MOST_SAMPLES = 2**15
-"""Instants that are kept: with 32 modes and 16 contacts a file of 30 MB."""
-
 
 @recorded(
     model="structure with exact contact and friction",
@@ -58,7 +55,8 @@ def squealing_run(
     fastest = max(float(answer.pole_frequency.max()), frequency)
     # a period of the fastest mode keeps 8 samples, one of the motion 32, as films need
     step = 1.0 / max(8.0 * fastest, 32.0 * frequency)
-    count = min(math.ceil(periods / frequency / step), MOST_SAMPLES)
+    # with 32 modes and 16 contacts a file of 30 MB
+    count = min(math.ceil(periods / frequency / step), 2**15)
     times = step * np.arange(count + 1)
     start = {
         f"{name}{place + 1}": float(values[place])

@@ -27,8 +27,6 @@ FIRST = 100.0
 """Length of the first window of statistics, in periods of the slowest unstable mode."""
 LONGEST_GROWTH, MOST = 4_000.0, 8_000.0
 """Most periods in which a push may grow, and of a run, if no other end is given."""
-MOST_ON = 20_000.0
-"""Most periods of a run that goes on because it leaves what it seemed to have settled to."""
 FEWEST = 4.0
 """Fewest periods of a run: the first windows are a quarter of it."""
 
@@ -97,7 +95,8 @@ def settle_on(
     """
     _, _, most = horizon(plant, t_end)
     if t_end is None:
-        most *= MOST_ON / MOST
+        # a run that leaves what it seemed to have settled on goes on for so many periods
+        most *= 20_000.0 / MOST
     length = 2.0 * max(float(run.last.length) for run in settled)
     left = most - max(run.elapsed for run in settled)
     if left < FEWEST * length:  # without statistics, and two windows

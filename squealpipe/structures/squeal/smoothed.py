@@ -13,12 +13,6 @@ from scipy.integrate import odeint
 from squealpipe.structures.dynamics import Numbers
 from squealpipe.structures.squeal.plant import Plant
 
-MOST_STEPS = 10**8
-"""Of the solver between two instants."""
-DONE = "Integration successful."
-SIZED = 64
-"""Random states whose spread is the size of each coordinate."""
-
 
 @dataclass(frozen=True)
 class Samples:
@@ -99,7 +93,8 @@ class Smoothed:
             times: instants, the first of which is the start, s.
             tol: relative, and absolute over the sizes of the coordinates.
         """
-        spread = self.plant.random_states(SIZED, 0) - self.plant.sliding
+        # random states whose spread is the size of each coordinate
+        spread = self.plant.random_states(64, 0) - self.plant.sliding
         states, told = odeint(
             self.rates,
             start,
@@ -108,7 +103,7 @@ class Smoothed:
             atol=tol * spread.std(axis=0),
             tfirst=True,
             full_output=True,
-            mxstep=MOST_STEPS,
+            mxstep=10**8,
             printmessg=False,
         )
         states = states[1:]
@@ -119,5 +114,6 @@ class Smoothed:
             forces=self.forces(pressing),
             sliding=self.sliding(states[:, self.size :]),
             evaluations=int(told["nfe"][-1]),
-            finished=told["message"] == DONE and bool(np.isfinite(states).all()),
+            finished=told["message"] == "Integration successful."
+            and bool(np.isfinite(states).all()),
         )
