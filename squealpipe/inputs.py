@@ -40,7 +40,7 @@ UNITS = UNITS_OF_INPUTS | {
     "modal_damping": "1",
 }
 """CF units of parameters and of the options of tasks, whose values may be texts with a unit."""
-STATE, STATES = ("x", "y", "vx", "vy"), ("initial_state", "guess", "start")
+STATE_NAMES, STATES = ("x", "y", "vx", "vy"), ("initial_state", "guess", "start")
 """What a state consists of, and the arguments that are states."""
 BY_NAME = ("distributions", "design", "to", "vary", "fixed")
 """Arguments that may be mappings from names of parameters to values."""
@@ -119,7 +119,7 @@ def read_distribution(name: str, numbers: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-OF_FRICTION = ("mu_static", "friction_speed", "modal_damping")
+FRICTION_KEYWORDS = ("mu_static", "friction_speed", "modal_damping")
 """Further keywords of a structure's verbs that are no factors."""
 Given = ParamSpec("Given")
 Result = TypeVar("Result")
@@ -127,7 +127,7 @@ Result = TypeVar("Result")
 
 def takes_units(function: Callable[Given, Result]) -> Callable[Given, Result]:
     """Have a function read its arguments, and friction, by :func:`with_units`."""
-    names = [*inspect.signature(function).parameters, *OF_FRICTION]
+    names = [*inspect.signature(function).parameters, *FRICTION_KEYWORDS]
 
     @functools.wraps(function)
     def run(*args: Given.args, **kwargs: Given.kwargs) -> Result:
@@ -197,8 +197,8 @@ def _read(name: str, value: Any, units: Mapping[str, str]) -> Any:
         return _quantity(name, value, units)
     if not any(isinstance(each, str) or holds_units(each) for each in value):
         return value
-    of_state = name in STATES and len(value) == len(STATE)
-    parts = STATE if of_state else [name] * len(value)
+    of_state = name in STATES and len(value) == len(STATE_NAMES)
+    parts = STATE_NAMES if of_state else [name] * len(value)
     read = (_read(part, each, units) for part, each in zip(parts, value, strict=True))
     return tuple(read) if isinstance(value, tuple) else list(read)
 

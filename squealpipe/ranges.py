@@ -8,7 +8,7 @@ from typing import Any
 
 from squealpipe.inputs import (
     ANGLES,
-    OF_FRICTION,
+    FRICTION_KEYWORDS,
     UNITS,
     parse_angle,
     parse_number,
@@ -17,7 +17,7 @@ from squealpipe.inputs import (
 from squealpipe.parameters import TABLE
 from squealpipe.units import UnitError, has_unit
 
-PHYSICAL = tuple(TABLE)
+PARAMETER_NAMES = tuple(TABLE)
 NUMBERS = tuple(name for name, row in TABLE.items() if row.allowed != "law")
 """Parameters that are numbers, so that they can be swept."""
 
@@ -59,7 +59,7 @@ def units_of(task: str) -> Mapping[str, str]:
     """
     names: tuple[str, ...]
     if is_structure(task):
-        names = ("mu", "belt_speed", "frequency_max", *OF_FRICTION)
+        names = ("mu", "belt_speed", "frequency_max", *FRICTION_KEYWORDS)
     elif ":" in task:
         names = ("t_start", "t_end", "t_late", "tol")
     else:

@@ -20,7 +20,7 @@ from squealpipe.benchmark.scoring import (
 )
 
 OPTIONAL = ("evaluations", "flag", "derivative", "cpu_time")
-NEEDED = ("problem", "tolerance", "times", "kinds", "state")
+NEEDED_KEYS = ("problem", "tolerance", "times", "kinds", "state")
 
 
 def problems_as_json() -> str:
@@ -82,12 +82,12 @@ def _check(place: str, answer: Any, known: Mapping[str, Any]) -> None:
         raise ValueError(  # noqa: TRY004 (of a file, not of an argument)
             f"{place} is {answer!r}; an object is needed"
         )
-    for key in NEEDED:
+    for key in NEEDED_KEYS:
         if key not in answer:
             raise ValueError(f"{place} lacks {key!r}")
     for key in answer:
-        if key not in (*NEEDED, *OPTIONAL):
-            allowed = ", ".join((*NEEDED, *OPTIONAL))
+        if key not in (*NEEDED_KEYS, *OPTIONAL):
+            allowed = ", ".join((*NEEDED_KEYS, *OPTIONAL))
             raise ValueError(f"{place}: {key!r} is unknown; one of {allowed}")
     if not isinstance(answer["problem"], str) or answer["problem"] not in known:
         raise ValueError(

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from squealpipe.benchmark.problems import FUNCTIONS, Problem
+from squealpipe.benchmark.problems import FORMULA_FUNCTIONS, Problem
 from squealpipe.systems import functions
 from squealpipe.systems.components import Switch
 from squealpipe.systems.system import System
@@ -17,7 +17,7 @@ def system_of(problem: Problem) -> System:
             parts = {name: made(each) for name, each in text.items()}
             return lambda *args: {name: part(*args) for name, part in parts.items()}
         code = compile(text, problem.name, "eval")
-        known = {name: getattr(functions, name) for name in FUNCTIONS}
+        known = {name: getattr(functions, name) for name in FORMULA_FUNCTIONS}
         return lambda t, s, p, r: eval(  # noqa: S307 (equations of this package)
             code, {**known, "time": t, **vars(s), **vars(p), **vars(r)}
         )

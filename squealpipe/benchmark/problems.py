@@ -11,7 +11,7 @@ import yaml
 
 INPUT_FILES = ("problems.yaml", "references.json")
 """Read below: every result that uses this module depends on them."""
-FUNCTIONS = ("cos", "sin", "exp", "log", "tanh")
+FORMULA_FUNCTIONS = ("cos", "sin", "exp", "log", "tanh")
 
 
 class OutOfPatienceError(RuntimeError):
@@ -79,7 +79,7 @@ class Problem:
         # after so many calls of the field a solver is stopped; its answer then counts as flagged
         self.calls, self.patience = 0, 200_000
         self._names = {
-            name: getattr(functions, name) for name in FUNCTIONS
+            name: getattr(functions, name) for name in FORMULA_FUNCTIONS
         } | self.parameters
         self.rates = list(data["field"].values())
         self.fields = self.per_regime(self.rates)

@@ -18,7 +18,7 @@ INPUT_FILES = ("results.json",)
 SHIPPED = "shipped"
 """Stands for the results that come with the package, in place of a file's name."""
 COUNTS = ("missed", "spurious", "out_of_order", "evaluations")
-NUMBERS = ("error", "time_error", "cpu_ratio")
+SCORED_NUMBERS = ("error", "time_error", "cpu_ratio")
 
 
 def results_as_json(datasets: Iterable[xr.Dataset]) -> str:
@@ -76,7 +76,7 @@ def _entry(dataset: xr.Dataset, problem: xr.DataArray, solver: str) -> dict[str,
     entry |= {name: cells[name].values.tolist() for name in COUNTS}
     # three digits: errors and CPU times are compared by their decades
     digits = 3
-    for name in NUMBERS:
+    for name in SCORED_NUMBERS:
         values = cells[name].values.tolist()
         entry[name] = [
             float(f"{value:.{digits}g}") if math.isfinite(value) else None
@@ -167,7 +167,7 @@ def _score_of(entry: dict[str, Any], column: int, *, answerable: bool) -> Score:
     verdict = Reliability[entry["verdict"][column]]
     numbers: dict[str, Any] = {
         name: math.nan if entry[name][column] is None else entry[name][column]
-        for name in NUMBERS
+        for name in SCORED_NUMBERS
     }
     # JSON has no infinity: of a problem with an answer a missing error is that of no state
     if verdict and entry["error"][column] is None and answerable:

@@ -13,7 +13,7 @@ from squealpipe.schema import (
 )
 from squealpipe.systems.datasets.agreement import ComparedAs, Listing, RoundOff
 
-RUN = ("run",)
+RUN_DIM = ("run",)
 
 
 class Role(IntEnum):
@@ -28,14 +28,14 @@ WORK_PRECISION = DatasetSchema(
     name="work_precision",
     title="Error of a method against its cost, one run a row",
     lists={"run": Listing(kinds=("method", "setting"))},
-    coordinates={"run": count("one method at one setting", *RUN)},
+    coordinates={"run": count("one method at one setting", *RUN_DIM)},
     variables={
-        "method": text("method", *RUN),
-        "setting": text("its setting", *RUN),
-        "role": flag("public method, ours, or our default", Role, *RUN),
+        "method": text("method", *RUN_DIM),
+        "setting": text("its setting", *RUN_DIM),
+        "role": flag("public method, ours, or our default", Role, *RUN_DIM),
         "error": Variable(
             "relative error of ω against the exact orbit, median over peaks",
-            dims=RUN,
+            dims=RUN_DIM,
             nan_allowed=True,
             rtol=1e-3,
             round_off=RoundOff(
@@ -46,9 +46,9 @@ WORK_PRECISION = DatasetSchema(
             ),
         ),
         "wall_time": Variable(
-            "median wall time of one solution", "s", RUN, volatile=True
+            "median wall time of one solution", "s", RUN_DIM, volatile=True
         ),
-        "outcome": outcome(*RUN, among=(Outcome.converged, Outcome.no_convergence)),
+        "outcome": outcome(*RUN_DIM, among=(Outcome.converged, Outcome.no_convergence)),
     },
 )
 
@@ -90,7 +90,7 @@ FAILURE_ATLAS = DatasetSchema(
     },
 )
 
-_CELL = ("problem", "solver", "tol")
+_CELL_DIMS = ("problem", "solver", "tol")
 _STEPS = RoundOff(
     ComparedAs.magnitude, "errors of adaptive steps follow round-off", floor=1e-9
 )
@@ -135,39 +135,41 @@ BENCHMARK = DatasetSchema(
             "right; flagged: wrong or without an answer, and said so; silently wrong: another list "
             "of events, or an error over growth above 100 tolerances",
             Reliability,
-            *_CELL,
+            *_CELL_DIMS,
         ),
-        "missed": count(f"events missed{_COUNT}", *_CELL),
-        "spurious": count(f"events too many{_COUNT}", *_CELL),
+        "missed": count(f"events missed{_COUNT}", *_CELL_DIMS),
+        "spurious": count(f"events too many{_COUNT}", *_CELL_DIMS),
         "out_of_order": count(
-            f"events found before one that they follow{_COUNT}", *_CELL
+            f"events found before one that they follow{_COUNT}", *_CELL_DIMS
         ),
         "time_error": Variable(
             "largest error of an event's time",
-            dims=_CELL,
+            dims=_CELL_DIMS,
             nan_allowed=True,
             round_off=_STEPS,
         ),
         "error": Variable(
             "largest error of final state and event times over the growth of a perturbation",
-            dims=_CELL,
+            dims=_CELL_DIMS,
             nan_allowed=True,
             round_off=_STEPS,
         ),
         "evaluations": count(
             "calls of the field, counted by the harness; a solver that makes its own functions "
             "tells them, a Taylor step of order p as p + 1",
-            *_CELL,
+            *_CELL_DIMS,
             dtype="i8",
             rtol=0.5,
         ),
-        "cpu_time": Variable("CPU time", "s", _CELL, nan_allowed=True, volatile=True),
+        "cpu_time": Variable(
+            "CPU time", "s", _CELL_DIMS, nan_allowed=True, volatile=True
+        ),
         "cpu_ratio": Variable(
             "CPU time over that of scipy's DOP853 at 1e-8 in the same process",
-            dims=_CELL,
+            dims=_CELL_DIMS,
             nan_allowed=True,
             volatile=True,
         ),
-        "message": Variable("what the solver said", dims=_CELL, dtype="U64"),
+        "message": Variable("what the solver said", dims=_CELL_DIMS, dtype="U64"),
     },
 )

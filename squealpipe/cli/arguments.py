@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from cyclopts import Group, Parameter
 
-from squealpipe.inputs import STATE, parse_angle, parse_number, reader
+from squealpipe.inputs import STATE_NAMES, parse_angle, parse_number, reader
 from squealpipe.parameters import SYMBOLS, Parameters
 from squealpipe.ranges import parse_range
 from squealpipe.substitutes import SUBSTITUTES
@@ -128,11 +128,11 @@ Frequency = Annotated[
 def parse_state(text: str) -> list[float]:
     """Displacements and speeds from a text like ``0.1mm,0.2mm,0,50mm/s``."""
     parts = text.split(",")
-    if len(parts) != len(STATE):
+    if len(parts) != len(STATE_NAMES):
         raise ValueError(
             f"{text!r} is not a state x,y,vx,vy; write for instance 0.1mm,0.2mm,0,50mm/s"
         )
-    return [reader(name)(part) for name, part in zip(STATE, parts, strict=True)]
+    return [reader(name)(part) for name, part in zip(STATE_NAMES, parts, strict=True)]
 
 
 def parse_size(text: str) -> tuple[float, float]:
@@ -213,7 +213,7 @@ Texts = Annotated[list[str] | None, Parameter(negative="")]
 BASELINE = Parameters()
 
 
-PHYSICAL = Group(
+PHYSICAL_GROUP = Group(
     "Physical parameters", help="In SI, or with a unit like 0.57mm.", sort_key=10
 )
 INSTEAD = Group("Instead of parameters", help="With a unit, or in SI.", sort_key=11)
@@ -237,7 +237,7 @@ class Brake:
         ),
     ] = None
     params: Annotated[
-        Parameters, Parameter(name="*", group=PHYSICAL, allow_leading_hyphen=True)
+        Parameters, Parameter(name="*", group=PHYSICAL_GROUP, allow_leading_hyphen=True)
     ] = BASELINE
     preload_force: Annotated[str | None, _instead("preload_force")] = None
     pressure: Annotated[str | None, _instead("pressure")] = None

@@ -15,7 +15,14 @@ from squealpipe.cli.arguments import (
     Whole,
 )
 from squealpipe.cli.console import DONE, answer, say
-from squealpipe.cli.output import PICTURES, TABLES, check_output, draw, finish, write
+from squealpipe.cli.output import (
+    PICTURES,
+    TABLE_ENDINGS,
+    check_output,
+    draw,
+    finish,
+    write,
+)
 from squealpipe.units import engineering
 
 
@@ -109,7 +116,7 @@ def convert(
         file: dataset that a command or `squealpipe.save` wrote, or another program's .nc or .csv.
         output: file that ends in .csv, .mat, .xlsx, .parquet or .vtu.
     """
-    check_output(output, force=force, kinds=(*TABLES, ".vtu"))
+    check_output(output, force=force, kinds=(*TABLE_ENDINGS, ".vtu"))
 
     from squealpipe.store.foreign import load_any
     from squealpipe.store.tables import convert as task

@@ -175,17 +175,17 @@ def propensity(
 
 def _distribution(text: str) -> tuple[str, dict[str, str | float]]:
     """Name and distribution of NAME=KIND:A:B."""
-    from squealpipe.brake.propensity.distributions import KINDS
+    from squealpipe.brake.propensity.distributions import DISTRIBUTIONS
 
     name, _, words = text.partition("=")
     name, parts = name.strip().replace("-", "_"), words.split(":")
-    if len(parts) != 3 or parts[0] not in KINDS:
+    if len(parts) != 3 or parts[0] not in DISTRIBUTIONS:
         raise ValueError(
             f"--distribution {text!r} is not a distribution; write for instance "
             "mu=uniform:0.1:0.9, k1=normal:1:0.05 or k3=lognormal:0.65:0.1"
         )
     numbers = {
         key: (parse_number if key == "log_std" else reader(name))(text)
-        for key, text in zip(KINDS[parts[0]], parts[1:], strict=True)
+        for key, text in zip(DISTRIBUTIONS[parts[0]], parts[1:], strict=True)
     }
     return name, {"distribution": parts[0], **numbers}

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 DATA = (".nc", ".csv")
-TABLES = (".csv", ".mat", ".xlsx", ".parquet")
+TABLE_ENDINGS = (".csv", ".mat", ".xlsx", ".parquet")
 PICTURES = (".png", ".svg", ".pdf")
 
 

@@ -22,7 +22,7 @@ HEAD = """\
 results: {results}
 
 """
-OWN = """\
+OWN_STUDY = """\
 # A brake of your own: does it squeal or hammer, at how many hertz, why, and what stops it?
 # Change the numbers, then
 #   squealpipe assess 22deg 46deg --config {file}   the answer for one pair of angles, in seconds
@@ -81,7 +81,12 @@ def init(
             folder NAME beside it.
         disc: likewise, with a disc brake as CalculiX writes it: its deck and its matrices.
     """
-    from squealpipe.cli.structure_example import DISC_STUDY, FILES, STUDY, disc_files
+    from squealpipe.cli.structure_example import (
+        DISC_STUDY,
+        EXAMPLE_FILES,
+        STUDY,
+        disc_files,
+    )
     from squealpipe.store.whole_files import whole_file
     from squealpipe.study.configuration.settings import PAPER, read_study
 
@@ -99,7 +104,7 @@ def init(
             raise ValueError(
                 f"{parts} exists; add --force to write the example's files into it, or change FILE"
             )
-        for name, content in (disc_files() if disc else FILES).items():
+        for name, content in (disc_files() if disc else EXAMPLE_FILES).items():
             with whole_file(parts / name) as draft:
                 draft.write_bytes(
                     content if isinstance(content, bytes) else content.encode()
@@ -111,7 +116,7 @@ def init(
             matrices=shlex.quote(str(parts / "structure.yaml")),
         )
     elif own:
-        text = OWN.format(file=shlex.quote(str(file)), results=folder)
+        text = OWN_STUDY.format(file=shlex.quote(str(file)), results=folder)
     else:
         text = overlay_text(
             PAPER.read_text(encoding="utf-8"),

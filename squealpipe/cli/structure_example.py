@@ -22,7 +22,7 @@ structure:
   # n_modes: 12 # to reduce it to; by default as many as errors below 1 % need
   # frequency_max: 10 kHz # highest mode of interest; needed beyond 1000 degrees of freedom
 """
-FILES = {
+EXAMPLE_FILES = {
     "structure.yaml": """\
 # Two pads on a disc, each with one contact. Degrees of freedom: 1 inner pad along the disc, 2 inner
 # pad off the disc, 3 and 4 those of the outer pad. SI units; `units: mm-t-s` converts.

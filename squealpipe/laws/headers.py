@@ -13,7 +13,7 @@ from squealpipe.laws.numerals import numeral
 from squealpipe.laws.rows import FileLine, FileRow, FileRows
 from squealpipe.units import USUAL, UnitError, in_si, is_long_name, is_unit, plain_unit
 
-UNITS = {"speed": "m s-1", "coefficient": "1", "compression": "m", "force": "N"}
+COLUMN_UNITS = {"speed": "m s-1", "coefficient": "1", "compression": "m", "force": "N"}
 """Column → CF unit in which its values are stored, and meant where none is written."""
 
 _LAST_WORDS = (
@@ -103,7 +103,7 @@ def units_row(path: Path, row: FileRow, places: Sequence[Place]) -> list[str] | 
 
 
 def _unit_in_words(place: Place) -> str:
-    unit = place.unit or plain_unit(UNITS[place.name])
+    unit = place.unit or plain_unit(COLUMN_UNITS[place.name])
     return unit or "plain numbers"
 
 
@@ -172,7 +172,7 @@ def places(
     filled = [at for at, name in enumerate(header) if name]
     options = (f"{columns[0]}_column", "value_column")
     where = [
-        named(header, name or column, UNITS[column])
+        named(header, name or column, COLUMN_UNITS[column])
         for name, column in zip(chosen, columns, strict=True)
     ]
     if len(where[0]) == 1 and not where[1] and chosen[1] is None and len(filled) == 2:
@@ -203,7 +203,9 @@ def places(
     if where[0] == where[1]:
         raise ValueError(f"{path}: knots and values are to be two columns, not one")
     return [
-        Place(column, at[0], header[at[0]], _split(header[at[0]], UNITS[column])[1])
+        Place(
+            column, at[0], header[at[0]], _split(header[at[0]], COLUMN_UNITS[column])[1]
+        )
         for column, at in zip(columns, where, strict=True)
     ]
 
@@ -220,16 +222,17 @@ def _refuse_other_unit(path: Path, head: str, column: str) -> None:
         "lbf",
         "kgf",
     )
-    if everyday and not _split(head, UNITS[column])[1]:
+    if everyday and not _split(head, COLUMN_UNITS[column])[1]:
         raise ValueError(
             f"{path}: column {head!r} ends in {word}, which is no unit of {column}; write its unit "
-            f"in brackets, like {column} [{plain_unit(UNITS[column]) or '%'}], or take the word out"
+            f"in brackets, like {column} [{plain_unit(COLUMN_UNITS[column]) or '%'}], or take the "
+            "word out"
         )
 
 
 def _unit_too(column: str) -> str:
     """Say that a column that is renamed, and not in SI, needs its unit in the new name, too."""
-    unit = plain_unit(UNITS[column])
+    unit = plain_unit(COLUMN_UNITS[column])
     return f" (what is not in {unit} needs its unit behind the name)" if unit else ""
 
 
@@ -239,7 +242,7 @@ def refuse_units_elsewhere(path: Path, place: Place, lines: Iterable[FileLine]) 
     Args:
         lines: comments and what stands above the header, with their numbers.
     """
-    units = UNITS[place.name]
+    units = COLUMN_UNITS[place.name]
     if place.unit or units == "1":
         return
     usual = plain_unit(units)

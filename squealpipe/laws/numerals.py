@@ -8,14 +8,14 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-_SIGNS = str.maketrans("−–⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "---0123456789")
+_TYPOGRAPHIC_SIGNS = str.maketrans("−–⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "---0123456789")
 _BLANKS = "\u0020\u00a0\u2009\u202f"
 """Between thousands: blanks of four widths."""
 _TIMES_TEN = re.compile(
     r"(?<=[\d.,])\s*[×·*x]\s*10\s*(?:\^|\*\*)?\s*\(?([+-]?\d{1,3})\)?"
 )
 _EXPONENT = re.compile(r"(?<=[\d.,])[dD](?=[+-]?\d{1,3}(?!\d))")  # Fortran's
-_CELL = re.compile(
+_NUMBER_AND_UNIT = re.compile(
     r"([+-]?(?:\d[\d.,]*|[.,]\d+)(?:[eE][+-]?\d{1,3})?)\s*([^\d\s.,_].*)?", re.ASCII
 )
 _PLAIN = re.compile(r"[+-]?(\d+(\.\d*|,\d+)?|[.,]\d+)", re.ASCII)
@@ -39,12 +39,12 @@ class Numeral(NamedTuple):
 
 def numeral(cell: str) -> Numeral | None:
     """A cell of a number, maybe with a unit; None if it is none."""
-    text = cell.strip().translate(_SIGNS)
+    text = cell.strip().translate(_TYPOGRAPHIC_SIGNS)
     text = _EXPONENT.sub("e", _TIMES_TEN.sub(r"e\1", text))
     if match := re.match(rf"[+-]?\d{{1,3}}([{_BLANKS}'’]\d{{3}})+(?!\d)", text):
         whole = re.sub(rf"[{_BLANKS}'’]", "", match[0])
         text = whole + text[match.end() :]
-    match = _CELL.fullmatch(text)
+    match = _NUMBER_AND_UNIT.fullmatch(text)
     if match is None or not _is_number(_mantissa(match[1])):
         return None
     return Numeral(match[1], match[2] or "")

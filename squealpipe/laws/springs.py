@@ -26,7 +26,7 @@ class Stiffness(NamedTuple):
     k22: Scalar
 
 
-LONG = 1e3
+LONG_SPRING = 1e3
 """Springs longer than so many l_pre take :func:`long_spring_force`, whose round-off does not grow
 with the length; below, that of :func:`spring_force` is less than a tolerance of 1e-12."""
 

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from squealpipe.laws.headers import (
+    COLUMN_UNITS,
     NO_UNIT,
-    UNITS,
     Place,
     cell_at,
     header_row,
@@ -55,7 +55,7 @@ def read_pairs(
     path = Path(path)
 
     def is_header(row: Sequence[str]) -> list[int]:
-        return named(row, chosen[0] or columns[0], UNITS[columns[0]])
+        return named(row, chosen[0] or columns[0], COLUMN_UNITS[columns[0]])
 
     excel = path.suffix.lower() == ".xlsx"
     table = (sheet if excel else text_rows)(path, is_header)
@@ -147,7 +147,7 @@ def _value(path: Path, place: Place, cell: Cell, number: Numeral, sign: str) -> 
     if unit in NO_UNIT:
         return float(text)
     try:
-        return in_si(f"{text} {unit}", UNITS[place.name])
+        return in_si(f"{text} {unit}", COLUMN_UNITS[place.name])
     except UnitError as error:
         column = f"column {place.head!r} in {unit!r}"
         hint = "" if is_unit(unit) else "; or take it out of the name, if it is no unit"

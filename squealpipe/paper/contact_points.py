@@ -18,7 +18,7 @@ from squealpipe.structures.squeal.squealing_modes import squealing_of
 from squealpipe.structures.squeal.windows import WIDE, Running, run
 from squealpipe.systems.datasets.versions import versions
 
-SHOWN, EACH = 4, 48
+SHOWN_PERIODS, EACH = 4, 48
 """Periods of the forces that are kept, and their samples in each."""
 
 
@@ -66,7 +66,7 @@ def contact_points(
         {
             "design": [name for name, _, _ in pads],
             "point": np.arange(1, most + 1),
-            "instant": np.arange(SHOWN * EACH) / EACH,
+            "instant": np.arange(SHOWN_PERIODS * EACH) / EACH,
         },
         {
             "made_by": "squealpipe.paper.contact_points",
@@ -148,7 +148,7 @@ def _of_motion(
         "stick_fraction": padded(kept),
         "peak_force": padded(nothing),
         "lag": padded(nothing),
-        "force": padded(np.full((count, SHOWN * EACH), np.nan)),
+        "force": padded(np.full((count, SHOWN_PERIODS * EACH), np.nan)),
         **dict.fromkeys(("dominant_frequency", "velocity_rms", "share"), np.nan),
     }
     if not moves:
@@ -169,7 +169,7 @@ def _of_motion(
             for name in ("dominant_frequency", "velocity_rms", "share")
         },
         "lag": padded(np.where(moving & moving[0], delays, np.nan)),
-        "force": padded(force[:, : SHOWN * EACH]),
+        "force": padded(force[:, : SHOWN_PERIODS * EACH]),
     }
 
 

@@ -31,7 +31,7 @@ from squealpipe.schema import SYSTEM
 from squealpipe.structures.schema.structures import NAME as COMPLEX_MODES
 from squealpipe.validation import checked
 
-DRAWN: dict[str, Callable[[Axes, xr.Dataset], None]] = {
+DRAW_BY_SCHEMA: dict[str, Callable[[Axes, xr.Dataset], None]] = {
     "assess": draw_settled_orbit,
     "simulation": draw_force,
     "run_summary": draw_spectrum,
@@ -57,9 +57,9 @@ DRAWN: dict[str, Callable[[Axes, xr.Dataset], None]] = {
     SYSTEM + "cycle branch": draw_branch,
     SYSTEM + "cycle curve": draw_curves,
 }
-"""Schema → what draws it; :data:`squealpipe.plotting.quantities.SHOWN` has the others."""
+"""Schema → what draws it; :data:`squealpipe.plotting.quantities.SHOWN_VARIABLES` has the others."""
 
-FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
+FIGURE_BY_SCHEMA: dict[str, Callable[[xr.Dataset], Figure]] = {
     "assess": assess_figure,
     "simulation": run_figure,
     "propensity": propensity_figure,
@@ -127,7 +127,7 @@ def picture(
     if mode is not None:
         _check_modes(dataset)
         return figure_of_mode(dataset, mode)
-    several = FIGURES.get(_schema(dataset))
+    several = FIGURE_BY_SCHEMA.get(_schema(dataset))
     if several is not None and variable is None:
         figure = several(dataset)
     else:
@@ -161,8 +161,8 @@ def _draw(
         axes.set_title(title_of(dataset, mode), fontsize=8)
         return
     schema = _schema(dataset)
-    if variable is None and schema in DRAWN:
-        DRAWN[schema](axes, dataset)
+    if variable is None and schema in DRAW_BY_SCHEMA:
+        DRAW_BY_SCHEMA[schema](axes, dataset)
         return
     if variable is None and (quantity := shown(dataset)) is not None:
         draw_quantity(axes, quantity)

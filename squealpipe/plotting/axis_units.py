@@ -24,7 +24,12 @@ from matplotlib.ticker import (
     NullLocator,
 )
 
-from squealpipe.plotting.style import ANGLES, SMALL, angle_in_words, symbol
+from squealpipe.plotting.style import (
+    ANGLE_NAMES,
+    POWER_OF_TEN_BELOW,
+    angle_in_words,
+    symbol,
+)
 from squealpipe.text import RAISED, number
 from squealpipe.units import conversion, shown_in
 from squealpipe.vibration.sizes import is_real
@@ -79,7 +84,7 @@ def _title_angles(
     """Write the angles in titles in the wanted unit of angles; that unit, if there are any."""
     angles = {
         name: float(dataset[name])
-        for name in ANGLES
+        for name in ANGLE_NAMES
         if name in dataset and not dataset[name].ndim
     }
     used = set()
@@ -116,7 +121,9 @@ def _convert(axis: Axis, words: str, factor: float, unit: str) -> None:
     words = "frequency" if words == "ω" and "rad" not in unit else words
     axis.set_label_text(f"{words} ({unit})")
     largest = factor * float(np.abs(axis.get_view_interval()).max())
-    if axis.get_scale() != "log" and 0 < largest < SMALL:  # one power of ten for all
+    if (
+        axis.get_scale() != "log" and 0 < largest < POWER_OF_TEN_BELOW
+    ):  # one power of ten for all
         power = math.floor(math.log10(largest))
         factor *= 10.0**-power
         axis.set_label_text(f"{words} (10{str(power).translate(RAISED)} {unit})")

@@ -13,7 +13,7 @@ from squealpipe.plotting.origin import parameter
 from squealpipe.plotting.quantities import label
 from squealpipe.schema import meanings
 
-MARKS = {
+SPECIAL_POINT_MARKS = {
     "fold": ("^", style.RED, "fold"),
     "period_doubling": ("s", style.PURPLE, "period doubling"),
     "torus": ("D", style.GREEN, "torus bifurcation"),
@@ -130,8 +130,8 @@ def trace_branch(
         )
     for value, name in meanings(branch.label).items():
         points = branch.label.values == value
-        if name in MARKS and points.any():
-            marker, colour, words = MARKS[name]
+        if name in SPECIAL_POINT_MARKS and points.any():
+            marker, colour, words = SPECIAL_POINT_MARKS[name]
             sites = parameters[points], sizes[points]
             axes.plot(*sites, marker, color=colour, markersize=4, zorder=4, label=words)
 

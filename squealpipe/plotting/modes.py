@@ -12,7 +12,7 @@ from squealpipe.plotting import style
 from squealpipe.plotting.quantities import label
 from squealpipe.units import shown_in
 
-GROWTH = "growth rate (1/s)"
+GROWTH_LABEL = "growth rate (1/s)"
 
 
 def draw_modes(axes: Axes, modes: xr.Dataset) -> None:
@@ -69,7 +69,7 @@ def _draw_spectrum(axes: Axes, modes: xr.Dataset) -> None:
     )
     show_what_grows(axes, growth)
     axes.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
-    axes.set(xlabel=f"frequency ({unit})", ylabel=GROWTH)
+    axes.set(xlabel=f"frequency ({unit})", ylabel=GROWTH_LABEL)
     axes.legend()
 
 
@@ -81,7 +81,7 @@ def _draw_along(axes: Axes, modes: xr.Dataset, name: str, dim: str) -> None:
     if not np.isfinite(values).any():
         style.say_instead(axes, "no mode within the limits")
         return
-    words = GROWTH
+    words = GROWTH_LABEL
     if name == "frequency":
         factor, unit = frequency_unit(values)
         values, words = values * factor, f"frequency ({unit})"

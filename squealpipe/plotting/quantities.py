@@ -11,7 +11,7 @@ from squealpipe.parameters import TABLE
 from squealpipe.plotting import style
 from squealpipe.schema import SYSTEM, meanings
 
-SHOWN: dict[str, tuple[str, Mapping[str, object]]] = {
+SHOWN_VARIABLES: dict[str, tuple[str, Mapping[str, object]]] = {
     "validity_map": ("first_separation_time", {}),
     "refined_validity_map": ("separates", {}),
     "hammering_map": ("motion", {}),
@@ -52,9 +52,9 @@ def shown(dataset: xr.Dataset) -> xr.DataArray | None:
         str(dataset.attrs.get("schema")).removeprefix("sweep of ").split(" over ")[0]
     )
     schema = "basin_map" if schema.startswith("basin_map") else schema
-    if schema not in SHOWN:
+    if schema not in SHOWN_VARIABLES:
         return None
-    name, chosen = SHOWN[schema]
+    name, chosen = SHOWN_VARIABLES[schema]
     variable = dataset[name].sel(chosen)
     return variable.isel(dict.fromkeys(variable.dims[2:], 0))
 
@@ -62,7 +62,7 @@ def shown(dataset: xr.Dataset) -> xr.DataArray | None:
 def counts(dataset: xr.Dataset) -> list[str]:
     """Describe the values of the drawn variable in one line of text."""
     variable = shown(dataset)
-    assert variable is not None, dataset.attrs  # noqa: S101 (maps of the command line are in SHOWN)
+    assert variable is not None, dataset.attrs  # noqa: S101 (maps of the command line are in SHOWN_VARIABLES)
     if table := meanings(variable):
         codes, numbers = np.unique(variable.values, return_counts=True)
         rows = [
@@ -113,7 +113,7 @@ def draw_quantity(axes: Axes, variable: xr.DataArray) -> None:
         return
     chosen = [
         style.angle_in_words(str(name), at.item())
-        if name in style.ANGLES
+        if name in style.ANGLE_NAMES
         else f"{name} {at.item()}"
         for name, at in variable.coords.items()
         if not at.ndim
@@ -145,7 +145,7 @@ def _draw_map(
     else:
         low, high = np.percentile(values[np.isfinite(values)], [1, 99])
         scale = {"cmap": "viridis", "vmin": low, "vmax": high}
-    if variable.dims == style.ANGLES:
+    if variable.dims == style.ANGLE_NAMES:
         mesh = style.draw_map(axes, variable, values, **scale)
     else:
         places = [
@@ -189,6 +189,6 @@ def label(variable: xr.DataArray) -> str:
     unit = written.get(unit := str(variable.attrs.get("units", "1")), unit)
     name = str(variable.name)
     words = _words(variable)
-    if name in style.ANGLES or (words == name and name in TABLE):
+    if name in style.ANGLE_NAMES or (words == name and name in TABLE):
         words = style.symbol(name)
     return words if unit == "1" else f"{words} ({unit})"

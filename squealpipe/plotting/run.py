@@ -50,7 +50,9 @@ def figure(run: xr.Dataset) -> Figure:
         draw(panel, run)
     style.panel_letters(axes.flat, [title for _, title in panels])
     drawn.suptitle(
-        ", ".join(style.angle_in_words(name, float(run[name])) for name in style.ANGLES)
+        ", ".join(
+            style.angle_in_words(name, float(run[name])) for name in style.ANGLE_NAMES
+        )
         + f", model {run.attrs.get('model', 'A1')}",
         fontsize=9,
     )

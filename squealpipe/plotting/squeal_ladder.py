@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from squealpipe.benchmark.schema import Role
 from squealpipe.plotting import style
-from squealpipe.plotting.work_precision import MARKS, draw_methods, foot
+from squealpipe.plotting.work_precision import METHOD_MARKS, draw_methods, foot
 
 ERRORS = {
     "frequency": ("frequency", "relative error"),
@@ -17,7 +17,7 @@ ERRORS = {
     "separation": ("contact loss", "error of the share of time"),
 }
 """Quantity → title of its panel, and label of its axis."""
-LEAST = 1e-7
+SMALLEST_ERROR = 1e-7
 """Smallest error that is drawn."""
 
 
@@ -33,10 +33,10 @@ def draw_error(axes: Axes, ladder: xr.Dataset, quantity: str) -> None:
     Args:
         quantity: one of :data:`ERRORS`.
     """
-    known = max(float(ladder[f"{quantity}_uncertainty"]), LEAST)
+    known = max(float(ladder[f"{quantity}_uncertainty"]), SMALLEST_ERROR)
     error = ladder[f"{quantity}_error"]
     is_finest = ladder.role == Role.our_setting
-    shown = error.where(~is_finest, known).clip(min=LEAST)
+    shown = error.where(~is_finest, known).clip(min=SMALLEST_ERROR)
     rows = ladder[["method", "role", "cpu_time"]].assign(
         error=shown, worth=ladder.verdict
     )
@@ -79,7 +79,7 @@ def draw_creep(axes: Axes, ladder: xr.Dataset) -> None:
     for name in names:
         mine = ((ladder.method == name) & (width > 0)).values
         if mine.any():
-            colour, marker, dash = MARKS[names.index(name)]
+            colour, marker, dash = METHOD_MARKS[names.index(name)]
             look: dict[str, Any] = {
                 "color": colour,
                 "marker": marker,

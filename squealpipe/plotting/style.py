@@ -34,7 +34,7 @@ BLUE, ORANGE, GREEN, RED, PURPLE, GREY = PALETTE
 X_COLOUR, Y_COLOUR = ORANGE, BLUE
 """Displacements along the belt and away from it, everywhere."""
 
-SMALL = 1e-3
+POWER_OF_TEN_BELOW = 1e-3
 """Largest number on an axis whose labels are written with a power of ten."""
 
 WHITE, LIGHT, BLACK = "#FFFFFF", "#BDBDBD", "#1A1A1A"
@@ -43,7 +43,7 @@ HALO = [withStroke(linewidth=2, foreground="white")]
 """Around words and marks on a map."""
 HATCH = "//////"
 
-ANGLES = ("alpha1", "alpha2")
+ANGLE_NAMES = ("alpha1", "alpha2")
 REGIME_COLOURS = {
     "slip_slower": BLUE,
     "slip_faster": GREEN,
@@ -256,7 +256,7 @@ def shorten_small_ticks(figure: Figure) -> None:
     for axes in figure.axes:
         for axis in (axes.xaxis, axes.yaxis):
             ticks = axis.get_major_formatter()
-            small = np.abs(axis.get_view_interval()).max() < SMALL
+            small = np.abs(axis.get_view_interval()).max() < POWER_OF_TEN_BELOW
             if small and isinstance(ticks, ScalarFormatter):
                 ticks.set_useMathText(True)
                 ticks.set_powerlimits((-3, 5))

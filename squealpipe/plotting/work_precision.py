@@ -13,7 +13,7 @@ from matplotlib.ticker import FormatStrFormatter, LogLocator
 from squealpipe.benchmark.schema import Reliability, Role
 from squealpipe.plotting import style
 
-MARKS = [
+METHOD_MARKS = [
     (colour, marker, dash)
     for markers, dash in (("os^vDP*", "-"), ("x+<>dhp", ":"))
     for colour, marker in zip(
@@ -59,7 +59,7 @@ def draw_methods(
     _draw_front(axes, error, values, fine & (worth == Reliability.right))
     for method in dict.fromkeys(rows.method.values.tolist()):
         mine = fine & (rows.method.values == method)
-        colour, marker, dash = MARKS[methods.index(method) % len(MARKS)]
+        colour, marker, dash = METHOD_MARKS[methods.index(method) % len(METHOD_MARKS)]
         right = mine & (worth == Reliability.right)
         look: dict[str, Any] = {"color": colour, "ms": 3.5, "lw": 0.8, "zorder": 2}
         axes.plot(error[mine], values[mine], dash, **look)

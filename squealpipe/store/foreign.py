@@ -9,8 +9,8 @@ import xarray as xr
 
 from squealpipe.laws.numerals import decimal_sign, numeral
 from squealpipe.laws.rows import text_rows
-from squealpipe.store.netcdf import DAMAGED, load, with_plain_texts
-from squealpipe.store.sealed import MARK
+from squealpipe.store.netcdf import ERRORS_OF_DAMAGED_FILES, load, with_plain_texts
+from squealpipe.store.sealed import SEAL_MARK
 from squealpipe.store.whole_files import StoreError
 
 
@@ -26,13 +26,13 @@ def load_any(path: str | os.PathLike[str]) -> xr.Dataset:
         raise FileNotFoundError(f"no file {source}; check the path")
     if source.suffix == ".csv":
         return _table(source)
-    if MARK in source.read_bytes()[-200:]:
+    if SEAL_MARK in source.read_bytes()[-200:]:
         return load(source)
     try:
         with xr.open_dataset(source, engine="netcdf4", decode_times=False) as opened:
             foreign = "dataset_id" not in opened.attrs
             dataset = opened.load() if foreign else opened
-    except DAMAGED as error:
+    except ERRORS_OF_DAMAGED_FILES as error:
         raise StoreError(
             f"{source} cannot be read as NetCDF ({error}); a file that ends in .nc must be NetCDF, "
             "one that ends in .csv a table of texts"

@@ -8,7 +8,7 @@ import xarray as xr
 
 from squealpipe.schema import meanings
 
-LONGEST = 63
+LONGEST_NAME = 63
 KEYWORDS = frozenset(
     {
         "break",
@@ -76,17 +76,17 @@ def matlab_names(names: Iterable[str], taken: Iterable[str] = ()) -> dict[str, s
     for name in names:
         if name not in renamed:
             plain = _plain(name)
-            short, number = plain[:LONGEST], 1
+            short, number = plain[:LONGEST_NAME], 1
             while short in used or short in KEYWORDS:
                 number += 1
-                short = f"{plain[: LONGEST - 1 - len(str(number))]}_{number}"
+                short = f"{plain[: LONGEST_NAME - 1 - len(str(number))]}_{number}"
             renamed[name] = short
             used.add(short)
     return {name: renamed[name] for name in names}
 
 
 def _is_name(name: str) -> bool:
-    fits = re.fullmatch(r"[A-Za-z]\w*", name, re.ASCII) and len(name) <= LONGEST
+    fits = re.fullmatch(r"[A-Za-z]\w*", name, re.ASCII) and len(name) <= LONGEST_NAME
     return bool(fits) and name not in KEYWORDS
 
 

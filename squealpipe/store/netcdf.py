@@ -14,7 +14,7 @@ import xarray as xr
 from squealpipe.schema import SchemaError, schema_of, validate
 from squealpipe.store.checkout import commit
 from squealpipe.store.identity import dataset_id, without_foreign_key
-from squealpipe.store.sealed import MARK, verified
+from squealpipe.store.sealed import SEAL_MARK, verified
 from squealpipe.store.whole_files import (
     StoreError,
     checksum,
@@ -24,7 +24,7 @@ from squealpipe.store.whole_files import (
 )
 from squealpipe.validation import AnyPath, checked
 
-DAMAGED = (
+ERRORS_OF_DAMAGED_FILES = (
     OSError,
     RuntimeError,
     ValueError,
@@ -72,7 +72,7 @@ def save(dataset: xr.Dataset, path: AnyPath) -> Path:
                 temporary, engine="netcdf4", format="NETCDF4", encoding=encoding
             )
             with temporary.open("ab") as file:
-                file.write(MARK + checksum(temporary).encode() + b"\n")
+                file.write(SEAL_MARK + checksum(temporary).encode() + b"\n")
     except RuntimeError as error:  # as which netCDF-4 reports a full disk, too
         raise not_written(target, error) from error
     return target
@@ -160,7 +160,7 @@ def read(path: str | os.PathLike[str]) -> xr.Dataset:
                     f"it claims {opened.nbytes} bytes, more than this machine has"
                 )
             dataset = opened.load()
-    except DAMAGED as error:
+    except ERRORS_OF_DAMAGED_FILES as error:
         raise StoreError(
             f"{source} is truncated or not NetCDF-4 ({error}); delete it and run snakemake again"
         ) from error

@@ -12,7 +12,7 @@ from typing import Any
 from squealpipe.store.checkout import ROOT as CHECKOUT
 from squealpipe.store.whole_files import ARCHIVES, MANIFEST, SEAL, StoreError, checksum
 
-NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
+RUN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
 LEFT_OUT = "left_out"
 """Entry of a manifest with the patterns of what the archive deliberately does not hold."""
 
@@ -63,7 +63,7 @@ def seal_text(folder: Path) -> str:
 
 def archive_folder(name: str, root: str | os.PathLike[str] = ".") -> Path:
     """Folder of an archive of that name."""
-    if not NAME.fullmatch(name):
+    if not RUN_NAME.fullmatch(name):
         raise ValueError(
             f"archive name {name!r}: use up to 80 letters, digits, '.', '_' and '-', "
             "beginning with a letter or digit"
@@ -79,7 +79,7 @@ def locate(what: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> 
     path = Path(what)
     if path.exists():
         return path
-    if NAME.fullmatch(str(what)):
+    if RUN_NAME.fullmatch(str(what)):
         for place in (root, CHECKOUT):
             archive = archive_folder(str(what), place)
             if archive.is_dir():

@@ -12,7 +12,7 @@ import netCDF4
 
 from squealpipe.store.whole_files import StoreError
 
-MARK = b"\n# squealpipe sha256 "
+SEAL_MARK = b"\n# squealpipe sha256 "
 
 
 def attributes(path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -28,7 +28,7 @@ def verified(path: str | os.PathLike[str]) -> Path:
         raise FileNotFoundError(
             f"no dataset {source}; make it with snakemake, or check the path"
         )
-    content, mark, stated = source.read_bytes().rpartition(MARK)
+    content, mark, stated = source.read_bytes().rpartition(SEAL_MARK)
     if not mark or stated != hashlib.sha256(content).hexdigest().encode() + b"\n":
         raise StoreError(
             f"{source} was changed or damaged since squealpipe wrote it, or another program wrote "

@@ -17,7 +17,12 @@ from squealpipe.store.vtu import write_vtu
 from squealpipe.store.whole_files import whole_file
 from squealpipe.validation import AnyPath, checked
 
-NEEDS = {".csv": None, ".mat": None, ".xlsx": "openpyxl", ".parquet": "pyarrow"}
+LIBRARY_OF_FORM = {
+    ".csv": None,
+    ".mat": None,
+    ".xlsx": "openpyxl",
+    ".parquet": "pyarrow",
+}
 """Form → the library of the extra ``export`` that writes it."""
 
 
@@ -47,9 +52,11 @@ def convert(dataset: xr.Dataset, path: AnyPath) -> list[Path]:
     target = Path(path)
     if target.suffix == ".vtu":
         return [write_vtu(dataset, target)]
-    if target.suffix not in NEEDS:
-        raise ValueError(f"{target}: end the name in {', '.join(NEEDS)}, .vtu")
-    needed = NEEDS[target.suffix]
+    if target.suffix not in LIBRARY_OF_FORM:
+        raise ValueError(
+            f"{target}: end the name in {', '.join(LIBRARY_OF_FORM)}, .vtu"
+        )
+    needed = LIBRARY_OF_FORM[target.suffix]
     if needed is not None and find_spec(needed) is None:
         raise ValueError(
             f"{target} needs {needed}; pip install 'squealpipe[export]', or {needed}"

@@ -30,7 +30,7 @@ from squealpipe.systems.progress import with_progress
 
 Given = ParamSpec("Given")
 Result = TypeVar("Result")
-STEPS = 9
+FRICTION_STEPS = 9
 """Frictions on the way from none to one friction."""
 FLOATS = ("growth_rate", "growth_rate_error", "frequency", "damping_ratio", "residual")
 
@@ -234,7 +234,7 @@ def _ways(structure: ContactStructure, asked: Asked) -> np.ndarray:
     path = frictions
     if asked.critical and not asked.mu.ndim and structure.contacts and asked.mu > 0:
         # one friction alone: on the way to it from none, modes are followed all the same
-        path = np.linspace(0.0, float(asked.mu), STEPS)
+        path = np.linspace(0.0, float(asked.mu), FRICTION_STEPS)
     in_subspace = asked.critical and structure.size > DENSE
     grid = {"belt_speed": np.atleast_1d(asked.belt_speed), **asked.varied}
     shape = tuple(map(len, grid.values()))

@@ -22,9 +22,9 @@ from squealpipe.systems.inputs.values import brief
 from squealpipe.text import suggestion
 
 CONTACT_COLUMNS = ("name", "normal", "tangential", "stiffness", "preload")
-ORIGIN = ("nodes", "against", "area", "gap", "x", "y", "z")
+ORIGIN_COLUMNS = ("nodes", "against", "area", "gap", "x", "y", "z")
 """Columns that say where a contact of a mesh comes from."""
-KNOWN = (*CONTACT_COLUMNS, "speed", "mu", "mu_static", "across", *ORIGIN)
+KNOWN = (*CONTACT_COLUMNS, "speed", "mu", "mu_static", "across", *ORIGIN_COLUMNS)
 HEADER = f"its first row must name the columns, like {','.join(CONTACT_COLUMNS)}"
 
 
@@ -116,7 +116,7 @@ class _Line(NamedTuple):
             # who names the direction across asks for friction's damping along it
             transverse = "across" in arguments
             values = self._values(sign, scales)
-            arguments |= {k: v for k, v in values.items() if k not in ORIGIN}
+            arguments |= {k: v for k, v in values.items() if k not in ORIGIN_COLUMNS}
             arguments["origin"] = self._origin(values)
             return Contact(self.name, **arguments, transverse_damping=transverse)
         except ValueError as error:
@@ -129,7 +129,7 @@ class _Line(NamedTuple):
             "area": scales.length**2,
             **dict.fromkeys(("gap", "x", "y", "z"), scales.length),
         }
-        units = dict(UNITS)
+        units = dict(CONTACT_UNITS)
         if self.turning:
             factors["speed"], units["speed"] = scales.length, "m"
         values = {}
@@ -156,7 +156,7 @@ class _Line(NamedTuple):
         )
 
 
-UNITS = {
+CONTACT_UNITS = {
     "stiffness": "N m-1",
     "preload": "N",
     "speed": "1",
@@ -170,7 +170,11 @@ UNITS = {
 
 def _numerals(where: str, row: Mapping[str, str]) -> dict[str, Numeral]:
     """The numbers of a row as they are written."""
-    return {key: _numeral(f"{where}: {key}", row[key]) for key in UNITS if row.get(key)}
+    return {
+        key: _numeral(f"{where}: {key}", row[key])
+        for key in CONTACT_UNITS
+        if row.get(key)
+    }
 
 
 def _numeral(where: str, text: str) -> Numeral:

@@ -29,11 +29,11 @@ from squealpipe.validation import real_array
 
 Form = TypeVar("Form", bound=ContactStructure)
 MATRICES = ("mass", "stiffness", "damping")
-NUMBERS = ("mu", "belt_speed", "mu_static", "friction_speed")
+SCALAR_KEYS = ("mu", "belt_speed", "mu_static", "friction_speed")
 KEYS = (
     *MATRICES,
     "speed_terms",
-    *NUMBERS,
+    *SCALAR_KEYS,
     "contacts",
     "modal_damping",
     "friction_law",
@@ -51,7 +51,7 @@ SPEED_TERMS = (
     "lists of matrix and power are needed, like {damping: [{matrix: DG.mtx, power: 1}]}; "
     "factor is optional"
 )
-NOTHING = 1e-13
+NEGLIGIBLE_ENTRY = 1e-13
 """Entries below this share of the scale of their rows are round-off."""
 
 
@@ -165,7 +165,9 @@ def _numbers(
 ) -> dict[str, Any]:
     """Return friction, speeds and modal damping, in SI."""
     arguments: dict[str, Any] = {
-        name: content[name] for name in (*NUMBERS, "modal_damping") if name in content
+        name: content[name]
+        for name in (*SCALAR_KEYS, "modal_damping")
+        if name in content
     }
     # the speed of what turns is an angular one
     turning = scales.speed if rotation is None else scales.rate
@@ -388,7 +390,7 @@ def _completed(matrix: Any, path: Path, given: Labelled, triangle: str | None) -
     scale = np.maximum(
         *(np.minimum(each[off.row], each[off.col]) for each in (largest, diagonal))
     )
-    significant = np.abs(off.data) > NOTHING * scale
+    significant = np.abs(off.data) > NEGLIGIBLE_ENTRY * scale
     pattern = sp.csr_array(
         (np.ones(significant.sum(), int), (off.row[significant], off.col[significant])),
         off.shape,

@@ -21,7 +21,9 @@ BANNER = (
 )
 UNENDED = "its last line has no end; add one if the file is whole"
 PLACE = r"0*[1-9]\d*"
-NUMBER = r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|[iI]nf(?:inity)?|[nN]a[nN])"
+NUMBER_PATTERN = (
+    r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|[iI]nf(?:inity)?|[nN]a[nN])"
+)
 
 
 def read_matrix_market(path: Path) -> Any:
@@ -69,7 +71,7 @@ def _check_entries(content: bytes, stated: int, form: str, field: str) -> None:
     if _is_table(content, stated, width, places=form == "coordinate"):
         return
     # slower, but it says which line is wrong
-    parts = [NUMBER] * (2 if field == "complex" else 1)
+    parts = [NUMBER_PATTERN] * (2 if field == "complex" else 1)
     if form == "coordinate":
         parts = [PLACE, PLACE, *parts]
     entry = re.compile(r"\s*" + r"\s+".join(parts) + r"\s*")

@@ -19,7 +19,13 @@ from squealpipe.structures.dynamics import (
 )
 from squealpipe.structures.modes import modes_at_rest
 from squealpipe.structures.reduction import conflict_in_stick
-from squealpipe.systems.belt_contact import FIRST, SLIP, BeltContact, Surface, negative
+from squealpipe.systems.belt_contact import (
+    DECIDES_FIRST,
+    SLIP,
+    BeltContact,
+    Surface,
+    negative,
+)
 from squealpipe.systems.components import MOST_COMPONENTS, Component, Switch
 from squealpipe.systems.definition import MOST_STATES
 from squealpipe.systems.inputs.values import brief, is_finite_number, is_whole_number
@@ -407,13 +413,13 @@ class _Contact:
         def rises(t: Any, s: Any, p: Any, r: Any) -> Any:
             motion = self.equations.at(s, p, r)
             lifts = total(normal, motion.velocities)
-            return FIRST * lifts + total(normal, motion.accelerations)
+            return DECIDES_FIRST * lifts + total(normal, motion.accelerations)
 
         def on_belt(t: Any, s: Any, p: Any, r: Any) -> Any:
             return self.speed(t, s, p, r) / float(np.abs(along).max())
 
         def above(t: Any, s: Any, p: Any, r: Any) -> Any:
-            return -FIRST * self.pressing(t, s, p, r) - self.force
+            return -DECIDES_FIRST * self.pressing(t, s, p, r) - self.force
 
         slips = self.belt.slips(self.speed)
         return [

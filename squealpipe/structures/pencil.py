@@ -22,7 +22,7 @@ from scipy.sparse.linalg._dsolve import _superlu
 
 DENSE = 1000
 """Degrees of freedom up to which all eigenvalues are computed by dense algebra."""
-LONG = np.clongdouble
+LONG_COMPLEX = np.clongdouble
 FEW_ENTRIES: dict[str, Any] = {
     "permc_spec": "MMD_AT_PLUS_A",
     "diag_pivot_thresh": 0.01,
@@ -135,13 +135,13 @@ class Pencil:
         """M x, C x and K x of one vector, summed in extended precision."""
         mass, damping, stiffness = (each.product(vector) for each in self._extended)
         if self.modal is not None:
-            damping = damping + self.modal.product(vector.astype(LONG))
+            damping = damping + self.modal.product(vector.astype(LONG_COMPLEX))
         return mass, damping, stiffness
 
     def terms(self, s: complex, vector: np.ndarray) -> tuple[Any, Any, Any]:
         """M s² x, C s x and K x, in extended precision."""
         mass, damping, stiffness = self.products(vector)
-        number = LONG(s)
+        number = LONG_COMPLEX(s)
         return mass * number**2, damping * number, stiffness
 
     def matrix(self, s: complex) -> Any:
@@ -201,7 +201,7 @@ class Extended:
         """A x."""
         total = np.zeros(self.size, np.result_type(vector, np.longdouble))
         if self.filled.size:
-            wide = LONG if vector.dtype.kind == "c" else np.longdouble
+            wide = LONG_COMPLEX if vector.dtype.kind == "c" else np.longdouble
             terms = self.data * vector.astype(wide)[self.indices]
             total[self.filled] = np.add.reduceat(terms, self.starts)
         return total

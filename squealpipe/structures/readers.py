@@ -24,7 +24,7 @@ from squealpipe.structures.matrix_market import BANNER, UNENDED, read_matrix_mar
 from squealpipe.structures.nastran_matrices import read_dmig, read_op4
 from squealpipe.structures.packed import plain_name, text_of, unpacked
 
-DAMAGED = (
+ERRORS_OF_READERS = (
     OSError,
     ValueError,
     KeyError,
@@ -38,7 +38,7 @@ DAMAGED = (
     zlib.error,
 )
 """What libraries raise on files that are cut off or of another form."""
-MARKS = {
+FIRST_BYTES = {
     b"\xef\xbb\xbf": "begins with a byte order mark; save it as UTF-8 without one",
     b"\xff\xfe": "is UTF-16; save it as UTF-8 without byte order mark",
 }
@@ -119,7 +119,7 @@ def _read(plain: Path, path: Path, key: str, variable: str | None) -> Labelled:
     }
     with plain.open("rb") as file:
         start = file.read(3)
-    for mark, remedy in MARKS.items():
+    for mark, remedy in FIRST_BYTES.items():
         if start.startswith(mark):
             raise ValueError(f"{key}: {path} {remedy}")
     ending = plain_name(path).suffix.lower()
@@ -134,7 +134,7 @@ def _read(plain: Path, path: Path, key: str, variable: str | None) -> Labelled:
         raise ValueError(f"{key}: {path} needs {error.name}; {EXTRA}") from error
     except ChoiceError as error:
         raise ValueError(f"{key}: {path}: {error}") from error
-    except DAMAGED as error:
+    except ERRORS_OF_READERS as error:
         raise ValueError(
             f"{key}: {path} is cut off, or not what its ending says: {error}"
         ) from error

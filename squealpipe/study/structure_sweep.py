@@ -11,7 +11,7 @@ from squealpipe.structures.structure import Structure
 from squealpipe.study.chunks import Chunks
 
 TASK = "complex_modes"
-OPTIONS = ("frequency_max", "n_modes")
+SWEPT_OPTIONS = ("frequency_max", "n_modes")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,7 +41,7 @@ class StructureSweep:
             )
         object.__setattr__(self, "structure", Structure.read(file))
         for name in self.vary:
-            if name in OPTIONS:
+            if name in SWEPT_OPTIONS:
                 raise ValueError(f"{name} cannot be varied; fix it")
         asked_of(self.structure, **self._arguments())
 
@@ -67,5 +67,5 @@ class StructureSweep:
 
     def _arguments(self) -> dict[str, Any]:
         factors = {**self.fixed, **self.vary}
-        options = {name: factors.pop(name) for name in OPTIONS if name in factors}
+        options = {name: factors.pop(name) for name in SWEPT_OPTIONS if name in factors}
         return {"factors": factors, **options}

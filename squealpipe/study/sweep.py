@@ -21,7 +21,7 @@ from squealpipe.brake.models.refusals import refuse_unread
 from squealpipe.brake.sampling import default_times
 from squealpipe.inputs import ANGLES
 from squealpipe.parameters import Parameters, parameters_of
-from squealpipe.ranges import NUMBERS, PHYSICAL, is_structure
+from squealpipe.ranges import NUMBERS, PARAMETER_NAMES, is_structure
 from squealpipe.schema import (
     ABSENT,
     DatasetSchema,
@@ -42,7 +42,7 @@ from squealpipe.study.schema.sweep import (
     sweep_name,
 )
 from squealpipe.study.structure_sweep import StructureSweep
-from squealpipe.study.swept_tasks import MAPS, NEEDED, TASKS, options_of
+from squealpipe.study.swept_tasks import MAPS, NO_DEFAULT, TASKS, options_of
 from squealpipe.study.system_sweep import SystemSweep, is_system
 from squealpipe.systems.processes import available_cores, leave_interrupts_to_the_parent
 from squealpipe.systems.progress import alone
@@ -50,7 +50,7 @@ from squealpipe.text import suggestion
 from squealpipe.units import holds_units
 from squealpipe.validation import Line, Workers, checked
 
-MOST = 2000
+MOST_HELD = 2000
 """Finished runs that are held in memory."""
 
 
@@ -102,11 +102,11 @@ class Sweep:
                 )
             for value in values:
                 self._with({name: value})
-        for name in set(self.fixed) - {*ANGLES, *options, *PHYSICAL}:
+        for name in set(self.fixed) - {*ANGLES, *options, *PARAMETER_NAMES}:
             known = ", ".join(options) or "none"
             raise ValueError(f"{self.task} has no option {name!r}; it has {known}")
         self._with(self.fixed)
-        needed = {*ANGLES, *(name for name in options if options[name] is NEEDED)}
+        needed = {*ANGLES, *(name for name in options if options[name] is NO_DEFAULT)}
         for name in sorted(needed | (set(self.vary) & set(self.fixed))):
             if (name in self.vary) == (name in self.fixed):
                 raise ValueError(f"{self.task} needs {name} once, fixed or varied")
@@ -131,7 +131,9 @@ class Sweep:
     def _with(self, given: Mapping[str, Any]) -> tuple[Parameters, dict[str, Any]]:
         """The parameters with what is given of them, and the rest: angles and options."""
         options = options_of(self.task)
-        physical = {name for name in given if name in PHYSICAL and name not in options}
+        physical = {
+            name for name in given if name in PARAMETER_NAMES and name not in options
+        }
         params = self.params.with_(**{name: given[name] for name in physical})
         return params, {name: given[name] for name in given if name not in physical}
 
@@ -241,7 +243,9 @@ def run_sweep(
                 made.append(run)
                 show(number / total)
                 # after 5 s of new results they go to disk: a stopped sweep loses no more
-                if kept and (time.monotonic() - written > 5.0 or len(made) >= MOST):
+                if kept and (
+                    time.monotonic() - written > 5.0 or len(made) >= MOST_HELD
+                ):
                     kept.save(number - len(made), made)
                     made, written = [], time.monotonic()
         finally:

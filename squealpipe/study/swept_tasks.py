@@ -19,20 +19,20 @@ from squealpipe.brake.linear.maps import (
     stability_map,
 )
 
-NEEDED = inspect.Parameter.empty
-ONE_PAIR = (simulate, periodic_orbit, backbone, smallest_disturbance, assess)
+NO_DEFAULT = inspect.Parameter.empty
+TASKS_OF_ONE_PAIR = (simulate, periodic_orbit, backbone, smallest_disturbance, assess)
 MAPS = (
     *(validity_map, hammering_map, quasi_static_map, stability_map),
     *(critical_friction_map, natural_frequencies),
 )
 """Tasks that take arrays of angles."""
 TASKS: dict[str, Callable[..., xr.Dataset]] = {
-    run.__name__: run for run in (*ONE_PAIR, *MAPS)
+    run.__name__: run for run in (*TASKS_OF_ONE_PAIR, *MAPS)
 }
 
 
 def options_of(task: str) -> dict[str, Any]:
-    """Option → default, :data:`NEEDED` if there is none; but not how many processes it uses."""
+    """Option → default, :data:`NO_DEFAULT` if there is none; but not how many processes it uses."""
     return {
         name: item.default
         for name, item in inspect.signature(TASKS[task]).parameters.items()

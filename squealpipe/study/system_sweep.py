@@ -24,7 +24,7 @@ from squealpipe.systems.system import System
 from squealpipe.systems.taylor.simd import LANES
 from squealpipe.text import suggestion
 
-FIRST, MOST = LANES, 8192
+FIRST_BLOCK, LARGEST_BLOCK = LANES, 8192
 """Runs of the first block, and of the largest."""
 WAYS = {"ensemble": runs.ensemble, "basin": basin.basin}
 
@@ -129,7 +129,7 @@ class SystemSweep:
             return self._block({}, workers)
         rows = len(self.vary[along])
         runs_of_row = math.prod(map(len, self.vary.values())) // rows
-        done, size, part = kept.finished(), FIRST, None
+        done, size, part = kept.finished(), FIRST_BLOCK, None
         while done < rows:
             count = min(max(1, size // runs_of_row), rows - done)
             used = workers or available_cores()
@@ -142,7 +142,9 @@ class SystemSweep:
             done += count
             # a block of runs should take about 5 s, so that a stopped sweep loses little
             quick = time.monotonic() - started < 5.0
-            size = min(2 * size, MOST) if quick else max(size // 2, FIRST)
+            size = (
+                min(2 * size, LARGEST_BLOCK) if quick else max(size // 2, FIRST_BLOCK)
+            )
         if part is None:  # all were there, but for what names and describes them
             part = self._block({along: self.vary[along][:1]}, workers)
         return self._joined(part, along, kept)

@@ -14,7 +14,7 @@ Surface = Callable[[Any, Any, Any, Any], Any]
 """Function of time, states, parameters and regimes."""
 SLIP = {"slip_slower": 1.0, "slip_faster": -1.0}
 """Regimes of slip by the sign of the sliding speed."""
-FIRST = 1e150
+DECIDES_FIRST = 1e150
 """Weight of what decides before anything else is asked."""
 
 

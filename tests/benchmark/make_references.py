@@ -18,7 +18,7 @@ import mpmath
 import numpy as np
 
 import squealpipe
-from squealpipe.benchmark.problems import FUNCTIONS, Problem, all_data
+from squealpipe.benchmark.problems import FORMULA_FUNCTIONS, Problem, all_data
 from tests.benchmark.many_digits import ManyDigits
 
 FILE = Path(squealpipe.__file__).parent / "benchmark/references.json"
@@ -53,7 +53,7 @@ class LongDouble:
 
     def __init__(self, data):
         functions = SimpleNamespace(
-            **{name: getattr(heyoka, name) for name in FUNCTIONS}
+            **{name: getattr(heyoka, name) for name in FORMULA_FUNCTIONS}
         )
         symbols = Problem(
             data, functions, lambda v: heyoka.expression(np.longdouble(v))

@@ -120,7 +120,9 @@ def test_next_to_its_fixed_end_a_spring_takes_the_usual_form():
 
 
 def test_both_forms_agree_where_one_takes_over():
-    params = Parameters(length1=2 * springs.LONG, length2=0.7 * springs.LONG, k2=1.3)
+    params = Parameters(
+        length1=2 * springs.LONG_SPRING, length2=0.7 * springs.LONG_SPRING, k2=1.3
+    )
     g = springs.geometry(0.7, 2.1)
     usual = springs.elastic_force(0.3, -0.8, params, g)
     for flags in ((True, False), (False, True), (True, True)):

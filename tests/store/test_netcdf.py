@@ -21,7 +21,7 @@ from squealpipe.schema import SchemaError
 from squealpipe.store import StoreError, load, produce, save
 from squealpipe.store.keys import stated_key
 from squealpipe.store.provenance import stamped
-from squealpipe.store.sealed import MARK
+from squealpipe.store.sealed import SEAL_MARK
 from squealpipe.store.whole_files import checksum, whole_file
 
 ANGLES = np.linspace(0, np.pi, 31)
@@ -39,7 +39,7 @@ def path(tmp_path, dataset):
 
 def seal(path):
     """Have a file that another program wrote end as ours do."""
-    line = MARK + checksum(path).encode() + b"\n"
+    line = SEAL_MARK + checksum(path).encode() + b"\n"
     with path.open("ab") as file:
         file.write(line)
 

@@ -108,7 +108,7 @@ def test_comments_and_docstrings_are_not_code(tmp_path, edit, same):
 
 
 def test_docstrings_that_the_table_of_statements_shows_are_code(tmp_path, monkeypatch):
-    monkeypatch.setattr("squealpipe.store.rerun.sources.STATEMENTS", tmp_path)
+    monkeypatch.setattr("squealpipe.store.rerun.sources.STATEMENT_CHECKS", tmp_path)
     for words in ("share of cells", "number of cells"):
         (tmp_path / f"{words}.py").write_text(f'def check():\n    """{words}"""\n')
     assert len({read_source(path).code for path in tmp_path.iterdir()}) == 2

@@ -47,8 +47,8 @@ def test_a_sweep_of_a_system_is_its_ensemble_whole_or_in_parts(task, run):
 def test_a_sweep_of_a_system_that_was_stopped_goes_on_where_it_was(
     task, run, along, blocks, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr("squealpipe.study.system_sweep.FIRST", 6)
-    monkeypatch.setattr("squealpipe.study.system_sweep.MOST", 12)
+    monkeypatch.setattr("squealpipe.study.system_sweep.FIRST_BLOCK", 6)
+    monkeypatch.setattr("squealpipe.study.system_sweep.LARGEST_BLOCK", 12)
     given = config(task, run=run, amplitude=0.6)
     omega, x0 = [0.8, 1.0, 1.2, 1.4, 1.6, 1.9], [0.0, 0.5, 0.6, 0.7, 0.9]
     given["vary"] = {"omega": omega, "x0": x0}
@@ -89,7 +89,7 @@ wells = System(
 
 
 def test_attractors_are_numbered_over_all_parts(tmp_path, monkeypatch):
-    monkeypatch.setattr("squealpipe.study.system_sweep.FIRST", 1)
+    monkeypatch.setattr("squealpipe.study.system_sweep.FIRST_BLOCK", 1)
     monkeypatch.chdir(tmp_path)
     Path("wells.py").write_text(WELLS)
     fixed = {"run": "basin", "t_end": 60.0}

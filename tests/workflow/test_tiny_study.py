@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 
 from squealpipe import plot
 from squealpipe.paper.report.content import gather
-from squealpipe.paper.report.sections import FIGURES
+from squealpipe.paper.report.sections import PAPER_FIGURES as FIGURES
 from squealpipe.parameters import Parameters
 from squealpipe.store import load, save
 from squealpipe.study.report.build import write_document

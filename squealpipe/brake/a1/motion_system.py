@@ -19,10 +19,16 @@ from squealpipe.laws.contact import normal_force
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction import stick_limit
 from squealpipe.laws.friction_laws import COULOMB
-from squealpipe.laws.springs import LONG, Geometry, fixed_ends
+from squealpipe.laws.springs import LONG_SPRING, Geometry, fixed_ends
 from squealpipe.laws.tables import is_table, pieces_of
 from squealpipe.parameters import NUMBERS_OF_A1, Parameters
-from squealpipe.systems.belt_contact import FIRST, BeltContact, Surface, knots, negative
+from squealpipe.systems.belt_contact import (
+    DECIDES_FIRST,
+    BeltContact,
+    Surface,
+    knots,
+    negative,
+)
 from squealpipe.systems.components import Switch
 from squealpipe.systems.functions import cos, sin
 from squealpipe.systems.system import System
@@ -44,8 +50,8 @@ def brake_of(params: Parameters, model: str = "A1") -> System:
         model=model,
         one_mu=one_mu,
         long_springs=(
-            params.length1 > LONG * params.preload,
-            params.length2 > LONG * params.preload,
+            params.length1 > LONG_SPRING * params.preload,
+            params.length2 > LONG_SPRING * params.preload,
         ),
     )
 
@@ -112,7 +118,7 @@ def brake(  # noqa: C901 (one short function for each force and surface)
         return suspension(s, p, r)[0]
 
     def rises(t: Any, s: Any, p: Any, r: Any) -> Any:
-        return FIRST * s.vy + suspension(s, p, r)[1]
+        return DECIDES_FIRST * s.vy + suspension(s, p, r)[1]
 
     def force(t: Any, s: Any, p: Any, r: Any) -> Any:
         return r.contact * normal_force(s.y, s.vy, laws.of(p, r)[0])
@@ -269,7 +275,7 @@ class _Laws:
             return p.belt_speed - s.vx * self.rules.reverses
 
         def stays(t: Any, s: Any, p: Any, r: Any) -> Any:
-            return holds(t, s, p, r) - (FIRST * on_belt(t, s, p, r)) ** 2
+            return holds(t, s, p, r) - (DECIDES_FIRST * on_belt(t, s, p, r)) ** 2
 
         return self.belt.landing(kind, speed, stays)
 
@@ -342,7 +348,7 @@ class _Laws:
         """
 
         def above(t: Any, s: Any, p: Any, r: Any) -> Any:
-            return FIRST * free(t, s, p, r) - p.preload
+            return DECIDES_FIRST * free(t, s, p, r) - p.preload
 
         found: list[Any] = []
         for i, name in enumerate(self.apart):
@@ -359,7 +365,7 @@ class _Laws:
         several = len(self.contacts) > 1
 
         def falls_back(t: Any, s: Any, p: Any, r: Any) -> Any:
-            return -pull(s, p, r) - (FIRST * limit(s, p, r) if sticks else 0.0)
+            return -pull(s, p, r) - (DECIDES_FIRST * limit(s, p, r) if sticks else 0.0)
 
         if not several:
             found.append((self.belt.name("slip_slower"), falls_back, on_belt))

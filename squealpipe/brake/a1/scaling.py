@@ -182,7 +182,7 @@ def _systems(
         laws,
         damped,
         one_mu & (laws == COULOMB),
-        *(numbers[name] > springs.LONG for name in ("length1", "length2")),
+        *(numbers[name] > springs.LONG_SPRING for name in ("length1", "length2")),
     )
     code = sum(
         np.unique(each, return_inverse=True)[1].reshape(each.shape) * 8**i

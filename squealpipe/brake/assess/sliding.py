@@ -15,7 +15,7 @@ import numpy as np
 from squealpipe.brake.models import a1
 from squealpipe.laws.contact import normal_force
 from squealpipe.laws.friction_laws import COULOMB
-from squealpipe.laws.springs import LONG, Geometry, geometry
+from squealpipe.laws.springs import LONG_SPRING, Geometry, geometry
 from squealpipe.parameters import Parameters
 from squealpipe.vibration.schema import Mechanism
 
@@ -229,7 +229,8 @@ def _acceleration(design: Design) -> Any:
     params = design.params
     g = Geometry(*map(float, geometry(design.alpha1, design.alpha2)))
     long = tuple(
-        length > LONG * params.preload for length in (params.length1, params.length2)
+        length > LONG_SPRING * params.preload
+        for length in (params.length1, params.length2)
     )
 
     form = a1.Suspension(long=(long[0], long[1]))

@@ -22,7 +22,7 @@ Vector = NDArray[np.float64]
 Branches = Mapping[str, tuple[float, float, int]]
 """Name → (alpha1, alpha2, mode)."""
 
-N_HARMONICS = 8
+FORM_HARMONICS = 8
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ def compare_harmonic_forms(params: Parameters, branches: Branches) -> xr.Dataset
         system, omega = motion.scene.system, motion.orbit.omega
         balances = [
             SampledBalance(
-                system, N_HARMONICS, 34, sigma, as_printed=form == Form.as_printed
+                system, FORM_HARMONICS, 34, sigma, as_printed=form == Form.as_printed
             )
             for form in forms
         ]
@@ -77,8 +77,10 @@ def compare_harmonic_forms(params: Parameters, branches: Branches) -> xr.Dataset
             [b.solve(b.start_from_cosines(motion.x, motion.y, omega)) for b in balances]
         )
     unit = np.array([motion.scene.frequency for motion in motions])
-    counts = [2 * N_HARMONICS + extra for extra in (0, 1, 2)] + [4 * N_HARMONICS + 2]
-    counts += [16 * N_HARMONICS, 64 * N_HARMONICS]
+    counts = [2 * FORM_HARMONICS + extra for extra in (0, 1, 2)] + [
+        4 * FORM_HARMONICS + 2
+    ]
+    counts += [16 * FORM_HARMONICS, 64 * FORM_HARMONICS]
     spreads = [_phase_spread(motions[-1], n, sigma) for n in counts]
     return build(
         HARMONIC_FORMS,
@@ -94,8 +96,8 @@ def compare_harmonic_forms(params: Parameters, branches: Branches) -> xr.Dataset
                 ]
                 for row in solved
             ],
-            "n_harmonics": N_HARMONICS,
-            "fourier_columns": 2 * N_HARMONICS + 1,
+            "n_harmonics": FORM_HARMONICS,
+            "fourier_columns": 2 * FORM_HARMONICS + 1,
             "fourier_rank": [rank for _, _, rank in spreads],
             "phase_spread_y": np.array([y for y, _, _ in spreads]) * params.preload,
             "phase_spread_omega": np.array([omega for _, omega, _ in spreads])
@@ -110,7 +112,7 @@ def _phase_spread(
     motion: ExactMotion, n_time: int, sigma: float
 ) -> tuple[float, float, int]:
     """(spread of the largest y, spread of ω, rank of Γ) over the phase of the start."""
-    balance = SampledBalance(motion.scene.system, N_HARMONICS, n_time, sigma)
+    balance = SampledBalance(motion.scene.system, FORM_HARMONICS, n_time, sigma)
     peaks, omegas = [], []
     # not a divisor of the samples, whose own symmetry would hide the spread
     phases = 13

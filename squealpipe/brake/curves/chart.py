@@ -13,7 +13,7 @@ import xarray as xr
 from squealpipe.brake.curves.chords import Vector
 from squealpipe.brake.curves.contact import Square, contact_lines, nearest_on, two_axes
 from squealpipe.brake.curves.regions import chains_of, holds, loops_of
-from squealpipe.brake.curves.stability import GRID, Regimes, centres
+from squealpipe.brake.curves.stability import REGIME_GRID, Regimes, centres
 from squealpipe.brake.schema.curves import REGIME_CHART, ChartLine
 from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
@@ -79,11 +79,12 @@ def regime_chart(
         if not contact.unresolved:
             break
     lines = {**regimes.lines(), ChartLine.contact_lost: contact}
-    cells = centres(GRID)
+    cells = centres(REGIME_GRID)
     regime, beside = (
-        each(cells).reshape(GRID, GRID) for each in (regimes.at, regimes.beside)
+        each(cells).reshape(REGIME_GRID, REGIME_GRID)
+        for each in (regimes.at, regimes.beside)
     )
-    middles = (np.arange(GRID) + 0.5) / GRID
+    middles = (np.arange(REGIME_GRID) + 0.5) / REGIME_GRID
     kept = holds(contact, middles, middles)
     regions = [
         (code, state, places[k - 1], size)
@@ -144,7 +145,7 @@ def regime_chart(
             "region_regime": [code for code, *_ in regions],
             "region_kept": [state for _, state, _, _ in regions],
             "region_place": square.values(np.array([at for _, _, at, _ in regions])),
-            "region_share": [size / GRID**2 for *_, size in regions],
+            "region_share": [size / REGIME_GRID**2 for *_, size in regions],
             "range": np.stack([square.low, square.low + square.width], axis=1),
             "t_end": t_end,
             "runs": square.runs,
@@ -195,4 +196,6 @@ def _parts(where: np.ndarray) -> tuple[Vector, np.ndarray]:
         np.unravel_index(np.argmax(inner * (numbers == k)), where.shape)
         for k in range(1, count + 1)
     ]
-    return (np.array(at).reshape(-1, 2) + 0.5) / GRID, np.bincount(numbers.ravel())[1:]
+    return (np.array(at).reshape(-1, 2) + 0.5) / REGIME_GRID, np.bincount(
+        numbers.ravel()
+    )[1:]

@@ -20,7 +20,7 @@ from squealpipe.brake.models.contact_system import contact_system, with_drag
 from squealpipe.brake.schema.curves import ChartLine
 from squealpipe.codes import LinearRegime
 
-GRID = 241
+REGIME_GRID = 241
 """Points per side on which the regimes are seen."""
 EDGES = {
     ChartLine.flutter: LinearRegime.flutter,
@@ -34,7 +34,7 @@ class Regimes:
 
     def __init__(self, square: Square) -> None:
         self.square = square
-        self.damped = not np.all(damped.is_undamped(self._fields(centres(GRID))))
+        self.damped = not np.all(damped.is_undamped(self._fields(centres(REGIME_GRID))))
 
     def lines(self) -> dict[ChartLine, ZeroLines]:
         """The edges of flutter and of divergence."""
@@ -44,7 +44,7 @@ class Regimes:
             which: ZeroLines(
                 partial(self._edge, which=which),
                 self._outside,
-                FirstGrid((2 * GRID) if self.damped else GRID, 1),
+                FirstGrid((2 * REGIME_GRID) if self.damped else REGIME_GRID, 1),
                 jump=0.5,
                 touching=self.damped,
             )

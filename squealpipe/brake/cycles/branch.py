@@ -15,7 +15,7 @@ from squealpipe.brake.cycles.cycle import cycle_from
 from squealpipe.brake.cycles.onset import find_onset
 from squealpipe.brake.cycles.scene import IN_SYSTEM, CycleScene
 from squealpipe.brake.models.refusals import refuse_unread
-from squealpipe.brake.schema.cycles import CYCLE_BRANCH, LIMIT_CYCLE
+from squealpipe.brake.schema.cycles import A1_CYCLE_BRANCH, A1_LIMIT_CYCLE
 from squealpipe.parameters import TABLE, Parameters
 from squealpipe.schema import Outcome, blank, build
 from squealpipe.schema.origin import recorded
@@ -143,7 +143,7 @@ def _value(params: Parameters, alpha1: float, alpha2: float, parameter: str) -> 
 
 def _first_cycle(scene: CycleScene, start: Any) -> tuple[Cycle | None, Outcome]:
     if isinstance(start, xr.Dataset):
-        if start.attrs.get("schema") != LIMIT_CYCLE.name:
+        if start.attrs.get("schema") != A1_LIMIT_CYCLE.name:
             raise ValueError(
                 f"start holds {', '.join(map(str, start.data_vars)) or 'nothing'}: a dataset of "
                 "limit_cycle is needed"
@@ -160,7 +160,7 @@ def _first_cycle(scene: CycleScene, start: Any) -> tuple[Cycle | None, Outcome]:
 def _dataset(scene: CycleScene, points: list[BranchPoint], end: Outcome) -> xr.Dataset:
     parameter = str(scene.follow)
     rows = in_rows(points, scene.numbers)
-    columns: dict[str, Any] = blank(CYCLE_BRANCH, multiplier=4)
+    columns: dict[str, Any] = blank(A1_CYCLE_BRANCH, multiplier=4)
     if rows:
         columns |= {name: np.array([row[name] for row in rows]) for name in rows[0]}
     starts = [point.cycle.start()[0] * scene.state_units for point in points]
@@ -172,7 +172,7 @@ def _dataset(scene: CycleScene, points: list[BranchPoint], end: Outcome) -> xr.D
         for point in points
     ]
     return build(
-        CYCLE_BRANCH,
+        A1_CYCLE_BRANCH,
         {
             **columns,
             **{name: np.full(len(points), value) for name, value in fixed.items()},

@@ -11,7 +11,7 @@ from squealpipe.brake.a1.jobs import STATE
 from squealpipe.brake.cycles.cycle import cycle_from
 from squealpipe.brake.cycles.scene import DASHPOTS, IN_SYSTEM, CycleScene
 from squealpipe.brake.models.refusals import refuse_unread
-from squealpipe.brake.schema.cycles import CYCLE_CURVE
+from squealpipe.brake.schema.cycles import A1_CYCLE_CURVE
 from squealpipe.parameters import NUMBERS_OF_A1, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
@@ -120,7 +120,7 @@ def cycle_curve(
         for name in {*parameters, "alpha1", "alpha2"}
     }
     return build(
-        CYCLE_CURVE,
+        A1_CYCLE_CURVE,
         {
             **values,
             "period": [each.cycle.period * scene.params.time_unit for each in points],

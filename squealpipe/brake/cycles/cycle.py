@@ -9,7 +9,7 @@ import xarray as xr
 
 from squealpipe.brake.a1.jobs import STATE
 from squealpipe.brake.cycles.scene import CycleScene
-from squealpipe.brake.schema.cycles import LIMIT_CYCLE
+from squealpipe.brake.schema.cycles import A1_LIMIT_CYCLE
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, blank, build
 from squealpipe.schema.origin import recorded
@@ -57,11 +57,13 @@ def limit_cycle(
     scene = CycleScene(params, alpha1, alpha2)
     cycle, outcome = cycle_from(scene, guess, t_settle, max_steps)
     found = (
-        blank(LIMIT_CYCLE, multiplier=4) if cycle is None else _described(scene, cycle)
+        blank(A1_LIMIT_CYCLE, multiplier=4)
+        if cycle is None
+        else _described(scene, cycle)
     )
     angles = {"alpha1": alpha1, "alpha2": alpha2}
     multiplier = {"multiplier": np.arange(1, 5)}
-    return build(LIMIT_CYCLE, {**found, **angles, "outcome": outcome}, multiplier)
+    return build(A1_LIMIT_CYCLE, {**found, **angles, "outcome": outcome}, multiplier)
 
 
 def cycle_from(

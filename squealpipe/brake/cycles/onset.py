@@ -10,7 +10,7 @@ from squealpipe.systems.continuation import ContinuationState
 from squealpipe.systems.cycles.event_map import EventMap
 from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.guess import eventless
-from squealpipe.systems.cycles.line import ALONG, STEPS
+from squealpipe.systems.cycles.line import ALONG, BRANCH_STEPS
 from squealpipe.systems.cycles.solution import Cycle
 
 _SCAN = 201
@@ -64,5 +64,5 @@ def find_onset(
     # the cycle of that amplitude: its parameter is an unknown
     direction = np.concatenate([shape / size, np.zeros(2)])
     normal = direction / np.linalg.norm(direction)
-    first = ALONG.solve(equations, guess, normal, STEPS.first_step)
+    first = ALONG.solve(equations, guess, normal, BRANCH_STEPS.first_step)
     return None if first is None else (first, Cycle.at(equations, first.point))

@@ -20,7 +20,7 @@ from squealpipe.schema import Outcome, build
 from squealpipe.validation import Angles, Positive, checked
 from squealpipe.vibration import parabola
 
-LEVELS = ("A1", "A1-no-separation", "A2", "A3", "A4")
+ASSUMPTION_LEVELS = ("A1", "A1-no-separation", "A2", "A3", "A4")
 
 LIMITS = {
     "contact is kept": 0.0,
@@ -34,7 +34,7 @@ largest turn of a spring (rad), largest error of the linear spring force relativ
 spring force, smallest length of a spring over its free length."""
 
 
-NEEDS = {
+ASSUMED_BY_LEVEL = {
     "A1": ("mass stays off the pivots",),
     "A1-no-separation": ("contact is kept", "mass stays off the pivots"),
     "A2": (
@@ -78,13 +78,13 @@ def check_assumptions(params: Parameters, scenes: Iterable[Scene] = ()) -> xr.Da
     """Table 1 of the paper, extended: which assumptions held, by level and scene."""
     chosen = tuple(scenes) or tuple(SCENES.values())
     names = list(LIMITS)
-    measures = np.full((len(LEVELS), len(chosen), len(names)), np.nan)
+    measures = np.full((len(ASSUMPTION_LEVELS), len(chosen), len(names)), np.nan)
     outcomes = np.zeros(measures.shape[:2], dtype=int)
     sizes = {
         name: np.full(measures.shape[:2], np.nan)
         for name in ("largest_x", "largest_y", "max_displacement")
     }
-    for row, level in enumerate(LEVELS):
+    for row, level in enumerate(ASSUMPTION_LEVELS):
         for column, scene in enumerate(chosen):
             motion = _motion(params, scene, level)
             outcomes[row, column] = motion.outcome
@@ -101,7 +101,10 @@ def check_assumptions(params: Parameters, scenes: Iterable[Scene] = ()) -> xr.Da
     return build(
         ASSUMPTIONS,
         {
-            "needed": [[name in NEEDS[level] for name in names] for level in LEVELS],
+            "needed": [
+                [name in ASSUMED_BY_LEVEL[level] for name in names]
+                for level in ASSUMPTION_LEVELS
+            ],
             "measure": measures,
             "limit": limits,
             "held": np.where(below, measures <= limits, measures > limits),
@@ -110,7 +113,7 @@ def check_assumptions(params: Parameters, scenes: Iterable[Scene] = ()) -> xr.Da
             "outcome": outcomes,
         },
         {
-            "level": list(LEVELS),
+            "level": list(ASSUMPTION_LEVELS),
             "scene": [scene.name for scene in chosen],
             "assumption": names,
         },

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squealpipe.brake.orbits.orbits import (
-    ACROSS,
+    TO_ROUND_OFF,
     Across,
     Orbit,
     OrbitEquations,
@@ -163,7 +163,7 @@ class _Trace:
                 return
             there = self.equations.orbit(following.point)
             line = Line(
-                ACROSS,
+                TO_ROUND_OFF,
                 self.equations,
                 (state, here),
                 (following, there),

@@ -14,7 +14,7 @@ from squealpipe.ranges import NUMBERS
 from squealpipe.systems.inputs.values import brief, is_finite_number
 from squealpipe.text import suggestion
 
-KINDS: dict[str, tuple[str, str]] = {
+DISTRIBUTIONS: dict[str, tuple[str, str]] = {
     "uniform": ("low", "high"),
     "normal": ("mean", "std"),
     "lognormal": ("median", "log_std"),
@@ -34,11 +34,11 @@ def distribution(name: str, given: Mapping[str, Any]) -> Any:
             "{'distribution': 'uniform', 'low': ..., 'high': ...}"
         )
     kind = given.get("distribution")
-    if not isinstance(kind, str) or kind not in KINDS:
+    if not isinstance(kind, str) or kind not in DISTRIBUTIONS:
         raise ValueError(
-            f"{name}: distribution = {kind!r}: one of {', '.join(KINDS)} is needed"
+            f"{name}: distribution = {kind!r}: one of {', '.join(DISTRIBUTIONS)} is needed"
         )
-    first, second = KINDS[kind]
+    first, second = DISTRIBUTIONS[kind]
     if set(given) != {"distribution", first, second}:
         raise ValueError(
             f"{name}: a {kind} distribution needs {first} and {second} alone"
@@ -61,7 +61,7 @@ def _frozen(name: str, kind: str, first: float, second: float) -> Any:
         return scipy.stats.uniform(first, second - first)
     if not second > 0:
         raise ValueError(
-            f"{name}: {KINDS[kind][1]} = {second!r}: a number above 0 is needed"
+            f"{name}: {DISTRIBUTIONS[kind][1]} = {second!r}: a number above 0 is needed"
         )
     if kind == "normal":
         return scipy.stats.truncnorm(-TRUNCATION, TRUNCATION, loc=first, scale=second)

@@ -39,8 +39,8 @@ from squealpipe.validation import (
     Workers,
 )
 
-QUANTITIES = ("flutter", "contact_loss", "irregular_hammering", "whirl")
-SIZES = 6
+PROPENSITIES = ("flutter", "contact_loss", "irregular_hammering", "whirl")
+SAMPLE_SIZES = 6
 ORDERS = ("first_order", "total_order")
 INDICES = tuple(f"{order}{end}" for order in ORDERS for end in ("", "_low", "_high"))
 
@@ -118,17 +118,21 @@ def propensity(
     values = np.array([frozen[name].ppf(points[:, i]) for i, name in enumerate(names)])
     happens = judge(values)
     low, high = np.transpose([sobol.share_interval(each) for each in happens])
-    sizes = samples >> np.arange(SIZES)[::-1]
+    sizes = samples >> np.arange(SAMPLE_SIZES)[::-1]
     # base sample of the indices of each quantity, over that of the shares: flutter needs no run
     index_samples = np.array([[4], [1], [1], [1]]) * sizes
-    blank = dict.fromkeys(INDICES, np.full((len(QUANTITIES), len(names)), np.nan))
-    table = blank | {"half_width_by_size": np.full((len(QUANTITIES), SIZES), np.nan)}
+    blank = dict.fromkeys(INDICES, np.full((len(PROPENSITIES), len(names)), np.nan))
+    table = blank | {
+        "half_width_by_size": np.full((len(PROPENSITIES), SAMPLE_SIZES), np.nan)
+    }
     if not spring_correlation:
         linear = _judged_matrices(
             partial(judge, runs=False), frozen, index_samples[0, -1], seed + 1
         )
         by_run = _judged_matrices(judge, frozen, index_samples[1, -1], seed + 1)
-        table |= _indices([linear[:, 0], *np.moveaxis(by_run[:, 1:], 1, 0)], SIZES)
+        table |= _indices(
+            [linear[:, 0], *np.moveaxis(by_run[:, 1:], 1, 0)], SAMPLE_SIZES
+        )
     supported = np.isfinite(table["total_order"]).all(axis=1)
     return build(
         PROPENSITY,
@@ -147,7 +151,7 @@ def propensity(
             "alpha2": alpha2,
             "t_end": t_end,
         },
-        {"quantity": list(QUANTITIES), "input": names, "size": sizes},
+        {"quantity": list(PROPENSITIES), "input": names, "size": sizes},
         {"spring_correlation": spring_correlation},
     )
 

@@ -1,6 +1,6 @@
 """Datasets of verdicts over angles and over scattered parameters, and what is changed of a pad."""
 
-from squealpipe.brake.schema.linear import ANGLES, MAP, ONE_PAIR
+from squealpipe.brake.schema.linear import ANGLE_COORDINATES, MAP, ONE_PAIR
 from squealpipe.codes import Verdict
 from squealpipe.schema import (
     DatasetSchema,
@@ -34,7 +34,7 @@ CURES = {
 VERDICT_MAP = DatasetSchema(
     name="verdict_map",
     title="Whether a brake squeals or hammers, over both spring angles",
-    coordinates=ANGLES,
+    coordinates=ANGLE_COORDINATES,
     variables={
         "verdict": flag(
             "verdict on the motion that steady sliding settles on after a push",

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from enum import IntEnum
 
-from squealpipe.brake.schema.dynamics.runs import IN_MAP, STATE, MotionFlag
+from squealpipe.brake.schema.dynamics.runs import IN_MAP, STATE_UNITS, MotionFlag
 from squealpipe.brake.schema.linear import ONE_PAIR
 from squealpipe.codes import LinearRegime
 from squealpipe.schema import (
@@ -18,14 +18,14 @@ from squealpipe.schema import (
     whether,
 )
 
-STARTS = {
+START_VARIABLES = {
     f"{name}0": Variable(f"{words} at the start", units)
-    for name, (units, words) in STATE.items()
+    for name, (units, words) in STATE_UNITS.items()
 }
 
 
 def basin_schema(swept: tuple[str, ...]) -> DatasetSchema:
-    """The schema of a basin map whose dimensions are the ``swept`` ones of STARTS."""
+    """The schema of a basin map whose dimensions are the ``swept`` ones of START_VARIABLES."""
 
     def real(units: str, long_name: str) -> Variable:
         return or_nan(long_name, units, swept, **IN_MAP)
@@ -33,7 +33,9 @@ def basin_schema(swept: tuple[str, ...]) -> DatasetSchema:
     return DatasetSchema(
         name="basin_map" + "".join(f"_{name}" for name in swept),
         title="Kind of motion of model A1 over its starts",
-        coordinates={name: replace(STARTS[name], dims=(name,)) for name in swept},
+        coordinates={
+            name: replace(START_VARIABLES[name], dims=(name,)) for name in swept
+        },
         variables={
             "motion": flag(
                 "kind of motion in the second half of the run; unsettled: its quarters disagree",
@@ -60,7 +62,11 @@ def basin_schema(swept: tuple[str, ...]) -> DatasetSchema:
                 rtol=1e-6,
             ),
             "outcome": outcome(*swept, among=(*RUN_ENDS, Outcome.beyond_horizon)),
-            **{name: STARTS[name] for name in STARTS if name not in swept},
+            **{
+                name: START_VARIABLES[name]
+                for name in START_VARIABLES
+                if name not in swept
+            },
             **ONE_PAIR,
             "t_end": Variable("end of each run", "s"),
         },
@@ -68,7 +74,9 @@ def basin_schema(swept: tuple[str, ...]) -> DatasetSchema:
 
 
 BASIN_MAPS = tuple(
-    basin_schema(tuple(name for i, name in enumerate(STARTS) if chosen >> i & 1))
+    basin_schema(
+        tuple(name for i, name in enumerate(START_VARIABLES) if chosen >> i & 1)
+    )
     for chosen in range(16)
 )
 """One schema for each choice of dimensions."""

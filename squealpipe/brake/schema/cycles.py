@@ -2,7 +2,7 @@
 
 from enum import IntEnum
 
-from squealpipe.brake.schema.dynamics.runs import REGIMES, STATE
+from squealpipe.brake.schema.dynamics.runs import REGIMES, STATE_UNITS
 from squealpipe.brake.schema.linear import ONE_PAIR
 from squealpipe.codes import Event
 from squealpipe.parameters import Parameters
@@ -66,7 +66,7 @@ def _cycle_variables(*dims: str) -> dict[str, Variable]:
 
 MULTIPLIER = count("number of the multiplier", "multiplier")
 
-LIMIT_CYCLE = DatasetSchema(
+A1_LIMIT_CYCLE = DatasetSchema(
     name="limit_cycle",
     title="A periodic motion of model A1, events located, with its Floquet multipliers",
     coordinates={"multiplier": MULTIPLIER},
@@ -78,16 +78,16 @@ LIMIT_CYCLE = DatasetSchema(
         "event_kind": flag("kind of the event", Event, "event"),
         **{
             f"event_{name}": Variable(f"{words} at the event", units, ("event",))
-            for name, (units, words) in STATE.items()
+            for name, (units, words) in STATE_UNITS.items()
         },
         **{
             f"{name}_start": or_nan(f"{words} at time 0 of the cycle", units)
-            for name, (units, words) in STATE.items()
+            for name, (units, words) in STATE_UNITS.items()
         },
         "time": Variable(dims=("sample",), units="s", long_name="instant of a sample"),
         **{
             f"{name}_path": Variable(f"{words} along the cycle", units, ("sample",))
-            for name, (units, words) in STATE.items()
+            for name, (units, words) in STATE_UNITS.items()
         },
         "regime_path": flag("regime along the cycle", REGIMES, "sample"),
         **ONE_PAIR,
@@ -106,7 +106,7 @@ def _followed() -> dict[str, Variable]:
     }
 
 
-CYCLE_BRANCH = DatasetSchema(
+A1_CYCLE_BRANCH = DatasetSchema(
     name="cycle_branch",
     title="A branch of periodic motions of model A1 in one parameter",
     lists={
@@ -141,14 +141,14 @@ CYCLE_BRANCH = DatasetSchema(
                     "found",
                 ),
             )
-            for name, (units, words) in STATE.items()
+            for name, (units, words) in STATE_UNITS.items()
         },
         **_followed(),
         "end": outcome(),
     },
 )
 
-CYCLE_CURVE = DatasetSchema(
+A1_CYCLE_CURVE = DatasetSchema(
     name="cycle_curve",
     title="A curve of special periodic motions of model A1 in two parameters",
     coordinates={

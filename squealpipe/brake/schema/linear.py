@@ -19,11 +19,11 @@ from squealpipe.systems.datasets.agreement import Listing
 
 MAP = ("alpha1", "alpha2")
 
-ANGLES = {
+ANGLE_COORDINATES = {
     "alpha1": Variable("angle of spring 1", "rad", ("alpha1",)),
     "alpha2": Variable("angle of spring 2", "rad", ("alpha2",)),
 }
-ONE_PAIR = {name: replace(entry, dims=()) for name, entry in ANGLES.items()}
+ONE_PAIR = {name: replace(entry, dims=()) for name, entry in ANGLE_COORDINATES.items()}
 """The angles of a dataset that is of one pair."""
 MODES = {"mode": count("mode, by ascending frequency", "mode")}
 
@@ -37,7 +37,7 @@ REGIME_LINEAR = flag("stability regime of model A3", LinearRegime, *MAP)
 STABILITY_MAP = DatasetSchema(
     name="stability_map",
     title="Linear stability (model A3) over both spring angles",
-    coordinates={**ANGLES, **MODES},
+    coordinates={**ANGLE_COORDINATES, **MODES},
     variables={
         "growth_rate": or_nan("largest real part of the eigenvalues", "s-1", MAP),
         "frequency": or_nan(
@@ -61,7 +61,7 @@ def _critical(suffix: str) -> Variable:
 CRITICAL_FRICTION_MAP = DatasetSchema(
     name="critical_friction_map",
     title="Friction at which steady sliding loses its stability (model A3) over both spring angles",
-    coordinates=ANGLES,
+    coordinates=ANGLE_COORDINATES,
     variables={
         "critical_mu": _critical(""),
         "critical_mu_undamped": _critical(" without dashpots"),
@@ -97,7 +97,7 @@ def _stiffness(symbol: str) -> Variable:
 QUASI_STATIC_MAP = DatasetSchema(
     name="quasi_static_map",
     title="Quasi-static sliding (model A2) and the linear static state over both spring angles",
-    coordinates=ANGLES,
+    coordinates=ANGLE_COORDINATES,
     variables={
         "possible_as_printed": whether("Eq. (11) as printed holds", *MAP),
         "possible": whether("reaction force of model A2 is positive", *MAP),
@@ -120,7 +120,7 @@ NATURAL_FREQUENCIES = DatasetSchema(
     name="natural_frequencies",
     title="Natural frequencies of model A4, in contact and separated",
     coordinates={
-        **ANGLES,
+        **ANGLE_COORDINATES,
         **MODES,
         "contact_state": text("state of the contact", "contact_state"),
     },

@@ -39,25 +39,25 @@ VERDICT_ROBUSTNESS = DatasetSchema(
     },
 )
 
-_QUANTITY, _INPUT = ("quantity",), ("quantity", "input")
+_BY_QUANTITY, _INPUT = ("quantity",), ("quantity", "input")
 
 PROPENSITY = DatasetSchema(
     name="propensity",
     title="Propensity for instability, and what it depends on, over a spread of parameters",
     coordinates={
-        "quantity": text("what happens", *_QUANTITY),
+        "quantity": text("what happens", *_BY_QUANTITY),
         "input": text("uncertain parameter", "input"),
         "size": count("size of a part of the sample", "size"),
     },
     variables={
         "share": Variable(
-            dims=_QUANTITY, long_name="share of the sample in which it happens"
+            dims=_BY_QUANTITY, long_name="share of the sample in which it happens"
         ),
         "share_low": Variable(
-            dims=_QUANTITY, long_name="lower end of its 95 % interval"
+            dims=_BY_QUANTITY, long_name="lower end of its 95 % interval"
         ),
         "share_high": Variable(
-            dims=_QUANTITY, long_name="upper end of its 95 % interval"
+            dims=_BY_QUANTITY, long_name="upper end of its 95 % interval"
         ),
         "share_by_size": Variable(
             "the same share from a part of the sample", dims=("quantity", "size")
@@ -84,7 +84,9 @@ PROPENSITY = DatasetSchema(
             "base sample of the indices", "quantity", "size", optional=True
         ),
         "judged": count("number of parameter sets"),
-        "outcome": outcome(*_QUANTITY, among=(Outcome.converged, Outcome.unresolved)),
+        "outcome": outcome(
+            *_BY_QUANTITY, among=(Outcome.converged, Outcome.unresolved)
+        ),
         **ONE_PAIR,
         "t_end": Variable(units="s", long_name="end of each run"),
     },

@@ -1,9 +1,9 @@
 """Names of the datasets that the checks read; the workflow needs nothing else of them."""
 
-PRINTED = "F2a_printed"
+PRINTED_SCENE = "F2a_printed"
 """The scene (π/2, π) with the friction of Eq. (4) as printed."""
 
-READ = (
+READ_BY_CHECKS = (
     "assumptions",
     "at_scenes/natural_frequencies",
     "at_scenes/quasi_static_map",
@@ -22,7 +22,7 @@ READ = (
         f"simulate/{name}"
         for name in ("F2a", "F2b", "F2c", "F2d", "F3", "F4", "F5a", "F5b")
     ),
-    *(f"simulate/{name}" for name in ("F3_long", "F4_long", PRINTED)),
+    *(f"simulate/{name}" for name in ("F3_long", "F4_long", PRINTED_SCENE)),
     *(
         f"backbone/{name}_mode{mode}"
         for name in ("F10", "F11", "F12", "F13")

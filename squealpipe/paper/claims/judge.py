@@ -10,7 +10,7 @@ import xarray as xr
 
 from squealpipe.paper.claims.evidence import Finding
 from squealpipe.paper.claims.statement import Check, Statement
-from squealpipe.paper.claims.statements import PAPER, STATEMENTS
+from squealpipe.paper.claims.statements import PAPER_STATEMENTS, STATEMENTS
 from squealpipe.paper.schema.claims import CLAIMS, Basis, ClaimVerdict, Origin
 from squealpipe.paper.schema.inference import of_study
 from squealpipe.parameters import Parameters
@@ -18,7 +18,7 @@ from squealpipe.reading import corrected, for_linear
 from squealpipe.schema import build
 from squealpipe.study.evidence import Evidence, MissingDataError
 
-BESIDE = "corrected/"
+CORRECTED_FOLDER = "corrected/"
 """Folder of the datasets of the corrected physics, where it differs from the reading."""
 
 
@@ -34,9 +34,9 @@ def judge(
     """
     run = Evidence(for_linear(parameters, reading), sources)
     mended = {
-        name.removeprefix(BESIDE): source
+        name.removeprefix(CORRECTED_FOLDER): source
         for name, source in sources.items()
-        if name.startswith(BESIDE)
+        if name.startswith(CORRECTED_FOLDER)
     }
     second = (
         Evidence(corrected(parameters, reading), {**sources, **mended})
@@ -78,7 +78,7 @@ def _row(statement: Statement, run: Evidence, second: Evidence) -> dict[str, Any
         "check": statement.measure,
         "figure": statement.figure,
         "recorded": statement.recorded,
-        "origin": Origin.paper if statement in PAPER else Origin.misprints,
+        "origin": Origin.paper if statement in PAPER_STATEMENTS else Origin.misprints,
         "basis": basis,
         "feasible_share": share,
         "feasible_count": count,

@@ -10,7 +10,7 @@ from squealpipe.paper.claims.checks import (
     misprints,
 )
 
-PAPER = (
+PAPER_STATEMENTS = (
     *abstract.rows,
     *figures_2_to_5.rows,
     *figures_6_and_7.rows,
@@ -20,5 +20,5 @@ PAPER = (
 )
 """What the paper says."""
 
-STATEMENTS = (*PAPER, *misprints.rows)
+STATEMENTS = (*PAPER_STATEMENTS, *misprints.rows)
 """Every row of the claims table."""

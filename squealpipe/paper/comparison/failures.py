@@ -22,21 +22,35 @@ from squealpipe.brake.linear.maps import quasi_static_map
 from squealpipe.brake.models import a3, a4
 from squealpipe.brake.orbits.orbits import Orbit
 from squealpipe.laws.springs import Stiffness, geometry, linear_stiffness
-from squealpipe.paper.comparison.work_precision import CORRECTED, PRINTED, orbit_series
+from squealpipe.paper.comparison.work_precision import (
+    AS_PRINTED,
+    CORRECTED,
+    orbit_series,
+)
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.systems.continuation import Continuation, ContinuationSettings
 
 BASE = Parameters(k3=0.75, mu=0.3, belt_speed=100.0, length1=5.0, length2=5.0)
 """Parameters at which the scenes are hard, whatever the study's are."""
-EXACT, BALANCE = "closed form, exact orbit", "closed-form balance"
+EXACT_ORBIT, CLOSED_FORM_BALANCE = "closed form, exact orbit", "closed-form balance"
 COLD = "cold Newton, sampled"
 ARC = "arc length, unchecked"
-TANH = "tanh balance, sampled"
+TANH_BALANCE = "tanh balance, sampled"
 HILL, NUMERIC = "Hill's method, sampled", "numpy.linalg"
-METHODS = (EXACT, BALANCE, COLD, ARC, TANH, CORRECTED, PRINTED, HILL, NUMERIC)
+FREQUENCY_METHODS = (
+    EXACT_ORBIT,
+    CLOSED_FORM_BALANCE,
+    COLD,
+    ARC,
+    TANH_BALANCE,
+    CORRECTED,
+    AS_PRINTED,
+    HILL,
+    NUMERIC,
+)
 """The columns; the first two are ours."""
-N_HARMONICS = 16
+CASE_HARMONICS = 16
 TRUTH_HARMONICS = 128
 """Their ω is good to 1e-9, ten thousand times better than the tolerance."""
 HILL_HARMONICS = 16
@@ -51,7 +65,7 @@ class BranchCase(NamedTuple):
     alpha2_over_pi: float
     mode: int
     y_peak: float
-    n_time: int = 16 * N_HARMONICS
+    n_time: int = 16 * CASE_HARMONICS
     sigma: float | None = None
     warm: bool = False
 
@@ -65,7 +79,7 @@ CASES = (
     BranchCase("σ too small (balance)", 0.3, 0.9, 1, 3.0, sigma=10.0),
     BranchCase("σ too large (balance)", 0.3, 0.9, 1, 3.0, n_time=40, sigma=1e6),
     BranchCase(
-        "aliasing, N ≈ 2N_h", 0.3, 0.9, 1, 3.0, n_time=2 * N_HARMONICS + 2, warm=True
+        "aliasing, N ≈ 2N_h", 0.3, 0.9, 1, 3.0, n_time=2 * CASE_HARMONICS + 2, warm=True
     ),
     BranchCase("pole at ω_x/2", 0.97, 0.97, 1, 1.5),
     BranchCase("tongue end", 0.05, 0.85, 1, 3.0),
@@ -112,13 +126,13 @@ def judge_balances() -> xr.Dataset:
         *map(_branch, CASES),
         _period_doubling(),
     ]
-    shape = len(scenes), len(METHODS)
+    shape = len(scenes), len(FREQUENCY_METHODS)
     verdict = np.zeros(shape)
     error = np.full(shape, np.nan)
     message = np.full(shape, "", "U64")
     for row, scene in enumerate(scenes):
         for name, ask in scene.answers.items():
-            cell, answer = (row, METHODS.index(name)), ask()
+            cell, answer = (row, FREQUENCY_METHODS.index(name)), ask()
             verdict[cell], error[cell] = verdict_of(
                 answer, scene.truth, scene.tolerance
             )
@@ -131,10 +145,11 @@ def judge_balances() -> xr.Dataset:
             "message": message,
             "tolerance": [scene.tolerance for scene in scenes],
             "role": [
-                Role.ours if name in METHODS[:2] else Role.public for name in METHODS
+                Role.ours if name in FREQUENCY_METHODS[:2] else Role.public
+                for name in FREQUENCY_METHODS
             ],
         },
-        {"scene": [scene.name for scene in scenes], "solver": METHODS},
+        {"scene": [scene.name for scene in scenes], "solver": FREQUENCY_METHODS},
     )
 
 
@@ -142,13 +157,16 @@ def _branch(case: BranchCase) -> HardScene:
     scene = scaled_system(BASE, *case.angles)
     exact, _ = find_orbit(scene, case.mode, case.y_peak)
     balance = CosineBalance(
-        scene.system, contact_of(N_HARMONICS, 1.0, case.n_time, case.sigma)
+        scene.system, contact_of(CASE_HARMONICS, 1.0, case.n_time, case.sigma)
     )
     start = linear_series(
-        scene, case.mode, N_HARMONICS, linear_orbit(scene, case.mode, case.y_peak).point
+        scene,
+        case.mode,
+        CASE_HARMONICS,
+        linear_orbit(scene, case.mode, case.y_peak).point,
     )
     if exact and (case.warm or case.sigma):  # the form is on trial, not the start
-        start = orbit_series(scene, exact, N_HARMONICS)
+        start = orbit_series(scene, exact, CASE_HARMONICS)
     truth: np.ndarray | float = math.nan
     if exact:
         fine = CosineBalance(scene.system, contact_of(TRUTH_HARMONICS, 1.0, None, None))
@@ -156,11 +174,11 @@ def _branch(case: BranchCase) -> HardScene:
             scene, case, fine, orbit_series(scene, exact, TRUTH_HARMONICS)
         ).value
     answers: dict[str, Callable[[], Answer]] = {
-        EXACT: lambda: _exact_orbit(case),
-        BALANCE: lambda: _our_balance(case),
+        EXACT_ORBIT: lambda: _exact_orbit(case),
+        CLOSED_FORM_BALANCE: lambda: _our_balance(case),
         CORRECTED: lambda: _paper(scene, case, start, exact, as_printed=False),
-        PRINTED: lambda: _paper(scene, case, start, exact, as_printed=True),
-        COLD if case.sigma is None else TANH: lambda: _newton(
+        AS_PRINTED: lambda: _paper(scene, case, start, exact, as_printed=True),
+        COLD if case.sigma is None else TANH_BALANCE: lambda: _newton(
             scene, case, balance, start
         ),
     }
@@ -193,7 +211,7 @@ def _series(angles: tuple[float, float], mode: int, y_peak: float) -> xr.Dataset
         mode=mode,
         y_peak_max=y_peak,
         method="hbm",
-        n_harmonics=N_HARMONICS,
+        n_harmonics=CASE_HARMONICS,
     )
 
 
@@ -224,10 +242,14 @@ def _paper(
     """
     # the paper's σ, where the case has none of its own
     balance = SampledBalance(
-        scene.system, N_HARMONICS, case.n_time, case.sigma or 1e3, as_printed=as_printed
+        scene.system,
+        CASE_HARMONICS,
+        case.n_time,
+        case.sigma or 1e3,
+        as_printed=as_printed,
     )
     start = balance.start_from_cosines(
-        z[: N_HARMONICS + 1], z[N_HARMONICS + 1 : -1], float(z[-1])
+        z[: CASE_HARMONICS + 1], z[CASE_HARMONICS + 1 : -1], float(z[-1])
     )
     with np.errstate(all="ignore"):
         solution = balance.solve(start, max_iterations=40)
@@ -245,9 +267,9 @@ def _arc_length(
 ) -> Answer:
     """Arc-length continuation from the linear mode until the peak is met, nothing else checked."""
     orbit = linear_orbit(scene, case.mode, 1.0 - 1e-3)
-    start = linear_series(scene, case.mode, N_HARMONICS, orbit.point)
+    start = linear_series(scene, case.mode, CASE_HARMONICS, orbit.point)
     direction = np.zeros_like(start)
-    direction[1], direction[N_HARMONICS + 2] = scene.slope(case.mode), 1.0
+    direction[1], direction[CASE_HARMONICS + 2] = scene.slope(case.mode), 1.0
     settings = ContinuationSettings(max_points=400)
 
     def reached(state: Any) -> bool:
@@ -302,7 +324,10 @@ def _period_doubling() -> HardScene:
 
     truth = float(abs(exact.stability_index) > 2.0) if exact else math.nan
     return HardScene(
-        "period-doubling window", truth, 0.5, {EXACT: ours, BALANCE: series, HILL: hill}
+        "period-doubling window",
+        truth,
+        0.5,
+        {EXACT_ORBIT: ours, CLOSED_FORM_BALANCE: series, HILL: hill},
     )
 
 
@@ -324,7 +349,7 @@ def _singular_static_state() -> HardScene:
             return Answer(math.nan, str(error))
 
     return HardScene(
-        "singular static state", math.nan, 1.0, {EXACT: ours, NUMERIC: numeric}
+        "singular static state", math.nan, 1.0, {EXACT_ORBIT: ours, NUMERIC: numeric}
     )
 
 
@@ -350,4 +375,6 @@ def _flutter_onset() -> HardScene:
         matrix = [[0, 0, 1, 0], [0, 0, 0, 1], [-a11, -a12, 0, 0], [-a21, -a22, 0, 0]]
         return Answer(np.sort(np.abs(np.linalg.eigvals(matrix)))[::2])
 
-    return HardScene("flutter onset", truth, 1e-12, {EXACT: ours, NUMERIC: numeric})
+    return HardScene(
+        "flutter onset", truth, 1e-12, {EXACT_ORBIT: ours, NUMERIC: numeric}
+    )

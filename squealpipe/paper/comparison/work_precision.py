@@ -27,7 +27,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 
 MODE = 1
-CORRECTED, PRINTED = "paper, Eq. (34) corrected", "paper, Eq. (34) as printed"
+CORRECTED, AS_PRINTED = "paper, Eq. (34) corrected", "paper, Eq. (34) as printed"
 PAPER_SIGMA = 1e3
 
 Method = Callable[[Orbit, Orbit], tuple[Callable[[], Any], Callable[[Any], float]]]
@@ -106,7 +106,7 @@ def _methods(
     # the paper's pseudo-inverse costs the cube of the number of harmonics
     for count in (each for each in harmonics if each <= 16):
         setting = f"N_h {count}, N {4 * count + 2}, sigma {PAPER_SIGMA:g}"
-        for name, printed in ((CORRECTED, False), (PRINTED, True)):
+        for name, printed in ((CORRECTED, False), (AS_PRINTED, True)):
             yield (
                 name,
                 setting,

@@ -13,30 +13,30 @@ from squealpipe.schema import Outcome
 VISIBLE = 0.95
 """Distance of the cells from the centre of the disc of flutter, in radii: a region that is thinner
 than the rest shows on no map, and next to the edge nothing grows within ``HORIZON``."""
-COARSE = 8
+COARSE_STRIDE = 8
 """Every so many of the unstable cells are run first."""
-ANGLES, CLEAR = (12, 24, 48), 0.6
+MAP_SIZES, CLEAR = (12, 24, 48), 0.6
 """Midpoints an axis of the maps of runs: finer while |share − ½| is below ``CLEAR`` spacings."""
-SOON = 25.0
+EARLY_HORIZON = 25.0
 """Time, √(m/k1), by which contact is lost in nearly all cells in which it ever is; cells that keep
 it until ``HORIZON`` take nearly all steps."""
 
 
 def separating_share(
-    candidates: Candidates, *, angles: Sequence[int] = ANGLES
+    candidates: Candidates, *, angles: Sequence[int] = MAP_SIZES
 ) -> np.ndarray:
     """Share of the angle map on which A1, from rest, loses contact within ``HORIZON``.
 
     Midpoint rule; a parameter set goes on to the next number of ``angles`` while its share is
-    within ``CLEAR``/angles of one half. Unless margins are wanted, runs end at ``SOON`` first:
-    where more cells than that have lost contact by then, their share is the result.
+    within ``CLEAR``/angles of one half. Unless margins are wanted, runs end at ``EARLY_HORIZON``
+    first: where more cells than that have lost contact by then, their share is the result.
     """
     shares = np.full(candidates.size, 0.5)
     for number in angles:
         clear = CLEAR / number
         left = np.flatnonzero(np.abs(shares - 0.5) < clear)
         enough = 0.5 if number == angles[-1] else 0.5 + clear
-        for horizon in (HORIZON,) if candidates.exact else (SOON, HORIZON):
+        for horizon in (HORIZON,) if candidates.exact else (EARLY_HORIZON, HORIZON):
             shares[left] = _share(candidates.subset(left), number, horizon)
             # what has separated stays separated, so that a later share is not smaller
             left = left[shares[left] <= enough]
@@ -60,12 +60,12 @@ def _share(candidates: Candidates, number: int, horizon: float) -> np.ndarray:
 def keeping_share(candidates: Candidates) -> np.ndarray:
     """Share of the unstable cells in which A1 keeps contact throughout ``HORIZON``; 0 of none.
 
-    Of cells that lie ``VISIBLE`` inside the region's edge: every ``COARSE``-th of them, and all
-    where A1 keeps contact in none of these.
+    Of cells that lie ``VISIBLE`` inside the region's edge: every ``COARSE_STRIDE``-th of them, and
+    all where A1 keeps contact in none of these.
     """
     unstable = candidates.unstable_cells(VISIBLE)
     share = np.zeros(candidates.size)
-    for step in (COARSE, 1):
+    for step in (COARSE_STRIDE, 1):
         left = np.flatnonzero(share == 0)
         some = [unstable[i] for i in left]
         cells = [(where.alpha1[::step], where.alpha2[::step]) for where in some]

@@ -16,7 +16,7 @@ from squealpipe.paper.inference.unstable_cells import (
     unstable_along_edges,
     unstable_cells,
 )
-from squealpipe.paper.schema.growth import WINDOW, WINDOWS, growth_fails
+from squealpipe.paper.schema.growth import GROWTH_WINDOW, WINDOWS, growth_fails
 from squealpipe.parameters import SCENES, TABLE, Parameters, Scene, direction_of
 from squealpipe.reading import reading_of
 from squealpipe.schema import Outcome
@@ -141,7 +141,7 @@ class Candidates:
             run = some.ensemble(
                 scene.alpha1,
                 scene.alpha2,
-                t_end=WINDOW * some.time_unit,
+                t_end=GROWTH_WINDOW * some.time_unit,
                 tracked=("x",),
                 initial_state=state[left],
             )

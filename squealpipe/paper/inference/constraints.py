@@ -22,7 +22,7 @@ from squealpipe.laws.dashpots import linear_damping
 from squealpipe.laws.springs import geometry
 from squealpipe.paper.inference.angle_maps import keeping_share, separating_share
 from squealpipe.paper.inference.candidates import Candidates, StatementMargin
-from squealpipe.paper.schema.growth import GROWS, RULE, growth_margin
+from squealpipe.paper.schema.growth import LEAST_GROWTH_RATIO, RULE, growth_margin
 from squealpipe.paper.schema.inference import (
     BOUND,
     JUMPS,
@@ -94,7 +94,7 @@ class SeveralStarts:
         return candidates.moved(x, y)
 
 
-STARTS = SeveralStarts()
+SEVERAL_STARTS = SeveralStarts()
 
 CONSTRAINTS: list[Constraint] = []
 """What the paper says of its figures, where it constrains the parameters: the functions below."""
@@ -167,10 +167,10 @@ def from_several_starts(check: Check) -> Check:
         first = check(candidates)
         if candidates.sampled:
             return first
-        margins = [first.margin, check(STARTS.moved(candidates, 0)).margin]
+        margins = [first.margin, check(SEVERAL_STARTS.moved(candidates, 0)).margin]
         with np.errstate(invalid="ignore"):
             change = np.abs(margins[1] - margins[0])
-            regular = change <= STARTS.alike * np.min(np.abs(margins), axis=0)
+            regular = change <= SEVERAL_STARTS.alike * np.min(np.abs(margins), axis=0)
         return _agreed(check, candidates, first, np.flatnonzero(~regular))
 
     return judged
@@ -182,7 +182,7 @@ def compared_near_the_threshold(check: Check) -> Check:
     @wraps(check)
     def judged(candidates: Candidates) -> StatementMargin:
         first = check(candidates)
-        near = np.flatnonzero(np.abs(first.margin) < STARTS.near)
+        near = np.flatnonzero(np.abs(first.margin) < SEVERAL_STARTS.near)
         return _agreed(check, candidates, first, near)
 
     return judged
@@ -196,8 +196,8 @@ def _agreed(
         return first
     some, margin = candidates.subset(rows), first.margin.copy()
     found = [
-        verdicts(check(STARTS.moved(some, number)))
-        for number in range(len(STARTS.directions))
+        verdicts(check(SEVERAL_STARTS.moved(some, number)))
+        for number in range(len(SEVERAL_STARTS.directions))
     ]
     mine = verdicts(StatementMargin(margin[rows], first.outcome[rows]))
     margin[rows[(np.array(found) != mine).any(axis=0)]] = np.nan
@@ -254,8 +254,8 @@ def _growth_and_size(
 @constrains(
     "F3",
     Stage.growth,
-    f"largest |x|: {RULE}; margin ln(least ratio/{GROWS:g}), none where starts 1e-9 l_pre apart "
-    "disagree",
+    f"largest |x|: {RULE}; margin ln(least ratio/{LEAST_GROWTH_RATIO:g}), none where starts 1e-9 "
+    "l_pre apart disagree",
 )
 @from_several_starts
 def _grows(candidates: Candidates) -> StatementMargin:

@@ -25,7 +25,7 @@ RIM = 192
 """Points around the disc of flutter."""
 INSIDE = 1.0 - 1e-6
 """Their distance from its centre, in radii: unstable, and at the edge where contact lasts."""
-READ = ("mass", "k1", "k2", "k3")
+LINEAR_PARAMETERS = ("mass", "k1", "k2", "k3")
 EQUAL = ("length1", "length2", "damping1", "damping2")
 """Parameters that the linear model reads, and others that a mirror image has to share."""
 
@@ -47,7 +47,8 @@ def unstable_cells(params: Parameters, *, inside: float = INSIDE) -> Unstable:
     if not is_undamped(params):
         return _on_grid(params)
     fields = {
-        name: np.array([getattr(params, name)]) for name in (*READ, *EQUAL, "drag")
+        name: np.array([getattr(params, name)])
+        for name in (*LINEAR_PARAMETERS, *EQUAL, "drag")
     }
     return unstable_along_edges(fields, inside=inside)[0]
 
@@ -65,7 +66,9 @@ def unstable_along_edges(
     at_once = 256
     for first in range(0, len(fields["mass"]), at_once):
         rows = slice(first, first + at_once)
-        p = SimpleNamespace(**{name: fields[name][rows, None] for name in READ})
+        p = SimpleNamespace(
+            **{name: fields[name][rows, None] for name in LINEAR_PARAMETERS}
+        )
         p.drag = np.asarray(fields["drag"])[rows, None]
         mirrored = springs_alike({n: v[rows] for n, v in fields.items()})
         alpha1, alpha2, there = _along_edges(p, mirrored, inside)

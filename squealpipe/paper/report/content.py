@@ -15,7 +15,7 @@ from squealpipe.study.evidence import Evidence
 from squealpipe.study.report.parts import Made, changed_rows, parameter_table, pictures
 
 TITLE = "Hammering and brake squeal: a paper computed again, statement by statement"
-PAPER = {
+CITED_PAPER = {
     "authors": "O. T. Şen and R. Singh",
     "title": "Dynamics of a simplified nonlinear model offering insights into the hammering type "
     "brake squeal initiation process",
@@ -51,7 +51,7 @@ def gather(
 
     return {
         "title": TITLE,
-        "paper": PAPER,
+        "paper": CITED_PAPER,
         "shipped": not changed,
         "friction": edited.friction_in_words(parameters, reading),
         "edit": edited.what_changed(changed),
@@ -76,10 +76,10 @@ def gather(
         "numbers": {} if changed else numbers(run),
         "parameters": parameter_table(parameters),
         "compared": _sections(sections.COMPARED),
-        "methods": _sections(sections.METHODS),
-        "beyond": _sections(sections.BEYOND),
+        "methods": _sections(sections.METHOD_SECTIONS),
+        "beyond": _sections(sections.BEYOND_THE_PAPER),
         "supplement": _sections(sections.SUPPLEMENT),
-        "figures": pictures(sections.FIGURES, figures, run),
+        "figures": pictures(sections.PAPER_FIGURES, figures, run),
         "datasets": {name: link(made.path) for name, made in sorted(datasets.items())},
         "links": [
             {"words": words, "to": link(to)} for words, to in (links or {}).items()

@@ -17,7 +17,7 @@ from squealpipe.paper.figures.comparison.where_methods_fail import (
     silent_by_class,
     substitutes,
 )
-from squealpipe.paper.figures.linear.critical_friction import LARGEST
+from squealpipe.paper.figures.linear.critical_friction import LARGEST_SHOWN
 from squealpipe.paper.figures.linear.frequency_shift import NO_SHIFT
 from squealpipe.paper.schema.claims import Basis, ClaimVerdict, Origin
 from squealpipe.paper.schema.inference import of_study
@@ -187,13 +187,13 @@ def _motions_and_shares(run: Evidence) -> dict[str, Any]:
     limited = hammering.predictability_horizon < hammering.t_end
     friction, beside = run["critical_friction_map"], run["a1_beside_a4"]
     charts = [run[f"friction_chart/{name}"] for name in ("F3", "F4")]
-    shown = np.fmin(friction.critical_mu, friction.critical_mu_undamped) < LARGEST
+    shown = np.fmin(friction.critical_mu, friction.critical_mu_undamped) < LARGEST_SHOWN
     far = 100 * abs(beside.omega_a1 / beside.omega - 1.0).max("scene")
     return {
         **kinds,
         **shares,
         "unpredictable": 100 * limited.mean(),
-        "shown_friction": LARGEST,
+        "shown_friction": LARGEST_SHOWN,
         "lowered": 100 * friction.destabilized.where(shown).mean(),
         "softest_kept": max(
             chart.kappa[chart.line == ChartLine.contact_lost].max() for chart in charts

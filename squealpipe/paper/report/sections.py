@@ -37,14 +37,14 @@ COMPARED = {
 }
 """The paper, figure by figure."""
 
-METHODS = {
+METHOD_SECTIONS = {
     "speed": ReportSection("Speed against accuracy", ("speed_and_accuracy",)),
     "failures": ReportSection("Where methods fail", ("where_methods_fail",)),
     "needed": ReportSection("No more model than a scene needs", ("model_needed",)),
 }
 """What a user of the methods asks first; the evidence is in the supplement."""
 
-BEYOND = {
+BEYOND_THE_PAPER = {
     "charts": ReportSection(
         "How far each scene is from a boundary", ("regime_charts",)
     ),
@@ -83,9 +83,9 @@ SUPPLEMENT = {
 }
 """Methods, accuracy and failures."""
 
-FIGURES = tuple(
+PAPER_FIGURES = tuple(
     name
-    for parts in (COMPARED, METHODS, BEYOND, SUPPLEMENT)
+    for parts in (COMPARED, METHOD_SECTIONS, BEYOND_THE_PAPER, SUPPLEMENT)
     for section in parts.values()
     for name in section.figures
 )

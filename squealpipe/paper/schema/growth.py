@@ -9,19 +9,19 @@ from typing import Any
 
 import numpy as np
 
-WINDOW = 1000.0
+GROWTH_WINDOW = 1000.0
 """Length of a window, √(m/k1)."""
 WINDOWS = 6
 """Windows of a run."""
-JUDGED = 3
+JUDGED_WINDOWS = 3
 """The last windows, whose sizes decide."""
-GROWS = 1.05
+LEAST_GROWTH_RATIO = 1.05
 """Least ratio of each of these sizes to the one before in growth without bound."""
-HORIZON = WINDOWS * WINDOW
+GROWTH_HORIZON = WINDOWS * GROWTH_WINDOW
 """Length of a run, √(m/k1)."""
 RULE = (
-    f"of a run to t = {HORIZON:g} √(m/k1), each of the last {JUDGED} windows of {WINDOW:g} "
-    f"exceeds the one before by {100 * (GROWS - 1):.0f} %"
+    f"of a run to t = {GROWTH_HORIZON:g} √(m/k1), each of the last {JUDGED_WINDOWS} windows of "
+    f"{GROWTH_WINDOW:g} exceeds the one before by {100 * (LEAST_GROWTH_RATIO - 1):.0f} %"
 )
 
 
@@ -36,17 +36,17 @@ class Growth(IntEnum):
 def least_growth(sizes: Any) -> np.ndarray:
     """Smallest ratio of one of the last sizes to that before it; ``sizes``: (…, ``WINDOWS``)."""
     sizes = np.asarray(sizes, float)
-    ratios = sizes[..., -JUDGED:] / sizes[..., -JUDGED - 1 : -1]
+    ratios = sizes[..., -JUDGED_WINDOWS:] / sizes[..., -JUDGED_WINDOWS - 1 : -1]
     return np.asarray(ratios.min(axis=-1))
 
 
 def judge_growth(sizes: Any) -> np.ndarray:
     """:class:`Growth` of runs from the largest |x| in each window, (…, ``WINDOWS``)."""
-    last = np.asarray(sizes, float)[..., -JUDGED:]
+    last = np.asarray(sizes, float)[..., -JUDGED_WINDOWS:]
     # a motion whose sizes agree to 2 % has stopped growing
     agree = last.max(axis=-1) <= 1.02 * last.min(axis=-1)
     otherwise = np.where(agree, Growth.saturates, Growth.undecided)
-    return np.where(least_growth(sizes) >= GROWS, Growth.grows, otherwise)
+    return np.where(least_growth(sizes) >= LEAST_GROWTH_RATIO, Growth.grows, otherwise)
 
 
 def growth_fails(sizes: Any) -> np.ndarray:
@@ -56,16 +56,16 @@ def growth_fails(sizes: Any) -> np.ndarray:
         sizes: (…, ``WINDOWS``), NaN of windows that were not run.
     """
     sizes = np.asarray(sizes, float)
-    ratios = sizes[..., -JUDGED:] / sizes[..., -JUDGED - 1 : -1]
-    return np.asarray((ratios < GROWS).any(axis=-1))
+    ratios = sizes[..., -JUDGED_WINDOWS:] / sizes[..., -JUDGED_WINDOWS - 1 : -1]
+    return np.asarray((ratios < LEAST_GROWTH_RATIO).any(axis=-1))
 
 
 def growth_margin(sizes: Any) -> np.ndarray:
-    """ln of the least growth over ``GROWS``, positive if it grows; NaN if no window says so.
+    """ln of the least growth over ``LEAST_GROWTH_RATIO``: positive if it grows, NaN if unknown.
 
     Args:
         sizes: (…, ``WINDOWS``), NaN from the window on that follows one in which growth fails.
     """
     sizes = np.asarray(sizes, float)
-    ratios = sizes[..., -JUDGED:] / sizes[..., -JUDGED - 1 : -1]
-    return np.asarray(np.log(np.fmin.reduce(ratios, axis=-1) / GROWS))
+    ratios = sizes[..., -JUDGED_WINDOWS:] / sizes[..., -JUDGED_WINDOWS - 1 : -1]
+    return np.asarray(np.log(np.fmin.reduce(ratios, axis=-1) / LEAST_GROWTH_RATIO))

@@ -23,7 +23,7 @@ from squealpipe.vibration.shares import CONFIDENCE
 SAMPLE = ("sample",)
 STATEMENT = ("statement",)
 READING = ("reading",)
-JUDGED = ("sample", "reading")
+SAMPLE_BY_READING = ("sample", "reading")
 BY_READING = ("reading", "statement")
 
 
@@ -36,7 +36,7 @@ class Holds(IntEnum):
     not_judged = 3
 
 
-WORDS = {
+SHORT_STATEMENTS = {
     "F2a": "contact kept in (a)",
     "F2b": "contact kept in (b)",
     "F2c": "contact kept in (c)",
@@ -62,12 +62,14 @@ WORDS = {
 def in_words(statement: str) -> str:
     """A statement by the paper's figure, and in few words: ``Fig. 3: |x| grows``."""
     figure = re.match(r"F(\d+)", statement)
-    return (f"Fig. {figure[1]}: " if figure else "") + WORDS[statement]
+    return (f"Fig. {figure[1]}: " if figure else "") + SHORT_STATEMENTS[statement]
 
 
 def in_order(dataset: xr.Dataset) -> xr.Dataset:
     """A dataset over statements, in the paper's order."""
-    return dataset.sel(statement=[name for name in WORDS if name in dataset.statement])
+    return dataset.sel(
+        statement=[name for name in SHORT_STATEMENTS if name in dataset.statement]
+    )
 
 
 LITTLE = 0.1
@@ -112,7 +114,7 @@ PARAMETER_INFERENCE = DatasetSchema(
             "whether the statement holds: undecided where indistinguishable starts disagree, "
             "not judged where cheaper statements had already failed",
             Holds,
-            *JUDGED,
+            *SAMPLE_BY_READING,
             *STATEMENT,
             round_off=RoundOff(
                 ComparedAs.judged,
@@ -120,9 +122,10 @@ PARAMETER_INFERENCE = DatasetSchema(
                 none=int(Holds.not_judged),
             ),
         ),
-        "feasible": whether("all statements hold", *JUDGED),
+        "feasible": whether("all statements hold", *SAMPLE_BY_READING),
         "outcome": outcome(
-            *JUDGED, among=(Outcome.converged, Outcome.unresolved, Outcome.infeasible)
+            *SAMPLE_BY_READING,
+            among=(Outcome.converged, Outcome.unresolved, Outcome.infeasible),
         ),
         "feasible_count": count("number of feasible samples", *READING),
         "share": Variable("share of the samples that are feasible", dims=READING),

@@ -40,7 +40,7 @@ PLAN = "SQUEALPIPE_PLAN"
 """Environment variable with the file into which the workflow writes what its results should be."""
 
 
-MARK = b"squealpipe key: "
+KEY_MARK = b"squealpipe key: "
 
 COMMENTS = dict.fromkeys((".svg", ".html"), (b"\n<!-- ", b" -->\n"))
 COMMENTS[".json"] = (b',\n "made": "', b'"\n}\n')
@@ -160,7 +160,7 @@ def state_key(path: str | Path, key: str) -> None:
     content = target.read_bytes()
     if target.suffix == ".json":
         content = content.rstrip().removesuffix(b"}").rstrip()
-    content += before + MARK
+    content += before + KEY_MARK
     target.write_bytes(
         content + f"{file_key(key, path)} {digest(content)}".encode() + after
     )
@@ -168,7 +168,7 @@ def state_key(path: str | Path, key: str) -> None:
 
 def key_behind(path: str | Path) -> str | None:
     """The key that a file ends with; None if it states none, or was changed since."""
-    content, mark, line = Path(path).read_bytes().rpartition(MARK)
+    content, mark, line = Path(path).read_bytes().rpartition(KEY_MARK)
     keyed = re.fullmatch(
         rb'([0-9a-f]{16} [\w./-]+) ([0-9a-f]{16})(\n| -->\n|"\n}\n)', line
     )

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 PACKAGE = Path(__file__).resolve().parents[2]
-STATEMENTS = PACKAGE / "paper/claims/checks"
+STATEMENT_CHECKS = PACKAGE / "paper/claims/checks"
 """Docstrings here are results: the table of statements shows them."""
 INPUT_FILES = "INPUT_FILES"
 """Constant in which a module names what it reads beside what it imports."""
@@ -53,12 +53,12 @@ def closure(script: str | Path) -> list[Path]:
 def read_source(path: Path) -> Source:
     """Imports of a file, and the digest of its syntax tree without comments and docstrings.
 
-    Docstrings of :data:`STATEMENTS` count. A data file is taken as it is.
+    Docstrings of :data:`STATEMENT_CHECKS` count. A data file is taken as it is.
     """
     content = path.read_bytes()
     if path.suffix != ".py":
         return Source(frozenset(), hashlib.sha256(content).hexdigest()[:16])
-    module = _parsed(content, path.parent == STATEMENTS)
+    module = _parsed(content, path.parent == STATEMENT_CHECKS)
     files = {file for name in module.imports for file in _files(name)}
     if path.is_relative_to(PACKAGE):
         files |= {file for each in module.inputs for file in path.parent.glob(each)}

@@ -23,7 +23,7 @@ from squealpipe.structures.meshes.element_mesh import (
     joined,
     turned,
 )
-from squealpipe.structures.meshes.finite_elements import KINDS, kind_in_deck
+from squealpipe.structures.meshes.finite_elements import ELEMENTS, kind_in_deck
 
 
 def read_deck(path: Path) -> ElementMesh:
@@ -148,7 +148,7 @@ class _Deck:
     def _elements(self, block: Block) -> None:
         element_type = block.needed("TYPE").upper()
         kind = kind_in_deck(element_type)
-        rows = _element_rows(block, KINDS[kind].nodes if kind else None)
+        rows = _element_rows(block, ELEMENTS[kind].nodes if kind else None)
         for row in rows:
             if row[0] in self.kind_of or row[0] in self.without_faces:
                 raise ValueError(
@@ -245,7 +245,7 @@ class _Deck:
             shells = [
                 number
                 for number in members
-                if number in self.kind_of and KINDS[self.kind_of[number][0]].is_shell
+                if number in self.kind_of and ELEMENTS[self.kind_of[number][0]].is_shell
             ]
             if shells:
                 named[name] = lambda mesh, shells=shells: mesh.of_shells(  # type: ignore[misc]
@@ -327,7 +327,7 @@ class _Deck:
                 continue
             for number in numbers:
                 kind, place = self._with_faces(number, where)
-                if KINDS[kind].is_shell:
+                if ELEMENTS[kind].is_shell:
                     side = _side(face[0], kind, where)
                     shells.setdefault((kind, side), []).append(place)
                 else:
@@ -354,12 +354,12 @@ class _Deck:
         kept = []
         for number in dict.fromkeys(numbers):
             kind, place = self._with_faces(number, block.where)
-            if KINDS[kind].is_shell:
+            if ELEMENTS[kind].is_shell:
                 raise ValueError(
                     f"{block.where}: element {number} is a shell, of which a side is needed; write "
                     "SPOS or SNEG behind it"
                 )
-            for face in range(len(KINDS[kind].faces)):
+            for face in range(len(ELEMENTS[kind].faces)):
                 rows = faces_of(mesh, kind, np.array([place]), face)
                 if tuple(sorted(rows[0].tolist())) in skin:
                     kept.append(rows)
@@ -430,11 +430,11 @@ def _element_rows(block: Block, nodes: int | None) -> list[list[int]]:
 
 def _place_of_face(name: str, kind: str, number: int, where: str) -> int:
     match = re.fullmatch(r"[SP]?(\d)", name.upper())
-    faces = len(KINDS[kind].faces)
+    faces = len(ELEMENTS[kind].faces)
     if match is None or not 1 <= int(match[1]) <= faces:
         raise ValueError(
-            f"{where}: element {number} has no face {name}; a solid of {KINDS[kind].nodes} nodes "
-            f"has S1 to S{faces}"
+            f"{where}: element {number} has no face {name}; a solid of {ELEMENTS[kind].nodes} "
+            f"nodes has S1 to S{faces}"
         )
     return int(match[1]) - 1
 

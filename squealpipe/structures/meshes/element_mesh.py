@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squealpipe.structures.meshes.finite_elements import CORNERS, KINDS
+from squealpipe.structures.meshes.finite_elements import CORNERS, ELEMENTS
 from squealpipe.text import suggestion
 
 Facets = dict[int, np.ndarray]
@@ -95,8 +95,8 @@ class ElementMesh:
                 [
                     faces_of(self, name, np.arange(len(block.numbers)), place)
                     for name, block in self.elements.items()
-                    if not KINDS[name].is_shell
-                    for place in range(len(KINDS[name].faces))
+                    if not ELEMENTS[name].is_shell
+                    for place in range(len(ELEMENTS[name].faces))
                 ]
             )
         )
@@ -107,7 +107,7 @@ class ElementMesh:
         shells = [
             rows[self._on_solids(rows) < 0]
             for name, block in self.elements.items()
-            if KINDS[name].is_shell
+            if ELEMENTS[name].is_shell
             for rows in [block.nodes]
         ]
         return joined([*self.solid_skin.values(), *shells])
@@ -193,7 +193,7 @@ def faces_of(
         place: of the face in the kind's table.
     """
     nodes = mesh.elements[kind].nodes[chosen]
-    rows = nodes[:, KINDS[kind].faces[place]]
+    rows = nodes[:, ELEMENTS[kind].faces[place]]
     corners = mesh.nodes[rows[:, : CORNERS[rows.shape[1]]]]
     # programs number some faces inwards, and elements may be numbered as their mirror images
     outwards = corners.mean(axis=1) - mesh.nodes[nodes].mean(axis=1)

@@ -54,7 +54,7 @@ _HEXA_EDGES = (
     *((4, 5), (5, 6), (6, 7), (7, 4)),
     *((0, 4), (1, 5), (2, 6), (3, 7)),
 )
-KINDS = {
+ELEMENTS = {
     "tetra": Kind(4, _TETRA),
     "wedge": Kind(6, _WEDGE),
     "hexahedron": Kind(8, _HEXA),

@@ -12,7 +12,7 @@ from squealpipe.structures.contact import Contact
 from squealpipe.structures.meshes.contact_points import Freedoms, contacts_of
 from squealpipe.structures.meshes.element_mesh import ElementMesh
 from squealpipe.structures.meshes.faces import Face, Rotation
-from squealpipe.structures.meshes.finite_elements import KINDS
+from squealpipe.structures.meshes.finite_elements import ELEMENTS
 from squealpipe.structures.meshes.sources import mesh_of_source
 from squealpipe.structures.meshes.structure_mesh import NO_NODE, StructureMesh
 from squealpipe.systems.inputs.values import brief
@@ -123,7 +123,7 @@ def _pair(name: Any) -> tuple[int, int]:
 
 def _refuse_units(mass: Any, rows: np.ndarray, mesh: ElementMesh) -> None:
     """Refuse matrices and a mesh whose mean density is that of no body."""
-    has_shells = any(KINDS[name].is_shell for name in mesh.elements)
+    has_shells = any(ELEMENTS[name].is_shell for name in mesh.elements)
     if has_shells or mesh.volume <= 0:
         return
     along = (rows[:, 1] == 1).astype(float)

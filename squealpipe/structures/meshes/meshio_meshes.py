@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from squealpipe.structures.meshes.element_mesh import ElementMesh, Elements, Surface
-from squealpipe.structures.meshes.finite_elements import KINDS
+from squealpipe.structures.meshes.finite_elements import ELEMENTS
 from squealpipe.structures.packed import plain_name, text_of, unpacked
 
 NASTRAN = (".bdf", ".nas", ".fem", ".dat")
@@ -142,7 +142,7 @@ def of_meshio(mesh: Any, source: str, *, counts_nodes: bool) -> ElementMesh:
     points = np.pad(points, ((0, 0), (0, 3 - points.shape[1])))
     blocks: dict[str, list[np.ndarray]] = {}
     for block in mesh.cells:
-        if block.type in KINDS:
+        if block.type in ELEMENTS:
             blocks.setdefault(block.type, []).append(np.asarray(block.data, int))
     elements, first = {}, 1
     for kind, rows in blocks.items():
@@ -191,5 +191,5 @@ def _of_shells(
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Yield the facets of each block of shells with what is given by block."""
     for block, values in zip(mesh.cells, by_block, strict=False):
-        if block.type in KINDS and KINDS[block.type].is_shell:
+        if block.type in ELEMENTS and ELEMENTS[block.type].is_shell:
             yield np.asarray(block.data), np.asarray(values, int)

@@ -44,7 +44,7 @@ class OwnScene(Section):
         )
 
 
-VALUES = {
+SWEPT_VALUES = {
     "type": ["string", "number", "array"],
     "items": {"type": ["string", "number"]},
 }
@@ -58,7 +58,7 @@ class SweepSection(Section):
         dict[Name, list[float | int]],
         Field(min_length=1),
         WithJsonSchema(
-            {"type": "object", "minProperties": 1, "additionalProperties": VALUES}
+            {"type": "object", "minProperties": 1, "additionalProperties": SWEPT_VALUES}
         ),
     ]
     fixed: dict[Name, float | int | str | bool | list[float | int] | None] = Field(

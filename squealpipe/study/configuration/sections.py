@@ -131,18 +131,20 @@ def _field_type(name: str, row: Row) -> Any:
             BeforeValidator(partial(row.check, name)),
             WithJsonSchema({"anyOf": [names, files, text]}),
         ]
-    plain = KINDS[row.allowed] | None if row.optional else KINDS[row.allowed]
+    plain = (
+        NUMBER_TYPES[row.allowed] | None if row.optional else NUMBER_TYPES[row.allowed]
+    )
     return Annotated[plain, In(row.units)]
 
 
-KINDS: dict[str, Any] = {
+NUMBER_TYPES: dict[str, Any] = {
     "finite": Number,
     "positive": Positive,
     "not negative": NotNegative,
 }
 _OTHERS: dict[str, Any] = {
     name: (
-        Annotated[KINDS[other.allowed] | None, In(other.units)],
+        Annotated[NUMBER_TYPES[other.allowed] | None, In(other.units)],
         Field(None, exclude=True, description=other.meaning),
     )
     for name, other in SUBSTITUTES.items()

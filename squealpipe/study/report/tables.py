@@ -17,7 +17,7 @@ from squealpipe.store.whole_files import whole_file
 from squealpipe.study.report import answer
 from squealpipe.units import plain_unit
 
-CURES = {
+CURE_COLUMNS = {
     "now": "value",
     "quiet from": "quiet_from",
     "change (% or deg)": "change",
@@ -36,7 +36,7 @@ def write_tables(
     first = book.active
     first.title = "Answer"
     _fill(first, ["quantity", "unit", *answers], _scalars(answers))
-    head = ["scene", "changed alone", "unit", *CURES]
+    head = ["scene", "changed alone", "unit", *CURE_COLUMNS]
     _fill(book.create_sheet("What stops it"), head, _cures(answers))
     _fill(
         book.create_sheet("Parameters"),
@@ -105,7 +105,7 @@ def _cures(answers: Mapping[str, xr.Dataset]) -> Iterable[list[Any]]:
             factor, unit = _turned(str(row.unit.item()))
             values = [
                 float(row[key]) * (1.0 if key == "change" else factor)
-                for key in CURES.values()
+                for key in CURE_COLUMNS.values()
             ]
             yield [scene, answer.NAMES.get(str(name), str(name)), unit, *values]
 

@@ -22,7 +22,7 @@ from squealpipe.systems.cycles.curve_equations import RETURNS, Curve, Test, curv
 from squealpipe.systems.cycles.event_order import label_of, order_of, run_of
 from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.legs import Vector
-from squealpipe.systems.cycles.line import PRECISE, STEPS
+from squealpipe.systems.cycles.line import BRANCH_STEPS, PRECISE
 from squealpipe.systems.cycles.solution import Cycle
 
 ENDS = ("point_limit", "end_of_range", "curve_lost", "multipliers_are_real")
@@ -156,7 +156,7 @@ class _Way:
             algorithm = replace(
                 self.algorithm, settings=replace(PRECISE, max_iterations=20)
             )
-            new = algorithm.solve(self.curve, guess, normal, STEPS.first_step)
+            new = algorithm.solve(self.curve, guess, normal, BRANCH_STEPS.first_step)
             if new is not None:
                 moved = (
                     new.point[size : size + 2]
@@ -243,7 +243,8 @@ def follow_curve(
     )
     normals = np.eye(len(guess))[[curve.map.size + 1, curve.map.size]]
     starts = (
-        algorithm.solve(curve, guess, normal, STEPS.first_step) for normal in normals
+        algorithm.solve(curve, guess, normal, BRANCH_STEPS.first_step)
+        for normal in normals
     )
     first = next((found for found in starts if found is not None), None)
     if first is None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from squealpipe import Parameters, contact_boundary, regime_chart
-from squealpipe.brake.curves.stability import GRID
+from squealpipe.brake.curves.stability import REGIME_GRID
 from squealpipe.brake.dynamics.runs import simulate, validity_map
 from squealpipe.brake.linear.maps import stability_map
 from squealpipe.brake.schema.curves import ChartLine
@@ -56,14 +56,14 @@ def crossed(chart):
     """Whether a line passes through, or beside, each of the chart's cells."""
     low, high = chart.range.values.T
     line = np.stack([chart[str(name)].values for name in chart.parameter.values], 1)
-    line = (line - low) / (high - low) * GRID
-    cells = np.zeros((GRID, GRID), bool)
+    line = (line - low) / (high - low) * REGIME_GRID
+    cells = np.zeros((REGIME_GRID, REGIME_GRID), bool)
     same = np.diff(chart.curve.values) == 0
     for start, end in zip(line[:-1][same], line[1:][same], strict=True):
         steps = int(np.ceil(np.abs(end - start).max() * 20)) + 2
         along = start + np.linspace(0.0, 1.0, steps)[:, None] * (end - start)
         for shift in (-1e-3, 1e-3):
-            at = np.clip((along + shift).astype(int), 0, GRID - 1)
+            at = np.clip((along + shift).astype(int), 0, REGIME_GRID - 1)
             cells[at[:, 0], at[:, 1]] = True
     return cells
 
@@ -74,7 +74,7 @@ def places(chart, axes, params, rng, count):
     low, high = chart.range.values.T
     free = np.argwhere(~crossed(chart))
     for cell in free[rng.choice(len(free), count)]:
-        place = low + (high - low) * (cell + rng.uniform(0.02, 0.98, 2)) / GRID
+        place = low + (high - low) * (cell + rng.uniform(0.02, 0.98, 2)) / REGIME_GRID
         yield tuple(cell), *design(place, names, axes, params)
 
 
@@ -151,7 +151,7 @@ def test_a_chart_over_the_angles_has_the_regimes_of_the_map(change):
     params = Parameters(**change)
     ends = np.linspace(0.0, np.pi, 5)
     chart = regime_chart(params, ends, ends, t_end=1.0)
-    middles = (np.arange(GRID) + 0.5) * np.pi / GRID
+    middles = (np.arange(REGIME_GRID) + 0.5) * np.pi / REGIME_GRID
     regimes = stability_map(params, middles, middles).regime_linear.values
     assert np.count_nonzero(regimes != chart.cell_regime.values) == 0
     assert set(np.unique(regimes)) >= {LinearRegime.stable, LinearRegime.flutter}

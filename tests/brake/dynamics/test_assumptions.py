@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from squealpipe.brake.dynamics.assumptions import (
-    LEVELS,
-    NEEDS,
+    ASSUMED_BY_LEVEL,
+    ASSUMPTION_LEVELS,
     check_assumptions,
     linear_pull_map,
 )
@@ -65,10 +65,10 @@ def test_longer_springs_turn_less_and_are_more_linear():
 
 
 def test_each_level_needs_what_the_paper_lists(table):
-    assert list(table.level.values) == list(LEVELS)
-    for level in LEVELS:
+    assert list(table.level.values) == list(ASSUMPTION_LEVELS)
+    for level in ASSUMPTION_LEVELS:
         needed = table.assumption.values[table.needed.sel(level=level).values == 1]
-        assert set(needed) == set(NEEDS[level])
+        assert set(needed) == set(ASSUMED_BY_LEVEL[level])
 
 
 def test_linear_pull_map_is_the_closed_form_where_x_and_y_are_decoupled():

@@ -16,7 +16,7 @@ from squealpipe.brake.linear.maps import (
     stability_map,
 )
 from squealpipe.paper.inference.inference import infer_parameters
-from squealpipe.paper.schema.growth import HORIZON
+from squealpipe.paper.schema.growth import GROWTH_HORIZON
 from squealpipe.parameters import SCENE_ANGLES, SCENES, Parameters
 from squealpipe.reading import READINGS, corrected, for_linear
 
@@ -85,7 +85,7 @@ def of_the_paper(params, model):
         for name, scene in SCENES.items()
         if scene.figure <= 5
     }
-    runs |= {"F3_long": ("F3", HORIZON, model), "F4_long": ("F4", 3000.0, model)}
+    runs |= {"F3_long": ("F3", GROWTH_HORIZON, model), "F4_long": ("F4", 3000.0, model)}
     runs["F2a_printed"] = ("F2a", 50.0, "A1-as-printed")
     for name, (scene, t_end, of_model) in runs.items():
         angles_of = SCENES[scene].alpha1, SCENES[scene].alpha2

@@ -8,7 +8,7 @@ import pytest
 from squealpipe.brake.dynamics.runs import simulate
 from squealpipe.codes import Event
 from squealpipe.paper.claims.checks import motions
-from squealpipe.paper.claims.datasets import READ
+from squealpipe.paper.claims.datasets import READ_BY_CHECKS
 from squealpipe.paper.claims.judge import judge
 from squealpipe.paper.claims.statements import STATEMENTS
 from squealpipe.paper.claims.table import rows, table
@@ -52,7 +52,9 @@ def test_rows_name_their_origin_and_the_datasets_that_were_read(claims):
     assert misprints == [f"E{number}" for number in range(1, 13)]
     assert sum(row["origin"] == "paper" for row in table_.values()) == len(CLAIMS) - 12
     read = {name: row["dataset"].split("; ") for name, row in table_.items()}
-    assert {one.split(" (")[0] for each in read.values() for one in each} == set(READ)
+    assert {one.split(" (")[0] for each in read.values() for one in each} == set(
+        READ_BY_CHECKS
+    )
     assert [one.split(" (")[0] for one in read["F5a"]] == [
         "simulate/F5a",
         "simulate/F5b",

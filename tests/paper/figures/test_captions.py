@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 import pytest
 
 import squealpipe
-from squealpipe.paper.report.sections import FIGURES
+from squealpipe.paper.report.sections import PAPER_FIGURES
 from squealpipe.plotting import style
 from squealpipe.store import load
 from squealpipe.study.figures import declared
@@ -56,7 +56,7 @@ def test_entries_of_a_key_that_stand_for_nothing_are_told(example):
 
 
 @pytest.mark.release
-@pytest.mark.parametrize("name", FIGURES)
+@pytest.mark.parametrize("name", PAPER_FIGURES)
 def test_captions_and_keys_of_the_published_study(name):
     known = [
         str(path.relative_to(PUBLISHED).with_suffix(""))

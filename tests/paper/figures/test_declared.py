@@ -5,14 +5,14 @@ import inspect
 import pytest
 
 from squealpipe.paper.figures.model import fig01
-from squealpipe.paper.report.sections import FIGURES
+from squealpipe.paper.report.sections import PAPER_FIGURES
 from squealpipe.study.figures import declared
 from squealpipe.study.report.sections import OWN, STRUCTURE
 
 NAMES = [f"simulate/F2{letter}" for letter in "abcd"]
 
 
-@pytest.mark.parametrize("name", [*FIGURES, *OWN, *STRUCTURE])
+@pytest.mark.parametrize("name", [*PAPER_FIGURES, *OWN, *STRUCTURE])
 def test_every_figure_of_the_report_can_be_drawn_from_what_it_declares(name):
     figure = declared.registered(name)
     inspect.signature(figure.draw).bind(*declared.reads(name))
@@ -30,7 +30,7 @@ def test_no_module_is_left_without_a_place():
         for path in declared.PACKAGE.glob("*/figures/*/*.py")
         if "\n@report_figure(" in path.read_text()
     }
-    assert declaring == {*FIGURES, *OWN, *STRUCTURE}
+    assert declaring == {*PAPER_FIGURES, *OWN, *STRUCTURE}
 
 
 def test_a_wildcard_stands_for_all_that_match_and_plain_names_keep_their_order():

@@ -131,4 +131,6 @@ def test_the_window_is_where_the_boundary_is_most_intricate(tip):
     low1, high1, low2, high2 = refined_boundary._intricate(map_)
     assert low1 < angles[tip[0]] < high1
     assert low2 < angles[tip[1]] < high2
-    assert high1 - low1 == pytest.approx(refined_boundary.WINDOW * np.pi, rel=0.06)
+    assert high1 - low1 == pytest.approx(
+        refined_boundary.WINDOW_SHARE * np.pi, rel=0.06
+    )

@@ -15,8 +15,8 @@ from squealpipe.brake.models import a3
 from squealpipe.brake.models.contact_system import contact_system
 from squealpipe.laws.springs import springs_are_equal
 from squealpipe.paper.inference.angle_maps import (
-    ANGLES,
     CLEAR,
+    MAP_SIZES,
     _outcome,
     keeping_share,
     separating_share,
@@ -142,9 +142,9 @@ def test_the_separating_share_has_converged(likely):
     """Twice the resolution leaves the shares within a spacing's error, and F7a within one set."""
     coarse = separating_share(Candidates(likely, 1e-9))
     fine = separating_share(
-        Candidates(likely, 1e-9), angles=tuple(2 * number for number in ANGLES)
+        Candidates(likely, 1e-9), angles=tuple(2 * number for number in MAP_SIZES)
     )
-    assert np.abs(coarse - fine).max() < CLEAR / ANGLES[0]
+    assert np.abs(coarse - fine).max() < CLEAR / MAP_SIZES[0]
     assert ((coarse > 0.5) != (fine > 0.5)).sum() <= 1
     bounds = separating_share(replace(Candidates(likely, 1e-9), exact=False))
     np.testing.assert_array_equal(bounds > 0.5, coarse > 0.5)

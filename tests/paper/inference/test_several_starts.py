@@ -9,7 +9,7 @@ import xarray as xr
 from squealpipe.paper.inference.candidates import sets_of
 from squealpipe.paper.inference.constraints import (
     CONSTRAINTS,
-    STARTS,
+    SEVERAL_STARTS,
     StatementMargin,
     compared_near_the_threshold,
     from_several_starts,
@@ -91,7 +91,7 @@ def test_more_starts_are_asked_where_two_disagree_only():
     check, asked = counted(margins)
     found = verdicts(from_several_starts(check)(sets))
     assert found.tolist() == [Holds.yes, Holds.yes, Holds.undecided]
-    assert asked == [3, 3, *[2] * len(STARTS.directions)]
+    assert asked == [3, 3, *[2] * len(SEVERAL_STARTS.directions)]
     check, asked = counted(margins)
     sampled = replace(sets, sampled=True)
     assert verdicts(from_several_starts(check)(sampled)).tolist() == [1, 1, 0]
@@ -104,7 +104,7 @@ def test_a_regular_motion_is_compared_at_its_threshold(distance, verdict):
     sets = replace(candidates(STUDY), initial_state=np.zeros(4))
     sets.fields["mu"][:] = 0
     assert verdicts(compared_near_the_threshold(check)(sets)).tolist() == [verdict]
-    assert len(asked) == (1 if verdict == 1 else 1 + len(STARTS.directions))
+    assert len(asked) == (1 if verdict == 1 else 1 + len(SEVERAL_STARTS.directions))
 
 
 def test_samples_do_not_depend_on_the_last_bit_of_exp():

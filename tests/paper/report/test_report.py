@@ -13,8 +13,13 @@ import yaml
 from squealpipe.paper.claims.statements import STATEMENTS
 from squealpipe.paper.report import content as contents
 from squealpipe.paper.report import edited
-from squealpipe.paper.report.content import PAPER
-from squealpipe.paper.report.sections import BEYOND, COMPARED, FIGURES, METHODS
+from squealpipe.paper.report.content import CITED_PAPER
+from squealpipe.paper.report.sections import (
+    BEYOND_THE_PAPER,
+    COMPARED,
+    METHOD_SECTIONS,
+    PAPER_FIGURES,
+)
 from squealpipe.parameters import Parameters
 from squealpipe.study.configuration.settings import parse_study
 from squealpipe.study.report.build import TEMPLATES, write_document
@@ -136,7 +141,7 @@ def test_after_an_edit_the_page_shows_changes_and_no_narrative(text, small_repor
 def test_narrative_has_words_for_every_part():
     words = (TEMPLATES / "narrative.typ").read_text(encoding="utf-8")
     written = set(re.findall(r"^  (\w+): \(\) => \[", words, flags=re.MULTILINE))
-    assert written == {*COMPARED, *BEYOND, *METHODS} - {"model"}
+    assert written == {*COMPARED, *BEYOND_THE_PAPER, *METHOD_SECTIONS} - {"model"}
 
 
 def test_the_front_has_at_most_400_words():
@@ -224,16 +229,19 @@ def test_page_in_a_browser(small_report, width):
 
 
 def test_statements_point_to_figures_that_are_drawn():
-    assert {statement.figure for statement in STATEMENTS} - {""} <= set(FIGURES)
+    assert {statement.figure for statement in STATEMENTS} - {""} <= set(PAPER_FIGURES)
 
 
 def test_paper_is_cited_as_in_the_citation_file():
     cited = yaml.safe_load((ROOT / "CITATION.cff").read_text("utf-8"))["references"][0]
-    assert cited["title"] == PAPER["title"]
-    assert (cited["journal"], cited["year"]) == (PAPER["journal"], PAPER["year"])
+    assert cited["title"] == CITED_PAPER["title"]
+    assert (cited["journal"], cited["year"]) == (
+        CITED_PAPER["journal"],
+        CITED_PAPER["year"],
+    )
     for author in cited["authors"]:
         assert f"{author['given-names']} {author['family-names']}" in str(
-            PAPER["authors"]
+            CITED_PAPER["authors"]
         )
 
 

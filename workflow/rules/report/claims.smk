@@ -1,8 +1,8 @@
 """The paper's statements, judged on the datasets of the run. Included after all that make data."""
 
-from squealpipe.paper.claims.datasets import READ
+from squealpipe.paper.claims.datasets import READ_BY_CHECKS
 
-EVIDENCE = [name for folder in SHOWN for name in (f"{folder}{read}" for read in READ) if name in MADE]
+EVIDENCE = [name for folder in SHOWN for name in (f"{folder}{read}" for read in READ_BY_CHECKS) if name in MADE]
 
 
 rule judge_claims:

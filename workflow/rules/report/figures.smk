@@ -6,11 +6,11 @@ not make is left out.
 
 from squealpipe.study.figures import declared
 from squealpipe.study.report.lineage import lineage
-from squealpipe.paper.report.sections import FIGURES
+from squealpipe.paper.report.sections import PAPER_FIGURES
 from squealpipe.study.report.sections import OWN as OWN_FIGURES, STRUCTURE as OF_STRUCTURE
 
 MADE = lineage(workflow.rules, f"{RESULTS}/data/")
-SHOWN_FIGURES = FIGURES if STUDY.paper else OWN_FIGURES if STUDY.structure is None else OF_STRUCTURE
+SHOWN_FIGURES = PAPER_FIGURES if STUDY.paper else OWN_FIGURES if STUDY.structure is None else OF_STRUCTURE
 READ_BY = {name: declared.datasets_of(name, MADE) for name in SHOWN_FIGURES}
 READ_BY = {name: found for name, found in READ_BY.items() if found is not None}
 

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from squealpipe.brake.dynamics.runs import simulate
-from squealpipe.paper.schema.growth import HORIZON
+from squealpipe.paper.schema.growth import GROWTH_HORIZON
 from squealpipe.parameters import SCENES
 from squealpipe.reading import READINGS
 from squealpipe.study.job import Job
@@ -13,7 +13,7 @@ LONG = 3000.0  # √(m/k1), of Fig. 4
 job = Job(snakemake)
 params, model = job.params, job.model
 runs = {name: (scene, model) for name, scene in SCENES.items()} | {
-    "F3_long": (replace(SCENES["F3"], t_end=HORIZON), model),
+    "F3_long": (replace(SCENES["F3"], t_end=GROWTH_HORIZON), model),
     "F4_long": (replace(SCENES["F4"], t_end=LONG), model),
     "F2a_printed": (SCENES["F2a"], READINGS["as_printed"].a1_model),
 }

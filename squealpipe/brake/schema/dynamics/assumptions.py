@@ -1,6 +1,6 @@
 """Datasets on what the model levels take for granted (Table 1 and section 6 of the paper)."""
 
-from squealpipe.brake.schema.linear import ANGLES, MAP
+from squealpipe.brake.schema.linear import ANGLE_COORDINATES, MAP
 from squealpipe.schema import (
     RUN_ENDS,
     DatasetSchema,
@@ -13,11 +13,11 @@ from squealpipe.schema import (
 )
 
 YES_NO = {0: "no", 1: "yes"}
-TABLE = ("level", "scene")
+LEVEL_BY_SCENE = ("level", "scene")
 
 
 def _largest(units: str, meaning: str) -> Variable:
-    return or_nan(meaning, units, TABLE, rtol=1e-6)
+    return or_nan(meaning, units, LEVEL_BY_SCENE, rtol=1e-6)
 
 
 ASSUMPTIONS = DatasetSchema(
@@ -33,13 +33,13 @@ ASSUMPTIONS = DatasetSchema(
             "whether the level makes the assumption", YES_NO, "level", "assumption"
         ),
         "measure": or_nan(
-            "the number that decides", dims=(*TABLE, "assumption"), rtol=1e-6
+            "the number that decides", dims=(*LEVEL_BY_SCENE, "assumption"), rtol=1e-6
         ),
         "limit": Variable("limit of the measure", dims=("assumption",)),
         "held": flag(
             "whether the assumption held along the whole motion",
             YES_NO,
-            *TABLE,
+            *LEVEL_BY_SCENE,
             "assumption",
         ),
         "largest_x": _largest("m", "largest |x|"),
@@ -47,7 +47,8 @@ ASSUMPTIONS = DatasetSchema(
         "max_displacement": _largest("m", "largest distance from the start position"),
         "t_end": Variable("end of the motion", "s", ("scene",)),
         "outcome": outcome(
-            *TABLE, among=(*RUN_ENDS, Outcome.separated, Outcome.singular_static_state)
+            *LEVEL_BY_SCENE,
+            among=(*RUN_ENDS, Outcome.separated, Outcome.singular_static_state),
         ),
     },
 )
@@ -55,7 +56,7 @@ ASSUMPTIONS = DatasetSchema(
 LINEAR_PULL = DatasetSchema(
     name="linear_pull",
     title="How far the linear model lets the contact spring pull, from rest",
-    coordinates=ANGLES,
+    coordinates=ANGLE_COORDINATES,
     variables={
         "lowest_contact_force": Variable(
             "lowest contact force over k3 l_pre; negative: the spring pulls", dims=MAP

@@ -4,11 +4,11 @@ from dataclasses import replace
 from typing import Any
 
 from squealpipe.brake.schema.backbones import BACKBONE
-from squealpipe.brake.schema.dynamics.runs import FREQUENCY, SIMULATION, TIME
-from squealpipe.brake.schema.linear import ANGLES, MAP, MODES
+from squealpipe.brake.schema.dynamics.runs import FREQUENCY, SIMULATION, TIME_COORDINATE
+from squealpipe.brake.schema.linear import ANGLE_COORDINATES, MAP, MODES
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Variable, count, outcome
 
-DRAWN: dict[str, Any] = {"dtype": "f4", "rtol": 1e-5, "atol": 1e-6}
+SINGLE_PRECISION: dict[str, Any] = {"dtype": "f4", "rtol": 1e-5, "atol": 1e-6}
 """Single precision: what is drawn, not computed with."""
 HISTORIES = ("x", "y", "normalized_contact_force")
 ORBITS = ("omega", "x_amplitude", "y_amplitude", "y_peak", "stability_index")
@@ -17,9 +17,9 @@ EXPLORER = DatasetSchema(
     name="explorer",
     title="Motions from rest (A1), their spectra, and exact backbones (A4) over both angles",
     coordinates={
-        **ANGLES,
+        **ANGLE_COORDINATES,
         **{name: replace(entry, optional=True) for name, entry in MODES.items()},
-        "time": TIME,
+        "time": TIME_COORDINATE,
         "frequency": FREQUENCY,
         "point": count("point along the branch", "point", optional=True),
     },
@@ -30,7 +30,7 @@ EXPLORER = DatasetSchema(
                 dims=(*MAP, "time"),
                 nan_allowed=False,
                 round_off=None,
-                **DRAWN,
+                **SINGLE_PRECISION,
             )
             for name in HISTORIES
         },
@@ -48,7 +48,7 @@ EXPLORER = DatasetSchema(
                 dims=(*MAP, "mode", "point"),
                 nan_allowed=True,
                 optional=True,
-                **DRAWN,
+                **SINGLE_PRECISION,
             )
             for name in ORBITS
         },

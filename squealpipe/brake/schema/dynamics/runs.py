@@ -5,7 +5,12 @@ from enum import IntEnum
 from typing import Any
 
 from squealpipe.brake.schema.dynamics.extremes import EXTREMES
-from squealpipe.brake.schema.linear import ANGLES, MAP, ONE_PAIR, REGIME_LINEAR
+from squealpipe.brake.schema.linear import (
+    ANGLE_COORDINATES,
+    MAP,
+    ONE_PAIR,
+    REGIME_LINEAR,
+)
 from squealpipe.codes import Event, Regime
 from squealpipe.schema import (
     RUN_ENDS,
@@ -56,7 +61,7 @@ IN_MAP: dict[str, Any] = {
 """Up to the horizon an error of the last digit may have grown to nearly l_pre/1000."""
 
 
-STATE = {
+STATE_UNITS = {
     "x": ("m", "x"),
     "y": ("m", "y"),
     "vx": ("m s-1", "velocity along the belt"),
@@ -93,14 +98,14 @@ def _extremes_between() -> dict[str, Variable]:
     }
 
 
-TIME = Variable("time", "s", ("time",))
+TIME_COORDINATE = Variable("time", "s", ("time",))
 FREQUENCY = Variable("angular frequency", "rad s-1", ("frequency",))
 
 SIMULATION = DatasetSchema(
     name="simulation",
     title="One nonlinear run from given initial conditions, events located",
     lists={"event": Listing(kinds=("event_kind",))},
-    coordinates={"time": TIME},
+    coordinates={"time": TIME_COORDINATE},
     variables={
         "x": _series("m", "displacement along the belt"),
         "y": _series("m", "displacement away from the belt"),
@@ -203,7 +208,7 @@ one half of a run to the next; exponential growth exceeds that, and a bounded on
 VALIDITY_MAP = DatasetSchema(
     name="validity_map",
     title="Where model A1 keeps contact, and the regime of the linear model A3",
-    coordinates=ANGLES,
+    coordinates=ANGLE_COORDINATES,
     variables={
         "first_separation_time": or_nan(
             "first loss of contact from rest (NaN: none before t_end)", "s", MAP
@@ -223,7 +228,7 @@ VALIDITY_MAP = DatasetSchema(
 HAMMERING_MAP = DatasetSchema(
     name="hammering_map",
     title="Impacts, forces and kind of motion of model A1 over both spring angles",
-    coordinates=ANGLES,
+    coordinates=ANGLE_COORDINATES,
     variables={
         "impact_rate": Variable(
             "returns to the belt per unit of time", "s-1", MAP, **IN_MAP
@@ -262,7 +267,7 @@ HAMMERING_MAP = DatasetSchema(
 REFINED_VALIDITY_MAP = DatasetSchema(
     name="refined_validity_map",
     title="Where model A1 keeps contact, computed only where the answer changes",
-    coordinates=ANGLES,
+    coordinates=ANGLE_COORDINATES,
     variables={
         "separates": whether("whether contact is lost before t_end", *MAP),
         "first_separation_time": or_nan(

@@ -17,8 +17,8 @@ from squealpipe.paper.claims.evidence import Finding, finding
 from squealpipe.paper.claims.statement import Check, StatementRows
 from squealpipe.paper.schema.claims import ClaimVerdict
 from squealpipe.paper.schema.growth import (
-    GROWS,
-    WINDOW,
+    GROWTH_WINDOW,
+    LEAST_GROWTH_RATIO,
     Growth,
     judge_growth,
     least_growth,
@@ -111,8 +111,8 @@ def unstable_response_grows(run: Evidence) -> Finding:
     undecided = growth is Growth.undecided
     judged = growth.name.replace("undecided", "is undecided")
     return finding(
-        (float(least_growth(sizes)), "≥", GROWS),
-        f"In windows of {WINDOW:g} √(m/k1) of a run to {until(run, longer)}, |x| reaches "
+        (float(least_growth(sizes)), "≥", LEAST_GROWTH_RATIO),
+        f"In windows of {GROWTH_WINDOW:g} √(m/k1) of a run to {until(run, longer)}, |x| reaches "
         f"{_listed(sizes, digits=5)} l_pre: it {judged}. In the time of the paper's figure it "
         f"reaches {early:.3g} l_pre in the first half of the run to {until(run, shown)} and "
         f"{late:.3g} l_pre in the second.",

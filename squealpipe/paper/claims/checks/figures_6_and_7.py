@@ -12,7 +12,7 @@ from squealpipe.paper.claims.maps import (
 )
 from squealpipe.paper.claims.statement import StatementRows
 from squealpipe.paper.schema.claims import ClaimVerdict
-from squealpipe.paper.schema.growth import WINDOW, Growth, judge_growth
+from squealpipe.paper.schema.growth import GROWTH_WINDOW, Growth, judge_growth
 from squealpipe.paper.schema.inference import LARGE_REGION
 from squealpipe.study.evidence import Evidence
 
@@ -122,8 +122,8 @@ def linearly_stable_but_not(run: Evidence) -> Finding:
     return finding(
         (rate, "≤", SMALLEST_RATE),
         f"A3's largest growth rate there is {rate:.1g}; in a long run of A1 |x| reaches "
-        f"{early:.5g} l_pre in the first window of {WINDOW:g} √(m/k1) and {late:.5g} l_pre in the "
-        "last.",
+        f"{early:.5g} l_pre in the first window of {GROWTH_WINDOW:g} √(m/k1) and {late:.5g} l_pre "
+        "in the last.",
         also=growth is Growth.grows,
         otherwise=ClaimVerdict.cannot_be_decided if undecided else ClaimVerdict.fails,
     )

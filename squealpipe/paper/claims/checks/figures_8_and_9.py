@@ -23,7 +23,7 @@ VANISHING = 1e-6
 """ω1 below this share of its largest value is zero."""
 
 
-SMALL, LARGE = 0.1, 0.98
+SMALL_SHARE, LARGE = 0.1, 0.98
 """Shares of the largest value that bound "the region where ω1 vanishes" and "ω2 is largest"."""
 
 
@@ -102,7 +102,8 @@ def vanishing_region_grows(run: Evidence) -> Finding:
     """Ratio of the areas where ω1 is small, separated to contact."""
     first = run["natural_frequencies"].omega.sel(mode=1)
     return _larger_when_separated(
-        first <= SMALL * first.max(["alpha1", "alpha2"]), f"ω1 is below {SMALL:g}"
+        first <= SMALL_SHARE * first.max(["alpha1", "alpha2"]),
+        f"ω1 is below {SMALL_SHARE:g}",
     )
 
 

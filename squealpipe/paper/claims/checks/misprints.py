@@ -6,7 +6,7 @@ from squealpipe.brake.schema.backbones import Form
 from squealpipe.brake.schema.dynamics.runs import GROWTH_THRESHOLD
 from squealpipe.paper.claims.checks import figures_6_and_7, figures_8_and_9
 from squealpipe.paper.claims.checks.motions import scene
-from squealpipe.paper.claims.datasets import PRINTED
+from squealpipe.paper.claims.datasets import PRINTED_SCENE
 from squealpipe.paper.claims.evidence import Finding, finding
 from squealpipe.paper.claims.maps import cell, coupling_is_negative, share, stiffness
 from squealpipe.paper.claims.statement import StatementRows
@@ -16,7 +16,7 @@ from squealpipe.study.evidence import Evidence, MissingDataError
 
 rows = StatementRows(figure="harmonic_forms", recorded=ClaimVerdict.fails)
 
-FEW_ULPS = 4.0 * np.finfo(float).eps
+VANISHING_STIFFNESS = 4.0 * np.finfo(float).eps
 """Stiffnesses below this share of k1 + k2 count as zero."""
 
 
@@ -35,7 +35,7 @@ READ_IN_THE_PAPER: tuple[str, ...] = ()
 )
 def friction_drags_along(run: Evidence) -> Finding:
     """Mean x with the printed sign, in the direction of the static state, over l_pre."""
-    printed = float(scene(run, PRINTED).x.mean() / run.parameters.preload)
+    printed = float(scene(run, PRINTED_SCENE).x.mean() / run.parameters.preload)
     static = float(
         cell(run, "quasi_static_map", 0.5, 1.0).x_static / run.parameters.preload
     )
@@ -247,9 +247,9 @@ def nondimensional_time_exists(run: Evidence) -> Finding:
     """K11 at (0.5π, 0.5π), as a share of k1 + k2."""
     largest = run.parameters.k1 + run.parameters.k2
     k11 = float(cell(run, "quasi_static_map", 0.5, 0.5).stiffness_x) / largest
-    undefined = stiffness(run, "stiffness_x") <= FEW_ULPS * largest
+    undefined = stiffness(run, "stiffness_x") <= VANISHING_STIFFNESS * largest
     return finding(
-        (k11, ">", FEW_ULPS),
+        (k11, ">", VANISHING_STIFFNESS),
         f"At (0.5π, 0.5π) K11, by which Eqs. (12)–(17) divide, is {k11:.1g} of k1 + k2; on the "
         f"grid it vanishes in {int(undefined.sum())} of {undefined.size} cells.",
     )

@@ -6,7 +6,7 @@ import xarray as xr
 
 from squealpipe.brake.schema.dynamics.extremes import extremes, largest_size
 from squealpipe.codes import Event
-from squealpipe.paper.schema.growth import HORIZON, WINDOW, WINDOWS
+from squealpipe.paper.schema.growth import GROWTH_HORIZON, GROWTH_WINDOW, WINDOWS
 from squealpipe.study.evidence import Evidence, MissingDataError
 
 
@@ -37,12 +37,14 @@ def halves(motion: xr.Dataset) -> tuple[float, float]:
 def windows(run: Evidence, motion: xr.Dataset) -> np.ndarray:
     """Largest |x| in each window of a long run, in units of l_pre."""
     end = float(motion.time[-1]) / run.parameters.time_unit
-    if end < HORIZON * (1.0 - 1e-9):
+    if end < GROWTH_HORIZON * (1.0 - 1e-9):
         raise MissingDataError(
-            f"the long run ends at {end:g} √(m/k1), before {HORIZON:g}"
+            f"the long run ends at {end:g} √(m/k1), before {GROWTH_HORIZON:g}"
         )
     size = largest_size(motion, "x") / float(motion.preload)
-    window = (motion.time.values / (WINDOW * run.parameters.time_unit)).astype(int)
+    window = (motion.time.values / (GROWTH_WINDOW * run.parameters.time_unit)).astype(
+        int
+    )
     return np.array([size[window == number].max() for number in range(WINDOWS)])
 
 

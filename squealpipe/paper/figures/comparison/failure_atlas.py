@@ -15,7 +15,7 @@ from squealpipe.text import number
 
 _COLOURS = [style.WHITE, (style.BLUE, 0.25), style.ORANGE, style.RED]
 """The worse, the darker: greyscale tells them apart."""
-_SIGNS = {
+_VERDICT_SIGNS = {
     Reliability.right: "✓ right",
     Reliability.flagged: "! wrong, but said so",
     Reliability.silently_wrong: "✗ silently wrong",
@@ -47,7 +47,7 @@ def draw(benchmark: xr.Dataset, atlas: xr.Dataset) -> Figure:
     _draw_atlas(axes[1, 0], atlas.transpose("solver", "scene"))
     titles = ("integrators with events", "frequencies and stability")
     style.panel_letters(axes.flat, titles)
-    tones = ((_COLOURS[verdict], words) for verdict, words in _SIGNS.items())
+    tones = ((_COLOURS[verdict], words) for verdict, words in _VERDICT_SIGNS.items())
     keys = style.patches(tones, edgecolor="none")
     figure.legend(handles=keys, loc="outside upper right", ncols=3)
     return figure
@@ -73,7 +73,7 @@ def _draw_atlas(axes: Axes, found: xr.Dataset) -> None:
     verdict, error = found.verdict.values, found.error.values
     _paint(axes, verdict, verdict.shape[1])
     for row, column in np.argwhere(verdict > 0):
-        words = [_SIGNS[Reliability(int(verdict[row, column]))][0]]
+        words = [_VERDICT_SIGNS[Reliability(int(verdict[row, column]))][0]]
         if 0 < error[row, column] < np.inf:
             words.append(number(error[row, column], 1))
         text = "\N{THIN SPACE}".join(words)

@@ -11,7 +11,7 @@ from squealpipe.paper.figures.comparison.work_precision_benchmark import (
     where_solvers_ran,
 )
 from squealpipe.plotting.style import PAGE, new_figure, panel_letter
-from squealpipe.plotting.work_precision import MARKS, SMALLEST, draw_methods
+from squealpipe.plotting.work_precision import METHOD_MARKS, SMALLEST, draw_methods
 from squealpipe.study.figures.declared import report_figure
 
 
@@ -73,7 +73,7 @@ def _draw_spread(axes: Axes, scenes: xr.Dataset, runs: xr.Dataset, cost: str) ->
     low, high = costs.min("problem").values, costs.max("problem").values
     methods = scenes.solver.values.tolist()
     for i, name in enumerate(runs.method.values.tolist()):
-        colour, _, dash = MARKS[methods.index(name) % len(MARKS)]
+        colour, _, dash = METHOD_MARKS[methods.index(name) % len(METHOD_MARKS)]
         error = max(float(runs.error[i]), SMALLEST)
         look = {"color": colour, "ls": dash, "lw": 0.5, "alpha": 0.5, "zorder": 1}
         axes.plot([error, error], [low[i], high[i]], **look)

@@ -10,13 +10,13 @@ from scipy.ndimage import uniform_filter
 from squealpipe.plotting import style
 from squealpipe.study.figures.declared import report_figure
 
-TONES = {
+CELL_TONES = {
     style.WHITE: "contact lost",
     style.LIGHT: "contact kept",
     style.ORANGE: "lost, run",
     style.BLUE: "kept, run",
 }
-WINDOW = 0.12
+WINDOW_SHARE = 0.12
 """Side of the window of panel (b) over that of the map."""
 
 
@@ -53,7 +53,7 @@ def draw(refined: xr.Dataset, boundary: xr.Dataset) -> Figure:
     wrong, checked = int(refined.inherited_wrong), int(refined.inherited_checked)
     style.panel_letter(axes[0, 1], "b", f"magnified; {wrong} of {checked} others wrong")
     figure.legend(
-        handles=style.patches(TONES.items()), loc="outside lower center", ncols=4
+        handles=style.patches(CELL_TONES.items()), loc="outside lower center", ncols=4
     )
     return figure
 
@@ -65,7 +65,7 @@ def _intricate(refined: xr.Dataset) -> tuple[float, float, float, float]:
     boundary[1:] += kept[1:] != kept[:-1]
     boundary[:, 1:] += kept[:, 1:] != kept[:, :-1]
     sums = np.pad(boundary.cumsum(0).cumsum(1), ((1, 0), (1, 0)))
-    side = max(2, round(WINDOW * len(kept)))
+    side = max(2, round(WINDOW_SHARE * len(kept)))
     rows = sums[side:] - sums[:-side]
     held = rows[:, side:] - rows[:, :-side]
     places = np.argwhere(held == held.max())
@@ -85,4 +85,4 @@ def _clustered(computed: xr.DataArray) -> xr.DataArray:
 
 def _map(axes: Axes, refined: xr.Dataset) -> None:
     tones = (refined.separates.values == 0) + 2 * (refined.computed.values != 0)
-    style.draw_map(axes, refined, tones, **style.category_colours([*TONES]))
+    style.draw_map(axes, refined, tones, **style.category_colours([*CELL_TONES]))

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from squealpipe.brake.schema.curves import ChartLine
-from squealpipe.paper.figures.linear.fig07 import KINDS
+from squealpipe.paper.figures.linear.fig07 import CELL_KINDS
 from squealpipe.parameters import SCENES
 from squealpipe.plotting import style
 from squealpipe.plotting.cycles import key_entries
@@ -19,7 +19,7 @@ from squealpipe.plotting.origin import scene_title, time_unit
 from squealpipe.study.figures.declared import report_figure
 from squealpipe.text import number
 
-LOOKS: dict[ChartLine, tuple[str, dict[str, Any]]] = {
+LINE_LOOKS: dict[ChartLine, tuple[str, dict[str, Any]]] = {
     ChartLine.contact_lost: ("contact is lost", {"color": style.BLACK}),
     ChartLine.flutter: ("A3 flutters", {"color": style.BLUE, "linestyle": "--"}),
     ChartLine.divergence: ("A3 diverges", {"color": style.GREEN, "linestyle": ":"}),
@@ -56,13 +56,18 @@ def distances(
         of_angles = _listed(known, angles, place, np.degrees(1.0))
         rows.append([f"{_title(name)}: angles (°)", *of_angles])
         rows.append([f"{_title(name)}: (κ, μ)", *_listed(known, scenes[name], 0, 1.0)])
-    return {"columns": ["Scene", *(LOOKS[which][0] for which in known)], "rows": rows}
+    return {
+        "columns": ["Scene", *(LINE_LOOKS[which][0] for which in known)],
+        "rows": rows,
+    }
 
 
 def _known(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> list[ChartLine]:
     charts = [angles, *scenes.values()]
     return [
-        which for which in LOOKS if any(which.name in each.boundary for each in charts)
+        which
+        for which in LINE_LOOKS
+        if any(which.name in each.boundary for each in charts)
     ]
 
 
@@ -106,10 +111,10 @@ def draw(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> Figure:
     # a region of less than 0.1 % of the chart is not visible in print
     shown = [
         max((_kinds(each) == k).mean() for each in charts) > 1e-3
-        for k in range(len(KINDS))
+        for k in range(len(CELL_KINDS))
     ]
     tones = style.patches(
-        kind for kind, there in zip(KINDS, shown, strict=True) if there
+        kind for kind, there in zip(CELL_KINDS, shown, strict=True) if there
     )
     figure.legend(handles=[*tones, *handles], loc="outside lower center", ncols=3)
     return figure
@@ -121,12 +126,12 @@ def _kinds(chart: xr.Dataset) -> np.ndarray:
 
 def _draw(panel: Axes, chart: xr.Dataset) -> None:
     x, y = (chart[str(name)].values for name in chart.parameter.values)
-    tones = style.category_colours([tone for tone, _ in KINDS])
+    tones = style.category_colours([tone for tone, _ in CELL_KINDS])
     extent = chart.range.values.ravel()
     panel.imshow(
         _kinds(chart).T, origin="lower", extent=extent, interpolation="none", **tones
     )
-    for which, (label, look) in LOOKS.items():
+    for which, (label, look) in LINE_LOOKS.items():
         on = chart.line.values == which
         if which.name not in chart.boundary.values:
             continue

@@ -11,7 +11,7 @@ from squealpipe.plotting import style
 from squealpipe.study.figures.declared import report_figure
 from squealpipe.text import number
 
-LOOKS = (
+READING_LOOKS = (
     ("as printed", style.GREEN, "s"),
     ("along +x", style.BLUE, "o"),
     ("along −x", style.ORANGE, "^"),
@@ -22,7 +22,7 @@ LOOKS = (
 def caption(inference: xr.Dataset) -> str:
     """Explain the marks, and name the readings without a feasible set."""
     counts = in_order(inference).feasible_count.values
-    pairs = zip(LOOKS, counts, strict=True)
+    pairs = zip(READING_LOOKS, counts, strict=True)
     empty = " or ".join(label for (label, *_), count in pairs if not count)
     return (
         "Parameters inferred from the paper's own statements. (a)–(c) Samples in which all "
@@ -78,7 +78,7 @@ def draw(inference: xr.Dataset) -> Figure:
     )
     shares, margins = lower.subplots(1, 2, sharey=True)
     places = np.arange(inference.sizes["statement"])
-    for row, (label, colour, _) in enumerate(LOOKS):
+    for row, (label, colour, _) in enumerate(READING_LOOKS):
         alone = 100 * inference.share_cut_alone.values[row]
         shares.barh(
             places + 0.27 * (row - 1), alone, color=colour, height=0.25, label=label
@@ -107,7 +107,7 @@ def draw(inference: xr.Dataset) -> Figure:
 def _scatter(
     panel: Axes, inference: xr.Dataset, x: str, y: str, x_label: str, y_label: str
 ) -> None:
-    for row, (label, colour, marker) in enumerate(LOOKS):
+    for row, (label, colour, marker) in enumerate(READING_LOOKS):
         one = inference.isel(reading=row)
         chosen = one.feasible.values == 1
         if not chosen.any():

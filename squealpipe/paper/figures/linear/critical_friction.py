@@ -10,7 +10,7 @@ from squealpipe.plotting.origin import angle_pair, parameter
 from squealpipe.study.figures.declared import report_figure
 from squealpipe.text import number
 
-LARGEST = 1.5
+LARGEST_SHOWN = 1.5
 """Upper end of the colours of (a)."""
 
 
@@ -22,7 +22,7 @@ def caption(angles: xr.Dataset, dashpots: xr.Dataset) -> str:
         "turns unstable by A3 (Routh–Hurwitz). (a) Over both spring angles without dashpots. "
         f"(b) Its change by dashpots c₁ = {c1} and c₂ = {c2} N s/m: red, they lower it "
         "and make sliding unstable sooner; blue, they raise it; grey, it is above "
-        f"{LARGEST:g} with them and without. (c) Over both dashpots at "
+        f"{LARGEST_SHOWN:g} with them and without. (c) Over both dashpots at "
         f"{angle_pair(dashpots.alpha1, dashpots.alpha2)}, "
         "on a scale of its own; black line: as without dashpots."
     )
@@ -41,16 +41,16 @@ def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:
     mesh = style.draw_map(
         without,
         angles,
-        np.minimum(undamped, 2 * LARGEST),
+        np.minimum(undamped, 2 * LARGEST_SHOWN),
         cmap="viridis",
         vmin=0.0,
-        vmax=LARGEST,
+        vmax=LARGEST_SHOWN,
     )
     figure.colorbar(
         mesh, ax=without, label="critical μ", extend="max", location="bottom"
     )
-    shown = np.fmin(undamped, damped) < LARGEST
-    moved = np.minimum(damped, LARGEST) - np.minimum(undamped, LARGEST)
+    shown = np.fmin(undamped, damped) < LARGEST_SHOWN
+    moved = np.minimum(damped, LARGEST_SHOWN) - np.minimum(undamped, LARGEST_SHOWN)
     limit = float(np.percentile(abs(moved[shown]), 95)) if shown.any() else 0.0
     change.set_facecolor(style.LIGHT)
     mesh = style.draw_map(

@@ -11,7 +11,7 @@ from squealpipe.plotting import style
 from squealpipe.plotting.origin import parameter
 from squealpipe.study.figures.declared import report_figure
 
-TONES = {
+FIG06_TONES = {
     style.WHITE: "sliding possible",
     style.LIGHT: "sliding not possible",
     style.BLACK: "linearly unstable",
@@ -58,7 +58,9 @@ def draw(
     ):
         tones = np.where(possible.values, 0, 1)
         tones[stability.regime_linear.values > 0] = 2
-        style.draw_map(panel, stability, tones, **style.category_colours([*TONES]))
+        style.draw_map(
+            panel, stability, tones, **style.category_colours([*FIG06_TONES])
+        )
         curves = [
             BoundaryCurve.flutter,
             BoundaryCurve.divergence,
@@ -70,6 +72,6 @@ def draw(
         mark_scene(panel, "F3")
         style.panel_letter(panel, letter, title)
     lines = axes[0, 0].get_legend_handles_labels()[0]
-    keys = [*style.patches(TONES.items()), *lines]
+    keys = [*style.patches(FIG06_TONES.items()), *lines]
     figure.legend(handles=keys, loc="outside lower center", ncols=4)
     return figure

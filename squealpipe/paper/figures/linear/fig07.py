@@ -13,7 +13,7 @@ from squealpipe.paper.figures.linear.linear_overlay import mark_scene
 from squealpipe.plotting import style
 from squealpipe.study.figures.declared import report_figure
 
-KINDS = (
+CELL_KINDS = (
     (style.WHITE, "A3 stable, A1 loses contact"),
     (style.ORANGE, "A3 unstable, A1 loses contact"),
     (style.LIGHT, "A3 stable, contact kept"),
@@ -63,7 +63,7 @@ def _inside(found: Mapping[str, xr.Dataset], kind: str) -> str:
 
 
 def kinds_of_cells(validity: xr.Dataset) -> np.ndarray:
-    """Index into ``KINDS`` of each cell."""
+    """Index into ``CELL_KINDS`` of each cell."""
     unstable = validity.regime_linear.values > 0
     return np.asarray(2 * (validity.separates.values == 0) + unstable)
 
@@ -90,7 +90,10 @@ def draw_kinds(
         style.draw_lines(panel, angles, boundary.curve.values, **look)
     kinds = kinds_of_cells(validity)
     style.draw_map(
-        panel, validity, kinds, **style.category_colours([tone for tone, _ in KINDS])
+        panel,
+        validity,
+        kinds,
+        **style.category_colours([tone for tone, _ in CELL_KINDS]),
     )
     style.hatch(panel, validity, kinds == 1)
     return kinds
@@ -98,7 +101,7 @@ def draw_kinds(
 
 def key() -> list[Patch]:
     """Return the legend entries of the four tones."""
-    patches = style.patches(KINDS)
+    patches = style.patches(CELL_KINDS)
     patches[1].set_hatch(style.HATCH)
     return patches
 
@@ -129,7 +132,7 @@ def draw(found: Mapping[str, xr.Dataset]) -> Figure:
             panel, maps[name], found.get(f"{_kind(name)}validity_boundary")
         )
         mark_scene(panel, "F3")
-        counts.append(np.bincount(kinds.ravel(), minlength=len(KINDS)))
+        counts.append(np.bincount(kinds.ravel(), minlength=len(CELL_KINDS)))
         words = TITLES[_kind(name)].removesuffix(" in all models")
         title = f"{words}: " if len(names) > 1 else ""
         style.panel_letter(panel, letter, f"{title}{counts[-1][3]} black cells")

@@ -22,7 +22,7 @@ from squealpipe.plotting.style import (
 )
 from squealpipe.study.figures.declared import report_figure
 
-TONES = {
+VERDICT_TONES = {
     Verdict.quiet: (WHITE, "quiet"),
     Verdict.squeals: (ORANGE, "squeals"),
     Verdict.hammers: (RED, "hammers"),
@@ -50,7 +50,7 @@ def draw(verdicts: xr.Dataset, answers: Mapping[str, xr.Dataset]) -> Figure:
         verdicts.verdict.values.T,
         shading="nearest",
         rasterized=True,
-        **category_colours([tone for tone, _ in TONES.values()]),
+        **category_colours([tone for tone, _ in VERDICT_TONES.values()]),
     )
     ends = [(axis[0], axis[-1]) for axis in degrees]
     panel.set(
@@ -95,6 +95,8 @@ def draw(verdicts: xr.Dataset, answers: Mapping[str, xr.Dataset]) -> Figure:
             path_effects=HALO,
         )
     figure.legend(
-        handles=patches(TONES.values()), loc="outside lower center", ncols=len(TONES)
+        handles=patches(VERDICT_TONES.values()),
+        loc="outside lower center",
+        ncols=len(VERDICT_TONES),
     )
     return figure
