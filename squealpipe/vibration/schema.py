@@ -28,7 +28,7 @@ DIRECTIONS = ("along", "across")
 
 
 class Mechanism(IntEnum):
-    """Why steady sliding is unstable."""
+    """Cause of an instability of steady sliding."""
 
     none = 0
     falling_friction = 1
@@ -38,7 +38,7 @@ class Mechanism(IntEnum):
 
 
 STARTS = {"": "steady sliding, pushed", "sudden_": "rest under the whole preload"}
-"""Prefix of the scalars of a start, and that start."""
+"""The two starts: the prefix of their variables, and what they are in words."""
 
 MEAN_SQUARES = ("velocity_rms_along", "velocity_rms_across")
 MEANS = (*MEAN_SQUARES, "impact_rate", "separated_fraction", "stick_fraction")
@@ -47,18 +47,18 @@ WITH_ERROR = ("frequency", *MEANS)
 
 
 def error_of(name: str) -> str:
-    """The variable that holds the statistical error of another one."""
+    """Return the name of the variable that holds the statistical error of another one."""
     return f"{name}_error"
 
 
 def _of_motion(prefix: str, start: str) -> dict[str, Variable]:
-    """The scalars of what one start settles to."""
+    """Return the scalars of the motion that one start settles on."""
 
     def real(long_name: str, units: str = "1", rtol: float = 2e-2) -> Variable:
         return or_nan(f"{long_name}, from {start}", units, rtol=rtol, atol=1e-6)
 
     scalars = {
-        "verdict": flag(f"what becomes of {start}", Verdict),
+        "verdict": flag(f"verdict on the settled motion, from {start}", Verdict),
         "periodic": whether(f"whether the settled motion repeats, from {start}"),
         "frequency": real("strongest line of the velocity", "Hz", 1e-2),
         "velocity_rms_along": real("rms velocity along the belt", "m s-1"),
@@ -105,7 +105,9 @@ _OF_PADS = {
     "quiet_alpha1": _optional(
         "alpha1 of the nearest quiet pair of angles that was found", "rad", rtol=1e-2
     ),
-    "quiet_alpha2": _optional("alpha2 of that pair", "rad", rtol=1e-2),
+    "quiet_alpha2": _optional(
+        "alpha2 of the nearest quiet pair of angles that was found", "rad", rtol=1e-2
+    ),
     "alpha1": _optional("angle of spring 1", "rad"),
     "alpha2": _optional("angle of spring 2", "rad"),
     "preload": _optional("precompression l_pre of the contact spring", "m"),
@@ -142,7 +144,7 @@ ASSESS = DatasetSchema(
     name="assess",
     title="Whether it squeals or hammers, why, how loud, and what stops it",
     coordinates={
-        "cure": text("what is changed, by ascending change", "cure"),
+        "cure": text("quantity that is changed, the smallest change first", "cure"),
         "mode": count("mode, by ascending frequency", "mode"),
         "contact": replace(text("name of the contact", "contact"), optional=True),
         "direction": replace(
@@ -154,7 +156,7 @@ ASSESS = DatasetSchema(
         **_of_motion("sudden_", STARTS["sudden_"]),
         "mechanism": flag("why steady sliding is unstable", Mechanism),
         "quiet_unless_struck": whether(
-            "quiet from steady sliding, but another motion exists beside it"
+            "whether steady sliding is quiet, but another motion exists, which a strike may start"
         ),
         "mode_frequency": or_nan(
             "frequencies of small motions (of a pad: of model A3)", "Hz", ("mode",)
@@ -167,7 +169,11 @@ ASSESS = DatasetSchema(
             "multiples of the strongest line", "Hz", ("harmonic",), rtol=1e-2
         ),
         "harmonic_velocity": or_nan(
-            "velocity amplitude there", "m s-1", ("harmonic",), rtol=5e-2, atol=1e-3
+            "velocity amplitude at these multiples",
+            "m s-1",
+            ("harmonic",),
+            rtol=5e-2,
+            atol=1e-3,
         ),
         "line_frequency": or_nan("frequency of the spectrum", "Hz", ("line",)),
         "velocity_spectrum_along": or_nan(
@@ -193,7 +199,8 @@ ASSESS = DatasetSchema(
             "regime of the settled motion", REGIMES, "sample", volatile=True
         ),
         "value": or_nan(
-            "present value (of mu: the coefficient at belt speed)", dims=("cure",)
+            "present value (for mu the friction coefficient at belt speed)",
+            dims=("cure",),
         ),
         "unit": text("unit of the values", "cure"),
         "quiet_from": or_nan(
@@ -202,7 +209,7 @@ ASSESS = DatasetSchema(
             rtol=2e-3,
         ),
         "quiet_from_any_start": or_nan(
-            "the same, for the verdict from any start that was tried",
+            "nearest value at which the verdict from any of the tried starts changes",
             dims=("cure",),
             rtol=2e-2,
         ),
@@ -230,15 +237,17 @@ ASSESS = DatasetSchema(
         "lowest_tried": or_nan(
             "lower end of the range that was searched", dims=("cure",)
         ),
-        "highest_tried": or_nan("upper end of that range", dims=("cure",)),
+        "highest_tried": or_nan(
+            "upper end of the range that was searched", dims=("cure",)
+        ),
         "snaps_from": or_nan(
-            "nearest value at which steady sliding of a quiet brake snaps to another place",
+            "nearest value at which steady sliding of a quiet brake jumps to another equilibrium",
             dims=("cure",),
             rtol=2e-3,
             optional=True,
         ),
         "snap_distance": or_nan(
-            "distance between both places", "m", ("cure",), rtol=2e-2, optional=True
+            "distance between both equilibria", "m", ("cure",), rtol=2e-2, optional=True
         ),
         **_OF_PADS,
         **_OF_STRUCTURES,

@@ -30,7 +30,7 @@ CURES = {
     "preload": "m",
     "belt_speed": "m s-1",
 }
-"""What is changed one at a time, and its unit."""
+"""Quantities that are changed one at a time to stop the noise, with their units."""
 VERDICT_MAP = DatasetSchema(
     name="verdict_map",
     title="Whether a brake squeals or hammers, over both spring angles",
