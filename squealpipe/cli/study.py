@@ -11,7 +11,11 @@ from squealpipe.text import duration
 
 
 def explain(
-    *, config: Configs = None, quick: Switch = False, json_: AsJson = False
+    *,
+    config: Configs = None,
+    quick: Switch = False,
+    time: Switch = False,
+    json_: AsJson = False,
 ) -> int:
     """State what `snakemake` would compute again, why, which figures change and how long it takes.
 
@@ -20,8 +24,12 @@ def explain(
     Args:
         config: configuration laid over the paper's, as for `snakemake --configfile`; repeatable.
         quick: coarse grids and short horizons, as for `squealpipe run --quick`.
+        time: instead, the CPU seconds of each job when it last ran in this folder, and how many of
+            them went into compiling.
         json_: print JSON.
     """
+    if time:
+        return _tell_costs(json_=json_)
     from rich.console import Console
     from rich.markup import escape
     from rich.table import Table
@@ -43,13 +51,41 @@ def explain(
         "rule", "why", "last took", title="will be computed", title_justify="left"
     )
     for job in plan.jobs:
-        time = "never run" if job.seconds is None else duration(job.seconds)
-        grid.add_row(job.rule, escape(job.why()), time)
+        took = "never run" if job.seconds is None else duration(job.seconds)
+        grid.add_row(job.rule, escape(job.why()), took)
     Console().print(grid)
     print(
         f"figures that change: {', '.join(plan.figures) or 'none'}\n{plan.estimate()}\n"
         f"code: that of {PACKAGE}"
     )
+    return DONE
+
+
+def _tell_costs(*, json_: bool) -> int:
+    """Print the CPU time of the jobs that have run in this folder, the longest first."""
+    from pathlib import Path
+
+    from squealpipe.study.durations import job_costs
+
+    costs = job_costs(Path())
+    if json_:
+        plain = {rule: cost._asdict() for rule, cost in costs.items()}
+        print(json.dumps(plain, indent=1))
+        return DONE
+    if not costs:
+        print("no job has run in this folder; `squealpipe run` runs the study")
+        return DONE
+    from rich.console import Console
+    from rich.table import Table
+
+    total = [sum(each[part] or 0.0 for each in costs.values()) for part in range(3)]
+    grid = Table(title="seconds of the last runs", title_justify="left")
+    grid.add_column("rule")
+    for name in ("CPU", "of it compiling", "clock"):
+        grid.add_column(name, justify="right")
+    for rule, cost in [*costs.items(), ("all", total)]:
+        grid.add_row(rule, *("" if each is None else f"{each:.1f}" for each in cost))
+    Console().print(grid)
     return DONE
 
 

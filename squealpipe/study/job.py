@@ -10,6 +10,8 @@ import xarray as xr
 from squealpipe.parameters import SCENES, Parameters, parameters_of
 from squealpipe.reading import for_linear, reading_of
 from squealpipe.store import produce
+from squealpipe.store.rerun.key import state_key
+from squealpipe.study.durations import record_cost
 
 
 class Job:
@@ -18,6 +20,7 @@ class Job:
     Attributes:
         settings: slice of the configuration.
         item: part of what is scattered, "i-of-n".
+        rule: its name.
         key: of its rule.
     """
 
@@ -26,6 +29,7 @@ class Job:
         self.settings, self.out = snakemake.params.get("settings", {}), snakemake.output
         self.key = snakemake.params.key
         self.item = snakemake.wildcards.get("scatteritem", "1-of-1")
+        self.rule = snakemake.rule
         self._since = time.perf_counter()
 
     @cached_property
@@ -73,3 +77,10 @@ class Job:
             started=self._since,
         )
         self._since = time.perf_counter()
+        record_cost(self.rule, self.item)
+
+    def state_keys(self) -> None:
+        """End all finished outputs, pictures or pages, with their key."""
+        for path in self.out:
+            state_key(path, self.key)
+        record_cost(self.rule, self.item)

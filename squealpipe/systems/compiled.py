@@ -21,13 +21,16 @@ again, and none is ever stale. (heyoka compiles expressions of its own, in
 
 import hashlib
 import os
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache, partial
 from pathlib import Path
 from types import FunctionType
 from typing import Any, TypeVar, cast
 
 import numba
+from numba.core import event
 
 _numba: Any = numba
 _settings: Any = numba.config  # untyped, the home of CACHE_DIR
@@ -44,6 +47,43 @@ part = _numba.njit(**_PART)
 views = _numba.njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 inline = _numba.njit(forceinline=True, **_PART)
 polynomial = _numba.njit(fastmath={"contract"}, **_PART)
+
+
+class _CompilerClock(event.Listener):  # type: ignore[misc]
+    """CPU time of this process while something is being compiled, s; inner parts count once."""
+
+    def __init__(self) -> None:
+        self.total, self._since, self._depth = 0.0, 0.0, 0
+
+    def on_start(self, event: Any) -> None:  # noqa: ARG002 (numba's signature)
+        self._since = time.process_time() if self._depth == 0 else self._since
+        self._depth += 1
+
+    def on_end(self, event: Any) -> None:  # noqa: ARG002
+        self._depth -= 1
+        if self._depth == 0:
+            self.total += time.process_time() - self._since
+
+
+_CLOCK = _CompilerClock()
+event.register(
+    "numba:compile", _CLOCK
+)  # what Python calls is compiled on its first call
+
+
+def compile_time() -> float:
+    """CPU time that this process has spent on compiling, s; none on code from the store."""
+    return _CLOCK.total
+
+
+@contextmanager
+def timed_compilation() -> Iterator[None]:
+    """Count what is done inside as compiling."""
+    _CLOCK.on_start(None)
+    try:
+        yield
+    finally:
+        _CLOCK.on_end(None)
 
 
 def kernel_sources() -> list[Path]:
@@ -109,4 +149,5 @@ def compiled_entry(function: Callable[..., Any], signature: Any, content: bytes)
     Compiling takes seconds. Where nothing can be written it is done in each process.
     """
     compile_ = partial(_numba.cfunc, signature, error_model="numpy")
-    return _kept(compile_, function, store_folder("lanes", content))
+    with timed_compilation():
+        return _kept(compile_, function, store_folder("lanes", content))

@@ -2,12 +2,15 @@
 
 import json
 import os
+import subprocess
+import sys
+import textwrap
 from dataclasses import replace
 
 import pytest
 
 from squealpipe.store.rerun.sources import PACKAGE
-from squealpipe.study.durations import job_times
+from squealpipe.study.durations import JobCost, job_costs, job_times, record_cost
 from squealpipe.study.explain import (
     Explanation,
     PlannedJob,
@@ -58,6 +61,52 @@ def test_plan_names_figures_and_time():
     assert jobs[2].why() == "missing; follows map_validity"
     assert json.loads(json.dumps(plan.as_dict()))["jobs"][0]["rule"] == "map_validity"
     assert "not known" in Explanation(jobs=[jobs[2]]).estimate()
+
+
+def test_a_job_writes_down_its_cpu_time_and_that_of_its_children(tmp_path):
+    """Half a second in the process and half a second in a child, beside a second of sleep."""
+    (tmp_path / ".snakemake/metadata").mkdir(parents=True)
+    (tmp_path / ".snakemake/metadata/one").write_text(
+        json.dumps({"rule": "busy", "starttime": 10.0, "endtime": 13.5})
+    )
+    script = r"""
+        import subprocess, sys, time
+        from squealpipe.study.durations import record_cost
+        from squealpipe.systems.compiled import timed_compilation
+        busy = "import time\nwhile time.process_time() < 0.5: pass"
+        subprocess.run([sys.executable, "-c", busy])
+        time.sleep(1.0)
+        before = time.process_time()
+        with timed_compilation():
+            with timed_compilation():
+                while time.process_time() < before + 0.5: pass
+        record_cost("busy", "1-of-1")
+    """
+    subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(script)], cwd=tmp_path, check=True
+    )
+    used = os.times()
+    cost = job_costs(tmp_path)["busy"]
+    assert cost.compiling == pytest.approx(0.5, abs=0.1)
+    assert 1.0 < cost.cpu <= used.children_user + used.children_system + 0.05
+    assert cost.clock == 3.5
+
+
+def test_parts_of_a_scattered_rule_add_up_and_those_of_an_earlier_run_do_not(
+    tmp_path, monkeypatch
+):
+    (tmp_path / ".snakemake").mkdir()
+    monkeypatch.chdir(tmp_path)
+    record_cost("map", "1-of-1")
+    for item in ("1-of-2", "2-of-2"):
+        record_cost("map", item)
+    costs = tmp_path / ".snakemake/squealpipe/costs"
+    for age, name in enumerate(("map.1-of-1", "map.1-of-2", "map.2-of-2")):
+        record = json.loads((costs / f"{name}.json").read_text())
+        record |= {"cpu": 2.0, "compiling": 0.5}
+        (costs / f"{name}.json").write_text(json.dumps(record))
+        os.utime(costs / f"{name}.json", (1000.0 + age, 1000.0 + age))
+    assert job_costs(tmp_path) == {"map": JobCost(4.0, 1.0)}
 
 
 def test_of_the_figures_that_a_rule_draws_those_change_that_an_edit_reaches(tmp_path):

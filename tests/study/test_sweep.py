@@ -366,6 +366,7 @@ def test_a_job_of_the_study_goes_on_where_it_was(tmp_path, monkeypatch):
         params=Mock(get=lambda *_: study.sweep("one"), key="0" * 16),
         output=["data/sweeps/one.nc"],
         wildcards={},
+        rule="some",
         threads=1,
     )
     run, made = Sweep.run, []
@@ -473,6 +474,7 @@ def test_wall_times_of_a_job_cover_all_of_it(tmp_path):
     given = SimpleNamespace(
         params=SimpleNamespace(key="0" * 16, get=lambda *_: {}),
         wildcards={},
+        rule="some",
         output=paths,
     )
     started = time.perf_counter()

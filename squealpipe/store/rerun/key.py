@@ -30,7 +30,7 @@ from squealpipe.store.rerun.sources import (
 PARTS = ("data", "figures", "report")
 """Folders of a run that hold results."""
 
-WATCHERS = frozenset({"sources.py", "key.py", "progress.py"})
+WATCHERS = frozenset({"sources.py", "key.py", "progress.py", "durations.py"})
 """Modules that watch jobs: no result depends on them."""
 
 STARTED = "SQUEALPIPE_STARTED"

@@ -19,7 +19,7 @@ from llvmlite import ir
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import cpu_target
 
-from squealpipe.systems.compiled import store_folder
+from squealpipe.systems.compiled import store_folder, timed_compilation
 
 _llvm: Any = llvmlite.binding
 _config: Any = numba.config
@@ -87,7 +87,8 @@ def _loaded(digest: str, write: Write, n_arguments: int) -> int:
         path = Path(store_folder("written", b"")) / f"{digest}.o"
         code = _kept(path)
         if code is None:
-            code = _compiled(name, write, n_arguments)
+            with timed_compilation():
+                code = _compiled(name, write, n_arguments)
             _keep(path, code)
         engine = _engine()
         engine.add_object_file(_llvm.ObjectFileRef.from_data(code))

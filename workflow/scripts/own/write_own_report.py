@@ -6,8 +6,8 @@ from pathlib import Path
 from squealpipe.parameters import parameters_of
 from squealpipe.store import load
 from squealpipe.store.keys import refuse_misfits
-from squealpipe.store.rerun.key import state_key
 from squealpipe.store.whole_files import whole_file
+from squealpipe.study.job import Job
 from squealpipe.study.report.build import write_document
 from squealpipe.study.report.own import gather_own, media_of_scenes
 from squealpipe.study.report.parts import made_files, picture_files, provenance
@@ -45,5 +45,4 @@ write_tables(
 )
 with whole_file(Path(out.provenance)) as temporary:
     temporary.write_text(json.dumps(made_how, indent=1), encoding="utf-8")
-for path in out:
-    state_key(path, params.key)
+Job(snakemake).state_keys()

@@ -2,8 +2,8 @@
 
 from squealpipe.plotting.style import save_figure
 from squealpipe.store import load
-from squealpipe.store.rerun.key import state_key
 from squealpipe.study.figures.declared import draw
+from squealpipe.study.job import Job
 
 given, params = snakemake.input, snakemake.params
 datasets = {
@@ -11,5 +11,4 @@ datasets = {
 }
 for name in params.figures:
     save_figure(draw(name, datasets), snakemake.output[name])
-for path in snakemake.output:
-    state_key(path, snakemake.params.key)
+Job(snakemake).state_keys()

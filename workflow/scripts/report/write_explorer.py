@@ -1,7 +1,7 @@
 """The explorer page."""
 
 from squealpipe.store import load
-from squealpipe.store.rerun.key import state_key
+from squealpipe.study.job import Job
 from squealpipe.study.report.explorer import write_explorer
 from squealpipe.study.report.explorer.layers import layers
 
@@ -13,5 +13,4 @@ write_explorer(
     settings["scenes"],
     paper=settings["paper"],
 )
-for path in snakemake.output:
-    state_key(path, snakemake.params.key)
+Job(snakemake).state_keys()

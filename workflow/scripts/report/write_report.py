@@ -6,8 +6,8 @@ from pathlib import Path
 from squealpipe.paper.report.content import gather
 from squealpipe.parameters import parameters_of
 from squealpipe.store.keys import refuse_misfits
-from squealpipe.store.rerun.key import state_key
 from squealpipe.store.whole_files import whole_file
+from squealpipe.study.job import Job
 from squealpipe.study.report.build import write_document
 from squealpipe.study.report.parts import made_files, picture_files, provenance
 
@@ -38,5 +38,4 @@ with whole_file(Path(out.provenance)) as temporary:
     temporary.write_text(
         json.dumps(provenance(datasets, figures), indent=1), encoding="utf-8"
     )
-for path in out:
-    state_key(path, params.key)
+Job(snakemake).state_keys()

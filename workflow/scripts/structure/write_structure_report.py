@@ -4,8 +4,8 @@ import json
 from pathlib import Path
 
 from squealpipe.store.keys import refuse_misfits
-from squealpipe.store.rerun.key import state_key
 from squealpipe.store.whole_files import whole_file
+from squealpipe.study.job import Job
 from squealpipe.study.report.build import write_document
 from squealpipe.study.report.parts import made_files, picture_files, provenance
 from squealpipe.study.report.structure import gather_structure, media_of_structure
@@ -27,5 +27,4 @@ with whole_file(Path(out.provenance)) as temporary:
     temporary.write_text(
         json.dumps(provenance(datasets, figures), indent=1), encoding="utf-8"
     )
-for path in out:
-    state_key(path, params.key)
+Job(snakemake).state_keys()
