@@ -1,4 +1,4 @@
-"""Durations and CPU times of a study's jobs when they last ran, and durations of several together."""
+"""Durations and CPU times of a study's jobs when they last ran, and of several together."""
 
 import json
 import sys

@@ -66,9 +66,8 @@ class _CompilerClock(event.Listener):  # type: ignore[misc]
 
 
 _CLOCK = _CompilerClock()
-event.register(
-    "numba:compile", _CLOCK
-)  # what Python calls is compiled on its first call
+_register: Any = event.register
+_register("numba:compile", _CLOCK)  # what Python calls is compiled on its first call
 
 
 def compile_time() -> float:

@@ -79,7 +79,6 @@ SMALL_RULES = [
     "compute_propensity",
     "judge_robustness",
     "follow_boundary",
-    "follow_corrected_boundary",
 ]
 TWO_PARTS = [
     *PROFILE,

@@ -39,19 +39,29 @@ for folder, reading in SHOWN.items():
         script:
             "../scripts/dynamics/map_validity.py"
 
-    if STUDY.paper and _given.contact_law == LINEAR:
+if STUDY.paper and _given.contact_law == LINEAR:
 
-        rule:
-            name:
-                rule_name("follow", folder, "boundary")
-            output:
-                boundary=data(f"{folder}validity_boundary"),
-                distances=[data(f"{folder}validity_distance/{name}") for name in PLACED],
-            params:
-                settings=validity,
-            threads: cores_for(1, enough=1)
-            script:
-                "../scripts/dynamics/follow_boundary.py"
+    # in one job: where no mass is as fast as the belt, all readings have one boundary
+    rule follow_boundary:
+        output:
+            **{
+                reading: [
+                    data(f"{folder}{name}")
+                    for name in ("validity_boundary", *(f"validity_distance/{scene}" for scene in PLACED))
+                ]
+                for folder, reading in SHOWN.items()
+            },
+        params:
+            settings=settings(
+                "parameters",
+                "dynamics.tol",
+                "dynamics.validity_horizon",
+                "dynamics.validity_points",
+                read_as=READING,
+            ),
+        threads: cores_for(1, enough=1)
+        script:
+            "../scripts/dynamics/follow_boundary.py"
 
 
 HAMMERING = settings(

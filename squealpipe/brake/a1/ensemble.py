@@ -105,7 +105,7 @@ class Ensemble:
     slips = _count(Event.slip)
     reversals = _count(Event.reversal)
     separated_time, stick_time = _spent(Regime.separated), _spent(Regime.stick)
-    early_max_x = _largest("x", "early_")
+    early_max_x, early_max_vx = _largest("x", "early_"), _largest("vx", "early_")
     """Before ``t_late``; those that are late from there on."""
     late_max_x, late_max_vx = _largest("x", "late_"), _largest("vx", "late_")
     sample_separations = _count(Event.separation, "sample_counts")

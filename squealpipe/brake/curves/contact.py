@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -21,7 +21,7 @@ from squealpipe.brake.schema.curves import (
     PointKind,
 )
 from squealpipe.laws.contact_laws import LINEAR
-from squealpipe.laws.friction_laws import LAWS
+from squealpipe.laws.friction_laws import COULOMB, LAWS
 from squealpipe.laws.springs import springs_are_equal
 from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
@@ -47,6 +47,10 @@ class Square:
     ) -> None:
         self.params, self.fixed, self.names = params, fixed, list(axes)
         self.options, self.model, self.runs = options, model, 0
+        self.faster: list[tuple[Vector, Vector]] = []
+        """Places where the mass was once as fast as the belt, and the reserves there."""
+        self.sticks = False
+        """Whether a mass was as fast as the belt before it lost contact."""
         self.low = np.array([each[0] for each in axes.values()])
         self.width = np.array([each[-1] - each[0] for each in axes.values()])
 
@@ -88,15 +92,46 @@ class Square:
         alpha1, alpha2 = fields.pop("alpha1"), fields.pop("alpha2")
         return run_ensemble(fields, alpha1, alpha2, model=model, **options)
 
+    def motions(self) -> Any:
+        """Return what decides the motions of masses slower than the belt; None if more does.
+
+        While |ẋ| < |V| Coulomb's friction has one direction, so that A1 as printed moves as A1 does
+        over a belt that runs the other way.
+        """
+        if self.params.friction_law != COULOMB or "belt_speed" in self.names:
+            return None
+        values = {name: getattr(self.params, name) for name in PHYSICAL}
+        drags_forwards = values["belt_speed"] > 0.0
+        values["belt_speed"] = abs(values["belt_speed"])
+        options = {name: self.options[name] for name in ("t_end", "tol")}
+        ranges = [*self.low.tolist(), *self.width.tolist()]
+        return (
+            drags_forwards != (self.model == "A1-as-printed"),
+            values | self.fixed | options,
+            self.names,
+            ranges,
+        )
+
     def reserve(self, places: Vector) -> Vector:
         """The lowest contact force over the preload's, in runs in which k3 pulls too."""
-        lowest = self._run(places, f"{self.model}-no-separation").lowest_contact_force
-        return np.asarray(np.clip(np.nan_to_num(lowest, nan=-1.0), -1.0, 1.0))
+        run = self._run(
+            places, f"{self.model}-no-separation", tracked=("contact_force", "vx")
+        )
+        lowest = np.nan_to_num(run.lowest_contact_force, nan=-1.0)
+        reserve = np.asarray(np.clip(lowest, -1.0, 1.0))
+        slower = run.early_max_vx < abs(self.params.belt_speed)
+        if not slower.all():
+            self.faster.append((places[~slower], reserve[~slower]))
+        return reserve
 
     def touch_time(self, places: Vector, slope: Vector) -> Vector:
         """When contact is lost next to the boundary, over √(m/k1)."""
         beside = places - BESIDE * slope / np.linalg.norm(slope, axis=1)[:, None]
-        run = self._run(beside, self.model, stop_at_first_separation=True)
+        run = self._run(
+            beside, self.model, stop_at_first_separation=True, tracked=("vx",)
+        )
+        slower = run.early_max_vx < abs(self.params.belt_speed)
+        self.sticks |= not slower.all()
         time = np.where(
             run.outcome == Outcome.separated, run.first_separation_time, run.time
         )
@@ -148,6 +183,49 @@ def two_axes(
         )
     refuse_unread(params, list(axes))
     return axes, fixed
+
+
+class FollowedLines(NamedTuple):
+    """Lines of kept contact, and what they hold for.
+
+    Attributes:
+        cells: per side of the coarse map, and of the finest at least.
+        motions: what decides the runs, as :meth:`Square.motions` has it.
+        square: whose runs they were followed by.
+    """
+
+    cells: tuple[int, int]
+    motions: Any
+    square: Square
+    lines: ZeroLines
+
+
+_LATEST: list[FollowedLines] = []
+"""None or one. A study follows the boundary in two readings of the sign of friction, which differ
+only where a mass is faster than the belt."""
+
+
+def lines_of(square: Square, coarse: int, finest: int) -> ZeroLines:
+    """Return the boundary of kept contact: the latest one if its reserves are the same.
+
+    Where a mass was once as fast as the belt its reserve is computed anew.
+    """
+    cells, motions = (coarse, finest), square.motions()
+    for latest in _LATEST:
+        if motions is None or (cells, motions) != (latest.cells, latest.motions):
+            continue
+        if all(
+            np.array_equal(square.reserve(places), reserve)
+            for places, reserve in latest.square.faster
+        ):
+            square.runs = latest.square.runs
+            return latest.lines
+    square.runs = 0
+    lines = contact_lines(square, coarse, finest)
+    _LATEST.clear()
+    if not square.sticks:
+        _LATEST.append(FollowedLines(cells, motions, square, lines))
+    return lines
 
 
 def contact_lines(
@@ -211,16 +289,11 @@ def contact_boundary(
     """
     axes, fixed = two_axes(params, alpha1, alpha2, ranges, model)
     t_end = HORIZON * params.time_unit if t_end is None else t_end
-    options = {
-        "t_end": t_end,
-        "tol": tol,
-        "workers": workers,
-        "tracked": ("contact_force",),
-    }
+    options = {"t_end": t_end, "tol": tol, "workers": workers}
     square = Square(params, fixed, axes, options, model)
     coarse = max(each.size for each in axes.values())
     # cells per side, at least, of the grid on whose edges the curves begin
-    return _dataset(square, contact_lines(square, coarse, 900), axes)
+    return _dataset(square, lines_of(square, coarse, 900), axes)
 
 
 def nearest_on(
