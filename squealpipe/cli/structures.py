@@ -223,7 +223,7 @@ def squeal(
         t_end: longest time of a run, s; by default 8000 periods of the slowest unstable mode,
             after the time in which it grows.
         n_modes: modes to reduce the structure to; by default as many as errors below 1 % need,
-            and no reduction up to 32 degrees of freedom. At most 32.
+            and no reduction up to 32 degrees of freedom. At most 512.
         frequency_max: reduce to the modes that the unstable ones up to this frequency need, Hz;
             needed beyond 1000 degrees of freedom.
         onset: also lower the friction until the squeal dies, to see whether it lasts below the

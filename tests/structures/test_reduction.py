@@ -14,8 +14,10 @@ from squealpipe.structures import elastic_pad
 from squealpipe.structures.agreement import Truth
 from squealpipe.structures.motion_system import component_system
 from squealpipe.structures.reduction import Search, fewest_modes
+from squealpipe.structures.squeal import plant
 from squealpipe.structures.squeal.attractors import grouped
 from squealpipe.study.report.squealing import lines
+from squealpipe.systems.linear.matrices import Caps
 
 
 def chain(links, *, mu=0.5, offset=0.0):
@@ -164,7 +166,8 @@ def test_a_missing_mode_makes_the_verdict_undetermined_and_is_named():
     assert plot(answer).has_data()
 
 
-def test_too_many_contacts_are_told_with_the_modes():
+def test_too_many_contacts_are_told_with_the_modes(monkeypatch):
+    monkeypatch.setattr(plant, "Caps", lambda: Caps(modes=32, contacts=16))
     pad = elastic_pad(elements=(16, 1), contacts=17, mu=0.6, modal_damping=0.02)
     answer = squealing_modes(pad, samples=2)
     said = lines(answer)

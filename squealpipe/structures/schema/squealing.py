@@ -20,7 +20,8 @@ from squealpipe.systems.datasets.agreement import Listing
 
 NO_ATTRACTOR = -1
 MOST_MODES = 32
-"""Modes in which a structure can be run."""
+"""Modes up to which a structure is run as it is, and to which others are reduced at most, unless
+their contacts need more."""
 MOST_DAMPING = 0.2
 """Largest ratio of damping that is tried as a remedy."""
 ABOVE = 1.01

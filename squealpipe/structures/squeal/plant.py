@@ -16,14 +16,13 @@ from squealpipe.structures.motion_system import system
 from squealpipe.structures.pencil import DENSE
 from squealpipe.structures.reduction import (
     agreement_of,
-    conflict_in_stick,
     fitted,
     modes_that_would_do,
     reduce,
 )
 from squealpipe.structures.schema.squealing import MOST_MODES
 from squealpipe.structures.spectrum import Limits, Solver, Spectrum
-from squealpipe.systems.components import MOST_COMPONENTS
+from squealpipe.systems.linear.matrices import Caps
 from squealpipe.systems.system import System
 from squealpipe.systems.trace import TIME
 
@@ -46,21 +45,25 @@ def carried(
         raise ValueError("the structure has no contacts: nothing rubs")
     if structure.size <= MOST_MODES:
         return structure
+    if structure.reduced_from is not None and structure.size <= Caps().modes:
+        return structure  # reduced by hand
     origin = structure.reduced_from or ReducedFrom(structure, frequency_max)
     whole, band = origin.whole, origin.frequency_max
-    if len(whole.contacts) > MOST_COMPONENTS:
+    count = len(whole.contacts)
+    if count > Caps().contacts:
         # nothing will be run: the modes of the structure itself are reported
         return (
             structure if structure.size <= DENSE else reduce(whole, frequency_max=band)
         )
-    return fitted(whole, band, MOST_MODES)
+    # each contact has a static deflection of its own, which takes a few modes
+    return fitted(whole, band, min(max(MOST_MODES, 4 * count), Caps().modes))
 
 
 def check_modes(number: int | None) -> None:
     """Refuse a number of modes in which a structure cannot be run."""
-    if number is not None and number > MOST_MODES:
+    if number is not None and number > Caps().modes:
         raise ValueError(
-            f"n_modes = {number}: a structure can be run in {MOST_MODES}; leave it out for the "
+            f"n_modes = {number}: a structure can be run in {Caps().modes}; leave it out for the "
             "fewest that answer"
         )
 
@@ -92,13 +95,16 @@ class Plant:
     def obstacle(self) -> str | None:
         """Reason why the structure cannot be run, with a remedy; None if it can."""
         count = len(self.structure.contacts)
-        if count > MOST_COMPONENTS:
-            return f"{count} contacts are more than the {MOST_COMPONENTS} that runs can have"
-        if self.size > MOST_MODES:
+        caps = Caps()
+        if count > caps.contacts:
             return (
-                f"{self.size} modes are more than the {MOST_MODES} that runs can have"
+                f"{count} contacts are more than the {caps.contacts} that runs can have"
             )
-        return conflict_in_stick(self.structure)
+        if self.size > caps.modes:
+            return (
+                f"{self.size} modes are more than the {caps.modes} that runs can have"
+            )
+        return None
 
     @cached_property
     def agreement(self) -> Agreement:

@@ -58,8 +58,9 @@ def squealing_modes(
 
     Args:
         structure: a :class:`squealpipe.Structure`; one of more than 32 degrees of freedom is
-            reduced first, to the fewest modes within 1 % or to 32, and beyond 1000 must be (see
-            ``Structure.reduce``).
+            reduced first, to the fewest modes within 1 %, at most 32 or four a contact, and beyond
+            1000 must be (see ``Structure.reduce``); one that was reduced is run as it is. At most
+            512 modes and 512 contacts; exact cycles, with multipliers, up to 32 and 16.
         samples: random starts.
         t_end: longest time of a run, s; by default 8000 periods of the slowest unstable mode,
             beyond the time in which it grows.

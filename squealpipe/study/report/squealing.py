@@ -10,7 +10,6 @@ from squealpipe.plotting.origin import parameter
 from squealpipe.schema import Outcome
 from squealpipe.structures.schema.squealing import (
     JUST_ABOVE,
-    MOST_MODES,
     NO_ATTRACTOR,
     Kind,
     OnsetKind,
@@ -162,9 +161,7 @@ def _what_would_do(answer: xr.Dataset) -> str:
     if not enough:
         return f"No number of modes was found that would do; {band}."
     whole = " (all there are)" if enough == size else ""
-    if enough <= MOST_MODES:
-        return f"{enough} modes{whole} would do: n_modes={enough}."
-    return f"{enough} modes{whole} would do, more than the {MOST_MODES} that runs can have; {band}."
+    return f"{enough} modes{whole} would do: n_modes={enough}."
 
 
 def missing(answer: xr.Dataset) -> Iterator[str]:
