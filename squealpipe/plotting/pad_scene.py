@@ -31,8 +31,9 @@ from squealpipe.units import engineering
 class Geometry:
     """Places of the drawn mechanism for displacements of the mass.
 
-    Displacements about their mean are drawn `scale` times larger, the springs at their true
-    angles and lengths, so that 1 mm is seen beside a spring of 100 mm.
+    Displacements about their mean are drawn `scale` times larger, the springs at their true angles,
+    so that 1 mm is seen beside a spring of 100 mm. A spring shorter than half the other one is
+    drawn half as long, unless the motion is drawn at its true size.
 
     Attributes:
         scale: 1, 2 or 5 times a power of ten.
@@ -43,12 +44,18 @@ class Geometry:
     """
 
     def __init__(self, motion: PadMotion) -> None:
-        self.angles, self.lengths = motion.angles, motion.lengths
+        self.angles = motion.angles
         self.mean = motion.place.mean(axis=0)
-        shortest = min(motion.lengths)
+        longest = max(motion.lengths)
+        first, second = (max(length, 0.5 * longest) for length in motion.lengths)
+        # what has died out stays still: round-off is not drawn as a motion
         extent = float(np.abs(motion.place - self.mean).max())
+        extent = max(extent, 1e-3 * motion.preload)
         # beside a spring the motion is seen well, and the mass stays off its pivots
-        self.scale = max(round_down(0.22 * shortest / max(extent, 1e-300)), 1.0)
+        self.scale = max(round_down(0.22 * min(first, second) / extent), 1.0)
+        # at its true size the motion turns springs, which then have their true lengths
+        self.lengths = (first, second) if self.scale > 1.0 else motion.lengths
+        shortest = min(self.lengths)
         points = np.concatenate([self.drawn(motion.place), self.ends])
         self.size = float(np.ptp(points, axis=0).max())
         self.radius = 0.04 * self.size
