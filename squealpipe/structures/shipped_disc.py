@@ -13,7 +13,7 @@ import scipy.sparse as sp
 
 from squealpipe.structures.meshes.faces import Face, Rotation
 from squealpipe.structures.structure import Structure
-from squealpipe.validation import NotNegative, Number, Positive, checked
+from squealpipe.validation import Natural, NotNegative, Number, Positive, checked
 
 UNITS = {
     "stiffness": "N m-1",
@@ -146,6 +146,7 @@ def disc_brake(
     mu: NotNegative = 0.4,
     speed: Number = 20.0,
     modal_damping: NotNegative = 0.0,
+    points: Natural | None = None,
 ) -> Structure:
     """A disc of iron, fixed at its inner radius, and a lining on a steel plate pressed on it.
 
@@ -159,6 +160,7 @@ def disc_brake(
         mu: friction of the lining.
         speed: of the disc, rad/s, by the right-hand rule about z; the lining is above it.
         modal_damping: as of :class:`Structure`.
+        points: number of contacts to which neighbours are merged; None: all 20.
 
     Raises:
         ValueError: an argument.
@@ -173,7 +175,12 @@ def disc_brake(
         mesh=(to_metres, faces),
         contacts={
             "lining": Face(
-                "PAD_FACE", "DISC_FACE", stiffness=stiffness, pressure=pressure, mu=mu
+                "PAD_FACE",
+                "DISC_FACE",
+                stiffness=stiffness,
+                pressure=pressure,
+                mu=mu,
+                points=points,
             )
         },
         rotation=Rotation((0, 0, 1), (0, 0, 0), speed, "DISC_FACE"),
