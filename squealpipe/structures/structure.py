@@ -76,6 +76,17 @@ class Structure(ContactStructure):  # noqa: D101 (that of the definition)
             arguments,
         )
 
+    def with_points(self, points: int) -> Self:
+        """The same with so many contacts for each face of a mesh; neighbours are merged.
+
+        Stiffness, force and first moments of a face stay, so that what fewer points change is what
+        the answer owes to how pressure is spread; see
+        :func:`squealpipe.structures.fewer_points.with_points`.
+        """
+        from squealpipe.structures.fewer_points import with_points
+
+        return with_points(self, points)  # type: ignore[no-any-return]
+
     def write_contacts(self, path: str | PathLike[str]) -> None:
         """Write the contacts as a table (.csv) that the key ``contacts`` of a file takes.
 

@@ -51,10 +51,26 @@ def _order(middles: np.ndarray, weights: np.ndarray, first: np.ndarray) -> np.nd
     """Return the order along the direction in which the points extend farthest."""
     center = np.average(middles, axis=0, weights=weights)
     apart = middles - center
-    _, axes = np.linalg.eigh((apart.T * weights) @ apart)
-    axis = axes[:, -1]
-    axis = axis * np.sign(axis[np.abs(axis).argmax()])
     extent = np.linalg.norm(apart, axis=1).max() or 1.0
+    apart = apart / extent
+    axis = _longest_axis((apart.T * (weights / weights.sum())) @ apart)
     # round-off must not order points that are level
-    along = np.round(apart @ axis / extent, 9)
+    along = np.round(apart @ axis, 9)
     return np.lexsort((first, along))
+
+
+def _longest_axis(spread: np.ndarray) -> np.ndarray:
+    """Return the principal axis of the largest spread, the same for any round-off.
+
+    Of a face that extends equally far in several directions, as a square does, round-off would
+    choose one; here it is the one nearest to a coordinate axis.
+
+    Args:
+        spread: second moments, (3, 3).
+    """
+    values, axes = np.linalg.eigh(spread)
+    longest = axes[:, values >= values[-1] * (1.0 - 1e-6)]
+    onto = longest @ longest.T
+    nearest = int(np.round(np.diag(onto), 6).argmax())
+    axis = onto[:, nearest]
+    return np.asarray(axis / np.linalg.norm(axis))

@@ -182,3 +182,39 @@ def test_messages_name_nodes(brake):
     mass[:, row] = 0.0
     with pytest.raises(ValueError, match=r"1 degrees of freedom have none \(5003.2\)"):
         brake.with_(mass=mass)
+
+
+@pytest.mark.parametrize("points", [1, 3, 8])
+def test_points_merged_afterwards_are_those_merged_from_the_mesh(brake, points):
+    face = Face(
+        "PAD_FACE",
+        against="DISC_FACE",
+        stiffness=2.5e9,
+        pressure=5e5,
+        mu=0.4,
+        points=points,
+    )
+    at_once = Structure.from_mesh(
+        DATA / "brake.mas.gz",
+        DATA / "brake.sti.gz",
+        mesh=DATA / "brake.inp.gz",
+        contacts={"lining": face},
+        rotation=Rotation(speed=20, body="DISC_FACE"),
+        units="mm-t-s",
+    )
+    afterwards = brake.with_points(points)
+    assert [each.name for each in afterwards.contacts] == [
+        each.name for each in at_once.contacts
+    ]
+    for name in ("normals", "tangentials", "stiffnesses", "preloads", "speeds"):
+        np.testing.assert_allclose(
+            getattr(afterwards, name), getattr(at_once, name), rtol=1e-12, atol=1e-15
+        )
+    for one, other in zip(afterwards.contacts, at_once.contacts, strict=True):
+        assert one.origin.nodes == other.origin.nodes
+    assert brake.with_points(20).contacts == brake.contacts
+
+
+def test_wrong_numbers_of_points_are_refused(brake):
+    with pytest.raises(ValueError, match="points = 0"):
+        brake.with_points(0)
