@@ -23,6 +23,7 @@ from .schema import labels
 from .store.netcdf import load, save
 from .store.results import open_results
 from .store.tables import convert
+from .structures.assess.operating_map import operating_map
 from .structures.contact import Contact
 from .structures.meshes.faces import Face, Rotation
 from .structures.squeal.ladder import squeal_ladder
@@ -62,6 +63,7 @@ __all__ = [
     "load",
     "natural_frequencies",
     "open_results",
+    "operating_map",
     "periodic_orbit",
     "plot",
     "propensity",

@@ -31,7 +31,7 @@ from squealpipe.cli.models import choose, infer, propensity
 from squealpipe.cli.motions import backbone, branch, cycle, simulate
 from squealpipe.cli.project import init
 from squealpipe.cli.project import run as run_study
-from squealpipe.cli.structures import ladder, modes, squeal
+from squealpipe.cli.structures import ladder, modes, operating, squeal
 from squealpipe.cli.study import archive, compare, explain, verify
 from squealpipe.cli.sweep import sweep
 from squealpipe.study.supervised import StoppedError, stops_raise
@@ -57,6 +57,7 @@ COMMANDS: dict[str, Callable[..., int]] = {
     "modes": modes,
     "squeal": squeal,
     "ladder": ladder,
+    "operating": operating,
     "choose": choose,
     "infer": infer,
     "refine": refine,

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @options_of("assess")
 def assess(
-    alpha1: Angle1OrFile,
+    alpha1_or_file: Angle1OrFile,
     alpha2: OptionalAngle2 = None,
     /,
     *,
@@ -56,17 +56,18 @@ def assess(
         seed: of them.
         output: also write the dataset (.nc or .csv), and a picture of the settled motion beside it.
     """
-    if isinstance(alpha1, Path):
+    if isinstance(alpha1_or_file, Path):
         if alpha2 is not None:
             raise ValueError(
-                f"{alpha1} is the file of a structure, which has no angles; leave {alpha2!r} out"
+                f"{alpha1_or_file} is the file of a structure, which has no angles; leave "
+                f"{alpha2!r} out"
             )
         if brake.params != Parameters():
             raise ValueError(
                 "a structure has its numbers in its file; leave --config and parameters out"
             )
         return _assess_structure(
-            alpha1,
+            alpha1_or_file,
             output,
             brake,
             modify,
@@ -80,7 +81,9 @@ def assess(
     if modify:
         raise ValueError(f"--modify {modify[0]!r}: of a structure alone")
     if output is not None:
-        verdict = compute("assess", brake, alpha1, alpha2, output=output, tol=tol)
+        verdict = compute(
+            "assess", brake, alpha1_or_file, alpha2, output=output, tol=tol
+        )
 
         from squealpipe.study.report.answer import lines
 
@@ -91,7 +94,7 @@ def assess(
         from squealpipe.brake.assess.assess import judge
 
         with working("assess"):
-            judged = judge(brake.params, alpha1, alpha2, tol=tol)
+            judged = judge(brake.params, alpha1_or_file, alpha2, tol=tol)
         verdict = _told_in_turn(judged)
     return DONE if int(verdict.verdict) == 0 else ANSWER_IS_NO
 

@@ -14,6 +14,7 @@ from squealpipe.cli.arguments import (
     Files,
     Frequency,
     Frictions,
+    Numbers,
     Output,
     Ranges,
     SpeedTexts,
@@ -21,6 +22,7 @@ from squealpipe.cli.arguments import (
     Time,
     Tolerance,
     Whole,
+    Workers,
     pairs_of,
 )
 from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer, say, working
@@ -32,6 +34,7 @@ from squealpipe.cli.output import (
     write,
 )
 from squealpipe.cli.signatures import errors_in_options, in_options, options_of
+from squealpipe.codes import Verdict
 from squealpipe.inputs import parse_number
 from squealpipe.ranges import parse_range
 
@@ -317,3 +320,49 @@ def ladder(
     dataset = _compute(squeal_ladder, file, asked, output, files)
     answer(*lines(dataset))
     return DONE if (dataset.verdict == Reliability.right).all() else ANSWER_IS_NO
+
+
+@options_of("operating_map")
+def operating(
+    file: Path,
+    /,
+    *,
+    pressure: Numbers = None,
+    speed: SpeedTexts = None,
+    mu: Numbers = None,
+    tol: Tolerance,
+    workers: Workers,
+    output: Output = Path("operating.nc"),
+    files: Files = FILES,
+) -> int:
+    """Say at which pressures, speeds and frictions a structure is noisy, at which frequency.
+
+    At each point steady sliding is pushed and run until its motion has settled. Exit code 0: all
+    points are quiet; 1: some are not.
+
+    Example: `squealpipe operating pad.yaml --pressure 0.5:2:4 --speed 1:4:4 -o operating.nc`
+
+    Args:
+        file: structure, a YAML file that names its matrices and contacts (see the gallery).
+        pressure: factors of all preloads, a number or first:last:count.
+        speed: speeds likewise, m/s, or rad/s (also 200 rpm) where the file has a rotation; that of
+            the file by default.
+        mu: friction likewise, of the contacts that have none of their own.
+    """
+    refuse_existing(output, force=files.force)
+
+    import squealpipe
+    from squealpipe.study.report.operating import lines
+
+    def operating_map(structure: Any, **options: Any) -> xr.Dataset:
+        if text := options.pop("speed", None):
+            read = partial(parse_number, units=structure.speed_unit)
+            options["speed"] = parse_range(text, one=read)
+        return squealpipe.operating_map(structure, **options)
+
+    asked: dict[str, Any] = {"pressure": pressure, "speed": speed, "mu": mu}
+    asked |= {"tol": tol, "workers": workers}
+    dataset = _compute(operating_map, file, asked, output, files)
+    answer(*lines(dataset))
+    quiet = bool((dataset.verdict == Verdict.quiet).all())
+    return DONE if quiet else ANSWER_IS_NO

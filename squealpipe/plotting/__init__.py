@@ -16,6 +16,8 @@ from squealpipe.plotting.mesh_scene import draw_forces
 from squealpipe.plotting.mode_shapes import draw_shape, figure_of_mode, title_of
 from squealpipe.plotting.modes import draw_modes
 from squealpipe.plotting.modes import figure as modes_figure
+from squealpipe.plotting.operating_map import draw_points
+from squealpipe.plotting.operating_map import figure as operating_figure
 from squealpipe.plotting.propensity import draw_shares
 from squealpipe.plotting.propensity import figure as propensity_figure
 from squealpipe.plotting.quantities import draw_quantity, mark_changed, shown
@@ -49,6 +51,7 @@ DRAW_BY_SCHEMA: dict[str, Callable[[Axes, xr.Dataset], None]] = {
     "squealing_modes": draw_poles,
     "structure_run": draw_forces,
     "squeal_ladder": draw_level,
+    "operating_map": draw_points,
     "contact_points": draw_onsets,
     COMPLEX_MODES: draw_modes,
     SYSTEM + "simulate": draw_states,
@@ -63,6 +66,7 @@ FIGURE_BY_SCHEMA: dict[str, Callable[[xr.Dataset], Figure]] = {
     "assess": assess_figure,
     "simulation": run_figure,
     "propensity": propensity_figure,
+    "operating_map": operating_figure,
     "squealing_modes": squealing_figure,
     "squeal_ladder": squeal_ladder_figure,
     COMPLEX_MODES: modes_figure,

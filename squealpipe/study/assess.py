@@ -8,8 +8,10 @@ from typing import Any
 import xarray as xr
 
 from squealpipe.brake.assess.assess import assess as assess_pad
+from squealpipe.parameters import Parameters
 from squealpipe.structures.assess.assess import assess_structure
 from squealpipe.structures.definition import ContactStructure
+from squealpipe.systems.inputs.values import brief
 from squealpipe.validation import Angle, Natural, Seed, Tolerance, Workers, checked
 
 
@@ -82,6 +84,10 @@ def assess(
         )
         answer.attrs["made_by"] = "squealpipe.assess"
         return answer
+    if not isinstance(params, Parameters):
+        raise ValueError(
+            f"params = {brief(params)}: Parameters of a pad or a Structure is needed"
+        )
     if alpha1 is None or alpha2 is None:
         missing = "alpha1" if alpha1 is None else "alpha2"
         raise TypeError(f"assess: {missing}: missing required argument of a pad")

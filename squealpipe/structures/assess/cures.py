@@ -61,7 +61,7 @@ def cures_of(
     if whole.rotation is not None:
         units["belt_speed"] = "rad s-1"
     cures["contact_stiffness"] = _factor(design, _with_stiffness)
-    cures["preload"] = _factor(design, _with_preload)
+    cures["preload"] = _factor(design, with_preload)
     cures["modal_damping"] = _damping(design)
     speed, factors = whole.belt_speed, _factors(RANGES.factor)
     cures["belt_speed"] = Cure(
@@ -120,7 +120,7 @@ def _with_stiffness(structure: ContactStructure, factor: float) -> ContactStruct
     return structure.with_(contacts=contacts)
 
 
-def _with_preload(structure: ContactStructure, factor: float) -> ContactStructure:
+def with_preload(structure: ContactStructure, factor: float) -> ContactStructure:
     """Everything that presses, times a factor: preloads, and a load that is given."""
     contacts = [
         replace(each, preload=factor * each.preload) for each in structure.contacts
