@@ -85,7 +85,7 @@ def assess(
         answer.attrs["made_by"] = "squealpipe.assess"
         return answer
     if not isinstance(params, Parameters):
-        raise ValueError(
+        raise ValueError(  # noqa: TRY004 (of all arguments mistakes are values)
             f"params = {brief(params)}: Parameters of a pad or a Structure is needed"
         )
     if alpha1 is None or alpha2 is None:
