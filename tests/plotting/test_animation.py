@@ -157,7 +157,7 @@ def test_the_page_plays_by_keyboard_and_not_by_itself_for_who_wants_no_motion(
 
 def test_what_has_died_out_is_drawn_still():
     """Round-off would fill the picture if it were enlarged as a motion is."""
-    quiet = simulate(PAD.with_(mu=0.0), *ANGLES, t_end=1.0)
+    quiet = simulate(PAD.with_(mu=0.0, mu_static=0.0), *ANGLES, t_end=1.0)
     made = film_of(quiet, seconds=0.2)
     middles = made.scene.mechanism.middles
     assert np.ptp(middles, axis=0).max() < 1e-3 * made.scene.mechanism.geometry.size
