@@ -181,7 +181,7 @@ class Body:
 
     @property
     def plane(self) -> bool:
-        """Whether the structure lies in the plane z = 0."""
+        """True if the structure lies in the plane z = 0."""
         return bool(np.ptp(self.nodes[:, 2]) == 0.0)
 
     def _draw_belt(self, axes: Axes, below: float, *, small: bool) -> None:

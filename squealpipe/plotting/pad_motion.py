@@ -114,5 +114,5 @@ class PadMotion:
 
     @property
     def separated(self) -> np.ndarray:
-        """Whether contact is lost, (n,)."""
+        """True if contact is lost, (n,)."""
         return np.asarray(self.regimes == Regime.separated)

@@ -16,7 +16,7 @@ DEPENDENT = 1e-9
 
 
 class PointOrigin(NamedTuple):
-    """Where a contact of a mesh comes from.
+    """Place in a mesh from which a contact comes.
 
     Attributes:
         nodes: numbers of the nodes that it acts on, of the face that rubs.

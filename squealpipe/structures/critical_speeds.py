@@ -62,7 +62,7 @@ class SpeedSolver(Solver):
         return self._at(mu).sliding(self.mu)
 
     def pencil(self, mu: float) -> Pencil:
-        """Of small motions at a share of the unit."""
+        """Return the matrices of small motions at a share of the unit of speed."""
         return self._at(mu).pencil(self.mu)
 
     def at(self, mu: float) -> Spectrum:

@@ -51,7 +51,7 @@ class Numbers:
 
     @classmethod
     def of(cls, structure: ContactStructure) -> Self:
-        """Of a structure of few degrees of freedom."""
+        """Return the numbers of a structure of few degrees of freedom."""
         factor = la.cho_factor(structure.mass.toarray())
         scaled = structure.normals * structure.stiffnesses
         stiffness = structure.stiffness.toarray() + scaled @ structure.normals.T

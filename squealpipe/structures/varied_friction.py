@@ -1,4 +1,4 @@
-"""Which coefficients of friction one number stands for: the structure's, a face's, or a factor."""
+"""Coefficients of friction that one number stands for: the structure's, a face's, or a factor."""
 
 import re
 from collections.abc import Mapping

@@ -27,7 +27,8 @@ def assess(
     tol: Tolerance = 1e-12,
     workers: Workers = None,
 ) -> xr.Dataset:
-    """Whether a brake squeals or hammers, at which frequency, how loud, why, and what stops it.
+    """Return whether a brake squeals or hammers, at which frequency, how loud, why, and what stops
+    it.
 
     Two starts are told: steady sliding, pushed by 1 % of the static deformation in the direction
     in which small motions grow fastest, and (prefix ``sudden_``) rest under the whole load at

@@ -149,7 +149,7 @@ class BeltContact:
 
 
 def knots(here: str, there: str, past: Callable[[str], Surface]) -> Iterator[Switch]:
-    """Where a law goes over from one of its pieces to the next, and back.
+    """Return the switches at which a law goes over from one of its pieces to the next, and back.
 
     Args:
         past: how far what the law reads is beyond the end, or the start, of its piece.

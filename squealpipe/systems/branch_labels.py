@@ -1,10 +1,12 @@
-"""What a point of a branch or curve of cycles is; apart from what finds it, which compiles."""
+"""Labels of the points of branches and curves of cycles; apart from what finds them, which
+compiles.
+"""
 
 from enum import IntEnum
 
 
 class Label(IntEnum):
-    """What a point of a branch is."""
+    """Label of a point of a branch."""
 
     regular = 0
     fold = 1
@@ -22,7 +24,7 @@ class Label(IntEnum):
 
 
 class Meeting(IntEnum):
-    """What else happens at a point of a curve."""
+    """Further event at a point of a curve."""
 
     regular = 0
     cusp = 1

@@ -72,7 +72,7 @@ class Line(Generic[Found]):
         end: float = 1.0,
         begin: float = 0.0,
     ) -> float | None:
-        """Where a test is zero between two shares of the step; None where it is not found."""
+        """Return where a test is zero between two shares of the step, or None."""
 
         def value(share: float) -> float:
             found = test(*self.at(share))

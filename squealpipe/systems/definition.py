@@ -1,4 +1,4 @@
-"""What a piecewise-smooth system is: what it is given, checked; it knows no verbs."""
+"""Piecewise-smooth systems: their definition, checked; the verbs stand elsewhere."""
 
 from __future__ import annotations  # help shows Angle, not its checks
 
@@ -157,7 +157,7 @@ class Definition:
         self.form = self
 
     def _trace(self) -> Traced:
-        """What its functions become as symbols."""
+        """Call the functions with symbols, and return what they become."""
         raise NotImplementedError
 
     @property
@@ -180,7 +180,9 @@ class Definition:
 
     @cached_property
     def start_names(self) -> dict[str, str]:
-        """What starts are called: ``x0``, or ``x_0`` of every state where a state is named so."""
+        """Return the names of starts: ``x0``, or ``x_0`` of every state where a
+        state is named so.
+        """
         mark = ""
         while any(f"{name}{mark}0" in self.units for name in self.units):
             mark += "_"

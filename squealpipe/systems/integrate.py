@@ -24,7 +24,7 @@ MOST_STEPS, MOST_EVENTS = 10_000_000, 10_000_000
 
 
 def symbolic(system: System) -> HybridSystem:
-    """What the series of a system are written from."""
+    """Return the symbols from which the series of a system are written."""
     t = system.integrated
     return HybridSystem(
         variables=t.variables,
@@ -68,7 +68,7 @@ def compiled(system: System, *, tangent: bool, few: bool) -> lanes.CompiledSyste
 
 @dataclass(frozen=True)
 class RunOptions:
-    """What a batch of runs looks at, and what may end a run early.
+    """Options of a batch of runs: what is observed, and what may end a run early.
 
     Attributes:
         regime: in which all start, by name, or the number of each in each component, (runs,
@@ -232,7 +232,7 @@ class Batch:
         ]
 
     def _sums(self) -> list[tuple[str, int]]:
-        """What adds up along a run, and how many numbers each is."""
+        """Return the sums along a run, and how many numbers each has."""
         if not self.options.sums:
             return []
         return [
@@ -269,7 +269,7 @@ class Batch:
         }
 
     def _counts(self) -> dict[str, int]:
-        """How many there are of what the loop goes through, and addresses of code."""
+        """Return how many items the loop goes through, and the addresses of code."""
         system, code, t = self.system, self.code, self.system.integrated
         n_constants, n_points = len(t.all_constants), self.points.shape[1]
         n_rows = layout.FIXED_ROWS + len(t.variables) + t.size + 2 * len(self.watched)
@@ -308,7 +308,7 @@ class Batch:
         }
 
     def _memory(self, counts: dict[str, int], queue: list[int]) -> dict[str, Any]:
-        """What the loop reads, and where it works, for one process."""
+        """Return the arrays that the loop reads and works in, for one process."""
         t, options = self.system.integrated, self.options
         logged = t.kinds if options.logged is None else options.logged
         n_events = len(t.surfaces) + len(t.outputs)

@@ -1,4 +1,4 @@
-"""Whether a sequence of events repeats itself."""
+"""Detection of repetition in a sequence of events."""
 
 from collections.abc import Iterator
 

@@ -228,7 +228,7 @@ def build(
 
 
 def check(dataset: xr.Dataset) -> xr.Dataset:
-    """The same dataset of a system, if every variable is one that its table has, as it says.
+    """Return the dataset of a system if every variable is one that its table has, as it says.
 
     Raises:
         SchemaError: with all faults: a variable that has no place, is missing, or has other
@@ -321,7 +321,7 @@ def _patterns(table: str) -> list[tuple[re.Pattern[str], Variable]]:
 
 
 def _described(table: str, name: str, variable: xr.Variable) -> Variable:
-    """What a variable's own attributes say, compared as its table says."""
+    """Return what a variable's own attributes say, compared as its table says."""
     texts = variable.dtype.kind in "UO"
     entry = entry_of(table, name) or Variable(nan_allowed=True)
     return Variable(

@@ -261,7 +261,7 @@ class TracedSystem(Definition):
         regimes: Mapping[str, Mapping[str, float]],
         parameters: Mapping[str, float],
     ) -> Self:
-        """The same system with other constants and defaults, neither traced nor compiled again.
+        """Return the system with other constants and defaults, neither traced nor compiled again.
 
         Args:
             regimes: constants of all regimes, under the same names; functions must have read them
@@ -339,7 +339,7 @@ class TracedSystem(Definition):
 
     @cached_property
     def derived(self) -> tuple[Any, list[str]]:
-        """What computes the derived parameters of runs, and the names that it is given."""
+        """Return the function of the derived parameters of runs, and the names that it is given."""
         return numpy_function(self.integrated.derived)
 
     @cached_property
@@ -349,7 +349,7 @@ class TracedSystem(Definition):
 
     @cached_property
     def text(self) -> dict[str, str]:
-        """What the system is, as text: for the attributes of its datasets."""
+        """Return the system as text, for the attributes of its datasets."""
         return describe(self.traced, self.composition, self.states, tuple(self.outputs))
 
     def outputs_along(

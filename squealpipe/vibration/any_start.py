@@ -44,7 +44,7 @@ FOLLOWING = Following()
 
 
 class Subjects(Protocol):
-    """What has to be known of the subjects that a cure makes."""
+    """Functions that the search asks of the subjects that a cure makes."""
 
     def is_quiet_linearly(self, subject: Any) -> bool:
         """Tell whether steady sliding exists, and small motions about it do not grow."""
@@ -261,13 +261,13 @@ class _Step:
 
     @property
     def next(self) -> float:
-        """Where the step leads, within the range."""
+        """Return where the step leads, within the range."""
         ends = (self.lasting + self.size, self.end)
         return min(ends, key=lambda value: abs(value - self.lasting))
 
     @property
     def is_small(self) -> bool:
-        """Whether the step is as small as a boundary is located."""
+        """True if the step is as small as a boundary is located."""
         near = min(self.lasting, self.next, key=abs)
         return abs(self.size) <= self.side.scale(FOLLOWING.located, near) * (1.0 + 1e-9)
 

@@ -82,7 +82,7 @@ class Start:
 
 @dataclass(frozen=True)
 class SettledRun:
-    """What one start has settled to.
+    """Settled motion of one start.
 
     Attributes:
         verdict: on the motion; undetermined where it has not settled.

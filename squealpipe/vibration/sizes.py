@@ -1,4 +1,4 @@
-"""Whether a dataset is in the numbers of a real brake or in scaled ones."""
+"""Decision whether a dataset is in the numbers of a real brake or in scaled ones."""
 
 import json
 import math

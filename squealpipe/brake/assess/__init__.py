@@ -1,1 +1,1 @@
-"""Whether a brake squeals or hammers, at which frequency, how loud, why, and what stops it."""
+"""Assessment of a pad: squeal or hammering, frequency, level, cause, and what stops it."""

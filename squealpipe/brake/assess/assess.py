@@ -152,7 +152,7 @@ def judge(params: Parameters, alpha1: float, alpha2: float, *, tol: float) -> Ju
 
 
 def _linear(design: Design, sliding: Sliding | None) -> dict[str, Any]:
-    """What is known of small motions."""
+    """Return the variables of the dataset about small motions."""
     linear = stability_map(design.params, [design.alpha1], [design.alpha2])
     linear_facts = {
         "growth_rate": float(linear.growth_rate[0, 0]),

@@ -1,4 +1,4 @@
-"""Where a brake turns quiet, or, of a quiet one, where it no longer is: one change at a time."""
+"""Boundaries of quiet: for each change alone, the nearest value at which the verdict changes."""
 
 import math
 from collections.abc import Sequence
@@ -26,7 +26,7 @@ from squealpipe.vibration.settled_runs import SettledRun, Start
 
 
 class Boundary(NamedTuple):
-    """What is known of one cure; values that were not found are NaN."""
+    """Boundary that one cure reaches; values that were not found are NaN."""
 
     value: float
     quiet_from: float

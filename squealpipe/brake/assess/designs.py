@@ -1,4 +1,4 @@
-"""How each cure changes a design, and over which range it is looked for."""
+"""Changes of a pad's design, each with the range over which it is searched."""
 
 import math
 from collections.abc import Callable

@@ -33,7 +33,8 @@ def verdict_shares(
     seed: Seed = 1,
     tol: Tolerance = 1e-9,
 ) -> xr.Dataset:
-    """How often a brake of scattered parameters is quiet, squeals, hammers or is undetermined.
+    """Estimate how often a brake of scattered parameters is quiet, squeals, hammers or is
+    undetermined.
 
     Args:
         distributions: as :func:`squealpipe.propensity` takes them.

@@ -147,7 +147,7 @@ class Sliding:
 
 
 def _balanced(design: Design) -> np.ndarray | None:
-    """Where the mass slides steadily, m, by Newton's method from r = 0.
+    """Return the place of steady sliding, m, by Newton's method from r = 0.
 
     At the whole friction at once it would jump to another branch where springs are soft.
     """
@@ -156,7 +156,7 @@ def _balanced(design: Design) -> np.ndarray | None:
 
 
 def _followed(design: Design) -> np.ndarray | None:
-    """Where an overdamped mass comes to rest, m, while friction is raised slowly from none.
+    """Return where an overdamped mass comes to rest, m, while friction is raised slowly from none.
 
     Pseudo-transient continuation (Kelley and Keyes, SIAM Journal on Numerical Analysis 35 (1998)):
     implicit Euler steps that end as Newton's. Just beyond a fold the mass lingers, then goes far.

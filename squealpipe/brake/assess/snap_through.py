@@ -1,4 +1,4 @@
-"""Where steady sliding of a quiet brake snaps to another place, which may be as quiet.
+"""Jumps of steady sliding of a quiet brake to another equilibrium, which may be equally quiet.
 
 Steady sliding may end in a fold: there the mass jumps to another balance, far away. Where that
 one is quiet too, no verdict changes, and yet the pad has moved by millimetres. Along each cure the

@@ -280,7 +280,7 @@ class ZeroLines(Chords):
         return np.asarray(rate[:, None] * along + change[:, None] * across)
 
     def _change(self, places: Vector, way: Vector, value: Vector) -> Vector:
-        """How fast the function changes along unit vectors, by a step into the square."""
+        """Return the rate of the function along unit vectors, by a step into the square."""
         step = np.where(
             (way * (places - 0.5)).sum(axis=1) > 0.0,
             -settings.difference,
@@ -413,7 +413,7 @@ class ZeroLines(Chords):
         self.error = np.concatenate([self.error, error])
 
     def _divided(self, chords: Indices) -> tuple[Vector, ...]:
-        """How far the areas beside chords are to be doubted, and zeros there; NaN: none.
+        """Return how far the areas beside chords are to be doubted, and zeros there; NaN: none.
 
         With each zero the way on which it was found, and the function and its rate there.
         """

@@ -19,7 +19,7 @@ from squealpipe.systems.datasets.agreement import Listing
 
 
 class Assumption(IntEnum):
-    """Whether ẋ stays below the belt speed V, as A4 needs."""
+    """Validity of A4's assumption that ẋ stays below the belt speed V."""
 
     broken = 0
     holds = 1

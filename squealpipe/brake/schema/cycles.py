@@ -21,7 +21,7 @@ from squealpipe.systems.datasets.agreement import ComparedAs, Listing, RoundOff
 
 
 class Stability(IntEnum):
-    """Whether small disturbances of a cycle decay."""
+    """Fate of small disturbances of a cycle."""
 
     no = 0
     yes = 1

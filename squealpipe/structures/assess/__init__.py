@@ -1,1 +1,1 @@
-"""Whether a structure squeals or hammers, at which frequency, how loud, why, and what stops it."""
+"""Assessment of a structure: squeal or hammering, frequency, level, cause, and what stops it."""

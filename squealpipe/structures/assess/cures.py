@@ -1,4 +1,4 @@
-"""How each cure changes a structure, and over which range it is looked for."""
+"""Changes of a structure that may stop its noise, each with the range over which it is searched."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ def read_deck(path: Path) -> ElementMesh:
 
 @dataclass
 class _Deck:
-    """What has been read of a deck; sets and surfaces by their names in capitals."""
+    """Contents of a deck as far as it is read; sets and surfaces by their names in capitals."""
 
     path: Path
     positions: dict[int, tuple[float, float, float]] = field(default_factory=dict)

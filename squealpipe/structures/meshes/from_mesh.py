@@ -23,7 +23,7 @@ DISPLACEMENTS_OF_A_NODE = 3
 
 
 class OfMesh(NamedTuple):
-    """What a mesh adds to the matrices of a structure."""
+    """Additions of a mesh to the matrices of a structure."""
 
     contacts: list[Contact]
     mesh: StructureMesh

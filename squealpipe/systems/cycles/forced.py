@@ -145,7 +145,7 @@ class Watched:
         return (self.last - 2 * periods) * self.forcing
 
     def approach(self, cycle: Cycle, periods: int) -> Approach:
-        """How the run goes on beside a cycle of some periods, next to its last ones."""
+        """Return how the run goes on next to a cycle of some periods, in its last ones."""
         if self.rests:
             return Approach.settles
         clock = self.times - self.origin(periods)

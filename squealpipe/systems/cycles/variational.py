@@ -32,7 +32,9 @@ _NODES, _WEIGHTS, _UP_TO = gauss(6)
 
 
 def leg_derivatives(flow: Flow, values: Mapping[str, float], path: Path) -> Vector:
-    """Of each leg's end by its start, followed parameters and the time: (legs, n, n + p)."""
+    """Return the derivatives of each leg's end by its start, followed parameters and time: (legs,
+    n, n + p).
+    """
     if flow.is_affine:
         return _affine(flow, values, path)
     found = np.zeros((len(path.regimes), flow.columns, flow.columns))

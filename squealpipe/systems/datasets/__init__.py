@@ -368,7 +368,7 @@ def _refuse_faults(
 def faults_of_values(
     name: str, given: np.ndarray | xr.Variable, entry: Variable
 ) -> list[str]:
-    """What is wrong with a variable's type, NaN or flags."""
+    """Describe the faults of a variable's type, NaN or flags."""
     kind, stored = given.dtype.kind, entry.stored
     if stored.kind in "US":
         return (

@@ -1,11 +1,11 @@
-"""How two datasets of one schema are compared where numbers alone do not suffice."""
+"""Rules by which two datasets of one schema are compared where numbers alone do not suffice."""
 
 from dataclasses import KW_ONLY, dataclass
 from enum import Enum
 
 
 class ComparedAs(Enum):
-    """What of a variable can be the same on two machines."""
+    """Part of a variable that can be the same on two machines."""
 
     magnitude = "order of magnitude"
     sample = "distribution of the sample"
