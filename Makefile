@@ -17,7 +17,7 @@ export XDG_CACHE_HOME := $(CURDIR)/.snakemake/cache
 export MPLCONFIGDIR := $(CURDIR)/.snakemake/cache/matplotlib
 endif
 
-.PHONY: reproduce test test-release test-processors bench env dev lock lint docs dictionary clean
+.PHONY: reproduce test test-release test-processors cost bench env dev lock lint docs dictionary clean
 
 reproduce: env  ## the whole study: datasets, figures, report
 	$(BIN)/snakemake
@@ -32,6 +32,10 @@ TINY := -q all --cores 2 --configfile workflow/config/tiny.yaml
 # In .ci/run the first tier has made the study already.
 HERE := $(if $(SQUEALPIPE_TINY),$(SQUEALPIPE_TINY)/study/squealpipe/results/tiny,results/tiny)
 AVX2 := tests/processors avx2
+
+cost: dev  ## CPU time of the study that was made here, and of the tests, beside an earlier commit
+	PYTHONPATH=. $(BIN)/python tests/cost.py study .
+	PYTHONPATH=. $(BIN)/python tests/cost.py tests $(TESTS)
 
 # On any x86-64 the C library's fma is software, a hundred times slower: there tests/generic.txt, laws, models,
 # methods, linear tasks and at least one test of every other folder.

@@ -107,7 +107,7 @@ class Square:
         ranges = [*self.low.tolist(), *self.width.tolist()]
         return (
             drags_forwards != (self.model == "A1-as-printed"),
-            values | self.fixed | options,
+            {**values, **self.fixed, **options},
             self.names,
             ranges,
         )
