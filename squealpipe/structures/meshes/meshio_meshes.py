@@ -47,6 +47,11 @@ def read_by_meshio(path: Path) -> ElementMesh:
                 f"mesh: meshio cannot read {path}: {said}; write it as gmsh .msh, Nastran .bdf, or "
                 "a deck (.inp)"
             ) from error
+    if not len(mesh.points) or not mesh.cells:
+        raise ValueError(
+            f"mesh: meshio cannot read {path}: it has {len(mesh.points)} nodes and no elements; "
+            "write it as gmsh .msh, Nastran .bdf, or a deck (.inp)"
+        )
     converted = of_meshio(mesh, str(path), counts_nodes=False)
     if ending in NASTRAN:
         _refuse_systems(mesh, path)
@@ -58,16 +63,42 @@ def read_by_meshio(path: Path) -> ElementMesh:
 
 @contextlib.contextmanager
 def _whole(path: Path, ending: str) -> Iterator[Path]:
-    """Yield a path that meshio takes: bulk data begin and end with a line of their own."""
-    text = path.read_text(errors="replace") if ending in NASTRAN else "BEGIN BULK"
-    if "BEGIN BULK" in text.upper():
+    """Yield a path that meshio takes: of bulk data nodes, solids and shells alone.
+
+    It stops at springs, and needs a line before and behind the data that bulk data alone lack.
+    """
+    if ending not in NASTRAN:
         yield path
         return
     with tempfile.TemporaryDirectory() as folder:
         whole = Path(folder) / "mesh.bdf"
-        end = "" if "ENDDATA" in text.upper() else "\nENDDATA\n"
-        whole.write_text(f"BEGIN BULK\n{text}{end}")
+        cards = _cards_of_mesh(path)
+        whole.write_text("BEGIN BULK\n" + "\n".join(cards) + "\nENDDATA\n")
         yield whole
+
+
+def _cards_of_mesh(path: Path) -> list[str]:
+    """Return the lines of nodes, solids and shells, with those in which they go on.
+
+    Raises:
+        ValueError: the data are in several files.
+    """
+    of_mesh = {"GRID", "CTETRA", "CPENTA", "CHEXA"}
+    of_mesh |= {"CTRIA3", "CTRIAR", "CTRIA6", "CQUAD4", "CQUADR", "CQUAD8"}
+    kept, keeps = [], False
+    for line in path.read_text(errors="replace").splitlines():
+        if not line.strip() or line.startswith(("$", "//", "#")):
+            continue
+        if line[0] not in "+* ,\t":
+            name = line.partition(",")[0][:8].strip().rstrip("*").upper()
+            if name.split()[0] == "INCLUDE":
+                raise ValueError(
+                    f"mesh: {path.name} goes on in another file (INCLUDE); put all bulk data in one"
+                )
+            keeps = name in of_mesh
+        if keeps:
+            kept.append(line)
+    return kept
 
 
 def _refuse_systems(mesh: Any, path: Path) -> None:
