@@ -17,6 +17,7 @@ from squealpipe.cli.arguments import (
     Numbers,
     Output,
     Ranges,
+    Share,
     SpeedTexts,
     Switch,
     Time,
@@ -330,6 +331,8 @@ def operating(
     pressure: Numbers = None,
     speed: SpeedTexts = None,
     mu: Numbers = None,
+    measured: Path | None = None,
+    frequency_band: Share,
     tol: Tolerance,
     workers: Workers,
     output: Output = Path("operating.nc"),
@@ -348,6 +351,9 @@ def operating(
         speed: speeds likewise, m/s, or rad/s (also 200 rpm) where the file has a rotation; that of
             the file by default.
         mu: friction likewise, of the contacts that have none of their own.
+        measured: list of measured noises (text or Excel) with columns like pressure, speed [km/h],
+            mu, frequency [Hz], level [dB]; an empty frequency is a quiet point.
+        frequency_band: largest difference of frequencies of one noise, over the measured one.
     """
     refuse_existing(output, force=files.force)
 
@@ -361,7 +367,8 @@ def operating(
         return squealpipe.operating_map(structure, **options)
 
     asked: dict[str, Any] = {"pressure": pressure, "speed": speed, "mu": mu}
-    asked |= {"tol": tol, "workers": workers}
+    asked |= {"tol": tol, "workers": workers, "frequency_band": frequency_band}
+    asked["measured"] = None if measured is None else str(measured)
     dataset = _compute(operating_map, file, asked, output, files)
     answer(*lines(dataset))
     quiet = bool((dataset.verdict == Verdict.quiet).all())

@@ -12,11 +12,12 @@ from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
 from squealpipe.structures.assess.cures import with_preload
 from squealpipe.structures.assess.designs import Design, Structures, pushed
+from squealpipe.structures.assess.measured import matched, read_noises
 from squealpipe.structures.assess.records import levels
 from squealpipe.structures.schema.operating_map import OPERATING_MAP
 from squealpipe.structures.squeal.windows import Running
 from squealpipe.systems.processes import run_shared
-from squealpipe.validation import Line, Tolerance, Workers
+from squealpipe.validation import Line, Positive, Tolerance, Workers
 
 VALUES = ("frequency", "velocity_rms", "separated_fraction", "growth_rate")
 
@@ -31,6 +32,8 @@ def operating_map(
     pressure: Line = (1.0,),
     speed: Line | None = None,
     mu: Line | None = None,
+    measured: Any = None,
+    frequency_band: Positive = 0.05,
     tol: Tolerance = 1e-9,
     workers: Workers = None,
 ) -> xr.Dataset:
@@ -47,13 +50,19 @@ def operating_map(
             default.
         mu: coefficients of friction of the contacts without one of their own; that of the
             structure by default.
+        measured: name of a list of measured noises (text or Excel) with columns like ``pressure``,
+            ``speed [km/h]``, ``mu``, ``frequency [Hz]``, ``level [dB]``; an empty frequency is a
+            quiet point. Each is set beside the nearest point of the map; nothing is fitted.
+        frequency_band: largest difference of frequencies of one noise, over the measured one.
         tol: tolerance of the Taylor integrator.
         workers: processes; None takes all cores.
 
     Returns:
         Dataset ``operating_map``: over ``pressure``, ``speed`` and ``mu`` the verdict, frequency,
         level and share of contact loss; over ``band``, third octaves, how often a point is noisy
-        there, as reports of dynamometer tests print it. Outcomes: converged, unresolved
+        there, as reports of dynamometer tests print it. With ``measured``, over ``noise``, the
+        predicted frequency beside the measured one and ``match``, with counts of hits, misses and
+        false alarms. Outcomes: converged, unresolved
         (undetermined), no_sliding_state.
 
     Raises:
@@ -61,6 +70,7 @@ def operating_map(
     """
     design = Design.of(structure)
     whole = design.whole
+    noises = None if measured is None else read_noises(measured, whole.speed_unit)
     speeds = np.array([whole.belt_speed]) if speed is None else np.asarray(speed)
     frictions = np.array([whole.mu]) if mu is None else np.asarray(mu)
     pressures = np.asarray(pressure)
@@ -97,7 +107,7 @@ def operating_map(
     )
     noisy = np.isin(filled["verdict"], (Verdict.squeals, Verdict.hammers))
     band, occurrence = _third_octaves(filled["frequency"][noisy], count)
-    return build(
+    points = build(
         OPERATING_MAP,
         {
             **{name: values.reshape(shape) for name, values in filled.items()},
@@ -115,6 +125,17 @@ def operating_map(
             "band": band,
             "contact": [each.name for each in whole.contacts],
         },
+    )
+    if noises is None:
+        return points
+    beside = matched(points, noises, frequency_band)
+    return build(
+        OPERATING_MAP,
+        {
+            **{str(name): each.values for name, each in points.data_vars.items()},
+            **beside,
+        },
+        {str(name): each.values for name, each in points.coords.items()},
     )
 
 

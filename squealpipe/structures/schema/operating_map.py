@@ -1,5 +1,7 @@
 """Noise of a structure over operating points: pressure, speed and friction."""
 
+from enum import IntEnum
+
 from squealpipe.codes import Verdict
 from squealpipe.schema import (
     DatasetSchema,
@@ -14,6 +16,22 @@ from squealpipe.schema import (
 
 POINT = ("pressure", "speed", "mu")
 """Dimensions of the map."""
+
+
+class Match(IntEnum):
+    """Agreement of a measured operating point with the predicted one."""
+
+    hit = 0
+    """noisy in both, at one frequency"""
+    miss = 1
+    """noisy, predicted quiet or at another frequency"""
+    false_alarm = 2
+    """quiet, predicted noisy"""
+    both_quiet = 3
+    undetermined = 4
+    outside = 5
+    """beyond the range of the map"""
+
 
 OPERATING_MAP = DatasetSchema(
     name="operating_map",
@@ -47,6 +65,40 @@ OPERATING_MAP = DatasetSchema(
         ),
         "share_noisy": Variable("share of the points that are noisy", atol=1e-2),
         "share_undetermined": Variable("share of undetermined points", atol=1e-2),
+        "measured_frequency": or_nan(
+            "measured frequency, NaN where it was quiet",
+            "Hz",
+            ("noise",),
+            optional=True,
+        ),
+        "measured_level": or_nan(
+            "measured level as it is listed, NaN where none is",
+            "1",
+            ("noise",),
+            optional=True,
+        ),
+        "predicted_frequency": or_nan(
+            "predicted frequency nearest to it, NaN where none is",
+            "Hz",
+            ("noise",),
+            optional=True,
+            rtol=1e-2,
+        ),
+        "match": flag(
+            "agreement of measured and predicted", Match, "noise", optional=True
+        ),
+        "hits": count(
+            "measured noises that are predicted within the band", optional=True
+        ),
+        "misses": count("measured noises that are not", optional=True),
+        "false_alarms": count(
+            "measured quiet points that are predicted noisy", optional=True
+        ),
+        "quiet_agreed": count("points that are quiet in both", optional=True),
+        "frequency_band": or_nan(
+            "largest difference of frequencies of one noise, over the measured one",
+            optional=True,
+        ),
         "n_modes": count("modes in which the structure was run"),
         "outcome": outcome(
             *POINT,

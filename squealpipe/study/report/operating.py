@@ -37,6 +37,13 @@ def lines(dataset: xr.Dataset) -> Iterator[str]:
         ):
             if share > 0:
                 yield f"  third octave at {engineering(float(band), 'Hz')}: {percent(float(share))}"
+    if "hits" in dataset:
+        yield (
+            f"Measured: {int(dataset.hits)} noises predicted within "
+            f"{percent(float(dataset.frequency_band))} of their frequency, {int(dataset.misses)} "
+            f"not; {int(dataset.false_alarms)} false alarms, {int(dataset.quiet_agreed)} points "
+            "quiet in both."
+        )
     unknown = int((verdicts == Verdict.undetermined).sum())
     if unknown:
         yield f"Undetermined at {unknown} points: not settled in time, or no steady sliding."
