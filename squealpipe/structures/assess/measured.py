@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterator
 from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -13,7 +14,7 @@ import xarray as xr
 
 from squealpipe.codes import Verdict
 from squealpipe.laws.numerals import decimal_sign, numeral, plain
-from squealpipe.laws.rows import text_rows
+from squealpipe.laws.rows import FileRows, text_rows
 from squealpipe.laws.sheets import sheet
 from squealpipe.structures.schema.operating_map import POINT, Match
 from squealpipe.systems.inputs.values import brief
@@ -75,7 +76,23 @@ def read_noises(path: str | PathLike[str], speed_unit: str = "m s-1") -> list[No
             f"{source}: columns frequency and one of {', '.join(POINT)} are needed; it has "
             f"{', '.join(names)}"
         )
-    cells: list[tuple[str, str, str, str]] = []
+    cells = list(_cells(source, table, columns))
+    sign = decimal_sign(
+        ((where, text) for where, _, _, text in cells if text), table.separator
+    )
+    rows: dict[str, dict[str, float]] = {}
+    for where, name, unit, text in cells:
+        value = float(plain(text, sign)) if text else math.nan
+        if text and unit and name != "level":
+            value = float(in_si(f"{value!r} {unit}", units[name]))
+        rows.setdefault(where, {})[name] = value
+    return [_noise(where, row) for where, row in rows.items()]
+
+
+def _cells(
+    source: Path, table: FileRows, columns: list[tuple[str, str]]
+) -> Iterator[tuple[str, str, str, str]]:
+    """Yield line, column, unit and number of each cell below the header, "" where it is empty."""
     for line, row in table.rows[1:]:
         for (name, unit), cell in zip(columns, row, strict=False):
             where = f"{source}, line {line}"
@@ -86,19 +103,7 @@ def read_noises(path: str | PathLike[str], speed_unit: str = "m s-1") -> list[No
                     f"{where}: {name} = {cell!r}: a number without a unit is needed; the unit "
                     "stands in the header, like frequency [Hz]"
                 )
-            cells.append((where, name, unit, number.text if number else ""))
-    sign = decimal_sign(
-        ((where, text) for where, _, _, text in cells if text), table.separator
-    )
-    rows: dict[str, dict[str, float]] = {}
-    for where, name, unit, text in cells:
-        value = math.nan
-        if text:
-            value = float(plain(text, sign))
-            if unit and name != "level":
-                value = float(in_si(f"{value!r} {unit}", units[name]))
-        rows.setdefault(where, {})[name] = value
-    return [_noise(where, row) for where, row in rows.items()]
+            yield where, name, unit, number.text if number else ""
 
 
 def _column(source: Path, cell: str, units: dict[str, str]) -> tuple[str, str]:

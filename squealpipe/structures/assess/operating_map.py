@@ -68,9 +68,10 @@ def operating_map(
     Raises:
         ValueError: an argument; no contacts; a structure that is too large.
     """
+    # a list that cannot be read is told before anything is computed
+    noises = None if measured is None else read_noises(measured, structure.speed_unit)
     design = Design.of(structure)
     whole = design.whole
-    noises = None if measured is None else read_noises(measured, whole.speed_unit)
     speeds = np.array([whole.belt_speed]) if speed is None else np.asarray(speed)
     frictions = np.array([whole.mu]) if mu is None else np.asarray(mu)
     pressures = np.asarray(pressure)
