@@ -392,10 +392,13 @@ UNITS_OF_INPUTS = {
 KEYS_THAT_TAKE = UNITS_OF_INPUTS | {"alpha1": "rad", "alpha2": "rad", "t_end": "s"}
 """The same with what else a question of a brake is asked with, for messages that name a key."""
 
+PHYSICAL = tuple(name for name, row in TABLE.items() if row.enters_a1)
+"""Parameters of a run of A1."""
+
 NUMBERS_OF_A1: dict[str, str] = {
     "static_mu" if name == "mu_static" else name: name
-    for name, row in TABLE.items()
-    if row.enters_a1 and row.allowed != "law"
+    for name in PHYSICAL
+    if TABLE[name].allowed != "law"
 }
 """What laws and engine read → the parameter that it is, for all numbers that enter A1."""
 

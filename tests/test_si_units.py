@@ -49,6 +49,24 @@ WITH_DASHPOTS = {
 }
 
 
+CHAOTIC = {"infer_parameters": 1e-4}
+"""Whose runs are long enough for chaos to magnify the last digits; by how much at most."""
+
+
+def without_curves(*charts):
+    """Charts without their curves, which must lie on one another.
+
+    With how many points a curve is drawn depends on last digits, also where k3 changes by 1e-16.
+    """
+    first, second = (
+        np.stack([chart.alpha1.values, chart.alpha2.values], axis=1) for chart in charts
+    )
+    apart = np.linalg.norm(first[:, None] - second, axis=2)
+    gaps = np.linalg.norm(np.diff(second, axis=0), axis=1)
+    assert apart.min(axis=1).max() < np.median(gaps)
+    return [chart.drop_dims("point").drop_vars("runs") for chart in charts]
+
+
 @pytest.mark.parametrize(
     "name",
     [
@@ -63,6 +81,8 @@ def test_answers_scale(name):
         CALLS[name](p.with_(damping1=share * np.sqrt(p.k1 * p.mass)))
         for p in (SI, UNIT)
     )
+    if name == "regime_chart":
+        real, scaled = without_curves(real, scaled)
     assert dict(real.sizes) == dict(scaled.sizes)
     if (
         "cure" in real
@@ -77,7 +97,7 @@ def test_answers_scale(name):
             continue
         unit = UNITS.get(variable.attrs.get("units", "1"), 1.0)
         size = np.abs(scaled[key].values[np.isfinite(scaled[key].values)])
-        atol = 1e-7 * size.max(initial=1.0)
+        atol = CHAOTIC.get(name, 1e-7) * size.max(initial=1.0)
         np.testing.assert_allclose(
             variable.values / unit,
             scaled[key].values,

@@ -8,7 +8,6 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from squealpipe.brake.a1.ensemble import run_ensemble
-from squealpipe.brake.a1.scaling import PHYSICAL
 from squealpipe.brake.a4.exact_branches import exact_branch
 from squealpipe.brake.a4.system import ScaledSystem, scaled_system
 from squealpipe.brake.backbones.backbone import exact_variables
@@ -17,7 +16,7 @@ from squealpipe.brake.schema.dynamics.explorer import EXPLORER, HISTORIES, ORBIT
 from squealpipe.codes import Regime
 from squealpipe.laws.contact import normal_force
 from squealpipe.laws.springs import springs_are_equal
-from squealpipe.parameters import Parameters
+from squealpipe.parameters import PHYSICAL, Parameters
 from squealpipe.schema import build
 from squealpipe.systems.processes import run_shared
 from squealpipe.vibration.spectrum import amplitude_spectrum

@@ -29,6 +29,7 @@ from squealpipe.systems.inputs.gate import (
 from squealpipe.systems.inputs.units import holds_units
 from squealpipe.systems.inputs.values import is_finite_number, numbers_in_si
 from squealpipe.systems.inputs.words import suggestion
+from squealpipe.systems.scales import Scales
 from squealpipe.systems.schema import names_in_results
 from squealpipe.systems.trace import Names, Traced
 
@@ -37,6 +38,9 @@ Size = Annotated[
     needed("a unit, or (unit, typical size greater than 0, or a function), is"),
 ]
 Output = Annotated[tuple[str, Function], needed("(unit, function) is")]
+Default = Annotated[
+    Number | tuple[Number, Word], needed("a finite number, or (number, unit), is")
+]
 StartValue = Annotated[
     Number | str | Mapping[str, str],
     needed("a finite number, or the name of a regime, is"),
@@ -73,7 +77,7 @@ class Definition:
         name: for titles and files.
         states: name → unit, or (unit, typical size), a number or a function of the parameters;
             error control and round-off are relative to the size, 1 if none is given.
-        parameters: name → default.
+        parameters: name → default, or (default, unit).
         regimes: name → constants ``r`` that field and surfaces read; the same names in each.
         components: in place of ``regimes``, ``switches`` and ``starts_in``: name → what has regimes
             of its own beside the others; see :class:`squealpipe.Component`.
@@ -88,16 +92,23 @@ class Definition:
             whose extremes are kept.
         stops: outcome → function (t, s, p, r): ends a run where it falls through zero.
         time_scale: typical time, a number or a function of the parameters.
+        scales: function of the parameters: unit → size of a run's typical quantity of that unit,
+            for every part of the states', parameters' and outputs' units, "s" among them. Runs
+            are then made in numbers without units, so that they do not depend on the units of
+            what they are given; typical sizes and time are these scales.
 
     Raises:
         ValueError: a name is unknown, missing or taken, a surface is constant in a regime, a ``to``
-            has no last resort, or a reset makes no progress.
+            has no last resort, a reset makes no progress, or ``scales`` are given and the functions
+            do not agree with the units.
         TypeError: a function is not smooth (a comparison, a branch), or gives what is not a number.
     """
 
     batch: Any = None
     """What integrates runs in place of series that are compiled for the system; None: these."""
     most_states, most_regimes = MOST_STATES, MOST_REGIMES
+    scales: Any = None
+    has_typical_sizes = True
 
     @checked
     def __init__(
@@ -105,7 +116,7 @@ class Definition:
         name: str,
         *,
         states: Mapping[Identifier, Size],
-        parameters: Mapping[Identifier, Number],
+        parameters: Mapping[Identifier, Default],
         regimes: Regimes | None = None,
         components: Mapping[Identifier, Component] | None = None,
         field: Field,
@@ -116,8 +127,10 @@ class Definition:
         outputs: Mapping[Identifier, Output] | None = None,
         stops: Mapping[Word, Function] | None = None,
         time_scale: Annotated[
-            Positive | Function, needed("a number greater than 0, or a function, is")
-        ] = 1.0,
+            Positive | Function | None,
+            needed("a number greater than 0, or a function, is"),
+        ] = None,
+        scales: Function | None = None,
     ) -> None:
         self.name = name
         self.units = {
@@ -125,10 +138,18 @@ class Definition:
             for key, value in states.items()
         }
         self.typical_sizes = {
-            key: 1.0 if isinstance(value, str) else value[1]
+            key: None if isinstance(value, str) else value[1]
             for key, value in states.items()
         }
-        self.parameters = dict(parameters)
+        self.has_typical_sizes = any(self.typical_sizes.values())
+        self.parameters = {
+            key: value[0] if isinstance(value, tuple) else value
+            for key, value in parameters.items()
+        }
+        self.parameter_units = {
+            key: value[1] if isinstance(value, tuple) else "1"
+            for key, value in parameters.items()
+        }
         self.field = field
         self.start = {
             key: in_unit_of_state(self.units, key, value)
@@ -139,7 +160,10 @@ class Definition:
         )
         self.regimes = self.composition.regimes
         self.switches = self.composition.switches
-        self.period, self.time_scale = period, time_scale
+        self.period, self.scales = period, scales
+        if time_scale is None:
+            time_scale = 1.0 if scales is None else lambda p: scales(p)["s"]
+        self.time_scale = time_scale
         self.outputs, self.stops = dict(outputs or {}), dict(stops or {})
         self._check_names()
         for what, function in (("period", period), ("time_scale", time_scale)):
@@ -155,9 +179,14 @@ class Definition:
                 )
         self.traced = self._trace()
         self.form = self
+        self.check_scales()
 
     def _trace(self) -> Traced:
         """Call the functions with symbols, and return what they become."""
+        raise NotImplementedError
+
+    def check_scales(self) -> None:
+        """Raise if the functions do not agree with the units that the scales are of."""
         raise NotImplementedError
 
     @property
@@ -165,18 +194,35 @@ class Definition:
         """Names of the states."""
         return tuple(self.units)
 
+    def scales_in(self, values: Mapping[str, Any]) -> Scales | None:
+        """Return the scales of a run or of many, if the system states them.
+
+        Args:
+            values: each parameter, a number or an array (runs,).
+        """
+        if self.scales is None:
+            return None
+        parameters = {name: values[name] for name in self.parameters}
+        return Scales(self.scales(Names("the system", parameters)))
+
     def sizes_in(self, values: Mapping[str, Any]) -> np.ndarray:
         """Return the typical sizes of the states, (states,) or, of many runs, (runs, states).
 
         Args:
             values: each parameter, a number or an array (runs,).
         """
-        sizes = self.typical_sizes.values()
-        if not any(map(callable, sizes)):
-            return np.array([*sizes], float)
-        parameters = Names("the system", {n: values[n] for n in self.parameters})
-        found = [each(parameters) if callable(each) else each for each in sizes]
-        return np.stack(np.broadcast_arrays(*found), axis=-1).astype(float)
+        scales, sizes = self.scales_in(values), []
+        for name, size in self.typical_sizes.items():
+            if size is None:
+                sizes.append(1.0 if scales is None else scales.of(self.units[name]))
+            elif callable(size):
+                parameters = {name: values[name] for name in self.parameters}
+                sizes.append(size(Names("the system", parameters)))
+            else:
+                sizes.append(size)
+        if all(isinstance(size, float) for size in sizes):
+            return np.array(sizes)
+        return np.stack(np.broadcast_arrays(*sizes), axis=-1).astype(float)
 
     @cached_property
     def start_names(self) -> dict[str, str]:

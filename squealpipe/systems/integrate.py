@@ -142,16 +142,28 @@ def integrate(
         at the end; ``half_turns``; ``samples`` and ``sample_regimes`` (of each component);
         ``sample_growth``, ``sample_durations``, ``sample_half_turns`` and ``sample_counts``;
         ``sample_extremes`` (runs, instants, tracked, smallest and largest; NaN: not reached);
-        ``event_times``, ``event_kinds``, ``event_regimes``, ``event_states``.
+        ``event_times``, ``event_kinds``, ``event_regimes``, ``event_states``; ``first_regimes``
+        (runs, components).
 
     Raises:
         ValueError: the system's unit of time, or a state's typical size, is not a positive number.
     """
+    scales, clock, units = system.scales_in(values), 1.0, [*system.units.values()]
+    if scales is not None:
+        with np.errstate(all="ignore"):  # scales may overflow: such runs end at once
+            values = scales.into(system.units_of_values, values)
+            clock = scales.of("s")
+            t_end = t_end / clock
+            options = scales.options(options, units, alike=not system.has_typical_sizes)
     make = system.batch or Batch
     batch = make(system.for_exponents(values), values, t_end, options, tol)
     batch.loop()  # compiled before processes share the work
     arrays = run_shared(batch.run, batch.shapes(), jobs=len(t_end), workers=workers)
-    return batch.named(arrays)
+    raw = batch.named(arrays, clock)
+    if scales is not None:
+        with np.errstate(all="ignore"):
+            scales.back(raw, units, batch.tracked_units())
+    return raw
 
 
 class Batch:
@@ -176,7 +188,9 @@ class Batch:
         self.regimes = options.regime
         if not isinstance(self.regimes, np.ndarray):
             at_start = {TIME: np.full(self.size, options.t_start), **values}
-            self.regimes = system.first_regimes(at_start, self.size, self.regimes)
+            self.regimes = system.first_regimes(
+                at_start, self.size, self.regimes, in_scales=True
+            )
         self.watched = self._watched()
         self.limits = table_of(
             self.size,
@@ -215,6 +229,13 @@ class Batch:
         written = symbolic(self.system)
         self.code, self.n_series = code.code, code.n_series
         self.steep, self.bent = written.steep, written.bent
+
+    def tracked_units(self) -> list[str]:
+        """Return the unit of each quantity that is tracked."""
+        system, tracked = self.system, self.options.tracked
+        units = {**system.units, **{n: unit for n, (unit, _) in system.outputs.items()}}
+        names = units if tracked is None else tracked
+        return [units[name.removeprefix(LARGEST)] for name in names]
 
     def _watched(self) -> list[tuple[int, bool]]:
         """Place among variables, surfaces and outputs of what is tracked; the largest alone?"""
@@ -396,8 +417,10 @@ class Batch:
                 "runs were finished; please report the parameters"
             )
 
-    def named(self, arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """The results by name, in the system's unit of time."""
+    def named(
+        self, arrays: dict[str, np.ndarray], clock: Any = 1.0
+    ) -> dict[str, np.ndarray]:
+        """Return the results by name, with ``clock`` as the unit of the times of these runs."""
         extremes = arrays["extremes"]
         arrays["early_extremes"], arrays["late_extremes"] = np.moveaxis(extremes, 2, 0)
         low, high = extremes[..., 0].min(axis=2), extremes[..., 1].max(axis=2)
@@ -411,10 +434,12 @@ class Batch:
             arrays[f"sample_{name}"] = sums[..., begin : begin + count]
             begin += count
         times = {"durations", "event_times", "firsts", "horizon", "reached"}
-        for name in times | ({"sample_durations"} & set(arrays)):
-            values = arrays[name]
-            unit = self.unit.reshape(-1, *(1,) * (values.ndim - 1))
-            arrays[name] = values * unit
+        with np.errstate(all="ignore"):
+            unit = self.unit * clock
+            for name in times | ({"sample_durations"} & set(arrays)):
+                values = arrays[name]
+                arrays[name] = values * unit.reshape(-1, *(1,) * (values.ndim - 1))
+        arrays["first_regimes"] = self.regimes
         return arrays
 
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from squealpipe.systems.integrate import RunOptions, integrate
-from squealpipe.systems.trace import TIME
 from squealpipe.systems.tracing import TracedSystem as System
 
 FIRST_LOG = 256
@@ -62,16 +61,14 @@ def single_run(
         if count <= room or not room:
             break
         room = count
-    first = options.regime
-    if not isinstance(first, np.ndarray):
-        at_start = {TIME: np.full(1, options.t_start), **arrays}
-        first = system.first_regimes(at_start, 1, first)
     events = {
         key: raw[f"event_{key}"][0, :count]
         for key in ("times", "kinds", "states", "regimes")
     }
     return RunRecord(
-        regimes=system.joint.along(first[0].tolist(), events["regimes"].tolist()),
+        regimes=system.joint.along(
+            raw["first_regimes"][0].tolist(), events["regimes"].tolist()
+        ),
         times=events["times"],
         kinds=events["kinds"],
         states=events["states"],

@@ -11,7 +11,7 @@ import numpy as np
 
 from squealpipe.systems.components import Switch
 from squealpipe.systems.definition import MOST_SURFACES, Definition
-from squealpipe.systems.entries import Entries
+from squealpipe.systems.entries import Entries, constants_of
 from squealpipe.systems.joint import Joint
 from squealpipe.systems.starts import Starts
 from squealpipe.systems.surfaces import simplest
@@ -23,7 +23,10 @@ from squealpipe.systems.taylor.scalar import (
 )
 from squealpipe.systems.taylor.symbols import Symbol, in_order, only, parameter, symbol
 from squealpipe.systems.text import describe
-from squealpipe.systems.trace import TIME, TIME_UNIT, Traced, Tracer, long_name
+from squealpipe.systems.trace import TIME, TIME_UNIT, Names, Traced, Tracer, long_name
+
+_TRIED, _AGREES = 16, 1e-6
+"""States and regimes in which units are tried, and the relative difference that is round-off."""
 
 
 class TracedSystem(Definition):
@@ -34,6 +37,68 @@ class TracedSystem(Definition):
     """
 
     known: Mapping[str, float] = MappingProxyType({})
+
+    @cached_property
+    def units_of_values(self) -> dict[str, str]:
+        """Return the unit of each state and parameter."""
+        return {**self.units, **self.parameter_units}
+
+    def check_scales(self) -> None:
+        """Raise if the functions do not agree with the units that the scales are of.
+
+        Tried on random numbers: in the scales' units rates and outputs have the values that their
+        units say, and surfaces have theirs over one common factor.
+        """
+        rng, t = np.random.default_rng(0), self.traced
+        parameters = {
+            name: (default or 1.0) * rng.uniform(0.5, 1.5)
+            for name, default in self.parameters.items()
+        }
+        scales = self.scales_in(parameters)
+        if scales is None:
+            return
+        sizes = self.sizes_in(parameters)
+        drawn = sizes[:, None] * rng.uniform(-1.0, 1.0, (t.size, _TRIED))
+        values = {**parameters, **dict(zip(self.states, drawn, strict=True))}
+        values[TIME] = scales.of("s") * rng.uniform(0.0, 1.0)
+        inside = scales.into({**self.units_of_values, TIME: "s"}, values)
+        for each in (values, inside):
+            scale = self.time_scale
+            known = Names("the system", {name: each[name] for name in self.parameters})
+            each[TIME_UNIT] = scale(known) if callable(scale) else scale
+        units = [*self.units.values(), *(unit for unit, _ in self.outputs.values())]
+        names = [*self.units, *self.outputs]
+        for regime in range(min(len(self.regimes), _TRIED)):
+            held = constants_of(t, regime)
+            with np.errstate(all="ignore"):
+                rows, others = (
+                    np.array(
+                        [
+                            np.broadcast_to(value, _TRIED)
+                            for value in evaluate(
+                                [*t.rates[: t.size], *t.outputs, *t.surfaces],
+                                each | held,
+                            )
+                        ]
+                    )
+                    for each in (values, inside)
+                )
+                whole = len(units)
+                factors = [*(scales.of(unit) for unit in units)]
+                factors += [
+                    _factor(*pair)
+                    for pair in zip(rows[whole:], others[whole:], strict=True)
+                ]
+                off = np.abs(rows - others * np.array(factors)[:, None])
+                wrong = (off > _AGREES * np.abs(rows).max(axis=1)[:, None]).any(axis=1)
+            if wrong.any():
+                place = int(np.argmax(wrong))
+                what = repr(names[place]) if place < whole else "a surface"
+                raise ValueError(
+                    f"scales: the function of {what} does not have the unit that the units of "
+                    "states and parameters give it; state each parameter's unit, as "
+                    "(1.0, 'kg'), and make numbers with a unit parameters"
+                )
 
     def _rates(self, tracer: Tracer) -> list[Symbol]:
         if not isinstance(self.field, Mapping):
@@ -387,7 +452,12 @@ class TracedSystem(Definition):
         return Starts(self.traced, self.composition)
 
     def first_regimes(
-        self, values: Mapping[str, Any], size: int, chosen: Any = None
+        self,
+        values: Mapping[str, Any],
+        size: int,
+        chosen: Any = None,
+        *,
+        in_scales: bool = False,
     ) -> np.ndarray:
         """The regime of each component in which each run starts, (size, components).
 
@@ -395,8 +465,12 @@ class TracedSystem(Definition):
             values: states, parameters and ``time`` as arrays of that size.
             chosen: what a start gives as ``regime``; by default that of the system's start. What
                 neither gives is what fits.
+            in_scales: the values are numbers in the system's scales already.
         """
         chosen = self.start.get("regime") if chosen is None else chosen
+        scales = None if in_scales else self.scales_in(values)
+        if scales is not None:
+            values = scales.into({**self.units_of_values, TIME: "s"}, values)
         return self.starts.regimes(values, size, self.composition.numbers(chosen))
 
 
@@ -429,6 +503,12 @@ def is_clock(surface: Symbol) -> bool:
         node.arguments[0] for node in in_order([surface]) if node.kind == "variable"
     ]
     return set(moving) == {TIME}
+
+
+def _factor(values: np.ndarray, others: np.ndarray) -> float:
+    """Return the factor between two rows of values of one surface."""
+    place = int(np.argmax(np.abs(others)))
+    return float(values[place] / others[place])
 
 
 def _indicator(regime: str) -> str:

@@ -40,27 +40,14 @@ def _count(kind: Event, counts: str = "counts") -> Any:
     )
 
 
-def _column(name: str, place: int | None = None, *, time: bool = False) -> Any:
-    """A column of the raw results, or all of them, perhaps in s."""
+def _column(name: str, place: int | None = None) -> Any:
+    """A column of the raw results, or all of them."""
 
     def values(self: Ensemble) -> np.ndarray:
         found = self._raw[name] if place is None else self._raw[name][..., place]
-        return self._shaped(found, self.jobs.time_unit if time else None)
+        return self._shaped(found)
 
     return property(values)
-
-
-def _states(name: str) -> Any:
-    """States (…, 4) x, y, ẋ, ẏ, m and m/s."""
-
-    def states(self: Ensemble) -> np.ndarray:
-        values, length, time = self._raw[name], self.jobs.length, self.jobs.time_unit
-        units = np.array([length, length, length / time, length / time]).T
-        return self._shaped(
-            values * units.reshape(len(units), *(1,) * (values.ndim - 2), 4)
-        )
-
-    return property(states)
 
 
 def _turns(name: str) -> Any:
@@ -79,7 +66,7 @@ def _spent(regime: Regime, durations: str = "durations") -> Any:
 
     def time(self: Ensemble) -> np.ndarray:
         found = self._raw[durations][..., self._regimes[:-1] == regime].sum(axis=-1)
-        return self._shaped(found, self.jobs.time_unit)
+        return self._shaped(found)
 
     return property(time)
 
@@ -89,10 +76,7 @@ def _largest(name: str, part: str) -> Any:
 
     def size(self: Ensemble) -> np.ndarray:
         ends = np.abs(self._extremes(name, part)).max(axis=0)
-        unit = (
-            self.jobs.length if name == "x" else self.jobs.length / self.jobs.time_unit
-        )
-        return self._shaped(np.where(np.isfinite(ends), ends, 0.0), unit)
+        return self._shaped(np.where(np.isfinite(ends), ends, 0.0))
 
     return property(size)
 
@@ -118,15 +102,15 @@ class Ensemble:
     """The growth is that at the end of the step before."""
     turns, log_growth = _turns("half_turns"), _column("log_growth")
     """Counterclockwise positive; ln of the growth of a perturbation, 0 without ``tangent``."""
-    time = _column("reached", time=True)
-    predictability_horizon = _column("horizon", time=True)
+    time = _column("reached")
+    predictability_horizon = _column("horizon")
     """Time reached, and that at which an error of ``tol`` has grown to l_pre/1000 (NaN: not before
     the end), s."""
-    steps, final_state = _column("steps"), _states("final")
-    samples = _states("samples")
-    """At ``times``; NaN past ``time``."""
-    event_times = _column("event_times", time=True)
-    event_states = _states("event_states")
+    steps, final_state = _column("steps"), _column("final")
+    samples = _column("samples")
+    """States (…, 4) x, y, ẋ, ẏ at ``times``, m and m/s; NaN past ``time``."""
+    event_times = _column("event_times")
+    event_states = _column("event_states")
     """The first ``log_events`` events, s, and the states after them; NaN after the last one."""
 
     def __init__(
@@ -139,12 +123,15 @@ class Ensemble:
         kinds = [Event.__members__.get(name, -1) for name in system.traced.kinds]
         self._kinds = np.array([*kinds, -1])
 
-    def _shaped(self, values: Any, unit: Any = None) -> np.ndarray:
-        """Values of the runs in the caller's shape, times a unit that each run has."""
+    def _shaped(self, values: Any) -> np.ndarray:
+        """Values of the runs in the caller's shape."""
         values = np.asarray(values)
-        if unit is not None:
-            values = values * unit.reshape(-1, *(1,) * (values.ndim - 1))
         return np.asarray(values.reshape(self.jobs.shape + values.shape[1:]))
+
+    @cached_property
+    def _preload_force(self) -> np.ndarray:
+        """Return k3 l_pre of each run, N."""
+        return np.asarray(self.jobs.values["k3"] * self.jobs.values["preload"])
 
     def _extremes(self, name: str, part: str = "") -> tuple[np.ndarray, np.ndarray]:
         """Smallest and largest value of a tracked quantity."""
@@ -184,25 +171,25 @@ class Ensemble:
         lost = np.where(
             self._raw["starts_apart"], 0.0, np.fmin.reduce(firsts, 1, initial=np.nan)
         )
-        return self._shaped(lost, self.jobs.time_unit)
+        return self._shaped(lost)
 
     @property
     def peak_contact_force(self) -> np.ndarray:
         """Largest N/(k3 l_pre); 0 where no step was made."""
         largest = np.maximum(self._extremes("contact_force")[1], 0.0)
-        return self._shaped(largest / self.jobs.values["k3"])
+        return self._shaped(largest / self._preload_force)
 
     @property
     def lowest_contact_force(self) -> np.ndarray:
         """Smallest N/(k3 l_pre); 0 where contact was lost."""
-        lowest = self._extremes("contact_force")[0] / self.jobs.values["k3"]
+        lowest = self._extremes("contact_force")[0] / self._preload_force
         kept = np.isnan(self.first_separation_time.reshape(-1))
         return self._shaped(np.where(kept, lowest, 0.0))
 
     @property
     def return_peak_contact_force(self) -> np.ndarray:
         """The largest from the first return to the belt on; NaN: none."""
-        peak = self._extremes("contact_force", "late_")[1] / self.jobs.values["k3"]
+        peak = self._extremes("contact_force", "late_")[1] / self._preload_force
         return self._shaped(np.where(np.isfinite(peak), peak, np.nan))
 
     @property
@@ -212,20 +199,18 @@ class Ensemble:
             axis=1, initial=0
         )
         speed = np.where(self.contacts.reshape(-1) > 0, fastest, np.nan)
-        return self._shaped(speed, self.jobs.length / self.jobs.time_unit)
+        return self._shaped(speed)
 
     @property
     def max_displacement(self) -> np.ndarray:
         """Largest √(x² + y²), m; 0 where no step was made."""
         square = np.maximum(self._extremes("reach")[1], 0.0)
-        return self._shaped(np.sqrt(square), self.jobs.length)
+        return self._shaped(np.sqrt(square))
 
     @property
     def max_vx(self) -> np.ndarray:
         """Largest ẋ, m/s."""
-        return self._shaped(
-            self._extremes("vx")[1], self.jobs.length / self.jobs.time_unit
-        )
+        return self._shaped(self._extremes("vx")[1])
 
     @cached_property
     def events(self) -> np.ndarray:
@@ -238,12 +223,10 @@ class Ensemble:
         Lengths and velocities in SI units, the contact force over k3 l_pre; NaN past ``time``.
         """
         values = self._raw["sample_extremes"][:, :, self._tracked.index(name)]
-        unit = {
-            "contact_force": 1.0 / self.jobs.values["k3"],
-            "vx": self.jobs.length / self.jobs.time_unit,
-        }.get(name, self.jobs.length)
+        if name == "contact_force":
+            values = values / self._preload_force[:, None, None]
         low, high = np.moveaxis(values, -1, 0)
-        return self._shaped(low, unit), self._shaped(high, unit)
+        return self._shaped(low), self._shaped(high)
 
     @property
     def sample_regimes(self) -> np.ndarray:
@@ -277,7 +260,7 @@ def run_ensemble(
     workers: Workers = None,
     **options: Any,
 ) -> Ensemble:
-    """Integrate many runs at once, each in units of m = k1 = l_pre = 1.
+    """Integrate many runs at once.
 
     Args:
         parameters, alpha1, alpha2, options: as :func:`squealpipe.brake.a1.jobs.jobs_of` has
@@ -331,10 +314,12 @@ def _run(
     """Raw results of the runs of one system, one row each."""
     values = {name: each[rows] for name, each in jobs.values.items()}
     t_end, t_late = jobs.t_end[rows], jobs.t_late[rows]
-    starts = system.first_regimes({TIME: np.zeros(len(t_end)), **values}, len(t_end))
-    apart = np.array([name in {"separated", "released"} for name in system.regimes])[
-        starts[:, 0]
-    ]
+    is_apart = np.array([name in {"separated", "released"} for name in system.regimes])
+    first = None
+    if jobs.stop_at_first_separation:  # what starts apart has ended
+        now = {TIME: np.zeros(len(t_end)), **values}
+        first = system.first_regimes(now, len(t_end))
+        t_end = np.where(is_apart[first[:, 0]], 0.0, t_end)
     g = geometry(values["alpha1"], values["alpha2"])
     points = np.stack(fixed_ends(SimpleNamespace(**values), g), axis=-1).reshape(
         -1, 2, 2
@@ -344,9 +329,9 @@ def _run(
     raw = integrate_system(
         system,
         values,
-        np.where(apart, 0.0, t_end) if until else t_end,
+        t_end,
         RunOptions(
-            regime=starts,
+            regime=first,
             t_late=t_late,
             late_from="contact" if jobs.late_from_return else None,
             until=until,
@@ -362,6 +347,7 @@ def _run(
         tol=jobs.tol,
         workers=workers,
     )
+    apart = is_apart[raw.pop("first_regimes")[:, 0]]
     return raw | {"starts_apart": apart, "points": points}
 
 

@@ -1,4 +1,4 @@
-"""The runs of an ensemble: checked inputs, broadcast, in units of m = k1 = l_pre = 1."""
+"""The runs of an ensemble of A1: checked inputs, broadcast, in SI units."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -8,10 +8,10 @@ from typing import Annotated, Any, Self
 import numpy as np
 from pydantic import BeforeValidator
 
-from squealpipe.brake.a1.scaling import scaled_runs
+from squealpipe.brake.a1.parameter_sets import parameter_sets
 from squealpipe.brake.models.refusals import WHY_A4, refuse_extensions
 from squealpipe.brake.models.variants import VARIANT_RULES
-from squealpipe.parameters import NUMBERS_OF_A1, Parameters
+from squealpipe.parameters import Parameters
 from squealpipe.systems.system import System
 from squealpipe.validation import Extended, Tolerance, checked, one_of, real_array
 
@@ -35,7 +35,7 @@ STATE = ("x", "y", "vx", "vy")
 
 @dataclass(frozen=True)
 class Jobs:
-    """Runs in units of m = k1 = l_pre = 1, one row each, and the units to go back.
+    """Runs in SI units, one row each.
 
     Attributes:
         systems, which: A1 with the forces of some runs, and the index of that of each.
@@ -56,8 +56,6 @@ class Jobs:
     stop_at_first_separation: bool
     stop_at_turns: float
     most: tuple[np.ndarray, np.ndarray]
-    time_unit: np.ndarray
-    length: np.ndarray
 
     def groups(self) -> Iterator[tuple[System, Any]]:
         """Each system and the rows of its runs."""
@@ -67,7 +65,7 @@ class Jobs:
 
     def some(self, rows: np.ndarray) -> Self:
         """Some of the runs, in one dimension."""
-        columns = ("which", "t_end", "t_late", "times", "time_unit", "length")
+        columns = ("which", "t_end", "t_late", "times")
         return replace(
             self,
             shape=rows.shape,
@@ -95,7 +93,7 @@ def jobs_of(
     """Jobs whose arguments may each differ from run to run.
 
     ``parameters`` (values of the mapping), ``alpha1``, ``alpha2``, ``t_end`` and ``t_late`` are
-    broadcast against one another. Units of mass, stiffness and length may differ too.
+    broadcast against one another.
 
     Args:
         parameters: ``Parameters``, or a mapping of its field names to arrays; fields left out
@@ -114,7 +112,7 @@ def jobs_of(
     """
     if model == "A4" and isinstance(parameters, Parameters):
         refuse_extensions(parameters, "model A4", WHY_A4)
-    physical = scaled_runs(parameters, model)
+    sets = parameter_sets(parameters, model)
     late_from_return = isinstance(t_late, str) and t_late == "return"
     inputs = {
         "alpha1": real_array("alpha1", alpha1),
@@ -131,39 +129,44 @@ def jobs_of(
         )
     if not (inputs["t_end"] >= 0).all():
         raise ValueError(f"t_end = {inputs['t_end'].min()!r}: must be 0 or greater")
-    shapes = {array.shape for array in inputs.values()}
-    shape = np.broadcast_shapes(physical.time_unit.shape, *shapes, state.shape[:-1])
+    arrays = (*inputs.values(), *sets.numbers.values(), sets.which)
+    shapes = {array.shape for array in arrays}
+    shape = np.broadcast_shapes(*shapes, state.shape[:-1])
 
     def flat(array: np.ndarray) -> np.ndarray:
         return _broadcast(array, shape).reshape(-1)
 
-    time_unit, ends, length = (
-        flat(a) for a in (physical.time_unit, inputs["t_end"], physical.length)
-    )
-    _refuse_too_long(ends, time_unit)
-    t_end, rate = ends / time_unit, flat(physical.rate)
-    speed = length / time_unit
-    units = (length, length, speed, speed)
-    columns = np.moveaxis(_broadcast(state, (*shape, 4)).reshape(-1, 4), -1, 0)
-    values = {name: flat(physical.numbers[name]) for name in NUMBERS_OF_A1}
+    values = {name: flat(numbers) for name, numbers in sets.numbers.items()}
     values |= {name: flat(inputs[name]) for name in ("alpha1", "alpha2")}
-    values |= {n: c / u for n, c, u in zip(STATE, columns, units, strict=True)}
+    columns = np.moveaxis(_broadcast(state, (*shape, 4)).reshape(-1, 4), -1, 0)
+    values |= dict(zip(STATE, columns, strict=True))
+    t_end = flat(inputs["t_end"])
+    _refuse_too_long(t_end, values)
+    turns = _fastest(values) * t_end
     return Jobs(
         tol=tol,
         shape=shape,
-        systems=physical.systems,
-        which=flat(physical.which),
+        systems=sets.systems,
+        which=flat(sets.which),
         values=values,
         t_end=t_end,
-        t_late=flat(inputs["t_late"]) / time_unit,
+        t_late=flat(inputs["t_late"]),
         late_from_return=late_from_return,
-        times=_sample_times(times, shape, ends, time_unit),
+        times=_sample_times(times, shape, t_end),
         stop_at_first_separation=stop_at_first_separation,
         stop_at_turns=float(real_array("stop_at_turns", stop_at_turns, infinite=True)),
-        most=(1e4 + 200 * rate * t_end, 1e3 + 20 * rate * t_end),
-        time_unit=time_unit,
-        length=length,
+        most=(1e4 + 200 * turns, 1e3 + 20 * turns),
     )
+
+
+def _fastest(values: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Return a bound on the frequencies of the motion, rad/s."""
+    stiffness = sum(values[name] for name in ("k1", "k2", "k3"))
+    shorter = np.minimum(values["length1"], values["length2"])
+    with np.errstate(all="ignore"):
+        return np.asarray(
+            np.sqrt(stiffness / values["mass"]) + np.abs(values["belt_speed"]) / shorter
+        )
 
 
 def _broadcast(array: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
@@ -171,9 +174,10 @@ def _broadcast(array: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
     return array if array.shape == shape else np.broadcast_to(array, shape)
 
 
-def _refuse_too_long(t_end: np.ndarray, time_unit: np.ndarray) -> None:
+def _refuse_too_long(t_end: np.ndarray, values: Mapping[str, np.ndarray]) -> None:
     """Raise for runs that would not end in hours, and for units of time that overflow."""
     with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
+        time_unit = np.sqrt(values["mass"] / values["k1"])
         units = t_end / time_unit
     bad = ~((units <= MOST_TIME_UNITS) & (time_unit > 0) & np.isfinite(time_unit))
     if bad.any():
@@ -185,11 +189,9 @@ def _refuse_too_long(t_end: np.ndarray, time_unit: np.ndarray) -> None:
         )
 
 
-def _sample_times(
-    times: Any, shape: tuple[int, ...], t_end: np.ndarray, time_unit: np.ndarray
-) -> np.ndarray:
+def _sample_times(times: Any, shape: tuple[int, ...], t_end: np.ndarray) -> np.ndarray:
     if times is None:
-        return np.zeros((time_unit.size, 0))
+        return np.zeros((t_end.size, 0))
     array = real_array("times", times)
     if array.ndim == 0:
         raise ValueError("times must be a sequence of instants")
@@ -201,4 +203,4 @@ def _sample_times(
     if array.size and (rows[:, -1] > t_end).any():
         reached, end = float(rows[:, -1].max()), float(t_end.min())
         raise ValueError(f"times reach {reached!r}, beyond t_end = {end!r}")
-    return np.ascontiguousarray(rows / time_unit[:, None])
+    return np.ascontiguousarray(rows)

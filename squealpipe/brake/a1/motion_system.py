@@ -21,7 +21,7 @@ from squealpipe.laws.friction import stick_limit
 from squealpipe.laws.friction_laws import COULOMB
 from squealpipe.laws.springs import LONG_SPRING, Geometry, fixed_ends
 from squealpipe.laws.tables import is_table, pieces_of
-from squealpipe.parameters import NUMBERS_OF_A1, Parameters
+from squealpipe.parameters import NUMBERS_OF_A1, TABLE, Parameters
 from squealpipe.systems.belt_contact import (
     DECIDES_FIRST,
     BeltContact,
@@ -105,10 +105,10 @@ def brake(  # noqa: C901 (one short function for each force and surface)
     laws = _Laws(friction_law, contact_law, rules, one_mu=one_mu)
     default = Parameters(friction_law=friction_law, contact_law=contact_law)
     defaults = {name: getattr(default, name) for name in NUMBERS_OF_A1}
-    parameters = {**defaults, "alpha1": 1.0, "alpha2": 1.0}
+    defaults |= {"alpha1": 1.0, "alpha2": 1.0}
     traced = (laws.form, damped, model, one_mu, long_springs)
     if traced in _FORMS:
-        return _FORMS[traced].with_numbers(laws.belt.regimes(), parameters)
+        return _FORMS[traced].with_numbers(laws.belt.regimes(), defaults)
     form = a1.Suspension(rules.linear_springs, long_springs, damped)
 
     def suspension(s: Any, p: Any, r: Any) -> tuple[Any, Any]:
@@ -156,26 +156,27 @@ def brake(  # noqa: C901 (one short function for each force and surface)
     def free(t: Any, s: Any, p: Any, r: Any) -> Any:
         return s.y - p.preload
 
-    def time(p: Any) -> Any:
-        return (p.mass / p.k1) ** 0.5
+    def scales(p: Any) -> dict[str, Any]:
+        # of a stiffness without round-off: that of the first spring is 1
+        return {
+            "kg": p.mass,
+            "m": p.preload,
+            "s": (p.mass / p.k1) ** 0.5,
+            "N": p.k1 * p.preload,
+            "N m-1": p.k1,
+        }
 
-    def length(p: Any) -> Any:
-        return p.preload
-
-    def speed(p: Any) -> Any:
-        return p.preload / time(p)
-
-    states = {
-        "x": ("m", length),
-        "y": ("m", length),
-        "vx": ("m/s", speed),
-        "vy": ("m/s", speed),
-    }
+    states = {"x": "m", "y": "m", "vx": "m/s", "vy": "m/s"}
     reach = ("m2", lambda t, s, p, r: s.x * s.x + s.y * s.y)
     made = System(
         "brake",
         states=states,
-        parameters=parameters,
+        parameters={
+            name: (value, TABLE[NUMBERS_OF_A1[name]].units)
+            if name in NUMBERS_OF_A1
+            else (value, "rad")
+            for name, value in defaults.items()
+        },
         regimes=laws.belt.regimes(),
         field=field,
         switches=[
@@ -187,7 +188,7 @@ def brake(  # noqa: C901 (one short function for each force and surface)
         starts_in=laws.starts(free, rises, limit, pull),
         outputs={"contact_force": ("N", force), "reach": reach},
         stops={} if rules.linear_springs else {"pivot1": pivot(0), "pivot2": pivot(1)},
-        time_scale=time,
+        scales=scales,
     )
     _FORMS[traced] = made
     return made

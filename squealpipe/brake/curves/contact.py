@@ -9,7 +9,6 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.brake.a1.ensemble import Ensemble, run_ensemble
-from squealpipe.brake.a1.scaling import PHYSICAL
 from squealpipe.brake.curves.chords import Vector
 from squealpipe.brake.curves.regions import chains_of, gathered, holds, inside, loops_of
 from squealpipe.brake.curves.zero_lines import FirstGrid, ZeroLines
@@ -23,7 +22,7 @@ from squealpipe.brake.schema.curves import (
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import COULOMB, LAWS
 from squealpipe.laws.springs import springs_are_equal
-from squealpipe.parameters import HORIZON, Parameters
+from squealpipe.parameters import HORIZON, PHYSICAL, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
 from squealpipe.systems.inputs.values import brief

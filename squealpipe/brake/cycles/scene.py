@@ -1,5 +1,7 @@
 """A1 as a system of cycles: its parameters in units of m = k1 = l_pre = 1."""
 
+import math
+import re
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Self
@@ -7,15 +9,20 @@ from typing import Any, Self
 import numpy as np
 
 from squealpipe.brake.a1.ensemble import NEAR_PIVOT
-from squealpipe.brake.a1.motion_system import brake, parameters_of_run, regimes_of
-from squealpipe.brake.a1.scaling import PHYSICAL, plain, unit_value
+from squealpipe.brake.a1.motion_system import (
+    brake,
+    has_own_laws,
+    parameters_of_run,
+    regimes_of,
+)
 from squealpipe.brake.models.damped import is_undamped
 from squealpipe.codes import Event, Regime
 from squealpipe.laws import contact_laws
+from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import COULOMB, FALLING
 from squealpipe.laws.springs import fixed_ends, geometry
 from squealpipe.laws.tables import is_table
-from squealpipe.parameters import NUMBERS_OF_A1, TABLE, Parameters
+from squealpipe.parameters import NUMBERS_OF_A1, PHYSICAL, TABLE, Parameters
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.system import System
 
@@ -160,3 +167,37 @@ class CycleScene:
             "multiplier_real": cycle.multipliers.real,
             "multiplier_imag": cycle.multipliers.imag,
         }
+
+
+def plain(parameters: Parameters) -> Parameters:
+    """The numbers that a law of the user's own stands for, under laws that have formulas."""
+    if not has_own_laws(parameters):
+        return parameters
+    numbers = {
+        name: getattr(parameters, name) for name in ("mu", "k3", "friction_speed")
+    }
+    return parameters.with_(
+        **numbers,
+        mu_static=parameters.static_mu,
+        friction_law=FALLING[0],
+        contact_law=LINEAR,
+        damping3=0.0,
+    )
+
+
+def unit_value(unit: str, mass: np.ndarray, k1: np.ndarray, length: np.ndarray) -> Any:
+    """A unit such as "N s m-1" in terms of m, k1 and l_pre; a newton is the unit k1 l_pre."""
+    powers = {"kg": 0, "N": 0, "m": 0, "s": 0}
+    for base, power in re.findall(r"([A-Za-z]+)(-?\d*)", unit):
+        powers[base] += int(power or 1)
+    powers["m"] += powers["N"]
+    bases = {"kg": mass, "N": k1, "m": length, "s": np.sqrt(mass / k1)}
+    above, below = (
+        math.prod(
+            bases[base] ** abs(power)
+            for base, power in powers.items()
+            if power * sign > 0
+        )
+        for sign in (1, -1)
+    )
+    return above / below

@@ -65,6 +65,7 @@ class Flow:
             system.integrated.derived, [parameter(name) for name in names], np
         )
         self._known: tuple[Any, Vector] | None = None
+        self._sizes: tuple[Any, Vector] | None = None
 
     @cached_property
     def entries(self) -> list[tuple[int, int, Any]]:
@@ -103,6 +104,13 @@ class Flow:
         """Parameters and the regimes' constants, as the functions take them; the time unit is 1."""
         given = [np.float64(values[name]) for name in self.system.parameters]
         return [*given, np.float64(1.0), *self.system.joint.constants(regime)]
+
+    def sizes(self, values: Mapping[str, float]) -> Vector:
+        """Return the typical sizes of the states."""
+        key = tuple(values[name] for name in self.system.parameters)
+        if self._sizes is None or self._sizes[0] != key:
+            self._sizes = key, self.system.sizes_in(values)
+        return self._sizes[1]
 
     def unit(self, values: Mapping[str, float]) -> float:
         """The system's unit of time, s."""
@@ -293,7 +301,7 @@ class Flow:
         last = FIRST_PARAMETER + len(column)
         arrays["rows"][FIRST_PARAMETER:last] = column[:, None]
         sizes = np.minimum(
-            self.system.sizes_in(values), np.maximum(np.abs(states).max(axis=0), 1e-200)
+            self.sizes(values), np.maximum(np.abs(states).max(axis=0), 1e-200)
         )
         arrays["units"][:] = 1.0 / sizes[:, None]
         arrays["initial"][:] = states

@@ -96,7 +96,7 @@ class Watched:
     @cached_property
     def extent(self) -> Vector:
         """Units of the states: how far they move between any instants of these periods."""
-        moved = scale_of(self.states, self.flow.system.sizes_in(self.values))
+        moved = scale_of(self.states, self.flow.sizes(self.values))
         return np.asarray(np.maximum(moved, 1e-9 * np.abs(self.states).max(axis=0)))
 
     @property
@@ -128,7 +128,7 @@ class Watched:
         first, count = _one_period(self.motion.times, origin, duration)
         if periods > 1 and count > search.most_events:
             return None
-        scale = scale_of(path, self.flow.system.sizes_in(self.values))
+        scale = scale_of(path, self.flow.sizes(self.values))
         repeat = Repeat(duration, periods, scale, first, count, origin)
         found = guess_of(self.flow, self.values, self.motion, path[0], repeat)
         point = None if found is None else found[0].solve(found[1])
@@ -255,7 +255,7 @@ def near_forced(
             return None, run.outcome or Outcome.not_finite
         first, count = _one_period(run.times, 0.0, duration)
         passed = run.states[first : first + count]
-        scale = scale_of(np.concatenate([path, passed]), flow.system.sizes_in(values))
+        scale = scale_of(np.concatenate([path, passed]), flow.sizes(values))
         repeat = Repeat(duration, periods, scale, first, count)
         found = guess_of(flow, values, run, state, repeat)
         point = None if found is None else found[0].solve(found[1])

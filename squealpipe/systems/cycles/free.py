@@ -255,9 +255,7 @@ def _stretch(
     run = follow(flow, values, state, duration, **options)
     if run.outcome or not np.isfinite(run.path).all():
         return run.outcome or Outcome.not_finite
-    scale = scale_of(
-        np.concatenate([run.path, run.states]), flow.system.sizes_in(values)
-    )
+    scale = scale_of(np.concatenate([run.path, run.states]), flow.sizes(values))
     stretch = Stretch(flow, values, run, times, scale)
     return Outcome.equilibrium if stretch.rests() else stretch
 

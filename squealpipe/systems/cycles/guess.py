@@ -50,7 +50,7 @@ def sizes_at(
     flow: Flow, values: Mapping[str, float], state: Vector, regime: int
 ) -> Vector:
     """Sizes of the states in a motion that may be far smaller than the system's own sizes."""
-    sizes, unit = flow.system.sizes_in(values), flow.unit(values)
+    sizes, unit = flow.sizes(values), flow.unit(values)
     with np.errstate(all="ignore"):
         rates = flow.field(values, regime, state, 0.0) * unit
         largest = max(float(np.abs(each / sizes).max()) for each in (state, rates))
@@ -104,7 +104,7 @@ def marked_at_once(
             there = flow.crossing(
                 values, event.switch, event.surface, regimes, state, time
             )
-            beyond = there.is_beyond(state, flow.system.sizes_in(values))
+            beyond = there.is_beyond(state, flow.sizes(values))
             is_clock = flow.system.traced.clocks[event.surface] != 0
             event = event._replace(at_once=beyond and not is_clock)
         found.append(event)

@@ -201,9 +201,7 @@ class Cycle:
     def extent(self) -> Vector:
         """Units of the states by how far they move in it."""
         n = self.map.flow.size
-        return scale_of(
-            self.extremes[:, :n], self.map.flow.system.sizes_in(self.parts.values)
-        )
+        return scale_of(self.extremes[:, :n], self.map.flow.sizes(self.parts.values))
 
     @cached_property
     def extremes(self) -> Vector:

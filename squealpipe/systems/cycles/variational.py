@@ -85,7 +85,7 @@ def _affine(flow: Flow, values: Mapping[str, float], path: Path) -> Vector:
         found[leg] = affine_derivatives(
             partial(many, flow.rates),
             partial(many, flow.rates_by),
-            flow.system.sizes_in(values),
+            flow.sizes(values),
             units,
             starts[leg],
             float(path.durations[leg]),

@@ -136,7 +136,12 @@ class LinearSystem(System):
         return written
 
     def first_regimes(
-        self, values: Mapping[str, Any], size: int, chosen: Any = None
+        self,
+        values: Mapping[str, Any],
+        size: int,
+        chosen: Any = None,
+        *,
+        in_scales: bool = False,  # noqa: ARG002 (it states none)
     ) -> np.ndarray:
         """Return the regime of each contact in which each run starts, (size, contacts)."""
         chosen = self.start.get("regime") if chosen is None else chosen

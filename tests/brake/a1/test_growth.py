@@ -5,11 +5,10 @@ import pytest
 from scipy.linalg import expm
 
 from squealpipe.brake.a1.ensemble import run_ensemble
-from squealpipe.brake.a1.scaling import PHYSICAL
 from squealpipe.brake.cycles.scene import CycleScene
 from squealpipe.brake.cycles.sliding import steady_sliding
 from squealpipe.laws.friction_laws import LAWS
-from squealpipe.parameters import Parameters
+from squealpipe.parameters import PHYSICAL, Parameters
 from tests.former import FORMER
 from tests.oracles.a1_long_double import derivative_along, simulate_reference
 

@@ -1,7 +1,5 @@
-"""A1 as a system, and the parameters of its runs in units of m = k1 = l_pre = 1."""
+"""The parameters of many runs of A1, checked, and the system that each run is of."""
 
-import math
-import re
 from collections.abc import Mapping
 from functools import lru_cache
 from types import SimpleNamespace
@@ -11,50 +9,78 @@ import numpy as np
 
 from squealpipe.brake.a1.motion_system import brake, brake_of, has_own_laws
 from squealpipe.brake.models.refusals import WHY_A4
-from squealpipe.laws import springs
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import COULOMB, FALLING, LAWS, coefficient
+from squealpipe.laws.springs import LONG_SPRING
 from squealpipe.laws.tables import is_table
-from squealpipe.parameters import DEFAULTS, NUMBERS_OF_A1, TABLE, Parameters
+from squealpipe.parameters import DEFAULTS, NUMBERS_OF_A1, PHYSICAL, TABLE, Parameters
 from squealpipe.systems.inputs.values import brief
 from squealpipe.systems.system import System
 from squealpipe.text import suggestion
 from squealpipe.validation import real_array
 
-PHYSICAL = tuple(name for name, row in TABLE.items() if row.enters_a1)
-"""Parameters of a run of A1."""
 FORM = ("preload", "length1", "length2", "damping1", "damping2")
 """Numbers on which the form of a system with laws of the user's own depends."""
 
 
-class ScaledRuns(NamedTuple):
-    """Parameters in units of m = k1 = l_pre = 1, of the shape that they were given in.
+class ParameterSets(NamedTuple):
+    """Parameters of some runs in SI units, of the shapes that they were given in.
 
     Attributes:
-        time_unit, length: √(m/k1), s, and l_pre, m.
-        systems: A1, or its variant, with the forces that some run has.
-        rate: a bound on the frequencies of the motion, for limits of steps and events.
+        numbers: those that the systems read, by their names there.
+        systems, which: A1, or its variant, with the forces of some runs, and the index of that of
+            each.
     """
 
     numbers: dict[str, np.ndarray]
-    time_unit: np.ndarray
-    length: np.ndarray
     systems: tuple[System, ...]
     which: np.ndarray
-    rate: np.ndarray
 
 
-def scaled_runs(parameters: Parameters | Mapping[str, Any], model: str) -> ScaledRuns:
-    """Checked parameters in the engine's units, and the systems that they are of."""
+def parameter_sets(
+    parameters: Parameters | Mapping[str, Any], model: str
+) -> ParameterSets:
+    """Return the parameters of runs, and the systems that these are of.
+
+    Raises:
+        ValueError: a parameter or law that does not exist, that the model cannot carry, or that
+            must be the same for all runs.
+    """
     if isinstance(parameters, Parameters):
-        return _scaled_once(parameters, model)
+        return _one_set(parameters, model)
     friction, contact = laws = [
         parameters.get(name, DEFAULTS[name]) for name in ("friction_law", "contact_law")
     ]
     if not all(isinstance(law, str) for law in laws) or (
         friction in LAWS and contact == LINEAR
     ):
-        return _scaled(_parameter_arrays(parameters), model)
+        arrays = _parameter_arrays(parameters)
+        formulas = np.isin(arrays["friction_law"], list(LAWS)) & (
+            arrays["contact_law"] == LINEAR
+        )
+        if not formulas.all():
+            raise ValueError(
+                "a table, a law in Python or a contact law must be the same for all runs"
+            )
+        numbers = _numbers(arrays)
+        return ParameterSets(numbers, *_systems(arrays["friction_law"], numbers, model))
+    return _sets_of_own_laws(parameters, friction, contact, model)
+
+
+@lru_cache(maxsize=64)
+def _one_set(parameters: Parameters, model: str) -> ParameterSets:
+    """Return one set of parameters, which was checked when it was made; for many single runs."""
+    numbers = {
+        name: np.asarray(getattr(parameters, name) + 0.0) for name in NUMBERS_OF_A1
+    }
+    system = _system_of(parameters, model)
+    return ParameterSets(numbers, (system,), np.zeros((), int))
+
+
+def _sets_of_own_laws(
+    parameters: Mapping[str, Any], friction: str, contact: str, model: str
+) -> ParameterSets:
+    """Return the parameters of runs that share laws of the user's own."""
     if is_table(contact) and np.ptp(parameters.get("preload", 0.0)):
         raise ValueError(
             "preload: under a table of contact it must be the same for all runs"
@@ -80,37 +106,28 @@ def scaled_runs(parameters: Parameters | Mapping[str, Any], model: str) -> Scale
         )
     if friction not in LAWS:
         numbers["friction_law"] = FALLING[0]
-    given = _parameter_arrays({**parameters, **numbers, "contact_law": LINEAR})
+    arrays = _parameter_arrays({**parameters, **numbers, "contact_law": LINEAR})
     if friction not in LAWS:
-        _check_stick(decisive, given)
-    return _scaled(given, (_own_system(decisive, model),))
+        _check_stick(decisive, arrays)
+    system = _system_of(decisive, model)
+    return ParameterSets(_numbers(arrays), (system,), np.zeros((), int))
 
 
-def _check_stick(decisive: Parameters, given: Mapping[str, np.ndarray]) -> None:
-    """Stop static coefficients below a law's own at speed 0."""
-    onset = coefficient(0.0, SimpleNamespace(**vars(decisive) | {"mu": given["mu"]}))
-    if np.any(given["mu_static"] < onset * (1.0 - 1e-12)):
+def _check_stick(decisive: Parameters, arrays: Mapping[str, np.ndarray]) -> None:
+    """Raise for static coefficients below a law's own at speed 0."""
+    onset = coefficient(0.0, SimpleNamespace(**vars(decisive) | {"mu": arrays["mu"]}))
+    if np.any(arrays["mu_static"] < onset * (1.0 - 1e-12)):
         raise ValueError(
             "mu_static is below the law's coefficient at speed 0: leave it out"
         )
 
 
-@lru_cache(maxsize=64)
-def _scaled_once(parameters: Parameters, model: str) -> ScaledRuns:
-    """One set of parameters, which was checked when it was made; for many single runs."""
-    numbers = plain(parameters)
-    given = {name: np.asarray(getattr(numbers, name)) for name in PHYSICAL}
-    given["mu_static"] = np.asarray(numbers.static_mu)
-    if numbers is parameters:
-        return _scaled(given, model)
-    given["damping3"] = np.asarray(parameters.damping3)
-    return _scaled(given, (_own_system(parameters, model),))
-
-
-def _own_system(parameters: Parameters, model: str) -> System:
-    if model == "A1" or (
+def _system_of(parameters: Parameters, model: str) -> System:
+    """Return the system of one set of parameters; raise where the model has none."""
+    carries = model == "A1" or (
         model == "A1-no-separation" and parameters.contact_law == LINEAR
-    ):
+    )
+    if carries or not has_own_laws(parameters):
         return brake_of(parameters, model)
     known: dict[str, Any] = {"friction_law": LAWS, "contact_law": (LINEAR,)}
     own = ", ".join(
@@ -121,68 +138,30 @@ def _own_system(parameters: Parameters, model: str) -> System:
     raise ValueError(f"model = {model!r} cannot carry {own}; use model = 'A1'")
 
 
-def plain(parameters: Parameters) -> Parameters:
-    """The numbers that a law of the user's own stands for, under laws that have formulas."""
-    if not has_own_laws(parameters):
-        return parameters
-    numbers = {
-        name: getattr(parameters, name) for name in ("mu", "k3", "friction_speed")
-    }
-    return parameters.with_(
-        **numbers,
-        mu_static=parameters.static_mu,
-        friction_law=FALLING[0],
-        contact_law=LINEAR,
-        damping3=0.0,
-    )
-
-
-def _scaled(
-    given: Mapping[str, np.ndarray], form: str | tuple[System, ...]
-) -> ScaledRuns:
-    """Of a model, or of a system that is known."""
-    # Units of time that overflow are refused with the runs.
-    with np.errstate(all="ignore"):
-        time_unit = np.sqrt(given["mass"] / given["k1"])
-        # adding 0 makes −0 to 0: equal parameters have equal bits
-        numbers = {
-            name: given[of]
-            / unit_value(TABLE[of].units, given["mass"], given["k1"], given["preload"])
-            + 0.0
-            for name, of in NUMBERS_OF_A1.items()
-        }
-        formulas = np.isin(given["friction_law"], list(LAWS)) & (
-            given["contact_law"] == LINEAR
-        )
-        if not formulas.all():
-            raise ValueError(
-                "a table, a law in Python or a contact law must be the same for all runs"
-            )
-        systems, which = form, np.zeros((), int)
-        if isinstance(systems, str):
-            systems, which = _systems(given["friction_law"], numbers, systems)
-        shape = np.broadcast_shapes(*{array.shape for array in given.values()})
-        rate = np.sqrt(1 + numbers["k2"] + numbers["k3"]) + np.abs(
-            numbers["belt_speed"]
-        ) / np.minimum(numbers["length1"], numbers["length2"])
-    time_unit, length, which = (
-        np.broadcast_to(a, shape) for a in (time_unit, given["preload"], which)
-    )
-    return ScaledRuns(numbers, time_unit, length, systems, which, np.asarray(rate))
+def _numbers(arrays: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return the numbers that the systems read by their names there."""
+    named = {**arrays, "static_mu": arrays["mu_static"]}
+    # adding 0 makes −0 to 0: equal parameters have equal bits
+    return {name: named[name] + 0.0 for name in NUMBERS_OF_A1}
 
 
 def _systems(
     laws: np.ndarray, numbers: Mapping[str, np.ndarray], model: str
 ) -> tuple[tuple[System, ...], np.ndarray]:
-    """The systems of some runs, and which is whose; one μ makes falling laws Coulomb's."""
+    """Return the systems of some runs, and which is whose.
+
+    One coefficient for stick and slip makes falling laws Coulomb's.
+    """
     damped = (numbers["damping1"] > 0) | (numbers["damping2"] > 0)
     one_mu = numbers["static_mu"] == numbers["mu"]
     laws = np.where(one_mu & np.isin(laws, FALLING), COULOMB, laws)
+    with np.errstate(over="ignore"):
+        long = LONG_SPRING * numbers["preload"]
     forms = np.broadcast_arrays(
         laws,
         damped,
         one_mu & (laws == COULOMB),
-        *(numbers[name] > springs.LONG_SPRING for name in ("length1", "length2")),
+        *(numbers[name] > long for name in ("length1", "length2")),
     )
     code = sum(
         np.unique(each, return_inverse=True)[1].reshape(each.shape) * 8**i
@@ -193,12 +172,12 @@ def _systems(
     _, first, which = np.unique(code, return_index=True, return_inverse=True)
     systems = []
     for at in first:
-        law, damps, same, *long = (each.reshape(-1)[at].item() for each in forms)
+        law, damps, same, *are_long = (each.reshape(-1)[at].item() for each in forms)
         if model == "A4" and (law != COULOMB or damps or not same):
             raise ValueError(
                 f"model A4 carries no damping and Coulomb's law with one μ: {WHY_A4}"
             )
-        springs_long = (long[0], long[1])
+        springs_long = (are_long[0], are_long[1])
         systems.append(
             brake(
                 law, damped=damps, model=model, one_mu=same, long_springs=springs_long
@@ -207,26 +186,8 @@ def _systems(
     return tuple(systems), which.reshape(forms[0].shape)
 
 
-def unit_value(unit: str, mass: np.ndarray, k1: np.ndarray, length: np.ndarray) -> Any:
-    """A unit such as "N s m-1" in terms of m, k1 and l_pre; a newton is the unit k1 l_pre."""
-    powers = {"kg": 0, "N": 0, "m": 0, "s": 0}
-    for base, power in re.findall(r"([A-Za-z]+)(-?\d*)", unit):
-        powers[base] += int(power or 1)
-    powers["m"] += powers["N"]
-    bases = {"kg": mass, "N": k1, "m": length, "s": np.sqrt(mass / k1)}
-    above, below = (
-        math.prod(
-            bases[base] ** abs(power)
-            for base, power in powers.items()
-            if power * sign > 0
-        )
-        for sign in (1, -1)
-    )
-    return above / below
-
-
 def _parameter_arrays(parameters: Mapping[str, Any]) -> dict[str, np.ndarray]:
-    """Checked arrays of all parameters of a run; ``mu_static`` of None becomes ``mu``."""
+    """Return checked arrays of all parameters; ``mu_static`` of None becomes ``mu``."""
     for name in parameters:
         if name not in TABLE:
             raise ValueError(
