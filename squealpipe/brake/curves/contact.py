@@ -99,7 +99,7 @@ class Square:
         """
         if self.params.friction_law != COULOMB or "belt_speed" in self.names:
             return None
-        values = {name: getattr(self.params, name) for name in PHYSICAL}
+        values: dict[str, Any] = {name: getattr(self.params, name) for name in PHYSICAL}
         drags_forwards = values["belt_speed"] > 0.0
         values["belt_speed"] = abs(values["belt_speed"])
         options = {name: self.options[name] for name in ("t_end", "tol")}
