@@ -10,12 +10,9 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from squealpipe.systems.integrate import RunOptions
 
 PLAIN = ("1", "rad")
 """Units of numbers that have none."""
@@ -80,12 +77,11 @@ class Scales:
             for name, value in values.items()
         }
 
-    def options(
-        self, options: "RunOptions", units: Sequence[str], *, alike: bool
-    ) -> "RunOptions":
+    def options(self, options: Any, units: Sequence[str], *, alike: bool) -> Any:
         """Return what runs look at in these scales.
 
         Args:
+            options: ``RunOptions`` of :mod:`squealpipe.systems.integrate`.
             units: of the states.
             alike: the scales are the states' typical sizes.
         """
