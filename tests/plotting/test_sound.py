@@ -8,8 +8,8 @@ import pytest
 import scipy.io.wavfile
 import xarray as xr
 
-from squealpipe import Parameters, load, simulate
-from squealpipe.brake.dynamics.again import simulated_again
+from squealpipe import Parameters, assess, load, simulate
+from squealpipe.brake.dynamics.again import settled_run, simulated_again
 from squealpipe.cli import run
 from squealpipe.plotting.sound import RATE, TooCoarseError, sound
 from squealpipe.store import save
@@ -229,3 +229,13 @@ def test_the_command_writes_a_sound(tmp_path, monkeypatch, capsys):
     assert run(["listen", "run.nc"]) == 2
     assert "--force" in capsys.readouterr().err
     assert run(["listen", "run.nc", "--fast", "2", "--slow", "2", "--force"]) == 2
+
+
+@pytest.mark.release
+def test_the_settled_motion_of_an_answer_is_run_on_to_be_heard():
+    answer = assess(PAD, *np.radians((22, 46)), tol=1e-9)
+    longer = settled_run(answer)
+    made = sound(longer)
+    assert made.frequency == pytest.approx(float(answer.frequency), rel=5e-3)
+    half = longer.vy.values[longer.sizes["time"] // 2 :]
+    assert half.std() == pytest.approx(float(answer.velocity_rms_across), rel=0.05)

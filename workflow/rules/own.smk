@@ -7,6 +7,7 @@ rule assess_scenes:
     output:
         answers=[data(f"assess/{name}") for name in OWN],
         runs=[data(f"own/{name}") for name in OWN],
+        settled=[data(f"settled/{name}") for name in OWN],
     params:
         settings=settings("parameters", "scenes", "dynamics.tol"),
     script:

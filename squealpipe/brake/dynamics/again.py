@@ -1,9 +1,10 @@
-"""Integrate a stored run again, at other instants."""
+"""Integrate a stored run again, at other instants, or the motion of an answer further."""
 
 import json
 
 import numpy as np
 import xarray as xr
+from scipy.interpolate import CubicSpline
 
 from squealpipe.brake.dynamics.runs import simulate
 from squealpipe.parameters import Parameters
@@ -36,4 +37,37 @@ def simulated_again(run: xr.Dataset, times: np.ndarray) -> xr.Dataset:
         tol=float(run.attrs["tolerance"]),
         times=times,
         initial_state=json.loads(run.attrs["arguments"])["initial_state"],
+    )
+
+
+def settled_run(answer: xr.Dataset, *, periods: float = 300.0) -> xr.Dataset:
+    """Run on along the settled motion of an answer, long enough to be heard.
+
+    An answer keeps twelve periods, which are too few of a motion that does not repeat.
+
+    Args:
+        answer: dataset ``assess``.
+        periods: of the strongest line; where there is none, of √(mass/k1).
+
+    Returns:
+        Dataset ``simulation`` from where the path of the answer ends; from rest where it has none.
+    """
+    params = Parameters(**json.loads(answer.attrs["parameters"]))
+    time = answer.path_time.values
+    place = np.stack([answer.path_x.values, answer.path_y.values], axis=1)
+    start = np.zeros(4)
+    # an answer repeats its first sample to fill its dimension
+    rising = np.diff(time, append=np.inf) > 0.0
+    if np.isfinite(place).all() and rising.sum() > 3:
+        curve = CubicSpline(time[rising], place[rising])
+        start = np.concatenate([place[-1], curve.derivative()(time[-1])])
+    frequency = float(answer.frequency)
+    period = 1.0 / frequency if np.isfinite(frequency) else params.time_unit
+    return simulate(
+        params,
+        float(answer.alpha1),
+        float(answer.alpha2),
+        t_end=periods * period,
+        tol=float(answer.attrs["tolerance"]),
+        initial_state=start.tolist(),
     )

@@ -67,8 +67,9 @@ def media_of_scenes(datasets: Mapping[str, Made]) -> dict[str, str]:
         if answer.verdict_of(told) is Verdict.quiet:
             continue
         if np.isfinite(told.path_x.values).all():
-            started = load(datasets[f"own/{scene_name}"].path)
-            media[scene_name] = media_of(scene_name, told, [started])
+            longer = datasets.get(f"settled/{scene_name}")
+            heard = [] if longer is None else [load(longer.path)]
+            media[scene_name] = media_of(scene_name, told, heard)
     return media
 
 

@@ -71,7 +71,7 @@ elif STUDY.structure is not None:
     TARGETS += rules.write_structure_report.output
 else:
     read = {"verdict_map", "verdict_shares"}
-    own = {name: made for name, made in MADE.items() if name in read or name.startswith(("own/", "assess/"))}
+    own = {name: made for name, made in MADE.items() if name in read or name.startswith(("own/", "assess/", "settled/"))}
     own |= {name: MADE[name] for drawn in DRAWN.values() for name in drawn["datasets"]}
 
     rule write_own_report:

@@ -1,11 +1,12 @@
-"""The scenes of a study of one's own: the answer for each, and its run from its own start."""
+"""The scenes of a study of one's own: answer, run from its own start, run of what settles."""
 
 from pathlib import Path
 
 from squealpipe.brake.assess.assess import assess
+from squealpipe.brake.dynamics.again import settled_run
 from squealpipe.brake.dynamics.runs import simulate
 from squealpipe.parameters import parameters_of
-from squealpipe.store import produce
+from squealpipe.store import load, produce
 
 settings, key = snakemake.params.settings, snakemake.params.key
 params, scenes = parameters_of(settings), settings["scenes"]
@@ -33,6 +34,15 @@ for path in snakemake.output.runs:
             tol=settings["dynamics.tol"],
         ),
         config={**settings, "scene": name},
+        key=key,
+        output=path,
+    )
+for path, answer in zip(
+    snakemake.output.settled, snakemake.output.answers, strict=True
+):
+    produce(
+        lambda: settled_run(load(answer)),
+        config={**settings, "scene": Path(path).stem},
         key=key,
         output=path,
     )
