@@ -81,6 +81,11 @@ def system(
         name: equations.shape(name, given)
         for name, given in (displacements or {}).items()
     }
+
+    def matrices_at(speed: float) -> ContactMatrices:
+        turning = structure.at_speed(speed)
+        return matrices_of(turning, Numbers.of(turning), scale, [*shapes.values()])
+
     return LinearSystem(
         f"structure of {structure.size} degrees of freedom",
         states=_states(structure, scale),
@@ -91,6 +96,7 @@ def system(
         outputs=dict.fromkeys(shapes, "m"),
         time_scale=scale.time,
         general=lambda: component_system(structure, displacements),
+        at_speed=matrices_at if structure.speed_terms.vary else None,
     )
 
 

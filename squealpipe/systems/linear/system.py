@@ -1,5 +1,6 @@
 """Contacts on a belt as a system: its names, and the verbs, on the loop of linear structures."""
 
+import copy
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
@@ -33,6 +34,7 @@ class LinearSystem(System):
         time_scale: typical time, s.
         general: makes the same system of components, for what follows derivatives by symbols:
             cycles, branches, curves, sensitivities and the horizon of predictability.
+        at_speed: makes the matrices of another ``belt_speed``; None: they do not change with it.
 
     Raises:
         ValueError: a name is taken.
@@ -53,11 +55,13 @@ class LinearSystem(System):
         outputs: Mapping[str, str],
         time_scale: float,
         general: Callable[[], System],
+        at_speed: Callable[[float], ContactMatrices] | None = None,
     ) -> None:
         numbering: Any = Numbering(
             tuple(contacts), matrices.n_modes, matrices.pieces, len(outputs)
         )
         self.name, self.matrices, self._make_general = name, matrices, general
+        self._at_speed = at_speed
         self.units = {key: unit for key, (unit, _) in states.items()}
         self.typical_sizes = {key: size for key, (_, size) in states.items()}
         self.coefficients = coefficients
@@ -82,9 +86,27 @@ class LinearSystem(System):
         """No parameter is an exponent."""
         return ()
 
-    def for_exponents(self, values: Mapping[str, Any]) -> Self:  # noqa: ARG002
-        """Return the system itself."""
-        return self
+    def for_exponents(self, values: Mapping[str, Any]) -> Self:
+        """Return the system with the matrices of the belt's speed, which all runs share.
+
+        Raises:
+            ValueError: several speeds, where the matrices change with it.
+        """
+        if self._at_speed is None:
+            return self
+        speeds = np.unique(np.asarray(values["belt_speed"], float))
+        if len(speeds) > 1:
+            raise ValueError(
+                f"belt_speed = {speeds[0]:g} to {speeds[-1]:g}: matrices change with it, so that "
+                "runs side by side share one speed; run one after another"
+            )
+        if speeds[0] == self.parameters["belt_speed"]:
+            return self
+        other = copy.copy(self)
+        other.matrices = self._at_speed(float(speeds[0]))
+        other.parameters = {**self.parameters, "belt_speed": float(speeds[0])}
+        other.form = other
+        return other
 
     @cached_property
     def general(self) -> System:
@@ -148,8 +170,9 @@ class LinearSystem(System):
         numbers = self.composition.numbers(chosen)
         states = np.stack([np.broadcast_to(values[n], size) for n in self.states], 1)
         given = {n: np.broadcast_to(values[n], size) for n in self.parameters}
+        matrices = self.for_exponents(given).matrices
         return first_regimes(
-            self.matrices, self.numbering, self.coefficients, given, states, numbers
+            matrices, self.numbering, self.coefficients, given, states, numbers
         )
 
     def outputs_along(
@@ -177,7 +200,9 @@ class LinearSystem(System):
 
     def ensemble(self, *args: Any, **options: Any) -> xr.Dataset:
         """Many runs; see :func:`squealpipe.systems.runs.ensemble`."""
-        if options.get("horizon"):
+        # lanes of different speeds have one set of matrices each
+        several = self._at_speed and np.ndim(options.get("belt_speed", 0.0))
+        if options.get("horizon") or several:
             return self.general.ensemble(*args, **options)
         return super().ensemble(*args, **options)
 
