@@ -23,6 +23,7 @@ class RunRecord:
         final: state at the end.
         path, path_regimes: at the asked instants; the regimes of each component.
         outcome, reached, steps: how and when it ended, and after how many steps.
+        n_events: how many there were, also where no room was asked for.
     """
 
     regimes: np.ndarray
@@ -36,6 +37,7 @@ class RunRecord:
     outcome: int
     reached: float
     steps: int
+    n_events: int
 
 
 def single_run(
@@ -79,4 +81,5 @@ def single_run(
         outcome=int(raw["outcome"][0]),
         reached=float(raw["reached"][0]),
         steps=int(raw["steps"][0]),
+        n_events=count,
     )

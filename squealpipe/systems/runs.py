@@ -29,7 +29,7 @@ from squealpipe.systems.labels import (
     outcome,
     regime_flag,
 )
-from squealpipe.systems.record import RunRecord, single_run
+from squealpipe.systems.record import FIRST_LOG, RunRecord, single_run
 from squealpipe.systems.schema import build
 
 
@@ -71,8 +71,10 @@ def simulate(
     options = RunOptions(
         regime=(start or {}).get("regime"), t_start=t_start, most_steps=max_steps
     )
+    room = FIRST_LOG
     if times is None:
-        steps = single_run(system, values, duration, options, tol=tol, room=0).steps
+        ahead = single_run(system, values, duration, options, tol=tol, room=0)
+        steps, room = ahead.steps, max(ahead.n_events, 1)
         # four samples in each step show every curve of a run
         times = np.linspace(t_start, t_end, int(np.clip(4 * steps, 2, 20_001)))
     elif times[0] < t_start or times[-1] > t_end or (np.diff(times) < 0.0).any():
@@ -80,7 +82,7 @@ def simulate(
             f"times = {brief(times)}: they must ascend from {t_start:g} to t_end = {t_end!r}"
         )
     options = replace(options, times=times - t_start)
-    run = single_run(system, values, duration, options, tol=tol)
+    run = single_run(system, values, duration, options, tol=tol, room=room)
     # not one round-off before the end
     reached = t_end if run.reached == duration else run.reached + t_start
     run = replace(run, times=run.times + t_start, reached=reached)
