@@ -11,16 +11,16 @@ FINE, COARSE = 12.0, 2.5
 """Samples per radian of the fastest linear oscillation: of a short run, and the fewest."""
 PLENTY = 20_000
 """Samples up to which a run is sampled finely."""
-MOST_SAMPLES = 1e7
+MOST_GRID_SAMPLES = 1e7
 
 
 def sample_times(params: Parameters, t_end: float) -> np.ndarray:
     """Instants at equal steps from 0 to ``t_end`` that resolve the fastest oscillation, s."""
     wanted = COARSE * params.fastest * t_end
-    if not wanted <= MOST_SAMPLES:
+    if not wanted <= MOST_GRID_SAMPLES:
         raise ValueError(
             f"t_end = {t_end!r}: {wanted:.2g} samples would resolve the fastest oscillation up to "
-            f"there, at most {MOST_SAMPLES:.0e} are taken; shorten t_end"
+            f"there, at most {MOST_GRID_SAMPLES:.0e} are taken; shorten t_end"
         )
     return np.linspace(0.0, t_end, max(FEWEST, math.ceil(wanted)) + 1)
 

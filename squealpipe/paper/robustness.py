@@ -28,9 +28,9 @@ STATIC = 2.0
 NEAR = (0.01, 0.1)
 """Largest distance of a start from rest, over l_pre (displacement) and l_pre √(k1/m) (velocity)."""
 
-COLUMNS = ("share", "share_low", "share_high", "judged", "outcome")
+STATEMENT_COLUMNS = ("share", "share_low", "share_high", "judged", "outcome")
 Share = tuple[float, float, float, int, int]
-"""A value for each of :data:`COLUMNS`."""
+"""A value for each of :data:`STATEMENT_COLUMNS`."""
 
 
 def variants(params: Parameters) -> Iterator[tuple[str, Parameters]]:
@@ -114,7 +114,9 @@ def verdict_robustness(
     if inferred is not None:
         rows.insert(1, _feasible(of_study(inferred), names))
         titles.insert(1, "feasible parameters")
-    columns = dict(zip(COLUMNS, np.moveaxis(np.array(rows), -1, 0), strict=True))
+    columns = dict(
+        zip(STATEMENT_COLUMNS, np.moveaxis(np.array(rows), -1, 0), strict=True)
+    )
     return build(VERDICT_ROBUSTNESS, columns, {"variant": titles, "statement": names})
 
 

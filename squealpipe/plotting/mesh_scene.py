@@ -28,7 +28,7 @@ from squealpipe.structures.meshes.structure_mesh import NO_NODE, StructureMesh
 from squealpipe.text import number
 from squealpipe.units import engineering, shown_in
 
-LARGEST = 0.06
+LARGEST_DEFLECTION = 0.06
 """Largest displacement that is drawn, over the extent of the structure."""
 
 
@@ -108,7 +108,7 @@ class Body:
     ) -> None:
         self.motion, self.frames = motion, frames
         self.has_mesh = motion.mesh is not None and motion.contact_position is not None
-        largest = LARGEST
+        largest = LARGEST_DEFLECTION
         if motion.mesh is not None and motion.contact_position is not None:
             self.nodes, self.moved = motion.mesh.nodes, motion.nodes_at(frames)
             away = self.nodes - motion.contact_position[:, None]

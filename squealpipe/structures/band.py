@@ -17,13 +17,13 @@ from squealpipe.structures.pencil import Factors, Pencil
 from squealpipe.structures.refinement import Eigenpair, Estimate, refined
 from squealpipe.systems.progress import with_progress
 
-GROWTH = 0.25
+LARGEST_GROWTH = 0.25
 """Largest |growth| of the eigenvalues looked for, over the largest angular frequency."""
 FIRST_AT = {"right": 0.5, "left": 0.2}
 """Where the first disc of each search lies in the band."""
 SAME = 1e-6
 """Relative distance up to which values of both searches are one eigenvalue."""
-SEARCHES = 3
+MOST_SEARCHES = 3
 COMPLETE = "complete: right and left eigenvectors, about other points, have the same eigenvalues"
 
 
@@ -62,16 +62,16 @@ class Near(NamedTuple):
 
 
 def modes_in_band(pencil: Pencil, omega_max: float) -> list[Eigenpair]:
-    """Eigenpairs with 0 ≤ Im s ≤ ω and |Re s| ≤ ``GROWTH`` ω, by frequency.
+    """Eigenpairs with 0 ≤ Im s ≤ ω and |Re s| ≤ ``LARGEST_GROWTH`` ω, by frequency.
 
     Args:
         omega_max: ω, rad/s.
 
     Raises:
-        IncompleteError: the two searches still differ after ``SEARCHES``.
+        IncompleteError: the two searches still differ after ``MOST_SEARCHES``.
     """
-    region = Region(GROWTH * omega_max, omega_max)
-    for search in range(SEARCHES):
+    region = Region(LARGEST_GROWTH * omega_max, omega_max)
+    for search in range(MOST_SEARCHES):
         # eigenvalues about one point at first; twice as many in each further search
         number = 40 * 2**search
         sides = [

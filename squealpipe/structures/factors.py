@@ -8,7 +8,7 @@ import numpy as np
 
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.pencil import DENSE
-from squealpipe.structures.schema.structures import ARGUMENTS, OF_CONTACT, SCALED
+from squealpipe.structures.schema.structures import MODES_ARGUMENTS, OF_CONTACT, SCALED
 from squealpipe.structures.spectrum import Limits, check_frequency
 from squealpipe.structures.varied_friction import VariedFriction, varied_by
 from squealpipe.systems.inputs.values import brief, is_whole_number
@@ -89,7 +89,7 @@ def factors_of(structure: ContactStructure) -> list[str]:
         for contact in structure.contacts
         for what in OF_CONTACT
     ]
-    return list(dict.fromkeys([*ARGUMENTS, *SCALED, *single]))
+    return list(dict.fromkeys([*MODES_ARGUMENTS, *SCALED, *single]))
 
 
 def checked_factors(
@@ -107,7 +107,7 @@ def checked_factors(
             names = ["mu", "belt_speed", "frequency_max", "n_modes", "critical", *known]
             raise ValueError(f"{name!r} is unknown; {suggestion(name, names)}")
         checked[name] = real_line(name, values)
-        if name in ARGUMENTS:
+        if name in MODES_ARGUMENTS:
             continue  # the structure judges these
         may_vanish = name == "damping" or name.endswith("preload")
         least = "0 or greater" if may_vanish else "greater than 0"
@@ -140,7 +140,7 @@ def with_factors(
     if not factors:
         return structure
     changes: dict[str, Any] = {
-        name: factors[name] for name in ARGUMENTS if name in factors
+        name: factors[name] for name in MODES_ARGUMENTS if name in factors
     }
     if "mass" in factors:
         changes["mass"] = structure.mass * factors["mass"]

@@ -28,10 +28,10 @@ from squealpipe.text import suggestion
 from squealpipe.validation import real_array
 
 Form = TypeVar("Form", bound=ContactStructure)
-MATRICES = ("mass", "stiffness", "damping")
+MATRIX_KEYS = ("mass", "stiffness", "damping")
 SCALAR_KEYS = ("mu", "belt_speed", "mu_static", "friction_speed")
 KEYS = (
-    *MATRICES,
+    *MATRIX_KEYS,
     "speed_terms",
     *SCALAR_KEYS,
     "contacts",
@@ -89,7 +89,7 @@ def read(path: str | PathLike[str], form: type[Form]) -> Form:
     content = _content(source)
     folder = source.parent
     scales = scales_of(content["units"]) if "units" in content else SI
-    entries = {key: content[key] for key in MATRICES if key in content}
+    entries = {key: content[key] for key in MATRIX_KEYS if key in content}
     speed_terms = _speed_terms(content, source)
     matrices, labels = read_matrices(
         entries | {key: entry["matrix"] for key, entry in speed_terms.items()},
@@ -343,7 +343,7 @@ def read_matrices(
 
 def _part_of(key: str) -> str:
     """Return which matrix one is or is a part of."""
-    return next(name for name in MATRICES if name in key)
+    return next(name for name in MATRIX_KEYS if name in key)
 
 
 def _matrix(key: str, entry: Any, folder: Path, triangle: str | None) -> Labelled:

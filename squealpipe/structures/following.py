@@ -9,7 +9,7 @@ from scipy.optimize import linear_sum_assignment
 from squealpipe.structures.sliding import NoSlidingError
 from squealpipe.structures.spectrum import Spectrum
 
-HALVINGS = 4
+FOLLOWING_HALVINGS = 4
 """How often a step in friction is halved where shapes change more."""
 
 
@@ -80,7 +80,7 @@ def followed(
     low: float,
     high: float,
     relevant: Callable[[Spectrum], np.ndarray],
-    halvings: int = HALVINGS,
+    halvings: int = FOLLOWING_HALVINGS,
 ) -> list[tuple[float, np.ndarray]]:
     """Frictions after ``low`` up to ``high`` with the places there of the modes at ``low``.
 

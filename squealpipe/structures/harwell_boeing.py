@@ -13,7 +13,7 @@ from typing import Any
 import scipy.io
 import scipy.sparse as sp
 
-DIRECTIONS = {"UX": 1, "UY": 2, "UZ": 3, "ROTX": 4, "ROTY": 5, "ROTZ": 6}
+ANSYS_DIRECTIONS = {"UX": 1, "UY": 2, "UZ": 3, "ROTX": 4, "ROTY": 5, "ROTZ": 6}
 """Ansys's names of directions."""
 
 
@@ -50,11 +50,11 @@ def read_mapping(path: Path) -> list[str]:
         match = re.fullmatch(r"\s*(\d+)\s+(\d+)\s+(\w+)\s*", line)
         if match is None:  # a heading
             continue
-        direction = DIRECTIONS.get(match[3].upper())
+        direction = ANSYS_DIRECTIONS.get(match[3].upper())
         if direction is None:
             raise ValueError(
                 f"{path}: row {match[1]} is {match[3]} of node {match[2]}; "
-                f"{', '.join(DIRECTIONS)} are known"
+                f"{', '.join(ANSYS_DIRECTIONS)} are known"
             )
         names[int(match[1])] = f"{match[2]}.{direction}"
     if sorted(names) != list(range(1, len(names) + 1)):

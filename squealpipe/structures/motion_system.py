@@ -42,7 +42,7 @@ from squealpipe.systems.linear.matrices import (
 from squealpipe.systems.linear.system import LinearSystem
 from squealpipe.systems.system import System
 
-HIDDEN = 1e-14
+STICK_ROUND_OFF = 1e-14
 """Over a typical force: a contact that friction lacks no more than this to hold sticks."""
 
 
@@ -202,7 +202,7 @@ def matrices_of(
         speeds=structure.speeds,
         laws=np.array([numbers_of_laws.get(law, TABLE) for law in laws], np.int64),
         pieces=np.array(fields or [[0.0] * len(PIECE_FIELDS)]),
-        hidden=HIDDEN * scale.force,
+        hidden=STICK_ROUND_OFF * scale.force,
         shapes=np.array(shapes).reshape(len(shapes), structure.size),
     )
 
@@ -375,7 +375,7 @@ class _Contact:
 
     def _holds(self, t: Any, s: Any, p: Any, r: Any) -> Any:
         """Return whether friction can, ≥ 0, whatever its sign."""
-        hidden = HIDDEN * self.force
+        hidden = STICK_ROUND_OFF * self.force
         return self.limit(t, s, p, r) ** 2 + hidden**2 - self._holding(t, s, p, r) ** 2
 
     def _margin(self, sign: float) -> Surface:

@@ -14,7 +14,7 @@ from squealpipe.structures.sliding import NoSlidingError, changes
 from squealpipe.structures.spectrum import Solver, Spectrum
 from squealpipe.systems.progress import with_progress
 
-HALVINGS = 4
+NUMBERING_HALVINGS = 4
 """How often a step in friction is halved on which a mode that turns unstable is lost."""
 
 
@@ -119,7 +119,9 @@ class Way:
                 self._go_smoothly(low, station)
                 low = station
 
-    def _go_smoothly(self, low: float, high: float, halvings: int = HALVINGS) -> None:
+    def _go_smoothly(
+        self, low: float, high: float, halvings: int = NUMBERING_HALVINGS
+    ) -> None:
         start, top = self.steps[low], self.top
         passed = {low: start}
         for mu, places in followed(self.solver.at, low, high, self.solver.selected):

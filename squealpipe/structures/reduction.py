@@ -27,7 +27,7 @@ from squealpipe.systems.progress import report
 
 AND_LARGER = 3
 """Larger numbers of modes that must do as well: convergence is not monotonic."""
-FIRST = 64
+FIRST_MODES = 64
 """Modes computed at first of a large structure; up to here every number is tried."""
 
 
@@ -209,7 +209,7 @@ class Search:
         self, structure: ContactStructure, truth: Truth, frequency_max: float | None
     ) -> None:
         self.whole, self.truth, self.frequency_max = structure, truth, frequency_max
-        self.kept = Kept(structure, min(FIRST, structure.size))
+        self.kept = Kept(structure, min(FIRST_MODES, structure.size))
 
     def smallest(
         self, fewest: int, tol: float = 1e-2, most: int | None = None
@@ -227,7 +227,9 @@ class Search:
                 return number
             report(lambda number=number, most=most: number / most)  # type: ignore[misc]
             # beyond, by an eighth at a time: trying every number takes minutes
-            number += 1 if number < FIRST else max(1, min(number // 8, most - number))
+            number += (
+                1 if number < FIRST_MODES else max(1, min(number // 8, most - number))
+            )
         return None
 
     def _meets_with_larger(self, number: int, tol: float) -> bool:

@@ -16,7 +16,7 @@ YOUNG, DENSITY, POISSON = 8e9, 2500.0, 0.25
 SUPPORT = (3e7, 5e7)
 """Total stiffness of the springs on the upper edge, along and across the belt, N/m."""
 
-UNITS = {
+PAD_UNITS = {
     **dict.fromkeys(("length", "height", "depth"), "m"),
     "young": "Pa",
     "contact_stiffness": "N m-1",
@@ -28,7 +28,7 @@ UNITS = {
 """CF units of the pad's numbers."""
 
 
-@partial(checked, units=UNITS)
+@partial(checked, units=PAD_UNITS)
 def elastic_pad(
     length: Positive = 0.06,
     height: Positive = 0.015,

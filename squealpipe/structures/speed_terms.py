@@ -12,7 +12,7 @@ from squealpipe.structures.matrices import real_square
 from squealpipe.systems.inputs.values import brief, is_whole_number, numbers_in_si
 from squealpipe.text import suggestion
 
-UNITS = {"damping": "N s m-1", "stiffness": "N m-1"}
+TERM_UNITS = {"damping": "N s m-1", "stiffness": "N m-1"}
 """What speed terms are parts of → CF unit."""
 
 
@@ -53,9 +53,9 @@ class SpeedTerms:
             )
         terms = {}
         for name, entries in given.items():
-            if name not in UNITS:
+            if name not in TERM_UNITS:
                 raise ValueError(
-                    f"speed_terms: {name!r}: {suggestion(str(name), UNITS)}"
+                    f"speed_terms: {name!r}: {suggestion(str(name), TERM_UNITS)}"
                 )
             terms[name] = tuple(_terms(name, entries, size))
         made = cls(reference, **terms)
@@ -107,8 +107,8 @@ class SpeedTerms:
 
     def mapped(self, change: Callable[[Any], Any], *what: str) -> Self:
         """Return the terms with every matrix changed, or those of ``what`` alone."""
-        parts = {name: getattr(self, name) for name in UNITS}
-        for name in what or tuple(UNITS):
+        parts = {name: getattr(self, name) for name in TERM_UNITS}
+        for name in what or tuple(TERM_UNITS):
             parts[name] = tuple(
                 (sp.csr_array(change(each)), power) for each, power in parts[name]
             )
@@ -117,7 +117,7 @@ class SpeedTerms:
     def as_list(self) -> list[dict[str, Any]]:
         """Return the terms as JSON takes them; of the matrices a hash."""
         rows = []
-        for what in UNITS:
+        for what in TERM_UNITS:
             for matrix, power in getattr(self, what):
                 content = hashlib.sha256()
                 for part in (matrix.indptr, matrix.indices, matrix.data):
@@ -146,6 +146,6 @@ def _terms(name: str, entries: Any, size: int) -> Any:
             )
         what = f"speed_terms: {name}"
         yield (
-            real_square(what, numbers_in_si(what, matrix, UNITS[name]), size),
+            real_square(what, numbers_in_si(what, matrix, TERM_UNITS[name]), size),
             int(power),
         )

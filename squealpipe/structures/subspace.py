@@ -19,7 +19,7 @@ from squealpipe.structures.sliding import static_answers
 from squealpipe.structures.spectrum import Spectrum
 from squealpipe.structures.speed_terms import SpeedTerms
 
-DEPENDENT = 1e-12
+DEPENDENT_SQUARE = 1e-12
 """Share of a vector's square that others leave of it, below which it adds nothing."""
 
 
@@ -99,7 +99,7 @@ def _added(
         vectors = vectors[:, sizes > 0] / sizes[sizes > 0]
         vectors = vectors - basis @ (basis.T @ (whole.mass @ vectors))
         squares, turns = la.eigh(vectors.T @ (whole.mass @ vectors))
-        kept = squares > DEPENDENT
+        kept = squares > DEPENDENT_SQUARE
         vectors = (vectors @ turns[:, kept]) / np.sqrt(squares[kept])
     return np.asarray(vectors)
 

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 from squealpipe.systems.inputs.values import brief
 from squealpipe.units import UnitError, in_si
 
-KINDS = {"length": "m", "mass": "kg", "time": "s"}
+MATRIX_QUANTITIES = {"length": "m", "mass": "kg", "time": "s"}
 """What each word of units like ``mm-t-s`` measures → its SI unit."""
 
 POUNDS = ("lb", "lbs")
@@ -55,7 +55,7 @@ def scales_of(units: Any) -> Scales:
     """
     words = str(units).split("-")
     needed = "units of length, mass and time are needed, like mm-t-s or m-kg-s"
-    if len(words) != len(KINDS):
+    if len(words) != len(MATRIX_QUANTITIES):
         raise ValueError(f"units = {brief(units)}: {needed}")
     if words[1].lower() in POUNDS:
         raise ValueError(
@@ -65,7 +65,7 @@ def scales_of(units: Any) -> Scales:
             f"{words[2]} if forces are in lbf"
         )
     factors = []
-    for word, (kind, si) in zip(words, KINDS.items(), strict=True):
+    for word, (kind, si) in zip(words, MATRIX_QUANTITIES.items(), strict=True):
         try:
             # Abaqus's manual calls the tonne of mm, s and N so
             factors.append(in_si(f"1 {'t' if word.lower() == 'ton' else word}", si))

@@ -21,7 +21,7 @@ from squealpipe.brake.models.refusals import refuse_unread
 from squealpipe.brake.sampling import default_times
 from squealpipe.inputs import ANGLES
 from squealpipe.parameters import Parameters, parameters_of
-from squealpipe.ranges import NUMBERS, PARAMETER_NAMES, is_structure
+from squealpipe.ranges import NUMERIC_PARAMETERS, PARAMETER_NAMES, is_structure
 from squealpipe.schema import (
     ABSENT,
     DatasetSchema,
@@ -91,7 +91,11 @@ class Sweep:
         if self.task not in TASKS:
             raise ValueError(f"no task {self.task!r}; {suggestion(self.task, TASKS)}")
         options = options_of(self.task)
-        varied = [*NUMBERS, *ANGLES, *(name for name in options if name in OPTIONS)]
+        varied = [
+            *NUMERIC_PARAMETERS,
+            *ANGLES,
+            *(name for name in options if name in OPTIONS),
+        ]
         for name, values in self.vary.items():
             if name not in varied:
                 near = suggestion(name, varied)
@@ -116,7 +120,7 @@ class Sweep:
             )
         # a table of contact is read anew at the preload of each run
         params, _ = self._with(self.fixed)
-        ranges = {*self.vary} & {*NUMBERS} - {"preload", *options}
+        ranges = {*self.vary} & {*NUMERIC_PARAMETERS} - {"preload", *options}
         refuse_unread(params, sorted(ranges))
         self._refuse_other_times()
 

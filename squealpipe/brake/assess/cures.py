@@ -8,8 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squealpipe.brake.assess.designs import FARTHEST, STEP, cures_of
-from squealpipe.brake.assess.settling import MOST, pushed, settle, start_at, strikes
+from squealpipe.brake.assess.designs import ANGLE_STEP, FARTHEST, cures_of
+from squealpipe.brake.assess.settling import (
+    MOST_PERIODS_OF_A_PAD,
+    pushed,
+    settle,
+    start_at,
+    strikes,
+)
 from squealpipe.brake.assess.sliding import Design, Sliding
 from squealpipe.brake.assess.snap_through import SnapThrough, snap_throughs
 from squealpipe.brake.schema.assess import CURES
@@ -65,7 +71,7 @@ class Pads:
         sliding = Sliding.of(subject)
         if sliding is None or sliding.is_unstable:
             return math.nan
-        return sliding.growth_rate * subject.period * MOST
+        return sliding.growth_rate * subject.period * MOST_PERIODS_OF_A_PAD
 
     def starts(
         self, subject: Design, number: int, motions: Sequence[np.ndarray]
@@ -148,7 +154,7 @@ def nearest_angles(
     Along each ray it is located as a cure is; the nearest lies between two rays, a few per cent
     nearer.
     """
-    steps = STEP * np.arange(1, 1 + round(FARTHEST / STEP))
+    steps = ANGLE_STEP * np.arange(1, 1 + round(FARTHEST / ANGLE_STEP))
     rays = {}
     # directions in which the nearest quiet pair of angles is sought
     for turn in np.linspace(0.0, 2.0 * math.pi, 24, endpoint=False):

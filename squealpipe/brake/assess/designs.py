@@ -16,7 +16,7 @@ FACTOR = 10.0
 """Largest factor that a stiffness, the preload or the belt speed is changed by, either way."""
 FARTHEST = math.radians(60.0)
 """Largest change of an angle."""
-STEP = math.radians(2.0)
+ANGLE_STEP = math.radians(2.0)
 """Factor, and angle, between values that are looked at first."""
 
 PLAIN = """\
@@ -52,7 +52,7 @@ def cures_of(design: Design) -> dict[str, Cure]:
         cures[name] = _scaled(getattr(params, name), number(name))
     for name in ("alpha1", "alpha2"):
         now = getattr(design, name)
-        steps = STEP * np.arange(1, 1 + round(FARTHEST / STEP))
+        steps = ANGLE_STEP * np.arange(1, 1 + round(FARTHEST / ANGLE_STEP))
         cures[name] = Cure(now, angle(name), now - steps, now + steps, is_angle=True)
     cures["damping"] = _damping(design)
     return cures

@@ -19,7 +19,7 @@ from squealpipe.validation import Angles, Tolerance, Workers
 from squealpipe.vibration.schema import Mechanism
 from squealpipe.vibration.settled_runs import Start
 
-MOST = 1600.0
+MOST_PERIODS_OF_A_CELL = 1600.0
 """Periods after which a cell that has not settled is undetermined."""
 GROWN = 30.0
 """Factor of the push where small motions grow: they would pass there anyhow."""
@@ -49,7 +49,7 @@ def verdict_map(
             designs = [Design(params, float(alpha1[row]), float(b)) for b in alpha2]
             slides = [Sliding.of(design) for design in designs]
             starts = [_start(*each) for each in zip(designs, slides, strict=True)]
-            settled = settle(starts, tol=tol, most=MOST)
+            settled = settle(starts, tol=tol, most=MOST_PERIODS_OF_A_CELL)
             arrays["verdict"][cells] = [each.verdict for each in settled]
             arrays["mechanism"][cells] = [
                 Mechanism.no_sliding_state if each is None else each.mechanism

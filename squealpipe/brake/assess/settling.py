@@ -14,7 +14,7 @@ from squealpipe.vibration.settling import FOR_VERDICTS, Settling
 
 PUSH = 0.01
 """Push of steady sliding, over the static compression."""
-MOST = 20_000.0
+MOST_PERIODS_OF_A_PAD = 20_000.0
 """Periods after which a motion that has not settled is undetermined."""
 
 
@@ -81,7 +81,7 @@ def settle(
     starts: Sequence[Start],
     *,
     tol: float,
-    most: float = MOST,
+    most: float = MOST_PERIODS_OF_A_PAD,
     rules: Settling = FOR_VERDICTS,
 ) -> list[SettledRun]:
     """Run each start until it has settled by the rules, ``most`` periods at most."""

@@ -24,17 +24,18 @@ GROWS = 1e-7
 round-off of an undamped pair."""
 ROUND_OFF = 1e-13
 """The same where a force depends on velocity."""
-FIRST_STEPS, MOST_STEPS = 4, 40
+FIRST_STEPS, MOST_NEWTON_STEPS = 4, 40
 """Newton steps while friction is raised, and under the whole."""
-RAISED, PACE = 64, 20.0
+FRICTION_STEPS, PACE = 64, 20.0
 """Steps in which friction is raised, and as many under the whole; time of each over 1/rate."""
 MOST_DOUBLED = 400
-"""Most steps after those; over the first :data:`MOST_STEPS` of them the time doubles each step."""
-LONGEST = 0.1
+"""Most steps after those; over the first :data:`MOST_NEWTON_STEPS` of them each takes twice the time
+of the one before."""
+LONGEST_STEP_OVER_SPRING = 0.1
 """Longest step, over the shorter spring."""
 BALANCE = 1e-11
 """Force left over at an equilibrium, over that of the preload."""
-STEP = 1e-30
+COMPLEX_STEP = 1e-30
 """Imaginary step, over a length or a speed of the system."""
 
 
@@ -152,7 +153,7 @@ def _balanced(design: Design) -> np.ndarray | None:
     At the whole friction at once it would jump to another branch where springs are soft.
     """
     raised = [((step + 1) / FIRST_STEPS, math.inf) for step in range(FIRST_STEPS)]
-    return _approach(design, raised + [(1.0, math.inf)] * MOST_STEPS)
+    return _approach(design, raised + [(1.0, math.inf)] * MOST_NEWTON_STEPS)
 
 
 def _followed(design: Design) -> np.ndarray | None:
@@ -161,9 +162,9 @@ def _followed(design: Design) -> np.ndarray | None:
     Pseudo-transient continuation (Kelley and Keyes, SIAM Journal on Numerical Analysis 35 (1998)):
     implicit Euler steps that end as Newton's. Just beyond a fold the mass lingers, then goes far.
     """
-    raised = [((step + 1) / RAISED, PACE) for step in range(RAISED)]
-    settles = [(1.0, PACE)] * RAISED
-    doubled = [min(step, MOST_STEPS) for step in range(MOST_DOUBLED)]
+    raised = [((step + 1) / FRICTION_STEPS, PACE) for step in range(FRICTION_STEPS)]
+    settles = [(1.0, PACE)] * FRICTION_STEPS
+    doubled = [min(step, MOST_NEWTON_STEPS) for step in range(MOST_DOUBLED)]
     ends = [(1.0, PACE * 2.0**step) for step in doubled]
     return _approach(design, raised + settles + ends)
 
@@ -172,7 +173,7 @@ def _approach(design: Design, steps: list[tuple[float, float]]) -> np.ndarray | 
     """A place in balance after steps with a share of friction and a time over 1/rate each."""
     params, stiffness = design.params, np.eye(2) * design.rate**2
     balance = params.k3 * params.preload / params.mass
-    longest = LONGEST * min(params.length1, params.length2)
+    longest = LONGEST_STEP_OVER_SPRING * min(params.length1, params.length2)
     place, acceleration, last = np.zeros(2), _acceleration(design), 1.0
     for share, time in steps:
         if share != last:
@@ -258,7 +259,7 @@ def _linearized(
     """
     length = design.params.preload
     speed = length * design.rate
-    steps = [STEP * unit for unit in (length, length, speed, speed)]
+    steps = [COMPLEX_STEP * unit for unit in (length, length, speed, speed)]
     rest = [float(each) for each in (*place, 0.0, 0.0)]
     values, slopes = (0j, 0j), np.empty((2, count))
     for column in range(count):

@@ -29,7 +29,7 @@ from squealpipe.systems.inputs.values import brief
 from squealpipe.text import suggestion
 from squealpipe.validation import Line, Number, Positive, Tolerance, Workers, one_of
 
-BESIDE = 1e-8
+LOST_SIDE = 1e-8
 """How far beside the boundary contact is lost in the run that says when."""
 
 
@@ -125,7 +125,7 @@ class Square:
 
     def touch_time(self, places: Vector, slope: Vector) -> Vector:
         """When contact is lost next to the boundary, over √(m/k1)."""
-        beside = places - BESIDE * slope / np.linalg.norm(slope, axis=1)[:, None]
+        beside = places - LOST_SIDE * slope / np.linalg.norm(slope, axis=1)[:, None]
         run = self._run(
             beside, self.model, stop_at_first_separation=True, tracked=("vx",)
         )
@@ -362,7 +362,7 @@ def _dataset(
     chains, coarse = chains_of(lines.chords), max(each.size for each in axes.values())
     # on the border itself either side would do
     shares = [
-        np.clip((a - a[0]) / (a[-1] - a[0]), BESIDE, 1.0 - BESIDE)
+        np.clip((a - a[0]) / (a[-1] - a[0]), LOST_SIDE, 1.0 - LOST_SIDE)
         for a in axes.values()
     ]
     at = np.array([point for chain in chains for point in chain], int)

@@ -11,7 +11,7 @@ from squealpipe.brake.curves.zero_lines import ZeroLines
 
 FLAT = 1e-6
 """Distance of a polygon from a line."""
-CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+SQUARE_CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 
 
 class Loop(NamedTuple):
@@ -100,7 +100,7 @@ def loops_of(lines: ZeroLines, *, positive: bool, flat: float = FLAT) -> list[Lo
         inner = lines.place[start] + t[:, None] * chord[k] + height[:, None] * left[k]
         between[start, end], between[end, start] = inner, inner[::-1]
     chords = lines.chords if positive else lines.chords[:, ::-1]
-    place = np.concatenate([lines.place, CORNERS])
+    place = np.concatenate([lines.place, SQUARE_CORNERS])
     sign = -1.0 if positive else 1.0
     number = {(i, j): k for k, (i, j) in enumerate(chords)}
     found = []
@@ -126,7 +126,7 @@ def holds(lines: ZeroLines, x: Vector, y: Vector) -> np.ndarray:
 
 def _border(lines: ZeroLines, positive: bool) -> Indices:
     """Pieces of the square's border with one sign, counter-clockwise, as pairs of points."""
-    place = np.concatenate([lines.place, CORNERS])
+    place = np.concatenate([lines.place, SQUARE_CORNERS])
     on = np.flatnonzero(np.isin(place, (0.0, 1.0)).any(axis=1))
     on = on[(on >= len(lines.place)) | np.isin(on, lines.chords)]
     x, y = place[on].T

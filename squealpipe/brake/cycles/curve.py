@@ -33,7 +33,7 @@ REASONS = dict(
     )
 )
 
-BESIDE = (0.0, -1e-9, 1e-9)
+PARAMETER_STEP = (0.0, -1e-9, 1e-9)
 """Where a cycle is looked for: at the very onset of stick, round-off decides how a run goes on."""
 
 
@@ -77,7 +77,7 @@ def cycle_curve(
     followed = str(start.attrs["parameter"])
     dashpots = [name for name in parameters if name in DASHPOTS]
     limits = dict(to or {})
-    for beside in BESIDE:
+    for beside in PARAMETER_STEP:
         at = {followed: float(point[followed]) * (1.0 + beside)}
         if followed in own:
             own |= at

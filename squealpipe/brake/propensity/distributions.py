@@ -10,7 +10,7 @@ from squealpipe.brake.schema.propensity import TRUNCATION
 from squealpipe.inputs import ANGLES
 from squealpipe.laws.friction_laws import COULOMB, FALLING
 from squealpipe.parameters import Parameters
-from squealpipe.ranges import NUMBERS
+from squealpipe.ranges import NUMERIC_PARAMETERS
 from squealpipe.systems.inputs.values import brief, is_finite_number
 from squealpipe.text import suggestion
 
@@ -24,9 +24,9 @@ DISTRIBUTIONS: dict[str, tuple[str, str]] = {
 
 def distribution(name: str, given: Mapping[str, Any]) -> Any:
     """A frozen scipy distribution of one parameter."""
-    if not isinstance(name, str) or name not in (*ANGLES, *NUMBERS):
+    if not isinstance(name, str) or name not in (*ANGLES, *NUMERIC_PARAMETERS):
         raise ValueError(
-            f"{name}: no parameter or angle; {suggestion(name, (*ANGLES, *NUMBERS))}"
+            f"{name}: no parameter or angle; {suggestion(name, (*ANGLES, *NUMERIC_PARAMETERS))}"
         )
     if not isinstance(given, Mapping):
         raise ValueError(  # noqa: TRY004

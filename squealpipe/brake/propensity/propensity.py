@@ -41,8 +41,10 @@ from squealpipe.validation import (
 
 PROPENSITIES = ("flutter", "contact_loss", "irregular_hammering", "whirl")
 SAMPLE_SIZES = 6
-ORDERS = ("first_order", "total_order")
-INDICES = tuple(f"{order}{end}" for order in ORDERS for end in ("", "_low", "_high"))
+INDEX_ORDERS = ("first_order", "total_order")
+INDICES = tuple(
+    f"{order}{end}" for order in INDEX_ORDERS for end in ("", "_low", "_high")
+)
 
 
 @recorded(model="A1, A3", method="quasi-random sample; Sobol indices from replicates")
@@ -228,7 +230,7 @@ def _indices(judged: Sequence[np.ndarray], parts: int) -> dict[str, np.ndarray]:
                 continue
             # beyond its interval below 0 an estimate is a failure of the sample, not an index
             failed = (half > WIDEST) | (value + half < 0.0)
-            for order, name in enumerate(ORDERS):
+            for order, name in enumerate(INDEX_ORDERS):
                 for end, limit in (
                     ("", value),
                     ("_low", value - half),

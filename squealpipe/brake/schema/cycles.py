@@ -2,7 +2,7 @@
 
 from enum import IntEnum
 
-from squealpipe.brake.schema.dynamics.runs import REGIMES, STATE_UNITS
+from squealpipe.brake.schema.dynamics.runs import REGIME_MEANINGS, STATE_UNITS
 from squealpipe.brake.schema.linear import ONE_PAIR
 from squealpipe.codes import Event
 from squealpipe.parameters import Parameters
@@ -89,7 +89,7 @@ A1_LIMIT_CYCLE = DatasetSchema(
             f"{name}_path": Variable(f"{words} along the cycle", units, ("sample",))
             for name, (units, words) in STATE_UNITS.items()
         },
-        "regime_path": flag("regime along the cycle", REGIMES, "sample"),
+        "regime_path": flag("regime along the cycle", REGIME_MEANINGS, "sample"),
         **ONE_PAIR,
     },
 )

@@ -13,7 +13,7 @@ from squealpipe.laws.friction_laws import COULOMB
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.reduction import Kept
 from squealpipe.structures.sliding import NoSlidingError
-from squealpipe.structures.squeal.plant import PUSH, Plant
+from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
 from squealpipe.structures.squeal.windows import Running, followed_windows, run_windows
 from squealpipe.vibration.schema import Mechanism
 from squealpipe.vibration.settled_runs import QUIETNESS, Horizon, SettledRun, Start
@@ -140,7 +140,7 @@ def pushed(design: Design) -> Start | None:
     slack = 1e-9 * np.abs(values).max() + plant.spectrum.growth_errors.max()
     leading = np.flatnonzero(values.real >= values.real.max() - slack)
     place = int(leading[np.argmin(np.abs(values[leading]))])
-    return _start(design, plant, plant.pushed(place, PUSH))
+    return _start(design, plant, plant.pushed(place, PUSH_OF_A_MODE))
 
 
 def start_at(design: Design, state: np.ndarray) -> Start | None:
@@ -150,7 +150,7 @@ def start_at(design: Design, state: np.ndarray) -> Start | None:
 
 
 def _start(design: Design, plant: Plant, state: np.ndarray) -> Start:
-    speed = PUSH * float(np.sqrt(2.0 * plant.energy))
+    speed = PUSH_OF_A_MODE * float(np.sqrt(2.0 * plant.energy))
 
     def measure(away: np.ndarray) -> float:
         return float(np.sqrt(2.0) * plant.sizes(away))

@@ -12,7 +12,7 @@ from squealpipe.structures.units import SI, Scales
 from squealpipe.systems.inputs.values import brief, is_finite_number
 from squealpipe.text import suggestion
 
-KEYS = tuple(each.name for each in fields(Face))
+FACE_KEYS = tuple(each.name for each in fields(Face))
 
 
 def faces_in(content: Any, folder: Path, scales: Scales) -> dict[str, Face]:
@@ -45,8 +45,8 @@ def _face(entry: Any, folder: Path, scales: Scales) -> Face:
             f"{brief(entry)}: surface, against, stiffness and pressure are needed"
         )
     for key in entry:
-        if key not in KEYS:
-            raise ValueError(f"{key!r} is unknown; {suggestion(str(key), KEYS)}")
+        if key not in FACE_KEYS:
+            raise ValueError(f"{key!r} is unknown; {suggestion(str(key), FACE_KEYS)}")
     if "surface" not in entry:
         raise ValueError("surface is missing; name one of the mesh")
     arguments = dict(entry)

@@ -21,7 +21,7 @@ FACTORS = {
     "belt_speed": ("belt speed", "m s-1"),
 }
 """What modes are always computed over."""
-ARGUMENTS = {
+MODES_ARGUMENTS = {
     "mu_static": ("limit of friction in stick", "1"),
     "friction_speed": ("speed at which friction falls", "m s-1"),
     "modal_damping": ("damping ratio of modes", "1"),
@@ -195,8 +195,8 @@ COMPLEX_MODES = tuple(
 
 def _factor(name: str) -> Variable:
     """Table entry of a further factor."""
-    if name in ARGUMENTS:
-        return Variable(*ARGUMENTS[name], (name,))
+    if name in MODES_ARGUMENTS:
+        return Variable(*MODES_ARGUMENTS[name], (name,))
     contact, _, what = name.rpartition("_")
     words = SCALED.get(name) or f"{OF_CONTACT[what]} of contact {contact}"
     return Variable(words, "1", (name,))
@@ -210,7 +210,7 @@ def derived(name: str) -> DatasetSchema | None:
     dims = tuple(match["dims"].split(", "))
     for dim in dims:
         contact, _, what = dim.rpartition("_")
-        if dim not in FACTORS | ARGUMENTS | SCALED and not (
+        if dim not in FACTORS | MODES_ARGUMENTS | SCALED and not (
             contact and what in OF_CONTACT
         ):
             return None

@@ -14,9 +14,9 @@ import numpy as np
 
 from squealpipe.structures.schema.squealing import ABOVE, NARROW
 from squealpipe.structures.squeal.onset import FirstOnset
-from squealpipe.structures.squeal.plant import PUSH, Plant
+from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
 from squealpipe.structures.squeal.settling import (
-    FIRST,
+    FIRST_WINDOW,
     GROWTH,
     LONGEST_GROWTH,
     start_at,
@@ -132,7 +132,7 @@ def _run_on(
     plant: Plant, start: TrackState, frictions: np.ndarray, how: Running
 ) -> list[StructureWindows | None]:
     """Return what a motion becomes at other frictions; None where it dies out."""
-    first = FIRST / plant.slowest
+    first = FIRST_WINDOW / plant.slowest
     subjects = [Plant(plant.structure.with_(mu=mu)) for mu in frictions.tolist()]
     starts = [
         replace(start_at(each, start.state), period=1.0 / plant.slowest)
@@ -171,7 +171,7 @@ def just_above(onset: FirstOnset, plant: Plant, how: Running) -> TrackState | No
     frictions = np.full(1, ABOVE * onset.mu)
     window = run_windows(
         plant,
-        np.tile(above.pushed(place, PUSH), (1, 1)),
+        np.tile(above.pushed(place, PUSH_OF_A_MODE), (1, 1)),
         min(GROWTH / rate, LONGEST_GROWTH * period),
         how,
         frictions=frictions,

@@ -7,7 +7,7 @@ import numpy as np
 
 from squealpipe.schema import Outcome
 from squealpipe.structures.definition import ContactStructure
-from squealpipe.structures.squeal.plant import PUSH, Plant
+from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
 from squealpipe.structures.squeal.smoothed import Samples
 from squealpipe.structures.squeal.windows import (
     Running,
@@ -22,9 +22,9 @@ from squealpipe.vibration.settling import (
     agreement,
 )
 
-NEAR = 0.1
+SAME_MODE = 0.1
 """Distance of frequencies within which a mode of another reduction is the same one's."""
-FINEST = 12.0
+SAMPLES_PER_FAST_PERIOD = 12.0
 """Samples in a period of the fastest mode."""
 FEWEST_SAMPLES, MOST_SAMPLES = 2**14, 2**16
 """In each window."""
@@ -70,7 +70,7 @@ def without_mode(structure: ContactStructure) -> PushEnd:
 def _died_out(plant: Plant, before: float, now: float) -> bool:
     """By the velocities of all modes in two windows."""
     # a motion that does not grow, and has half the velocity of the push, has died out
-    return now < 0.5 * PUSH * np.sqrt(plant.energy) and now <= before
+    return now < 0.5 * PUSH_OF_A_MODE * np.sqrt(plant.energy) and now <= before
 
 
 def _agree(before: WindowLevels, now: WindowLevels) -> bool:
@@ -87,7 +87,7 @@ def exact_ends(
     """Return the end of each push, over the starts that belong to it; the frequency from a run
     behind.
     """
-    step = 1.0 / (FINEST * plant.fastest)
+    step = 1.0 / (SAMPLES_PER_FAST_PERIOD * plant.fastest)
     length = int(min(np.ceil(float(now.length[0]) / step), MOST_SAMPLES))
     times = step * np.arange(1, length + 1)
     how = Running(tol, workers=1)
@@ -117,7 +117,7 @@ def exact_ends(
         )
         quiet = all(calm)
         # starts that end apart have not settled to one motion
-        together = quiet or (scatter[0] < NEAR and not any(calm))
+        together = quiet or (scatter[0] < SAME_MODE and not any(calm))
         outcome = Outcome.no_convergence
         if finished:
             outcome = Outcome.unresolved

@@ -27,17 +27,17 @@ from squealpipe.vibration.settled_runs import SettledRun
 from squealpipe.vibration.settling import FOR_NUMBERS, late_growth
 from squealpipe.vibration.spectrum import amplitude_spectrum
 
-BESIDE, OFF = 7, 1e-8
+NEIGHBOURS, OFF = 7, 1e-8
 """Runs beside the motion, and how far off they start, over its extent."""
 PERIODS = 300.0
 """Length of the run, in periods of the slowest mode that grows."""
-FINEST, MOST_SAMPLES = 6.0, 2**16
+SAMPLES_PER_PERIOD_OF_KINDS, MOST_SEPARATION_SAMPLES = 6.0, 2**16
 """Samples in a period of the fastest mode, and of all."""
 APART, FAR = 1e3, 1e-2
 """Growth of the distance from which it is exponential; extent beyond which it grows no more."""
-LINEAR = 30.0
+LINEAR_GROWTH = 30.0
 """Growth of the distance up to which it may be one of phases, as on a torus."""
-REPEATED, NEARLY = 1e-5, 1e-3
+REPEATED_INTERVALS, NEARLY = 1e-5, 1e-3
 """Largest difference of intervals, over their mean, of what repeats, and of what may do so."""
 
 
@@ -86,14 +86,16 @@ def described(
             Kind.steady_sliding, np.nan, np.nan, np.nan, None, nothing, nothing
         )
     length = max(PERIODS / plant.slowest, 0.5 * float(settled.last.length))
-    step = 1.0 / (FINEST * plant.fastest)
-    count = int(min(np.ceil(length / step), MOST_SAMPLES))
+    step = 1.0 / (SAMPLES_PER_PERIOD_OF_KINDS * plant.fastest)
+    count = int(min(np.ceil(length / step), MOST_SEPARATION_SAMPLES))
     length = count * step
     times = step * np.arange(1, count + 1)
     rng = np.random.default_rng(how.seed)
     base = settled.last.final
     extent = float(plant.sizes(base - plant.sliding))
-    directions = rng.standard_normal((BESIDE, base.size)) * np.abs(base - plant.sliding)
+    directions = rng.standard_normal((NEIGHBOURS, base.size)) * np.abs(
+        base - plant.sliding
+    )
     directions *= OFF * extent / plant.sizes(directions)[:, None]
     states = np.concatenate([base[None], base + directions])
     # all start in the regimes of the motion, but for a contact that is just at a switch
@@ -118,7 +120,7 @@ def described(
             cycle = _closed(plant, settled, raw, frequency)
         if cycle is not None:
             kind, leaves = Kind.cycle, False
-        elif grown <= LINEAR and not _repeats(raw, length, REPEATED):
+        elif grown <= LINEAR_GROWTH and not _repeats(raw, length, REPEATED_INTERVALS):
             kind = Kind.torus
     window = statistics_of(plant, raw, length).row(0)
     lines = omega / (2.0 * np.pi)

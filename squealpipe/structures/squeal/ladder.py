@@ -31,7 +31,11 @@ from squealpipe.structures.squeal.methods import (
     smoothed_told,
 )
 from squealpipe.structures.squeal.plant import Plant
-from squealpipe.structures.squeal.settling import FEWEST, FIRST, horizon
+from squealpipe.structures.squeal.settling import (
+    FEWEST_PERIODS_OF_A_RUN,
+    FIRST_WINDOW,
+    horizon,
+)
 from squealpipe.structures.squeal.squealing_modes import nearest
 from squealpipe.systems.datasets.outcomes import Outcome
 from squealpipe.systems.progress import alone
@@ -150,7 +154,7 @@ def _horizon(plant: Plant, places: np.ndarray, t_end: float | None) -> Horizon:
     """
     if t_end is not None:
         horizon(plant, t_end)  # says what is too short
-        window = min(FIRST / plant.slowest, t_end / FEWEST)
+        window = min(FIRST_WINDOW / plant.slowest, t_end / FEWEST_PERIODS_OF_A_RUN)
         return Horizon(t_end - 2.0 * window, window)
     rates = plant.spectrum.values.real[places]
     growing, first, most = horizon(plant, None)

@@ -19,16 +19,16 @@ from squealpipe.structures.reduction import Kept
 from squealpipe.structures.spectrum import Limits, Solver
 from squealpipe.structures.squeal.ends import (
     FEWEST_SAMPLES,
-    FINEST,
     MOST_SAMPLES,
-    NEAR,
+    SAME_MODE,
+    SAMPLES_PER_FAST_PERIOD,
     PushEnd,
     exact_ends,
     nothing,
     smoothed_end,
     without_mode,
 )
-from squealpipe.structures.squeal.plant import PUSH, Plant
+from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
 from squealpipe.structures.squeal.smoothed import Smoothed
 from squealpipe.structures.squeal.windows import (
     WIDE,
@@ -130,7 +130,7 @@ def exact_told(
     # each of several pushes is 5 % larger than the one before
     starts = np.array(
         [
-            plant.pushed(place, PUSH * (1.0 + 0.05 * turn))
+            plant.pushed(place, PUSH_OF_A_MODE * (1.0 + 0.05 * turn))
             for place in known
             for turn in range(count)
         ]
@@ -199,7 +199,7 @@ def smoothed_told(
         if place is None:
             ends.append(without_mode(structure))
             continue
-        start = plant.pushed(place, PUSH)
+        start = plant.pushed(place, PUSH_OF_A_MODE)
         samples, once = _timed(lambda start=start: model.run(start, times, tol), 1)  # type: ignore[misc]
         spent, evaluations = spent + once, evaluations + samples.evaluations
         ends.append(smoothed_end(plant, samples, model.friction_width, belt, step))
@@ -235,7 +235,7 @@ def _same(frequencies: np.ndarray, grows: np.ndarray, frequency: float) -> int |
     for which in (grows, np.ones(len(away), bool)):
         if which.any():
             place = int(np.where(which, away, np.inf).argmin())
-            if away[place] <= NEAR * frequency:
+            if away[place] <= SAME_MODE * frequency:
                 return place
     return None
 
@@ -247,7 +247,7 @@ def _pushes(plant: Plant, frequencies: np.ndarray) -> list[int | None]:
 
 def _instants(plant: Plant, horizon: Horizon) -> tuple[float, np.ndarray]:
     """Step and instants, s: 0, and both windows in equal steps."""
-    count = int(np.ceil(horizon.window * FINEST * plant.fastest))
+    count = int(np.ceil(horizon.window * SAMPLES_PER_FAST_PERIOD * plant.fastest))
     count = min(max(count, FEWEST_SAMPLES), MOST_SAMPLES)
     step = horizon.window / count
     late = horizon.growing + step * np.arange(1, 2 * count + 1)

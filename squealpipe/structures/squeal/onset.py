@@ -12,7 +12,7 @@ from squealpipe.structures.schema.structures import Onset
 from squealpipe.structures.sliding import NoSlidingError
 from squealpipe.structures.squeal.plant import Plant
 
-BEYOND = 2.0
+SEARCHED_FACTOR = 2.0
 """Where nothing grows: so far beyond its own friction an onset is sought, at so many places."""
 BELOW = 0.99
 """Friction over that of the onset at which small motions have to die out."""
@@ -50,7 +50,7 @@ def confirmed_onset(plant: Plant) -> FirstOnset | Outcome:
         except NoSlidingError:
             return False
 
-    most = min(BEYOND * plant.structure.mu, plant.structure.largest_mu)
+    most = min(SEARCHED_FACTOR * plant.structure.mu, plant.structure.largest_mu)
     if isinstance(found, FirstOnset):
         agrees = grows(ABOVE * found.mu) and not grows(BELOW * found.mu)
     elif found is Outcome.already_unstable:
@@ -71,7 +71,7 @@ def first_onset(plant: Plant) -> FirstOnset | Outcome:
     if (modes.onset == Onset.unstable_throughout).any():
         return Outcome.already_unstable
     if not plant.unstable.size:
-        frictions = np.linspace(1.0, BEYOND, 24) * structure.mu
+        frictions = np.linspace(1.0, SEARCHED_FACTOR, 24) * structure.mu
         frictions = frictions[frictions <= most]
         if len(frictions) < 2 or not structure.mu:
             return Outcome.not_reached

@@ -26,7 +26,7 @@ from squealpipe.systems.linear.matrices import Caps
 from squealpipe.systems.system import System
 from squealpipe.systems.trace import TIME
 
-PUSH = 0.01
+PUSH_OF_A_MODE = 0.01
 """Push along a mode, over the deformation whose energy is that of the preload."""
 
 

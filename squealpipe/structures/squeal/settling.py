@@ -12,7 +12,7 @@ from functools import partial
 import numpy as np
 
 from squealpipe.codes import Verdict
-from squealpipe.structures.squeal.plant import PUSH, Plant
+from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
 from squealpipe.structures.squeal.windows import BLOCKS, Running, run_windows
 from squealpipe.systems.progress import partial_answer
 from squealpipe.units import engineering
@@ -23,11 +23,11 @@ from squealpipe.vibration.settling import FOR_VERDICTS
 GROWTH = np.log(1e4)
 """Growth of a small push before statistics start (ln; from 1 % of the static deformation to
 saturation)."""
-FIRST = 100.0
+FIRST_WINDOW = 100.0
 """Length of the first window of statistics, in periods of the slowest unstable mode."""
-LONGEST_GROWTH, MOST = 4_000.0, 8_000.0
+LONGEST_GROWTH, MOST_PERIODS_OF_A_RUN = 4_000.0, 8_000.0
 """Most periods in which a push may grow, and of a run, if no other end is given."""
-FEWEST = 4.0
+FEWEST_PERIODS_OF_A_RUN = 4.0
 """Fewest periods of a run: the first windows are a quarter of it."""
 
 
@@ -48,17 +48,17 @@ def arrival(run: SettledRun) -> float:
 def horizon(plant: Plant, t_end: float | None) -> tuple[float, float, float]:
     """Time for growth, length of the first window, and the end of all runs, s."""
     period = 1.0 / plant.slowest
-    if t_end is not None and t_end < FEWEST * period:
+    if t_end is not None and t_end < FEWEST_PERIODS_OF_A_RUN * period:
         raise ValueError(
-            f"t_end = {t_end!r}: {FEWEST:g} periods of the slowest mode are needed at least, "
-            f"{FEWEST * period:.3g} s"
+            f"t_end = {t_end!r}: {FEWEST_PERIODS_OF_A_RUN:g} periods of the slowest mode are "
+            f"needed at least, {FEWEST_PERIODS_OF_A_RUN * period:.3g} s"
         )
-    first = FIRST * period
+    first = FIRST_WINDOW * period
     growing = 0.0
     if plant.unstable.size:
         rate = plant.spectrum.values.real[plant.unstable].min()
         growing = min(GROWTH / rate, LONGEST_GROWTH * period)
-    most = MOST * period + growing if t_end is None else t_end
+    most = MOST_PERIODS_OF_A_RUN * period + growing if t_end is None else t_end
     growing = min(max(growing, first), 0.25 * most)
     return growing, min(first, 0.25 * most), most
 
@@ -70,7 +70,7 @@ def start_at(plant: Plant, state: np.ndarray) -> Start:
         state=state,
         sliding=plant.sliding,
         period=1.0 / plant.slowest,
-        speed=PUSH * float(np.sqrt(2.0 * plant.energy)),
+        speed=PUSH_OF_A_MODE * float(np.sqrt(2.0 * plant.energy)),
         rate=plant.rate,
         is_linear=plant.is_linear,
         measure=lambda away: float(np.sqrt(2.0) * plant.sizes(away)),
@@ -96,10 +96,10 @@ def settle_on(
     _, _, most = horizon(plant, t_end)
     if t_end is None:
         # a run that leaves what it seemed to have settled on goes on for so many periods
-        most *= 20_000.0 / MOST
+        most *= 20_000.0 / MOST_PERIODS_OF_A_RUN
     length = 2.0 * max(float(run.last.length) for run in settled)
     left = most - max(run.elapsed for run in settled)
-    if left < FEWEST * length:  # without statistics, and two windows
+    if left < FEWEST_PERIODS_OF_A_RUN * length:  # without statistics, and two windows
         return [replace(run, verdict=Verdict.undetermined) for run in settled]
     starts = [start_at(plant, run.last.final) for run in settled]
     regimes = np.array([run.last.regimes for run in settled])

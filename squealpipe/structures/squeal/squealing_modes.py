@@ -15,7 +15,7 @@ from squealpipe.structures.schema.squealing import NO_ATTRACTOR, SQUEALING, Kind
 from squealpipe.structures.squeal.attractors import grouped, is_same
 from squealpipe.structures.squeal.hysteresis import hysteresis
 from squealpipe.structures.squeal.kinds import Described, described
-from squealpipe.structures.squeal.plant import PUSH, Plant
+from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
 from squealpipe.structures.squeal.remedies import added_damping
 from squealpipe.structures.squeal.settling import arrival, settle, settle_on
 from squealpipe.structures.squeal.windows import Running, StructureWindows, still
@@ -24,11 +24,11 @@ from squealpipe.vibration.settled_runs import SettledRun
 from squealpipe.vibration.shares import wilson_interval
 from squealpipe.vibration.verdicts import heard
 
-LINES = 1024
+SPECTRUM_LINES = 1024
 """Lines of the spectra that are kept."""
 RUN_ON = 4
 """Most times that a run is continued because it leaves what it seemed to have settled to."""
-CLOSE = 0.02
+SAME_FREQUENCY = 0.02
 """Distance of a frequency to that of an unstable mode within which it is that mode's."""
 
 
@@ -118,9 +118,11 @@ def squealing_of(
 
     Tracing its system and writing its code takes seconds with eight contacts.
     """
-    pushes = [plant.pushed(place, PUSH) for place in plant.unstable]
+    pushes = [plant.pushed(place, PUSH_OF_A_MODE) for place in plant.unstable]
     if not pushes:  # nothing grows: a push along the mode that decays slowest
-        pushes = [plant.pushed(int(plant.spectrum.values.real.argmax()), PUSH)]
+        pushes = [
+            plant.pushed(int(plant.spectrum.values.real.argmax()), PUSH_OF_A_MODE)
+        ]
     drawn = plant.random_states(samples, seed)
     how = Running(tol, seed, workers)
     starts = np.concatenate([pushes, drawn])
@@ -396,12 +398,12 @@ def nearest(plant: Plant, frequency: float) -> int:
     """Place of the mode nearest to a frequency; an unstable one where one is close to it."""
     away = np.abs(plant.frequencies - np.nan_to_num(frequency))
     unstable = plant.unstable
-    if unstable.size and away[unstable].min() <= CLOSE * frequency:
+    if unstable.size and away[unstable].min() <= SAME_FREQUENCY * frequency:
         return int(unstable[away[unstable].argmin()])
     near = int(away.argmin())
     # two modes that have met ring alike: the one that grows is meant
     at = plant.frequencies[near]
-    twins = unstable[np.abs(plant.frequencies[unstable] - at) <= CLOSE * at]
+    twins = unstable[np.abs(plant.frequencies[unstable] - at) <= SAME_FREQUENCY * at]
     return int(twins[away[twins].argmin()]) if twins.size else near
 
 
@@ -411,12 +413,14 @@ def _spectra(found: list[Described]) -> tuple[np.ndarray, np.ndarray]:
     if not moving:
         return np.empty(0), np.empty((len(found), 0))
     top = min(each.lines[-1] for each in moving)
-    edges = np.linspace(0.0, top, LINES + 1)
-    spectra = np.full((len(found), LINES), np.nan)
+    edges = np.linspace(0.0, top, SPECTRUM_LINES + 1)
+    spectra = np.full((len(found), SPECTRUM_LINES), np.nan)
     for place, each in enumerate(found):
         if each.lines.size:
-            within = np.clip(np.searchsorted(edges, each.lines) - 1, 0, LINES - 1)
-            held = np.zeros(LINES)
+            within = np.clip(
+                np.searchsorted(edges, each.lines) - 1, 0, SPECTRUM_LINES - 1
+            )
+            held = np.zeros(SPECTRUM_LINES)
             np.maximum.at(held, within, each.amplitudes)
             spectra[place] = held / np.sqrt((each.amplitudes**2).sum())
     return 0.5 * (edges[1:] + edges[:-1]), spectra

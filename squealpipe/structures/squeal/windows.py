@@ -11,7 +11,7 @@ from typing import Any, Self
 import numpy as np
 
 from squealpipe.schema import Outcome
-from squealpipe.structures.squeal.plant import PUSH, Plant
+from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
 from squealpipe.systems.integrate import LARGEST, RunOptions, integrate
 from squealpipe.vibration.settling import Settling, late_growth, tapered
 from squealpipe.vibration.spectrum import amplitude_spectrum, strongest_lines
@@ -214,7 +214,7 @@ def followed_windows(
     )
     off[drawn] *= spread
     extent = plant.sizes(states - plant.sliding)
-    extent = np.maximum(extent, PUSH * np.sqrt(plant.energy))
+    extent = np.maximum(extent, PUSH_OF_A_MODE * np.sqrt(plant.energy))
     off *= (OFF * extent / plant.sizes(off))[:, None]
     instants = np.arange(1, rules.samples + 1) / rules.samples
     both = np.concatenate([states, states + off])

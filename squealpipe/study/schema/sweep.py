@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from squealpipe.parameters import Parameters
-from squealpipe.ranges import NUMBERS
+from squealpipe.ranges import NUMERIC_PARAMETERS
 from squealpipe.schema import (
     ABSENT,
     DatasetSchema,
@@ -43,9 +43,9 @@ def swept_coordinate(name: str) -> Variable:
         return Variable(f"angle of spring {name[-1]}", "rad", (name,))
     if name in OPTIONS:
         return replace(OPTIONS[name], dims=(name,))
-    if name in NUMBERS:
+    if name in NUMERIC_PARAMETERS:
         return Variable(name, Parameters.units(name), (name,))
-    known = ["alpha1", "alpha2", *NUMBERS, *OPTIONS]
+    known = ["alpha1", "alpha2", *NUMERIC_PARAMETERS, *OPTIONS]
     raise SchemaError(f"{name!r} cannot be swept; known: {', '.join(known)}")
 
 

@@ -25,7 +25,7 @@ _TOGETHER, _ALIKE, _FINEST = 20_000, 1_250, 64
 (of a stiff motion the one that needs most needs twice as many as the others), and most pieces of
 one step."""
 
-LONGEST = 1.0
+LONGEST_STEP = 1.0
 """Longest step of the variational equations times a bound of its rate."""
 
 _NODES, _WEIGHTS, _UP_TO = gauss(6)
@@ -46,7 +46,9 @@ def leg_derivatives(flow: Flow, values: Mapping[str, float], path: Path) -> Vect
         slopes, lengths = _slopes_along(flow, values, path, block, 1)
         rate = _largest_rate(slopes[:, : flow.size])
         with np.errstate(invalid="ignore"):
-            needed = float(np.nanmax(np.abs(lengths) * rate, initial=0.0)) / LONGEST
+            needed = (
+                float(np.nanmax(np.abs(lengths) * rate, initial=0.0)) / LONGEST_STEP
+            )
         pieces = 1
         if math.isfinite(needed):
             pieces = max(1, min(math.ceil(needed), _FINEST))

@@ -30,7 +30,7 @@ Given = ParamSpec("Given")
 Result = TypeVar("Result")
 
 
-UNITS = {
+UNITS_OF_ARGUMENTS = {
     **dict.fromkeys(("t_start", "t_end", "t_late", "t_settle", "times", "last"), "s"),
     **dict.fromkeys(("tol", "smoothed_tol"), "1"),
 }
@@ -42,15 +42,15 @@ Arguments = tuple[list[Any], dict[str, Any]]
 def options_in_si(
     names: Sequence[str], args: Sequence[Any], kwargs: Mapping[str, Any]
 ) -> Arguments:
-    """Return arguments with the texts and quantities of :data:`UNITS` as numbers in SI.
+    """Return arguments with texts and quantities of :data:`UNITS_OF_ARGUMENTS` as numbers in SI.
 
     Raises:
         ValueError: a quantity of another kind; names the argument.
     """
     known = dict(zip(names, args, strict=False)) | dict(kwargs)
     read = {
-        name: numbers_in_si(name, value, UNITS[name])
-        if name in UNITS and value is not None
+        name: numbers_in_si(name, value, UNITS_OF_ARGUMENTS[name])
+        if name in UNITS_OF_ARGUMENTS and value is not None
         else value
         for name, value in known.items()
     }

@@ -12,7 +12,7 @@ from squealpipe.systems.components import Switch
 from squealpipe.systems.functions import exp
 from squealpipe.systems.system import System
 
-REGIMES = {
+BELT_REGIMES = {
     "slower": {"direction": 1.0, "stick": 0.0},
     "faster": {"direction": -1.0, "stick": 0.0},
     "stick": {"direction": 0.0, "stick": 1.0},
@@ -51,7 +51,7 @@ def belt_oscillator(
         name,
         states={"x": "m", "v": "m/s"},
         parameters=parameters,
-        regimes=REGIMES,
+        regimes=BELT_REGIMES,
         field=field,
         switches=[
             Switch(

@@ -11,10 +11,10 @@ from typing import Any
 
 from squealpipe.systems.components import MOST_COMPONENTS, Component, Switch
 from squealpipe.systems.inputs.gate import checked
-from squealpipe.systems.shipped.belt_friction import REGIMES
+from squealpipe.systems.shipped.belt_friction import BELT_REGIMES
 from squealpipe.systems.system import System
 
-PARAMETERS = {
+CHAIN_PARAMETERS = {
     "mass": 1.0,
     "stiffness": 1.0,
     "coupling": 4.0,
@@ -54,7 +54,7 @@ def burridge_knopoff(blocks: int = 10) -> System:
     return System(
         f"Burridge–Knopoff chain of {blocks} blocks",
         states={f"x{i}": "m" for i in numbers} | {f"v{i}": "m/s" for i in numbers},
-        parameters=PARAMETERS,
+        parameters=CHAIN_PARAMETERS,
         components={f"block{i}": _block(i, blocks) for i in numbers},
         field=field,
         start={f"x{i}": 0.9 * (7 * i % 11) / 11 for i in numbers}
@@ -90,7 +90,7 @@ def _block(block: int, blocks: int) -> Component:
         return lambda t, s, p, r: p.limit + sign * pull(block, blocks, s, p)
 
     return Component(
-        REGIMES,
+        BELT_REGIMES,
         [
             Switch(
                 "reversal",

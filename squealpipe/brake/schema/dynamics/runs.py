@@ -25,7 +25,7 @@ from squealpipe.schema import (
 )
 from squealpipe.systems.datasets.agreement import ComparedAs, Listing, RoundOff
 
-REGIMES = {**{int(each): each.name for each in Regime}, -1: "not_reached"}
+REGIME_MEANINGS = {**{int(each): each.name for each in Regime}, -1: "not_reached"}
 """Meaning of regime."""
 
 
@@ -114,7 +114,7 @@ SIMULATION = DatasetSchema(
         "normal_force": _series("N", "contact force"),
         "normalized_contact_force": _series("1", "contact force over k3 l_pre"),
         **_extremes_between(),
-        "regime": flag("regime", REGIMES, "time"),
+        "regime": flag("regime", REGIME_MEANINGS, "time"),
         "event_time": Variable(
             "instant of a regime change", "s", ("event",), round_off=_GROWN
         ),
