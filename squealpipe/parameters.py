@@ -137,8 +137,8 @@ class Parameters:
     The defaults are the baseline inferred from the paper's own statements; the
     paper prints no numbers. Consistent units of any system work.
 
-    This class is the table of parameters, one row each. :data:`PARAMETER_TABLE` has the rows. Units,
-    configuration, sweeps, command line, integrators and the report's table derive from it.
+    This class is the table of parameters, one row each. :data:`PARAMETER_TABLE` has the rows.
+    Units, configuration, sweeps, command line, integrators and the report's table derive from it.
     Dashpots and friction laws (``damping1`` to ``friction_speed``) extend the paper; see
     :mod:`squealpipe.laws` for the forces.
 

@@ -29,8 +29,8 @@ FIRST_STEPS, MOST_NEWTON_STEPS = 4, 40
 FRICTION_STEPS, PACE = 64, 20.0
 """Steps in which friction is raised, and as many under the whole; time of each over 1/rate."""
 MOST_DOUBLED = 400
-"""Most steps after those; over the first :data:`MOST_NEWTON_STEPS` of them each takes twice the time
-of the one before."""
+"""Most steps after those; over the first :data:`MOST_NEWTON_STEPS` of them each takes twice
+the time of the one before."""
 LONGEST_STEP_OVER_SPRING = 0.1
 """Longest step, over the shorter spring."""
 BALANCE = 1e-11
