@@ -137,7 +137,7 @@ class Parameters:
     The defaults are the baseline inferred from the paper's own statements; the
     paper prints no numbers. Consistent units of any system work.
 
-    This class is the table of parameters, one row each. :data:`PARAMETER_TABLE` has the rows.
+    This class is the table of parameters, one row each. :data:`TABLE` has the rows.
     Units, configuration, sweeps, command line, integrators and the report's table derive from it.
     Dashpots and friction laws (``damping1`` to ``friction_speed``) extend the paper; see
     :mod:`squealpipe.laws` for the forces.
@@ -226,7 +226,7 @@ class Parameters:
     )
 
     def __post_init__(self) -> None:
-        for name, row in PARAMETER_TABLE.items():
+        for name, row in TABLE.items():
             object.__setattr__(self, name, row.check(name, getattr(self, name)))
         if self.friction_speed < 1e-300:
             raise ValueError(
@@ -320,7 +320,7 @@ class Parameters:
     @property
     def in_laws(self) -> tuple[str, ...]:
         """Parameters that the file of a law stands for."""
-        laws = {name: row.laws for name, row in PARAMETER_TABLE.items() if row.laws}
+        laws = {name: row.laws for name, row in TABLE.items() if row.laws}
         return tuple(
             each
             for name in laws
@@ -342,12 +342,12 @@ class Parameters:
         """
         check_together(list(inputs))
         others = {name: inputs.pop(name) for name in list(inputs) if stands_for(name)}
-        for name in inputs.keys() - PARAMETER_TABLE.keys():
-            near = suggestion(name, [*PARAMETER_TABLE, *SUBSTITUTES, "stiffness"])
+        for name in inputs.keys() - TABLE.keys():
+            near = suggestion(name, [*TABLE, *SUBSTITUTES, "stiffness"])
             raise ValueError(f"{name}: no such parameter; {near}")
 
         def parameter(name: str) -> Any:
-            return PARAMETER_TABLE[name].check(name, inputs.get(name, DEFAULTS[name]))
+            return TABLE[name].check(name, inputs.get(name, DEFAULTS[name]))
 
         return cls(**(inputs | stood_for(read_substitutes(others), parameter)))
 
@@ -362,7 +362,7 @@ class Parameters:
         """A copy with some fields changed, validated again."""
         follow = {
             each: DEFAULTS[each]
-            for name, row in PARAMETER_TABLE.items()
+            for name, row in TABLE.items()
             if row.laws
             for each in stood_for_by_law(
                 row.check(name, changes.get(name, getattr(self, name))), row.laws
@@ -372,23 +372,19 @@ class Parameters:
 
     def as_dict(self) -> dict[str, Any]:
         """Field name → value; extensions of the paper's model only where they differ from none."""
-        return without_defaults({name: getattr(self, name) for name in PARAMETER_TABLE})
+        return without_defaults({name: getattr(self, name) for name in TABLE})
 
     @staticmethod
     def units(name: str) -> str:
         """CF unit of a field."""
-        return PARAMETER_TABLE[name].units
+        return TABLE[name].units
 
 
-PARAMETER_TABLE: dict[str, Row] = {
-    item.name: item.metadata["row"] for item in fields(Parameters)
-}
+TABLE: dict[str, Row] = {item.name: item.metadata["row"] for item in fields(Parameters)}
 """Name → row of each parameter, in order."""
 
 UNITS_OF_INPUTS = {
-    **{
-        name: row.units for name, row in PARAMETER_TABLE.items() if row.allowed != "law"
-    },
+    **{name: row.units for name, row in TABLE.items() if row.allowed != "law"},
     **{name: other.units for name, other in SUBSTITUTES.items()},
 }
 """Name → CF unit of every input of a brake that is one number."""
@@ -410,10 +406,10 @@ NUMBERS_OF_A1: dict[str, str] = {
 def _by_symbol() -> dict[str, str]:
     """Symbol as it is typed, with and without its underscore → name of the parameter."""
     names: dict[str, str] = {}
-    for name, row in PARAMETER_TABLE.items():
+    for name, row in TABLE.items():
         typed = re.sub(r"\W", "", row.symbol)
         for symbol in dict.fromkeys((typed, typed.replace("_", ""))):
-            taken = symbol if symbol in PARAMETER_TABLE else names.get(symbol, name)
+            taken = symbol if symbol in TABLE else names.get(symbol, name)
             if taken != name:
                 raise ValueError(
                     f"parameter {name}: its symbol {row.symbol!r} is typed {symbol}, which stands "
@@ -430,7 +426,7 @@ DEFAULTS: dict[str, Any] = {item.name: item.default for item in fields(Parameter
 
 Parameters.__doc__ = f"{Parameters.__doc__}\n    Attributes:\n" + "\n".join(
     f"        {name}: {row.meaning}{f', {row.units}' if row.units != '1' else ''}."
-    for name, row in PARAMETER_TABLE.items()
+    for name, row in TABLE.items()
 )
 
 
@@ -463,11 +459,7 @@ def without_defaults(values: Mapping[str, Any]) -> dict[str, Any]:
     return {
         name: value
         for name, value in values.items()
-        if not (
-            name in PARAMETER_TABLE
-            and PARAMETER_TABLE[name].extension
-            and value == DEFAULTS[name]
-        )
+        if not (name in TABLE and TABLE[name].extension and value == DEFAULTS[name])
     }
 
 

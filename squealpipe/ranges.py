@@ -14,13 +14,11 @@ from squealpipe.inputs import (
     parse_number,
     reader,
 )
-from squealpipe.parameters import PARAMETER_TABLE
+from squealpipe.parameters import TABLE
 from squealpipe.units import UnitError, has_unit
 
-PARAMETER_NAMES = tuple(PARAMETER_TABLE)
-NUMERIC_PARAMETERS = tuple(
-    name for name, row in PARAMETER_TABLE.items() if row.allowed != "law"
-)
+PARAMETER_NAMES = tuple(TABLE)
+NUMERIC_PARAMETERS = tuple(name for name, row in TABLE.items() if row.allowed != "law")
 """Parameters that are numbers, so that they can be swept."""
 
 
@@ -76,7 +74,7 @@ def read_values(name: str, given: object, task: str = "") -> list[float]:
         task: of the sweep; by default one of the brake.
     """
     units = units_of(task)
-    if units is UNITS and name in PARAMETER_TABLE and name not in NUMERIC_PARAMETERS:
+    if units is UNITS and name in TABLE and name not in NUMERIC_PARAMETERS:
         raise ValueError(
             f"{name} cannot be varied, for its values are words; sweep once for each, with {name} "
             "fixed, over mu_static or friction_speed"

@@ -8,13 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from squealpipe.parameters import (
-    DEFAULTS,
-    PARAMETER_TABLE,
-    SCENES,
-    Parameters,
-    parameters_of,
-)
+from squealpipe.parameters import DEFAULTS, SCENES, TABLE, Parameters, parameters_of
 from squealpipe.study.configuration.settings import ConfigError, parse_study
 
 positive = st.floats(1e-3, 1e3)
@@ -117,9 +111,9 @@ def test_extensions_refuse_what_makes_no_sense(change, message):
 
 def test_extensions_are_written_down_only_where_they_are_used():
     """Ids of datasets are made of these mappings, so those of the paper's model stay."""
-    known = [name for name, row in PARAMETER_TABLE.items() if not row.extension]
+    known = [name for name, row in TABLE.items() if not row.extension]
     assert list(Parameters().as_dict()) == known
-    assert set(PARAMETER_TABLE) - set(known) >= set(EXTENSIONS)
+    assert set(TABLE) - set(known) >= set(EXTENSIONS)
     params = Parameters(**EXTENSIONS)
     assert Parameters(**params.as_dict()) == params
     assert set(params.as_dict()) == {*known, *EXTENSIONS}
@@ -142,7 +136,7 @@ def test_drag_follows_the_law_at_the_speed_of_the_belt():
 
 
 def test_every_row_says_what_tables_and_help_need():
-    for name, row in PARAMETER_TABLE.items():
+    for name, row in TABLE.items():
         assert row.meaning
         assert row.symbol
         assert f"{name}: {row.meaning}" in (Parameters.__doc__ or "")

@@ -6,12 +6,7 @@ from typing import Any
 from cyclopts import App, ArgumentCollection, Token
 
 from squealpipe.cli.console import SESSION, say
-from squealpipe.parameters import (
-    DEFAULTS,
-    PARAMETER_TABLE,
-    UNITS_OF_INPUTS,
-    read_substitutes,
-)
+from squealpipe.parameters import DEFAULTS, TABLE, UNITS_OF_INPUTS, read_substitutes
 from squealpipe.substitutes import (
     SUBSTITUTES,
     became,
@@ -23,9 +18,7 @@ from squealpipe.substitutes import (
 )
 from squealpipe.units import UnitError, has_unit, in_si
 
-FLAGS = {
-    name: f"--{name.replace('_', '-')}" for name in (*PARAMETER_TABLE, *SUBSTITUTES)
-}
+FLAGS = {name: f"--{name.replace('_', '-')}" for name in (*TABLE, *SUBSTITUTES)}
 UNITS_OF_FLAGS = {FLAGS[name]: units for name, units in UNITS_OF_INPUTS.items()}
 
 
@@ -66,14 +59,14 @@ def read_brake(_: App, __: tuple[str, ...], arguments: ArgumentCollection) -> No
     if written:
         numbers = DEFAULTS | {
             name: row.check(name, inputs[name])
-            for name, row in PARAMETER_TABLE.items()
+            for name, row in TABLE.items()
             if name in inputs
         }
         values = stood_for(written, numbers.__getitem__)
         inputs |= values
         for line in became(written, (numbers | values).__getitem__):
             say(line)
-    for name in PARAMETER_TABLE.keys() & inputs.keys() & physical.keys():
+    for name in TABLE.keys() & inputs.keys() & physical.keys():
         if name not in texts or has_unit(texts[name]):
             physical[name].tokens.clear()
             physical[name].append(
@@ -122,7 +115,7 @@ def _of_study(paths: Sequence[str]) -> dict[str, Any]:
 
     section = read_study(*paths).parameters
     written = section.substitutes
-    values = {name: getattr(section, name) for name in PARAMETER_TABLE}
+    values = {name: getattr(section, name) for name in TABLE}
     return written | {
         name: value
         for name, value in values.items()

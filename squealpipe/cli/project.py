@@ -11,7 +11,7 @@ from pathlib import Path
 from squealpipe.cli.arguments import Configs, Force, Switch, Whole
 from squealpipe.cli.console import DONE, NOT_DONE, SESSION, say
 from squealpipe.cli.output import check_output
-from squealpipe.parameters import DEFAULTS, PARAMETER_TABLE, Row
+from squealpipe.parameters import DEFAULTS, TABLE, Row
 from squealpipe.text import duration
 
 HEAD = """\
@@ -140,9 +140,7 @@ def overlay_text(paper: str, *, file: str, results: str) -> str:
             live = line.startswith("parameters:")
         if not line and live:
             lines += [
-                _commented(name, row)
-                for name, row in PARAMETER_TABLE.items()
-                if row.extension
+                _commented(name, row) for name, row in TABLE.items() if row.extension
             ]
         lines.append(line if live or not line else f"# {line}")
     return HEAD.format(file=file, results=results) + "\n".join(lines) + "\n"

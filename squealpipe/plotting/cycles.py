@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
-from squealpipe.parameters import PARAMETER_TABLE
+from squealpipe.parameters import TABLE
 from squealpipe.plotting import style
 from squealpipe.plotting.origin import parameter
 from squealpipe.plotting.quantities import label
@@ -96,7 +96,7 @@ def draw_branch(axes: Axes, branch: xr.Dataset) -> None:
     trace_branch(axes, followed.values, largest(branch, state), branch)
     units = branch[f"{state}_max"].units
     words, name = label(followed).replace(" along the branch", ""), str(followed.name)
-    if name in PARAMETER_TABLE:
+    if name in TABLE:
         words = words.replace(name, style.symbol(name), 1)
     axes.set(xlabel=words, ylabel=f"largest |{state}| ({units})")
     axes.legend(*key_entries([axes]))

@@ -6,7 +6,7 @@ from typing import Any
 
 import xarray as xr
 
-from squealpipe.parameters import DEFAULTS, PARAMETER_TABLE, SCENES
+from squealpipe.parameters import DEFAULTS, SCENES, TABLE
 from squealpipe.plotting.style import pi_label
 
 
@@ -14,7 +14,7 @@ def parameter(dataset: xr.Dataset, name: str) -> Any:
     """A parameter of the run, a number or a law, from the attributes of its dataset."""
     parameters = json.loads(dataset.attrs.get("parameters", "{}"))
     study = json.loads(dataset.attrs.get("config", "{}")).get("parameters", {})
-    if PARAMETER_TABLE[name].extension:
+    if TABLE[name].extension:
         study = {name: DEFAULTS[name], **study}
     if name not in parameters | study:
         raise ValueError(

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from squealpipe.parameters import PARAMETER_TABLE
+from squealpipe.parameters import TABLE
 from squealpipe.plotting import style
 from squealpipe.schema import SYSTEM, meanings
 
@@ -189,6 +189,6 @@ def label(variable: xr.DataArray) -> str:
     unit = written.get(unit := str(variable.attrs.get("units", "1")), unit)
     name = str(variable.name)
     words = _words(variable)
-    if name in style.ANGLE_NAMES or (words == name and name in PARAMETER_TABLE):
+    if name in style.ANGLE_NAMES or (words == name and name in TABLE):
         words = style.symbol(name)
     return words if unit == "1" else f"{words} ({unit})"

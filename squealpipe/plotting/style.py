@@ -19,7 +19,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.text import Text
 from matplotlib.ticker import ScalarFormatter
 
-from squealpipe.parameters import PARAMETER_TABLE
+from squealpipe.parameters import TABLE
 from squealpipe.store.whole_files import whole_file
 from squealpipe.text import as_people_write
 
@@ -134,11 +134,7 @@ def angle_in_words(name: str, angle: float) -> str:
 
 def symbol(name: str) -> str:
     """A parameter or an angle by its symbol: k₁, μ, α₂, l_pre."""
-    known = (
-        PARAMETER_TABLE[name].symbol
-        if name in PARAMETER_TABLE
-        else f"{name[:-1]}_{name[-1]}"
-    )
+    known = TABLE[name].symbol if name in TABLE else f"{name[:-1]}_{name[-1]}"
     head, _, foot = known.replace('"', "").partition("_")
     subscripts = str.maketrans("0123s", "₀₁₂₃ₛ")
     below = foot.translate(subscripts) if len(foot) < 2 else f"_{foot}"

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from squealpipe.parameters import PARAMETER_TABLE, finite_number
+from squealpipe.parameters import TABLE, finite_number
 from squealpipe.systems.inputs.values import brief, is_finite_number, is_whole_number
 from squealpipe.units import refuse_units
 from squealpipe.validation import real_array
@@ -131,7 +131,7 @@ class Contact:
         for key in ("mu", "friction_law", "mu_static"):
             if (own := getattr(self, key)) is not None:
                 try:
-                    value = PARAMETER_TABLE[key].check(key, own)
+                    value = TABLE[key].check(key, own)
                 except ValueError as error:
                     raise ValueError(f"contact {self.name}: {error}") from None
                 object.__setattr__(self, key, value)

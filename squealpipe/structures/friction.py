@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from squealpipe.laws.friction_laws import LAWS, coefficient, slope
 from squealpipe.laws.tables import is_table
-from squealpipe.parameters import PARAMETER_TABLE
+from squealpipe.parameters import TABLE
 
 if TYPE_CHECKING:
     from squealpipe.structures.contact import Contact
@@ -28,7 +28,7 @@ class Friction:
 
     def __post_init__(self) -> None:
         for name in ("mu", "friction_law", "mu_static", "friction_speed"):
-            value = PARAMETER_TABLE[name].check(name, getattr(self, name))
+            value = TABLE[name].check(name, getattr(self, name))
             object.__setattr__(self, name, value)
         if self.mu_static is not None and self.mu_static < self.onset:
             raise ValueError(
@@ -71,7 +71,7 @@ class Friction:
 
 def default_mu(friction_law: object) -> float:
     """``mu`` where none is given: 1, a factor, with a table."""
-    law = PARAMETER_TABLE["friction_law"].check("friction_law", friction_law)
+    law = TABLE["friction_law"].check("friction_law", friction_law)
     return 1.0 if is_table(law) else 0.5
 
 

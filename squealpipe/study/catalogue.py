@@ -11,7 +11,7 @@ from typing import Any
 import pandas as pd
 
 from squealpipe.laws.friction_laws import COULOMB
-from squealpipe.parameters import DEFAULTS, PARAMETER_TABLE, SYMBOLS, Parameters
+from squealpipe.parameters import DEFAULTS, SYMBOLS, TABLE, Parameters
 from squealpipe.store.results import refuse_copy
 from squealpipe.store.runs import dataset_files, read_manifest, verify
 from squealpipe.store.sealed import attributes
@@ -90,10 +90,7 @@ def _row(config: dict[str, Any]) -> dict[str, Any]:
     """A run's values by the names that a condition may use, defaults where it states none."""
     given = {**flat(Study().model_dump(mode="json")), **config}
     row = _as_computed(
-        {
-            name: given.get(f"parameters.{name}", DEFAULTS[name])
-            for name in PARAMETER_TABLE
-        }
+        {name: given.get(f"parameters.{name}", DEFAULTS[name]) for name in TABLE}
     )
     row |= {symbol: row[name] for symbol, name in SYMBOLS.items() if symbol not in row}
     return row | {

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from squealpipe.parameters import PARAMETER_TABLE, Parameters
+from squealpipe.parameters import TABLE, Parameters
 from squealpipe.store import load
 
 
@@ -30,11 +30,7 @@ class Evidence(Mapping[str, xr.Dataset]):
 
     def __getitem__(self, name: str) -> xr.Dataset:
         if name not in self.sources:
-            given = [
-                key
-                for key in self.parameters.as_dict()
-                if PARAMETER_TABLE[key].extension
-            ]
+            given = [key for key in self.parameters.as_dict() if TABLE[key].extension]
             why = (
                 f"the study leaves out what cannot carry {', '.join(given)}"
                 if given

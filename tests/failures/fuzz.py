@@ -18,7 +18,7 @@ from squealpipe.brake.schema.ladder import QUESTIONS
 from squealpipe.functions import cos
 from squealpipe.inputs import parse_angle
 from squealpipe.laws.friction_laws import LAWS
-from squealpipe.parameters import PARAMETER_TABLE
+from squealpipe.parameters import TABLE
 from squealpipe.ranges import parse_range
 from squealpipe.study.configuration.settings import parse_study
 
@@ -190,7 +190,7 @@ PHYSICAL = {
             ["", "columb", None, 3, True, [], object(), b"x"],
         ),
     }[row.allowed]
-    for name, row in PARAMETER_TABLE.items()
+    for name, row in TABLE.items()
 }
 PHYSICAL["mu_static"] = Kind(lambda rng: rng.choice([None, 30.0]), OPTIONAL)
 WRITTEN = {
@@ -687,8 +687,7 @@ def fault_of(name, given, wrong, params):
         return "" if "path" in given or "name_or_path" in given else "no path was given"
     except ValueError as error:
         named = any(
-            argument in str(error)
-            for argument in ("param", "x = ", *given, *PARAMETER_TABLE)
+            argument in str(error) for argument in ("param", "x = ", *given, *TABLE)
         )
         return "" if named or name == "parse_range" else f"names no argument: {error}"
     except Exception as error:  # noqa: BLE001  whatever it is, it is the finding

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from squealpipe.parameters import PARAMETER_TABLE, Parameters, parameters_of
+from squealpipe.parameters import TABLE, Parameters, parameters_of
 from squealpipe.store.mistakes import known_keys
 from squealpipe.store.yaml_files import flat
 from squealpipe.study.configuration.quantities import In, scales
@@ -448,7 +448,7 @@ def test_what_stands_for_parameters_replaces_those_below(written, tmp_path):
     assert section.preload == pytest.approx(4e3 / 7e6, rel=1e-15)
     assert section.k1 == section.k2 == 1e7
     assert section.damping1 == pytest.approx(0.02 * math.sqrt(1e7 * 0.45), rel=1e-15)
-    assert study.slice("parameters")["parameters"].keys() < set(PARAMETER_TABLE)
+    assert study.slice("parameters")["parameters"].keys() < set(TABLE)
     assert [line.partition(":")[0] for line in section.became()] == [
         "stiffness along 12 kN/mm, across 8 kN/mm, coupling 1 kN/mm",
         "damping_ratio = 0.01",

@@ -189,7 +189,7 @@ def _systems(
 def _parameter_arrays(parameters: Mapping[str, Any]) -> dict[str, np.ndarray]:
     """Return checked arrays of all parameters; ``mu_static`` of None becomes ``mu``."""
     for name in parameters:
-        if name not in PARAMETER_TABLE:
+        if name not in TABLE:
             raise ValueError(
                 f"unknown parameter {name!r}; {suggestion(name, PHYSICAL)}"
             )
@@ -206,7 +206,7 @@ def _parameter_arrays(parameters: Mapping[str, Any]) -> dict[str, np.ndarray]:
 
 
 def _checked(name: str, values: Any) -> np.ndarray:
-    row = PARAMETER_TABLE[name]
+    row = TABLE[name]
     if row.allowed == "law":
         for law in np.unique(np.asarray(values, dtype=object).astype(str)):
             row.check(name, str(law))

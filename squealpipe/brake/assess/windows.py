@@ -8,14 +8,14 @@ import numpy as np
 from squealpipe.brake.a1.ensemble import PEAK, REACH, Ensemble, run_ensemble
 from squealpipe.brake.assess.sliding import Design
 from squealpipe.laws.tables import is_table
-from squealpipe.parameters import PARAMETER_TABLE
+from squealpipe.parameters import TABLE
 from squealpipe.schema import Outcome
 from squealpipe.vibration.settling import Settling, late_growth, tapered
 from squealpipe.vibration.windows import Windows, joined
 
 NUMBERS_OF_A_RUN = tuple(
     name
-    for name, row in PARAMETER_TABLE.items()
+    for name, row in TABLE.items()
     if row.enters_a1 and row.allowed != "law" and name != "mu_static"
 )
 

@@ -16,7 +16,7 @@ from squealpipe.brake.cycles.onset import find_onset
 from squealpipe.brake.cycles.scene import IN_SYSTEM, CycleScene
 from squealpipe.brake.models.refusals import refuse_unread
 from squealpipe.brake.schema.cycles import A1_CYCLE_BRANCH, A1_LIMIT_CYCLE
-from squealpipe.parameters import PARAMETER_TABLE, Parameters
+from squealpipe.parameters import TABLE, Parameters
 from squealpipe.schema import Outcome, blank, build
 from squealpipe.schema.origin import recorded
 from squealpipe.systems.branch_labels import Label
@@ -128,20 +128,14 @@ def cycle_branch(
 
 def _value(params: Parameters, alpha1: float, alpha2: float, parameter: str) -> float:
     values = {
-        name: getattr(params, name)
-        for name, row in PARAMETER_TABLE.items()
-        if row.enters_a1
+        name: getattr(params, name) for name, row in TABLE.items() if row.enters_a1
     }
     values |= {"alpha1": alpha1, "alpha2": alpha2}
     if not is_finite_number(values.get(parameter)):
         known = ", ".join(
             name for name, value in values.items() if is_finite_number(value)
         )
-        why = (
-            " (A1 does not read it)"
-            if parameter in {*PARAMETER_TABLE} - {*values}
-            else ""
-        )
+        why = " (A1 does not read it)" if parameter in {*TABLE} - {*values} else ""
         raise ValueError(f"parameter = {parameter!r}{why}: one of {known} is needed")
     refuse_unread(params, [parameter])
     return float(values[parameter])

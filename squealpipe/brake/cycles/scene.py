@@ -57,9 +57,9 @@ class CycleScene:
         p = self.reference or self.params
         bases = (np.asarray(p.mass), np.asarray(p.k1), np.asarray(p.preload))
         found = {
-            name: float(unit_value(PARAMETER_TABLE[name].units, *bases))
+            name: float(unit_value(TABLE[name].units, *bases))
             for name in PHYSICAL
-            if PARAMETER_TABLE[name].allowed != "law"
+            if TABLE[name].allowed != "law"
         }
         return {**found, "alpha1": 1.0, "alpha2": 1.0}
 
@@ -84,9 +84,7 @@ class CycleScene:
     def scaled(self) -> Parameters:
         """The parameters in these units; of laws of the user's own the numbers alone."""
         p = plain(self.params)
-        values = {
-            name: getattr(p, name) for name in self.units if name in PARAMETER_TABLE
-        }
+        values = {name: getattr(p, name) for name in self.units if name in TABLE}
         return p.with_(
             **{n: v if v is None else v / self.units[n] for n, v in values.items()}
         )

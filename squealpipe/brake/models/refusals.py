@@ -9,7 +9,7 @@ import numpy as np
 
 from squealpipe.laws.friction_laws import COULOMB, FALLING, LAWS, coefficient
 from squealpipe.laws.tables import is_table
-from squealpipe.parameters import DEFAULTS, PARAMETER_TABLE, Parameters
+from squealpipe.parameters import DEFAULTS, TABLE, Parameters
 from squealpipe.systems.inputs.values import brief
 
 OF_OTHER_LAWS = {name for law in LAWS.values() for name in law.PARAMETERS} - set(
@@ -27,7 +27,7 @@ def extensions(params: Parameters) -> list[str]:
     """Parameters that give dashpots or other laws than the paper's, with one μ."""
     beyond = {
         name: getattr(params, name)
-        for name, row in PARAMETER_TABLE.items()
+        for name, row in TABLE.items()
         if row.extension and name not in OF_OTHER_LAWS
     }
     if params.static_mu == params.mu:
@@ -80,7 +80,7 @@ def refuse_unread(params: Parameters, varied: Collection[str]) -> None:
 
 def _why_unread(params: Parameters, name: str, varied: Collection[str]) -> str:
     law, contact = params.friction_law, params.contact_law
-    if name in PARAMETER_TABLE and not PARAMETER_TABLE[name].enters_a1:
+    if name in TABLE and not TABLE[name].enters_a1:
         return "A1 does not read it"
     if name in params.in_laws:
         return "the file of a law stands for it"

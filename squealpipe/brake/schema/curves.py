@@ -3,7 +3,7 @@
 from enum import IntEnum
 
 from squealpipe.codes import LinearRegime
-from squealpipe.parameters import PARAMETER_TABLE
+from squealpipe.parameters import TABLE
 from squealpipe.schema import (
     DatasetSchema,
     Variable,
@@ -47,7 +47,7 @@ VARIED = {
     },
     **{
         name: Variable(row.meaning, row.units, ("point",), optional=True)
-        for name, row in PARAMETER_TABLE.items()
+        for name, row in TABLE.items()
         if row.enters_a1
         and row.allowed != "law"
         and name not in {"mass", "k1", "preload"}

@@ -17,13 +17,7 @@ from squealpipe.paper.inference.unstable_cells import (
     unstable_cells,
 )
 from squealpipe.paper.schema.growth import GROWTH_WINDOW, WINDOWS, growth_fails
-from squealpipe.parameters import (
-    PARAMETER_TABLE,
-    SCENES,
-    Parameters,
-    Scene,
-    direction_of,
-)
+from squealpipe.parameters import SCENES, TABLE, Parameters, Scene, direction_of
 from squealpipe.reading import reading_of
 from squealpipe.schema import Outcome
 
@@ -197,11 +191,7 @@ class Candidates:
     @cached_property
     def extended(self) -> list[Parameters]:
         """The sets if they may go beyond the paper's model; else none."""
-        return (
-            self.sets
-            if any(PARAMETER_TABLE[name].extension for name in self.fields)
-            else []
-        )
+        return self.sets if any(TABLE[name].extension for name in self.fields) else []
 
     @cached_property
     def drag(self) -> np.ndarray:

@@ -7,7 +7,7 @@ from typing import Any
 from squealpipe.paper.schema.claims import ClaimVerdict
 from squealpipe.parameters import (
     DEFAULTS,
-    PARAMETER_TABLE,
+    TABLE,
     Parameters,
     direction_of,
     law_in_words,
@@ -73,9 +73,9 @@ def undecided(statements: Sequence[Mapping[str, Any]]) -> list[dict[str, str]]:
 
 def _name(key: str) -> str:
     name = key.removeprefix("parameters.")
-    if name not in PARAMETER_TABLE:
+    if name not in TABLE:
         return name
-    return f"{name} ({PARAMETER_TABLE[name].meaning.partition(':')[0]})"
+    return f"{name} ({TABLE[name].meaning.partition(':')[0]})"
 
 
 def _value(key: str, value: Any) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.parameters import PARAMETER_TABLE, finite_number
+from squealpipe.parameters import TABLE, finite_number
 from squealpipe.systems.inputs.values import brief, is_whole_number
 from squealpipe.validation import real_array
 
@@ -63,7 +63,7 @@ class Face:
             if (value := getattr(self, key)) is not None:
                 object.__setattr__(self, key, _positive(key, value, units))
         if self.mu is not None:
-            object.__setattr__(self, "mu", PARAMETER_TABLE["mu"].check("mu", self.mu))
+            object.__setattr__(self, "mu", TABLE["mu"].check("mu", self.mu))
         if self.direction is not None:
             object.__setattr__(self, "direction", _vector("direction", self.direction))
         if self.points is not None and not (

@@ -22,13 +22,7 @@ from pydantic import (
 
 from squealpipe.inputs import read_distribution
 from squealpipe.laws.tables import BETWEEN
-from squealpipe.parameters import (
-    DEFAULTS,
-    PARAMETER_TABLE,
-    Parameters,
-    Row,
-    without_defaults,
-)
+from squealpipe.parameters import DEFAULTS, TABLE, Parameters, Row, without_defaults
 from squealpipe.study.configuration.quantities import In
 from squealpipe.substitutes import (
     SUBSTITUTES,
@@ -91,7 +85,7 @@ class _ParametersBase(Section):
             check_together(sorted({*self.model_fields_set, *self.substitutes}))
             values = stood_for(self.substitutes, lambda name: getattr(self, name))
             self.__dict__.update(values)  # frozen for others
-        Parameters(**{name: getattr(self, name) for name in PARAMETER_TABLE})
+        Parameters(**{name: getattr(self, name) for name in TABLE})
         return self
 
     @property
@@ -171,7 +165,7 @@ else:
         __doc__=_ParametersBase.__doc__,
         **{
             name: (_field_type(name, row), DEFAULTS[name])
-            for name, row in PARAMETER_TABLE.items()
+            for name, row in TABLE.items()
         },
         **_OTHERS,
         stiffness=(StiffnessSection | None, Field(None, exclude=True)),

@@ -15,7 +15,7 @@ from pydantic import Field, ValidationError, field_validator, model_validator
 
 from squealpipe.laws.table_files import ENDINGS
 from squealpipe.laws.tables import named, stood_for
-from squealpipe.parameters import PARAMETER_TABLE, Parameters, Row
+from squealpipe.parameters import TABLE, Parameters, Row
 from squealpipe.ranges import sweep_config
 from squealpipe.store.mistakes import ConfigError, mistakes
 from squealpipe.store.rerun.key import PARTS
@@ -176,7 +176,7 @@ def _read_laws(path: Path, content: dict[str, Any]) -> Iterator[str]:
 
 def laws_in(section: Any) -> Iterator[tuple[str, Any, Row]]:
     """Yield (parameter, entry, row of the table) for each law that a section names."""
-    for name, row in PARAMETER_TABLE.items():
+    for name, row in TABLE.items():
         if row.laws and isinstance(section, dict) and name in section:
             yield name, section[name], row
 

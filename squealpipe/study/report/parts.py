@@ -10,7 +10,7 @@ from typing import Any
 
 from PIL import Image
 
-from squealpipe.parameters import PARAMETER_TABLE, Parameters, law_in_words
+from squealpipe.parameters import TABLE, Parameters, law_in_words
 from squealpipe.store.sealed import attributes
 from squealpipe.store.whole_files import checksum
 from squealpipe.study.figures import declared
@@ -88,7 +88,7 @@ def parameter_table(
     """
     rows = []
     for name, value in parameters.as_dict().items():
-        row = PARAMETER_TABLE[name]
+        row = TABLE[name]
         if name in parameters.in_laws or (of_a1 and not row.enters_a1):
             continue
         shown, unit = value, ""

@@ -11,7 +11,7 @@ from openpyxl import Workbook
 from openpyxl.styles import Font
 from openpyxl.utils import get_column_letter
 
-from squealpipe.parameters import PARAMETER_TABLE, Parameters, law_in_words
+from squealpipe.parameters import TABLE, Parameters, law_in_words
 from squealpipe.schema import meanings
 from squealpipe.store.whole_files import whole_file
 from squealpipe.study.report import answer
@@ -42,9 +42,9 @@ def write_tables(
         book.create_sheet("Parameters"),
         ["parameter", "meaning", "value", "unit"],
         (
-            [name, PARAMETER_TABLE[name].meaning, *_plain(name, value)]
+            [name, TABLE[name].meaning, *_plain(name, value)]
             for name, value in parameters.as_dict().items()
-            if PARAMETER_TABLE[name].enters_a1 and name not in parameters.in_laws
+            if TABLE[name].enters_a1 and name not in parameters.in_laws
         ),
     )
     for name, told in answers.items():
@@ -118,7 +118,7 @@ def _turned(units: str) -> tuple[float, str]:
 
 
 def _plain(name: str, value: Any) -> list[Any]:
-    laws, units = PARAMETER_TABLE[name].laws, PARAMETER_TABLE[name].units
+    laws, units = TABLE[name].laws, TABLE[name].units
     if laws:
         return [law_in_words(value, laws.TABLE_UNITS), ""]
     return [value, plain_unit(units)]
