@@ -15,6 +15,7 @@ from squealpipe.structures.meshes.faces import Face, Rotation
 from squealpipe.structures.meshes.finite_elements import ELEMENTS
 from squealpipe.structures.meshes.sources import mesh_of_source
 from squealpipe.structures.meshes.structure_mesh import NO_NODE, StructureMesh
+from squealpipe.structures.readers import read_names
 from squealpipe.systems.inputs.values import brief
 from squealpipe.units import engineering
 
@@ -160,8 +161,6 @@ def _picture(mesh: ElementMesh, rows: np.ndarray) -> StructureMesh:
 
 def names_of(given: Any, folder: Path = Path()) -> list[Any] | None:
     """Return the names of rows from a file of CalculiX, a sequence of names, or None."""
-    from squealpipe.structures.readers import read_names
-
     if given is None:
         return None
     if isinstance(given, str | PathLike):

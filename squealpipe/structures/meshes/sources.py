@@ -10,6 +10,7 @@ import numpy as np
 from squealpipe.structures.meshes.deck import read_deck
 from squealpipe.structures.meshes.element_mesh import ElementMesh, Surface, joined
 from squealpipe.structures.meshes.finite_elements import CORNERS
+from squealpipe.structures.meshes.meshio_meshes import of_meshio, read_by_meshio
 from squealpipe.structures.packed import plain_name
 from squealpipe.systems.inputs.values import brief
 from squealpipe.validation import real_array
@@ -34,12 +35,8 @@ def mesh_of_source(mesh: Any) -> ElementMesh:
             raise FileNotFoundError(f"mesh: no file {path}")
         if plain_name(path).suffix.lower() == ".inp":
             return read_deck(path)
-        from squealpipe.structures.meshes.meshio_meshes import read_by_meshio
-
         return read_by_meshio(path)
     if hasattr(mesh, "cells_dict"):
-        from squealpipe.structures.meshes.meshio_meshes import of_meshio
-
         return of_meshio(mesh, "mesh", counts_nodes=True)
     if isinstance(mesh, tuple | list) and len(mesh) == 2:
         return of_arrays(*mesh)
