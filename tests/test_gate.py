@@ -180,7 +180,9 @@ def test_what_has_no_declared_unit_takes_plain_numbers_alone():
     for given in ({"gap": QUANTITY(1, "mm")}, {"gap": "1 mm"}, {"gap": ["1 mm", 2.0]}):
         with pytest.raises(ValueError, match=r"gap = .*no unit is declared"):
             OSCILLATOR.ensemble(1.0, **given)
-    with pytest.raises(ValueError, match=r"parameters\['a'\] = .*no unit is declared"):
+    with pytest.raises(
+        ValueError, match=r"parameters\['a'\] = .*\(number, unit\), is needed"
+    ):
         System(
             "mass",
             states={"x": "m"},

@@ -11,7 +11,7 @@ from typing import Any, ParamSpec, TypeVar
 import numpy as np
 import xarray as xr
 
-from squealpipe.inputs import UNITS, with_units
+from squealpipe.inputs import FRICTION_KEYWORDS, UNITS, with_units
 from squealpipe.schema import Outcome, build, find
 from squealpipe.structures.band import COMPLETE
 from squealpipe.structures.confirming import ConfirmedWay
@@ -39,11 +39,11 @@ def _in_units_of_structure(
     function: Callable[Given, Result],
 ) -> Callable[Given, Result]:
     """Have a function read its arguments, of which the belt speed of a rotation is in rad/s."""
-    names = list(inspect.signature(function).parameters)
+    names = [*inspect.signature(function).parameters, *FRICTION_KEYWORDS]
 
     @functools.wraps(function)
     def run(*args: Given.args, **kwargs: Given.kwargs) -> Result:
-        structure: Any = args[0]
+        structure: Any = args[0] if args else kwargs["structure"]
         units = UNITS | {"belt_speed": structure.speed_unit}
         given, named = with_units(names, args, kwargs, units)
         return function(*given, **named)  # type: ignore[arg-type]

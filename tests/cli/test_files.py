@@ -252,7 +252,7 @@ def test_unexpected_errors_are_one_line_and_a_traceback_on_request(capsys, monke
         warnings.warn("internal", RuntimeWarning, stacklevel=2)
         return {}["nothing"]
 
-    monkeypatch.setattr("squealpipe.brake.linear.maps.stability_map", broken)
+    monkeypatch.setattr("squealpipe.stability_map", broken)
     assert run(STABILITY) == 2
     assert capsys.readouterr().err == (
         "squealpipe: unexpected error (KeyError: 'nothing'); "
@@ -307,7 +307,7 @@ def test_a_map_that_does_not_fit_is_refused_with_what_it_would_take(
     capsys, monkeypatch
 ):
     begun = Mock(side_effect=AssertionError("it would take all memory"))
-    monkeypatch.setattr("squealpipe.brake.linear.maps.stability_map", begun)
+    monkeypatch.setattr("squealpipe.stability_map", begun)
     words = ["map", "stability", "--alpha1", "0:pi:30000", "--alpha2", "0:pi:30000"]
     assert run([*words, "-o", "big.nc"]) == 2
     told = capsys.readouterr().err

@@ -85,8 +85,7 @@ def test_other_signals_that_stop_a_command_leave_no_lock_either(
     number = getattr(signal, name)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(
-        "squealpipe.brake.linear.maps.stability_map",
-        lambda *_, **__: signal.raise_signal(number),
+        "squealpipe.stability_map", lambda *_, **__: signal.raise_signal(number)
     )
     words = ["map", "stability", "--alpha1", "1,2", "--alpha2", "1,2", "-o", "a.nc"]
     monkeypatch.setattr("sys.argv", ["squealpipe", *words])

@@ -290,7 +290,7 @@ def test_motions_as_near_as_two_windows_of_one_are_one_attractor():
             separated=np.array([loss]),
             stuck=np.zeros(1),
         )
-        last = SimpleNamespace(levels=levels)
+        last = SimpleNamespace(levels=lambda _: levels)
         return SimpleNamespace(agrees=True, quiet=False, change=1e-3, last=last)
 
     assert grouped([run(0.3), run(0.325), run(0.5)], 0).tolist() == [0, 0, 1]

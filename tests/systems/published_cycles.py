@@ -281,7 +281,7 @@ class Truth:
                 args=(regime,),
                 events=[self._event(each) for each in watched] or None,
                 rtol=1e-10,
-                atol=1e-10 * self.system.sizes,
+                atol=1e-10 * self.system.sizes_in(self.system.parameters),
                 max_step=self.longest,
             )
             t, state = leg.t[-1], leg.y[:, -1]
