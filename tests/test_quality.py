@@ -45,7 +45,6 @@ def test_hooks_watch_files_that_exist():
 
 
 INSIDE_FUNCTIONS = {
-    "squealpipe/structures/meshes/from_mesh.py": "files of names are read by pandas, arrays not",
     "squealpipe/systems/system.py": "cycles load scipy.interpolate, which runs do not need",
     "squealpipe/structures/structure.py": "runs load the compiler, which modes do not need",
 }

@@ -25,7 +25,9 @@ def read_op4(path: Path, choose: Callable[[list[str]], str]) -> Any:
     Raises:
         ValueError: it is not square.
     """
-    from pyyeti.nastran import op4  # type: ignore[import-untyped]
+    # importing pyyeti sets legacy print options of NumPy, which cut the numbers of CSV files
+    with np.printoptions():
+        from pyyeti.nastran import op4  # type: ignore[import-untyped]
 
     content = op4.load(str(path), sparse=True)
     if not content:
@@ -44,7 +46,8 @@ def read_dmig(path: Path, choose: Callable[[list[str]], str]) -> tuple[Any, list
     Args:
         choose: returns the name of the matrix that is meant, of those in the file.
     """
-    from pyyeti.nastran import bulk
+    with np.printoptions():  # as above
+        from pyyeti.nastran import bulk
 
     with path.open("rb") as file:
         if b"DMIG" not in file.read():

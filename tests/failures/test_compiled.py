@@ -27,7 +27,7 @@ def kernel_that_divides_by_zero():
 @pytest.mark.parametrize("workers", [1, 2])
 def test_exception_in_compiled_code_reaches_the_caller(monkeypatch, workers):
     failing = kernel_that_divides_by_zero()
-    monkeypatch.setattr(integrate, "loop", lambda: failing)
+    monkeypatch.setattr(integrate.Batch, "loop", staticmethod(lambda: failing))
     with pytest.raises(RuntimeError, match="exception in compiled code"):
         run_ensemble(
             Parameters(), np.linspace(1.0, 2.0, 4), 2.6, t_end=1.0, workers=workers

@@ -80,7 +80,7 @@ def test_every_public_function_that_returns_a_dataset_is_covered():
     }
     # of a structure, not of Parameters: see tests/structures
     other |= {"Component", "Contact", "Face", "Rotation", "Structure"}
-    other |= {"squealing_modes", "squeal_ladder"}
+    other |= {"operating_map", "squealing_modes", "squeal_ladder"}
     other |= {"open_results", "labels", "System", "Switch", "convert", "plot"}
     other.add(
         "cycle_curve"

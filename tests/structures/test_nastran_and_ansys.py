@@ -1,17 +1,21 @@
 """Matrices of Nastran and in the Harwell–Boeing format, from real and from written files."""
 
 import gzip
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
-import pyyeti
 import scipy.io
 import scipy.sparse as sp
-from pyyeti.nastran import bulk, op4
 
 from squealpipe import Structure
 from squealpipe.structures.readers import read_matrix
+
+with np.printoptions():  # pyyeti sets other ones
+    import pyyeti
+    from pyyeti.nastran import bulk, op4
 
 REAL = Path(pyyeti.__file__).parent / "tests"
 """Files that Nastran wrote, which pyyeti brings along."""
@@ -160,3 +164,16 @@ def test_mapping_of_temperatures_is_refused(tmp_path):
     (tmp_path / "K.mapping").write_text(mapping(NAMES[:3]).replace("3 ", "4 ", 1))
     with pytest.raises(ValueError, match=r"rows|labelled"):
         structure(tmp_path, "K.hb", "K.hb")
+
+
+@pytest.mark.release
+def test_reading_leaves_numpys_print_options_as_they_are():
+    """Those that pyyeti sets cut the numbers of CSV files to twelve digits."""
+    path = REAL / "nas2cam_extseout" / "outboard.op4"
+    code = (
+        "import numpy as np; before = np.get_printoptions();"
+        "from squealpipe.structures.readers import read_matrix;"
+        f"read_matrix(__import__('pathlib').Path({str(path)!r}), 'mass');"
+        "assert np.get_printoptions() == before"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
