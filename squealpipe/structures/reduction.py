@@ -290,7 +290,9 @@ class Search:
                 f"kept; keep more (n_modes={enough} suffices)"
             )
         reduced = kept.reduced(number)
-        reduced.modes, reduced.mesh = kept.modes[:, :number], self.whole.mesh
+        reduced.modes = kept.modes[:, :number]
+        # modes of a reduced structure lead to its amplitudes, which no mesh shows
+        reduced.mesh = self.whole.mesh if self.whole.modes is None else None
         reduced.reduced_from = ReducedFrom(self.whole, self.frequency_max, self.truth)
         spectrum = Solver(reduced, Limits(), reduced.belt_speed).at(reduced.mu)
         agreement = agreement_of(self.truth, spectrum, reduced.modes)

@@ -294,3 +294,15 @@ def test_motions_as_near_as_two_windows_of_one_are_one_attractor():
         return SimpleNamespace(agrees=True, quiet=False, change=1e-3, last=last)
 
     assert grouped([run(0.3), run(0.325), run(0.5)], 0).tolist() == [0, 0, 1]
+
+
+def test_a_reduced_structure_can_be_reduced_again_and_has_modes():
+    once = elastic_pad(contacts=2, elements=(4, 2)).reduce(n_modes=8)
+    twice = once.reduce(n_modes=4)
+    assert once.mesh is not None
+    assert twice.mesh is None
+    np.testing.assert_allclose(
+        twice.complex_modes(mu=0.0).frequency,
+        once.complex_modes(mu=0.0).frequency[:4],
+        rtol=1e-3,
+    )
