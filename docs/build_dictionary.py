@@ -17,9 +17,8 @@ HEAD = f"""\
 # Data dictionary
 
 Written from the schemas of all rooms (`squealpipe/*/schema`) by `docs/build_dictionary.py`; a test
-compares
-them. Files are NetCDF-4 with CF-1.11 attributes, one dataset each, under `results/data/`; each
-carries its configuration, code and library versions, licence, references and the ids of its
+compares them. Files are NetCDF-4 with CF-1.11 attributes, one dataset each, under `results/data/`;
+each carries its configuration, code and library versions, licence, references and the ids of its
 inputs. Units are those of the parameters (SI by default).
 
 {ANGLE_CONVENTION}.

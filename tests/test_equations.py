@@ -1,7 +1,7 @@
 """Every equation of the paper has exactly one home, and docs/equations.md says where.
 
-A home is a function or class below laws, models, methods, solvers or tasks whose docstring begins
-with ``Eq. (n)`` or ``Eqs. (m), (n)``. References, ``of Eq. (n)``, and words before it do not count.
+A home is a function or class below laws, vibration or brake whose docstring begins with ``Eq. (n)``
+or ``Eqs. (m), (n)``. References, ``of Eq. (n)``, and words before it do not count.
 """
 
 import ast

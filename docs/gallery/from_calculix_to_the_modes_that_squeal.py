@@ -1,8 +1,8 @@
 # %% [markdown]
 # # From a CalculiX model to the modes that squeal
 # A disc, a lining and a back plate were meshed by hexahedra; CalculiX wrote their matrices
-# (`*FREQUENCY, SOLVER=MATRIXSTORAGE`). What is left to say takes twelve lines: which surfaces touch, how
-# stiff and how pressed the contact is, and that the disc turns.
+# (`*FREQUENCY, SOLVER=MATRIXSTORAGE`). A short file adds the rest: which surfaces touch, the stiffness and
+# pressure of the contact, its friction, and that the disc turns.
 #
 # `squealpipe init brake.yaml --disc` writes the deck, the matrices, a study of them, and this file, which
 # `Structure.read("brake/structure.yaml")` reads:
@@ -17,7 +17,7 @@ from squealpipe.structures import disc_brake
 print(DISC)
 
 # %% [markdown]
-# `disc_brake()` is the same brake in Python: its matrices agree with those of CalculiX to 13 digits.
+# `disc_brake()` is the same brake in Python: its matrices agree with those of CalculiX to 12 digits.
 
 # %%
 brake = disc_brake()
@@ -37,8 +37,8 @@ print(
 )
 
 # %% [markdown]
-# Without friction nothing grows. With it, one mode is unstable; where that begins is located. The face has
-# a coefficient of its own, so it is the face's that is varied. In a terminal:
+# Without friction nothing grows. With enough of it one mode is unstable, and its critical friction is located.
+# The face has a coefficient of its own, so that coefficient is varied. In a terminal:
 # `squealpipe modes brake/structure.yaml --mu lining=0:0.6:4 --frequency-max 3kHz`.
 
 # %%
@@ -58,8 +58,8 @@ for number in over_mu.mode.values[over_mu.unstable.any("mu").values]:
 plot(over_mu)
 
 # %% [markdown]
-# *How many contacts does it take?* Neighbours may be merged, force and stiffness kept. Here eight points find
-# the mode, but its growth differs; two name a mode that is not there.
+# *How many contacts does it take?* Neighbours may be merged; force and stiffness stay. Here eight points find
+# the mode, but its growth differs; two show an unstable mode that does not exist.
 
 # %%
 for points in (None, 12, 8, 4, 2):
@@ -72,7 +72,7 @@ for points in (None, 12, 8, 4, 2):
     )
 
 # %% [markdown]
-# *Which of them squeal, and how loud?* Complex eigenvalues do not say. Runs with every loss of contact
-# located do, in modes that are right for what is unstable: `squealpipe squeal brake/structure.yaml
-# --frequency-max 4kHz -o squeal.nc`, or for the report `squealpipe run --config brake.yaml`. The page on [what
-# really squeals](what_really_squeals.py) has such an answer.
+# *Which of them squeal, and how loud?* Complex eigenvalues do not say. Runs that locate every loss of contact
+# do, in as many modes as the unstable ones need: `squealpipe squeal brake/structure.yaml --frequency-max 4kHz
+# -o squeal.nc`, or for the report `squealpipe run --config brake.yaml`. The page on [what really
+# squeals](what_really_squeals.py) has such an answer.

@@ -1,8 +1,8 @@
 # %% [markdown]
 # # What hammering looks and sounds like
 # A brake pad of 0.45 kg between two inclined springs is pressed on a belt. At (22°, 46°) friction couples
-# its two modes, and the pad is thrown off the belt 827 times a second. What `squealpipe animate` and
-# `squealpipe listen` write can be made here, too.
+# its two modes, and the pad is thrown off the belt 827 times a second. This page makes in Python what
+# `squealpipe animate` and `squealpipe listen` write.
 
 # %%
 from io import BytesIO
@@ -35,14 +35,14 @@ run = simulate(pad, *np.radians((22.0, 46.0)), t_end=0.3)
 
 # %% [markdown]
 # One period takes a second of film. The foot of the pad is blue while it slips, orange while it sticks, and
-# red while it is open: for 39 % of the time. Each time it comes back, the force is nearly twice the preload.
+# red while contact is open, 39 % of the time. At each return the force rises to nearly twice the preload.
 
 # %%
 HTML(film_of(run, dpi=90).player())
 
 # %% [markdown]
-# The sound is the velocity across the belt, the louder of both, of the settled part of the run. It is
-# repeated where the motion resembles itself most, so that no click is heard.
+# The sound is the velocity across the belt, the louder of both components, in the settled part of the run. It
+# is repeated where the motion resembles itself most, so that no click is heard.
 
 # %%
 heard = sound(run)
@@ -77,9 +77,9 @@ print(paper.told())
 Audio(paper.wav(2.0))
 
 # %% [markdown]
-# A structure is seen and heard alike. From files, `squealpipe squeal pad.yaml --run run.nc` writes the motion
-# that `animate` and `listen` take. Two pads with a caliper between them have no mesh, so the contacts stand
-# side by side. Their motion is quasi-periodic.
+# The same works for a structure. From files, `squealpipe squeal pad.yaml --run run.nc` writes the motion that
+# `animate` and `listen` take. The two pads here, with a caliper between them, have no mesh, so the film shows
+# their contacts side by side. Their motion is quasi-periodic.
 
 # %%
 stiffness = np.zeros((4, 4))

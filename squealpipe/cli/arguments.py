@@ -80,7 +80,7 @@ Angle1 = Annotated[
 ]
 Angle2 = Annotated[float, angle_of_spring("angle of spring 2 to −x")]
 OptionalAngle2 = Annotated[
-    float | None, angle_of_spring("angle of spring 2 to −x; none of a structure")
+    float | None, angle_of_spring("angle of spring 2 to −x (none for a structure)")
 ]
 
 

@@ -42,18 +42,19 @@ def assess(
     """Say whether a brake squeals or hammers, at which frequency, how loud, why, what stops it.
 
     A pad on two springs is given by both angles and --config, a structure by its file alone. Exit
-    code 0: quiet; 1: not. Angles are counted from the belt line, both upwards: alpha1 from +x, the
-    way the belt runs, alpha2 from −x; 0deg is along the belt, 90deg is straight above the mass.
+    code 0: quiet; 1: not quiet, or undetermined. Angles are counted from the belt line, both
+    upwards: alpha1 from +x, the way the belt runs, alpha2 from −x; 0deg is along the belt, 90deg is
+    straight above the mass.
 
     Example: `squealpipe assess 22deg 46deg --config pad.yaml -o answer.nc`
 
     Args:
-        modify: a modification of a structure that is tried as a cure, with the largest amount;
-            repeat for more. "weight=added_mass 12 0.1" is up to 0.1 kg at degree of freedom 12,
-            counted from 1, "strut=spring 12,40 1e6" a spring between two, "dashpot" likewise; of a
-            structure with a mesh 5005.3 is a node and its direction.
-        samples: random starts of a structure.
-        seed: of them.
+        modify: modification of a structure to try as a cure, with its largest amount; repeat for
+            more. "weight=added_mass 12 0.1" is up to 0.1 kg at degree of freedom 12, counted from
+            1, "strut=spring 12,40 1e6" a spring between two, and dashpot likewise. In a structure
+            with a mesh 5005.3 is a node and its direction.
+        samples: number of random starts of a structure.
+        seed: seed of the random starts.
         output: also write the dataset (.nc or .csv), and a picture of the settled motion beside it.
     """
     if isinstance(alpha1_or_file, Path):
@@ -79,7 +80,9 @@ def assess(
             "file, like `squealpipe assess brake.yaml`"
         )
     if modify:
-        raise ValueError(f"--modify {modify[0]!r}: of a structure alone")
+        raise ValueError(
+            f"--modify {modify[0]!r}: only structures have modifications; leave it out for a pad"
+        )
     if output is not None:
         verdict = compute(
             "assess", brake, alpha1_or_file, alpha2, output=output, tol=tol

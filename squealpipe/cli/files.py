@@ -44,7 +44,7 @@ def plot(
         file: dataset that a command or `squealpipe.save` wrote, or another program's .nc or .csv.
         output: picture to write (png, svg or pdf); by default FILE.png, here.
         variable: draw this variable instead of the usual picture.
-        mode: of complex modes, draw the shape of this one: on the mesh, undeformed grey and
+        mode: number of the complex mode whose shape is drawn: on the mesh, undeformed grey and
             deformed coloured, or without a mesh as arrows at its degrees of freedom.
     """
     target = Path(file.with_suffix(".png").name) if output is None else output

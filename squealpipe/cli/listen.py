@@ -29,22 +29,22 @@ def listen(
 ) -> int:
     """Write what a run sounds like: the velocity of its settled part as a wav file.
 
-    The motion is looped without a click and cross-faded where it does not repeat, 48 kHz, 16 bit,
-    peak −3 dB. A run that is sampled too coarsely is integrated again.
+    The motion is looped without a click, and cross-faded where it does not repeat: 48 kHz, 16 bit,
+    peak −3 dB. A pad's run that is sampled too coarsely is integrated again.
 
     Example: `squealpipe listen run.nc -o run.wav`
 
     Args:
         file: run that `squealpipe simulate -o` or `squealpipe squeal --run` wrote, or an answer of
-            `squealpipe assess -o`.
+            `squealpipe assess -o` for a pad.
         output: sound to write (.wav); by default FILE.wav, here.
         at: component of a pad's velocity, x (along the belt) or y; of a structure a contact by its
-            name, a node by its number, or like 12.2 its displacement along y. By default the
-            loudest.
+            name or a node by its number, 12, or with its direction: 12.2 is along y. By default
+            the loudest.
         seconds: length of the sound, s.
-        slow: play it so many times slower, for squeal beyond hearing: 10 makes 40 kHz 4 kHz.
-        fast: play it so many times faster, for motions below hearing, as those of the paper's
-            parameters: 1000.
+        slow: play it so many times slower, for squeal beyond hearing; 10 lowers 40 kHz to 4 kHz.
+        fast: play it so many times faster, for motions below hearing; 1000 suits the paper's
+            parameters.
     """
     if slow != 1.0 and fast != 1.0:
         raise ValueError("--slow and --fast contradict one another; give one of them")
@@ -96,7 +96,7 @@ def animate(
 
     Args:
         file: run that `squealpipe simulate -o` or `squealpipe squeal --run` wrote, or an answer of
-            `squealpipe assess -o`.
+            `squealpipe assess -o` for a pad.
         output: film to write (.mp4, .gif or .html); by default FILE.mp4, here.
         seconds: length of the film, s.
         periods: periods of the strongest line that are shown; by default one in each second.

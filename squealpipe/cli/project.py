@@ -79,7 +79,8 @@ def init(
         own: a short study of scenes of your own in SI units instead, without the paper.
         structure: a study of a structure with contacts instead, with an example of its files in a
             folder NAME beside it.
-        disc: likewise, with a disc brake as CalculiX writes it: its deck and its matrices.
+        disc: likewise, with a disc brake as the example: its deck, and its matrices as CalculiX
+            writes them.
     """
     from squealpipe.cli.structure_example import (
         DISC_STUDY,

@@ -165,12 +165,12 @@ def _friction(given: Any) -> Any:
 
 
 def _values_of(mu: Any) -> list[Any]:
-    """The values of a contact's or face's friction."""
+    """Return the values of a contact's or face's friction."""
     return list(mu.values()) if isinstance(mu, dict) else []
 
 
 def _line(mode: Any) -> str:
-    """A mode where it grows fastest, and its critical friction and speed."""
+    """Describe a mode where it grows fastest, with its critical friction and speed."""
     fastest = mode.growth_rate.where(mode.unstable).argmax(...)
     at = mode.isel(fastest)
     words = (
@@ -189,8 +189,8 @@ def _line(mode: Any) -> str:
     onsets = [
         (at.critical_mu, f", from {name} = {{:.6g}} on"),
         # every contact has its own friction
-        (at.get("critical_scale"), ", from {:.6g} mu on"),
-        (at.get("critical_speed"), ", turns at belt_speed = {:.6g}"),
+        (at.get("critical_scale"), ", from {:.6g} times every mu on"),
+        (at.get("critical_speed"), ", stability changes at belt_speed = {:.6g}"),
     ]
     located = [(each.item(), text) for each, text in onsets if each is not None]
     return words + "".join(text.format(x) for x, text in located if x == x)
@@ -232,8 +232,8 @@ def squeal(
             needed beyond 1000 degrees of freedom.
         onset: also lower the friction until the squeal dies, to see whether it lasts below the
             critical friction, and how far; costs about as much as the rest.
-        run: also write the motion that a small push ends in over time (.nc), which `squealpipe
-            listen` and `squealpipe animate` take.
+        run: also write, over time, the motion that a small push ends in (.nc), for `squealpipe
+            listen` and `squealpipe animate`.
     """
     refuse_existing(output, force=files.force)
     if run is not None:
@@ -272,7 +272,7 @@ def _write_run(structure: Any, told: xr.Dataset, path: Path, tol: float) -> None
     )
 
     if not moving_attractors(told).size:
-        answer(f"{path} is not written: nothing moves in the end")
+        answer(f"{path} is not written: no motion lasts")
         return
     config = {"parameters": structure.as_dict(), "answer": dataset_id(told)}
     with working("run"):
@@ -341,7 +341,7 @@ def operating(
     """Say at which pressures, speeds and frictions a structure is noisy, at which frequency.
 
     At each point steady sliding is pushed and run until its motion has settled. Exit code 0: all
-    points are quiet; 1: some are not.
+    points are quiet; 1: some are not, or are undetermined.
 
     Example: `squealpipe operating pad.yaml --pressure 0.5:2:4 --speed 1:4:4 -o operating.nc`
 
@@ -352,8 +352,10 @@ def operating(
             the file by default.
         mu: friction likewise, of the contacts that have none of their own.
         measured: list of measured noises (text or Excel) with columns like pressure, speed [km/h],
-            mu, frequency [Hz], level [dB]; an empty frequency is a quiet point.
-        frequency_band: largest difference of frequencies of one noise, over the measured one.
+            mu, frequency [Hz], level [dB]; an empty frequency is a quiet point. Each is compared
+            with the nearest point of the map.
+        frequency_band: largest difference between the frequency of a measured noise and the
+            predicted one, over the measured one.
     """
     refuse_existing(output, force=files.force)
 

@@ -24,8 +24,8 @@ def explain(
     Args:
         config: configuration laid over the paper's, as for `snakemake --configfile`; repeatable.
         quick: coarse grids and short horizons, as for `squealpipe run --quick`.
-        time: instead, the CPU seconds of each job when it last ran in this folder, and how many of
-            them went into compiling.
+        time: print instead the CPU seconds that each rule took when it last ran in this folder, and
+            how many of them went into compiling.
         json_: print JSON.
     """
     if time:
@@ -81,7 +81,7 @@ def _tell_costs(*, json_: bool) -> int:
     total = [sum(each[part] or 0.0 for each in costs.values()) for part in range(3)]
     grid = Table(title="seconds of the last runs", title_justify="left")
     grid.add_column("rule")
-    for name in ("CPU", "of it compiling", "clock"):
+    for name in ("CPU", "of which compiling", "clock"):
         grid.add_column(name, justify="right")
     for rule, cost in [*costs.items(), ("all", total)]:
         grid.add_row(rule, *("" if each is None else f"{each:.1f}" for each in cost))

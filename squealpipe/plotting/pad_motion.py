@@ -52,8 +52,8 @@ class PadMotion:
         schema = dataset.attrs.get("schema", "the file")
         if schema not in SHOWABLE:
             raise ValueError(
-                f"{schema} is no run that can be seen or heard; give what `squealpipe simulate` "
-                "or `squealpipe assess -o` writes"
+                f"{schema} is no run that can be seen or heard; give what `squealpipe simulate`, "
+                "`squealpipe assess -o` (of a pad) or `squealpipe squeal --run` writes"
             )
         settled = schema == "assess"
         names = ("path_time", "path_x", "path_y", "path_force", "path_regime")

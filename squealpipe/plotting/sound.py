@@ -66,8 +66,8 @@ class Listening:
     """Rms velocity over the largest of the run, and 1000 times that over the belt's speed, below
     which a motion has died out (60 dB). A tenth: round-off is amplified to a tone."""
     audible: float = 1e-2
-    """Lines this far below the strongest (40 dB) count as heard. A tenth: kinks at stick demand
-    rates far beyond what an ear resolves."""
+    """Amplitude over that of the strongest line above which a line counts as heard (40 dB below
+    it). A tenth: kinks at stick demand rates far beyond what an ear resolves."""
     samples_per_period: float = 4.0
     """Samples in a period of the highest line that is heard. Half as many is the least that holds
     the line at all, and its amplitude is lost between samples."""
@@ -225,7 +225,8 @@ def _signal(
     if run.attrs.get("schema") == STRUCTURE_RUN:
         structure = StructureMotion.read(run)
         signal, words = structure.heard(at)
-        if (missing := _missing(structure.time, signal)) is not None:
+        missing = _missing(structure.time, signal, of_structure=True)
+        if missing is not None:
             raise TooCoarseError(missing)
         return structure.time, signal, words
     motion = _audible(run)
@@ -303,8 +304,10 @@ def _levels(motion: PadMotion, part: np.ndarray) -> WindowLevels:
     return WindowLevels(rms, separated, stuck, peaks=np.zeros(1))
 
 
-def _missing(time: np.ndarray, signal: np.ndarray) -> str | None:
-    """Return what is missing in samples to be heard; None if nothing is."""
+def _missing(
+    time: np.ndarray, signal: np.ndarray, *, of_structure: bool = False
+) -> str | None:
+    """Return why samples cannot be heard, with a remedy; None if they can."""
     try:
         step = step_of(time)
     except ValueError as error:
@@ -317,10 +320,14 @@ def _missing(time: np.ndarray, signal: np.ndarray) -> str | None:
         return None
     # what is between the samples may lie higher still
     points = math.ceil(2.0 * needed * time[-1])
+    remedy = (
+        "write the run again with `squealpipe squeal --run`"
+        if of_structure
+        else f"simulate it with --points {points} or more"
+    )
     return (
         f"the run is sampled too coarsely to be heard: {engineering(1.0 / step, 'Hz', 3)}, and its "
-        f"lines reach {engineering(highest, 'Hz', 3)}; simulate it "
-        f"with --points {points} or more"
+        f"lines reach {engineering(highest, 'Hz', 3)}; {remedy}"
     )
 
 

@@ -153,15 +153,15 @@ class ContactStructure:
         self.frictions = tuple(
             friction_of(each, self.friction) for each in self.contacts
         )
-        """Of each contact: its own law and coefficients, or the structure's."""
+        """Friction of each contact: its own law and coefficients, or the structure's."""
         self.given_load = numbers_in_si("load", load, "N")
         self.load = self._load(self.given_load)
         self.modes: np.ndarray | None = None
-        """Of a reduced structure, (n of the whole, n): amplitudes → displacements."""
+        """Modes of a reduced structure, (n of the whole, n): amplitudes → displacements."""
         self.record: dict[str, Any] = {}
-        """Of a reduced structure: how many modes were kept, and their errors."""
+        """Record of a reduced structure: how many modes were kept, and their errors."""
         self.reduced_from: ReducedFrom | None = None
-        """Of a reduced structure: its origin."""
+        """Origin of a reduced structure."""
 
     def _refuse_other_sizes(self) -> None:
         """Raise if mesh or names are of another number of degrees of freedom."""

@@ -25,7 +25,7 @@ class Structure(ContactStructure):  # noqa: D101 (that of the definition)
 
     @classmethod
     def read(cls, path: str | PathLike[str]) -> Self:
-        """A structure from its file; see :func:`squealpipe.structures.files.read`."""
+        """Read a structure from its file; see :func:`squealpipe.structures.files.read`."""
         return read(path, cls)
 
     @classmethod
@@ -42,7 +42,7 @@ class Structure(ContactStructure):  # noqa: D101 (that of the definition)
         units: str | None = None,
         **arguments: Any,
     ) -> Self:
-        """A structure whose contacts are faces of a mesh.
+        """Make a structure whose contacts are faces of a mesh.
 
         Args:
             mass, stiffness, damping: matrices, or files of them.
@@ -77,10 +77,10 @@ class Structure(ContactStructure):  # noqa: D101 (that of the definition)
         )
 
     def with_points(self, points: int) -> Self:
-        """The same with so many contacts for each face of a mesh; neighbours are merged.
+        """Return the structure with at most so many contacts for each face of a mesh.
 
-        Stiffness, force and first moments of a face stay, so that what fewer points change is what
-        the answer owes to how pressure is spread; see
+        Neighbours are merged; stiffness, force and first moments of a face stay. So what changes in
+        an answer is the effect of how the pressure is spread; see
         :func:`squealpipe.structures.fewer_points.with_points`.
         """
         from squealpipe.structures.fewer_points import with_points
@@ -92,7 +92,8 @@ class Structure(ContactStructure):  # noqa: D101 (that of the definition)
 
         Beside directions, stiffness, preload and speed the columns say how each contact of a mesh
         came about: its nodes and those that it meets, area, gap and position. Numbers have units,
-        so that the table is right in files of any; a friction law of a contact's own is refused.
+        so that the table is right in a file of any units. A friction law of a contact's own is
+        refused.
 
         Raises:
             ValueError: a reduced structure, whose contacts act on modes; or such a law.

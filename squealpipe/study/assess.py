@@ -27,16 +27,15 @@ def assess(
     tol: Tolerance = 1e-12,
     workers: Workers = None,
 ) -> xr.Dataset:
-    """Return whether a brake squeals or hammers, at which frequency, how loud, why, and what stops
-    it.
+    """Tell whether a brake squeals or hammers, at what frequency, how loud, why, and what stops it.
 
-    Two starts are told: steady sliding, pushed by 1 % of the static deformation in the direction
-    in which small motions grow fastest, and (prefix ``sudden_``) rest under the whole load at
-    once. Each is run until its motion has settled, at most 20,000 periods (of a pad 2π √(2m/(k1 +
-    k2)), of a structure those of the slowest mode that grows). The ``verdict`` is that of the
-    first: quiet (dies out; undamped: stays below ten times the push), squeals (lasts, contact
-    kept), hammers (lasts, contact lost again and again), or undetermined. Of a pad without steady
-    sliding it is that of the sudden start.
+    The answer covers two starts: steady sliding, pushed by 1 % of the static deformation in the
+    direction in which small motions grow fastest, and (prefix ``sudden_``) rest under the whole
+    load at once. Each is run until its motion has settled, at most 20,000 periods (of a pad
+    2π √(2m/(k1 + k2)), of a structure those of the slowest mode that grows). The ``verdict`` is
+    that of the first: quiet (dies out; undamped: stays below ten times the push), squeals (lasts,
+    contact kept), hammers (lasts, contact lost again and again), or undetermined. Of a pad without
+    steady sliding it is that of the sudden start.
 
     Args:
         params: a pad on two springs (:class:`squealpipe.Parameters`), with both angles; or a
@@ -51,7 +50,7 @@ def assess(
             structure with a mesh ``"5005"`` is a node in all directions and ``"5005.3"`` one of
             them. The largest amount is that of the first entry, others go along in proportion.
         samples: random starts of a structure, for other motions beside steady sliding.
-        seed: of them.
+        seed: seed of the random starts.
         tol: tolerance of the Taylor integrator.
         workers: processes for a structure's runs; None takes all cores.
 

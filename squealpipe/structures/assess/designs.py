@@ -85,7 +85,7 @@ class Design:
 
     @property
     def margin(self) -> float:
-        """By how much small motions grow beyond their error, 1/s; infinite without sliding."""
+        """Growth of small motions beyond their error, 1/s; infinite without sliding."""
         if self.plant is None:
             return np.inf
         spectrum = self.plant.spectrum

@@ -130,7 +130,7 @@ def _noise(where: str, row: dict[str, float]) -> Noise:
 
 
 def matched(points: xr.Dataset, noises: list[Noise], band: float) -> dict[str, Any]:
-    """Return variables that set each measured noise beside the nearest operating point.
+    """Return variables that compare each measured noise with the nearest operating point.
 
     Args:
         points: dataset ``operating_map``.
@@ -171,7 +171,7 @@ def matched(points: xr.Dataset, noises: list[Noise], band: float) -> dict[str, A
 
 
 def _nearest(values: np.ndarray, at: float) -> int | None:
-    """Place of the value nearest to one; None where that lies beyond their range."""
+    """Return the place of the value nearest to one; None where that lies beyond their range."""
     room = OUTSIDE * max(np.ptp(values), abs(values).max())
     if not values.min() - room <= at <= values.max() + room:
         return None
@@ -181,7 +181,7 @@ def _nearest(values: np.ndarray, at: float) -> int | None:
 def _judged(points: xr.Dataset, frequency: float, band: float) -> tuple[float, Match]:
     """Return the predicted frequency that is nearest, and how it agrees with the measured one.
 
-    Several points stand beside a noise where the list does not say, as of friction.
+    Several points belong to a noise if the list leaves a quantity out, such as friction.
     """
     verdicts = np.ravel(points.verdict.values)
     predicted = np.ravel(points.frequency.values)

@@ -37,11 +37,11 @@ def operating_map(
     tol: Tolerance = 1e-9,
     workers: Workers = None,
 ) -> xr.Dataset:
-    """Which operating points of a structure are noisy, at which frequency, and how loud.
+    """Find which operating points of a structure are noisy, at which frequency, and how loud.
 
     At each point steady sliding is pushed by 1 % of the static deformation along the mode that
-    grows fastest and run until its motion has settled, as :func:`squealpipe.assess` does. Level is
-    the velocity of the contacts; sound pressure is not claimed.
+    grows fastest and run until its motion has settled, as :func:`squealpipe.assess` does. The level
+    is the velocity of the contacts, not a sound pressure.
 
     Args:
         structure: a :class:`squealpipe.Structure`.
@@ -52,18 +52,18 @@ def operating_map(
             structure by default.
         measured: name of a list of measured noises (text or Excel) with columns like ``pressure``,
             ``speed [km/h]``, ``mu``, ``frequency [Hz]``, ``level [dB]``; an empty frequency is a
-            quiet point. Each is set beside the nearest point of the map; nothing is fitted.
-        frequency_band: largest difference of frequencies of one noise, over the measured one.
+            quiet point. Each is compared with the nearest point of the map; nothing is fitted.
+        frequency_band: largest difference between the frequency of a measured noise and the
+            predicted one, over the measured one.
         tol: tolerance of the Taylor integrator.
         workers: processes; None takes all cores.
 
     Returns:
         Dataset ``operating_map``: over ``pressure``, ``speed`` and ``mu`` the verdict, frequency,
-        level and share of contact loss; over ``band``, third octaves, how often a point is noisy
-        there, as reports of dynamometer tests print it. With ``measured``, over ``noise``, the
-        predicted frequency beside the measured one and ``match``, with counts of hits, misses and
-        false alarms. Outcomes: converged, unresolved
-        (undetermined), no_sliding_state.
+        level and share of contact loss; over ``band``, third octaves, the share of points that are
+        noisy there, as in reports of dynamometer tests. With ``measured``, over ``noise``, the
+        measured and the predicted frequency and ``match``, with counts of hits, misses and false
+        alarms. Outcomes: converged, unresolved (undetermined), no_sliding_state.
 
     Raises:
         ValueError: an argument; no contacts; a structure that is too large.

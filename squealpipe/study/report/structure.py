@@ -347,8 +347,8 @@ def not_examined(answer: xr.Dataset) -> list[str]:
         "Wear, heat, the sound that is radiated, and parameters that scatter.",
         "Starts of more energy than the preload stores in the contacts.",
         (
-            "Whether a vibration that lasts dies out as well where small motions do: "
-            f"{judged_by_small_motions} judged by small motions."
+            "Whether a vibration that lasts also dies out where small motions do: "
+            f"{judged_by_small_motions} judged by small motions alone."
         ),
     ]
     if max(errors) > 0:
