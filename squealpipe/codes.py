@@ -39,7 +39,7 @@ class SpecialPoint(IntEnum):
 
 
 class Verdict(IntEnum):
-    """What a motion ends in."""
+    """Verdict on a motion: what it ends in."""
 
     quiet = 0
     squeals = 1

@@ -41,7 +41,7 @@ UNITS = UNITS_OF_INPUTS | {
 }
 """CF units of parameters and of the options of tasks, whose values may be texts with a unit."""
 STATE_NAMES, STATES = ("x", "y", "vx", "vy"), ("initial_state", "guess", "start")
-"""What a state consists of, and the arguments that are states."""
+"""Components of a state, and the arguments that are states."""
 BY_NAME = ("distributions", "design", "to", "vary", "fixed")
 """Arguments that may be mappings from names of parameters to values."""
 _OF_PARTS = frozenset({*BY_NAME, *STATES, *ANGLES})

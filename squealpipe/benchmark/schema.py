@@ -17,7 +17,7 @@ RUN_DIM = ("run",)
 
 
 class Role(IntEnum):
-    """Whether a method is ours or a public one."""
+    """Origin of a method: ours, or a public one."""
 
     public = 0
     ours = 1
@@ -54,7 +54,7 @@ WORK_PRECISION = DatasetSchema(
 
 
 class Reliability(IntEnum):
-    """What a method's answer to a hard scene is worth."""
+    """Worth of a method's answer to a hard scene."""
 
     not_applicable = 0
     right = 1

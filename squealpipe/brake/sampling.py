@@ -1,4 +1,4 @@
-"""At which instants a motion is looked at, and whether these resolve it."""
+"""Instants at which a motion is looked at, and whether these resolve it."""
 
 import math
 

@@ -187,5 +187,9 @@ def _check_values(
         raise ValueError(
             f"{path}, row {lines[0]}: the first {columns[0]} is {pairs[0][0]!r}; add a row at "
             f"{columns[0]} 0"
-            + (", whose value limits stick" if columns[0] == "speed" else "")
+            + (
+                ", whose value is the static coefficient"
+                if columns[0] == "speed"
+                else ""
+            )
         )

@@ -142,7 +142,7 @@ def _power(value: float) -> str:
 
 
 class _Scaled(Locator):
-    """Before another locator: its ticks are round once they are multiplied by a factor."""
+    """Locator around another one, whose ticks are round once they are multiplied by a factor."""
 
     def __init__(self, factor: float) -> None:
         super().__init__()
@@ -154,8 +154,8 @@ class _Scaled(Locator):
 
 
 class _ScaledLinear(_Scaled, AutoLocator):
-    """On a linear axis."""
+    """Locator of a linear axis."""
 
 
 class _ScaledLog(_Scaled, LogLocator):
-    """On a logarithmic axis."""
+    """Locator of a logarithmic axis."""

@@ -25,7 +25,7 @@ METHOD_MARKS = [
         strict=True,
     )
 ]
-"""How each method is drawn."""
+"""Mark and colour of each method."""
 SMALLEST = 1e-17
 """Errors below are drawn here: they are zero to the reference's last digit."""
 

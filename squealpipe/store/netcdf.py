@@ -33,7 +33,7 @@ ERRORS_OF_DAMAGED_FILES = (
     TypeError,
     MemoryError,
 )
-"""What netCDF-4 and Xarray raise on files with damaged bytes."""
+"""Errors of netCDF-4 and Xarray on files with damaged bytes."""
 
 
 @checked

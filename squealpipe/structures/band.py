@@ -20,7 +20,7 @@ from squealpipe.systems.progress import with_progress
 LARGEST_GROWTH = 0.25
 """Largest |growth| of the eigenvalues looked for, over the largest angular frequency."""
 FIRST_AT = {"right": 0.5, "left": 0.2}
-"""Where the first disc of each search lies in the band."""
+"""Places of the first disc of each search in the band."""
 SAME = 1e-6
 """Relative distance up to which values of both searches are one eigenvalue."""
 MOST_SEARCHES = 3

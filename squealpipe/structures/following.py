@@ -10,7 +10,7 @@ from squealpipe.structures.sliding import NoSlidingError
 from squealpipe.structures.spectrum import Spectrum
 
 FOLLOWING_HALVINGS = 4
-"""How often a step in friction is halved where shapes change more."""
+"""Number of times that a step in friction is halved where shapes change more."""
 
 
 def agreement(first: Spectrum, second: Spectrum) -> Any:
@@ -25,7 +25,7 @@ def agreement(first: Spectrum, second: Spectrum) -> Any:
 
 
 def successors(first: Spectrum, second: Spectrum) -> tuple[np.ndarray, np.ndarray]:
-    """For each mode of the first its place in the second, −1 if it has none; and their MAC."""
+    """Return the place in the second of each mode of the first, −1 without one; and their MAC."""
     mac = agreement(first, second)
     distance = np.abs(first.values[:, None] - second.values[None, :])
     # relative to the larger of both, so that each part of the spectrum counts alike

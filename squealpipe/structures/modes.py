@@ -82,7 +82,7 @@ def _lowest(
     number: int | None,
     omega_max: float | None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """By Lanczos about a point just below zero, where rigid bodies are no pole."""
+    """Compute them by Lanczos about a point just below zero, where rigid bodies are no pole."""
     shift = -1e-3 * float((np.abs(stiffness.diagonal()) / mass.diagonal()).min() or 1.0)
     # modes computed at first where it is not known how many there are up to a frequency
     wanted = number or 40

@@ -43,7 +43,7 @@ from squealpipe.systems.linear.system import LinearSystem
 from squealpipe.systems.system import System
 
 STICK_ROUND_OFF = 1e-14
-"""Over a typical force: a contact that friction lacks no more than this to hold sticks."""
+"""Force over a typical one: a contact sticks if friction lacks no more than this to hold it."""
 
 
 def system(
@@ -316,7 +316,7 @@ class Scale(NamedTuple):
 
     @classmethod
     def of(cls, structure: ContactStructure) -> Self:
-        """By the preloads, or where there are none by load, or by the belt."""
+        """Return sizes by the preloads, or where there are none by the load, or by the belt."""
         omega, modes = modes_at_rest(structure)
         elastic = omega[omega > 1e-6 * omega.max()]
         mean = float(np.sqrt((elastic**2).mean())) if elastic.size else 1.0
@@ -407,7 +407,7 @@ class _Contact:
         yield from self.belt.belt_switches(self._holds, ends, self._to_belt)
 
     def _starts(self) -> list[Any]:
-        """In which regime a run starts: the first that fits.
+        """Return the regime in which a run starts: the first that fits.
 
         Where the contact is just closed, its velocity decides; on the belt the friction that
         would hold it.

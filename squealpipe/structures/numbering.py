@@ -15,7 +15,7 @@ from squealpipe.structures.spectrum import Solver, Spectrum
 from squealpipe.systems.progress import with_progress
 
 NUMBERING_HALVINGS = 4
-"""How often a step in friction is halved on which a mode that turns unstable is lost."""
+"""Number of times that a step in friction is halved where a mode that turns unstable is lost."""
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ class Way:
         return self._carried(before.numbers, places, len(spectrum.pairs))
 
     def _go(self, low: float, high: float) -> None:
-        """To the next friction, past each at which contacts open or close."""
+        """Follow the modes to the next friction, past each at which contacts open or close."""
         solver = self.solver
         if not self.between:
             start, spectrum = self.steps[low], solver.at(high)

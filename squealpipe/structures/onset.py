@@ -234,7 +234,7 @@ class _Followed:
         raise NotImplementedError
 
     def _measure(self, mu: float) -> float:
-        """At a friction that was reached."""
+        """Return the measure at a friction that was reached."""
         raise NotImplementedError
 
 

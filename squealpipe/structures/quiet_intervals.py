@@ -42,7 +42,7 @@ class Following:
     """Narrowest step, over the range. Half as much: narrower stretches are seen, one halving more
     at each boundary."""
     located: float = 1e-12
-    """To which a boundary is located, over the range; more would show in printed digits."""
+    """Width to which a boundary is located, over the range; more would show in printed digits."""
     round_off: float = 1e-9
     """Growth over the largest eigenvalue up to which a mode does not grow. Ten times as much: modes
     that grow so slowly count as stable; a tenth: round-off of merging modes counts as growth."""

@@ -37,7 +37,7 @@ ERRORS_OF_READERS = (
     zipfile.BadZipFile,
     zlib.error,
 )
-"""What libraries raise on files that are cut off or of another form."""
+"""Errors of libraries on files that are cut off or of another form."""
 FIRST_BYTES = {
     b"\xef\xbb\xbf": "begins with a byte order mark; save it as UTF-8 without one",
     b"\xff\xfe": "is UTF-16; save it as UTF-8 without byte order mark",

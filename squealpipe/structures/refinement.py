@@ -70,13 +70,13 @@ def quotient(
 def error_of_rounding(
     pencil: Pencil, value: complex, right: np.ndarray, left: np.ndarray, rate: complex
 ) -> float:
-    """By how much rounded entries of the matrices can have moved an eigenvalue, rad/s."""
+    """Return how far rounded entries of the matrices can have moved an eigenvalue, rad/s."""
     moved = SURE * pencil.rounded(value, left, right)
     return _shift(pencil, moved, right, left, rate)
 
 
 def error_of_forces(pencil: Pencil, pair: Eigenpair) -> float:
-    """By how much contact forces and friction, being rounded, can have moved it, rad/s."""
+    """Return how far contact forces and friction, being rounded, can have moved it, rad/s."""
     moved = pencil.left_open(pair.value, pair.left, pair.right)
     if not moved:
         return 0.0
@@ -98,7 +98,7 @@ def _shift(
 def error_of_rounding_of_square(
     pencil: Pencil, square: float, right: np.ndarray, left: np.ndarray
 ) -> float:
-    """By how much rounded entries can have moved λ of K v = λ M v."""
+    """Return how far rounded entries can have moved λ of K v = λ M v."""
     moved = SURE * pencil.rounded(np.sqrt(abs(square)), left, right)
     return float(moved / max(abs(np.vdot(left, pencil.mass @ right)), 1e-300))
 

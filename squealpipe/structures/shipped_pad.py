@@ -12,7 +12,7 @@ from squealpipe.structures.structure import Structure
 from squealpipe.validation import Natural, NotNegative, Number, Positive, checked
 
 YOUNG, DENSITY, POISSON = 8e9, 2500.0, 0.25
-"""Of a friction material: Pa, kg/m³, 1."""
+"""Modulus, density and Poisson's ratio of a friction material: Pa, kg/m³, 1."""
 SUPPORT = (3e7, 5e7)
 """Total stiffness of the springs on the upper edge, along and across the belt, N/m."""
 

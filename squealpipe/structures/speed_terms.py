@@ -13,7 +13,7 @@ from squealpipe.systems.inputs.values import brief, is_whole_number, numbers_in_
 from squealpipe.text import suggestion
 
 TERM_UNITS = {"damping": "N s m-1", "stiffness": "N m-1"}
-"""What speed terms are parts of → CF unit."""
+"""Matrix that speed terms are parts of → its CF unit."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ from squealpipe.systems.inputs.values import brief
 from squealpipe.units import UnitError, in_si
 
 MATRIX_QUANTITIES = {"length": "m", "mass": "kg", "time": "s"}
-"""What each word of units like ``mm-t-s`` measures → its SI unit."""
+"""Quantity that each word of units like ``mm-t-s`` measures → its SI unit."""
 
 POUNDS = ("lb", "lbs")
 

@@ -13,7 +13,7 @@ import numpy as np
 from squealpipe.store.whole_files import checksum, whole_file
 
 Run = dict[str, np.ndarray]
-"""What one run gave: array by name."""
+"""Results of one run: array by name."""
 SHAPES = " shapes"
 """Ends the name of the array with the shapes of another one's parts."""
 

@@ -89,10 +89,10 @@ class Explanation:
         return together([job.seconds or 0.0 for job in self.jobs], self.cores)
 
     def estimate(self) -> str:
-        """For instance ``about 41 s on 2 cores, from recorded times``."""
+        """Return for instance ``about 41 s on 2 cores, from recorded times``."""
         unknown = [job.rule for job in self.jobs if job.seconds is None]
         if len(unknown) == len(self.jobs):
-            return "how long it takes is not known: none of these rules has run here"
+            return "no time estimate: none of these rules has run here yet"
         rest = f"; not counted, never run: {', '.join(unknown)}" if unknown else ""
         return f"about {duration(self.seconds)} on {self.cores} cores, from recorded times{rest}"
 

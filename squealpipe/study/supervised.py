@@ -91,7 +91,7 @@ def standing_lock(folder: Path = Path()) -> str:
 
 
 def _stated(holders: Iterable[Path]) -> list[dict[str, Any]]:
-    """Who holds the lock, by what files say; one that has gone or was cut off says nothing."""
+    """Read from files who holds the lock; a file that has gone or was cut off says nothing."""
     stated = []
     for path in holders:
         with suppress(FileNotFoundError, json.JSONDecodeError):

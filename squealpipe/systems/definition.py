@@ -67,7 +67,7 @@ ARGUMENTS = frozenset(
         *("parameter", "parameters", "label", "run", "regime", "self", "system"),
     )
 )
-"""Of the methods: no name of a system is one of these."""
+"""Names of the methods: no name of a system is one of these."""
 
 
 class Definition:
@@ -105,7 +105,7 @@ class Definition:
     """
 
     batch: Any = None
-    """What integrates runs in place of series that are compiled for the system; None: these."""
+    """Integrator of runs in place of series that are compiled for the system; None: these."""
     most_states, most_regimes = MOST_STATES, MOST_REGIMES
     scales: Any = None
     has_typical_sizes = True

@@ -28,8 +28,8 @@ class Following:
     """Thresholds of following; each comment says what another value would do."""
 
     located: float = 1e-2
-    """To which the boundary of any start is located: of the value, or rad. Half as much: one run
-    more, and twice as many small steps where a motion ends."""
+    """Width to which the boundary of any start is located: of the value, or rad. Half as much: one
+    run more, and twice as many small steps where a motion ends."""
     along: float = 0.95
     """Share of the way to the quiet value that a motion is led at once. More: it may leave its
     basin, although it lasts there."""
@@ -62,7 +62,7 @@ class Subjects(Protocol):
 
 
 Test = Callable[[Sequence["Side"], Sequence[float]], list[bool]]
-"""Whether the subjects of some sides at some values are quiet."""
+"""Test that tells whether the subjects of some sides at some values are quiet."""
 
 
 @dataclass

@@ -28,7 +28,8 @@ class Search:
     """Thresholds of the search; each comment says what another value would do."""
 
     located: float = 1e-3
-    """To which a boundary is located by runs: of the value, or rad. Half as much: one run more."""
+    """Width to which a boundary is located by runs: of the value, or rad. Half as much: one run
+    more."""
     least: float = 1e-3
     """Values below this, over the present one, are located as if they were this. Half as much: one
     run more where a boundary lies near 0."""
@@ -36,7 +37,7 @@ class Search:
     """Most values within a stretch that are run. Twice as many: shorter noise within quiet is
     seen, at twice the cost."""
     root: float = 1e-14
-    """To which the linear boundary is located, relatively; more would show in printed digits."""
+    """Relative width to which the linear boundary is located; more would show in printed digits."""
 
 
 SEARCH = Search()
@@ -98,10 +99,10 @@ class QuietInterval:
 
 
 Margin = Callable[[Any], float]
-"""By how much small motions of a subject grow faster than round-off, 1/s; positive where there is
+"""Growth of small motions of a subject beyond round-off, 1/s; positive where there is
 no steady sliding."""
 Test = Callable[[Sequence[Cure], Sequence[float]], Sequence[bool]]
-"""Whether a push dies out at some values of some parameters."""
+"""Test that tells whether a push dies out at some values of some parameters."""
 
 
 def linear_intervals(cure: Cure, margin: Margin) -> list[QuietInterval]:

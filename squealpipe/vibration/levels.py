@@ -47,7 +47,7 @@ class Measurement:
     shown: float = 12.0
     """Periods that the picture shows."""
     padding: int = 4
-    """How much finer the grid of the peaks is than the resolution. 2: frequencies are off by a
+    """Resolution over the step of the grid in which peaks are sought. 2: frequencies are off by a
     hundredth of the resolution."""
     repeats: float = 1e-4
     """Largest difference of event intervals of a periodic motion, over their mean. Ten times as

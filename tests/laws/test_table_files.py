@@ -143,7 +143,10 @@ REFUSED = {
     ),
     "a first speed above 0": (
         "speed,mu\n0.1,0.5\n1,0.3\n",
-        "row 2: the first speed is 0.1; add a row at speed 0, whose value limits stick",
+        (
+            "row 2: the first speed is 0.1; add a row at speed 0, whose value is the static "
+            "coefficient"
+        ),
         "speed,mu\n0,0.5\n0.1,0.5\n1,0.3\n",
     ),
     "a coefficient above 2": (

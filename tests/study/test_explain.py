@@ -60,7 +60,7 @@ def test_plan_names_figures_and_time():
     )
     assert jobs[2].why() == "missing; follows map_validity"
     assert json.loads(json.dumps(plan.as_dict()))["jobs"][0]["rule"] == "map_validity"
-    assert "not known" in Explanation(jobs=[jobs[2]]).estimate()
+    assert "no time estimate" in Explanation(jobs=[jobs[2]]).estimate()
 
 
 def test_a_job_writes_down_its_cpu_time_and_that_of_its_children(tmp_path):

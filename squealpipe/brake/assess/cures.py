@@ -47,7 +47,7 @@ class Boundary(NamedTuple):
 
 
 def growth_margin(design: Design) -> float:
-    """By how much small motions grow faster than round-off, 1/s; positive without any sliding."""
+    """Growth of small motions beyond round-off, 1/s; positive without any sliding."""
     sliding = Sliding.of(design)
     return design.rate if sliding is None else sliding.margin
 

@@ -100,7 +100,7 @@ class Level(IntEnum):
 
 
 QUESTIONS = ("contact_lost", "frequency", "peak_contact_force", "max_displacement")
-"""What can be asked of a scene."""
+"""Question that can be asked of a scene."""
 
 
 MODEL_LADDER = DatasetSchema(

@@ -169,7 +169,7 @@ def slope(speed: Any, p: Any) -> Any:
 
 
 def static_coefficient(p: Any) -> Any:
-    """μs, which limits stick: ``p.mu_static``, where that is None the law's at speed 0.
+    """Return the static coefficient: ``p.mu_static``, where that is None the law's at speed 0.
 
     A formula that falls to μ from a static coefficient that is none of its own is μ throughout.
     """

@@ -58,7 +58,7 @@ def lines(comparison: Comparison, *, every: bool = False) -> list[str]:
 
 
 def statement_line(change: StatementChange) -> str:
-    """For instance ``S3: holds → fails, 0.96 → 0.71``."""
+    """Return for instance ``S3: holds → fails, 0.96 → 0.71``."""
     verdicts = [verdict or "not judged" for verdict in change.verdicts]
     values = ["–" if value is None else f"{value:.4g}" for value in change.values]
     stated = " → ".join(verdicts) if change.verdict_changed else verdicts[0]
@@ -88,7 +88,7 @@ def _dataset_lines(item: DatasetDifference, *, every: bool) -> Iterator[str]:
 
 
 def verdict_line(comparison: Comparison) -> str:
-    """For instance ``different: 9 datasets (equal 8, different 1), 820 of 900 values compared``."""
+    """Return a line like ``different: 9 datasets (equal 8, different 1), 820 of 900 values …``."""
     if comparison.reason:
         return f"not comparable: {comparison.reason}"
     counts = {

@@ -66,7 +66,7 @@ ELEMENTS = {
     "triangle6": Kind(6, (tuple(range(6)),), is_shell=True),
     "quad8": Kind(8, (tuple(range(8)),), is_shell=True),
 }
-"""By meshio's name."""
+"""Elements by meshio's name."""
 CORNERS = {3: 3, 4: 4, 6: 3, 8: 4}
 """Number of nodes of a face → number of its corners."""
 

@@ -20,7 +20,7 @@ FACTORS = {
     "mu": ("coefficient of friction", "1"),
     "belt_speed": ("belt speed", "m s-1"),
 }
-"""What modes are always computed over."""
+"""Dimensions over which modes are always computed."""
 MODES_ARGUMENTS = {
     "mu_static": ("limit of friction in stick", "1"),
     "friction_speed": ("speed at which friction falls", "m s-1"),
@@ -38,12 +38,12 @@ OF_CONTACT = {
     "preload": "factor of the preload",
     "stiffness": "factor of the stiffness",
 }
-"""What of one contact can be a factor, named ``<contact>_preload``."""
+"""Quantities of one contact that can be factors, named ``<contact>_preload``."""
 _NAME = re.compile(rf"^{NAME} over (?P<dims>\w+(?:, \w+)*)$")
 
 
 class Onset(IntEnum):
-    """Why a critical friction is what it is."""
+    """Reason why a critical friction is what it is."""
 
     stable = 0
     located = 1
@@ -53,7 +53,7 @@ class Onset(IntEnum):
 
 
 class SpeedOnset(IntEnum):
-    """Why a critical speed is what it is."""
+    """Reason why a critical speed is what it is."""
 
     stable = 0
     turns_unstable = 1

@@ -27,7 +27,7 @@ SAME_MODE = 0.1
 SAMPLES_PER_FAST_PERIOD = 12.0
 """Samples in a period of the fastest mode."""
 FEWEST_SAMPLES, MOST_SAMPLES = 2**14, 2**16
-"""In each window."""
+"""Samples in each window."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,7 +68,7 @@ def without_mode(structure: ContactStructure) -> PushEnd:
 
 
 def _died_out(plant: Plant, before: float, now: float) -> bool:
-    """By the velocities of all modes in two windows."""
+    """Compare the velocities of all modes in two windows."""
     # a motion that does not grow, and has half the velocity of the push, has died out
     return now < 0.5 * PUSH_OF_A_MODE * np.sqrt(plant.energy) and now <= before
 

@@ -50,7 +50,7 @@ WIDTHS = (
     (0.1, 0.1),
     (0.03, 0.03),
 )
-"""Of friction over the belt's speed, and of contact over the preload."""
+"""Widths of smoothing: of friction over the belt's speed, and of contact over the preload."""
 
 
 @recorded(

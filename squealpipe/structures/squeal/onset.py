@@ -13,7 +13,7 @@ from squealpipe.structures.sliding import NoSlidingError
 from squealpipe.structures.squeal.plant import Plant
 
 SEARCHED_FACTOR = 2.0
-"""Where nothing grows: so far beyond its own friction an onset is sought, at so many places."""
+"""Factor of the structure's own friction up to which an onset is sought where nothing grows."""
 BELOW = 0.99
 """Friction over that of the onset at which small motions have to die out."""
 

@@ -87,7 +87,7 @@ class Smoothed:
         return np.concatenate([v, rate - numbers.stiffness @ q - numbers.damping @ v])
 
     def run(self, start: np.ndarray, times: np.ndarray, tol: float) -> Samples:
-        """By LSODA (ODEPACK), which changes between methods for stiff and other systems.
+        """Integrate by LSODA (ODEPACK), which changes between methods for stiff and other systems.
 
         Args:
             times: instants, the first of which is the start, s.

@@ -57,6 +57,6 @@ class Remaining:
         )
 
     def words(self, now: float) -> str:
-        """For instance ``, about 41 s left``; empty where nothing is known."""
+        """Return for instance ``, about 41 s left``; empty where nothing is known."""
         left = self.left(now)
         return "" if left is None else f", about {duration(left)} left"

@@ -33,7 +33,7 @@ OF_STRUCTURES = {
 }
 """Words for what is changed of a structure; modifications have the names that they were given."""
 NOT_FOUND = "none"
-"""In place of a value that was not found within the range searched."""
+"""Text in place of a value that was not found within the range searched."""
 CHEAPEST = 3
 """Cures that an answer names."""
 
@@ -112,7 +112,7 @@ def headline(answer: xr.Dataset, prefix: str = "") -> str:
 
 
 def cause(answer: xr.Dataset) -> str:
-    """Why, in one sentence, and where the mass slides if that is far away."""
+    """Say why, in one sentence, and where the mass slides if that is far away."""
     return " ".join(filter(None, (_cause(answer), _far(answer))))
 
 

@@ -88,7 +88,7 @@ def _critical(modes: xr.Dataset) -> float:
 
 
 def cause(modes: xr.Dataset, answer: xr.Dataset) -> str:
-    """Why, in a sentence for each of the fastest modes."""
+    """Say why, in a sentence for each of the fastest modes."""
     growing, beyond = _unstable(modes), _beyond(answer)
     if not growing and beyond:
         return f"Cause: not known of the mode at {beyond}, beyond the band that was examined."

@@ -20,7 +20,7 @@ NUMBERS = (
     "largest_x",
     "largest_y",
 )
-"""What is given of each run, as in its summary."""
+"""Quantities that are given of each run, as in its summary."""
 
 
 def _number(meaning: str, units: str = "1") -> Variable:

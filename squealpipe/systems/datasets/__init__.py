@@ -18,7 +18,7 @@ from squealpipe.systems.datasets.outcomes import Outcome as Outcome
 from squealpipe.systems.inputs.gate import checked
 
 SYSTEM = "system "
-"""How the schemas begin that datasets of systems state: ``system ensemble``."""
+"""Beginning of the schemas that datasets of systems state: ``system ensemble``."""
 
 
 class SchemaError(ValueError):
@@ -179,7 +179,7 @@ ANGLE_CONVENTION = (
     "+L2 sin alpha2), from the start of the mass; x along the belt (its motion for V > 0), y away "
     "from it; angles in rad"
 )
-"""What angles and axes mean, in every dataset that has angles."""
+"""Meaning of angles and axes, in every dataset that has angles."""
 
 ABSENT = -1
 """Flag of places beyond the end of a run that is shorter than the longest of its sweep."""
