@@ -28,6 +28,7 @@ def test_the_time_of_a_command_is_that_of_all_its_processes():
     assert 1.0 <= command_time([sys.executable, "-c", both]) < 2.0
 
 
+@pytest.mark.release
 def test_a_study_that_costs_more_than_is_stored_is_refused(tmp_path):
     costs = tmp_path / ".snakemake/squealpipe/costs"
     costs.mkdir(parents=True)

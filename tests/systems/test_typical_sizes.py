@@ -30,6 +30,7 @@ def oscillator(size):
     )
 
 
+@pytest.mark.release
 def test_motions_of_any_size_in_one_ensemble_are_as_exact_as_alone():
     """In proportion to the size they are one motion, whose energy is kept."""
     sizes = np.array([1e-60, 1e-9, 1.0, 3e12])

@@ -226,7 +226,11 @@ def test_a_run_too_long_to_settle_says_so():
     assert cycle.outcome == Outcome.step_limit
     stiff = STICKING.with_(k2=1e8)
     assert limit_cycle(stiff, *PENDULUM, **few).outcome == Outcome.step_limit
-    branch = cycle_branch(stiff, *PENDULUM, parameter="mu", to=0.2)
+
+
+@pytest.mark.release
+def test_a_branch_whose_first_cycle_is_too_long_to_settle_says_so():
+    branch = cycle_branch(STICKING.with_(k2=1e8), *PENDULUM, parameter="mu", to=0.2)
     assert branch.end == Outcome.step_limit
 
 
