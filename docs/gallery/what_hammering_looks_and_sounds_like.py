@@ -1,7 +1,7 @@
 # %% [markdown]
 # # What hammering looks and sounds like
 # A brake pad of 0.45 kg between two inclined springs is pressed on a belt. At (22°, 46°) friction couples
-# its two modes, and the pad is thrown off the belt 827 times a second. This page makes in Python what
+# its two modes, and the pad is thrown off the belt about 830 times a second. This page makes in Python what
 # `squealpipe animate` and `squealpipe listen` write.
 
 # %%

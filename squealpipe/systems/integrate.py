@@ -454,7 +454,7 @@ def _time_units(
         fits = (unit > 0.0) & (t_end / unit < math.inf)
     if not fits.all():
         raise ValueError(
-            f"{system.name}: time_scale = {unit.min()}: it is not a unit of time"
+            f"{system.name}: time_scale = {unit.min()}: a positive, finite time is needed"
         )
     return unit
 

@@ -173,7 +173,7 @@ def test_too_many_contacts_are_told_with_the_modes(monkeypatch):
     said = lines(answer)
     assert said[0] == (
         "Undetermined: nothing was run, because 17 contacts are more than the 16 that runs can "
-        "have."
+        "have (merge neighbours: `points` of a face, or with_points)."
     )
     assert len(answer.growth_rate) == len(growing(pad, 0.02)) == len(said) - 1
 

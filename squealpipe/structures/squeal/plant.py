@@ -98,11 +98,13 @@ class Plant:
         caps = Caps()
         if count > caps.contacts:
             return (
-                f"{count} contacts are more than the {caps.contacts} that runs can have"
+                f"{count} contacts are more than the {caps.contacts} that runs can have "
+                "(merge neighbours: `points` of a face, or with_points)"
             )
         if self.size > caps.modes:
             return (
-                f"{self.size} modes are more than the {caps.modes} that runs can have"
+                f"{self.size} modes are more than the {caps.modes} that runs can have "
+                f"(reduce it with n_modes={caps.modes} or fewer)"
             )
         return None
 
