@@ -30,6 +30,7 @@ SHOWN_VARIABLES: dict[str, tuple[str, Mapping[str, object]]] = {
     "claims": ("verdict", {}),
     "explorer": ("outcome", {}),
     "failure_atlas": ("verdict", {}),
+    "fewer_points": ("growth_rate", {}),
     "harmonic_forms": ("omega", {}),
     "linear_pull": ("lowest_contact_force", {}),
     "model_ladder": ("cheapest", {"question": "contact_lost"}),

@@ -1,13 +1,20 @@
-"""The same structure with fewer contacts: neighbours of each face merged."""
+"""The same structure with fewer contacts, neighbours of each face merged, and what that changes."""
 
+import json
+from collections import Counter
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
+from squealpipe.schema import Outcome, build
 from squealpipe.structures.contact import Contact, PointOrigin
 from squealpipe.structures.meshes.merging import merged
+from squealpipe.structures.schema.fewer_points import FEWER_POINTS
+from squealpipe.structures.sliding import NoSlidingError
 from squealpipe.structures.varied_friction import face_of
+from squealpipe.systems.datasets.versions import versions
 from squealpipe.systems.inputs.values import brief, is_whole_number
 
 
@@ -53,6 +60,76 @@ def with_points(structure: Any, points: int) -> Any:
             for number, group in enumerate(groups, 1)
         ]
     return structure.with_(contacts=contacts)
+
+
+def fewer_points(structure: Any, *, frequency_max: float | None = None) -> xr.Dataset:
+    """Unstable modes with one, two, four, … and all contact points of each face of a mesh.
+
+    Args:
+        structure: a :class:`squealpipe.Structure` with contacts from faces, not reduced.
+        frequency_max: modes up to there, Hz; needed beyond 1000 degrees of freedom.
+
+    Returns:
+        Dataset ``fewer_points`` over ``points``, the last of which is the structure as it is: the
+        modes that grow at its own friction and speed, the largest growth rate and its frequency.
+        Outcomes: converged, no_sliding_state, unresolved (modes in the band may be missing).
+
+    Raises:
+        ValueError: no contact comes from a mesh; a reduced structure; an argument.
+    """
+    of_faces = Counter(
+        face_of(each.name) or each.name
+        for each in structure.contacts
+        if each.origin is not None
+    )
+    if not of_faces:
+        raise ValueError(
+            "no contact comes from a face of a mesh, so none can be merged; name faces in "
+            "`contacts:`, or use Structure.from_mesh"
+        )
+    most = max(of_faces.values())
+    points = [2**power for power in range((most - 1).bit_length())] + [most]
+    rows = [_growing(structure.with_points(each), frequency_max) for each in points]
+    return build(
+        FEWER_POINTS,
+        {name: np.array([row[name] for row in rows]) for name in rows[0]},
+        {"points": points},
+        {
+            "made_by": "squealpipe.structures.fewer_points.fewer_points",
+            "model": "linear about steady sliding",
+            "method": "complex modes",
+            "tolerance": "round-off",
+            "parameters": json.dumps(structure.as_dict()),
+            "arguments": json.dumps({"frequency_max": frequency_max}),
+            **versions(),
+        },
+    )
+
+
+def _growing(structure: Any, frequency_max: float | None) -> dict[str, float]:
+    """Return the row of one number of points."""
+    row = {
+        "contacts": len(structure.contacts),
+        "unstable_modes": 0,
+        "growth_rate": np.nan,
+        "frequency": np.nan,
+    }
+    try:
+        modes = structure.complex_modes(frequency_max=frequency_max, critical=False)
+    except NoSlidingError:
+        return row | {"outcome": Outcome.no_sliding_state}
+    except RuntimeError:  # modes in the band may be missing
+        return row | {"outcome": Outcome.unresolved}
+    unstable = modes.unstable.values
+    if unstable.any():
+        growing = modes.isel(mode=np.flatnonzero(unstable))
+        fastest = growing.isel(mode=int(growing.growth_rate.values.argmax()))
+        row |= {
+            "unstable_modes": int(unstable.sum()),
+            "growth_rate": float(fastest.growth_rate),
+            "frequency": float(fastest.frequency),
+        }
+    return row | {"outcome": Outcome.converged}
 
 
 def _origin(contact: Contact) -> PointOrigin:

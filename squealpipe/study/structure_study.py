@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from squealpipe.structures.fewer_points import fewer_points
 from squealpipe.structures.pencil import DENSE
 from squealpipe.structures.schema.squealing import MOST_MODES
 from squealpipe.structures.squeal.plant import carried, check_modes
@@ -60,6 +61,15 @@ def modes_over_friction(structure: Structure, section: Mapping[str, Any]) -> xr.
     return structure.complex_modes(
         mu=allowed if name is None else {name: frictions},
         frequency_max=_band(structure, section["frequency_max"]),
+    )
+
+
+def modes_with_fewer_points(
+    structure: Structure, section: Mapping[str, Any]
+) -> xr.Dataset:
+    """Return the unstable modes of the whole structure by the number of points of each face."""
+    return fewer_points(
+        structure, frequency_max=_band(structure, section["frequency_max"])
     )
 
 

@@ -31,3 +31,23 @@ def test_the_report_says_its_onsets_and_its_headline(tmp_path, monkeypatch):
     assert " nan" not in text
     assert "None" not in text
     assert (results / "report/report.pdf").stat().st_size > 1000
+
+
+@pytest.mark.release
+@pytest.mark.parametrize(
+    ("example", "points", "compared"),
+    [("--disc", "", True), ("--disc", "points: 2", False), ("--structure", "", False)],
+)
+def test_fewer_points_are_compared_where_a_face_has_more_than_two(
+    tmp_path, monkeypatch, example, points, compared
+):
+    monkeypatch.chdir(tmp_path)
+    assert run(["init", "mine.yaml", example]) == 0
+    file = tmp_path / "mine/structure.yaml"
+    text = file.read_text(encoding="utf-8")
+    file.write_text(text.replace("    mu: 0.6", f"    mu: 0.6\n    {points}"))
+    words = ["--directory", str(tmp_path), "--configfile", str(tmp_path / "mine.yaml")]
+    done = run_snakemake(ROOT, *words, "--dry-run", "all")
+    assert done.returncode == 0, done.stderr[-3000:]
+    assert "analyse_structure" in done.stdout
+    assert ("compare_fewer_points" in done.stdout) == compared

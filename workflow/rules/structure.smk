@@ -1,6 +1,7 @@
 """A study of a structure (``structure:``): its complex modes, and which of them squeal."""
 
 from squealpipe.store.rerun.key import files_named_in
+from squealpipe.store.yaml_files import read_yaml
 
 STRUCTURE = settings("structure")
 
@@ -27,3 +28,19 @@ rule analyse_structure:
     threads: workflow.cores
     script:
         "../scripts/structure/analyse_structure.py"
+
+
+_contacts = read_yaml(Path(STRUCTURE["structure"]["file"])).get("contacts")
+
+# faces of a mesh; a table of contacts is no mapping
+if isinstance(_contacts, dict) and any(face.get("points", 3) > 2 for face in _contacts.values()):
+
+    rule compare_fewer_points:
+        input:
+            files=sorted(set(files_named_in(STRUCTURE))),
+        output:
+            data("structure/fewer_points"),
+        params:
+            settings=STRUCTURE,
+        script:
+            "../scripts/structure/compare_fewer_points.py"

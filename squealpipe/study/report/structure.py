@@ -48,6 +48,7 @@ def gather_structure(
         "ends": list(squealing.attractors(answer)),
         "onsets": onsets(modes),
         "contacts": contacts(answer),
+        "points": points(run.get("structure/fewer_points")),
         "structure": structure(modes, answer),
         "rest": not_examined(answer),
         "figures": pictures(STRUCTURE, figures, run),
@@ -223,6 +224,66 @@ def onsets(modes: xr.Dataset) -> list[dict[str, str]]:
 def _since(modes: xr.Dataset, index: int) -> float:
     critical = float(modes.critical_mu[index])
     return critical if np.isfinite(critical) else 0.0
+
+
+def points(fewer: xr.Dataset | None) -> dict[str, Any]:
+    """Return a sentence and a table of what fewer contact points change; none of two or no faces.
+
+    Args:
+        fewer: dataset ``fewer_points``, of a structure whose contacts come from faces.
+    """
+    if fewer is None or fewer.points[-1] <= 2:
+        return {"sentence": "", "rows": []}
+    rows = [
+        {
+            "points": str(int(at.points)),
+            "contacts": str(int(at.contacts)),
+            "unstable": str(int(at.unstable_modes)) if known else "–",
+            "growth": _number_or_dash(at.growth_rate),
+            "frequency": engineering(float(at.frequency), "Hz", 4)
+            if np.isfinite(at.frequency)
+            else "–",
+        }
+        for at in (fewer.isel(points=i) for i in range(fewer.sizes["points"]))
+        for known in [int(at.outcome) == Outcome.converged]
+    ]
+    return {"sentence": _needed_points(fewer), "rows": rows}
+
+
+def _needed_points(fewer: xr.Dataset) -> str:
+    """Tell from which number of points on as many modes grow as with all."""
+    most = int(fewer.points[-1])
+    if int(fewer.outcome[-1]) != Outcome.converged:
+        return f"With all {most} points for each face: {_reason(fewer.outcome[-1])}."
+    number_of_all = int(fewer.unstable_modes[-1])
+    same = (fewer.outcome == Outcome.converged) & (
+        fewer.unstable_modes == number_of_all
+    )
+    # the run of equal numbers that ends with all points: one match among others is chance
+    first = fewer.sizes["points"] - int(np.argmin([*same.values[::-1], False]))
+    if first == fewer.sizes["points"] - 1:
+        one = fewer.isel(points=first - 1)
+        told = (
+            f"the number of unstable modes is {int(one.unstable_modes)} instead of "
+            f"{number_of_all}"
+            if int(one.outcome) == Outcome.converged
+            else _reason(one.outcome)
+        )
+        return f"With {int(one.points)} points for each face instead of {most}: {told}."
+    one = fewer.isel(points=first)
+    count = int(one.points)
+    several = f"{count} point{'s' if count > 1 else ''}"
+    if not number_of_all:
+        return f"From {several} for each face on no mode grows, as with all {most}."
+    growths = (number(float(one.growth_rate)), number(float(fewer.growth_rate[-1])))
+    return (
+        f"From {several} for each face on as many modes grow as with all. With {several} instead "
+        f"of {most} the largest growth rate is {growths[0]} instead of {growths[1]} 1/s."
+    )
+
+
+def _reason(outcome: xr.DataArray) -> str:
+    return Outcome(int(outcome)).name.replace("_", " ")
 
 
 def _partner(modes: xr.Dataset, number_: int) -> str:

@@ -10,8 +10,10 @@ from scipy.optimize import brentq
 
 from squealpipe import Structure
 from squealpipe.cli import run
+from squealpipe.schema import Outcome, build
 from squealpipe.store.mistakes import ConfigError
 from squealpipe.store.rerun.key import files_named_in, rule_key
+from squealpipe.structures.schema.fewer_points import FEWER_POINTS
 from squealpipe.study.configuration.settings import PAPER, parse_study, read_study
 from squealpipe.study.report import squealing as words
 from squealpipe.study.report import structure as report
@@ -92,9 +94,74 @@ def test_both_onsets_and_the_added_damping_are_those_of_eigenvalues_from_numpy(
     assert float(answer.added_damping) == pytest.approx(damping, rel=1e-6)
 
 
+def fewer_points_of(growths):
+    """A dataset of the fastest growth rate and the number of modes by points; None: no sliding."""
+    counts = [0 if each is None else len(each) for each in growths.values()]
+    fastest = [max(each) if each else np.nan for each in growths.values()]
+    outcomes = [
+        Outcome.no_sliding_state if each is None else Outcome.converged
+        for each in growths.values()
+    ]
+    values = {
+        "contacts": [*growths],
+        "unstable_modes": counts,
+        "growth_rate": fastest,
+        "frequency": [2851.94 if count else np.nan for count in counts],
+        "outcome": outcomes,
+    }
+    arrays = {name: np.array(each) for name, each in values.items()}
+    return build(FEWER_POINTS, arrays, {"points": [*growths]})
+
+
+@pytest.mark.parametrize(
+    ("growths", "sentence"),
+    [
+        (
+            {1: [], 2: [8.84, 91.6], 4: [], 8: [55.48], 16: [41.68], 20: [24.94]},
+            (
+                "From 8 points for each face on as many modes grow as with all. "
+                "With 8 points instead of 20 the largest growth rate is 55.5 instead of 24.9 1/s."
+            ),
+        ),
+        # one match among others is chance
+        (
+            {1: [3.0], 2: [], 4: [2.0, 1.0], 5: [7.0]},
+            (
+                "With 4 points for each face instead of 5: "
+                "the number of unstable modes is 2 instead of 1."
+            ),
+        ),
+        (
+            {1: [], 2: [], 3: []},
+            "From 1 point for each face on no mode grows, as with all 3.",
+        ),
+        (
+            {1: [2.0], 2: None, 3: []},
+            "With 2 points for each face instead of 3: no sliding state.",
+        ),
+        (
+            {1: [2.0], 2: [1.0], 3: None},
+            "With all 3 points for each face: no sliding state.",
+        ),
+    ],
+)
+def test_the_report_says_from_which_number_of_points_on_the_answer_stays(
+    growths, sentence
+):
+    told = report.points(fewer_points_of(growths))
+    assert told["sentence"] == sentence
+    assert [row["points"] for row in told["rows"]] == [*map(str, growths)]
+
+
+def test_without_faces_or_with_two_points_there_is_no_table_of_points():
+    assert report.points(None)["rows"] == []
+    assert report.points(fewer_points_of({1: [2.0], 2: []}))["rows"] == []
+
+
 def test_the_answer_comes_first_and_says_mode_sound_cause_and_remedy(
     modes, answer, tmp_path
 ):
+    fewer = fewer_points_of({1: [], 2: [8.84, 91.6], 4: [55.48], 5: [24.94]})
     said = words.headline(answer)
     worst = answer.isel(attractor=int(answer.ends_in[0])).separated_fraction
     assert said.startswith("Hammers at 1.")
@@ -122,6 +189,7 @@ def test_the_answer_comes_first_and_says_mode_sound_cause_and_remedy(
         "ends": list(words.attractors(answer)),
         "onsets": report.onsets(modes),
         "contacts": report.contacts(answer),
+        "points": report.points(fewer),
         "structure": report.structure(modes, answer),
         "rest": report.not_examined(answer),
         "figures": {},
@@ -139,6 +207,8 @@ def test_the_answer_comes_first_and_says_mode_sound_cause_and_remedy(
     place = text.index("Seen and heard</h2>")
     assert place < text.index("<video controls></video>") < text.rindex("What becomes")
     assert text.index(said) < text.rindex("What becomes of each unstable mode")
+    assert report.points(fewer)["sentence"] in text
+    assert '<td data-label="Largest growth rate (1/s)">55.5</td>' in text
 
 
 def test_a_quiet_structure_is_told_with_its_margin(section, tmp_path, answer):

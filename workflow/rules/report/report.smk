@@ -50,7 +50,7 @@ if STUDY.paper:
 
     TARGETS += rules.write_report.output
 elif STUDY.structure is not None:
-    told = {name: MADE[name] for name in ("structure/modes", "structure/squeal", "structure/run")}
+    told = {name: made for name, made in MADE.items() if name.startswith("structure/")}
 
     rule write_structure_report:
         input:
