@@ -1,5 +1,7 @@
 """What fewer contact points of a face change, by an own assembly and by the disc brake."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -84,6 +86,21 @@ def test_growth_by_points_is_that_of_dense_eigenvalues_of_merged_contacts(small)
             fastest.imag / (2 * np.pi), rel=1e-6
         )
     assert found.unstable_modes.max() > 0
+
+
+def test_faces_of_fewer_contacts_stay_and_a_belt_at_rest_is_told(small):
+    structure, _, _ = small
+    second = [
+        replace(each, name=f"other_{number}")
+        for number, each in enumerate(structure.contacts[:2], 1)
+    ]
+    two_faces = structure.with_(contacts=[*structure.contacts, *second])
+    found = fewer_points(two_faces)
+    assert found.points.values.tolist() == [1, 2, 4, 6]
+    assert found.contacts.values.tolist() == [2, 4, 6, 8]
+    at_rest = fewer_points(structure.with_(belt_speed=0.0))
+    assert (at_rest.outcome == Outcome.no_sliding_state).all()
+    assert np.isnan(at_rest.growth_rate).all()
 
 
 def test_without_faces_and_of_a_reduced_structure_it_is_refused(small):
