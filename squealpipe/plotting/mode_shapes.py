@@ -38,7 +38,8 @@ def shape_of(modes: xr.Dataset, mode: int) -> np.ndarray:
     shape = one.shape_real.values.astype(float) + 1j * one.shape_imaginary.values
     if not np.isfinite(shape).all():
         raise ValueError(
-            f"mode = {mode!r} has no shape at mu = {float(modes.shape_mu):g}, where shapes are"
+            f"mode = {mode!r} has no stored shape: shapes are those of the modes that exist at "
+            f"mu = {float(modes.shape_mu):g}, of a large structure the unstable and the lowest ones"
         )
     return np.asarray(shape)
 

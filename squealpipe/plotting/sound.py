@@ -208,10 +208,15 @@ def sound(
     frequency = _strongest(signal, step_of(time))
     periods = frequency * (time[-1] - time[0])
     if not periods >= LISTENING.fewest_periods:
+        remedy = (
+            "reduce the structure to fewer modes (squealpipe squeal --n-modes)"
+            if run.attrs.get("schema") == STRUCTURE_RUN
+            else "run it longer (--t-end)"
+        )
         raise ValueError(
             "the settled part of the run is too short to be heard: "
             f"{number(periods, 2) if math.isfinite(periods) else 'fewer than 3'} periods of its "
-            f"strongest line, {LISTENING.fewest_periods:g} are needed; run it longer (--t-end)"
+            f"strongest line, {LISTENING.fewest_periods:g} are needed; {remedy}"
         )
     _check_audible(frequency, speed)
     loop, correlation = _loop(signal, step_of(time), seconds * speed, speed)

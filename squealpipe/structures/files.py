@@ -257,7 +257,7 @@ def _rotation(content: Mapping[str, Any], scales: Scales) -> Rotation | None:
     if not isinstance(given, Mapping):
         raise ValueError(  # noqa: TRY004 (of all arguments mistakes are values)
             f"rotation = {brief(given)}: {', '.join(keys)} are needed, like `rotation: {{axis: "
-            "[0, 0, 1], through: [0, 0, 0], speed: 20 rad/s}}`"
+            "[0, 0, 1], through: [0, 0, 0], speed: 20 rad/s}`"
         )
     for key in given:
         if key not in keys:

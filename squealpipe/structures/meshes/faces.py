@@ -22,14 +22,16 @@ class Face:
     Args:
         surface: name of the surface whose nodes become contacts: element faces, or a node set.
         against: name of the other surface; ``"belt"``: a rigid one.
-        stiffness: of the whole face, N/m, shared by the area of each node; or
-        stiffness_per_area: N/m³.
-        pressure: Pa; or
-        force: of the whole face, N, shared by the area of each node; or
-        pressures: Pa, by node: {node: pressure}, or a file with node and pressure a line.
+        stiffness: of the whole face, N/m, shared among the nodes by their areas.
+        stiffness_per_area: N/m³, in place of ``stiffness``.
+        pressure: Pa.
+        force: of the whole face, N, shared among the nodes by their areas; in place of
+            ``pressure``.
+        pressures: Pa, by node: {node: pressure}, or a file with a node and its pressure in each
+            line; in place of ``pressure``.
         mu: its own coefficient of friction; None: the structure's.
-        direction: in which ``against`` moves, three numbers; None: as the rotation says.
-        points: number of contacts to which neighbours are merged; None: one a node.
+        direction: direction in which ``against`` moves, three numbers; None: that of the rotation.
+        points: number of contacts to which neighbours are merged; None: one for each node.
 
     Raises:
         ValueError: names the argument, its value and what is needed.
