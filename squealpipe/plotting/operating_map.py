@@ -46,7 +46,7 @@ def _draw(axes: Axes, points: xr.Dataset, factor: float, unit: str) -> None:
                 fontsize=5,
             )
     axes.set(
-        title=f"friction {float(points.mu):g}; numbers: {unit}",
+        title=f"friction {float(points.mu):g}; labels in {unit}",
         xlabel="speed (m/s, or rad/s)",
         ylabel="preload over its present value",
     )

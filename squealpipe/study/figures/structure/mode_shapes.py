@@ -12,8 +12,8 @@ from squealpipe.study.figures.declared import report_figure
     caption=(
         "Shapes of the complex modes that grow fastest at the structure's own friction, at the "
         "instant of their largest displacement; where none grows, of those that decay slowest. "
-        "Grey: at rest; the brighter the farther a place moves. Without a mesh, arrows at the "
-        "degrees of freedom."
+        "Grey: at rest; brighter places move farther. Without a mesh, arrows at the degrees of "
+        "freedom."
     ),
     alt="Up to four deformed shapes of the structure, one for each of the modes that grow fastest.",
 )
