@@ -30,9 +30,7 @@ def write_vtu(modes: xr.Dataset, path: Path) -> Path:
         ValueError: no meshio, no mesh or no shapes.
     """
     if find_spec("meshio") is None:
-        raise ValueError(
-            f"{path} needs meshio; pip install 'squealpipe[fe]', or meshio"
-        )
+        raise ValueError(f"{path} needs meshio; install squealpipe[fe], or meshio")
     import meshio
 
     if "shape_real" not in modes:
