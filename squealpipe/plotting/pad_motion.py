@@ -55,6 +55,11 @@ class PadMotion:
                 f"{schema} is no run that can be seen or heard; give what `squealpipe simulate`, "
                 "`squealpipe assess -o` (of a pad) or `squealpipe squeal --run` writes"
             )
+        if "alpha1" not in dataset:
+            raise ValueError(
+                "the answer is of a structure, which is seen and heard by its run; write that with "
+                "`squealpipe squeal --run`"
+            )
         settled = schema == "assess"
         names = ("path_time", "path_x", "path_y", "path_force", "path_regime")
         if not settled:

@@ -206,6 +206,9 @@ def test_a_short_run_and_a_pitch_that_nobody_hears_are_refused_with_a_remedy_tha
         )
     with pytest.raises(ValueError, match="is no run"):
         sound(xr.Dataset(attrs={"schema": "stability_map"}))
+    # the answer for a structure, which has no angles
+    with pytest.raises(ValueError, match="squeal --run"):
+        sound(xr.Dataset(attrs={"schema": "assess"}))
 
 
 def test_the_component_that_is_asked_for_is_heard():
