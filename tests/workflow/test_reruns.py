@@ -93,7 +93,7 @@ def test_edited_sources_reach_what_imports_them(planned, module):
 
 def test_of_the_figures_of_a_rule_an_edit_of_one_reaches_that_one_alone(planned):
     """The rule draws them all; ``explain`` lists which change."""
-    edited = str(PACKAGE / "study/figures/linear/critical_friction.py")
+    edited = str(PACKAGE / "paper/figures/linear/critical_friction.py")
     drawn = [row for row in planned if row["rule"] == "draw_linear"]
     assert len(drawn) > 8
     reached = [row for row in drawn if edited in row["imports"]]
@@ -114,12 +114,18 @@ NO_INPUTS = ("results/", ".snakemake/", ".git/")
 def tables_and_watchers():
     """Tables of datasets with what they import, all read to get one by name; what watches jobs.
 
-    The table of a dataset that a script reads is in the key of the rule that wrote it.
+    The table of a dataset that a script reads is in the key of the rule that wrote it. A stub
+    says in which module a public name stands, and that module is an input.
     """
-    tables = [*(PACKAGE / "schema").rglob("*.py")]
+    modules = [*PACKAGE.rglob("*.py")]
+    tables = [path for path in modules if "schema" in (*path.parts, path.stem)]
     imported = {path for table in tables for path in closure(table)}
-    watchers = [path for path in PACKAGE.rglob("*.py") if path.name in WATCHERS]
-    return {str(path.relative_to(ROOT)) for path in [*tables, *imported, *watchers]}
+    rooms = {table.parent / "__init__.py" for table in tables}
+    rooms |= {table.parent.parent / "__init__.py" for table in tables}
+    watchers = [path for path in modules if path.name in WATCHERS]
+    stubs = PACKAGE.rglob("__init__.pyi")
+    beside = [*tables, *imported, *rooms, *watchers, *stubs]
+    return {str(path.relative_to(ROOT)) for path in beside}
 
 
 def test_every_module_and_data_file_that_a_script_really_reads_is_an_input(
