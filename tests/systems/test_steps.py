@@ -214,9 +214,9 @@ def test_a_surface_of_any_scale_is_the_same_surface():
 BALL = System(
     "ball over a floor",
     states={"y": "m", "v": "m/s"},
-    parameters={"floor": 0.0, "restitution": 0.9},
+    parameters={"floor": 0.0, "restitution": 0.9, "gravity": 9.81},
     regimes={"flight": {}},
-    field=lambda t, s, p, r: {"y": s.v, "v": -9.81},
+    field=lambda t, s, p, r: {"y": s.v, "v": -p.gravity},
     switches=[
         Switch(
             "impact",
@@ -245,6 +245,67 @@ def test_impacts_accumulate_wherever_zero_is_and_however_soon_the_run_ends(floor
             )
             assert run.outcome == Outcome.accumulation
             assert abs(run.end_time - exact) < 1e-4 * exact
+
+
+def drop(height, gravity, restitution):
+    """A ball falls from rest; its impacts come to an end at the time in closed form."""
+    exact = np.sqrt(2.0 * height / gravity) * (1.0 + restitution) / (1.0 - restitution)
+    run = BALL.simulate(
+        2.0 * exact,
+        times=np.zeros(1),
+        start={"y": height},
+        gravity=gravity,
+        restitution=restitution,
+    )
+    assert run.outcome == Outcome.accumulation
+    assert float(run.end_time) == pytest.approx(exact, rel=1e-9)
+
+
+@pytest.mark.parametrize(("height", "restitution"), [(7000.0, 0.3), (6000.0, 0.9)])
+def test_a_ball_from_a_great_height_bounces_on(height, restitution):
+    """Round-off of the height hides the floor from the first impact on, or once it is low."""
+    drop(height, 9.81, restitution)
+
+
+@pytest.mark.release
+def test_random_balls_come_to_rest_at_the_closed_form_time():
+    rng = np.random.default_rng(23)
+    for _ in range(200):
+        height, gravity = 10.0 ** rng.uniform([-4.0, -6.0], [5.0, 4.0])
+        drop(height, gravity, rng.uniform(0.1, 0.95))
+
+
+def test_a_level_that_is_passed_from_a_great_height_is_passed_once():
+    """By a marker, and by regimes that share it: the fall is 1, the way back up 1/2 each way."""
+    field = {
+        "states": {"y": "m", "v": "m/s"},
+        "parameters": {},
+        "field": lambda t, s, p, r: {"y": s.v, "v": -9.81 + r.lift},
+        "start": {"y": 1.0, "v": 0.0, "regime": "above"},
+    }
+    marked = System(
+        "level",
+        regimes={"above": {"lift": 0.0}},
+        switches=[Switch("pass", "above", lambda t, s, p, r: s.y, "above")],
+        **field,
+    )
+    shared = System(
+        "spring of constant force",
+        regimes={"above": {"lift": 0.0}, "below": {"lift": 3.0 * 9.81}},
+        switches=[
+            Switch("in", "above", lambda t, s, p, r: s.y, "below"),
+            Switch("out", "below", lambda t, s, p, r: -s.y, "above"),
+        ],
+        **field,
+    )
+    for height in np.geomspace(1e3, 1e5, 20):
+        fall = np.sqrt(2.0 * height / 9.81)
+        options = {"times": np.zeros(1), "start": {"y": height}}
+        run = marked.simulate(3.0 * fall, **options)
+        np.testing.assert_allclose(run.event_time, [fall], rtol=1e-14)
+        run = shared.simulate(10.5 * fall, **options)
+        exact = fall * np.array([1.0, 2.0, 4.0, 5.0, 7.0, 8.0, 10.0])
+        np.testing.assert_allclose(run.event_time, exact, rtol=1e-13)
 
 
 PAIR = System(

@@ -110,6 +110,41 @@ def watch(t: Any, m: Any, c: Any, lane: int, span: float) -> None:
 
 
 @part
+def _start_where_crossed(t: Any, m: Any, lane: int, which: int, before: int) -> None:
+    """Start a surface just crossed from zero, whatever round-off has left of it at its root.
+
+    A root is known to round-off of the terms along its step, and the state keeps that error when
+    they have become small: the terms after the switch tell nothing of it. So where a switch leads
+    no further from the surface than the root was, it is on it. Follows :func:`watch`, whose
+    surfaces are in the scratch.
+
+    Args:
+        which: the switch carried out.
+        before: the regime that it leaves.
+    """
+    bit, component = 1 << lane, m.component_of[before]
+    z, out = m.scratch[0], m.scratch[2]
+    for surface in range(t.n_surfaces):
+        crossed = m.falls[before, surface] == which or m.rises[before, surface] == which
+        height, terms = out[3 * surface], out[3 * surface + 1]
+        known = m.clocks[surface] != 0 or abs(height) <= SLACK * terms
+        if known or not (crossed and m.active[surface] & bit):
+            continue
+        for variable in range(t.n_states):
+            z[variable] = m.rows[layout.FIXED_ROWS + variable, lane]
+        after = m.integers[layout.REGIMES + component, lane]
+        put_into(t, m, lane, component, before)
+        settle(t, lane)
+        gauge(t, lane, m.scratch.shape[1])
+        put_into(t, m, lane, component, after)
+        settle(t, lane)
+        if abs(height) <= abs(out[3 * surface]) + SLACK * terms:
+            m.beyond[surface] &= ~bit
+            m.fresh[surface] |= bit
+        return
+
+
+@part
 def is_beyond(t: Any, m: Any, lane: int, which: int) -> bool:
     """Whether a lane has entered a regime beyond the surface of this switch of the regime."""
     beyond = False
@@ -194,10 +229,8 @@ def switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
             m.ticked[surface, lane] = clock
     component = m.component_of[regime]
     before = integers[layout.REGIMES + component, lane]
-    at_once = 0
-    if t.tangent:
-        _note_constants(t, m, lane)
-        at_once = 1 if is_beyond(t, m, lane, which) else 0
+    at_once = int(is_beyond(t, m, lane, which))
+    _note_constants(t, m, lane)
     put_into(t, m, lane, component, regime)
     settle(t, lane)
     if t.tangent:
@@ -213,6 +246,8 @@ def switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
     rows[first_time + before, lane] += clock - rows[entered, lane]
     rows[entered, lane] = clock
     watch(t, m, c, lane, span)
+    if not at_once:
+        _start_where_crossed(t, m, lane, which, before)
     _may_end(t, m, lane, kind, count)
 
 
