@@ -37,8 +37,8 @@ cost: dev  ## CPU time of the study that was made here, and of the tests, beside
 	PYTHONPATH=. $(BIN)/python tests/cost.py study .
 	PYTHONPATH=. $(BIN)/python tests/cost.py tests $(TESTS)
 
-# On any x86-64 the C library's fma is software, a hundred times slower: there tests/generic.txt, laws, models,
-# methods, linear tasks and at least one test of every other folder.
+# On any x86-64 the C library's fma is software, a hundred times slower: there tests/generic.txt: laws, models,
+# orbits, series, linear maps and at least one test of every other folder.
 test-processors: dev  ## the tests of each change, and the tiny study, as on other processors
 	$(AVX2) $(LOOP) & $(AVX2) $(ORBITS) && wait $$!
 	$(AVX2) $(TESTS)
