@@ -10,6 +10,7 @@ from squealpipe.cli.arguments import (
     DRAWN,
     Angle1OrFile,
     Drawn,
+    Frequency,
     OptionalAngle2,
     OutputElsewhere,
     Texts,
@@ -36,6 +37,8 @@ def assess(
     modify: Texts = None,
     samples: Whole,
     seed: Whole,
+    n_modes: Whole | None = None,
+    frequency_max: Frequency = None,
     output: OutputElsewhere = None,
     brake: Drawn = DRAWN,
 ) -> int:
@@ -55,6 +58,10 @@ def assess(
             with a mesh 5005.3 is a node and its direction.
         samples: number of random starts of a structure.
         seed: seed of the random starts.
+        n_modes: modes to reduce a structure to; by default as many as errors below 1 % need, and
+            no reduction up to 32 degrees of freedom.
+        frequency_max: reduce a structure to the modes that the unstable ones up to this frequency
+            need, Hz; needed beyond 1000 degrees of freedom.
         output: also write the dataset (.nc or .csv), and a picture of the settled motion beside it.
     """
     if isinstance(alpha1_or_file, Path):
@@ -73,6 +80,7 @@ def assess(
             brake,
             modify,
             {"samples": samples, "seed": seed, "tol": tol},
+            {"n_modes": n_modes, "frequency_max": frequency_max},
         )
     if alpha2 is None:
         raise ValueError(
@@ -82,6 +90,10 @@ def assess(
     if modify:
         raise ValueError(
             f"--modify {modify[0]!r}: only structures have modifications; leave it out for a pad"
+        )
+    if n_modes is not None or frequency_max is not None:
+        raise ValueError(
+            "--n-modes and --frequency-max reduce structures; leave them out for a pad"
         )
     if output is not None:
         verdict = compute(
@@ -120,6 +132,7 @@ def _assess_structure(
     brake: Drawn,
     modify: list[str] | None,
     options: dict[str, Any],
+    modes: dict[str, Any],
 ) -> int:
     """Tell the answer for the structure in a file; write it where that is asked for."""
     if output is not None:
@@ -129,23 +142,25 @@ def _assess_structure(
         raise ValueError("--picture is drawn beside a dataset; name that by --output")
 
     import squealpipe
+    from squealpipe.cli.structures import in_modes
     from squealpipe.structures.assess.assess import judge_structure
 
-    structure = squealpipe.Structure.read(file)
+    whole = squealpipe.Structure.read(file)
     named = modifications_of(modify or [])
+    stated = options | {"modify": modify or []} | modes
     with errors_in_options():
+        structure = in_modes(whole, modes)
         if output is None:
             with working("assess"):
                 judged = judge_structure(structure, modifications=named, **options)
             verdict = _told_in_turn(judged)
         else:
             given = {**options, "modifications": named or None}
-            stated = options | {"modify": modify or []}
             with working("assess"):
                 verdict = write(
                     lambda: squealpipe.assess(structure, **given),
                     output,
-                    config={"parameters": structure.as_dict(), **stated},
+                    config={"parameters": whole.as_dict(), **stated},
                 )
             finish(verdict, output, drawn, brake)
 

@@ -196,6 +196,21 @@ def _line(mode: Any) -> str:
     return words + "".join(text.format(x) for x, text in located if x == x)
 
 
+def in_modes(structure: Any, options: dict[str, Any]) -> Any:
+    """Return the structure that is run: reduced as ``n_modes`` and ``frequency_max`` ask.
+
+    Args:
+        options: of a command; both are taken out of it.
+    """
+    from squealpipe.structures.squeal.plant import carried, check_modes
+
+    number, limit = (options.pop(name, None) for name in ("n_modes", "frequency_max"))
+    check_modes(number)
+    if number is None:
+        return carried(structure, limit)
+    return structure.reduce(n_modes=number, frequency_max=limit)
+
+
 @options_of("squealing_modes")
 def squeal(
     file: Path,
@@ -240,16 +255,10 @@ def squeal(
         check_output(run, force=files.force, kinds=(".nc",), option="--run")
 
     from squealpipe import squealing_modes
-    from squealpipe.structures.squeal.plant import carried, check_modes
     from squealpipe.study.report.squealing import lines
 
     def squeal(structure: Any, **options: Any) -> xr.Dataset:
-        number, limit = (options.pop(k, None) for k in ("n_modes", "frequency_max"))
-        check_modes(number)
-        if number is None:
-            reduced = carried(structure, limit)
-        else:
-            reduced = structure.reduce(n_modes=number, frequency_max=limit)
+        reduced = in_modes(structure, options)
         reductions.append(reduced)
         return squealing_modes(reduced, **options)
 
@@ -333,6 +342,8 @@ def operating(
     mu: Numbers = None,
     measured: Path | None = None,
     frequency_band: Share,
+    n_modes: Whole | None = None,
+    frequency_max: Frequency = None,
     tol: Tolerance,
     workers: Workers,
     output: Output = Path("operating.nc"),
@@ -356,6 +367,10 @@ def operating(
             with the nearest point of the map.
         frequency_band: largest difference between the frequency of a measured noise and the
             predicted one, over the measured one.
+        n_modes: modes to reduce the structure to; by default as many as errors below 1 % need,
+            and no reduction up to 32 degrees of freedom.
+        frequency_max: reduce to the modes that the unstable ones up to this frequency need, Hz;
+            needed beyond 1000 degrees of freedom.
     """
     refuse_existing(output, force=files.force)
 
@@ -366,9 +381,10 @@ def operating(
         if text := options.pop("speed", None):
             read = partial(parse_number, units=structure.speed_unit)
             options["speed"] = parse_range(text, one=read)
-        return squealpipe.operating_map(structure, **options)
+        return squealpipe.operating_map(in_modes(structure, options), **options)
 
     asked: dict[str, Any] = {"pressure": pressure, "speed": speed, "mu": mu}
+    asked |= {"n_modes": n_modes, "frequency_max": frequency_max}
     asked |= {"tol": tol, "workers": workers, "frequency_band": frequency_band}
     asked["measured"] = None if measured is None else str(measured)
     dataset = _compute(operating_map, file, asked, output, files)
