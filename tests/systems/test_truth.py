@@ -9,6 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
+from squealpipe.brake.a1.motion_system import brake_of
 from squealpipe.functions import sqrt
 from squealpipe.schema import Outcome
 from squealpipe.systems.motion import MotionKind
@@ -204,5 +205,8 @@ def test_systems_are_found_where_the_first_release_had_them():
 
     assert former is module.impact_oscillator
     assert repr(former) == repr(impact_oscillator)
+    from squealpipe.systems.brake import brake_of as former_brake
+
+    assert former_brake is brake_of
     with pytest.raises(ModuleNotFoundError, match="no_such_system"):
         import squealpipe.systems.no_such_system  # noqa: F401
