@@ -489,7 +489,7 @@ CALLS: dict[str, tuple[float, Callable[..., Any], dict[str, Kind]]] = {
             period=NoneType,
             outputs=NoneType,
             stops=NoneType,
-            time_scale=int | float,
+            time_scale=int | float | NoneType,
         ),
     ),
     "Switch": (

@@ -109,7 +109,7 @@ def test_pads_as_parameters_and_as_matrices_have_one_level():
 
 
 @pytest.mark.release
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", range(6))
 def test_thirty_pads_as_parameters_and_as_matrices_have_one_answer(seed):
     pad, angles = random_pad(seed)
     one = assess(pad, *angles)
