@@ -54,9 +54,10 @@ def squealing_run(
     size, frequency = reduced.size, float(motion.dominant_frequency)
     fastest = max(float(answer.pole_frequency.max()), frequency)
     # a period of the fastest mode keeps 8 samples, one of the motion 32, as films need
-    step = 1.0 / max(8.0 * fastest, 32.0 * frequency)
+    each_period = max(8.0 * fastest / frequency, 32.0)
+    step = 1.0 / (each_period * frequency)
     # with 32 modes and 16 contacts a file of 30 MB
-    count = min(math.ceil(periods / frequency / step), 2**15)
+    count = min(math.ceil(periods * each_period * (1.0 - 1e-12)), 2**15)
     times = step * np.arange(count + 1)
     start = {
         f"{name}{place + 1}": float(values[place])
