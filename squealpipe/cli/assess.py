@@ -142,14 +142,14 @@ def _assess_structure(
         raise ValueError("--picture is drawn beside a dataset; name that by --output")
 
     import squealpipe
-    from squealpipe.cli.structures import in_modes
+    from squealpipe.cli.structures import as_asked
     from squealpipe.structures.assess.assess import judge_structure
 
     whole = squealpipe.Structure.read(file)
     named = modifications_of(modify or [])
     stated = options | {"modify": modify or []} | modes
     with errors_in_options():
-        structure = in_modes(whole, modes)
+        structure = as_asked(whole, modes)
         if output is None:
             with working("assess"):
                 judged = judge_structure(structure, modifications=named, **options)

@@ -196,19 +196,16 @@ def _line(mode: Any) -> str:
     return words + "".join(text.format(x) for x, text in located if x == x)
 
 
-def in_modes(structure: Any, options: dict[str, Any]) -> Any:
+def as_asked(structure: Any, options: dict[str, Any]) -> Any:
     """Return the structure that is run: reduced as ``n_modes`` and ``frequency_max`` ask.
 
     Args:
         options: of a command; both are taken out of it.
     """
-    from squealpipe.structures.squeal.plant import carried, check_modes
+    from squealpipe.structures.squeal.plant import in_modes
 
     number, limit = (options.pop(name, None) for name in ("n_modes", "frequency_max"))
-    check_modes(number)
-    if number is None:
-        return carried(structure, limit)
-    return structure.reduce(n_modes=number, frequency_max=limit)
+    return in_modes(structure, number, limit)
 
 
 @options_of("squealing_modes")
@@ -258,7 +255,7 @@ def squeal(
     from squealpipe.study.report.squealing import lines
 
     def squeal(structure: Any, **options: Any) -> xr.Dataset:
-        reduced = in_modes(structure, options)
+        reduced = as_asked(structure, options)
         reductions.append(reduced)
         return squealing_modes(reduced, **options)
 
@@ -381,7 +378,7 @@ def operating(
         if text := options.pop("speed", None):
             read = partial(parse_number, units=structure.speed_unit)
             options["speed"] = parse_range(text, one=read)
-        return squealpipe.operating_map(in_modes(structure, options), **options)
+        return squealpipe.operating_map(as_asked(structure, options), **options)
 
     asked: dict[str, Any] = {"pressure": pressure, "speed": speed, "mu": mu}
     asked |= {"n_modes": n_modes, "frequency_max": frequency_max}

@@ -9,7 +9,7 @@ import xarray as xr
 from squealpipe.structures.fewer_points import fewer_points
 from squealpipe.structures.pencil import DENSE
 from squealpipe.structures.schema.squealing import MOST_MODES
-from squealpipe.structures.squeal.plant import carried, check_modes
+from squealpipe.structures.squeal.plant import in_modes
 from squealpipe.structures.squeal.settled_run import (
     moving_attractors,
     resting_run,
@@ -104,11 +104,9 @@ def squealing(
 
 def reduced_structure(structure: Structure, section: Mapping[str, Any]) -> Any:
     """Return the structure in the modes in which it is run."""
-    number, limit = section["n_modes"], _band(structure, section["frequency_max"])
-    check_modes(number)
-    if number is None:
-        return carried(structure, limit)
-    return structure.reduce(n_modes=number, frequency_max=limit)
+    return in_modes(
+        structure, section["n_modes"], _band(structure, section["frequency_max"])
+    )
 
 
 def settled_motion(

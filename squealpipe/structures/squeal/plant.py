@@ -59,13 +59,25 @@ def carried(
     return fitted(whole, band, min(max(MOST_MODES, 4 * count), Caps().modes))
 
 
-def check_modes(number: int | None) -> None:
-    """Refuse a number of modes in which a structure cannot be run."""
-    if number is not None and number > Caps().modes:
+def in_modes(
+    structure: ContactStructure, n_modes: int | None, frequency_max: float | None
+) -> ContactStructure:
+    """Return a structure in so many modes, or in as few as give the answer where None is asked.
+
+    Args:
+        frequency_max: unstable modes up to there count, Hz; None: as it was reduced, or all.
+
+    Raises:
+        ValueError: more modes than a run can have, or what the reduction refuses.
+    """
+    if n_modes is None:
+        return carried(structure, frequency_max)
+    if n_modes > Caps().modes:
         raise ValueError(
-            f"n_modes = {number}: a structure can be run in {Caps().modes}; leave it out for the "
+            f"n_modes = {n_modes}: a structure can be run in {Caps().modes}; leave it out for the "
             "fewest that answer"
         )
+    return reduce(structure, n_modes=n_modes, frequency_max=frequency_max)
 
 
 class Plant:
