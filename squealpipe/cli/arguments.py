@@ -324,19 +324,34 @@ def modifications_of(texts: Sequence[str]) -> dict[str, Any]:
     """Return modifications of a structure by name; degrees of freedom counted from 1 become 0's."""
     found: dict[str, Any] = {}
     for name, content in pairs_of("--modify", texts).items():
-        words = content.split()
-        if len(words) != 3:
+        kind, *words = content.split()
+        if len(words) != 2 and not (kind == "patch" and len(words) == 3):
             raise ValueError(
                 f"--modify {name}={content}: a kind, a place and the largest amount are needed, "
-                'like "weight=added_mass 12 0.1"'
+                'like "weight=added_mass 12 0.1", "edge=chamfer lining 0.2" or, with mass and '
+                'damping ratio, "shim=patch BACK 0.2 0.05"'
             )
-        kind, place, amount = words
-        ends = [_freedom(each) for each in place.split(",")]
-        key = ends[0] if len(ends) == 1 else tuple(ends)
-        found[name] = {
-            kind: {key: as_number(amount) if not has_unit(amount) else amount}
-        }
+        place, *amounts = words
+        values = [each if has_unit(each) else as_number(each) for each in amounts]
+        if kind == "chamfer":
+            found[name] = {kind: {"face": place, "share": values[0]}}
+        elif kind == "patch":
+            # 0: a patch of damping alone
+            both = zip(("mass", "damping_ratio"), values, strict=False)
+            found[name] = {
+                kind: {"nodes": _nodes(place)} | {k: v for k, v in both if v}
+            }
+        else:
+            ends = [_freedom(each) for each in place.split(",")]
+            key = ends[0] if len(ends) == 1 else tuple(ends)
+            found[name] = {kind: {key: values[0]}}
     return found
+
+
+def _nodes(text: str) -> str | list[int]:
+    """Read the name of a node set, or numbers of nodes like 5005,5006."""
+    numbers = text.split(",")
+    return [int(each) for each in numbers] if all(map(str.isdigit, numbers)) else text
 
 
 def _freedom(text: str) -> int | str:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from squealpipe.structures.assess.designs import Design
-from squealpipe.structures.assess.modifications import Modification
+from squealpipe.structures.assess.modifications import read_modification
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.varied_friction import VariedFriction, face_of
 from squealpipe.vibration.boundaries import Cure
@@ -50,7 +50,7 @@ def cures_of(
     """Return all cures of a structure by name, and their units.
 
     Args:
-        modifications: name → what is added, see :meth:`.Modification.read`.
+        modifications: name → what is added, see :func:`.read_modification`.
 
     Raises:
         ValueError: a modification that cannot be read, or has the name of another cure.
@@ -72,11 +72,19 @@ def cures_of(
             raise ValueError(
                 f"modifications: {name!r} is the name of a cure; rename it"
             )
-        change = Modification.read(name, content, whole)
+        change = read_modification(name, content, whole, _leading(design))
         amounts = change.most * np.linspace(0.0, 1.0, RANGES.steps + 1)[1:]
         cures[name] = Cure(0.0, _whole(design, change.of), np.zeros(0), amounts)
         units[name] = change.unit
     return cures, {name: units[name] for name in cures}
+
+
+def _leading(design: Design) -> float:
+    """Return the frequency of the mode that grows fastest, Hz."""
+    plant = design.plant
+    assert plant is not None  # noqa: S101 (without sliding there are no cures)
+    values = plant.spectrum.values
+    return float(values[values.real.argmax()].imag / (2.0 * np.pi))
 
 
 def _factors(most: float) -> np.ndarray:

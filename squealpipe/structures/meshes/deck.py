@@ -266,6 +266,10 @@ class _Deck:
             str(self.path),
             tuple(self.bound),
             frozenset(self.turned),
+            node_sets={
+                name: np.array([index_of[n] for n in members if n in index_of], int)
+                for name, members in self.node_sets.items()
+            },
         )
 
     def _indices(self, rows: list[list[int]], index_of: dict[int, int]) -> np.ndarray:

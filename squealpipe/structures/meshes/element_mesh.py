@@ -47,6 +47,7 @@ class ElementMesh:
         turned: numbers of nodes whose directions are not those of the mesh (*TRANSFORM).
         counts_nodes: whether numbers of nodes only count them: an assembly of 3 rows a node may
             have no names.
+        node_sets: indices of nodes by the name of their set or surface.
     """
 
     numbers: np.ndarray
@@ -59,6 +60,7 @@ class ElementMesh:
     bound: tuple[str, ...] = ()
     turned: frozenset[int] = frozenset()
     counts_nodes: bool = False
+    node_sets: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     @cached_property
     def index_of(self) -> dict[int, int]:

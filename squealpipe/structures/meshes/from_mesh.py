@@ -156,6 +156,7 @@ def _picture(mesh: ElementMesh, rows: np.ndarray) -> StructureMesh:
         [new[each].tolist() for each in facets],
         np.column_stack([new[at], rows[:, 1]]),
         mesh.numbers[used],
+        {name: mesh.numbers[places] for name, places in mesh.node_sets.items()},
     )
 
 

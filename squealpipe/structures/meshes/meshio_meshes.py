@@ -181,10 +181,13 @@ def of_meshio(mesh: Any, source: str, *, counts_nodes: bool) -> ElementMesh:
         elements[kind] = Elements(np.arange(first, first + len(nodes)), nodes)
         first += len(nodes)
     surfaces: dict[str, Callable[[ElementMesh], Surface]] = {}
+    sets: dict[str, np.ndarray] = {}
     for name, rows in _named_cells(mesh).items():
         surfaces[name] = lambda whole, rows=rows: whole.of_shells(rows)  # type: ignore[misc]
+        sets[name] = np.unique(np.concatenate([each.ravel() for each in rows]))
     for name, members in mesh.point_sets.items():
         places = np.asarray(members, int)
+        sets.setdefault(name, places)
         surfaces.setdefault(name, lambda whole, places=places: whole.within(places))  # type: ignore[misc]
     return ElementMesh(
         np.arange(1, len(points) + 1),
@@ -193,6 +196,7 @@ def of_meshio(mesh: Any, source: str, *, counts_nodes: bool) -> ElementMesh:
         surfaces,
         source,
         counts_nodes=counts_nodes,
+        node_sets=sets,
     )
 
 

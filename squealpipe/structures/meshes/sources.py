@@ -65,10 +65,16 @@ def of_arrays(nodes: Any, faces: Any) -> ElementMesh:
         )
     mesh = ElementMesh(numbers, positions, counts_nodes=counts_nodes)
     surfaces: dict[str, Callable[[ElementMesh], Surface]] = {}
+    sets: dict[str, np.ndarray] = {}
     for name, facets in faces.items():
         surface = Surface(joined(_rows(mesh, str(name), facets)))
+        sets[str(name)] = np.unique(
+            np.concatenate([each.ravel() for each in surface.facets.values()])
+        )
         surfaces[str(name)] = lambda _, surface=surface: surface  # type: ignore[misc]
-    return ElementMesh(numbers, positions, surfaces=surfaces, counts_nodes=counts_nodes)
+    return ElementMesh(
+        numbers, positions, surfaces=surfaces, counts_nodes=counts_nodes, node_sets=sets
+    )
 
 
 def _rows(mesh: ElementMesh, name: str, facets: Any) -> list[np.ndarray]:

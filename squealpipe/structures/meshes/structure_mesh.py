@@ -1,7 +1,7 @@
 """A mesh as a structure keeps it: nodes, the facets that a picture draws, and what moves."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -23,6 +23,7 @@ class StructureMesh:
             directions 1 to 3 are displacements along x, y, z, and 4 to 6 rotations about them. The
             index is −1 where a degree of freedom is at no node.
         numbers: of the nodes in their program, (nodes,); 1, 2, … by default.
+        sets: node sets, name → numbers of nodes.
 
     Raises:
         ValueError: indices of nodes that there are not, or arrays of another shape.
@@ -32,6 +33,7 @@ class StructureMesh:
     facets: Any
     degree_of_freedom: Any
     numbers: Any = None
+    sets: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         nodes = np.asarray(self.nodes, dtype=float)
