@@ -6,7 +6,7 @@ Its parameters are those of ``Parameters`` and both angles; the laws are those o
 the field is smooth in each.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from types import SimpleNamespace
 from typing import Any
@@ -32,6 +32,7 @@ from squealpipe.systems.belt_contact import (
 from squealpipe.systems.components import Switch
 from squealpipe.systems.functions import cos, sin
 from squealpipe.systems.system import System
+from squealpipe.systems.tracing import TracedSystem
 
 PIVOT_REACH2 = 1e-14
 """Squared distance from a pivot, in free lengths, below which the force's direction is lost."""
@@ -39,19 +40,31 @@ ROUND_OFF = 1e-14
 """Over k1 l_pre: a mass that friction lacks no more than this to hold sticks."""
 
 
-def brake_of(params: Parameters, model: str = "A1") -> System:
-    """A1, or a variant, with some parameters, whose numbers ``parameters_of_run`` gives."""
-    one_mu = params.friction_law in friction_laws.LAWS and params.static_mu == params.mu
-    falls = params.friction_law in friction_laws.FALLING
+def brake_of(
+    params: Parameters, model: str = "A1", varied: Iterable[str] = ()
+) -> System:
+    """A1, or a variant, with some parameters, whose numbers ``parameters_of_run`` gives.
+
+    Args:
+        varied: parameters whose numbers will change. A static coefficient that is none of its own
+            then follows the law's numbers.
+    """
+    law, varied = params.friction_law, {*varied}
+    one_mu = law in friction_laws.LAWS and params.static_mu == params.mu
+    if varied:
+        one_mu = params.mu_static is None and not is_table(law)
+    falls = law in friction_laws.FALLING
+    varies_length = bool(varied & {"preload", "length1", "length2"})
     return brake(
-        COULOMB if one_mu and falls else params.friction_law,
-        damped=params.damping1 + params.damping2 > 0,
+        COULOMB if one_mu and falls else law,
+        damped=params.damping1 + params.damping2 > 0
+        or bool(varied & {"damping1", "damping2"}),
         contact_law=contact_laws.relative(params.contact_law, params.preload),
         model=model,
         one_mu=one_mu,
         long_springs=(
-            params.length1 > LONG_SPRING * params.preload,
-            params.length2 > LONG_SPRING * params.preload,
+            not varies_length and params.length1 > LONG_SPRING * params.preload,
+            not varies_length and params.length2 > LONG_SPRING * params.preload,
         ),
     )
 
@@ -63,7 +76,7 @@ def has_own_laws(params: Any) -> bool:
     )
 
 
-def regimes_of(system: System) -> list[Regime]:
+def regimes_of(system: TracedSystem) -> list[Regime]:
     """A1's regime of each regime of the system, which may have several of a kind."""
     return [
         next((r for r in Regime if name.startswith(r.name)), Regime.separated)

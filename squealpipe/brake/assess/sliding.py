@@ -13,6 +13,7 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from squealpipe.brake.models import a1
+from squealpipe.brake.models.variants import VARIANT_RULES
 from squealpipe.laws.contact import normal_force
 from squealpipe.laws.friction_laws import COULOMB
 from squealpipe.laws.springs import LONG_SPRING, Geometry, geometry
@@ -40,11 +41,20 @@ COMPLEX_STEP = 1e-30
 
 
 class Design(NamedTuple):
-    """A brake: parameters and angles (rad)."""
+    """A brake: parameters, angles (rad) and "A1" or one of its variants."""
 
     params: Parameters
     alpha1: float
     alpha2: float
+    model: str = "A1"
+
+    def at(self, parameter: str, value: float) -> Self:
+        """Return the brake with another value of a parameter or angle."""
+        if parameter == "alpha1":
+            return self._replace(alpha1=value)
+        if parameter == "alpha2":
+            return self._replace(alpha2=value)
+        return self._replace(params=self.params.with_(**{parameter: value}))
 
     @property
     def rate(self) -> float:
@@ -234,7 +244,8 @@ def _acceleration(design: Design) -> Any:
         for length in (params.length1, params.length2)
     )
 
-    form = a1.Suspension(long=(long[0], long[1]))
+    linear = VARIANT_RULES[design.model].linear_springs
+    form = a1.Suspension(linear, long=(long[0], long[1]))
 
     def acceleration(state: Any) -> tuple[Any, Any]:
         return a1.acceleration(

@@ -47,7 +47,8 @@ def run_windows(
 def _alike(designs: Sequence[Design]) -> list[np.ndarray]:
     """Rows that one ensemble can hold: those with the same laws."""
     groups: dict[Any, list[int]] = {}
-    for row, (params, _, _) in enumerate(designs):
+    for row, design in enumerate(designs):
+        params = design.params
         # a table of contact is rescaled by the preload
         preload = params.preload if is_table(params.contact_law) else None
         key = (params.friction_law, params.contact_law, preload)

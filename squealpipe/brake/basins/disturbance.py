@@ -10,15 +10,13 @@ from annotated_types import Ge
 
 from squealpipe.brake.a1.ensemble import run_ensemble
 from squealpipe.brake.a1.jobs import Model
-from squealpipe.brake.assess.sliding import GROWS
+from squealpipe.brake.assess.sliding import GROWS, Design, Sliding
 from squealpipe.brake.basins.smallest_vector import (
     IMPROVED,
     SearchResult,
     search,
     smallest_linear,
 )
-from squealpipe.brake.cycles.scene import CycleScene
-from squealpipe.brake.cycles.sliding import steady_sliding
 from squealpipe.brake.dynamics.motion import linear_time, whirls
 from squealpipe.brake.linear.maps import stability_map
 from squealpipe.brake.models.variants import VARIANT_RULES
@@ -87,8 +85,7 @@ def smallest_disturbance(
         if bound is None
         else bound
     )
-    scene = CycleScene(params, alpha1, alpha2, model=model)
-    sliding = steady_sliding(scene) if params.belt_speed != 0.0 else None
+    sliding = Sliding.of(Design(params, alpha1, alpha2, model))
     numbers = np.unique(
         np.append(2 ** np.arange(3, directions.bit_length()), directions)
     )
@@ -111,9 +108,7 @@ def smallest_disturbance(
     if sliding is None:
         return result(Outcome.no_sliding_state)
     scale = params.preload * np.array([1.0, 1.0, 1.0 / time, 1.0 / time])
-    units = scene.state_units
-    rest = sliding.state * units
-    jacobian = sliding.jacobian * units[:, None] / (units * params.time_unit)
+    rest, jacobian = sliding.state, sliding.jacobian
     values = np.linalg.eigvals(jacobian)
     growth = float(values.real.max())
     known = {

@@ -11,9 +11,16 @@ from annotated_types import Ge
 from pydantic import BeforeValidator
 
 from squealpipe.brake.a1.jobs import STATE
-from squealpipe.brake.cycles.cycle import cycle_from
+from squealpipe.brake.assess.sliding import Design
+from squealpipe.brake.cycles.cycle import (
+    IN_SYSTEM,
+    cycle_from,
+    is_next_to_pivot,
+    n_events,
+    numbers,
+    start_of,
+)
 from squealpipe.brake.cycles.onset import find_onset
-from squealpipe.brake.cycles.scene import IN_SYSTEM, CycleScene
 from squealpipe.brake.models.refusals import refuse_unread
 from squealpipe.brake.schema.cycles import A1_CYCLE_BRANCH, A1_LIMIT_CYCLE
 from squealpipe.parameters import TABLE, Parameters
@@ -90,40 +97,39 @@ def cycle_branch(
         )
     if parameter not in ("alpha1", "alpha2"):
         params.with_(**{parameter: to})
-    scene = CycleScene(params, alpha1, alpha2, follow=parameter)
-    scale = scene.units[parameter]
-    low, high = sorted((begin / scale, to / scale))
-    follower = Follower(low, high, n_points)
+    design = Design(params, alpha1, alpha2)
     outcome = Outcome.no_convergence
     if isinstance(start, str):
-        first = find_onset(scene, begin / scale, to / scale)
+        first = find_onset(design, parameter, begin, to)
     else:
-        cycle, outcome = _first_cycle(scene, start)
+        cycle, outcome = _first_cycle(design, parameter, start)
         first = None
         if cycle is not None:
-            first = first_point(cycle, IN_SYSTEM[parameter], to / scale)
+            first = first_point(cycle, IN_SYSTEM[parameter], to)
             outcome = Outcome.no_convergence
     if first is None:
-        return _dataset(scene, [], outcome)
+        return _dataset(design, parameter, [], outcome)
+    scale = first[1].scale_of(IN_SYSTEM[parameter])
+    low, high = sorted((begin / scale, to / scale))
+    follower = Follower(low, high, n_points)
     end = follower.run(*first)
     if doubled:
         flips = (p for p in follower.points if p.label == Label.period_doubling)
         first = next((found for p in flips if (found := doubled_start(p))), None)
         if first is None:
-            return _dataset(scene, [], Outcome.no_doubling)
+            return _dataset(design, parameter, [], Outcome.no_doubling)
         follower = Follower(low, high, n_points)
         end = follower.run(*first)
     last = follower.points[-1]
-    there = scene.at(last.parameter)
-    if end == Outcome.branch_lost and there.is_singular(
-        last.cycle.parts.path.series[:, :2, 0]
-    ):
+    units = last.cycle.map.flow.scale_of("x", "y")
+    places = last.cycle.parts.path.series[:, :2, 0] * units
+    if end == Outcome.branch_lost and is_next_to_pivot(last.cycle.parameters, places):
         end = Outcome.singular_geometry
     elif end == Outcome.converged and math.isclose(
         last.parameter, begin / scale, rel_tol=1e-11
     ):
         end = Outcome.returned
-    return _dataset(scene, follower.points, end)
+    return _dataset(design, parameter, follower.points, end)
 
 
 def _value(params: Parameters, alpha1: float, alpha2: float, parameter: str) -> float:
@@ -141,7 +147,9 @@ def _value(params: Parameters, alpha1: float, alpha2: float, parameter: str) -> 
     return float(values[parameter])
 
 
-def _first_cycle(scene: CycleScene, start: Any) -> tuple[Cycle | None, Outcome]:
+def _first_cycle(
+    design: Design, parameter: str, start: Any
+) -> tuple[Cycle | None, Outcome]:
     if isinstance(start, xr.Dataset):
         if start.attrs.get("schema") != A1_LIMIT_CYCLE.name:
             raise ValueError(
@@ -154,19 +162,20 @@ def _first_cycle(scene: CycleScene, start: Any) -> tuple[Cycle | None, Outcome]:
         }:
             return None, Outcome(int(start.outcome))
         start = np.array([float(start[f"{name}_start"]) for name in STATE])
-    return cycle_from(scene, start)
+    return cycle_from(design, start, varied=[parameter])
 
 
-def _dataset(scene: CycleScene, points: list[BranchPoint], end: Outcome) -> xr.Dataset:
-    parameter = str(scene.follow)
-    rows = in_rows(points, scene.numbers)
+def _dataset(
+    design: Design, parameter: str, points: list[BranchPoint], end: Outcome
+) -> xr.Dataset:
+    rows = in_rows(points, numbers)
     columns: dict[str, Any] = blank(A1_CYCLE_BRANCH, multiplier=4)
     if rows:
         columns |= {name: np.array([row[name] for row in rows]) for name in rows[0]}
-    starts = [point.cycle.start()[0] * scene.state_units for point in points]
-    states = np.array(starts).reshape(-1, 4)
-    followed = np.array([point.parameter for point in points]) * scene.units[parameter]
-    fixed = {"alpha1": scene.alpha1, "alpha2": scene.alpha2}
+    states = np.array([start_of(point.cycle) for point in points]).reshape(-1, 4)
+    name = IN_SYSTEM[parameter]
+    followed = [point.parameter * point.cycle.scale_of(name) for point in points]
+    fixed = {"alpha1": design.alpha1, "alpha2": design.alpha2}
     outcomes = [
         Outcome.family_member if point.cycle.is_family_member else Outcome.converged
         for point in points
@@ -178,7 +187,7 @@ def _dataset(scene: CycleScene, points: list[BranchPoint], end: Outcome) -> xr.D
             **{name: np.full(len(points), value) for name, value in fixed.items()},
             parameter: followed,
             "label": [point.label for point in points],
-            "events": [scene.count(point.cycle) for point in points],
+            "events": [n_events(point.cycle) for point in points],
             **{f"{name}_start": states[:, i] for i, name in enumerate(STATE)},
             "outcome": outcomes,
             "end": end,

@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.brake.a1.jobs import STATE
-from squealpipe.brake.cycles.cycle import cycle_from
-from squealpipe.brake.cycles.scene import DASHPOTS, IN_SYSTEM, CycleScene
+from squealpipe.brake.assess.sliding import Design
+from squealpipe.brake.cycles.cycle import IN_SYSTEM, cycle_from, n_events
 from squealpipe.brake.models.refusals import refuse_unread
 from squealpipe.brake.schema.cycles import A1_CYCLE_CURVE
 from squealpipe.parameters import NUMBERS_OF_A1, Parameters
@@ -75,7 +75,6 @@ def cycle_curve(
     own = {"alpha1": alpha1, "alpha2": alpha2}
     point = point_of(start, label)
     followed = str(start.attrs["parameter"])
-    dashpots = [name for name in parameters if name in DASHPOTS]
     limits = dict(to or {})
     for beside in PARAMETER_STEP:
         at = {followed: float(point[followed]) * (1.0 + beside)}
@@ -83,12 +82,7 @@ def cycle_curve(
             own |= at
         else:
             params = params.with_(**at)
-        scene = CycleScene(
-            params,
-            own["alpha1"],
-            own["alpha2"],
-            follow=dashpots[0] if dashpots else None,
-        )
+        design = Design(params, own["alpha1"], own["alpha2"])
         known = [
             *(
                 name
@@ -99,34 +93,32 @@ def cycle_curve(
         ]
         check(known, label, parameters, limits)
         refuse_unread(params, parameters)
-        cycle, _ = cycle_from(scene, [float(point[f"{name}_start"]) for name in STATE])
+        cycle, _ = cycle_from(
+            design, [float(point[f"{name}_start"]) for name in STATE], varied=parameters
+        )
         if cycle is not None:
             break
     else:
         raise ValueError("no cycle is found from start")
-    scaled = {
-        name: tuple(np.array(ends) / scene.units[name]) for name, ends in limits.items()
-    }
     points, ends = follow_curve(
         cycle,
         Label[label],
         [IN_SYSTEM[name] for name in parameters],
-        {IN_SYSTEM[name]: ends for name, ends in scaled.items()},
+        {IN_SYSTEM[name]: ends for name, ends in limits.items()},
         n_points,
     )
     values = {
-        name: np.array([each.cycle.parts.values[IN_SYSTEM[name]] for each in points])
-        * scene.units[name]
+        name: [each.cycle.parameters[IN_SYSTEM[name]] for each in points]
         for name in {*parameters, "alpha1", "alpha2"}
     }
     return build(
         A1_CYCLE_CURVE,
         {
             **values,
-            "period": [each.cycle.period * scene.params.time_unit for each in points],
+            "period": [each.cycle.period * each.cycle.second for each in points],
             "residual": [each.residual for each in points],
             "label": [each.label for each in points],
-            "events": [scene.count(each.cycle) for each in points],
+            "events": [n_events(each.cycle) for each in points],
             "outcome": [REASONS.get(end, Outcome.order_changes) for end in ends],
             "change": ["" if end in REASONS else end for end in ends],
         },

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from types import SimpleNamespace
 from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
 
+from squealpipe.brake.a1.ensemble import NEAR_PIVOT
 from squealpipe.brake.a1.jobs import STATE
-from squealpipe.brake.cycles.scene import CycleScene
+from squealpipe.brake.a1.motion_system import brake_of, parameters_of_run, regimes_of
+from squealpipe.brake.assess.sliding import Design
 from squealpipe.brake.schema.cycles import A1_LIMIT_CYCLE
-from squealpipe.parameters import Parameters
+from squealpipe.codes import Event, Regime
+from squealpipe.laws.springs import fixed_ends, geometry
+from squealpipe.parameters import NUMBERS_OF_A1, Parameters
 from squealpipe.schema import Outcome, blank, build
 from squealpipe.schema.origin import recorded
 from squealpipe.systems.cycles.event_map import FREE
@@ -20,8 +26,10 @@ from squealpipe.systems.integrate import MOST_STEPS
 from squealpipe.systems.taylor.layout import STOPPED
 from squealpipe.validation import Angle, Natural, Positive, State, one_of
 
-T_SETTLE = 2000.0
-"""Default time, in units of √(m/min(k1, k2)), after which a run counts as settled."""
+IN_SYSTEM = {of: name for name, of in NUMBERS_OF_A1.items()} | {
+    angle: angle for angle in ("alpha1", "alpha2")
+}
+"""Parameter or angle → its name in the system."""
 
 
 @recorded(method="Newton on the legs between located events")
@@ -54,67 +62,121 @@ def limit_cycle(
         (the trivial one first), events, and the motion at 401 instants. NaN with the reason in
         ``outcome`` where no cycle is found.
     """
-    scene = CycleScene(params, alpha1, alpha2)
-    cycle, outcome = cycle_from(scene, guess, t_settle, max_steps)
-    found = (
-        blank(A1_LIMIT_CYCLE, multiplier=4)
-        if cycle is None
-        else _described(scene, cycle)
-    )
+    design = Design(params, alpha1, alpha2)
+    cycle, outcome = cycle_from(design, guess, t_settle, max_steps)
+    found = blank(A1_LIMIT_CYCLE, multiplier=4) if cycle is None else _described(cycle)
     angles = {"alpha1": alpha1, "alpha2": alpha2}
     multiplier = {"multiplier": np.arange(1, 5)}
     return build(A1_LIMIT_CYCLE, {**found, **angles, "outcome": outcome}, multiplier)
 
 
 def cycle_from(
-    scene: CycleScene,
+    design: Design,
     guess: Any = None,
     t_settle: float | None = None,
     most_steps: int = MOST_STEPS,
+    varied: Sequence[str] = (),
 ) -> tuple[Cycle | None, Outcome]:
-    """A cycle near a state, or from a run from rest (without a guess), and its outcome."""
-    state = (
-        np.zeros(4) if guess is None else np.asarray(guess, float) / scene.state_units
-    )
-    settle = T_SETTLE * scene.slow_time
+    """Return a cycle near a state, or from a run from rest (without a guess), and its outcome.
+
+    Args:
+        varied: parameters in which the cycle will be followed.
+    """
+    params = design.params
+    state = np.zeros(4) if guess is None else np.asarray(guess, float)
+    # motions of the softer spring settle last, whichever it is
+    slow_time = float((params.mass / min(params.k1, params.k2)) ** 0.5)
+    values = parameters_of_run(params, design.alpha1, design.alpha2)
     cycle, outcome = find_cycle(
-        scene.system,
-        scene.values,
+        brake_of(params, varied=varied),
+        values,
         state,
         guess=guess is not None,
         periods=0,
-        t_settle=settle if t_settle is None else t_settle / scene.params.time_unit,
-        unit=scene.slow_time,
+        t_settle=2000.0 * slow_time if t_settle is None else t_settle,
+        unit=slow_time,
         most_steps=most_steps,
     )
-    if outcome == Outcome.not_finite and scene.is_singular(state[:2]):
+    if outcome == Outcome.not_finite and is_next_to_pivot(values, state[:2]):
         outcome = Outcome.singular_geometry
     return cycle, Outcome.singular_geometry if outcome >= STOPPED else Outcome(outcome)
 
 
-def _described(scene: CycleScene, cycle: Cycle) -> dict[str, Any]:
-    """The variables of a cycle."""
-    units, clock = scene.state_units, scene.params.time_unit
-    start = cycle.start()[0] * units
-    times = cycle.instants
-    path, regimes = cycle.states_at((cycle.phase + times) % cycle.period)
-    ends = (cycle.clocks + cycle.parts.durations - cycle.phase) % cycle.period
-    order = [
-        i
-        for i in np.argsort(ends)
-        if cycle.map.events[i].switch != FREE
-        and scene.kinds[cycle.map.events[i].kind] is not None
-    ]
-    states = (
-        np.array([cycle.parts.crossings[i].after for i in order]).reshape(-1, 4) * units
+def is_next_to_pivot(values: Mapping[str, float], places: np.ndarray) -> bool:
+    """Return whether one of some places (…, 2), m, is next to a pivot, where d = 0.
+
+    Args:
+        values: parameters of the system.
+    """
+    p = SimpleNamespace(**values)
+    x1, y1, x2, y2 = fixed_ends(p, geometry(p.alpha1, p.alpha2))
+    return any(
+        bool((np.hypot(*(places - [x, y]).T) < NEAR_PIVOT * length).any())
+        for x, y, length in ((x1, y1, p.length1), (x2, y2, p.length2))
     )
+
+
+def event_kinds(cycle: Cycle) -> list[Event | None]:
+    """Return A1's kind of each leg's end; None of a law's knots and of a section."""
+    names = cycle.map.flow.system.traced.kinds
+    return [
+        None if event.switch == FREE else Event.__members__.get(names[event.kind])
+        for event in cycle.map.events
+    ]
+
+
+def n_events(cycle: Cycle) -> int:
+    """Return the number of A1's events of a cycle."""
+    return sum(kind is not None for kind in event_kinds(cycle))
+
+
+def start_of(cycle: Cycle) -> np.ndarray:
+    """Return the state of a cycle at t = 0, m and m/s."""
+    return np.asarray(cycle.start()[0] * cycle.map.flow.scale_of(*STATE))
+
+
+def numbers(cycle: Cycle) -> dict[str, Any]:
+    """Return the scalars of a cycle's dataset, and the multipliers."""
+    regimes = regimes_of(cycle.map.flow.system)
+    during = np.array([regimes[event.before] for event in cycle.map.events])
+    share = {
+        regime: float(cycle.parts.durations[during == regime].sum()) / cycle.period
+        for regime in (Regime.separated, Regime.stick)
+    }
+    scales = cycle.map.flow.scale_of(*STATE, "contact_force")
+    low, high = cycle.extremes[:, : len(scales)] * scales
     return {
-        **scene.numbers(cycle),
-        "event_time": ends[order] * clock,
-        "event_kind": [scene.kinds[cycle.map.events[i].kind] for i in order],
-        **{f"event_{name}": states[:, i] for i, name in enumerate(STATE)},
+        "period": cycle.period * cycle.second,
+        "x_min": low[0],
+        "x_max": high[0],
+        "y_min": low[1],
+        "y_max": high[1],
+        "contact_fraction": 1.0 - share[Regime.separated],
+        "stick_fraction": share[Regime.stick],
+        "least_contact_force": max(low[4], 0.0),
+        "residual": cycle.closing_error,
+        "stable": int(cycle.is_stable),
+        "multiplier_real": cycle.multipliers.real,
+        "multiplier_imag": cycle.multipliers.imag,
+    }
+
+
+def _described(cycle: Cycle) -> dict[str, Any]:
+    """Return the variables of a cycle."""
+    units, second = cycle.map.flow.scale_of(*STATE), cycle.second
+    start, times = start_of(cycle), cycle.instants
+    path, path_regimes = cycle.states_at((cycle.phase + times) % cycle.period)
+    regimes, kinds = regimes_of(cycle.map.flow.system), event_kinds(cycle)
+    ends = (cycle.clocks + cycle.parts.durations - cycle.phase) % cycle.period
+    order = [i for i in np.argsort(ends) if kinds[i] is not None]
+    states = np.array([cycle.parts.crossings[i].after for i in order]).reshape(-1, 4)
+    return {
+        **numbers(cycle),
+        "event_time": ends[order] * second,
+        "event_kind": [kinds[i] for i in order],
+        **{f"event_{name}": states[:, i] * units[i] for i, name in enumerate(STATE)},
         **{f"{name}_start": start[i] for i, name in enumerate(STATE)},
-        "time": times * clock,
+        "time": times * second,
         **{f"{name}_path": path[:, i] * units[i] for i, name in enumerate(STATE)},
-        "regime_path": [scene.regimes[regime] for regime in regimes],
+        "regime_path": [regimes[regime] for regime in path_regimes],
     }

@@ -3,15 +3,17 @@
 import numpy as np
 import scipy
 
-from squealpipe.brake.assess.sliding import excess_growth
-from squealpipe.brake.cycles.scene import IN_SYSTEM, CycleScene
-from squealpipe.brake.cycles.sliding import steady_sliding
+from squealpipe.brake.a1.jobs import STATE
+from squealpipe.brake.a1.motion_system import brake_of, parameters_of_run
+from squealpipe.brake.assess.sliding import Design, Sliding
+from squealpipe.brake.cycles.cycle import IN_SYSTEM
 from squealpipe.systems.continuation import ContinuationState
 from squealpipe.systems.cycles.event_map import EventMap
 from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.guess import eventless
 from squealpipe.systems.cycles.line import ALONG, BRANCH_STEPS
 from squealpipe.systems.cycles.solution import Cycle
+from squealpipe.systems.trace import TIME
 
 _SCAN = 201
 _FIRST_AMPLITUDE = 0.02
@@ -19,18 +21,23 @@ _FIRST_AMPLITUDE = 0.02
 
 
 def find_onset(
-    scene: CycleScene, begin: float, to: float
+    design: Design, parameter: str, begin: float, to: float
 ) -> tuple[ContinuationState, Cycle] | None:
     """A small cycle on the branch born at the first Hopf point from ``begin`` towards ``to``.
 
-    The values are in the scene's units; the tangent points to larger amplitude. None where steady
-    sliding keeps its stability, or loses it by divergence.
+    The tangent points to larger amplitude. None where steady sliding keeps its stability, or loses
+    it by divergence.
+
+    Args:
+        parameter: name of a parameter or angle, whose values are ``begin`` and ``to``.
     """
-    flow = Flow(scene.system)
+
+    def sliding_at(value: float) -> Sliding | None:
+        return Sliding.of(design.at(parameter, value))
 
     def growth(value: float) -> float:
-        found = steady_sliding(scene.at(value), flow)
-        return np.nan if found is None else excess_growth(found.jacobian)
+        sliding = sliding_at(value)
+        return np.nan if sliding is None else sliding.margin
 
     grid = np.linspace(begin, to, _SCAN)
     rates = np.array([growth(float(value)) for value in grid])
@@ -43,24 +50,31 @@ def find_onset(
             growth, low, high, xtol=1e-14 * max(abs(begin), abs(to)), rtol=1e-14
         )
     )
-    found = steady_sliding(scene.at(onset), flow)
-    if found is None:
+    sliding = sliding_at(onset)
+    if sliding is None:
         return None
-    rest, regime, values = found.state, found.regime, scene.at(onset).values
-    roots, vectors = np.linalg.eig(found.jacobian)
+    roots, vectors = np.linalg.eig(sliding.jacobian)
     mode = int(np.argmax(roots.real + (roots.imag > 0.0)))
     omega = float(roots[mode].imag)
     if omega <= 0.0:
         return None
     shape = np.real(vectors[:, mode] / np.abs(vectors[:2, mode]).max())
-    room = 1.0 - rest[1]
+    room = design.params.preload - sliding.state[1]
     size = np.array([1.0, 1.0, omega, omega]) * room
-    state = rest + _FIRST_AMPLITUDE * room * shape
-    name, period = IN_SYSTEM[str(scene.follow)], 2.0 * np.pi / omega
-    followed = np.array([values[name]])
-    units = np.maximum(np.abs(followed), 1e-3)
-    equations = EventMap(Flow(scene.system, (name,)), (), values, size, period, units)
-    equations, guess = eventless(equations, state, regime, period, followed)
+    state = sliding.state + _FIRST_AMPLITUDE * room * shape
+    system, name = brake_of(design.params, varied=[parameter]), IN_SYSTEM[parameter]
+    values = parameters_of_run(
+        sliding.design.params, sliding.design.alpha1, sliding.design.alpha2
+    )
+    rest = dict(zip(STATE, sliding.state[:, None], strict=True))
+    regime = int(system.first_regimes({**values, **rest, TIME: np.zeros(1)}, 1)[0, 0])
+    flow, inside = Flow.of(system, values, (name,))
+    units = flow.scale_of(*STATE)
+    period = 2.0 * np.pi / omega / float(flow.scale_of(TIME)[0])
+    followed = np.array([inside[name]])
+    followed_units = np.maximum(np.abs(followed), 1e-3)
+    equations = EventMap(flow, (), inside, size / units, period, followed_units)
+    equations, guess = eventless(equations, state / units, regime, period, followed)
     # the cycle of that amplitude: its parameter is an unknown
     direction = np.concatenate([shape / size, np.zeros(2)])
     normal = direction / np.linalg.norm(direction)

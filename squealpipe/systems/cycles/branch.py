@@ -16,7 +16,6 @@ from squealpipe.systems.branch_labels import Label
 from squealpipe.systems.continuation import ContinuationState
 from squealpipe.systems.cycles.described import columns, describe_columns, outcome_of
 from squealpipe.systems.cycles.find import find_cycle
-from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.following import Follower
 from squealpipe.systems.cycles.line import AT_SPECIAL_POINTS, BRANCH_STEPS
 from squealpipe.systems.cycles.solution import Cycle
@@ -60,12 +59,13 @@ def cycle_branch(
     """
     system.check_parameter(parameter)
     cycle = started(system, start)
-    begin = cycle.parts.values[parameter]
+    begin = cycle.parameters[parameter]
     if math.isclose(to, begin, rel_tol=1e-11):
         raise ValueError(f"to = {to!r}: another value than that of the start is needed")
     low, high = (-math.inf, to) if to > begin else (to, math.inf)
     first = first_point(cycle, parameter, to)
-    follower = Follower(low, high, n_points)
+    scale = cycle.scale_of(parameter)
+    follower = Follower(low / scale, high / scale, n_points)
     end = Outcome.no_convergence if first is None else follower.run(*first)
     return dataset(system, follower.points, end, parameter)
 
@@ -103,8 +103,8 @@ def first_point(
     cycle: Cycle, parameter: str, to: float
 ) -> tuple[ContinuationState, Cycle] | None:
     """A cycle as a point of its branch, with a tangent towards a value of the parameter."""
-    begin = cycle.parts.values[parameter]
-    flow = Flow(cycle.map.flow.system, (parameter,))
+    begin, to = cycle.parts.values[parameter], to / cycle.scale_of(parameter)
+    flow = cycle.map.flow.following(parameter)
     equations, guess = cycle.followed_in(flow, np.array([max(abs(begin), abs(to))]))
     normal = math.copysign(1.0, to - begin) * np.eye(len(guess))[-1]
     state = AT_SPECIAL_POINTS.solve(equations, guess, normal, BRANCH_STEPS.first_step)
@@ -140,8 +140,8 @@ def dataset(
     """A branch as a dataset."""
     rows = in_rows(points, lambda cycle: columns(cycle, system))
     found: dict[str, Any] = describe_columns(system, rows, "point")
-    values = points[0].cycle.parts.values if points else {}
-    followed = np.array([point.parameter for point in points])
+    values = points[0].cycle.parameters if points else {}
+    followed = [p.parameter * p.cycle.scale_of(parameter) for p in points]
     found[parameter] = ("point", followed, labels(f"{parameter} along the branch", "1"))
     special = [point.label for point in points]
     found["label"] = flag(
@@ -154,7 +154,8 @@ def dataset(
     )
     starts = [point.cycle.start() for point in points]
     for i, name in enumerate(system.states):
-        first = np.array([state[i] for state, _ in starts])
+        unit = points[0].cycle.scale_of(name) if points else 1.0
+        first = np.array([state[i] * unit for state, _ in starts])
         label = labels(f"{name} at t = 0 of the cycle", system.units[name])
         found[f"{name}_start"] = ("point", first, label)
     regimes = np.array([system.joint.regimes(regime) for _, regime in starts], int)

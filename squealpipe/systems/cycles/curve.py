@@ -113,9 +113,9 @@ def _dataset(
     found: dict[str, Any] = {}
     cycles = [point.cycle for point in points]
     for name in parameters:
-        values = [cycle.parts.values[name] for cycle in cycles]
+        values = [cycle.parameters[name] for cycle in cycles]
         found[name] = ("point", values, labels(f"{name} along the curve", "1"))
-    periods = [cycle.period for cycle in cycles]
+    periods = [cycle.period * cycle.second for cycle in cycles]
     events = [len(cycle.events) for cycle in cycles]
     found["period"] = ("point", periods, labels("period", "s"))
     found["events"] = ("point", events, labels("events of the cycle", "1"))
@@ -132,7 +132,7 @@ def _dataset(
         [names.index(end) for end in ends],
         dict(enumerate(names)),
     )
-    attributes = attributes_of(system, "cycle curve", cycles[0].parts.values, 1e-14)
+    attributes = attributes_of(system, "cycle curve", cycles[0].parameters, 1e-14)
     return xr.Dataset(
         found,
         attrs=attributes

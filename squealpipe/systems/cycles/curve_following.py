@@ -20,7 +20,6 @@ from squealpipe.systems.cycles.admissible import (
 )
 from squealpipe.systems.cycles.curve_equations import RETURNS, Curve, Test, curve_of
 from squealpipe.systems.cycles.event_order import label_of, order_of, run_of
-from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.legs import Vector
 from squealpipe.systems.cycles.line import BRANCH_STEPS, PRECISE
 from squealpipe.systems.cycles.solution import Cycle
@@ -233,9 +232,17 @@ def follow_curve(
     limits: Mapping[str, tuple[float, float]],
     n_points: int,
 ) -> tuple[list[CurvePoint], list[str]]:
-    """The points of a curve through a cycle, and why it ended at both sides."""
+    """Return the points of a curve through a cycle, and why it ended at both sides.
+
+    Args:
+        limits: parameter → (lowest, highest), in its unit.
+    """
+    scaled = {
+        name: (low / cycle.scale_of(name), high / cycle.scale_of(name))
+        for name, (low, high) in limits.items()
+    }
     units = np.array([max(abs(cycle.parts.values[name]), 1e-3) for name in parameters])
-    flow = Flow(cycle.map.flow.system, tuple(parameters))
+    flow = cycle.map.flow.following(*parameters)
     curve, guess = curve_of(Cycle.at(*cycle.followed_in(flow, units)), label)
     curve.renew(guess)
     algorithm = PseudoArclength(
@@ -249,7 +256,7 @@ def follow_curve(
     first = next((found for found in starts if found is not None), None)
     if first is None:
         raise ValueError(f"start: no curve of {label.name} is found there")
-    ways = [_Way(replace(curve), limits) for _ in range(2)]
+    ways = [_Way(replace(curve), scaled) for _ in range(2)]
     if ways[0].inside(first.point) < 0.0:
         raise ValueError(f"to = {limits!r}: the start lies outside")
     runs_of = [

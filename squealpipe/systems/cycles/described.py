@@ -38,8 +38,12 @@ def columns(cycle: Cycle | None, system: System) -> dict[str, Any]:
         return bare | dict.fromkeys(
             ("multiplier_real", "multiplier_imag"), np.full(n, np.nan)
         )
-    found: dict[str, Any] = {"period": cycle.period, "residual": cycle.residual}
-    for name, (low, high) in zip(names, cycle.extremes.T, strict=True):
+    found: dict[str, Any] = {
+        "period": cycle.period * cycle.second,
+        "residual": cycle.residual,
+    }
+    extremes = cycle.extremes * cycle.map.flow.scale_of(*names)
+    for name, (low, high) in zip(names, extremes.T, strict=True):
         found |= {f"{name}_min": low, f"{name}_max": high}
     found["stable"] = int(cycle.is_stable)
     multipliers = cycle.multipliers
@@ -118,6 +122,7 @@ def dataset(
     found["periods"] = ((), number, label)
     times, order = np.empty(0), []
     instants, path, regime = np.empty(0), np.empty((0, len(system.states))), 0
+    units = np.ones(len(system.states))
     if cycle is not None:
         ends = (cycle.clocks + cycle.parts.durations - cycle.phase) % cycle.period
         order = [i for i in np.argsort(ends) if cycle.map.events[i].switch != FREE]
@@ -125,9 +130,15 @@ def dataset(
         instants = cycle.instants
         path, _ = cycle.states_at((cycle.phase + instants) % cycle.period)
         regime = cycle.start()[1]
+        units = cycle.map.flow.scale_of(*system.states)
+        path, times, instants = (
+            path * units,
+            times * cycle.second,
+            instants * cycle.second,
+        )
     chosen = [cycle.map.events[i] for i in order] if cycle else []
     states = np.array([cycle.parts.crossings[i].after for i in order] if cycle else [])
-    states = states.reshape(-1, len(system.states))
+    states = states.reshape(-1, len(system.states)) * units
     kinds, names = dict(enumerate(system.traced.kinds)), dict(enumerate(system.regimes))
     joint = system.joint
     found["event_time"] = ("event", times, labels("time of the event", "s"))

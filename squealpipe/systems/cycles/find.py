@@ -16,6 +16,7 @@ from squealpipe.systems.cycles.legs import Vector
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.datasets import Outcome
 from squealpipe.systems.integrate import MOST_STEPS
+from squealpipe.systems.trace import TIME
 
 if TYPE_CHECKING:
     from squealpipe.systems.tracing import TracedSystem as System
@@ -36,13 +37,18 @@ def find_cycle(
     """A cycle from a start or near a guess, and an outcome: above 200, of that many periods more.
 
     Args:
+        values, state: in the system's units; the cycle has them in its scales, if it states any.
         periods: of the forcing, or returns to the section; 0 for any number.
-        unit: of time, in which a run settles and returns are looked for; by default the system's.
+        t_settle: s.
+        unit: of time, s, in which a run settles and returns are looked for; by default the
+            system's.
         most_steps: of each run.
     """
-    flow = Flow(system)
+    flow, values = Flow.of(system, values)
+    state, second = state / flow.scale_of(*system.states), flow.scale_of(TIME)[0]
+    t_settle = None if t_settle is None else t_settle / second
     forced = system.period is not None and flow.timed
-    unit = flow.unit(values) if unit is None else unit
+    unit = flow.unit(values) if unit is None else unit / second
     if not guess:
         found = (
             settled_forced(flow, values, state, periods, t_settle, most_steps)

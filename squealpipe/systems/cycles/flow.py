@@ -16,6 +16,7 @@ from squealpipe.systems.cycles.affine import is_affine
 from squealpipe.systems.cycles.crossing import Crossing
 from squealpipe.systems.cycles.legs import LegEnd, Path, Vector
 from squealpipe.systems.integrate import compiled, symbolic
+from squealpipe.systems.scales import Scales
 from squealpipe.systems.taylor.lanes import (
     INVERSES,
     Workspace,
@@ -33,17 +34,24 @@ from squealpipe.systems.taylor.legs import (
 from squealpipe.systems.taylor.scalar import python_function
 from squealpipe.systems.taylor.simd import FEW, LANES
 from squealpipe.systems.taylor.symbols import derivative, parameter, symbol
-from squealpipe.systems.trace import TIME_UNIT, Names
+from squealpipe.systems.trace import TIME, TIME_UNIT, Names
 
 if TYPE_CHECKING:
     from squealpipe.systems.tracing import TracedSystem as System
 
 
 class Flow:
-    """A system's legs and switches as functions of states and parameters."""
+    """A system's legs and switches as functions of states and parameters.
 
-    def __init__(self, system: System, followed: Sequence[str] = ()) -> None:
-        self.system, self.followed = system, tuple(followed)
+    Attributes:
+        scales: of a system that states them, those in which states, times and parameters are
+            numbers here; None: all are in the system's own units.
+    """
+
+    def __init__(
+        self, system: System, followed: Sequence[str] = (), scales: Scales | None = None
+    ) -> None:
+        self.system, self.followed, self.scales = system, tuple(followed), scales
         t = system.traced
         self.size, self.timed = t.size, len(t.variables) > t.size
         self.by = [parameter(name) for name in followed]
@@ -111,6 +119,31 @@ class Flow:
         if self._sizes is None or self._sizes[0] != key:
             self._sizes = key, self.system.sizes_in(values)
         return self._sizes[1]
+
+    @classmethod
+    def of(
+        cls, system: System, values: Mapping[str, Any], followed: Sequence[str] = ()
+    ) -> tuple[Flow, dict[str, Any]]:
+        """Return a flow in the scales that a system states, and parameters as numbers in them."""
+        flow = cls(system, followed, system.scales_in(values))
+        if flow.scales is None:
+            return flow, dict(values)
+        return flow, flow.scales.into(system.units_of_values, values)
+
+    def following(self, *followed: str) -> Flow:
+        """Return the flow of the same system with other followed parameters."""
+        return Flow(self.system, followed, self.scales)
+
+    def scale_of(self, *names: str) -> Vector:
+        """Return what 1 is here of states, parameters, outputs or ``time``, in their own units."""
+        units = {
+            **self.system.units_of_values,
+            **{name: unit for name, (unit, _) in self.system.outputs.items()},
+            TIME: "s",
+        }
+        if self.scales is None:
+            return np.ones(len(names))
+        return np.array([float(self.scales.of(units[name])) for name in names])
 
     def unit(self, values: Mapping[str, float]) -> float:
         """The system's unit of time, s."""

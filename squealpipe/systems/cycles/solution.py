@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from squealpipe.systems.cycles.event_map import FREE, LONG_CHAIN, EventMap, Parts
 from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.legs import LegEnd, Vector
+from squealpipe.systems.trace import TIME
 
 _FAMILY = 1e-6
 """A second multiplier this close to 1 may belong to a family of cycles."""
@@ -42,8 +43,24 @@ class Cycle:
 
     @property
     def period(self) -> float:
-        """Its time, s."""
+        """Its time, in the flow's scale of it."""
         return float(self.parts.durations.sum())
+
+    def scale_of(self, name: str) -> float:
+        """Return what 1 is here of a state, parameter or output, in its own unit."""
+        return float(self.map.flow.scale_of(name)[0])
+
+    @property
+    def second(self) -> float:
+        """What 1 is here of a time, s."""
+        return self.scale_of(TIME)
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """All parameters, each in its unit."""
+        values = self.parts.values
+        scales = self.map.flow.scale_of(*values)
+        return dict(zip(values, (scales * [*values.values()]).tolist(), strict=True))
 
     @property
     def followed(self) -> Vector:

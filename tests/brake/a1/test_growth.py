@@ -5,8 +5,7 @@ import pytest
 from scipy.linalg import expm
 
 from squealpipe.brake.a1.ensemble import run_ensemble
-from squealpipe.brake.cycles.scene import CycleScene
-from squealpipe.brake.cycles.sliding import steady_sliding
+from squealpipe.brake.assess.sliding import Design, Sliding
 from squealpipe.laws.friction_laws import LAWS
 from squealpipe.parameters import PHYSICAL, Parameters
 from tests.former import FORMER
@@ -133,11 +132,11 @@ def resting_runs(count, seed):
             friction_speed=np.exp(rng.uniform(-3.0, 1.0)) * length / unit,
         )
         angles = rng.uniform(0.0, np.pi, 2)
-        found = steady_sliding(CycleScene(params, *angles))
+        found = Sliding.of(Design(params, *angles))
         if found is None:
             continue
         scale = np.array([length, length, length / unit, length / unit])
-        rest, matrix = found.state * scale, found.jacobian
+        rest, matrix = found.state, found.jacobian * unit * scale / scale[:, None]
         if np.linalg.eigvals(matrix).real.max() > -1e-3:
             continue
         start = rest + scale * rng.normal(size=4) * 10.0 ** rng.uniform(-14.0, -7.0)
@@ -166,7 +165,7 @@ def test_growth_of_a_motion_that_dies_out_is_that_of_the_linear_system():
 
 def test_growth_of_undamped_steady_sliding():
     place = FORMER.with_(k3=0.75, length1=5.0, length2=5.0), 0.83 * np.pi, 0.83 * np.pi
-    found = steady_sliding(CycleScene(*place))
+    found = Sliding.of(Design(*place))
     run = run_ensemble(*place, t_end=200.0, initial_state=found.state, tangent=True)
     growth = np.linalg.norm(expm(200.0 * found.jacobian) @ HALVES)
     assert run.log_growth == pytest.approx(np.log(growth), abs=1e-4)

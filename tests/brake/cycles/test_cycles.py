@@ -8,8 +8,9 @@ import pytest
 from scipy.optimize import brentq
 
 from squealpipe import Parameters, cycle_branch, limit_cycle
+from squealpipe.brake.a1.motion_system import brake_of, parameters_of_run
+from squealpipe.brake.assess.sliding import Design
 from squealpipe.brake.cycles.cycle import cycle_from
-from squealpipe.brake.cycles.scene import CycleScene
 from squealpipe.brake.normal_form import exchanged
 from squealpipe.laws.springs import geometry, linear_stiffness
 from squealpipe.schema import Outcome
@@ -160,6 +161,37 @@ def test_rest_is_rest_in_any_units_and_mirrored(settle):
         assert cycle.outcome == Outcome.equilibrium
 
 
+def test_as_a_system_a_pad_has_the_same_cycle_and_branch_in_any_units():
+    """Newtons of 1e-9 would be round-off of a condition that is a square of forces."""
+    mass, length, time = 1e-5, 3e-4, 50.0
+    units = {"mass": mass, "damping1": mass / time, "damping2": mass / time}
+    units |= dict.fromkeys(("k1", "k2", "k3"), mass / time**2)
+    units |= dict.fromkeys(("preload", "length1", "length2"), length)
+    units |= {"belt_speed": length / time, "friction_speed": length / time}
+    here = FORMER.with_(damping1=0.02, damping2=0.02, belt_speed=0.5)
+    there = here.with_(**{name: getattr(here, name) * u for name, u in units.items()})
+    angles = 0.4 * math.pi, 0.6 * math.pi
+    pad = limit_cycle(here, *angles)
+    branches = []
+    for params in (here, there):
+        numbers = parameters_of_run(params, *angles)
+        system = brake_of(params, varied=["k2"])
+        cycle = system.limit_cycle(**numbers)
+        branch = system.cycle_branch("k2", 1.01 * params.k2, start=cycle, n_points=6)
+        clock = math.sqrt(params.mass / params.k1)
+        assert float(cycle.period) / clock == pytest.approx(float(pad.period), rel=1e-9)
+        assert float(cycle.x_max) / params.preload == pytest.approx(
+            float(pad.x_max), rel=1e-9
+        )
+        assert cycle.sizes["event"] == pad.sizes["event"]
+        assert float(branch.k2[-1]) == pytest.approx(1.01 * params.k2, rel=1e-12)
+        branches.append(branch)
+    one, other = branches
+    assert one.label.values.tolist() == other.label.values.tolist()
+    np.testing.assert_allclose(other.period, one.period * time, rtol=1e-9)
+    np.testing.assert_allclose(other.x_start, one.x_start * length, rtol=1e-7)
+
+
 @pytest.mark.parametrize("speed", UNSTABLE)
 def test_a_smooth_cycle_around_a_state_of_rest_is_found_from_any_phase(speed):
     params = oscillator(1e3, speed, **BSTAB)
@@ -256,7 +288,7 @@ def test_branch_refuses_what_it_cannot_do(change, named):
 @pytest.mark.parametrize("rounds", [2, 3, 6, 25])
 def test_a_return_after_several_rounds_gives_the_least_period(rounds):
     params, angles = oscillator(1e4, 1.25, **BSTAB), ANGLES
-    once, _ = cycle_from(CycleScene(params, *angles), (1.5, 0.25, 1.25, 0.0))
+    once, _ = cycle_from(Design(params, *angles), (1.5, 0.25, 1.25, 0.0))
     parts = once.parts
     several = replace(once.map, events=once.map.events * rounds)
     states, durations = (

@@ -5,8 +5,8 @@ import pytest
 from scipy.optimize import brentq
 
 from squealpipe import Parameters, cycle_branch, cycle_curve, limit_cycle, stability_map
+from squealpipe.brake.assess.sliding import Design
 from squealpipe.brake.cycles.cycle import cycle_from
-from squealpipe.brake.cycles.scene import CycleScene
 from squealpipe.codes import Event
 from squealpipe.parameters import NUMBERS_OF_A1
 from squealpipe.systems.branch_labels import Label
@@ -130,7 +130,7 @@ def pad():
 
 @pytest.fixture(scope="module")
 def cycle(pad):
-    return cycle_from(CycleScene(pad, *ANGLES))[0]
+    return cycle_from(Design(pad, *ANGLES))[0]
 
 
 @pytest.mark.parametrize(
@@ -169,21 +169,6 @@ def test_an_onset_of_stick_is_followed_in_stiffness_and_damping(pad, name):
     alone = cycle_branch(there, *ANGLES, parameter="belt_speed", to=1.0)
     onsets = alone.belt_speed.values[alone.label.values == Label.stick_onset]
     assert onsets == pytest.approx([speed], rel=1e-10)
-
-
-@pytest.mark.parametrize("name", ["mass", "k1", "preload", "belt_speed", "k3"])
-def test_a_scene_elsewhere_is_that_of_the_parameters_there(name):
-    params = Parameters(
-        mass=2.0, k1=3.0, preload=0.5, belt_speed=0.6, friction_law=TABLE
-    )
-    scene = CycleScene(params, *ANGLES, follow=name)
-    value = 1.2 * getattr(params, name)
-    moved = scene.at(value / scene.units[name])
-    assert moved.values[name] == pytest.approx(value / scene.units[name], rel=1e-14)
-    others = {key for key in moved.values if key != name}
-    for key in others:
-        assert moved.values[key] == pytest.approx(scene.values[key], rel=1e-14)
-    assert moved.system is scene.system
 
 
 def test_a_branch_under_a_table_is_born_at_the_onset_of_a3():
