@@ -6,12 +6,12 @@ assembles the same matrices from the deck that :func:`deck` writes.
 
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 
 from squealpipe.structures.meshes.faces import Face, Rotation
+from squealpipe.structures.multilinear_elements import mass_and_stiffness
 from squealpipe.structures.structure import Structure
 from squealpipe.validation import Natural, NotNegative, Number, Positive, checked
 
@@ -191,53 +191,24 @@ def disc_brake(
 
 def brake_matrices(mesh: BrakeMesh) -> tuple[sp.csr_array, sp.csr_array, list[str]]:
     """Return mass (t), stiffness (N/mm) and names ``node.direction`` of what can move."""
-    from skfem import Basis, BilinearForm, ElementHex1, ElementVector, MeshHex  # type: ignore[import-untyped]
-    from skfem.helpers import ddot, dot, eye, sym_grad, trace  # type: ignore[import-untyped]
-
     place = {number: index for index, number in enumerate(mesh.nodes)}
-    # scikit-fem counts the corners of a cube in another order than CalculiX
-    order = [0, 1, 3, 4, 2, 5, 7, 6]
-    rows = [
-        [place[row[i]] for i in order]
-        for each in mesh.elements.values()
-        for row in each.values()
-    ]
-    grid = MeshHex(np.array([*mesh.nodes.values()]).T, np.array(rows).T)
-    mass: Any = 0.0
-    stiffness: Any = 0.0
-    first = 0
+    nodes = np.array([*mesh.nodes.values()])
+    mass, stiffness = (sp.csr_array((nodes.size, nodes.size)) for _ in range(2))
     for body in BODIES:
-        count = len(mesh.elements[body.name])
-        basis = Basis(
-            grid,
-            ElementVector(ElementHex1()),
-            elements=np.arange(first, first + count),
-            intorder=3,
+        rows = mesh.elements[body.name].values()
+        parts = mass_and_stiffness(
+            nodes,
+            np.array([[place[node] for node in row] for row in rows]),
+            young=body.young,
+            poisson=body.poisson,
+            density=body.density,
         )
-        first += count
-        shear = body.young / (2.0 * (1.0 + body.poisson))
-        volume = body.young * body.poisson
-        volume /= (1.0 + body.poisson) * (1.0 - 2.0 * body.poisson)
-
-        @BilinearForm
-        def elasticity(u: Any, v: Any, w: Any) -> Any:
-            strain = sym_grad(u)
-            stress = 2.0 * w.shear * strain + w.volume * eye(trace(strain), 3)
-            return ddot(stress, sym_grad(v))
-
-        @BilinearForm
-        def inertia(u: Any, v: Any, w: Any) -> Any:
-            return w.density * dot(u, v)
-
-        stiffness = stiffness + elasticity.assemble(basis, shear=shear, volume=volume)
-        mass = mass + inertia.assemble(basis, density=body.density)
-    held = np.zeros((len(place), 3))
-    held[[place[node] for node in mesh.corners]] = SPRINGS
-    springs = np.zeros(basis.N)
-    springs[basis.nodal_dofs.T] = held
-    stiffness = stiffness + sp.diags_array(springs)
+        mass, stiffness = mass + parts[0], stiffness + parts[1]
+    springs = np.zeros(nodes.shape)
+    springs[[place[node] for node in mesh.corners]] = SPRINGS
+    stiffness = stiffness + sp.diags_array(springs.ravel())
     free = [n for n in mesh.nodes if n not in set(mesh.fixed)]
-    kept = np.concatenate([basis.nodal_dofs[:, place[n]] for n in free])
+    kept = np.concatenate([3 * place[n] + np.arange(3) for n in free])
     names = [f"{n}.{direction}" for n in free for direction in (1, 2, 3)]
     mass, stiffness = (sp.csr_array(each)[kept][:, kept] for each in (mass, stiffness))
     return mass, stiffness, names

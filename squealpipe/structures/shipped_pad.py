@@ -1,13 +1,13 @@
 """An elastic pad in plane strain on a belt, hung by springs along its upper edge."""
 
 from functools import partial
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 
 from squealpipe.structures.contact import Contact
 from squealpipe.structures.meshes.structure_mesh import StructureMesh
+from squealpipe.structures.multilinear_elements import mass_and_stiffness
 from squealpipe.structures.structure import Structure
 from squealpipe.validation import Natural, NotNegative, Number, Positive, checked
 
@@ -60,39 +60,32 @@ def elastic_pad(
     Raises:
         ValueError: an argument; more contacts than nodes along the edge.
     """
-    from skfem import Basis, BilinearForm, ElementQuad1, ElementVector, MeshQuad  # type: ignore[import-untyped]
-    from skfem.helpers import ddot, dot, eye, sym_grad, trace  # type: ignore[import-untyped]
-
     if contacts > elements[0] + 1:
         raise ValueError(
             f"contacts = {contacts}: at most {elements[0] + 1}, one a node, are independent"
         )
-    first = young * POISSON / ((1 + POISSON) * (1 - 2 * POISSON))
-    shear = young / (2 * (1 + POISSON))
-
-    @BilinearForm
-    def elasticity(u: Any, v: Any, _: Any) -> Any:
-        strain = sym_grad(u)
-        stress = 2.0 * shear * strain + first * eye(trace(strain), 2)
-        return depth * ddot(stress, sym_grad(v))
-
-    @BilinearForm
-    def inertia(u: Any, v: Any, _: Any) -> Any:
-        return depth * DENSITY * dot(u, v)
-
-    mesh = MeshQuad.init_tensor(
-        np.linspace(0.0, length, elements[0] + 1),
-        np.linspace(0.0, height, elements[1] + 1),
+    columns, rows = (np.arange(n + 1) for n in elements)
+    x, y = (
+        each.ravel()
+        for each in np.meshgrid(
+            np.linspace(0.0, length, len(columns)),
+            np.linspace(0.0, height, len(rows)),
+            indexing="ij",
+        )
     )
-    basis = Basis(mesh, ElementVector(ElementQuad1()), intorder=3)
-    stiffness = sp.csr_array(elasticity.assemble(basis))
-    mass = sp.csr_array(inertia.assemble(basis))
-    x, y = mesh.p
-    along, across = basis.nodal_dofs
+    # nodes column by column, from the belt up
+    number = np.arange(x.size).reshape(len(columns), len(rows))
+    quads = [number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]]
+    corners = np.stack(quads, axis=-1).reshape(-1, 4)
+    nodes = np.column_stack([x, y])
+    mass, stiffness = mass_and_stiffness(
+        nodes, corners, young=young, poisson=POISSON, density=DENSITY, depth=depth
+    )
+    along, across = 2 * number.ravel() + [[0], [1]]
     upper = np.flatnonzero(np.isclose(y, height))
     ends = np.isclose(x[upper], 0.0) | np.isclose(x[upper], length)
     share = np.where(ends, 0.5, 1.0) / elements[0]
-    springs = np.zeros(basis.N)
+    springs = np.zeros(nodes.size)
     springs[along[upper]] = SUPPORT[0] * share
     springs[across[upper]] = SUPPORT[1] * share
     lower = np.flatnonzero(np.isclose(y, 0.0))
@@ -111,15 +104,12 @@ def elastic_pad(
                 preload=preload / contacts,
             )
         )
-    freedoms = np.empty((basis.N, 2), int)
-    for direction, places in enumerate(basis.nodal_dofs, 1):
-        freedoms[places] = np.column_stack(
-            [np.arange(len(x)), np.full(len(x), direction)]
-        )
+    directions = np.tile([1, 2], len(nodes))
+    freedoms = np.column_stack([np.repeat(np.arange(len(nodes)), 2), directions])
     return Structure(
         mass,
         stiffness + sp.diags_array(springs),
-        mesh=StructureMesh(mesh.p.T, mesh.t.T, freedoms),
+        mesh=StructureMesh(nodes, corners, freedoms),
         modal_damping=modal_damping,
         contacts=points,
         mu=mu,
