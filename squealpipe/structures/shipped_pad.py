@@ -64,32 +64,21 @@ def elastic_pad(
         raise ValueError(
             f"contacts = {contacts}: at most {elements[0] + 1}, one a node, are independent"
         )
-    columns, rows = (np.arange(n + 1) for n in elements)
-    x, y = (
-        each.ravel()
-        for each in np.meshgrid(
-            np.linspace(0.0, length, len(columns)),
-            np.linspace(0.0, height, len(rows)),
-            indexing="ij",
-        )
-    )
+    x = np.linspace(0.0, length, elements[0] + 1)
+    y = np.linspace(0.0, height, elements[1] + 1)
+    nodes = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
     # nodes column by column, from the belt up
-    number = np.arange(x.size).reshape(len(columns), len(rows))
-    quads = [number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]]
+    grid = np.arange(len(nodes)).reshape(len(x), len(y))
+    quads = [grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]]
     corners = np.stack(quads, axis=-1).reshape(-1, 4)
-    nodes = np.column_stack([x, y])
     mass, stiffness = mass_and_stiffness(
         nodes, corners, young=young, poisson=POISSON, density=DENSITY, depth=depth
     )
-    along, across = 2 * number.ravel() + [[0], [1]]
-    upper = np.flatnonzero(np.isclose(y, height))
-    ends = np.isclose(x[upper], 0.0) | np.isclose(x[upper], length)
-    share = np.where(ends, 0.5, 1.0) / elements[0]
-    springs = np.zeros(nodes.size)
-    springs[along[upper]] = SUPPORT[0] * share
-    springs[across[upper]] = SUPPORT[1] * share
-    lower = np.flatnonzero(np.isclose(y, 0.0))
-    lower = lower[np.argsort(x[lower])]
+    share = np.full((len(x), 1), 1.0 / elements[0])
+    share[[0, -1]] *= 0.5
+    springs = np.zeros(nodes.shape)
+    springs[grid[:, -1]] = SUPPORT * share
+    lower = grid[:, 0]
     places = np.linspace(0.0, length, contacts) if contacts > 1 else [0.5 * length]
     points = []
     for number, place in enumerate(places, 1):
@@ -98,8 +87,8 @@ def elastic_pad(
             Contact(
                 f"p{number}",
                 # N acts away from the belt, along +y; friction along +x
-                normal={int(across[lower[i]]): w for i, w in weights.items()},
-                tangential={int(along[lower[i]]): w for i, w in weights.items()},
+                normal={int(2 * lower[i] + 1): w for i, w in weights.items()},
+                tangential={int(2 * lower[i]): w for i, w in weights.items()},
                 stiffness=contact_stiffness / contacts,
                 preload=preload / contacts,
             )
@@ -108,7 +97,7 @@ def elastic_pad(
     freedoms = np.column_stack([np.repeat(np.arange(len(nodes)), 2), directions])
     return Structure(
         mass,
-        stiffness + sp.diags_array(springs),
+        stiffness + sp.diags_array(springs.ravel()),
         mesh=StructureMesh(nodes, corners, freedoms),
         modal_damping=modal_damping,
         contacts=points,
