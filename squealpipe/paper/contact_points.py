@@ -15,7 +15,7 @@ from squealpipe.structures.schema.squealing import NO_ATTRACTOR
 from squealpipe.structures.shipped_pad import YOUNG, elastic_pad
 from squealpipe.structures.squeal.plant import Plant
 from squealpipe.structures.squeal.squealing_modes import squealing_of
-from squealpipe.structures.squeal.windows import WIDE, Running, run
+from squealpipe.structures.squeal.windows import Running, run
 from squealpipe.systems.datasets.versions import versions
 
 SHOWN_PERIODS, EACH = 4, 48
@@ -179,10 +179,7 @@ def _forces(plant: Plant, motion: xr.Dataset, tol: float) -> np.ndarray:
     start = np.concatenate([motion.displacement.values, motion.velocity.values])
     # delays are taken over 64 periods
     times = np.arange(64 * EACH) / (EACH * float(motion.dominant_frequency))
-    # several at once run in code that is compiled already
-    samples = run(plant, np.tile(start, (WIDE, 1)), times[1:], Running(tol))["samples"][
-        0
-    ]
+    samples = run(plant, start[None], times[1:], Running(tol))["samples"][0]
     states = np.concatenate([start[None], samples])[:, : pad.size]
     pressed = pad.preloads - states @ pad.normals * pad.stiffnesses
     return np.asarray(np.maximum(pressed, 0.0).T / pad.preloads[:, None])

@@ -313,6 +313,8 @@ def _damped(pencil: Pencil) -> list[Eigenpair]:
     values, left, right = la.eig(matrix, left=True, right=True)
     norm = np.linalg.norm(matrix, 2)
     pairs = []
+    shapes = la.solve_triangular(lower.T, right[:size]).T
+    shapes_left = la.solve_triangular(lower.T, left[size:]).T
     for place, (value, x, y) in enumerate(zip(values, right.T, left.T, strict=True)):
         if value.imag < 0:
             continue
@@ -321,8 +323,8 @@ def _damped(pencil: Pencil) -> list[Eigenpair]:
         )
         bound = BACKWARD * np.finfo(float).eps * norm
         error = min(bound * condition, np.sqrt(bound * norm))
-        v = unit_vector(la.solve_triangular(lower.T, x[:size]).astype(complex))
-        w = unit_vector(la.solve_triangular(lower.T, y[size:]).astype(complex))
+        v = unit_vector(shapes[place].astype(complex))
+        w = unit_vector(shapes_left[place].astype(complex))
         if error > ENOUGH * max(abs(value.real), 1.0):
             root, rate = quotient(pencil, value, v, w)
             gap = np.abs(np.delete(values, place) - value).min(initial=np.inf)

@@ -159,8 +159,8 @@ class Pencil:
         modal = 0.0 if self.modal is None else self.modal.product(vector)
         return self.damping.T @ vector + modal
 
-    def rate(self, s: complex, vector: np.ndarray) -> Any:
-        """Q'(s) x = (2 s M + C) x."""
+    def rate(self, s: Any, vector: np.ndarray) -> Any:
+        """Q'(s) x = (2 s M + C) x, of a number and (n,), or of (pairs,) and (n, pairs)."""
         modal = 0.0 if self.modal is None else self.modal.product(vector)
         return 2.0 * s * (self.mass @ vector) + self.damping @ vector + modal
 
@@ -174,13 +174,18 @@ class Pencil:
         )
         return float(np.finfo(float).eps / 2 * np.sqrt(total))
 
-    def left_open(self, s: complex, left: np.ndarray, right: np.ndarray) -> float:
-        """Largest |wᴴ δQ v| of what is uncertain."""
+    def left_open(self, s: np.ndarray, left: np.ndarray, right: np.ndarray) -> Any:
+        """Largest |wᴴ δQ v| of what is uncertain, of each of some pairs.
+
+        Args:
+            s: (pairs,).
+            left, right: (n, pairs).
+        """
         part = self.uncertain
         if part is None:
-            return 0.0
+            return np.zeros(len(s))
         sizes = np.abs(part.left.T @ left) * np.abs(part.right.T @ right)
-        return float(sizes @ (abs(s) * part.damping + part.stiffness))
+        return part.damping @ sizes * np.abs(s) + part.stiffness @ sizes
 
     def factorized(self, s: complex) -> Factors:
         """Factors of Q(s)."""

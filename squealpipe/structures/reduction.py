@@ -168,11 +168,11 @@ class Kept:
         pairs = all_modes(pencil_about(reduced, state, None))
         return np.array([each.value for each in pairs])
 
-    def quick_values(self, number: int, added: float = 0.0) -> np.ndarray:
-        """Return these eigenvalues, s with Im s ≥ 0, less accurately and without vectors.
+    def small_motions(self, number: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return stiffness and damping about steady sliding, (number, number); the mass is 1.
 
-        Args:
-            added: damping ratio of every mode, beside its own.
+        Raises:
+            NoSlidingError: there is no steady sliding in so many modes.
         """
         reduced = self.reduced(number)
         state = steady_sliding(reduced, reduced.mu, reduced.belt_speed)
@@ -183,19 +183,7 @@ class Kept:
         damping = (
             reduced.damping.toarray() + along * (state.force * state.slope) @ along.T
         )
-        damping = damping + np.diag(2.0 * added * self.omega[:number])
-        if not damping.any():
-            squares = la.eigvals(stiffness).astype(complex)
-            roots = 1j * np.sqrt(squares)
-            values = np.concatenate([roots, -roots])
-        else:
-            unit = np.sqrt(np.linalg.norm(stiffness)) or np.linalg.norm(damping)
-            first_order = np.zeros((2 * number, 2 * number))
-            first_order[:number, number:] = unit * np.eye(number)
-            first_order[number:, :number] = -stiffness / unit
-            first_order[number:, number:] = -damping
-            values = la.eigvals(first_order)
-        return np.asarray(values[values.imag >= 0])
+        return stiffness, damping
 
 
 class Search:
@@ -243,7 +231,7 @@ class Search:
         if kept.parallel_contact(number) or self._loses_stick(number):
             return False
         try:
-            values = kept.quick_values(number)
+            values = quick_values(*kept.small_motions(number))
         except NoSlidingError:  # in these modes, not in the whole
             return False
         # growth below this share of the eigenvalue's modulus is round-off
@@ -302,6 +290,22 @@ class Search:
             "unstable": len(self.truth.unstable),
         }
         return reduced
+
+
+def quick_values(stiffness: np.ndarray, damping: np.ndarray) -> np.ndarray:
+    """Return the s with Im s ≥ 0 of s² + C s + K, without vectors, to round-off of the largest."""
+    if not damping.any():
+        roots = 1j * np.sqrt(la.eigvals(stiffness).astype(complex))
+        values = np.concatenate([roots, -roots])
+    else:
+        size = len(stiffness)
+        unit = np.sqrt(np.linalg.norm(stiffness)) or np.linalg.norm(damping)
+        first_order = np.zeros((2 * size, 2 * size))
+        first_order[:size, size:] = unit * np.eye(size)
+        first_order[size:, :size] = -stiffness / unit
+        first_order[size:, size:] = -damping
+        values = la.eigvals(first_order)
+    return np.asarray(values[values.imag >= 0])
 
 
 def dependent_of(structure: ContactStructure) -> list[str]:

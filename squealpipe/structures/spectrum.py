@@ -13,7 +13,11 @@ from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.linearized import pencil_about
 from squealpipe.structures.modes import modal_damping_of, modes_at_rest
 from squealpipe.structures.pencil import DENSE, LowRank, Pencil
-from squealpipe.structures.refinement import Eigenpair, error_of_forces, growing_first
+from squealpipe.structures.refinement import (
+    Eigenpair,
+    growing_first,
+    with_errors_of_forces,
+)
 from squealpipe.structures.sliding import SteadySliding, steady_sliding
 from squealpipe.structures.stiff import beyond_gap, stiff_degrees
 from squealpipe.structures.varied_friction import VariedFriction
@@ -185,10 +189,7 @@ class Solver:
             pencil = pencil_about(self.structure, state, self.modal)
             find: Callable[[Pencil], list[Eigenpair]]
             find = dense.all_modes if self.is_dense else self._within
-            pairs = [
-                pair._replace(error=pair.error + error_of_forces(pencil, pair))
-                for pair in find(pencil)
-            ]
+            pairs = with_errors_of_forces(pencil, find(pencil))
             self._known[mu] = Spectrum(mu, state, pencil, pairs)
         return self._known[mu]
 

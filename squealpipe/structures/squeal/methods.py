@@ -30,12 +30,7 @@ from squealpipe.structures.squeal.ends import (
 )
 from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
 from squealpipe.structures.squeal.smoothed import Smoothed
-from squealpipe.structures.squeal.windows import (
-    WIDE,
-    Running,
-    StructureWindows,
-    run_windows,
-)
+from squealpipe.structures.squeal.windows import Running, StructureWindows, run_windows
 from squealpipe.systems.taylor.lanes import taylor_terms
 
 
@@ -126,7 +121,7 @@ def exact_told(
     pushes = _pushes(plant, frequencies)
     known = [place for place in pushes if place is not None]
     # runs from pushes that differ a little: their scatter is an error
-    count = max(4, -(-WIDE // max(len(known), 1)))
+    count = 4 if len(known) > 1 else 5
     # each of several pushes is 5 % larger than the one before
     starts = np.array(
         [

@@ -1,18 +1,26 @@
-"""Find how much more damping stops the modes that grow."""
+"""Find how much more damping stops the modes that grow.
+
+Idea: from the largest ratio down, the first of a row of ratios at which a mode grows brackets the
+boundary. The mode that grows most there is followed to it, by Newton's method on its eigenvalue
+s and the ratio ζ together, with d s/d ζ = −wᴴ s (∂C/∂ζ) v / wᴴ Q'(s) v.
+
+Invariant: just above the ratio that is returned all eigenvalues have been computed, and none grows.
+Cost: one problem of all eigenvalues for each ratio tried, and two systems a step of Newton's.
+"""
 
 import math
 from collections.abc import Callable
 
 import numpy as np
+import scipy.linalg as la
 from scipy.optimize import brentq
 
 from squealpipe.schema import Outcome
 from squealpipe.structures.agreement import Truth
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.pencil import DENSE
-from squealpipe.structures.reduction import Kept
+from squealpipe.structures.reduction import Kept, quick_values
 from squealpipe.structures.schema.squealing import MOST_DAMPING
-from squealpipe.structures.spectrum import Limits, Solver, Spectrum
 from squealpipe.structures.squeal.plant import Plant
 
 
@@ -28,21 +36,36 @@ def added_damping(plant: Plant) -> tuple[float, Outcome]:
         The ratio and its outcome: 0 where nothing grows without it, NaN where the largest does not
         suffice (``not_reached``) or where it is not known (``unresolved``).
     """
-    ratio = _searched(plant.structure)
-    origin = plant.structure.reduced_from
-    if origin is not None and not _confirmed(plant, ratio):
+    ratio = 0.0
+    if plant.unstable.size:
+        ratio = _Damped(plant.structure).boundary()
+    origin, truth = plant.structure.reduced_from, plant.truth
+    if origin is not None and truth is not None:
+        grows_now = bool(truth.unstable.size)
         if origin.whole.size > DENSE or origin.frequency_max is not None:
-            return np.nan, Outcome.unresolved
-        ratio = _searched(origin.whole)
+            if not _confirmed_in_band(plant, ratio, grows_now):
+                return np.nan, Outcome.unresolved
+        elif not grows_now:
+            ratio = 0.0
+        else:
+            damped = _Damped(origin.whole)
+            if ratio == 0.0 or not _confirmed(damped.grows, ratio):
+                ratio = damped.boundary()
     known = math.isfinite(ratio)
     return ratio, Outcome.converged if known else Outcome.not_reached
 
 
-def _confirmed(plant: Plant, ratio: float) -> bool:
+def _confirmed(grows: Callable[[float], bool], ratio: float) -> bool:
     """Tell whether modes of the whole grow with 1 % less damping, and none with 1 % more."""
-    origin, truth = plant.structure.reduced_from, plant.truth
-    assert origin is not None and truth is not None  # noqa: S101, PT018
-    grows_now = bool(truth.unstable.size)
+    if not math.isfinite(ratio):
+        return grows(MOST_DAMPING)
+    return not grows(1.01 * ratio) and grows(0.99 * ratio)
+
+
+def _confirmed_in_band(plant: Plant, ratio: float, grows_now: bool) -> bool:
+    """Tell the same where modes are computed up to a frequency alone."""
+    origin = plant.structure.reduced_from
+    assert origin is not None  # noqa: S101
     if ratio == 0.0 or not grows_now:
         return grows_now == (ratio != 0.0)
 
@@ -53,40 +76,79 @@ def _confirmed(plant: Plant, ratio: float) -> bool:
         damped = origin.whole.with_(modal_damping=ratios + added)
         return bool(Truth.of(damped, origin.frequency_max).unstable.size)
 
-    if not math.isfinite(ratio):
-        return grows(MOST_DAMPING)
-    return grows(0.99 * ratio) and not grows(1.01 * ratio)
+    return _confirmed(grows, ratio)
 
 
-def _searched(structure: ContactStructure) -> float:
-    """Return the ratio that one structure needs by itself, NaN if the largest does not suffice."""
-    now = _spectrum(structure)
-    if not (now.values.real > now.growth_errors).any():
-        return 0.0
-    growth = _growth_over_ratio(structure)
-    # ratios of damping between which stability is taken to change once at most
-    tried, above = np.geomspace(1e-4, MOST_DAMPING, 24)[::-1].tolist(), math.nan
-    # from the largest down to the first at which a mode grows
-    for ratio in [*tried, 0.0]:
-        if ratio == 0.0 or growth(ratio) > 0:
-            break
-        above = ratio
-    if math.isnan(above):
-        return math.nan
-    return float(brentq(growth, ratio, above, xtol=1e-9))
+class _Damped:
+    """Small motions of a structure in coordinates of its modes at rest, with damping added."""
 
+    def __init__(self, structure: ContactStructure) -> None:
+        kept = Kept(structure, structure.size)
+        self.stiffness, self.damping = kept.small_motions(structure.size)
+        self.rates = 2.0 * kept.omega
+        """∂C/∂ζ, a diagonal."""
 
-def _growth_over_ratio(structure: ContactStructure) -> Callable[[float], float]:
-    """Return the largest growth rate, 1/s, as a function of the ratio of damping added."""
-    # in coordinates of its modes what damps it already is in its matrix, and ratios are free
-    kept = Kept(structure, structure.size)
-    if structure.size > 32:  # eigenvalues to their last digits would take too long
-        return lambda ratio: float(kept.quick_values(structure.size, ratio).real.max())
-    modal = kept.reduced(structure.size)
-    return lambda ratio: float(
-        _spectrum(modal.with_(modal_damping=ratio)).values.real.max()
-    )
+    def values(self, ratio: float) -> np.ndarray:
+        """Return all eigenvalues."""
+        return quick_values(self.stiffness, self.damping + np.diag(ratio * self.rates))
 
+    def grows(self, ratio: float) -> bool:
+        """Tell whether a mode grows by more than round-off."""
+        values = self.values(ratio)
+        return bool((values.real > 1e-9 * np.abs(values)).any())
 
-def _spectrum(structure: ContactStructure) -> Spectrum:
-    return Solver(structure, Limits(), structure.belt_speed).at(structure.mu)
+    def boundary(self) -> float:
+        """Return the ratio from which nothing grows, NaN if the largest does not suffice."""
+        # ratios of damping between which stability is taken to change once at most
+        tried = [*np.geomspace(1e-4, MOST_DAMPING, 24)[::-1].tolist(), 0.0]
+        above = math.nan
+        for ratio in tried:
+            values = self.values(ratio)
+            if ratio == 0.0 or (values.real > 1e-9 * np.abs(values)).any():
+                break
+            above = ratio
+        if math.isnan(above):
+            return math.nan
+        for _ in range(len(values)):
+            fastest = complex(values[values.real.argmax()])
+            located = self._followed(fastest, ratio)
+            if located is None or not ratio <= located <= above:
+                break
+            # another mode may need more
+            values = self.values(located * (1.0 + 1e-6))
+            if not (values.real > 1e-9 * np.abs(values)).any():
+                return located
+            ratio = located
+        return float(brentq(self._growth, ratio, above, xtol=1e-9))
+
+    def _growth(self, ratio: float) -> float:
+        return float(self.values(ratio).real.max())
+
+    def _followed(self, s: complex, ratio: float) -> float | None:
+        """Return the ratio at which a mode stops growing, None where it cannot be followed."""
+        right = left = None
+        for _ in range(30):
+            damping = self.damping + np.diag(ratio * self.rates)
+            matrix = s * (s * np.eye(len(damping)) + damping) + self.stiffness
+            factors = la.lu_factor(matrix, check_finite=False)
+            start = np.random.default_rng(0).standard_normal(len(matrix))
+            right = start if right is None else right
+            left = start if left is None else left
+            for _ in range(2):
+                right = la.lu_solve(factors, right)
+                left = la.lu_solve(factors, left, trans=2)
+                right, left = right / np.linalg.norm(right), left / np.linalg.norm(left)
+            if not np.isfinite(right).all() or not np.isfinite(left).all():
+                return None
+            adjoint = left.conj()
+            of_s = adjoint @ (2.0 * s * right + damping @ right)
+            off = adjoint @ (matrix @ right) / of_s
+            of_ratio = adjoint @ (s * self.rates * right) / of_s
+            if of_ratio.real == 0.0:
+                return None
+            change = (s.real - off.real) / of_ratio.real
+            s = 1j * complex(s - off - change * of_ratio).imag
+            ratio += change
+            if abs(change) <= 1e-13 * abs(ratio):
+                return float(ratio)
+        return None

@@ -21,8 +21,6 @@ SAMPLES = 2048
 """Instants of a window."""
 PADDING = 4
 """Lines of a spectrum beside those of its samples."""
-WIDE = 5
-"""Fewest runs at once."""
 BLOCKS = 64
 """Parts of a window whose kinetic energy is kept."""
 
@@ -162,16 +160,11 @@ def run_windows(
     """
     count = len(states)
     lengths = np.broadcast_to(np.asarray(lengths, float), (count,))
-    # fewer are done by other code, which would have to be compiled, too
-    wide = np.array([*range(count), *[*range(count)] * WIDE])[: max(count, WIDE)]
     part = np.random.default_rng(how.seed).random(SAMPLES)
     times = np.append((np.arange(SAMPLES) + part) / SAMPLES, 1.0)
-    options = {} if regimes is None else {"regime": regimes[wide]}
-    frictions = None if frictions is None else frictions[wide]
-    raw = run(
-        plant, states[wide], lengths[wide, None] * times, how, frictions, **options
-    )
-    return statistics_of(plant, raw, lengths[wide]).row(slice(count))
+    options = {} if regimes is None else {"regime": regimes}
+    raw = run(plant, states, lengths[:, None] * times, how, frictions, **options)
+    return statistics_of(plant, raw, lengths)
 
 
 OFF = 1e-8
