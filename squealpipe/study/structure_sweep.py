@@ -1,6 +1,5 @@
 """A sweep of the complex modes of a structure in a file: ``FILE.yaml:complex_modes``."""
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Self
 
@@ -9,13 +8,14 @@ import xarray as xr
 from squealpipe.structures.factors import asked_of
 from squealpipe.structures.structure import Structure
 from squealpipe.study.chunks import Chunks
+from squealpipe.study.sweep_plan import SweepPlan
 
 TASK = "complex_modes"
 SWEPT_OPTIONS = ("frequency_max", "n_modes")
 
 
 @dataclass(frozen=True, kw_only=True)
-class StructureSweep:
+class StructureSweep(SweepPlan):
     """Complex modes of a structure over ranges; one part, for modes are numbered over all of them.
 
     Attributes:
@@ -28,9 +28,6 @@ class StructureSweep:
         ValueError: a file, task or name that is wrong.
     """
 
-    task: str
-    vary: Mapping[str, Sequence[float]]
-    fixed: Mapping[str, Any]
     structure: Structure = field(init=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -45,23 +42,22 @@ class StructureSweep:
                 raise ValueError(f"{name} cannot be varied; fix it")
         asked_of(self.structure, **self._arguments())
 
-    @property
-    def names(self) -> list[str]:
-        """Swept names in the order given."""
-        return list(self.vary)
-
     def scattered(self, item: str) -> Self:
         """The whole, which is its only part."""
         if item != "1-of-1":
             raise ValueError(f"{self.task} is made in one part, not {item}")
         return self
 
-    def finished(self, kept: Chunks) -> int:  # noqa: ARG002 (as of other sweeps)
-        """None: it is computed in one piece."""
+    def finished(self, kept: Chunks) -> int:  # noqa: ARG002
+        """Return 0: it is computed in one piece."""
         return 0
 
-    def run(self) -> xr.Dataset:
-        """The dataset over friction, belt speed and further factors."""
+    def dataset(
+        self,
+        workers: int | None = None,  # noqa: ARG002
+        kept: Chunks | None = None,  # noqa: ARG002
+    ) -> xr.Dataset:
+        """Return the modes over friction, belt speed and further factors."""
         arguments = self._arguments()
         return self.structure.complex_modes(**arguments.pop("factors"), **arguments)
 

@@ -9,9 +9,9 @@ from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from multiprocessing import active_children, get_all_start_methods, get_context
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -33,7 +33,6 @@ from squealpipe.schema import (
 )
 from squealpipe.schema.origin import origin
 from squealpipe.study.chunks import Chunks, Run
-from squealpipe.study.scatter import scattered_values
 from squealpipe.study.schema.sweep import (
     OPTIONS,
     fill_up,
@@ -42,6 +41,7 @@ from squealpipe.study.schema.sweep import (
     sweep_name,
 )
 from squealpipe.study.structure_sweep import StructureSweep
+from squealpipe.study.sweep_plan import SweepPlan
 from squealpipe.study.swept_tasks import MAPS, NO_DEFAULT, TASKS, options_of
 from squealpipe.study.system_sweep import SystemSweep, is_system
 from squealpipe.systems.processes import available_cores, leave_interrupts_to_the_parent
@@ -66,7 +66,7 @@ def _gate(
 
 
 @dataclass(frozen=True, kw_only=True)
-class Sweep:
+class Sweep(SweepPlan):
     """A sweep: a task, fixed arguments, and the values of those that vary.
 
     Attributes:
@@ -81,10 +81,7 @@ class Sweep:
             angle that is missing.
     """
 
-    task: str
     params: Parameters
-    vary: Mapping[str, Sequence[float]]
-    fixed: Mapping[str, Any]
 
     def __post_init__(self) -> None:
         self._read_units()
@@ -187,8 +184,35 @@ class Sweep:
         return task(params, *angles, **given)
 
     def finished(self, kept: Chunks) -> int:
-        """Number of runs that are there."""
+        """Return the number of runs that are on disk."""
         return kept.finished()
+
+    def dataset(
+        self, workers: int | None = None, kept: Chunks | None = None
+    ) -> xr.Dataset:
+        """Return the task's variables with the swept names as leading dimensions."""
+        made: list[Run] = []
+        done, written = (kept.finished(), time.monotonic()) if kept else (0, 0.0)
+        total = len(self.points)
+        number = done
+        with alone() as show:
+            show(done / total)
+            try:
+                for number, run in enumerate(_runs(self, workers, done), done + 1):
+                    made.append(run)
+                    show(number / total)
+                    # after 5 s of new results they go to disk: a stopped sweep loses no more
+                    if kept and (
+                        time.monotonic() - written > 5.0 or len(made) >= MOST_HELD
+                    ):
+                        kept.save(number - len(made), made)
+                        made, written = [], time.monotonic()
+            finally:
+                if kept and made:
+                    kept.save(number - len(made), made)
+        if not kept:
+            return _merge(self, lambda: iter(made))
+        return _merge(self, kept.runs)
 
     @property
     def origin(self) -> dict[str, Any]:
@@ -197,12 +221,8 @@ class Sweep:
         fixed = {name: value for name, value in given.items() if name not in self.vary}
         return origin(self.task, {"params": params, **fixed})
 
-    def scattered(self, item: str) -> Self:
-        """One part of a scattered sweep: some of the values of the longest name."""
-        return replace(self, vary=scattered_values(self.vary, item))
 
-
-def planned(config: Mapping[str, Any]) -> Sweep | SystemSweep | StructureSweep:
+def planned(config: Mapping[str, Any]) -> SweepPlan:
     """The sweep of a configuration as :func:`squealpipe.ranges.sweep_config` makes it."""
     given = {key: config[key] for key in ("task", "vary", "fixed")}
     if is_structure(config["task"]):
@@ -214,10 +234,7 @@ def planned(config: Mapping[str, Any]) -> Sweep | SystemSweep | StructureSweep:
 
 @checked
 def run_sweep(
-    sweep: Sweep | SystemSweep | StructureSweep,
-    *,
-    workers: Workers = None,
-    kept: Chunks | None = None,
+    sweep: SweepPlan, *, workers: Workers = None, kept: Chunks | None = None
 ) -> xr.Dataset:
     """Run a sweep.
 
@@ -232,32 +249,7 @@ def run_sweep(
         than the longest along a dimension such as ``point`` are filled up with NaN, or the
         flag "absent", and ``<dimension>_count`` states their lengths.
     """
-    if isinstance(sweep, StructureSweep):
-        return sweep.run()
-    if isinstance(sweep, SystemSweep):
-        return sweep.run(workers, kept)  # an ensemble shares its runs by itself
-    made: list[Run] = []
-    done, written = (kept.finished(), time.monotonic()) if kept else (0, 0.0)
-    total = len(sweep.points)
-    number = done
-    with alone() as show:
-        show(done / total)
-        try:
-            for number, run in enumerate(_runs(sweep, workers, done), done + 1):
-                made.append(run)
-                show(number / total)
-                # after 5 s of new results they go to disk: a stopped sweep loses no more
-                if kept and (
-                    time.monotonic() - written > 5.0 or len(made) >= MOST_HELD
-                ):
-                    kept.save(number - len(made), made)
-                    made, written = [], time.monotonic()
-        finally:
-            if kept and made:
-                kept.save(number - len(made), made)
-    if not kept:
-        return _merge(sweep, lambda: iter(made))
-    return _merge(sweep, kept.runs)
+    return sweep.dataset(workers, kept)
 
 
 def _runs(sweep: Sweep, workers: int | None, first: int) -> Iterator[Run]:

@@ -6,9 +6,9 @@ import runpy
 import time
 import traceback
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -16,7 +16,7 @@ import xarray as xr
 from squealpipe.laws.one_file import without_neighbours
 from squealpipe.ranges import longest
 from squealpipe.study.chunks import Chunks, Run
-from squealpipe.study.scatter import scattered_values
+from squealpipe.study.sweep_plan import SweepPlan
 from squealpipe.systems import basin, runs
 from squealpipe.systems.processes import available_cores
 from squealpipe.systems.progress import part_of_work
@@ -75,7 +75,7 @@ def _run(file: str) -> dict[str, Any]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SystemSweep:
+class SystemSweep(SweepPlan):
     """A system's ensemble, or basin, over ranges.
 
     Attributes:
@@ -85,9 +85,6 @@ class SystemSweep:
             options.
     """
 
-    task: str
-    vary: Mapping[str, Sequence[float]]
-    fixed: Mapping[str, Any]
     system: System = field(init=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -108,22 +105,10 @@ class SystemSweep:
         if "t_end" not in self.fixed:
             raise ValueError(f"{self.system.name} needs t_end, fixed")
 
-    @property
-    def names(self) -> list[str]:
-        """Swept names in the order given."""
-        return list(self.vary)
-
-    def scattered(self, item: str) -> Self:
-        """One part of a scattered sweep, ``i-of-n`` along its longest name."""
-        return replace(self, vary=scattered_values(self.vary, item))
-
-    def run(self, workers: int | None = None, kept: Chunks | None = None) -> xr.Dataset:
-        """The dataset, its dimensions starts first.
-
-        Args:
-            workers: processes; None takes all cores.
-            kept: where finished runs are kept on disk; those that are there are not made again.
-        """
+    def dataset(
+        self, workers: int | None = None, kept: Chunks | None = None
+    ) -> xr.Dataset:
+        """Return the ensemble or basin, its dimensions starts first; it shares runs by itself."""
         along = self._cut()
         if kept is None or along is None:
             return self._block({}, workers)
