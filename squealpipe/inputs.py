@@ -25,8 +25,6 @@ from squealpipe.units import (
     number_of,
 )
 
-_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
-ANGLE_FORMS = "write 0.4pi, 2pi/5, 72deg or radians"
 ANGLES = ("alpha1", "alpha2")
 UNITS = UNITS_OF_INPUTS | {
     **dict.fromkeys(("t_start", "t_end", "t_late", "t_settle", "times", "last"), "s"),
@@ -44,20 +42,19 @@ STATE_NAMES, STATES = ("x", "y", "vx", "vy"), ("initial_state", "guess", "start"
 """Components of a state, and the arguments that are states."""
 BY_NAME = ("distributions", "design", "to", "vary", "fixed")
 """Arguments that may be mappings from names of parameters to values."""
-_OF_PARTS = frozenset({*BY_NAME, *STATES, *ANGLES})
-"""Further arguments that may hold texts with units."""
 
 
 def parse_angle(text: str) -> float:
     """An angle in rad from ``0.4pi``, ``2pi/5``, ``72deg`` or plain radians."""
     value = _angle_in(text.strip().lower())
+    forms = "write 0.4pi, 2pi/5, 72deg or radians"
     if value is None and has_unit(text):  # 0.4 mrad, or a wrong kind, which is named
         try:
             value = in_si(text, "rad", KEYS_THAT_TAKE)
         except UnitError as error:
-            raise UnitError(f"{text!r}: {error}; or {ANGLE_FORMS}") from None
+            raise UnitError(f"{text!r}: {error}; or {forms}") from None
     if value is None or not math.isfinite(value):
-        raise ValueError(f"{text!r} is not a valid angle; {ANGLE_FORMS}")
+        raise ValueError(f"{text!r} is not a valid angle; {forms}")
     if abs(value) > FULL_TURN:
         raise ValueError(
             f"{text.strip()}: {BEYOND_A_TURN}; degrees are written like 72deg"
@@ -67,14 +64,15 @@ def parse_angle(text: str) -> float:
 
 def _angle_in(text: str) -> float | None:
     # 0.4pi, 2π/5, pi
+    number = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
     if match := re.fullmatch(
-        rf"([+-]?)({_NUMBER})?\s*\*?\s*(?:pi|π)(?:/({_NUMBER}))?", text
+        rf"([+-]?)({number})?\s*\*?\s*(?:pi|π)(?:/({number}))?", text
     ):
         sign, head, below = match.groups("1")
         above = float(head) * (-1 if sign == "-" else 1) * math.pi
         return above / float(below) if float(below) else None
     # 72deg, 72°, 1.2 rad, 1.2
-    if not (match := re.fullmatch(rf"({_NUMBER})\s*(deg|°|rad)?", text)):
+    if not (match := re.fullmatch(rf"({number})\s*(deg|°|rad)?", text)):
         return None
     value = float(match[1])
     return math.radians(value) if match[2] in {"deg", "°"} else value
@@ -171,7 +169,9 @@ def _argument(
     if name == "to" and "system" in about:
         return value  # of a parameter that has no declared unit
     name_of_unit = str(about["parameter"]) if is_end else name
-    if name_of_unit not in units and name_of_unit not in _OF_PARTS:
+    # These arguments hold further values, which may be texts with units
+    of_parts = frozenset({*BY_NAME, *STATES, *ANGLES})
+    if name_of_unit not in units and name_of_unit not in of_parts:
         return value
     try:
         return _read(name_of_unit, value, units)

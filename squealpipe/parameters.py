@@ -11,13 +11,7 @@ from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import COULOMB, LAWS, coefficient, static_coefficient
 from squealpipe.laws.tables import is_table, knots_of, named
 from squealpipe.laws.tables import stood_for as stood_for_by_law
-from squealpipe.substitutes import (
-    STIFFNESS,
-    SUBSTITUTES,
-    check_together,
-    stands_for,
-    stood_for,
-)
+from squealpipe.substitutes import SUBSTITUTES, check_together, stands_for, stood_for
 from squealpipe.systems.inputs.values import brief, is_finite_number, numbers_in_si
 from squealpipe.text import as_number, suggestion
 from squealpipe.units import engineering
@@ -438,12 +432,14 @@ def read_substitutes(inputs: Mapping[str, Any]) -> dict[str, Any]:
     }
     part = Row("N m-1", "", "stiffness by directions", allowed="finite")
     values: dict[str, Any] = {}
+    # stiffness along the belt, across it (without the contact), and the coupling of both, N/m
+    of_stiffness = ("along", "across", "coupling")
     for name, value in inputs.items():
         if name != "stiffness":
             values[name] = rows[name].check(name, value)
             continue
         if not isinstance(value, Mapping) or not {"along", "across"} <= set(value) <= {
-            *STIFFNESS
+            *of_stiffness
         }:
             raise ValueError(
                 f"stiffness = {brief(value)}: write {{along: …, across: …, coupling: …}}"

@@ -44,9 +44,7 @@ SUBSTITUTES = {
         allowed="not negative",
     ),
 }
-"""Inputs that are one number; ``stiffness`` has three, :data:`STIFFNESS`."""
-STIFFNESS = ("along", "across", "coupling")
-"""Stiffness along the belt, across it (without the contact), and the coupling of both, N/m."""
+"""Inputs that are one number; ``stiffness`` has three: along the belt, across it, coupling."""
 
 
 class Springs(NamedTuple):
@@ -102,7 +100,8 @@ def stood_for(
     """Parameters in SI from the inputs that stand for them.
 
     Args:
-        inputs: substitutes by name, in SI; ``stiffness`` is a mapping of :data:`STIFFNESS`.
+        inputs: substitutes by name, in SI; ``stiffness`` is a mapping of its three
+            names: along, across, coupling.
         parameter: the value of a parameter that is not stood for.
 
     Raises:

@@ -9,25 +9,27 @@ from squealpipe.vibration.spectrum import FEWEST
 
 FINE, COARSE = 12.0, 2.5
 """Samples per radian of the fastest linear oscillation: of a short run, and the fewest."""
-PLENTY = 20_000
-"""Samples up to which a run is sampled finely."""
-MOST_GRID_SAMPLES = 1e7
 
 
 def sample_times(params: Parameters, t_end: float) -> np.ndarray:
     """Instants at equal steps from 0 to ``t_end`` that resolve the fastest oscillation, s."""
     wanted = COARSE * params.fastest * t_end
-    if not wanted <= MOST_GRID_SAMPLES:
+    # four states of so many samples are 320 MB
+    most_samples = 1e7
+    if not wanted <= most_samples:
         raise ValueError(
             f"t_end = {t_end!r}: {wanted:.2g} samples would resolve the fastest oscillation up to "
-            f"there, at most {MOST_GRID_SAMPLES:.0e} are taken; shorten t_end"
+            f"there, at most {most_samples:.0e} are taken; shorten t_end"
         )
     return np.linspace(0.0, t_end, max(FEWEST, math.ceil(wanted)) + 1)
 
 
 def default_times(params: Parameters, t_end: float) -> np.ndarray:
     """The instants of :func:`sample_times`, more of them where the run is short."""
-    fine = math.ceil(min(PLENTY, FINE * params.fastest * t_end))
+    # a run is sampled finely up to so many samples; a longer one as coarsely as its frequency
+    # allows
+    plenty = 20_000
+    fine = math.ceil(min(plenty, FINE * params.fastest * t_end))
     coarse = sample_times(params, t_end)
     return coarse if coarse.size > fine else np.linspace(0.0, t_end, fine + 1)
 

@@ -216,13 +216,13 @@ BASELINE = Parameters()
 PHYSICAL_GROUP = Group(
     "Physical parameters", help="In SI, or with a unit like 0.57mm.", sort_key=10
 )
-INSTEAD = Group("Instead of parameters", help="With a unit, or in SI.", sort_key=11)
 
 
 def _instead(name: str) -> Any:
     """An option that stands for parameters; ``inputs.py`` replaces it by these."""
     meaning = SUBSTITUTES[name].meaning
-    return Parameter(group=INSTEAD, metavar="QUANTITY", help=f"{meaning}.")
+    group = Group("Instead of parameters", help="With a unit, or in SI.", sort_key=11)
+    return Parameter(group=group, metavar="QUANTITY", help=f"{meaning}.")
 
 
 @Parameter(name="*")

@@ -23,7 +23,6 @@ LOG_EVERY = 30.0
 """Time between two lines of progress in a log, s."""
 
 
-AGAIN = "run the same command again"
 NOTHING_KEPT = "nothing was kept"
 
 

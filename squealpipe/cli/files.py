@@ -15,14 +15,7 @@ from squealpipe.cli.arguments import (
     Whole,
 )
 from squealpipe.cli.console import DONE, answer, say
-from squealpipe.cli.output import (
-    PICTURES,
-    TABLE_ENDINGS,
-    check_output,
-    draw,
-    finish,
-    write,
-)
+from squealpipe.cli.output import PICTURES, check_output, draw, finish, write
 from squealpipe.units import engineering
 
 
@@ -116,7 +109,8 @@ def convert(
         file: dataset that a command or `squealpipe.save` wrote, or another program's .nc or .csv.
         output: file that ends in .csv, .mat, .xlsx, .parquet or .vtu.
     """
-    check_output(output, force=force, kinds=(*TABLE_ENDINGS, ".vtu"))
+    table_endings = (".csv", ".mat", ".xlsx", ".parquet")
+    check_output(output, force=force, kinds=(*table_endings, ".vtu"))
 
     from squealpipe.store.foreign import load_any
     from squealpipe.store.tables import convert as task

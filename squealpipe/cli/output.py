@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 DATA = (".nc", ".csv")
-TABLE_ENDINGS = (".csv", ".mat", ".xlsx", ".parquet")
 PICTURES = (".png", ".svg", ".pdf")
 
 

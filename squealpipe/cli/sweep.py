@@ -17,7 +17,7 @@ from squealpipe.cli.arguments import (
     Written,
     pairs_of,
 )
-from squealpipe.cli.console import AGAIN, DONE, SESSION, answer, say, working
+from squealpipe.cli.console import DONE, SESSION, answer, say, working
 from squealpipe.cli.output import check_output, refuse_existing, write
 from squealpipe.ranges import read_fixed, read_values, sweep_config
 
@@ -80,7 +80,8 @@ def sweep(
     kept = beside(output, rule_key(settings, sources(Path(inspect.getfile(planned)))))
     if done := plan.finished(kept):
         say(f"{done} of them are there from before")
-    SESSION.remedy = AGAIN  # runs that are finished are kept
+    again = "run the same command again"
+    SESSION.remedy = again  # runs that are finished are kept
     with working(f"sweep of {task}"):
         dataset = write(
             lambda: run_sweep(plan, workers=workers, kept=kept), output, config=settings

@@ -16,10 +16,6 @@ from squealpipe.units import USUAL, UnitError, in_si, is_long_name, is_unit, pla
 COLUMN_UNITS = {"speed": "m s-1", "coefficient": "1", "compression": "m", "force": "N"}
 """Column → CF unit in which its values are stored, and meant where none is written."""
 
-_LAST_WORDS = (
-    re.compile(r"(.+?)[\s_,:;=/-]+([^\W\d_]+_[^\W\d_]+)"),  # speed_mm_s
-    re.compile(r"(.+?)[\s_,:;=/-]+([^\s_,:;=]+)"),
-)
 _NAMES = ("c", "in")
 """Last words of names that are hardly the speed of light, or inches."""
 NO_UNIT = {"", "-", "–", "—", "1", "/"}
@@ -123,7 +119,12 @@ def _split(name: str, units: str) -> tuple[str, str]:
     ).fullmatch(name):
         unit = match[2].removeprefix("in ").strip("[]() ")
         return match[1] or match[3], _known(unit, units)
-    for form in _LAST_WORDS:  # MATLAB writes speed_km_h_
+    # the unit is the last word or two of a header like speed_mm_s
+    patterns = (
+        re.compile(r"(.+?)[\s_,:;=/-]+([^\W\d_]+_[^\W\d_]+)"),  # speed_mm_s
+        re.compile(r"(.+?)[\s_,:;=/-]+([^\s_,:;=]+)"),
+    )
+    for form in patterns:  # MATLAB writes speed_km_h_
         if (match := form.fullmatch(name.rstrip("_"))) and match[2] not in _NAMES:
             unit = _known(match[2].replace("_", "/"), units)
             if _fits(unit, units):
@@ -133,7 +134,7 @@ def _split(name: str, units: str) -> tuple[str, str]:
         unit = _bare(match[3])
         if is_unit(unit) or "in" in match[2] or unit in NO_UNIT:
             return match[1], unit
-    if (match := _LAST_WORDS[1].fullmatch(name)) and re.search(r"\w/\w", match[2]):
+    if (match := patterns[1].fullmatch(name)) and re.search(r"\w/\w", match[2]):
         return match[1], match[2]  # like a unit, and unknown: refused if it is needed
     return name, ""
 

@@ -8,16 +8,8 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-_TYPOGRAPHIC_SIGNS = str.maketrans("−–⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "---0123456789")
 _BLANKS = "\u0020\u00a0\u2009\u202f"
 """Between thousands: blanks of four widths."""
-_TIMES_TEN = re.compile(
-    r"(?<=[\d.,])\s*[×·*x]\s*10\s*(?:\^|\*\*)?\s*\(?([+-]?\d{1,3})\)?"
-)
-_EXPONENT = re.compile(r"(?<=[\d.,])[dD](?=[+-]?\d{1,3}(?!\d))")  # Fortran's
-_NUMBER_AND_UNIT = re.compile(
-    r"([+-]?(?:\d[\d.,]*|[.,]\d+)(?:[eE][+-]?\d{1,3})?)\s*([^\d\s.,_].*)?", re.ASCII
-)
 _PLAIN = re.compile(r"[+-]?(\d+(\.\d*|,\d+)?|[.,]\d+)", re.ASCII)
 MAY_BE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}([.,])\d{3}", re.ASCII)
 _GROUPED = {
@@ -39,12 +31,23 @@ class Numeral(NamedTuple):
 
 def numeral(cell: str) -> Numeral | None:
     """A cell of a number, maybe with a unit; None if it is none."""
-    text = cell.strip().translate(_TYPOGRAPHIC_SIGNS)
-    text = _EXPONENT.sub("e", _TIMES_TEN.sub(r"e\1", text))
+    # word processors write minus signs, dashes and exponents with signs of their own
+    signs = str.maketrans("−–⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "---0123456789")
+    text = cell.strip().translate(signs)
+    # 1.5 × 10^-3 and its like
+    times_ten = re.compile(
+        r"(?<=[\d.,])\s*[×·*x]\s*10\s*(?:\^|\*\*)?\s*\(?([+-]?\d{1,3})\)?"
+    )
+    # Fortran writes 1.5D-3
+    exponent = re.compile(r"(?<=[\d.,])[dD](?=[+-]?\d{1,3}(?!\d))")
+    text = exponent.sub("e", times_ten.sub(r"e\1", text))
     if match := re.match(rf"[+-]?\d{{1,3}}([{_BLANKS}'’]\d{{3}})+(?!\d)", text):
         whole = re.sub(rf"[{_BLANKS}'’]", "", match[0])
         text = whole + text[match.end() :]
-    match = _NUMBER_AND_UNIT.fullmatch(text)
+    number_and_unit = re.compile(
+        r"([+-]?(?:\d[\d.,]*|[.,]\d+)(?:[eE][+-]?\d{1,3})?)\s*([^\d\s.,_].*)?", re.ASCII
+    )
+    match = number_and_unit.fullmatch(text)
     if match is None or not _is_number(_mantissa(match[1])):
         return None
     return Numeral(match[1], match[2] or "")

@@ -19,15 +19,6 @@ from squealpipe.substitutes import critical_damping
 from squealpipe.validation import Natural, Seed, Tolerance, Workers
 from squealpipe.vibration.shares import wilson_interval
 
-RATIOS = (0.005, 0.02, 0.05)
-"""Damping ratios c/(2 √(k m)) of each spring."""
-SPEEDS = (1.0, 10.0, 100.0)
-"""Slow, middle and fast belt, over the speed v0 by which friction falls."""
-STATIC = 2.0
-"""Static over sliding friction of the two falling laws."""
-NEAR = (0.01, 0.1)
-"""Largest distance of a start from rest, over l_pre (displacement) and l_pre √(k1/m) (velocity)."""
-
 STATEMENT_COLUMNS = ("share", "share_low", "share_high", "judged", "outcome")
 Share = tuple[float, float, float, int, int]
 """A value for each of :data:`STATEMENT_COLUMNS`."""
@@ -37,7 +28,9 @@ def variants(params: Parameters) -> Iterator[tuple[str, Parameters]]:
     """(name, parameters) of the variants that start at rest."""
     yield "as configured", params
     unit = [critical_damping(k, params.mass) for k in (params.k1, params.k2)]
-    for ratio in RATIOS:
+    # c/(2 √(k m)) of each spring
+    damping_ratios = (0.005, 0.02, 0.05)
+    for ratio in damping_ratios:
         yield (
             f"damping ratio {100 * ratio:g} %",
             params.with_(damping1=ratio * unit[0], damping2=ratio * unit[1]),
@@ -50,13 +43,17 @@ def variants(params: Parameters) -> Iterator[tuple[str, Parameters]]:
         "damping 2 %, spring 2 only",
         params.with_(damping1=0.0, damping2=0.02 * unit[1]),
     )
+    # slow, middle and fast belt, over the speed v0 by which friction falls
+    belt_speeds = (1.0, 10.0, 100.0)
+    # static over sliding friction of the two falling laws
+    static_ratio = 2.0
     for law in ("exponential", "hyperbolic"):
-        for speed in SPEEDS:
+        for speed in belt_speeds:
             yield (
                 f"{law} law, |V| = {speed:g} v₀",
                 params.with_(
                     friction_law=law,
-                    mu_static=STATIC * params.mu,
+                    mu_static=static_ratio * params.mu,
                     friction_speed=abs(params.belt_speed) / speed or 1.0,
                 ),
             )
@@ -93,7 +90,9 @@ def verdict_robustness(
     rows = _verdicts_of([each for _, each in named], names, tol, workers)
     generator = np.random.default_rng(seed)
     speed = params.preload / params.time_unit
-    for near in NEAR:
+    # largest distance of a start from rest, over l_pre, and of its velocity, over l_pre √(k1/m)
+    distances = (0.01, 0.1)
+    for near in distances:
         fields = {
             key: np.full(starts, value) for key, value in params.as_dict().items()
         }

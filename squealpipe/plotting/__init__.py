@@ -33,46 +33,6 @@ from squealpipe.schema import SYSTEM
 from squealpipe.structures.schema.structures import NAME as COMPLEX_MODES
 from squealpipe.validation import checked
 
-DRAW_BY_SCHEMA: dict[str, Callable[[Axes, xr.Dataset], None]] = {
-    "assess": draw_settled_orbit,
-    "simulation": draw_force,
-    "run_summary": draw_spectrum,
-    "spectrum": draw_spectrum_in_hertz,
-    "backbone": draw_backbone,
-    "limit_cycle": draw_cycle,
-    "periodic_orbit": draw_cycle,
-    "cycle_branch": draw_branch,
-    "doubled_branch": draw_backbone,
-    "contact_boundary": draw_curves,
-    "cycle_curve": draw_curves,
-    "regime_chart": draw_curves,
-    "stability_boundaries": draw_curves,
-    "propensity": draw_shares,
-    "squealing_modes": draw_poles,
-    "structure_run": draw_forces,
-    "squeal_ladder": draw_level,
-    "operating_map": draw_points,
-    "contact_points": draw_onsets,
-    COMPLEX_MODES: draw_modes,
-    SYSTEM + "simulate": draw_states,
-    SYSTEM + "ensemble": draw_ensemble,
-    SYSTEM + "limit cycle": draw_path,
-    SYSTEM + "cycle branch": draw_branch,
-    SYSTEM + "cycle curve": draw_curves,
-}
-"""Schema → what draws it; :data:`squealpipe.plotting.quantities.SHOWN_VARIABLES` has the others."""
-
-FIGURE_BY_SCHEMA: dict[str, Callable[[xr.Dataset], Figure]] = {
-    "assess": assess_figure,
-    "simulation": run_figure,
-    "propensity": propensity_figure,
-    "operating_map": operating_figure,
-    "squealing_modes": squealing_figure,
-    "squeal_ladder": squeal_ladder_figure,
-    COMPLEX_MODES: modes_figure,
-}
-"""Schema → its picture of several panels."""
-
 
 @checked
 def plot(
@@ -131,7 +91,17 @@ def picture(
     if mode is not None:
         _check_modes(dataset)
         return figure_of_mode(dataset, mode)
-    several = FIGURE_BY_SCHEMA.get(_schema(dataset))
+    # these have a picture of several panels
+    figure_by_schema = {
+        "assess": assess_figure,
+        "simulation": run_figure,
+        "propensity": propensity_figure,
+        "operating_map": operating_figure,
+        "squealing_modes": squealing_figure,
+        "squeal_ladder": squeal_ladder_figure,
+        COMPLEX_MODES: modes_figure,
+    }
+    several = figure_by_schema.get(_schema(dataset))
     if several is not None and variable is None:
         figure = several(dataset)
     else:
@@ -165,8 +135,36 @@ def _draw(
         axes.set_title(title_of(dataset, mode), fontsize=8)
         return
     schema = _schema(dataset)
-    if variable is None and schema in DRAW_BY_SCHEMA:
-        DRAW_BY_SCHEMA[schema](axes, dataset)
+    # all other schemas are drawn as squealpipe.plotting.quantities says
+    draw_by_schema: dict[str, Callable[[Axes, xr.Dataset], None]] = {
+        "assess": draw_settled_orbit,
+        "simulation": draw_force,
+        "run_summary": draw_spectrum,
+        "spectrum": draw_spectrum_in_hertz,
+        "backbone": draw_backbone,
+        "limit_cycle": draw_cycle,
+        "periodic_orbit": draw_cycle,
+        "cycle_branch": draw_branch,
+        "doubled_branch": draw_backbone,
+        "contact_boundary": draw_curves,
+        "cycle_curve": draw_curves,
+        "regime_chart": draw_curves,
+        "stability_boundaries": draw_curves,
+        "propensity": draw_shares,
+        "squealing_modes": draw_poles,
+        "structure_run": draw_forces,
+        "squeal_ladder": draw_level,
+        "operating_map": draw_points,
+        "contact_points": draw_onsets,
+        COMPLEX_MODES: draw_modes,
+        SYSTEM + "simulate": draw_states,
+        SYSTEM + "ensemble": draw_ensemble,
+        SYSTEM + "limit cycle": draw_path,
+        SYSTEM + "cycle branch": draw_branch,
+        SYSTEM + "cycle curve": draw_curves,
+    }
+    if variable is None and schema in draw_by_schema:
+        draw_by_schema[schema](axes, dataset)
         return
     if variable is None and (quantity := shown(dataset)) is not None:
         draw_quantity(axes, quantity)

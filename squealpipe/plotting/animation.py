@@ -20,9 +20,6 @@ from squealpipe.plotting.structure_motion import StructureMotion
 from squealpipe.units import engineering
 from squealpipe.vibration.spectrum import amplitude_spectrum, strongest_lines
 
-SAMPLES_PER_PERIOD = 16
-"""Samples in a period between which cubics with the right velocities miss nothing that is seen."""
-
 
 def film_of(
     run: xr.Dataset,
@@ -67,12 +64,14 @@ def film_of(
     span = min(span, last - start)
     seconds *= span / (periods * period)  # the pace stays what was asked for
     part = motion.from_(start - period)
-    if part.time.size * period < SAMPLES_PER_PERIOD * (last - part.time[0]):
+    # between so many samples cubics with the right velocities miss nothing that is seen
+    samples_per_period = 16
+    if part.time.size * period < samples_per_period * (last - part.time[0]):
         if again is None:
             raise ValueError(
                 "the run is sampled too coarsely for a film; simulate it with more --points"
             )
-        count = math.ceil(4 * SAMPLES_PER_PERIOD * (last - part.time[0]) / period)
+        count = math.ceil(4 * samples_per_period * (last - part.time[0]) / period)
         motion = PadMotion.read(
             again(np.linspace(max(start - period, first), last, count + 1))
         )

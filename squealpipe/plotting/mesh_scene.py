@@ -28,9 +28,6 @@ from squealpipe.structures.meshes.structure_mesh import NO_NODE, StructureMesh
 from squealpipe.text import number
 from squealpipe.units import engineering, shown_in
 
-LARGEST_DEFLECTION = 0.06
-"""Largest displacement that is drawn, over the extent of the structure."""
-
 
 def projection(nodes: np.ndarray) -> np.ndarray:
     """Return the matrix (3, 3) from positions to right, up and towards the reader.
@@ -108,7 +105,10 @@ class Body:
     ) -> None:
         self.motion, self.frames = motion, frames
         self.has_mesh = motion.mesh is not None and motion.contact_position is not None
-        largest = LARGEST_DEFLECTION
+        # relative to the extent of the structure: large enough to be seen, small enough to keep
+        # its form
+        largest_deflection = 0.06
+        largest = largest_deflection
         if motion.mesh is not None and motion.contact_position is not None:
             self.nodes, self.moved = motion.mesh.nodes, motion.nodes_at(frames)
             away = self.nodes - motion.contact_position[:, None]

@@ -13,11 +13,6 @@ from squealpipe.structures.meshes.datasets import mesh_of
 from squealpipe.text import number
 from squealpipe.units import engineering
 
-DRAWN = 0.08
-"""Largest displacement that is drawn, over the extent of the structure."""
-MOST_ARROWS = 40
-"""Degrees of freedom that have arrows, those that move most."""
-
 
 def shape_of(modes: xr.Dataset, mode: int) -> np.ndarray:
     """Return the complex shape of a mode, (degrees of freedom,).
@@ -63,14 +58,20 @@ def draw_shape(
     amplitude = np.linalg.norm(np.abs(mesh.displacements(shape)), axis=1)
     view = projection(mesh.nodes)
     extent = float(np.ptp(mesh.nodes, axis=0).max()) or 1.0
-    scale = DRAWN * extent / max(float(amplitude.max()), 1e-300)
+    # relative to the extent of the structure: large enough to be seen, small enough to keep its
+    # form
+    largest_deflection = 0.08
+    scale = largest_deflection * extent / max(float(amplitude.max()), 1e-300)
     Facets(axes, mesh, view, facecolor="none", edgecolor=style.LIGHT, linewidth=0.4)
     drawn = Facets(axes, mesh, view, cmap="cividis", edgecolor="#404040", linewidth=0.3)
     drawn.show(mesh.nodes + scale * nodes)
     drawn.drawn.set_array(np.array([amplitude[row].mean() for row in drawn.rows]))
     drawn.drawn.set_clim(0.0, float(amplitude.max()))
     flat = mesh.nodes @ view[:2].T
-    low, high = flat.min(axis=0) - DRAWN * extent, flat.max(axis=0) + DRAWN * extent
+    low, high = (
+        flat.min(axis=0) - largest_deflection * extent,
+        flat.max(axis=0) + largest_deflection * extent,
+    )
     axes.plot(*np.stack([low, high], axis=1), alpha=0.0)
     if "contact_position" in modes:
         places = modes.contact_position.values
@@ -83,7 +84,9 @@ def draw_shape(
 
 def _draw_arrows(axes: Axes, moved: np.ndarray) -> None:
     """Arrows at the degrees of freedom, named as Python counts them."""
-    chosen = np.sort(np.argsort(-np.abs(moved), kind="stable")[:MOST_ARROWS])
+    # arrows of more degrees of freedom than this cover one another; those that move most have one
+    most_arrows = 40
+    chosen = np.sort(np.argsort(-np.abs(moved), kind="stable")[:most_arrows])
     places = np.arange(len(chosen))
     axes.axhline(0.0, color=style.LIGHT, linewidth=1.0)
     axes.plot(places, 0.0 * places, "o", color=style.GREY, markersize=3)

@@ -9,14 +9,6 @@ from squealpipe.codes import Verdict
 from squealpipe.plotting import style
 from squealpipe.units import shown_in
 
-MARKS = {
-    Verdict.quiet: ("o", style.GREY, "quiet"),
-    Verdict.squeals: ("s", style.BLUE, "squeals"),
-    Verdict.hammers: ("D", style.RED, "hammers"),
-    Verdict.undetermined: ("x", style.GREY, "undetermined"),
-}
-"""Mark, colour and words of each verdict."""
-
 
 def draw_points(axes: Axes, dataset: xr.Dataset) -> None:
     """Draw the points at the smallest friction."""
@@ -27,7 +19,14 @@ def draw_points(axes: Axes, dataset: xr.Dataset) -> None:
 def _draw(axes: Axes, points: xr.Dataset, factor: float, unit: str) -> None:
     """Draw the points of one friction, each noisy one with its frequency."""
     speeds, pressures = np.meshgrid(points.speed.values, points.pressure.values)
-    for verdict, (mark, colour, words) in MARKS.items():
+    # mark, colour and words of each verdict
+    marks = {
+        Verdict.quiet: ("o", style.GREY, "quiet"),
+        Verdict.squeals: ("s", style.BLUE, "squeals"),
+        Verdict.hammers: ("D", style.RED, "hammers"),
+        Verdict.undetermined: ("x", style.GREY, "undetermined"),
+    }
+    for verdict, (mark, colour, words) in marks.items():
         chosen = points.verdict.values == verdict
         if chosen.any():
             axes.plot(
@@ -51,7 +50,7 @@ def _draw(axes: Axes, points: xr.Dataset, factor: float, unit: str) -> None:
         ylabel="preload over its present value",
     )
     axes.margins(x=0.15, y=0.3)  # room for the legend above the points
-    axes.legend(fontsize=6, loc="upper center", ncols=len(MARKS))
+    axes.legend(fontsize=6, loc="upper center", ncols=len(marks))
 
 
 def figure(dataset: xr.Dataset) -> Figure:

@@ -12,9 +12,6 @@ from scipy.interpolate import CubicHermiteSpline, CubicSpline
 from squealpipe.codes import Regime
 from squealpipe.plotting.origin import parameter
 
-SHOWABLE = ("simulation", "assess")
-"""Schemas that hold a motion of a pad."""
-
 
 @dataclass(frozen=True)
 class PadMotion:
@@ -50,7 +47,8 @@ class PadMotion:
             ValueError: the dataset holds none.
         """
         schema = dataset.attrs.get("schema", "the file")
-        if schema not in SHOWABLE:
+        schemas_of_motions = ("simulation", "assess")
+        if schema not in schemas_of_motions:
             raise ValueError(
                 f"{schema} is no run that can be seen or heard; give what `squealpipe simulate`, "
                 "`squealpipe assess -o` (of a pad) or `squealpipe squeal --run` writes"

@@ -11,41 +11,6 @@ from squealpipe.parameters import TABLE
 from squealpipe.plotting import style
 from squealpipe.schema import SYSTEM, meanings
 
-SHOWN_VARIABLES: dict[str, tuple[str, Mapping[str, object]]] = {
-    "validity_map": ("first_separation_time", {}),
-    "refined_validity_map": ("separates", {}),
-    "hammering_map": ("motion", {}),
-    "quasi_static_map": ("reaction_force", {}),
-    "stability_map": ("regime_linear", {}),
-    "critical_friction_map": ("critical_mu", {}),
-    "critical_damping_map": ("critical_mu", {}),
-    "natural_frequencies": ("omega", {"mode": 1, "contact_state": "contact"}),
-    "basin_map": ("motion", {}),
-    "smallest_disturbance": ("distance_by_number", {}),
-    SYSTEM + "basin": ("motion", {}),
-    "a1_beside_a4": ("omega_a1", {}),
-    "assumptions": ("held", {}),
-    "benchmark": ("verdict", {}),
-    "boundary_distance": ("nearest", {}),
-    "claims": ("verdict", {}),
-    "explorer": ("outcome", {}),
-    "failure_atlas": ("verdict", {}),
-    "fewer_points": ("growth_rate", {}),
-    "harmonic_forms": ("omega", {}),
-    "linear_pull": ("lowest_contact_force", {}),
-    "model_ladder": ("cheapest", {"question": "contact_lost"}),
-    "own_scenes": ("separated_fraction", {}),
-    "parameter_inference": ("share", {}),
-    "settled_extremes": ("late_max_x", {}),
-    "transient": ("lifetime", {}),
-    "verdict_robustness": ("share", {}),
-    "whirl": ("amplitude", {}),
-    "work_precision": ("error", {}),
-}
-"""Schema → the variable that its picture shows, and what is chosen of its further dimensions;
-of what is left beyond two, the first.
-"""
-
 
 def shown(dataset: xr.Dataset) -> xr.DataArray | None:
     """The variable that the picture of a dataset, or of a sweep of such datasets, shows."""
@@ -53,9 +18,42 @@ def shown(dataset: xr.Dataset) -> xr.DataArray | None:
         str(dataset.attrs.get("schema")).removeprefix("sweep of ").split(" over ")[0]
     )
     schema = "basin_map" if schema.startswith("basin_map") else schema
-    if schema not in SHOWN_VARIABLES:
+    # Schema → the variable that its picture shows, and what is chosen of its further dimensions;
+    # of what is left beyond two, the first
+    shown_variables: dict[str, tuple[str, Mapping[str, object]]] = {
+        "validity_map": ("first_separation_time", {}),
+        "refined_validity_map": ("separates", {}),
+        "hammering_map": ("motion", {}),
+        "quasi_static_map": ("reaction_force", {}),
+        "stability_map": ("regime_linear", {}),
+        "critical_friction_map": ("critical_mu", {}),
+        "critical_damping_map": ("critical_mu", {}),
+        "natural_frequencies": ("omega", {"mode": 1, "contact_state": "contact"}),
+        "basin_map": ("motion", {}),
+        "smallest_disturbance": ("distance_by_number", {}),
+        SYSTEM + "basin": ("motion", {}),
+        "a1_beside_a4": ("omega_a1", {}),
+        "assumptions": ("held", {}),
+        "benchmark": ("verdict", {}),
+        "boundary_distance": ("nearest", {}),
+        "claims": ("verdict", {}),
+        "explorer": ("outcome", {}),
+        "failure_atlas": ("verdict", {}),
+        "fewer_points": ("growth_rate", {}),
+        "harmonic_forms": ("omega", {}),
+        "linear_pull": ("lowest_contact_force", {}),
+        "model_ladder": ("cheapest", {"question": "contact_lost"}),
+        "own_scenes": ("separated_fraction", {}),
+        "parameter_inference": ("share", {}),
+        "settled_extremes": ("late_max_x", {}),
+        "transient": ("lifetime", {}),
+        "verdict_robustness": ("share", {}),
+        "whirl": ("amplitude", {}),
+        "work_precision": ("error", {}),
+    }
+    if schema not in shown_variables:
         return None
-    name, chosen = SHOWN_VARIABLES[schema]
+    name, chosen = shown_variables[schema]
     variable = dataset[name].sel(chosen)
     return variable.isel(dict.fromkeys(variable.dims[2:], 0))
 
@@ -63,7 +61,7 @@ def shown(dataset: xr.Dataset) -> xr.DataArray | None:
 def counts(dataset: xr.Dataset) -> list[str]:
     """Describe the values of the drawn variable in one line of text."""
     variable = shown(dataset)
-    assert variable is not None, dataset.attrs  # noqa: S101 (maps of the command line are in SHOWN_VARIABLES)
+    assert variable is not None, dataset.attrs  # noqa: S101 (maps of the command line are in shown_variables)
     if table := meanings(variable):
         codes, numbers = np.unique(variable.values, return_counts=True)
         rows = [

@@ -44,8 +44,6 @@ from squealpipe.vibration.spectrum import (
 
 RATE = 48_000
 """Samples of a file in a second."""
-INFO = {"title": b"INAM", "comment": b"ICMT", "software": b"ISFT"}
-"""Chunks of a RIFF file's list of metadata."""
 
 
 @dataclass(frozen=True)
@@ -166,10 +164,15 @@ def write_wav(sound: Sound, path: Path, seconds: float = 3.0) -> None:
 def _with_facts(riff: bytes, facts: dict[str, str]) -> bytes:
     """Return a RIFF file with a list of metadata, which Python's writer does not know."""
     listed = b"INFO"
+    # chunks of a RIFF file's list of metadata
+    chunk_names = {"title": b"INAM", "comment": b"ICMT", "software": b"ISFT"}
     for name, words in facts.items():
         text = words.replace("−", "-").encode("latin-1", "replace") + b"\0"
         listed += (
-            INFO[name] + struct.pack("<I", len(text)) + text + b"\0" * (len(text) % 2)
+            chunk_names[name]
+            + struct.pack("<I", len(text))
+            + text
+            + b"\0" * (len(text) % 2)
         )
     riff += b"LIST" + struct.pack("<I", len(listed)) + listed
     return b"RIFF" + struct.pack("<I", len(riff) - 8) + riff[8:]

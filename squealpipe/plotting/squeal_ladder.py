@@ -17,8 +17,6 @@ ERRORS = {
     "separation": ("contact loss", "error of the share of time"),
 }
 """Quantity → title of its panel, and label of its axis."""
-SMALLEST_ERROR = 1e-7
-"""Smallest error that is drawn."""
 
 
 def draw_level(axes: Axes, ladder: xr.Dataset) -> None:
@@ -33,10 +31,12 @@ def draw_error(axes: Axes, ladder: xr.Dataset, quantity: str) -> None:
     Args:
         quantity: one of :data:`ERRORS`.
     """
-    known = max(float(ladder[f"{quantity}_uncertainty"]), SMALLEST_ERROR)
+    # errors below this are round-off and are drawn on the axis' lower edge
+    smallest_error = 1e-7
+    known = max(float(ladder[f"{quantity}_uncertainty"]), smallest_error)
     error = ladder[f"{quantity}_error"]
     is_finest = ladder.role == Role.our_setting
-    shown = error.where(~is_finest, known).clip(min=SMALLEST_ERROR)
+    shown = error.where(~is_finest, known).clip(min=smallest_error)
     rows = ladder[["method", "role", "cpu_time"]].assign(
         error=shown, worth=ladder.verdict
     )

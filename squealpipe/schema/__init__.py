@@ -40,20 +40,18 @@ from squealpipe.systems.datasets import validate as validate
 from squealpipe.systems.datasets import whether as whether
 from squealpipe.systems.inputs.words import nearest
 
-ROOMS = ("systems", "vibration", "brake", "structures", "benchmark", "study", "paper")
-"""Packages that hold the schemas of the datasets that they make, in ``schema``."""
-
-
-DERIVED = ("squealpipe.study.schema.sweep", "squealpipe.structures.schema.structures")
-"""Modules of schemas that follow from their names."""
-
 
 def find(name: str) -> DatasetSchema:
     """The schema of that name, from the tables of all rooms."""
     schemas = all_schemas()
     if name in schemas:
         return schemas[name]
-    for module in DERIVED:
+    # schemas in these modules follow from their names, since they depend on what was swept
+    derived = (
+        "squealpipe.study.schema.sweep",
+        "squealpipe.structures.schema.structures",
+    )
+    for module in derived:
         derive = importlib.import_module(module).derived
         if (schema := derive(name)) is not None:
             return schema  # type: ignore[no-any-return]
@@ -93,7 +91,17 @@ def all_schemas() -> dict[str, DatasetSchema]:
 
 def _modules_of_schemas() -> Iterator[str]:
     """Names of the modules ``schema`` of the rooms, and of those below them."""
-    for room in ROOMS:
+    # packages that hold the schemas of the datasets that they make, in their module schema
+    rooms = (
+        "systems",
+        "vibration",
+        "brake",
+        "structures",
+        "benchmark",
+        "study",
+        "paper",
+    )
+    for room in rooms:
         package = importlib.import_module(f"squealpipe.{room}.schema")
         yield package.__name__
         below = pkgutil.walk_packages(

@@ -17,10 +17,6 @@ from squealpipe.parameters import Parameters
 from squealpipe.systems.datasets.versions import versions
 from squealpipe.validation import checked
 
-LONGEST = 8
-"""Arguments with more values than this are recorded by first, last and number."""
-INHERITED = ("parameters", "model", "method", "tolerance")
-
 Given = ParamSpec("Given")
 
 _HOW: dict[str, tuple[str, str]] = {}
@@ -69,13 +65,14 @@ def origin(name: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
     model, method = _HOW[name]
     options = {key: value for key, value in arguments.items() if key != "workers"}
     stated: dict[str, Any] = {"made_by": f"squealpipe.{name}"}
+    inherited = ("parameters", "model", "method", "tolerance")
     for key, value in list(options.items()):
         if isinstance(value, Parameters):
             stated["parameters"] = _as_json(options.pop(key))
         elif hasattr(value, "as_dict"):  # a structure
             stated["parameters"] = json.dumps(options.pop(key).as_dict())
         elif isinstance(value, xr.Dataset):
-            stated = {k: value.attrs[k] for k in INHERITED if k in value.attrs} | stated
+            stated = {k: value.attrs[k] for k in inherited if k in value.attrs} | stated
             del options[key]
     stated["model"] = options.pop("model", model or stated.get("model", ""))
     stated["method"] = options.pop("method", method or stated.get("method", ""))
@@ -106,7 +103,9 @@ def plain(value: Any) -> Any:
     if value is None or isinstance(value, str | int | float):
         return value
     array = np.asarray(value)
-    if array.size > LONGEST:
+    # an argument with more values than this is recorded by first, last and number
+    longest = 8
+    if array.size > longest:
         values = array.ravel()
         return {
             "first": plain(values[0]),

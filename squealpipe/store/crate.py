@@ -8,8 +8,6 @@ from typing import Any
 
 from squealpipe.store.sealed import attributes
 
-METADATA = "ro-crate-metadata.json"
-
 
 def describe(
     folder: Path,

@@ -17,14 +17,6 @@ from squealpipe.store.vtu import write_vtu
 from squealpipe.store.whole_files import whole_file
 from squealpipe.validation import AnyPath, checked
 
-LIBRARY_OF_FORM = {
-    ".csv": None,
-    ".mat": None,
-    ".xlsx": "openpyxl",
-    ".parquet": "pyarrow",
-}
-"""Form → the library of the extra ``export`` that writes it."""
-
 
 @checked
 def convert(dataset: xr.Dataset, path: AnyPath) -> list[Path]:
@@ -52,11 +44,18 @@ def convert(dataset: xr.Dataset, path: AnyPath) -> list[Path]:
     target = Path(path)
     if target.suffix == ".vtu":
         return [write_vtu(dataset, target)]
-    if target.suffix not in LIBRARY_OF_FORM:
+    # ending → the library of the extra ``export`` that writes it
+    library_of_form = {
+        ".csv": None,
+        ".mat": None,
+        ".xlsx": "openpyxl",
+        ".parquet": "pyarrow",
+    }
+    if target.suffix not in library_of_form:
         raise ValueError(
-            f"{target}: end the name in {', '.join(LIBRARY_OF_FORM)}, .vtu"
+            f"{target}: end the name in {', '.join(library_of_form)}, .vtu"
         )
-    needed = LIBRARY_OF_FORM[target.suffix]
+    needed = library_of_form[target.suffix]
     if needed is not None and find_spec(needed) is None:
         raise ValueError(
             f"{target} needs {needed}; pip install 'squealpipe[export]', or {needed}"

@@ -17,14 +17,10 @@ from squealpipe.structures.pencil import Factors, Pencil
 from squealpipe.structures.refinement import Eigenpair, Estimate, refined
 from squealpipe.systems.progress import with_progress
 
-LARGEST_GROWTH = 0.25
-"""Largest |growth| of the eigenvalues looked for, over the largest angular frequency."""
 FIRST_AT = {"right": 0.5, "left": 0.2}
 """Places of the first disc of each search in the band."""
 SAME = 1e-6
 """Relative distance up to which values of both searches are one eigenvalue."""
-MOST_SEARCHES = 3
-COMPLETE = "complete: right and left eigenvectors, about other points, have the same eigenvalues"
 
 
 class IncompleteError(RuntimeError):
@@ -62,16 +58,20 @@ class Near(NamedTuple):
 
 
 def modes_in_band(pencil: Pencil, omega_max: float) -> list[Eigenpair]:
-    """Eigenpairs with 0 ≤ Im s ≤ ω and |Re s| ≤ ``LARGEST_GROWTH`` ω, by frequency.
+    """Eigenpairs with 0 ≤ Im s ≤ ω and |Re s| ≤ ω/4, by frequency.
 
     Args:
         omega_max: ω, rad/s.
 
     Raises:
-        IncompleteError: the two searches still differ after ``MOST_SEARCHES``.
+        IncompleteError: the two searches still differ after three rounds.
     """
-    region = Region(LARGEST_GROWTH * omega_max, omega_max)
-    for search in range(MOST_SEARCHES):
+    # Largest |growth| of the eigenvalues looked for, over the largest angular frequency: modes
+    # that grow or decay faster do not oscillate
+    largest_growth = 0.25
+    region = Region(largest_growth * omega_max, omega_max)
+    most_searches = 3
+    for search in range(most_searches):
         # eigenvalues about one point at first; twice as many in each further search
         number = 40 * 2**search
         sides = [

@@ -13,7 +13,6 @@ import xarray as xr
 
 from squealpipe.inputs import FRICTION_KEYWORDS, UNITS, with_units
 from squealpipe.schema import Outcome, build, find
-from squealpipe.structures.band import COMPLETE
 from squealpipe.structures.confirming import ConfirmedWay
 from squealpipe.structures.critical_speeds import critical_speeds
 from squealpipe.structures.definition import ContactStructure
@@ -30,9 +29,6 @@ from squealpipe.systems.progress import with_progress
 
 Given = ParamSpec("Given")
 Result = TypeVar("Result")
-FRICTION_STEPS = 9
-"""Frictions on the way from none to one friction."""
-FLOATS = ("growth_rate", "growth_rate_error", "frequency", "damping_ratio", "residual")
 
 
 def _in_units_of_structure(
@@ -196,10 +192,14 @@ def _dataset(structure: ContactStructure, asked: Asked) -> xr.Dataset:
         )
         if (force == 0).any()
     }
+    complete = (
+        "complete: right and left eigenvectors, about other points, "
+        "have the same eigenvalues"
+    )
     attrs = {
         "made_by": "squealpipe.Structure.complex_modes",
         "model": "linear about steady sliding",
-        "method": ALL if structure.size <= DENSE else COMPLETE,
+        "method": ALL if structure.size <= DENSE else complete,
         "tolerance": "round-off",
         "parameters": json.dumps(structure.as_dict()),
         "arguments": json.dumps(
@@ -234,7 +234,10 @@ def _ways(structure: ContactStructure, asked: Asked) -> np.ndarray:
     path = frictions
     if asked.critical and not asked.mu.ndim and structure.contacts and asked.mu > 0:
         # one friction alone: on the way to it from none, modes are followed all the same
-        path = np.linspace(0.0, float(asked.mu), FRICTION_STEPS)
+        # frictions on the way from none to the one that is asked for, along which modes keep
+        # their numbers
+        friction_steps = 9
+        path = np.linspace(0.0, float(asked.mu), friction_steps)
     in_subspace = asked.critical and structure.size > DENSE
     grid = {"belt_speed": np.atleast_1d(asked.belt_speed), **asked.varied}
     shape = tuple(map(len, grid.values()))
@@ -293,9 +296,16 @@ def _tables(ways: list[Way], frictions: list[float]) -> dict[str, list[np.ndarra
     numbers = _numbers(ways, frictions)
     place_of = {number: place for place, number in enumerate(numbers)}
     tables: dict[str, list[np.ndarray]] = {}
+    floats = (
+        "growth_rate",
+        "growth_rate_error",
+        "frequency",
+        "damping_ratio",
+        "residual",
+    )
     for way in ways:
         shape = (len(frictions), len(numbers))
-        table = {name: np.full(shape, np.nan) for name in FLOATS}
+        table = {name: np.full(shape, np.nan) for name in floats}
         table["unstable"] = np.zeros(shape, bool)
         table["outcome"] = np.full(shape, Outcome.not_computed, np.int8)
         for row, mu in enumerate(frictions):

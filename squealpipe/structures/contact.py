@@ -11,9 +11,6 @@ from squealpipe.systems.inputs.values import brief, is_finite_number, is_whole_n
 from squealpipe.units import refuse_units
 from squealpipe.validation import real_array
 
-DEPENDENT = 1e-9
-"""Smallest singular value of unit directions that are independent."""
-
 
 class PointOrigin(NamedTuple):
     """Place in a mesh from which a contact comes.
@@ -271,6 +268,8 @@ def _dependent(columns: np.ndarray) -> Any:
     # columns of a large structure would have a square factor, as large as a dense matrix
     triangle = np.linalg.qr(columns / np.where(lengths > 0, lengths, 1.0), mode="r")
     _, sizes, rows = np.linalg.svd(triangle, full_matrices=True)
-    if columns.shape[1] <= columns.shape[0] and sizes[-1] > DEPENDENT:
+    # unit directions whose smallest singular value is below this depend on one another
+    dependent = 1e-9
+    if columns.shape[1] <= columns.shape[0] and sizes[-1] > dependent:
         return None
     return rows[-1]

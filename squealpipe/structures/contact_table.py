@@ -25,7 +25,6 @@ CONTACT_COLUMNS = ("name", "normal", "tangential", "stiffness", "preload")
 ORIGIN_COLUMNS = ("nodes", "against", "area", "gap", "x", "y", "z")
 """Columns that say where a contact of a mesh comes from."""
 KNOWN = (*CONTACT_COLUMNS, "speed", "mu", "mu_static", "across", *ORIGIN_COLUMNS)
-HEADER = f"its first row must name the columns, like {','.join(CONTACT_COLUMNS)}"
 
 
 def read_contacts(
@@ -259,11 +258,12 @@ def _rows(path: Path) -> tuple[list[str], FileRows]:
         raise FileNotFoundError(f"contacts: no file {path}")
     excel = path.suffix.lower() == ".xlsx"
     table = (sheet if excel else text_rows)(path, lambda row: "name" in row)
+    hint = f"its first row must name the columns, like {','.join(CONTACT_COLUMNS)}"
     if not table.rows:
-        raise ValueError(f"{path} is empty; {HEADER}")
+        raise ValueError(f"{path} is empty; {hint}")
     header = table.rows[0].cells
     if not set(header) & set(KNOWN):
-        raise ValueError(f"{path} begins with {brief(header)}; {HEADER}")
+        raise ValueError(f"{path} begins with {brief(header)}; {hint}")
     for name in header:
         if name in KNOWN or not name:
             continue

@@ -19,9 +19,6 @@ from squealpipe.structures.speed_terms import SpeedTerms
 from squealpipe.systems.inputs.values import brief, numbers_in_si
 from squealpipe.validation import real_array
 
-OF_SLIDING = {"mu", "belt_speed", "friction_law", "mu_static", "friction_speed"}
-"""Arguments that mean the same for a structure and for a reduced one."""
-
 
 class ReducedFrom(NamedTuple):
     """Origin of a reduced structure.
@@ -312,7 +309,9 @@ class ContactStructure:
         matrices, contacts or loads it has none.
         """
         other = type(self)(**{**self.arguments, **changes})
-        if self.reduced_from is not None and set(changes) <= OF_SLIDING:
+        # these mean the same for a structure and for a reduced one; others belong to the matrices
+        of_sliding = {"mu", "belt_speed", "friction_law", "mu_static", "friction_speed"}
+        if self.reduced_from is not None and set(changes) <= of_sliding:
             origin = self.reduced_from
             other.modes, other.mesh = self.modes, self.mesh
             other.reduced_from = ReducedFrom(

@@ -44,15 +44,8 @@ KEYS = (
     "degrees_of_freedom",
     "rotation",
 )
-TRIANGLES = ("mirror", "keep")
 CHANGING = ("damping", "stiffness")
 """Matrices that may have parts that change with speed."""
-SPEED_TERMS = (
-    "lists of matrix and power are needed, like {damping: [{matrix: DG.mtx, power: 1}]}; "
-    "factor is optional"
-)
-NEGLIGIBLE_ENTRY = 1e-13
-"""Entries below this share of the scale of their rows are round-off."""
 
 
 def read(path: str | PathLike[str], form: type[Form]) -> Form:
@@ -137,9 +130,13 @@ def _speed_terms(
 ) -> dict[str, Mapping[str, Any]]:
     """Return the entries of ``speed_terms``, checked, by names that say what they are part of."""
     given = content.get("speed_terms", {})
+    hint = (
+        "lists of matrix and power are needed, like {damping: [{matrix: DG.mtx, power: 1}]}; "
+        "factor is optional"
+    )
     if not isinstance(given, Mapping):
         raise ValueError(  # noqa: TRY004 (of all arguments mistakes are values)
-            f"{source}: speed_terms = {brief(given)}: {SPEED_TERMS}"
+            f"{source}: speed_terms = {brief(given)}: {hint}"
         )
     terms = {}
     for what, entries in given.items():
@@ -151,7 +148,7 @@ def _speed_terms(
             if not isinstance(entry, Mapping) or not (
                 {"matrix", "power"} <= set(entry) <= {"matrix", "power", "factor"}
             ):
-                raise ValueError(f"{source}: {name} = {brief(entry)}: {SPEED_TERMS}")
+                raise ValueError(f"{source}: {name} = {brief(entry)}: {hint}")
             if not is_finite_number(entry.get("factor", 1.0)):
                 raise ValueError(
                     f"{source}: {name}: factor = {brief(entry['factor'])}: a number is needed"
@@ -316,9 +313,10 @@ def read_matrices(
             file, ``{file: NAME, variable: NAME}``, or a matrix.
         triangle: ``mirror`` or ``keep``, as of :func:`read`.
     """
-    if triangle is not None and triangle not in TRIANGLES:
+    triangles = ("mirror", "keep")
+    if triangle is not None and triangle not in triangles:
         raise ValueError(
-            f"triangle = {triangle!r}: {suggestion(str(triangle), TRIANGLES)}"
+            f"triangle = {triangle!r}: {suggestion(str(triangle), triangles)}"
         )
     # one triangle of a gyroscopic matrix has the other sign on the other side
     is_mirrored = triangle == "mirror"
@@ -390,7 +388,9 @@ def _completed(matrix: Any, path: Path, given: Labelled, triangle: str | None) -
     scale = np.maximum(
         *(np.minimum(each[off.row], each[off.col]) for each in (largest, diagonal))
     )
-    significant = np.abs(off.data) > NEGLIGIBLE_ENTRY * scale
+    # entries below this share of the scale of their rows are round-off
+    negligible = 1e-13
+    significant = np.abs(off.data) > negligible * scale
     pattern = sp.csr_array(
         (np.ones(significant.sum(), int), (off.row[significant], off.col[significant])),
         off.shape,

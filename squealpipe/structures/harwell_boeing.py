@@ -13,9 +13,6 @@ from typing import Any
 import scipy.io
 import scipy.sparse as sp
 
-ANSYS_DIRECTIONS = {"UX": 1, "UY": 2, "UZ": 3, "ROTX": 4, "ROTY": 5, "ROTZ": 6}
-"""Ansys's names of directions."""
-
 
 def read_harwell_boeing(path: Path) -> tuple[Any, bool]:
     """Return a matrix, and whether it is one triangle of a symmetric one.
@@ -46,15 +43,17 @@ def read_mapping(path: Path) -> list[str]:
         ValueError: a row without a node and a direction.
     """
     names: dict[int, str] = {}
+    # Ansys's names of directions
+    directions = {"UX": 1, "UY": 2, "UZ": 3, "ROTX": 4, "ROTY": 5, "ROTZ": 6}
     for line in path.read_text(encoding="latin-1").splitlines():
         match = re.fullmatch(r"\s*(\d+)\s+(\d+)\s+(\w+)\s*", line)
         if match is None:  # a heading
             continue
-        direction = ANSYS_DIRECTIONS.get(match[3].upper())
+        direction = directions.get(match[3].upper())
         if direction is None:
             raise ValueError(
                 f"{path}: row {match[1]} is {match[3]} of node {match[2]}; "
-                f"{', '.join(ANSYS_DIRECTIONS)} are known"
+                f"{', '.join(directions)} are known"
             )
         names[int(match[1])] = f"{match[2]}.{direction}"
     if sorted(names) != list(range(1, len(names) + 1)):

@@ -15,15 +15,7 @@ import pandas as pd  # type: ignore[import-untyped]
 import scipy.io
 import scipy.sparse as sp
 
-BANNER = (
-    "the first line of a Matrix Market file is like "
-    "%%MatrixMarket matrix coordinate real general"
-)
 UNENDED = "its last line has no end; add one if the file is whole"
-PLACE = r"0*[1-9]\d*"
-NUMBER_PATTERN = (
-    r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|[iI]nf(?:inity)?|[nN]a[nN])"
-)
 
 
 def read_matrix_market(path: Path) -> Any:
@@ -71,9 +63,14 @@ def _check_entries(content: bytes, stated: int, form: str, field: str) -> None:
     if _is_table(content, stated, width, places=form == "coordinate"):
         return
     # slower, but it says which line is wrong
-    parts = [NUMBER_PATTERN] * (2 if field == "complex" else 1)
+    number_pattern = (
+        r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|[iI]nf(?:inity)?|[nN]a[nN])"
+    )
+    parts = [number_pattern] * (2 if field == "complex" else 1)
     if form == "coordinate":
-        parts = [PLACE, PLACE, *parts]
+        # an index of a row or column, from 1
+        place_pattern = r"0*[1-9]\d*"
+        parts = [place_pattern, place_pattern, *parts]
     entry = re.compile(r"\s*" + r"\s+".join(parts) + r"\s*")
     lines, last = -1, "\n"  # the first is that of sizes
     text = content.decode("utf-8", errors="replace")

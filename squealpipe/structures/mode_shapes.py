@@ -6,9 +6,6 @@ from typing import Any
 
 import numpy as np
 
-MOST_BYTES = 50e6
-"""Largest size of all shapes: stable modes of the highest frequencies are left out beyond it."""
-
 
 def shape_variables(
     structure: Any,
@@ -45,7 +42,9 @@ def shape_variables(
     # unstable ones first, then by frequency
     order = np.lexsort((values.imag, -(values.real > 0).astype(int)))
     place_of = {number: place for place, number in enumerate(numbers)}
-    for column in order[: int(MOST_BYTES / (8 * size))]:
+    # of all shapes together: beyond it, stable modes of the highest frequencies are left out
+    most_bytes = 50e6
+    for column in order[: int(most_bytes / (8 * size))]:
         place = place_of.get(int(step.numbers[column]))
         if place is not None:
             table[place] = shapes[:, column]

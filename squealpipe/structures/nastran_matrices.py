@@ -12,9 +12,6 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-SYMMETRIC, SQUARE = 6, 1
-"""Forms of matrices in OUTPUT4 that a structure can have."""
-
 
 def read_op4(path: Path, choose: Callable[[list[str]], str]) -> Any:
     """Return one matrix of an OUTPUT4 file, sparse.
@@ -35,7 +32,10 @@ def read_op4(path: Path, choose: Callable[[list[str]], str]) -> Any:
     # Nastran writes matrices that it lacks as 1 × 1
     present = [name for name, each in content.items() if each[0].shape != (1, 1)]
     matrix, form, _ = content[choose(present or list(content))]
-    if form not in (SYMMETRIC, SQUARE):
+    # numbers of the two forms of matrices in OUTPUT4 that a structure can have
+    symmetric = 6
+    square = 1
+    if form not in (symmetric, square):
         raise ValueError(f"the matrix has form {form}; a square one (1 or 6) is needed")
     return sp.coo_array(matrix)
 

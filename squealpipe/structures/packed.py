@@ -7,14 +7,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-GZIP_MARK = b"\x1f\x8b"
-"""First bytes of a file that gzip has packed."""
-
 
 def is_packed(path: Path) -> bool:
     """Tell whether gzip has packed a file."""
     with path.open("rb") as file:
-        return file.read(len(GZIP_MARK)) == GZIP_MARK
+        gzip_mark = b"\x1f\x8b"
+        return file.read(len(gzip_mark)) == gzip_mark
 
 
 def plain_name(path: Path) -> Path:

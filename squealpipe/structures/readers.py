@@ -20,32 +20,9 @@ import scipy.io
 import scipy.sparse as sp
 
 from squealpipe.structures.harwell_boeing import read_harwell_boeing, read_mapping
-from squealpipe.structures.matrix_market import BANNER, UNENDED, read_matrix_market
+from squealpipe.structures.matrix_market import UNENDED, read_matrix_market
 from squealpipe.structures.nastran_matrices import read_dmig, read_op4
 from squealpipe.structures.packed import plain_name, text_of, unpacked
-
-ERRORS_OF_READERS = (
-    OSError,
-    ValueError,
-    KeyError,
-    TypeError,
-    IndexError,
-    EOFError,
-    NotImplementedError,
-    AssertionError,
-    RuntimeError,
-    zipfile.BadZipFile,
-    zlib.error,
-)
-"""Errors of libraries on files that are cut off or of another form."""
-FIRST_BYTES = {
-    b"\xef\xbb\xbf": "begins with a byte order mark; save it as UTF-8 without one",
-    b"\xff\xfe": "is UTF-16; save it as UTF-8 without byte order mark",
-}
-"""First bytes of files that no reader of matrices takes, and what to do."""
-HARWELL_BOEING = (".hb", ".rsa", ".rua", ".matrix")
-"""Endings of matrices in the Harwell–Boeing format; Ansys's is the last."""
-EXTRA = "install squealpipe[fe] to read it"
 
 
 class ChoiceError(ValueError):
@@ -102,6 +79,8 @@ def _read(plain: Path, path: Path, key: str, variable: str | None) -> Labelled:
     Args:
         path: the file as it was named; others stand beside it.
     """
+    # Ansys writes its matrices as .matrix
+    harwell_boeing = (".hb", ".rsa", ".rua", ".matrix")
     readers: dict[str, Callable[[], Labelled]] = {
         ".mtx": lambda: _mtx(plain, key),
         ".npz": lambda: Labelled(_npz(plain, key, variable)),
@@ -115,11 +94,16 @@ def _read(plain: Path, path: Path, key: str, variable: str | None) -> Labelled:
         ".pch": lambda: Labelled(
             *read_dmig(plain, lambda names: _chosen(names, key, variable))
         ),
-        **dict.fromkeys(HARWELL_BOEING, lambda: _harwell_boeing(plain, path)),
+        **dict.fromkeys(harwell_boeing, lambda: _harwell_boeing(plain, path)),
     }
     with plain.open("rb") as file:
         start = file.read(3)
-    for mark, remedy in FIRST_BYTES.items():
+    # first bytes of files that no reader of matrices takes, and what to do
+    first_bytes = {
+        b"\xef\xbb\xbf": "begins with a byte order mark; save it as UTF-8 without one",
+        b"\xff\xfe": "is UTF-16; save it as UTF-8 without byte order mark",
+    }
+    for mark, remedy in first_bytes.items():
         if start.startswith(mark):
             raise ValueError(f"{key}: {path} {remedy}")
     ending = plain_name(path).suffix.lower()
@@ -128,13 +112,28 @@ def _read(plain: Path, path: Path, key: str, variable: str | None) -> Labelled:
             f"{key}: {path} ends in {ending!r}; matrices are read from {', '.join(readers)}, also "
             "where gzip has packed them (.gz)"
         )
+    # libraries raise these on files that are cut off or of another form
+    errors_of_readers = (
+        OSError,
+        ValueError,
+        KeyError,
+        TypeError,
+        IndexError,
+        EOFError,
+        NotImplementedError,
+        AssertionError,
+        RuntimeError,
+        zipfile.BadZipFile,
+        zlib.error,
+    )
     try:
         return _without_gaps(readers[ending](), key)
     except ImportError as error:
-        raise ValueError(f"{key}: {path} needs {error.name}; {EXTRA}") from error
+        extra = "install squealpipe[fe] to read it"
+        raise ValueError(f"{key}: {path} needs {error.name}; {extra}") from error
     except ChoiceError as error:
         raise ValueError(f"{key}: {path}: {error}") from error
-    except ERRORS_OF_READERS as error:
+    except errors_of_readers as error:
         raise ValueError(
             f"{key}: {path} is cut off, or not what its ending says: {error}"
         ) from error
@@ -148,7 +147,11 @@ def _mtx(path: Path, key: str) -> Labelled:
     if first.lower().startswith("%%matrixmarket"):
         return Labelled(read_matrix_market(path))
     if first.startswith("%"):
-        raise ValueError(BANNER)
+        hint = (
+            "the first line of a Matrix Market file is like "
+            "%%MatrixMarket matrix coordinate real general"
+        )
+        raise ValueError(hint)
     if first.startswith("*"):
         return _substructure(path, key)
     return _abaqus(path)

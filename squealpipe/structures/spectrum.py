@@ -23,8 +23,6 @@ from squealpipe.structures.stiff import beyond_gap, stiff_degrees
 from squealpipe.structures.varied_friction import VariedFriction
 from squealpipe.systems.inputs.values import brief, is_finite_number
 
-BEYOND_THE_BAND = 1.05
-"""The band of so many modes ends so far beyond the frequency that they reach without friction."""
 ALL = "complete: all eigenvalues by dense algebra"
 
 
@@ -199,7 +197,10 @@ class Solver:
             assert omega is not None  # noqa: S101 (large structures have a limit)
             return growing_first(band.modes_in_band(pencil, omega))
         lowest, _ = modes_at_rest(self.structure, number)
-        reach = BEYOND_THE_BAND * lowest[-1]
+        # the band of so many modes ends so far beyond the frequency that they reach without
+        # friction
+        beyond_the_band = 1.05
+        reach = beyond_the_band * lowest[-1]
         while True:
             top = reach if omega is None else min(reach, omega)
             pairs = growing_first(band.modes_in_band(pencil, top))

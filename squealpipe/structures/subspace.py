@@ -19,9 +19,6 @@ from squealpipe.structures.sliding import static_answers
 from squealpipe.structures.spectrum import Spectrum
 from squealpipe.structures.speed_terms import SpeedTerms
 
-DEPENDENT_SQUARE = 1e-12
-"""Share of a vector's square that others leave of it, below which it adds nothing."""
-
 
 def in_coordinates(
     whole: ContactStructure,
@@ -94,12 +91,14 @@ def _added(
 ) -> np.ndarray:
     """Return the part of vectors beyond a basis, orthonormal by mass to it and among themselves."""
     # twice, since the first time leaves round-off of what was taken away
+    # Share of a vector's square that others leave of it, below which it adds nothing
+    dependent_square = 1e-12
     for _ in range(2):
         sizes = np.sqrt(np.einsum("ij,ij->j", vectors, whole.mass @ vectors))
         vectors = vectors[:, sizes > 0] / sizes[sizes > 0]
         vectors = vectors - basis @ (basis.T @ (whole.mass @ vectors))
         squares, turns = la.eigh(vectors.T @ (whole.mass @ vectors))
-        kept = squares > DEPENDENT_SQUARE
+        kept = squares > dependent_square
         vectors = (vectors @ turns[:, kept]) / np.sqrt(squares[kept])
     return np.asarray(vectors)
 

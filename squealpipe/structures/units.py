@@ -5,11 +5,6 @@ from typing import Any, NamedTuple
 from squealpipe.systems.inputs.values import brief
 from squealpipe.units import UnitError, in_si
 
-MATRIX_QUANTITIES = {"length": "m", "mass": "kg", "time": "s"}
-"""Quantity that each word of units like ``mm-t-s`` measures → its SI unit."""
-
-POUNDS = ("lb", "lbs")
-
 
 class Scales(NamedTuple):
     """Factors to SI units, of matrices whose degrees of freedom are displacements."""
@@ -55,9 +50,13 @@ def scales_of(units: Any) -> Scales:
     """
     words = str(units).split("-")
     needed = "units of length, mass and time are needed, like mm-t-s or m-kg-s"
-    if len(words) != len(MATRIX_QUANTITIES):
+    # quantity that each word of units like mm-t-s measures → its SI unit
+    matrix_quantities = {"length": "m", "mass": "kg", "time": "s"}
+    if len(words) != len(matrix_quantities):
         raise ValueError(f"units = {brief(units)}: {needed}")
-    if words[1].lower() in POUNDS:
+    # a pound may be one of mass or of force, and only the user knows which
+    pounds = ("lb", "lbs")
+    if words[1].lower() in pounds:
         raise ValueError(
             f"units = {brief(units)}: {words[1]} is a mass or a force; write "
             f"{words[0]}-pound-{words[2]} if masses are in lb (and forces in lb "
@@ -65,7 +64,7 @@ def scales_of(units: Any) -> Scales:
             f"{words[2]} if forces are in lbf"
         )
     factors = []
-    for word, (kind, si) in zip(words, MATRIX_QUANTITIES.items(), strict=True):
+    for word, (kind, si) in zip(words, matrix_quantities.items(), strict=True):
         try:
             # Abaqus's manual calls the tonne of mm, s and N so
             factors.append(in_si(f"1 {'t' if word.lower() == 'ton' else word}", si))

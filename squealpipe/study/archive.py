@@ -14,7 +14,7 @@ from typing import Any
 import yaml
 
 from squealpipe.store.checkout import commit
-from squealpipe.store.crate import METADATA, describe
+from squealpipe.store.crate import describe
 from squealpipe.store.keys import refuse_misfits
 from squealpipe.store.rerun.key import files_named_in
 from squealpipe.store.runs import (
@@ -82,7 +82,8 @@ def archive(
                 timespec="seconds"
             )
             crate = describe(draft, name, frozen_at, environment, _sums(draft))
-            (draft / METADATA).write_text(crate, encoding="utf-8")
+            metadata = "ro-crate-metadata.json"
+            (draft / metadata).write_text(crate, encoding="utf-8")
             manifest = {
                 "format": 1,
                 "name": name,

@@ -21,8 +21,6 @@ import numpy as np
 from squealpipe.systems.progress import shown
 
 Work = Callable[[dict[str, np.ndarray], int, int], None]
-MINIMUM_JOBS = 64
-"""Below this many jobs a process a fork costs more than it saves."""
 
 
 def cpu_time() -> float:
@@ -49,10 +47,12 @@ def run_shared(
 
     Args:
         work: handles the jobs first, first + stride, … and writes their rows of the arrays.
-        workers: processes; None takes all cores, at most one a ``MINIMUM_JOBS`` jobs.
+        workers: processes; None takes all cores, at most one for every 64 jobs.
     """
     if workers is None:
-        workers = max(1, min(available_cores(), jobs // MINIMUM_JOBS))
+        # with fewer jobs a process a fork costs more than it saves
+        minimum_jobs = 64
+        workers = max(1, min(available_cores(), jobs // minimum_jobs))
     workers = min(workers, max(1, jobs))
     daemon = multiprocessing.current_process().daemon
     if workers == 1 or daemon or "fork" not in multiprocessing.get_all_start_methods():

@@ -28,8 +28,6 @@ def _fields(value: Any) -> Any:
 
 
 Fields = Annotated[Any, BeforeValidator(_fields)]
-MOST_TIME_UNITS = 1e9
-"""Longest run; beyond it, one takes hours."""
 STATE = ("x", "y", "vx", "vy")
 
 
@@ -179,12 +177,14 @@ def _refuse_too_long(t_end: np.ndarray, values: Mapping[str, np.ndarray]) -> Non
     with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
         time_unit = np.sqrt(values["mass"] / values["k1"])
         units = t_end / time_unit
-    bad = ~((units <= MOST_TIME_UNITS) & (time_unit > 0) & np.isfinite(time_unit))
+    # in units of √(m/k1): a longer run takes hours, and a mistyped horizon should not start one
+    longest_run = 1e9
+    bad = ~((units <= longest_run) & (time_unit > 0) & np.isfinite(time_unit))
     if bad.any():
         index = np.argmax(bad)
         raise ValueError(
             f"t_end = {float(t_end[index])!r} s is {units[index]:.3g} time units "
-            f"√(mass/k1) = {time_unit[index]:.3g} s; at most {MOST_TIME_UNITS:g} can be "
+            f"√(mass/k1) = {time_unit[index]:.3g} s; at most {longest_run:g} can be "
             "integrated: shorten t_end, or give mass and k1 in other units"
         )
 

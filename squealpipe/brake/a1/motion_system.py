@@ -34,11 +34,6 @@ from squealpipe.systems.functions import cos, sin
 from squealpipe.systems.system import System
 from squealpipe.systems.tracing import TracedSystem
 
-PIVOT_REACH2 = 1e-14
-"""Squared distance from a pivot, in free lengths, below which the force's direction is lost."""
-ROUND_OFF = 1e-14
-"""Over k1 l_pre: a mass that friction lacks no more than this to hold sticks."""
-
 
 def brake_of(
     params: Parameters, model: str = "A1", varied: Iterable[str] = ()
@@ -151,10 +146,18 @@ def brake(  # noqa: C901 (one short function for each force and surface)
         )
         return {"x": s.vx, "y": s.vy, "vx": ax, "vy": ay}
 
+    # Relative to k1 l_pre: round-off of the force balance at rest. Without it a mass that is held
+    # exactly at the limit of friction would slide.
+    stick_tolerance = 1e-14
+
     def holds(t: Any, s: Any, p: Any, r: Any) -> Any:
         """The condition of stick: |elastic x-force and dashpots| ≤ μs N, within round-off."""
-        slack = ROUND_OFF * p.k1 * p.preload
+        slack = stick_tolerance * p.k1 * p.preload
         return limit(s, p, r) ** 2 + slack**2 - pull(s, p, r) ** 2
+
+    # Squared distance from a pivot, in free lengths, below which the spring's direction is lost
+    # to round-off
+    pivot_reach_squared = 1e-14
 
     def pivot(spring: int) -> Any:
         def distance2(t: Any, s: Any, p: Any, r: Any) -> Any:
@@ -162,7 +165,7 @@ def brake(  # noqa: C901 (one short function for each force and surface)
             x, y = s.x - ends[2 * spring], s.y - ends[2 * spring + 1]
             return (x * x + y * y) * (
                 (p.length1, p.length2)[spring]
-            ) ** -2.0 - PIVOT_REACH2
+            ) ** -2.0 - pivot_reach_squared
 
         return distance2
 

@@ -19,9 +19,6 @@ from squealpipe.systems.system import System
 from squealpipe.text import suggestion
 from squealpipe.validation import real_array
 
-FORM = ("preload", "length1", "length2", "damping1", "damping2")
-"""Numbers on which the form of a system with laws of the user's own depends."""
-
 
 class ParameterSets(NamedTuple):
     """Parameters of some runs in SI units, of the shapes that they were given in.
@@ -86,9 +83,10 @@ def _sets_of_own_laws(
             "preload: under a table of contact it must be the same for all runs"
         )
     # the form of the system is that of the largest numbers: with dashpots if any run has one
+    numbers_of_the_form = ("preload", "length1", "length2", "damping1", "damping2")
     largest: dict[str, Any] = {
         name: float(np.max(parameters[name]))
-        for name in FORM
+        for name in numbers_of_the_form
         if np.size(parameters.get(name, ()))
     }
     if friction in FALLING:

@@ -23,9 +23,6 @@ from squealpipe.vibration.boundaries import interval_table
 from squealpipe.vibration.schema import ASSESS, Mechanism
 from squealpipe.vibration.settling import FOR_NUMBERS
 
-SEARCHED = 1e-9
-"""Tolerance of the runs that search boundaries, which are located far more coarsely."""
-
 
 @recorded(model="A1", method="Taylor series with located events")
 def assess(
@@ -81,7 +78,10 @@ class Judged:
 
     def with_cures(self) -> xr.Dataset:
         """The whole answer; the search takes most of its time."""
-        coarse = max(self.tol, SEARCHED)
+        # Boundaries are located far more coarsely than this tolerance of the runs that search
+        # them
+        search_tolerance = 1e-9
+        coarse = max(self.tol, search_tolerance)
         cures = boundaries(self.design, self.verdict, self.motions, tol=coarse)
         return self._answer(
             cures, nearest_angles(self.design, self.verdict, tol=coarse)

@@ -19,11 +19,6 @@ from squealpipe.validation import Angles, Tolerance, Workers
 from squealpipe.vibration.schema import Mechanism
 from squealpipe.vibration.settled_runs import Start
 
-MOST_PERIODS_OF_A_CELL = 1600.0
-"""Periods after which a cell that has not settled is undetermined."""
-GROWN = 30.0
-"""Factor of the push where small motions grow: they would pass there anyhow."""
-
 
 @recorded(model="A1", method="Taylor series with located events")
 def verdict_map(
@@ -43,13 +38,16 @@ def verdict_map(
     """
     count = alpha2.size
 
+    # a cell that has not settled after so many periods is undetermined
+    most_periods = 1600.0
+
     def fill(arrays: dict[str, np.ndarray], first: int, stride: int) -> None:
         for row in range(first, alpha1.size, stride):
             cells = slice(row * count, (row + 1) * count)
             designs = [Design(params, float(alpha1[row]), float(b)) for b in alpha2]
             slides = [Sliding.of(design) for design in designs]
             starts = [_start(*each) for each in zip(designs, slides, strict=True)]
-            settled = settle(starts, tol=tol, most=MOST_PERIODS_OF_A_CELL)
+            settled = settle(starts, tol=tol, most=most_periods)
             arrays["verdict"][cells] = [each.verdict for each in settled]
             arrays["mechanism"][cells] = [
                 Mechanism.no_sliding_state if each is None else each.mechanism
@@ -95,5 +93,7 @@ def _start(design: Design, sliding: Sliding | None) -> Start:
     start = pushed(design, sliding)
     if not sliding.is_unstable:
         return start
-    grown = sliding.state + GROWN * (start.state - sliding.state)
+    # where small motions grow, the push starts so much larger: they would pass there anyhow
+    growth_of_push = 30.0
+    grown = sliding.state + growth_of_push * (start.state - sliding.state)
     return replace(start, state=grown)

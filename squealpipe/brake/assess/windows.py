@@ -13,12 +13,6 @@ from squealpipe.schema import Outcome
 from squealpipe.vibration.settling import Settling, late_growth, tapered
 from squealpipe.vibration.windows import Windows, joined
 
-NUMBERS_OF_A_RUN = tuple(
-    name
-    for name, row in TABLE.items()
-    if row.enters_a1 and row.allowed != "law" and name != "mu_static"
-)
-
 
 def run_windows(
     designs: Sequence[Design],
@@ -64,9 +58,14 @@ def _ensemble(
     tol: float,
 ) -> Ensemble:
     params = [design.params for design in designs]
+    # every number that enters A1 may differ from run to run; laws and the belt's sense may not
+    names = tuple(
+        name
+        for name, row in TABLE.items()
+        if row.enters_a1 and row.allowed != "law" and name != "mu_static"
+    )
     numbers: dict[str, Any] = {
-        name: np.array([getattr(each, name) for each in params])
-        for name in NUMBERS_OF_A_RUN
+        name: np.array([getattr(each, name) for each in params]) for name in names
     }
     numbers["mu_static"] = np.array([each.static_mu for each in params])
     for name in ("friction_law", "contact_law"):

@@ -3,7 +3,7 @@
 Below A1 one rule answers, for it alone costs less than A1 does: contact is kept where the linear
 motion of A3, with a margin for geometry, stays below y = l_pre (:func:`keeps_contact`). Elsewhere
 A1 is the cheapest level whose answer is certain. The rule is not proved; its margins are those that
-no cell of a random sample (:data:`EVIDENCE`) needed.
+no cell of a random sample needed.
 """
 
 from __future__ import annotations  # help shows Angle, not its checks
@@ -24,10 +24,6 @@ from squealpipe.laws.friction import slides
 from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.systems.processes import cpu_time
 from squealpipe.validation import Angle, Positive, Tolerance, checked, one_of
-
-EVIDENCE = (
-    "measured, not proved: wrong in none of 89,687 random cells that met the rule"
-)
 
 
 @dataclass(frozen=True)
@@ -104,12 +100,15 @@ def choose_model(
     choices = choose_models(params, *cells, question, t_end=horizon, tol=tol, workers=1)
     level, value = Level(int(choices.level[0])), float(choices.value[0])
     ruled = _has_rule(params, question)
+    evidence = (
+        "measured, not proved: wrong in none of 89,687 random cells that met the rule"
+    )
     return Choice(
         model=level.name,
         value=bool(value) if question == "contact_lost" else value,
         reason="A1 is the cheapest level whose answer is certain here"
         if level == Level.a1
-        else f"the linear motion keeps clear of l_pre by a margin ({EVIDENCE})",
+        else f"the linear motion keeps clear of l_pre by a margin ({evidence})",
         checks=("linear motion",) * ruled + ("A1",) * (level == Level.a1),
         cost=choices.cost,
     )

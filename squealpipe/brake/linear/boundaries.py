@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.brake.models import a3
-from squealpipe.brake.models.refusals import WHY_CIRCLES, refuse_extensions
+from squealpipe.brake.models.refusals import refuse_extensions
 from squealpipe.brake.schema.linear import STABILITY_BOUNDARIES, BoundaryCurve
 from squealpipe.parameters import Parameters
 from squealpipe.schema import build
@@ -20,7 +20,8 @@ def stability_boundaries(params: Parameters, *, points: int = 400) -> xr.Dataset
         Dataset over point: alpha1, alpha2 (rad, continuous along a segment, hence not confined
         to 0 … π; the map has period π in either angle), boundary, segment.
     """
-    refuse_extensions(params, "stability_boundaries", WHY_CIRCLES)
+    reason = "its curves are circles of the undamped model A3 alone"
+    refuse_extensions(params, "stability_boundaries", reason)
     total = params.k1 + params.k2
     arcs = {
         BoundaryCurve.flutter: a3.circle_arcs(

@@ -20,7 +20,6 @@ WHY_A4 = (
     "A4 has families of periodic orbits by its first integral alone, which damping and friction "
     "that depends on speed destroy, and closed forms for a linear contact alone"
 )
-WHY_CIRCLES = "its curves are circles of the undamped model A3 alone"
 
 
 def extensions(params: Parameters) -> list[str]:

@@ -14,11 +14,6 @@ from squealpipe.brake.orbits.modal_flow import (
 from squealpipe.brake.orbits.shooting import MAX_SEGMENTS, shoot
 from squealpipe.systems.compiled import compiled
 
-_LOOKS = 12
-"""Samples between which an extreme is looked for, in a segment or, if shorter, a fast period."""
-_ITERATIONS = 24
-"""Of the search for an extreme: enough to halve its way out of the rest at an interval's end."""
-
 
 @compiled
 def waveform(rows: Any, point: Any, phases: Any, out: Any) -> None:
@@ -64,11 +59,15 @@ def extremes(rows: Any, point: Any, out: Any) -> None:
     begin = 0.0
     for kind in range(3):
         out[2 * kind], out[2 * kind + 1] = np.inf, -np.inf
+    # Samples between which an extreme is looked for, in a segment or, if shorter, a fast period
+    samples_per_piece = 12
     for leg in range(count):
         row = rows[int(segments[leg, 8])]
         end = switches[leg] if leg < count - 1 else point[2]
         # row[7]: the higher frequency
-        looks = _LOOKS * max(1, int(np.ceil(row[7] * (end - begin) / (2.0 * np.pi))))
+        looks = samples_per_piece * max(
+            1, int(np.ceil(row[7] * (end - begin) / (2.0 * np.pi)))
+        )
         for kind in range(3):
             slope_before = 0.0
             for look in range(looks + 1):
@@ -112,7 +111,9 @@ def _turn(
     state = start.copy()
     value = 0.0
     time = 0.5 * (before + after)
-    for _ in range(_ITERATIONS):
+    # enough to halve the way out of the rest at an interval's end
+    most_iterations = 24
+    for _ in range(most_iterations):
         propagator(row, time, scratch)
         copy_state(start, state)
         advance(row, scratch, state)

@@ -17,7 +17,6 @@ MAX_SEGMENTS = 64
 LONGEST_PHASE = 1e4
 """Phase of the fastest mode within half a period beyond which a shot is given up, rad."""
 _COEFFICIENTS = 8
-_MAX_NEWTON = 12
 
 
 @compiled
@@ -165,7 +164,9 @@ def solve_constrained(
     residual, jacobian = np.empty(2), np.empty((2, 3))
     previous = np.inf
     best0, best1, best2 = point[0], point[1], point[2]
-    for iteration in range(_MAX_NEWTON):
+    # Newton's method from a start that is close has long converged by then; others wander off
+    most_newton_steps = 12
+    for iteration in range(most_newton_steps):
         count = rest_conditions(
             rows, point, segments, switches, residual, jacobian, final
         )
@@ -205,4 +206,4 @@ def solve_constrained(
         point[2] += (constraint[0] * w1 - constraint[1] * w0) / determinant
         if not point[2] > 0.0:
             break
-    return 0, _MAX_NEWTON, np.inf
+    return 0, most_newton_steps, np.inf

@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 import scipy
 
-from squealpipe.brake.schema.propensity import TRUNCATION
 from squealpipe.inputs import ANGLES
 from squealpipe.laws.friction_laws import COULOMB, FALLING
 from squealpipe.parameters import Parameters
@@ -64,7 +63,10 @@ def _frozen(name: str, kind: str, first: float, second: float) -> Any:
             f"{name}: {DISTRIBUTIONS[kind][1]} = {second!r}: a number above 0 is needed"
         )
     if kind == "normal":
-        return scipy.stats.truncnorm(-TRUNCATION, TRUNCATION, loc=first, scale=second)
+        # in standard deviations: a normal distribution without ends would now and then draw a
+        # negative stiffness
+        cut_off = 4.0
+        return scipy.stats.truncnorm(-cut_off, cut_off, loc=first, scale=second)
     if not first > 0:
         raise ValueError(f"{name}: median = {first!r}: a number above 0 is needed")
     return scipy.stats.lognorm(second, scale=first)

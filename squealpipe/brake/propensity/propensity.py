@@ -39,8 +39,6 @@ from squealpipe.validation import (
     Workers,
 )
 
-PROPENSITIES = ("flutter", "contact_loss", "irregular_hammering", "whirl")
-SAMPLE_SIZES = 6
 INDEX_ORDERS = ("first_order", "total_order")
 INDICES = tuple(
     f"{order}{end}" for order in INDEX_ORDERS for end in ("", "_low", "_high")
@@ -120,12 +118,16 @@ def propensity(
     values = np.array([frozen[name].ppf(points[:, i]) for i, name in enumerate(names)])
     happens = judge(values)
     low, high = np.transpose([sobol.share_interval(each) for each in happens])
-    sizes = samples >> np.arange(SAMPLE_SIZES)[::-1]
+    # the estimate is shown for so many growing parts of the sample, so that its convergence is
+    # seen
+    n_sample_sizes = 6
+    sizes = samples >> np.arange(n_sample_sizes)[::-1]
     # base sample of the indices of each quantity, over that of the shares: flutter needs no run
     index_samples = np.array([[4], [1], [1], [1]]) * sizes
-    blank = dict.fromkeys(INDICES, np.full((len(PROPENSITIES), len(names)), np.nan))
+    propensities = ("flutter", "contact_loss", "irregular_hammering", "whirl")
+    blank = dict.fromkeys(INDICES, np.full((len(propensities), len(names)), np.nan))
     table = blank | {
-        "half_width_by_size": np.full((len(PROPENSITIES), SAMPLE_SIZES), np.nan)
+        "half_width_by_size": np.full((len(propensities), n_sample_sizes), np.nan)
     }
     if not spring_correlation:
         linear = _judged_matrices(
@@ -133,7 +135,7 @@ def propensity(
         )
         by_run = _judged_matrices(judge, frozen, index_samples[1, -1], seed + 1)
         table |= _indices(
-            [linear[:, 0], *np.moveaxis(by_run[:, 1:], 1, 0)], SAMPLE_SIZES
+            [linear[:, 0], *np.moveaxis(by_run[:, 1:], 1, 0)], n_sample_sizes
         )
     supported = np.isfinite(table["total_order"]).all(axis=1)
     return build(
@@ -153,7 +155,7 @@ def propensity(
             "alpha2": alpha2,
             "t_end": t_end,
         },
-        {"quantity": list(PROPENSITIES), "input": names, "size": sizes},
+        {"quantity": list(propensities), "input": names, "size": sizes},
         {"spring_correlation": spring_correlation},
     )
 

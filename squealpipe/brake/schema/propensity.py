@@ -13,8 +13,6 @@ from squealpipe.schema import (
 
 WIDEST = 0.05
 """A Sobol index whose 95 % interval is wider than twice this is not given."""
-TRUNCATION = 4.0
-"""A normal distribution is cut off at this many standard deviations."""
 
 _CELL = ("variant", "statement")
 

@@ -18,9 +18,6 @@ from squealpipe.reading import corrected, for_linear
 from squealpipe.schema import build
 from squealpipe.study.evidence import Evidence, MissingDataError
 
-CORRECTED_FOLDER = "corrected/"
-"""Folder of the datasets of the corrected physics, where it differs from the reading."""
-
 
 def judge(
     parameters: Parameters,
@@ -33,10 +30,12 @@ def judge(
     whose reading has one sign already is its own physics.
     """
     run = Evidence(for_linear(parameters, reading), sources)
+    # datasets of the corrected physics stand here where they differ from the reading's
+    corrected_folder = "corrected/"
     mended = {
-        name.removeprefix(CORRECTED_FOLDER): source
+        name.removeprefix(corrected_folder): source
         for name, source in sources.items()
-        if name.startswith(CORRECTED_FOLDER)
+        if name.startswith(corrected_folder)
     }
     second = (
         Evidence(corrected(parameters, reading), {**sources, **mended})

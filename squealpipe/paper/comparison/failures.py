@@ -38,22 +38,7 @@ COLD = "cold Newton, sampled"
 ARC = "arc length, unchecked"
 TANH_BALANCE = "tanh balance, sampled"
 HILL, NUMERIC = "Hill's method, sampled", "numpy.linalg"
-FREQUENCY_METHODS = (
-    EXACT_ORBIT,
-    CLOSED_FORM_BALANCE,
-    COLD,
-    ARC,
-    TANH_BALANCE,
-    CORRECTED,
-    AS_PRINTED,
-    HILL,
-    NUMERIC,
-)
-"""The columns; the first two are ours."""
 CASE_HARMONICS = 16
-TRUTH_HARMONICS = 128
-"""Their ω is good to 1e-9, ten thousand times better than the tolerance."""
-HILL_HARMONICS = 16
 NOT_CONVERGED = "Newton did not converge"
 
 
@@ -126,13 +111,25 @@ def judge_balances() -> xr.Dataset:
         *map(_branch, CASES),
         _period_doubling(),
     ]
-    shape = len(scenes), len(FREQUENCY_METHODS)
+    # the columns of the chart; the first two methods are ours
+    frequency_methods = (
+        EXACT_ORBIT,
+        CLOSED_FORM_BALANCE,
+        COLD,
+        ARC,
+        TANH_BALANCE,
+        CORRECTED,
+        AS_PRINTED,
+        HILL,
+        NUMERIC,
+    )
+    shape = len(scenes), len(frequency_methods)
     verdict = np.zeros(shape)
     error = np.full(shape, np.nan)
     message = np.full(shape, "", "U64")
     for row, scene in enumerate(scenes):
         for name, ask in scene.answers.items():
-            cell, answer = (row, FREQUENCY_METHODS.index(name)), ask()
+            cell, answer = (row, frequency_methods.index(name)), ask()
             verdict[cell], error[cell] = verdict_of(
                 answer, scene.truth, scene.tolerance
             )
@@ -145,11 +142,11 @@ def judge_balances() -> xr.Dataset:
             "message": message,
             "tolerance": [scene.tolerance for scene in scenes],
             "role": [
-                Role.ours if name in FREQUENCY_METHODS[:2] else Role.public
-                for name in FREQUENCY_METHODS
+                Role.ours if name in frequency_methods[:2] else Role.public
+                for name in frequency_methods
             ],
         },
-        {"scene": [scene.name for scene in scenes], "solver": FREQUENCY_METHODS},
+        {"scene": [scene.name for scene in scenes], "solver": frequency_methods},
     )
 
 
@@ -169,9 +166,11 @@ def _branch(case: BranchCase) -> HardScene:
         start = orbit_series(scene, exact, CASE_HARMONICS)
     truth: np.ndarray | float = math.nan
     if exact:
-        fine = CosineBalance(scene.system, contact_of(TRUTH_HARMONICS, 1.0, None, None))
+        # ω is then good to 1e-9, ten thousand times better than the tolerance of the verdict
+        truth_harmonics = 128
+        fine = CosineBalance(scene.system, contact_of(truth_harmonics, 1.0, None, None))
         truth = _newton(
-            scene, case, fine, orbit_series(scene, exact, TRUTH_HARMONICS)
+            scene, case, fine, orbit_series(scene, exact, truth_harmonics)
         ).value
     answers: dict[str, Callable[[], Answer]] = {
         EXACT_ORBIT: lambda: _exact_orbit(case),
@@ -298,7 +297,8 @@ def _period_doubling() -> HardScene:
     angles, mode, y_peak = (0.3 * math.pi, 0.9 * math.pi), 1, 4.0
     scene = scaled_system(BASE, *angles)
     exact, _ = find_orbit(scene, mode, y_peak)
-    balance = CosineBalance(scene.system, contact_of(HILL_HARMONICS, 1.0, None, None))
+    hill_harmonics = 16
+    balance = CosineBalance(scene.system, contact_of(hill_harmonics, 1.0, None, None))
 
     def ours() -> Answer:
         found = periodic_orbit(BASE, *angles, mode=mode, y_peak=y_peak)
@@ -311,7 +311,7 @@ def _period_doubling() -> HardScene:
         )
 
     def hill() -> Answer:
-        guess = orbit_series(scene, exact, HILL_HARMONICS) if exact else None
+        guess = orbit_series(scene, exact, hill_harmonics) if exact else None
         solution = (
             None if guess is None else balance.solve(guess, balance.peak_row, y_peak)
         )

@@ -10,16 +10,8 @@ from squealpipe.paper.inference.unstable_cells import midpoints
 from squealpipe.parameters import HORIZON
 from squealpipe.schema import Outcome
 
-VISIBLE = 0.95
-"""Distance of the cells from the centre of the disc of flutter, in radii: a region that is thinner
-than the rest shows on no map, and next to the edge nothing grows within ``HORIZON``."""
-COARSE_STRIDE = 8
-"""Every so many of the unstable cells are run first."""
 MAP_SIZES, CLEAR = (12, 24, 48), 0.6
 """Midpoints an axis of the maps of runs: finer while |share − ½| is below ``CLEAR`` spacings."""
-EARLY_HORIZON = 25.0
-"""Time, √(m/k1), by which contact is lost in nearly all cells in which it ever is; cells that keep
-it until ``HORIZON`` take nearly all steps."""
 
 
 def separating_share(
@@ -28,15 +20,18 @@ def separating_share(
     """Share of the angle map on which A1, from rest, loses contact within ``HORIZON``.
 
     Midpoint rule; a parameter set goes on to the next number of ``angles`` while its share is
-    within ``CLEAR``/angles of one half. Unless margins are wanted, runs end at ``EARLY_HORIZON``
-    first: where more cells than that have lost contact by then, their share is the result.
+    within ``CLEAR``/angles of one half. Unless margins are wanted, short runs come first: where
+    more cells than that have lost contact by their end, their share is the result.
     """
     shares = np.full(candidates.size, 0.5)
+    # in √(m/k1): by then contact is lost in nearly all cells in which it ever is; cells that keep
+    # it until the horizon take nearly all steps
+    early_horizon = 25.0
     for number in angles:
         clear = CLEAR / number
         left = np.flatnonzero(np.abs(shares - 0.5) < clear)
         enough = 0.5 if number == angles[-1] else 0.5 + clear
-        for horizon in (HORIZON,) if candidates.exact else (EARLY_HORIZON, HORIZON):
+        for horizon in (HORIZON,) if candidates.exact else (early_horizon, HORIZON):
             shares[left] = _share(candidates.subset(left), number, horizon)
             # what has separated stays separated, so that a later share is not smaller
             left = left[shares[left] <= enough]
@@ -60,12 +55,17 @@ def _share(candidates: Candidates, number: int, horizon: float) -> np.ndarray:
 def keeping_share(candidates: Candidates) -> np.ndarray:
     """Share of the unstable cells in which A1 keeps contact throughout ``HORIZON``; 0 of none.
 
-    Of cells that lie ``VISIBLE`` inside the region's edge: every ``COARSE_STRIDE``-th of them, and
-    all where A1 keeps contact in none of these.
+    Only cells well inside the region's edge are run: every eighth of them, and all where A1 keeps
+    contact in none of these.
     """
-    unstable = candidates.unstable_cells(VISIBLE)
+    # Distance of the cells from the centre of the disc of flutter, in radii: a region that is
+    # thinner than the rest shows on no map, and next to the edge nothing grows within the horizon
+    visible_radius = 0.95
+    unstable = candidates.unstable_cells(visible_radius)
     share = np.zeros(candidates.size)
-    for step in (COARSE_STRIDE, 1):
+    # one in so many of the unstable cells is run first: most candidates are refuted by those
+    coarse_stride = 8
+    for step in (coarse_stride, 1):
         left = np.flatnonzero(share == 0)
         some = [unstable[i] for i in left]
         cells = [(where.alpha1[::step], where.alpha2[::step]) for where in some]

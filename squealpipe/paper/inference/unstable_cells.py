@@ -21,13 +21,9 @@ from squealpipe.laws.springs import springs_alike
 from squealpipe.paper.schema.inference import DAMPED_GRID
 from squealpipe.parameters import Parameters
 
-RIM = 192
-"""Points around the disc of flutter."""
 INSIDE = 1.0 - 1e-6
 """Their distance from its centre, in radii: unstable, and at the edge where contact lasts."""
 LINEAR_PARAMETERS = ("mass", "k1", "k2", "k3")
-EQUAL = ("length1", "length2", "damping1", "damping2")
-"""Parameters that the linear model reads, and others that a mirror image has to share."""
 
 
 class Unstable(NamedTuple):
@@ -46,9 +42,11 @@ def unstable_cells(params: Parameters, *, inside: float = INSIDE) -> Unstable:
     """
     if not is_undamped(params):
         return _on_grid(params)
+    # the linear model does not read these, but a mirror image has to share them
+    shared = ("length1", "length2", "damping1", "damping2")
     fields = {
         name: np.array([getattr(params, name)])
-        for name in (*LINEAR_PARAMETERS, *EQUAL, "drag")
+        for name in (*LINEAR_PARAMETERS, *shared, "drag")
     }
     return unstable_along_edges(fields, inside=inside)[0]
 
@@ -117,7 +115,7 @@ def _along_edges(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return angles, rad, among which some are unstable if any are, and which of them exist.
 
-    Without damping, flutter is sought in ``RIM`` directions, just inside its disc in the plane of
+    Without damping, flutter is sought in 192 directions, just inside its disc in the plane of
     Z. Divergence, which lies outside a circle and within |Z| = k1 + k2, is sought midway between.
 
     Args:
@@ -127,7 +125,9 @@ def _along_edges(
     """
     farthest, nearest = p.k1 + p.k2, np.abs(p.k1 - p.k2)
     centre, radius = a3.flutter_circle(p, p.k3)
-    turn = (np.arange(RIM) + 0.5) * (2.0 * np.pi / RIM)
+    # points around the disc of flutter
+    points_on_the_rim = 192
+    turn = (np.arange(points_on_the_rim) + 0.5) * (2.0 * np.pi / points_on_the_rim)
     flutter = centre + inside * radius * np.exp(1j * turn)
     # points along each arc that bounds divergence
     arcs = a3.reached_arcs(p, *a3.divergence_circle(p, p.k3), 24)

@@ -14,7 +14,6 @@ from squealpipe.parameters import Parameters
 from squealpipe.study.evidence import Evidence
 from squealpipe.study.report.parts import Made, changed_rows, parameter_table, pictures
 
-TITLE = "Hammering and brake squeal: a paper computed again, statement by statement"
 CITED_PAPER = {
     "authors": "O. T. Şen and R. Singh",
     "title": "Dynamics of a simplified nonlinear model offering insights into the hammering type "
@@ -49,8 +48,9 @@ def gather(
     def link(path: str | Path) -> str | None:
         return None if page is None else os.path.relpath(path, page.parent)
 
+    title = "Hammering and brake squeal: a paper computed again, statement by statement"
     return {
-        "title": TITLE,
+        "title": title,
         "paper": CITED_PAPER,
         "shipped": not changed,
         "friction": edited.friction_in_words(parameters, reading),
@@ -89,34 +89,36 @@ def gather(
     }
 
 
-TABLE_1 = {
-    "A1": ("friction, kinematic and clearance", "–", "time histories, Figs. 2–5, 7"),
-    "A2": (
-        "linearized",
-        "angles do not change; surface separation is ignored",
-        "quasi-static sliding, Fig. 6",
-    ),
-    "A3": (
-        "linearized and nondimensional",
-        "angles do not change; surface separation is ignored",
-        "dynamic stability, Fig. 6",
-    ),
-    "A4": (
-        "clearance alone",
-        "angles do not change; the friction nonlinearity is ignored",
-        "frequency responses, Figs. 8–13",
-    ),
-}
-"""The paper's Table 1: level → nonlinearities, assumptions, use."""
-
-
 def levels(run: Evidence) -> list[list[str]]:
     """The paper's Table 1, with the scenes in which each assumption held along the motion."""
     if "assumptions" not in run:
         return []
     table = run["assumptions"]
     written = []
-    for level, words in TABLE_1.items():
+    # The paper's Table 1: level → nonlinearities, assumptions, use
+    rows = {
+        "A1": (
+            "friction, kinematic and clearance",
+            "–",
+            "time histories, Figs. 2–5, 7",
+        ),
+        "A2": (
+            "linearized",
+            "angles do not change; surface separation is ignored",
+            "quasi-static sliding, Fig. 6",
+        ),
+        "A3": (
+            "linearized and nondimensional",
+            "angles do not change; surface separation is ignored",
+            "dynamic stability, Fig. 6",
+        ),
+        "A4": (
+            "clearance alone",
+            "angles do not change; the friction nonlinearity is ignored",
+            "frequency responses, Figs. 8–13",
+        ),
+    }
+    for level, words in rows.items():
         at_level = table.sel(level=level)
         needed = [
             name

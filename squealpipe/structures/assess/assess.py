@@ -31,9 +31,6 @@ from squealpipe.vibration.boundaries import (
 from squealpipe.vibration.schema import ASSESS, DIRECTIONS
 from squealpipe.vibration.settling import FOR_NUMBERS
 
-SEARCHED = 1e-9
-"""Tolerance of the runs that search boundaries, which are located far more coarsely."""
-
 
 @dataclass(frozen=True)
 class JudgedStructure:
@@ -221,7 +218,9 @@ def judge_structure(
         "outcome": outcome,
     }
     motions = [design.to_whole(run.last.final) for run in lasting[:2]]
-    searched = replace(family, tol=max(tol, SEARCHED))
+    # Boundaries are located far more coarsely than this tolerance of the runs that search them
+    search_tolerance = 1e-9
+    searched = replace(family, tol=max(tol, search_tolerance))
     return JudgedStructure(design, verdict, motions, facts, searched, named)
 
 

@@ -21,8 +21,6 @@ from squealpipe.vibration.settled_runs import settle as settle_runs
 from squealpipe.vibration.settling import FOR_VERDICTS, Settling
 from squealpipe.vibration.windows import joined
 
-FIRST = 50.0
-"""Length of the first two windows, in periods of the slowest mode that grows, or of any."""
 MOST = 20_000.0
 """Periods after which a motion that has not settled is undetermined."""
 
@@ -243,7 +241,10 @@ def _first_window(start: Start) -> float:
     """Periods of the first window, in which small motions grow to e^½ or more."""
     rate = abs(start.rate) * start.period
     shown = QUIETNESS.shown / rate if rate > 0 else 0.0
-    return float(np.clip(shown, FIRST, 0.25 * MOST))
+    # in periods of the slowest mode that grows, or of any; twice as many take twice as long where
+    # the motion settles at once
+    first_window = 50.0
+    return float(np.clip(shown, first_window, 0.25 * MOST))
 
 
 @dataclass

@@ -29,8 +29,6 @@ COLUMNS = {
     "level": "dB",
 }
 """Column → the unit that it is turned into; a level is not, since decibels have references."""
-OUTSIDE = 0.05
-"""Share of the map's range by which a measured point may lie beyond it."""
 
 
 class Noise(NamedTuple):
@@ -172,7 +170,9 @@ def matched(points: xr.Dataset, noises: list[Noise], band: float) -> dict[str, A
 
 def _nearest(values: np.ndarray, at: float) -> int | None:
     """Return the place of the value nearest to one; None where that lies beyond their range."""
-    room = OUTSIDE * max(np.ptp(values), abs(values).max())
+    # a measured point may lie beyond the map by this share of its range
+    outside = 0.05
+    room = outside * max(np.ptp(values), abs(values).max())
     if not values.min() - room <= at <= values.max() + room:
         return None
     return int(np.abs(values - at).argmin())

@@ -16,11 +16,6 @@ from squealpipe.vibration import levels as measured
 from squealpipe.vibration.levels import MEASUREMENT, Record
 from squealpipe.vibration.settled_runs import SettledRun
 
-FINEST = 6.0
-"""Samples in a period of the fastest mode."""
-MOST_SAMPLES, MOST_NUMBERS = 2**16, 2**25
-"""Samples of a record, and numbers that are held of it."""
-
 
 def levels(
     design: Design, settled: SettledRun, *, how: Running
@@ -52,9 +47,17 @@ def _record(
     """
     traced = plant.system.traced
     regimes = list(plant.system.regimes)
-    fine = max(MEASUREMENT.fine, int(np.ceil(FINEST * plant.fastest / plant.slowest)))
+    # of the fastest mode: fewer would miss its peaks
+    samples_per_period = 6.0
+    fine = max(
+        MEASUREMENT.fine,
+        int(np.ceil(samples_per_period * plant.fastest / plant.slowest)),
+    )
     held = 2 * plant.size + len(regimes) + len(traced.kinds)
-    most = min(MOST_SAMPLES, MOST_NUMBERS // held)
+    most_samples = 2**16
+    # doubles, 270 MB
+    most_numbers = 2**25
+    most = min(most_samples, most_numbers // held)
     count = int(min(MEASUREMENT.periods * fine, most))
     step = 1.0 / (plant.slowest * fine)
     times = step * np.arange(1, count + 1)

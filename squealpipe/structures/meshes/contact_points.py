@@ -21,9 +21,6 @@ from squealpipe.structures.meshes.pairing import FacetedSurface, Partner
 from squealpipe.structures.meshes.shape_functions import shares
 from squealpipe.units import engineering
 
-ON_THE_AXIS = 1e-6
-"""Radius over the size of a facet, below which a point is on the axis of rotation."""
-
 
 class _Point(NamedTuple):
     """One node of a face with what it meets.
@@ -399,6 +396,9 @@ def _motion(
     mesh: ElementMesh,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return directions in which the belt moves, (points, 3), and its speeds, (points,)."""
+    # a point nearer to the axis of rotation than this share of its facet's size has no direction
+    # of sliding
+    on_the_axis = 1e-6
     if face.direction is not None:
         if rotation is not None:
             raise ValueError(
@@ -416,7 +416,7 @@ def _motion(
                 -velocity
             )  # what rubs turns, and sees the other one move backwards
         speeds = np.linalg.norm(velocity, axis=1)
-        on_axis = np.flatnonzero(speeds <= ON_THE_AXIS * sizes)
+        on_axis = np.flatnonzero(speeds <= on_the_axis * sizes)
         if on_axis.size:
             raise ValueError(
                 f"the axis of rotation goes through {face.surface} at node "
@@ -432,7 +432,7 @@ def _motion(
     along = np.einsum("ij,ij->i", velocity, normals)
     tangential = velocity - along[:, None] * normals
     lengths = np.linalg.norm(tangential, axis=1)
-    across = np.flatnonzero(lengths <= ON_THE_AXIS * np.linalg.norm(velocity, axis=1))
+    across = np.flatnonzero(lengths <= on_the_axis * np.linalg.norm(velocity, axis=1))
     if across.size:
         raise ValueError(
             f"{face.against} moves along its normal at node "

@@ -70,24 +70,23 @@ ELEMENTS = {
 CORNERS = {3: 3, 4: 4, 6: 3, 8: 4}
 """Number of nodes of a face → number of its corners."""
 
-_DECK_TYPES = {
-    r"C3D4[A-Z]*": "tetra",
-    r"C3D6[A-Z]*|SC6R[A-Z]*": "wedge",
-    r"C3D8[A-Z]*|SC8R[A-Z]*": "hexahedron",
-    r"C3D10[A-Z]*": "tetra10",
-    r"C3D15[A-Z]*": "wedge15",
-    r"C3D20[A-Z]*": "hexahedron20",
-    r"S3[A-Z]*|STRI3|M3D3|CP[SE]3": "triangle",
-    r"S4[A-Z]*5?|M3D4R?|CP[SE]4": "quad",
-    r"S6|STRI65|M3D6|CP[SE]6": "triangle6",
-    r"S8[A-Z]*5?|M3D8R?|CP[SE]8": "quad8",
-}
-"""Names of Abaqus and CalculiX → meshio's name; gmsh marks surfaces of solids by CPS3."""
-
 
 def kind_in_deck(element_type: str) -> str | None:
     """Return the kind of an element type of Abaqus or CalculiX; None if it makes no face."""
-    for pattern, name in _DECK_TYPES.items():
+    # names of Abaqus and CalculiX → meshio's name; gmsh marks surfaces of solids by CPS3
+    deck_types = {
+        r"C3D4[A-Z]*": "tetra",
+        r"C3D6[A-Z]*|SC6R[A-Z]*": "wedge",
+        r"C3D8[A-Z]*|SC8R[A-Z]*": "hexahedron",
+        r"C3D10[A-Z]*": "tetra10",
+        r"C3D15[A-Z]*": "wedge15",
+        r"C3D20[A-Z]*": "hexahedron20",
+        r"S3[A-Z]*|STRI3|M3D3|CP[SE]3": "triangle",
+        r"S4[A-Z]*5?|M3D4R?|CP[SE]4": "quad",
+        r"S6|STRI65|M3D6|CP[SE]6": "triangle6",
+        r"S8[A-Z]*5?|M3D8R?|CP[SE]8": "quad8",
+    }
+    for pattern, name in deck_types.items():
         if re.fullmatch(pattern, element_type):
             return name
     return None

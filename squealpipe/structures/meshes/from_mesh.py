@@ -19,9 +19,6 @@ from squealpipe.structures.readers import read_names
 from squealpipe.systems.inputs.values import brief
 from squealpipe.units import engineering
 
-DISPLACEMENTS_OF_A_NODE = 3
-"""Displacements of a node."""
-
 
 class OfMesh(NamedTuple):
     """Additions of a mesh to the matrices of a structure."""
@@ -72,14 +69,12 @@ def _named_rows(
 ) -> np.ndarray:
     """Return node number and direction of each row of the matrices, (n, 2)."""
     if names is None:
-        count = DISPLACEMENTS_OF_A_NODE * len(mesh.nodes)
+        displacements = 3
+        count = displacements * len(mesh.nodes)
         if size == count and mesh.counts_nodes:
-            nodes = np.repeat(mesh.numbers, DISPLACEMENTS_OF_A_NODE)
+            nodes = np.repeat(mesh.numbers, displacements)
             return np.column_stack(
-                [
-                    nodes,
-                    np.tile(np.arange(1, DISPLACEMENTS_OF_A_NODE + 1), len(mesh.nodes)),
-                ]
+                [nodes, np.tile(np.arange(1, displacements + 1), len(mesh.nodes))]
             )
         raise ValueError(
             f"degrees_of_freedom is missing: the matrices have {size} rows without names, and the "

@@ -26,8 +26,6 @@ NEWTON_STEPS = 30
 """Steps of Newton's method in a facet; a flat one needs one, a warped one three."""
 ROUNDING = 1e-14
 """Change of ξ and η that is round-off."""
-SAME_DISTANCE = 1e-9
-"""Difference of distances, over the facet's size, below which a point is on the edge of both."""
 
 
 class Partner(NamedTuple):
@@ -174,10 +172,13 @@ class FacetedSurface:
         distance, size, index, place = best
         extent = float(self.sizes[size][index])
         # on an edge the mean of the facets there, weighted by their areas
+        # two facets whose distances differ by less than this share of their size have the point
+        # on their common edge
+        same_distance = 1e-9
         tied = [
             each
             for each in candidates
-            if each.distance <= distance + SAME_DISTANCE * extent
+            if each.distance <= distance + same_distance * extent
             and np.linalg.norm(self._position(each) - self._position(best))
             <= MATCHING * extent
         ]
@@ -190,7 +191,7 @@ class FacetedSurface:
             normal = normal / np.linalg.norm(normal)
         rows = self.facets[size][index]
         weights, _ = shape(size, place)
-        carries = np.abs(weights) > SAME_DISTANCE
+        carries = np.abs(weights) > same_distance
         weights = weights[carries] / weights[carries].sum()
         return Partner(
             rows[carries], weights, self._position(best), normal, extent, distance

@@ -31,11 +31,9 @@ class PushAnswer(IntEnum):
     not_known = 6
 
 
-_ERROR = "largest over the pushes; NaN: not answered"
-
-
 def _error(long_name: str) -> Variable:
-    return or_nan(f"{long_name}, {_ERROR}", dims=RUN, rtol=0.2, atol=1e-3)
+    words = "largest over the pushes; NaN: not answered"
+    return or_nan(f"{long_name}, {words}", dims=RUN, rtol=0.2, atol=1e-3)
 
 
 def _uncertainty(long_name: str) -> Variable:

@@ -39,7 +39,6 @@ OF_CONTACT = {
     "stiffness": "factor of the stiffness",
 }
 """Quantities of one contact that can be factors, named ``<contact>_preload``."""
-_NAME = re.compile(rf"^{NAME} over (?P<dims>\w+(?:, \w+)*)$")
 
 
 class Onset(IntEnum):
@@ -204,7 +203,8 @@ def _factor(name: str) -> Variable:
 
 def derived(name: str) -> DatasetSchema | None:
     """The schema of that name if it is one of modes over further factors."""
-    match = _NAME.match(name)
+    pattern = re.compile(rf"^{NAME} over (?P<dims>\w+(?:, \w+)*)$")
+    match = pattern.match(name)
     if match is None:
         return None
     dims = tuple(match["dims"].split(", "))

@@ -25,9 +25,6 @@ from squealpipe.structures.squeal.windows import Running, StructureWindows, run_
 from squealpipe.vibration.settled_runs import Horizon, settle
 from squealpipe.vibration.settling import FOR_VERDICTS
 
-SIDE_BY_SIDE = 8
-"""Frictions of one turn, run together."""
-
 
 @dataclass(frozen=True)
 class TrackState:
@@ -110,9 +107,11 @@ def _turns(track: Track, onset: float) -> Iterator[np.ndarray]:
     width = width_of(track, onset)
     floor = max(onset - width, 0.0) if onset < track.lasts.mu else 0.0
     # after twelve turns the end is what it is
+    # frictions of one turn are run together
+    side_by_side = 8
     for _ in range(12):
         top = track.lasts.mu
-        yield np.linspace(top, floor, SIDE_BY_SIDE + 1)[1:]
+        yield np.linspace(top, floor, side_by_side + 1)[1:]
         low, high = track.dies, track.lasts.mu
         if np.isnan(low):
             # at no friction nothing feeds it, but nothing ends it either
@@ -122,7 +121,7 @@ def _turns(track: Track, onset: float) -> Iterator[np.ndarray]:
             continue
         floor = low
         # what dies has started from next to it
-        near = top - low <= SIDE_BY_SIDE * width
+        near = top - low <= side_by_side * width
         if near and min(high, onset) - low <= 1.0001 * width:
             track.narrow = True
             return

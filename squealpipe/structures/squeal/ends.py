@@ -26,7 +26,7 @@ SAME_MODE = 0.1
 """Distance of frequencies within which a mode of another reduction is the same one's."""
 SAMPLES_PER_FAST_PERIOD = 12.0
 """Samples in a period of the fastest mode."""
-FEWEST_SAMPLES, MOST_SAMPLES = 2**14, 2**16
+MOST_SAMPLES = 2**16
 """Samples in each window."""
 
 

@@ -18,7 +18,6 @@ from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.reduction import Kept
 from squealpipe.structures.spectrum import Limits, Solver
 from squealpipe.structures.squeal.ends import (
-    FEWEST_SAMPLES,
     MOST_SAMPLES,
     SAME_MODE,
     SAMPLES_PER_FAST_PERIOD,
@@ -243,7 +242,9 @@ def _pushes(plant: Plant, frequencies: np.ndarray) -> list[int | None]:
 def _instants(plant: Plant, horizon: Horizon) -> tuple[float, np.ndarray]:
     """Step and instants, s: 0, and both windows in equal steps."""
     count = int(np.ceil(horizon.window * SAMPLES_PER_FAST_PERIOD * plant.fastest))
-    count = min(max(count, FEWEST_SAMPLES), MOST_SAMPLES)
+    # in each window
+    fewest_samples = 2**14
+    count = min(max(count, fewest_samples), MOST_SAMPLES)
     step = horizon.window / count
     late = horizon.growing + step * np.arange(1, 2 * count + 1)
     return step, np.concatenate([[0.0], late])

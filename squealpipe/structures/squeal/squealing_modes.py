@@ -24,13 +24,6 @@ from squealpipe.vibration.settled_runs import SettledRun
 from squealpipe.vibration.shares import wilson_interval
 from squealpipe.vibration.verdicts import heard
 
-SPECTRUM_LINES = 1024
-"""Lines of the spectra that are kept."""
-RUN_ON = 4
-"""Most times that a run is continued because it leaves what it seemed to have settled to."""
-SAME_FREQUENCY = 0.02
-"""Distance of a frequency to that of an unstable mode within which it is that mode's."""
-
 
 @recorded(
     model="structure with exact contact and friction",
@@ -239,11 +232,14 @@ def _attractors(
             known[id(run)] = described(plant, run, how)
         return known[id(run)]
 
-    for turn in range(RUN_ON + 1):
+    # a run is continued because it leaves what it seemed to have settled to; one that does so
+    # again and again is undetermined
+    most_continuations = 4
+    for turn in range(most_continuations + 1):
         numbers = grouped(settled, pushes)
         members = _members(settled, numbers)
         modes = [of(runs[0]) for runs in members]
-        if turn == RUN_ON or not any(mode.leaves for mode in modes):
+        if turn == most_continuations or not any(mode.leaves for mode in modes):
             break
         for runs, mode in zip(members, modes, strict=True):
             if not mode.leaves:
@@ -398,12 +394,14 @@ def nearest(plant: Plant, frequency: float) -> int:
     """Place of the mode nearest to a frequency; an unstable one where one is close to it."""
     away = np.abs(plant.frequencies - np.nan_to_num(frequency))
     unstable = plant.unstable
-    if unstable.size and away[unstable].min() <= SAME_FREQUENCY * frequency:
+    # a frequency within this share of an unstable mode's is that mode's
+    same_frequency = 0.02
+    if unstable.size and away[unstable].min() <= same_frequency * frequency:
         return int(unstable[away[unstable].argmin()])
     near = int(away.argmin())
     # two modes that have met ring alike: the one that grows is meant
     at = plant.frequencies[near]
-    twins = unstable[np.abs(plant.frequencies[unstable] - at) <= SAME_FREQUENCY * at]
+    twins = unstable[np.abs(plant.frequencies[unstable] - at) <= same_frequency * at]
     return int(twins[away[twins].argmin()]) if twins.size else near
 
 
@@ -413,14 +411,13 @@ def _spectra(found: list[Described]) -> tuple[np.ndarray, np.ndarray]:
     if not moving:
         return np.empty(0), np.empty((len(found), 0))
     top = min(each.lines[-1] for each in moving)
-    edges = np.linspace(0.0, top, SPECTRUM_LINES + 1)
-    spectra = np.full((len(found), SPECTRUM_LINES), np.nan)
+    lines_kept = 1024
+    edges = np.linspace(0.0, top, lines_kept + 1)
+    spectra = np.full((len(found), lines_kept), np.nan)
     for place, each in enumerate(found):
         if each.lines.size:
-            within = np.clip(
-                np.searchsorted(edges, each.lines) - 1, 0, SPECTRUM_LINES - 1
-            )
-            held = np.zeros(SPECTRUM_LINES)
+            within = np.clip(np.searchsorted(edges, each.lines) - 1, 0, lines_kept - 1)
+            held = np.zeros(lines_kept)
             np.maximum.at(held, within, each.amplitudes)
             spectra[place] = held / np.sqrt((each.amplitudes**2).sum())
     return 0.5 * (edges[1:] + edges[:-1]), spectra

@@ -24,14 +24,6 @@ NAMES = {
     "belt_speed": "belt speed",
 }
 """Words for what is changed of a pad."""
-OF_STRUCTURES = {
-    "mu": "friction coefficient",
-    "contact_stiffness": "stiffness of all contacts, as a factor",
-    "preload": "preload of all contacts, as a factor",
-    "modal_damping": "damping ratio of all modes",
-    "belt_speed": "speed",
-}
-"""Words for what is changed of a structure; modifications have the names that they were given."""
 NOT_FOUND = "none"
 """Text in place of a value that was not found within the range searched."""
 CHEAPEST = 3
@@ -62,7 +54,15 @@ def words_of(answer: xr.Dataset, name: str) -> str:
         return NAMES[name]
     if name.startswith("mu_"):
         return f"friction coefficient of {name.removeprefix('mu_')}"
-    return OF_STRUCTURES.get(name, name)
+    # modifications have the names that they were given
+    words_of_structures = {
+        "mu": "friction coefficient",
+        "contact_stiffness": "stiffness of all contacts, as a factor",
+        "preload": "preload of all contacts, as a factor",
+        "modal_damping": "damping ratio of all modes",
+        "belt_speed": "speed",
+    }
+    return words_of_structures.get(name, name)
 
 
 def verdict_of(answer: xr.Dataset, prefix: str = "") -> Verdict:

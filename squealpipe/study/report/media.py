@@ -12,11 +12,6 @@ from squealpipe.plotting.animation import film_of
 from squealpipe.plotting.film import has_ffmpeg, video_element
 from squealpipe.plotting.sound import comfortable_speed, sound
 
-SECONDS = 1.0
-"""Length of a sound, s: 96 kB. It is repeated without a click."""
-DPI = 80
-"""Dots per inch of a film: 640 by 360 pixels, and below 150 kB."""
-
 
 def media_of(name: str, motion: xr.Dataset, heard: Iterable[xr.Dataset] = ()) -> str:
     """Return film and sound of a settled motion as elements of a page.
@@ -29,7 +24,9 @@ def media_of(name: str, motion: xr.Dataset, heard: Iterable[xr.Dataset] = ()) ->
     """
     parts = []
     if has_ffmpeg():
-        film = film_of(motion, dpi=DPI)
+        # a film of 640 by 360 pixels, below 150 kB
+        dpi = 80
+        film = film_of(motion, dpi=dpi)
         video = video_element(film.mp4(), f"{name}: {film.scene.alt}")
         caption = escape(film.scene.caption)
         parts.append(
@@ -44,16 +41,18 @@ def _sound(name: str, motion: xr.Dataset, heard: Iterable[xr.Dataset]) -> str:
     is_pad = motion.attrs.get("schema") == "assess"
     pitch = float(motion["frequency" if is_pad else "dominant_frequency"])
     speed, refusal = comfortable_speed(pitch), ""
+    # a sound of 1 s takes 96 kB; it is repeated without a click
+    seconds = 1.0
     for run in (*heard, motion):
         try:
-            made = sound(run, seconds=SECONDS, speed=speed)
+            made = sound(run, seconds=seconds, speed=speed)
         except ValueError as error:
             refusal = str(error)
             continue
         # a longer run from another start counts only where it ends in the same motion
         if run is not motion and abs(made.frequency / pitch - 1.0) > 0.01:
             continue
-        content = base64.b64encode(made.wav(SECONDS)).decode()
+        content = base64.b64encode(made.wav(seconds)).decode()
         told = escape(made.told())
         return (
             f'<figure class="media"><audio controls loop aria-label="Sound of {escape(name)}: '

@@ -37,7 +37,7 @@ from squealpipe.systems.cycles.line import (
     unstable,
 )
 from squealpipe.systems.cycles.solution import Cycle
-from squealpipe.systems.cycles.trail import GONE, BranchPoint, Trail
+from squealpipe.systems.cycles.trail import BranchPoint, Trail
 from squealpipe.systems.datasets import Outcome
 from squealpipe.systems.progress import alone
 
@@ -172,7 +172,8 @@ class Follower:
             return Outcome.family_member
         if self._is_at_end(self.points[-1].parameter):
             return Outcome.converged
-        if self.trail.has_shrunk(cycle, GONE):
+        gone = 1e-5
+        if self.trail.has_shrunk(cycle, gone):
             return Outcome.equilibrium
         return self.trail.meets()
 

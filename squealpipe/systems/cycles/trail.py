@@ -18,8 +18,6 @@ _AT_REST = 1e-3
 """Size of a cycle, over the largest on its branch, below which one that shrinks comes to rest."""
 _MET = 0.03
 """Distance from a cycle of a part of the period, over its extent, where a branch ends on it."""
-GONE = 1e-5
-"""The same where it is not followed any further."""
 
 
 @dataclass(frozen=True)

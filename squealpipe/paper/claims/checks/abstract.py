@@ -11,12 +11,6 @@ from squealpipe.study.evidence import Evidence
 
 rows = StatementRows("abstract", "fig02")
 
-LEVELS = ("A1", "A2", "A3", "A4")
-
-
-IMPULSE = 0.5
-"""Force after a return, in preloads, from which it is an impulse and not a touch."""
-
 
 @rows.add(
     "T1",
@@ -27,10 +21,11 @@ IMPULSE = 0.5
 )
 def levels_have_assumptions(run: Evidence) -> Finding:
     """Smallest share of scenes, over the levels, in which all of a level's assumptions held."""
-    table = run["assumptions"].sel(level=list(LEVELS))
+    levels = ("A1", "A2", "A3", "A4")
+    table = run["assumptions"].sel(level=list(levels))
     broken = ((table.needed == 1) & (table.held == 0)).any("assumption")
     scenes = table.sizes["scene"]
-    whole = {level: scenes - int(broken.sel(level=level).sum()) for level in LEVELS}
+    whole = {level: scenes - int(broken.sel(level=level).sum()) for level in levels}
     counts = ", ".join(f"{level} {number}" for level, number in whole.items())
     turned = table.sel(assumption="angles are constant", level="A4")
     return finding(
@@ -62,11 +57,13 @@ def hammering_occurs(run: Evidence) -> Finding:
     forces = hammering.return_peak_contact_force.values[strikes]
     # preloads: from here an impact presses harder than the mass at rest
     above = 1.0 + 1e-6
+    # Force after a return, in preloads, from which it is an impulse and not a touch
+    impulse = 0.5
     return finding(
-        (force, "≥", IMPULSE),
+        (force, "≥", impulse),
         f"At (0.83π, 0.83π) the mass returns to the belt {returns} times, at up to {speed:.3g} "
         f"l_pre √(k1/m), and is pressed by up to {force:.3g} of the load k3 l_pre from which it "
-        f"starts; from {IMPULSE:g} of it a return counts as an impulse. Over all angles it returns "
+        f"starts; from {impulse:g} of it a return counts as an impulse. Over all angles it returns "
         f"in {100 * strikes.mean():.3g} % of {strikes.size} cells, with a larger force than that "
         f"at the start in {int((forces > above).sum())}, "
         f"{forces.max(initial=0.0):.3g} of it at most.",

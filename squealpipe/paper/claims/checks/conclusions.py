@@ -15,9 +15,6 @@ from squealpipe.study.evidence import Evidence
 
 rows = StatementRows("9")
 
-RESPONSES = ((0.5, 1.0), (1.0, 0.5), (0.75, 0.75), (5 / 6, 5 / 6))
-"""Angles over π of the scenes of Figs. 10 to 13."""
-
 
 @rows.add(
     "C1",
@@ -29,12 +26,14 @@ def modes_switch_at_separation(run: Evidence) -> Finding:
     """Share of the paper's scenes, Figs. 10 to 13, in which the order of the x and y directions
     turns over at separation, K22 < K11 < K22 + k3.
     """
+    # Angles over π of the scenes of Figs. 10 to 13
+    responses = ((0.5, 1.0), (1.0, 0.5), (0.75, 0.75), (5 / 6, 5 / 6))
     switched = [
         bool(order_turns_over(run, cell(run, "quasi_static_map", *angles)))
-        for angles in RESPONSES
+        for angles in responses
     ]
     plane = share(order_turns_over(run, run["quasi_static_map"]))
-    at_last = cell(run, "quasi_static_map", *RESPONSES[-1])
+    at_last = cell(run, "quasi_static_map", *responses[-1])
     softer = float(at_last.stiffness_x - at_last.stiffness_y) / run.parameters.k3
     return finding(
         (sum(switched) / len(switched), "≥", 1.0),

@@ -28,9 +28,6 @@ from squealpipe.study.evidence import Evidence
 
 rows = StatementRows("4", "fig02")
 
-REPEATS = 1e-3
-"""Change of the state between returns, as a share of its range, up to which a motion repeats."""
-
 
 def contact_is_kept(name: str) -> Check:
     """F2a–F2c: the lowest contact force of the run, and no separation event."""
@@ -145,10 +142,12 @@ def limit_cycle_is_bounded(run: Evidence) -> Finding:
         f"{until(run, longer)}: {'it is bounded' if bounded else 'it has no bound'}. "
     )
     change, apart, number = repetition(longer)
+    # Change of the state between returns, as a share of its range, up to which a motion repeats
+    repeats = 1e-3
     evidence += (
         f"Of its {number} returns to the belt those {apart} apart are most alike, and there x or a "
         f"velocity differs by up to {100 * change:.2g} % of its range"
-        f"{'' if change <= REPEATS else ': it is no limit cycle'}."
+        f"{'' if change <= repeats else ': it is no limit cycle'}."
     )
     if "growth" in motion:
         evidence += (
@@ -167,7 +166,7 @@ def limit_cycle_is_bounded(run: Evidence) -> Finding:
             f"{ended} end in the whirl before "
             f"t = {float(transient.t_end) / run.parameters.time_unit:g} √(m/k1)."
         )
-    return finding((change, "≤", REPEATS), evidence, also=bounded)
+    return finding((change, "≤", repeats), evidence, also=bounded)
 
 
 @rows.add("F5a", "(π, π) and (0, 0) give identical contact forces", figure="fig05")

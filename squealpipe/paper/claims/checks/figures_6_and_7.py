@@ -18,9 +18,6 @@ from squealpipe.study.evidence import Evidence
 
 rows = StatementRows("6", "fig06")
 
-SMALLEST_RATE = 1e-9
-"""Growth rate, times the unit of time, up to which a linear motion does not grow."""
-
 
 @rows.add(
     "F6a",
@@ -118,9 +115,11 @@ def linearly_stable_but_not(run: Evidence) -> Finding:
     sizes = windows(run, scene(run, "F3_long"))
     early, *_, late = sizes
     growth = Growth(int(judge_growth(sizes)))
-    undecided = growth is Growth.undecided and rate <= SMALLEST_RATE
+    # Growth rate, times the unit of time, up to which a linear motion does not grow: round-off
+    smallest_rate = 1e-9
+    undecided = growth is Growth.undecided and rate <= smallest_rate
     return finding(
-        (rate, "≤", SMALLEST_RATE),
+        (rate, "≤", smallest_rate),
         f"A3's largest growth rate there is {rate:.1g}; in a long run of A1 |x| reaches "
         f"{early:.5g} l_pre in the first window of {GROWTH_WINDOW:g} √(m/k1) and {late:.5g} l_pre "
         "in the last.",

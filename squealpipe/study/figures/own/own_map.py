@@ -22,13 +22,6 @@ from squealpipe.plotting.style import (
 )
 from squealpipe.study.figures.declared import report_figure
 
-VERDICT_TONES = {
-    Verdict.quiet: (WHITE, "quiet"),
-    Verdict.squeals: (ORANGE, "squeals"),
-    Verdict.hammers: (RED, "hammers"),
-    Verdict.undetermined: (LIGHT, "undetermined"),
-}
-
 
 @report_figure(
     reads=("verdict_map", "assess/*"),
@@ -45,12 +38,18 @@ def draw(verdicts: xr.Dataset, answers: Mapping[str, xr.Dataset]) -> Figure:
     figure, axes = new_figure(0.62 * PAGE, 4.1)
     panel = axes[0, 0]
     degrees = [np.degrees(verdicts[name].values) for name in ("alpha1", "alpha2")]
+    tones = {
+        Verdict.quiet: (WHITE, "quiet"),
+        Verdict.squeals: (ORANGE, "squeals"),
+        Verdict.hammers: (RED, "hammers"),
+        Verdict.undetermined: (LIGHT, "undetermined"),
+    }
     panel.pcolormesh(
         *degrees,
         verdicts.verdict.values.T,
         shading="nearest",
         rasterized=True,
-        **category_colours([tone for tone, _ in VERDICT_TONES.values()]),
+        **category_colours([tone for tone, _ in tones.values()]),
     )
     ends = [(axis[0], axis[-1]) for axis in degrees]
     panel.set(
@@ -95,8 +94,6 @@ def draw(verdicts: xr.Dataset, answers: Mapping[str, xr.Dataset]) -> Figure:
             path_effects=HALO,
         )
     figure.legend(
-        handles=patches(VERDICT_TONES.values()),
-        loc="outside lower center",
-        ncols=len(VERDICT_TONES),
+        handles=patches(tones.values()), loc="outside lower center", ncols=len(tones)
     )
     return figure
