@@ -1,5 +1,6 @@
 """One run: contact force, displacements, orbit and spectrum."""
 
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -25,10 +26,20 @@ Window = tuple[float, float]
 """First and last instant that are shown, s."""
 
 FORCE_LABEL = r"$N\,/\,(k_3\,l_\mathrm{pre})$"
-SPECTRUM_PADDING = 8
-"""Frequencies computed for each that the run resolves: smooth peaks, and no cost that is felt."""
-LAST_PERIODS = 12
-"""Periods at the end of a long run that get panels of their own."""
+
+
+@dataclass(frozen=True)
+class RunPictures:
+    """Choices in the pictures of a run."""
+
+    spectrum_padding: int = 8
+    """Frequencies computed for each that the run resolves: smooth peaks, and no cost that is
+    felt."""
+    last_periods_shown: int = 12
+    """Periods at the end of a long run that get panels of their own."""
+
+
+RUN_PICTURES = RunPictures()
 
 
 def figure(run: xr.Dataset) -> Figure:
@@ -41,7 +52,7 @@ def figure(run: xr.Dataset) -> Figure:
         (draw_spectrum, "spectrum of the contact force"),
     ]
     if end is not None:
-        last = f"last {LAST_PERIODS} periods"
+        last = f"last {RUN_PICTURES.last_periods_shown} periods"
         panels[1:1] = [(partial(draw_force, window=end), f"contact force, {last}")]
         panels[3:3] = [(partial(draw_displacements, window=end), last)]
     rows = len(panels) // 2
@@ -73,9 +84,14 @@ def last_periods(run: xr.Dataset) -> Window | None:
     if not _uniform(steps):
         return None
     omega, _ = highest_peaks(
-        *amplitude_spectrum(y, float(steps[0]), padding=SPECTRUM_PADDING), 1
+        *amplitude_spectrum(y, float(steps[0]), padding=RUN_PICTURES.spectrum_padding),
+        1,
     )
-    length = LAST_PERIODS * 2.0 * np.pi / omega[0] if omega.size else np.inf
+    length = (
+        RUN_PICTURES.last_periods_shown * 2.0 * np.pi / omega[0]
+        if omega.size
+        else np.inf
+    )
     end = float(time[-1])
     # a run only a little longer than its end needs no second panel
     return (end - length, end) if 3.0 * length < end else None
@@ -183,10 +199,10 @@ def draw_spectrum(axes: Axes, dataset: xr.Dataset) -> None:
             style.say_instead(axes, "no contact in\nthe second half")
             return
         frequency, amplitude = amplitude_spectrum(
-            force, float(steps[0]), padding=SPECTRUM_PADDING
+            force, float(steps[0]), padding=RUN_PICTURES.spectrum_padding
         )
     lines = strongest_lines(
-        frequency, amplitude, 3, SPECTRUM_PADDING * float(frequency[1])
+        frequency, amplitude, 3, RUN_PICTURES.spectrum_padding * float(frequency[1])
     )
     if _draw_lines(axes, frequency, amplitude, lines):
         axes.set(xlabel="ω (rad/s)", ylabel=f"amplitude of {FORCE_LABEL}")

@@ -16,8 +16,7 @@ import scipy.sparse as sp
 from squealpipe.structures.onset import Block, turned
 from squealpipe.structures.pencil import LowRank, Pencil
 from squealpipe.structures.refinement import (
-    ENOUGH,
-    SURE,
+    REFINEMENT,
     Eigenpair,
     error_of_rounding,
     error_of_rounding_of_square,
@@ -82,7 +81,7 @@ def _accurate(pencil: Pencil, pair: Eigenpair) -> Eigenpair:
     """The pair itself if it is accurate enough, or polished."""
     value, right, left, error = pair
     on_axis = pencil.is_undamped and value.real == 0  # its growth is exact
-    if on_axis or error <= ENOUGH * max(abs(value.real), 1.0):
+    if on_axis or error <= REFINEMENT.enough * max(abs(value.real), 1.0):
         return pair
     try:
         better = polished(pencil, value, right, left)
@@ -179,7 +178,7 @@ def _of_block(
     matrix = np.asarray(block.matrix, float)
     mean = 0.5 * float(np.trace(matrix))
     carried = la.svdvals(block.left.T @ (pencil.mass @ block.right))[-1]
-    moved = SURE * max(
+    moved = REFINEMENT.sure * max(
         pencil.rounded(1j * np.sqrt(abs(mean)), left, right)
         for left in block.left.T
         for right in block.right.T
@@ -325,7 +324,7 @@ def _damped(pencil: Pencil) -> list[Eigenpair]:
         error = min(bound * condition, np.sqrt(bound * norm))
         v = unit_vector(shapes[place].astype(complex))
         w = unit_vector(shapes_left[place].astype(complex))
-        if error > ENOUGH * max(abs(value.real), 1.0):
+        if error > REFINEMENT.enough * max(abs(value.real), 1.0):
             root, rate = quotient(pencil, value, v, w)
             gap = np.abs(np.delete(values, place) - value).min(initial=np.inf)
             second = error**2 / gap if gap else np.inf

@@ -19,8 +19,13 @@ from scipy.optimize import brentq
 from scipy.sparse.linalg import splu
 
 from squealpipe.structures.pencil import FEW_ENTRIES, Pencil
-from squealpipe.structures.refinement import SLOW, Eigenpair, polished, unit_vector
-from squealpipe.structures.sliding import LOCATED
+from squealpipe.structures.refinement import (
+    REFINEMENT,
+    Eigenpair,
+    polished,
+    unit_vector,
+)
+from squealpipe.structures.sliding import BALANCE
 
 
 @dataclass(frozen=True)
@@ -83,7 +88,7 @@ def onset(
         None where the mode cannot be followed to it.
     """
     (low, before), (high, after) = stable, unstable
-    if high - low <= LOCATED:  # a contact opens or closes between both
+    if high - low <= BALANCE.located:  # a contact opens or closes between both
         return Crossing(high, low, high, before, after)
     measure: _Followed
     if pencil_at(high).is_undamped and pencil_at(low).is_undamped:
@@ -180,7 +185,7 @@ def _zero(measure: Callable[[float], float], low: float, high: float) -> float |
         upper, step = lower, 1.5 * step
     at_lower = measure(lower)
     # a friction that is the critical one itself leaves a round-off of either sign
-    if 0 < at_lower * (upper - lower) <= LOCATED * (measure(upper) - at_lower):
+    if 0 < at_lower * (upper - lower) <= BALANCE.located * (measure(upper) - at_lower):
         return float(lower)
     if not at_lower <= 0:
         return None
@@ -191,7 +196,9 @@ def _between(
     measure: Callable[[float], float], lower: float, upper: float
 ) -> float | None:
     """The zero between two frictions of which the measure is positive at the upper one."""
-    zero = brentq(measure, lower, upper, xtol=LOCATED, rtol=4 * np.finfo(float).eps)
+    zero = brentq(
+        measure, lower, upper, xtol=BALANCE.located, rtol=4 * np.finfo(float).eps
+    )
     # the measure jumps where the mode has become another one on the way
     largest = max(abs(measure(lower)), abs(measure(upper)))
     return float(zero) if abs(measure(zero)) <= limits.vanished * largest else None
@@ -333,7 +340,9 @@ def _solver(
 
     About their mean alone an eigenvalue between both would come in.
     """
-    aside = limits.aside * max(float(abs(np.mean(roots))), (SLOW * pencil.unit) ** 2)
+    aside = limits.aside * max(
+        float(abs(np.mean(roots))), (REFINEMENT.slow * pencil.unit) ** 2
+    )
     is_pair = roots[0].imag != 0
     shifts = [roots[0]] if is_pair else [root.real for root in roots]
     # as of other factors: the pattern is symmetric

@@ -1,5 +1,6 @@
 """A structure of no more modes than its unstable complex modes need."""
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -25,10 +26,18 @@ from squealpipe.structures.subspace import in_coordinates
 from squealpipe.systems.inputs.values import brief, is_finite_number, is_whole_number
 from squealpipe.systems.progress import report
 
-AND_LARGER = 3
-"""Larger numbers of modes that must do as well: convergence is not monotonic."""
-FIRST_MODES = 64
-"""Modes computed at first of a large structure; up to here every number is tried."""
+
+@dataclass(frozen=True)
+class ReductionSearch:
+    """Rules of the search for the fewest modes that suffice."""
+
+    and_larger: int = 3
+    """Larger numbers of modes that must do as well: convergence is not monotonic."""
+    first_modes: int = 64
+    """Modes computed at first of a large structure; up to here every number is tried."""
+
+
+REDUCTION_SEARCH = ReductionSearch()
 
 
 @takes_units
@@ -197,7 +206,7 @@ class Search:
         self, structure: ContactStructure, truth: Truth, frequency_max: float | None
     ) -> None:
         self.whole, self.truth, self.frequency_max = structure, truth, frequency_max
-        self.kept = Kept(structure, min(FIRST_MODES, structure.size))
+        self.kept = Kept(structure, min(REDUCTION_SEARCH.first_modes, structure.size))
 
     def smallest(
         self, fewest: int, tol: float = 1e-2, most: int | None = None
@@ -216,12 +225,14 @@ class Search:
             report(lambda number=number, most=most: number / most)  # type: ignore[misc]
             # beyond, by an eighth at a time: trying every number takes minutes
             number += (
-                1 if number < FIRST_MODES else max(1, min(number // 8, most - number))
+                1
+                if number < REDUCTION_SEARCH.first_modes
+                else max(1, min(number // 8, most - number))
             )
         return None
 
     def _meets_with_larger(self, number: int, tol: float) -> bool:
-        largest = min(number + AND_LARGER, self.whole.size)
+        largest = min(number + REDUCTION_SEARCH.and_larger, self.whole.size)
         return all(self._meets(each, tol) for each in range(number, largest + 1))
 
     def _meets(self, number: int, tol: float) -> bool:
@@ -256,7 +267,7 @@ class Search:
 
     def _at_least(self, number: int) -> Kept:
         if number > self.kept.number:
-            larger = max(number + AND_LARGER, 2 * self.kept.number)
+            larger = max(number + REDUCTION_SEARCH.and_larger, 2 * self.kept.number)
             self.kept = Kept(self.whole, min(larger, self.whole.size))
         return self.kept
 

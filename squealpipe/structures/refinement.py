@@ -8,6 +8,7 @@ of squeal.
 """
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,12 +16,21 @@ import numpy as np
 from squealpipe.structures.pencil import Factors, Pencil
 from squealpipe.systems.progress import with_progress
 
-SLOW = 1e-4
-"""Values below this share of the entries' frequency count as so much where shifts are chosen."""
-ENOUGH = 1e-8
-"""Error that needs no polishing, relative to the growth rate, below 1/s absolutely."""
-SURE = 4.0
-"""Standard deviations of rounded entries that an error bound covers."""
+
+@dataclass(frozen=True)
+class Refinement:
+    """Thresholds of the refinement of eigenpairs."""
+
+    slow: float = 1e-4
+    """Values below this share of the entries' frequency count as so much where shifts are
+    chosen."""
+    enough: float = 1e-8
+    """Error that needs no polishing, relative to the growth rate, below 1/s absolutely."""
+    sure: float = 4.0
+    """Standard deviations of rounded entries that an error bound covers."""
+
+
+REFINEMENT = Refinement()
 
 
 class Estimate(NamedTuple):
@@ -71,7 +81,7 @@ def error_of_rounding(
     pencil: Pencil, value: complex, right: np.ndarray, left: np.ndarray, rate: complex
 ) -> float:
     """Return how far rounded entries of the matrices can have moved an eigenvalue, rad/s."""
-    moved = SURE * pencil.rounded(value, left, right)
+    moved = REFINEMENT.sure * pencil.rounded(value, left, right)
     return float(_shift(pencil, moved, right, left, rate))
 
 
@@ -117,7 +127,7 @@ def error_of_rounding_of_square(
     pencil: Pencil, square: float, right: np.ndarray, left: np.ndarray
 ) -> float:
     """Return how far rounded entries can have moved λ of K v = λ M v."""
-    moved = SURE * pencil.rounded(np.sqrt(abs(square)), left, right)
+    moved = REFINEMENT.sure * pencil.rounded(np.sqrt(abs(square)), left, right)
     return float(moved / max(abs(np.vdot(left, pencil.mass @ right)), 1e-300))
 
 
@@ -130,7 +140,7 @@ def polished(
     change, rate = np.inf, 0j
     for _ in range(4):
         # relative: at the eigenvalue itself the matrix is singular
-        offset = 1e-9 * max(abs(value), SLOW * pencil.unit) * (1.0 + 0.5j)
+        offset = 1e-9 * max(abs(value), REFINEMENT.slow * pencil.unit) * (1.0 + 0.5j)
         factors = pencil.factorized(value + offset)
         before = value
         for _ in range(2):
@@ -162,7 +172,7 @@ def refined(pencil: Pencil, estimates: Sequence[Estimate]) -> Iterator[Eigenpair
         rest = pencil.from_left(value, left) @ each.factors.solve(residual)
         nearby = max(abs(value - each.factors.at) / others.min(initial=np.inf), 1.0)
         error = abs(rest / rate) * nearby if rate else np.inf
-        if error > ENOUGH * max(abs(value.real), 1.0):
+        if error > REFINEMENT.enough * max(abs(value.real), 1.0):
             yield polished(pencil, value, right, left)
         else:
             error += error_of_rounding(pencil, value, right, left, rate)

@@ -11,10 +11,8 @@ from squealpipe.structures.multilinear_elements import mass_and_stiffness
 from squealpipe.structures.structure import Structure
 from squealpipe.validation import Natural, NotNegative, Number, Positive, checked
 
-YOUNG, DENSITY, POISSON = 8e9, 2500.0, 0.25
+YOUNG = 8e9
 """Modulus, density and Poisson's ratio of a friction material: Pa, kg/m³, 1."""
-SUPPORT = (3e7, 5e7)
-"""Total stiffness of the springs on the upper edge, along and across the belt, N/m."""
 
 PAD_UNITS = {
     **dict.fromkeys(("length", "height", "depth"), "m"),
@@ -71,13 +69,19 @@ def elastic_pad(
     grid = np.arange(len(nodes)).reshape(len(x), len(y))
     quads = [grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]]
     corners = np.stack(quads, axis=-1).reshape(-1, 4)
+    # kg/m³, of a friction material
+    density = 2500.0
+    # of a friction material
+    poisson_ratio = 0.25
     mass, stiffness = mass_and_stiffness(
-        nodes, corners, young=young, poisson=POISSON, density=DENSITY, depth=depth
+        nodes, corners, young=young, poisson=poisson_ratio, density=density, depth=depth
     )
     share = np.full((len(x), 1), 1.0 / elements[0])
     share[[0, -1]] *= 0.5
     springs = np.zeros(nodes.shape)
-    springs[grid[:, -1]] = SUPPORT * share
+    # total stiffness of the springs on the upper edge, along and across the belt, N/m
+    support = (3e7, 5e7)
+    springs[grid[:, -1]] = support * share
     lower = grid[:, 0]
     places = np.linspace(0.0, length, contacts) if contacts > 1 else [0.5 * length]
     points = []

@@ -16,21 +16,29 @@ from scipy.sparse.linalg import splu
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.pencil import DENSE, Extended
 
-SINGULAR = 1e-13
-"""Residual of the steady state, over the forces in it, beyond which the stiffness is singular."""
 
-REFINEMENTS = 2
-"""Corrections of the steady state by its residual."""
-UNSETTLED = 1e-4
-"""Share by which the last correction changes contact forces that round-off alone makes."""
-OF_FRICTION = 8.0
-"""Units of rounding in a coefficient of friction and its slope."""
-LOCATED = 1e-12
-"""Tolerance of a friction that is located."""
-MOST_CHANGES = 32
-"""Contacts that open or close between two frictions, at most."""
-MOST_SOUGHT = 16
-"""Contacts up to which all combinations of open and closed ones are tried."""
+@dataclass(frozen=True)
+class SlidingBalance:
+    """Thresholds of the steady state under friction."""
+
+    singular: float = 1e-13
+    """Residual of the steady state, over the forces in it, beyond which the stiffness is
+    singular."""
+    refinements: int = 2
+    """Corrections of the steady state by its residual."""
+    unsettled: float = 1e-4
+    """Share by which the last correction changes contact forces that round-off alone makes."""
+    rounding_of_friction: float = 8.0
+    """Units of rounding in a coefficient of friction and its slope."""
+    located: float = 1e-12
+    """Tolerance of a friction that is located."""
+    most_changes: int = 32
+    """Contacts that open or close between two frictions, at most."""
+    most_sought: int = 16
+    """Contacts up to which all combinations of open and closed ones are tried."""
+
+
+BALANCE = SlidingBalance()
 
 
 class NoSlidingError(ValueError):
@@ -113,7 +121,7 @@ def steady_sliding(
     names = [each.name for each in structure.contacts]
     reason = (
         f"the contacts {', '.join(names)} can be neither open nor closed together"
-        if len(names) <= MOST_SOUGHT
+        if len(names) <= BALANCE.most_sought
         else "a search among the states of the contacts did not end"
     )
     raise NoSlidingError(
@@ -134,7 +142,7 @@ def _sought(structure: ContactStructure, drag: np.ndarray) -> np.ndarray | None:
     of the closed contacts, so that each combination is a small system.
     """
     number = len(drag)
-    if number > MOST_SOUGHT:
+    if number > BALANCE.most_sought:
         return None
     normals, stiffnesses = structure.normals, structure.stiffnesses
     all_closed = np.ones(number, bool)
@@ -182,9 +190,9 @@ def changes(
 
     passed: list[tuple[float, float]] = []
     closed, last = closed_at(low), closed_at(high)
-    while (closed != last).any() and len(passed) < MOST_CHANGES:
+    while (closed != last).any() and len(passed) < BALANCE.most_changes:
         before, after = low, high
-        while after - before > LOCATED:
+        while after - before > BALANCE.located:
             middle = 0.5 * (before + after)
             if np.array_equal(closed_at(middle), closed):
                 before = middle
@@ -306,7 +314,7 @@ def _balance(
         # extended precision bring back
         unbalanced = _unbalanced(structure, closed, drag)
         change = solution
-        for _ in range(REFINEMENTS):
+        for _ in range(BALANCE.refinements):
             change = solve(unbalanced(solution))
             solution = solution + change
         missed = np.abs(unbalanced(solution))
@@ -321,8 +329,8 @@ def _balance(
             for each in (solution, change)
         )
         pressed = max(forces, np.abs(structure.preloads).max(initial=0.0))
-        unsettled = changes_of_forces > UNSETTLED * pressed
-        is_unbalanced = not (missed <= 1e3 * SINGULAR * carried).all()
+        unsettled = changes_of_forces > BALANCE.unsettled * pressed
+        is_unbalanced = not (missed <= 1e3 * BALANCE.singular * carried).all()
     except RuntimeError:  # the factor is exactly singular
         is_unbalanced = unsettled = True
     if unsettled or is_unbalanced:
@@ -338,7 +346,7 @@ def _balance(
     drawn = solve(structure.tangentials * closed)
     reach = np.abs(structure.preloads) + carried
     by_drag = springs[:, None] * np.abs(structure.normals.T @ drawn)
-    pulled = OF_FRICTION * rounding * np.abs(drag) * reach
+    pulled = BALANCE.rounding_of_friction * rounding * np.abs(drag) * reach
     return solution, rounding * reach + left_over + by_drag @ pulled
 
 

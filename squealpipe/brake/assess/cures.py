@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squealpipe.brake.assess.designs import ANGLE_STEP, FARTHEST, cures_of
+from squealpipe.brake.assess.designs import CURE_RANGES, cures_of
 from squealpipe.brake.assess.settling import (
     MOST_PERIODS_OF_A_PAD,
     pushed,
@@ -154,7 +154,9 @@ def nearest_angles(
     Along each ray it is located as a cure is; the nearest lies between two rays, a few per cent
     nearer.
     """
-    steps = ANGLE_STEP * np.arange(1, 1 + round(FARTHEST / ANGLE_STEP))
+    steps = CURE_RANGES.angle_step * np.arange(
+        1, 1 + round(CURE_RANGES.farthest_angle / CURE_RANGES.angle_step)
+    )
     rays = {}
     # directions in which the nearest quiet pair of angles is sought
     for turn in np.linspace(0.0, 2.0 * math.pi, 24, endpoint=False):

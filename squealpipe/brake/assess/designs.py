@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,12 +13,22 @@ from squealpipe.parameters import Parameters
 from squealpipe.substitutes import critical_damping
 from squealpipe.vibration.boundaries import Cure
 
-FACTOR = 10.0
-"""Largest factor that a stiffness, the preload or the belt speed is changed by, either way."""
-FARTHEST = math.radians(60.0)
-"""Largest change of an angle."""
-ANGLE_STEP = math.radians(2.0)
-"""Factor, and angle, between values that are looked at first."""
+
+@dataclass(frozen=True)
+class CureRanges:
+    """Ranges in which parameters are changed to find where the verdict does."""
+
+    factor: float = 10.0
+    """Stiffnesses and the like go from the value divided by this to its product with it."""
+    farthest_angle: float = math.radians(60.0)
+    """Largest change of an angle, rad."""
+    angle_step: float = math.radians(2.0)
+    """Step of the search along an angle, rad; a range of another verdict that is narrower may be
+    missed."""
+
+
+CURE_RANGES = CureRanges()
+
 
 PLAIN = """\
 _plain_coefficient = coefficient
@@ -52,7 +63,9 @@ def cures_of(design: Design) -> dict[str, Cure]:
         cures[name] = _scaled(getattr(params, name), number(name))
     for name in ("alpha1", "alpha2"):
         now = getattr(design, name)
-        steps = ANGLE_STEP * np.arange(1, 1 + round(FARTHEST / ANGLE_STEP))
+        steps = CURE_RANGES.angle_step * np.arange(
+            1, 1 + round(CURE_RANGES.farthest_angle / CURE_RANGES.angle_step)
+        )
         cures[name] = Cure(now, angle(name), now - steps, now + steps, is_angle=True)
     cures["damping"] = _damping(design)
     return cures
@@ -95,7 +108,7 @@ def _friction(design: Design) -> Cure:
     # three times the friction, or coefficient 1 where that is more
     factors = _factors(max(3.0, 1.0 / mu))
     # a table of zeros could not be scaled back, so 0 itself is left out
-    below = np.append(mu / _factors(FACTOR), 1e-9 * mu)
+    below = np.append(mu / _factors(CURE_RANGES.factor), 1e-9 * mu)
     return Cure(
         mu,
         lambda value: design._replace(params=with_friction(params, value / mu)),
@@ -129,7 +142,11 @@ def _damping(design: Design) -> Cure:
             }
         return design._replace(params=params.with_(**changed))
 
-    below = np.append(ratio / _factors(FACTOR), 0.0) if ratio > 0.0 else np.zeros(0)
+    below = (
+        np.append(ratio / _factors(CURE_RANGES.factor), 0.0)
+        if ratio > 0.0
+        else np.zeros(0)
+    )
     least = max(ratio, 1e-4)
     above = np.geomspace(least, max(0.5, 2.0 * least), 60)
     return Cure(ratio, apply, below, above[above > ratio])
@@ -137,7 +154,7 @@ def _damping(design: Design) -> Cure:
 
 def _scaled(value: float, apply: Callable[[float], Design]) -> Cure:
     """A number whose sign stays."""
-    factors = _factors(FACTOR) if value else np.zeros(0)
+    factors = _factors(CURE_RANGES.factor) if value else np.zeros(0)
     return Cure(value, apply, value / factors, value * factors)
 
 

@@ -20,24 +20,40 @@ from squealpipe.laws.springs import LONG_SPRING, Geometry, geometry
 from squealpipe.parameters import Parameters
 from squealpipe.vibration.schema import Mechanism
 
-GROWS = 1e-7
-"""Growth rate, over the largest |s|, above which steady sliding is unstable; below it is the
-round-off of an undamped pair."""
-ROUND_OFF = 1e-13
-"""The same where a force depends on velocity."""
-FIRST_STEPS, MOST_NEWTON_STEPS = 4, 40
-"""Newton steps while friction is raised, and under the whole."""
-FRICTION_STEPS, PACE = 64, 20.0
-"""Steps in which friction is raised, and as many under the whole; time of each over 1/rate."""
-MOST_DOUBLED = 400
-"""Most steps after those; over the first :data:`MOST_NEWTON_STEPS` of them each takes twice
-the time of the one before."""
-LONGEST_STEP_OVER_SPRING = 0.1
-"""Longest step, over the shorter spring."""
-BALANCE = 1e-11
-"""Force left over at an equilibrium, over that of the preload."""
-COMPLEX_STEP = 1e-30
-"""Imaginary step, over a length or a speed of the system."""
+
+@dataclass(frozen=True)
+class SlidingSearch:
+    """Thresholds of the search for steady sliding and of its stability."""
+
+    grows: float = 1e-7
+    """Growth rate, over the largest |s|, above which steady sliding is unstable; below it is the
+    round-off of an undamped pair. Ten times as much hides slow growth."""
+    grows_with_damping: float = 1e-13
+    """The same where a force depends on velocity, so that no root is on the axis by symmetry."""
+    first_steps: int = 4
+    """Newton steps while friction is raised from zero. Half as many may jump to another
+    equilibrium."""
+    most_newton_steps: int = 40
+    """Newton steps under the whole friction; more do not help one that does not converge."""
+    friction_steps: int = 64
+    """Steps in time in which friction is raised, and as many under the whole, where Newton's method
+    fails. Twice as many take twice as long."""
+    pace: float = 20.0
+    """Time of each of these steps, over 1/rate of the design. Larger ones are nearer to
+    Newton's."""
+    most_doubled: int = 400
+    """Most steps after those; each of the first of them takes twice the time of the one before."""
+    longest_step: float = 0.1
+    """Longest step of the mass, over the shorter spring. Larger ones may cross a pivot."""
+    balance: float = 1e-11
+    """Force left over at an equilibrium, over that of the preload: some thousand times
+    round-off."""
+    complex_step: float = 1e-30
+    """Imaginary step of the derivatives, over a length or a speed of the system; since nothing is
+    subtracted, any tiny number does."""
+
+
+SLIDING_SEARCH = SlidingSearch()
 
 
 class Design(NamedTuple):
@@ -121,7 +137,7 @@ class Sliding:
     @cached_property
     def marginal(self) -> float:
         """Growth too slow for any run to show, 1/s."""
-        return GROWS * float(np.abs(self._roots).max())
+        return SLIDING_SEARCH.grows * float(np.abs(self._roots).max())
 
     @cached_property
     def mechanism(self) -> Mechanism:
@@ -133,7 +149,7 @@ class Sliding:
         if excess_growth(_jacobian(slopes)) <= 0.0:
             return Mechanism.falling_friction
         leading = self._roots[np.argmax(self._roots.real)]
-        oscillates = abs(leading.imag) > np.sqrt(GROWS) * abs(leading)
+        oscillates = abs(leading.imag) > np.sqrt(SLIDING_SEARCH.grows) * abs(leading)
         return Mechanism.flutter if oscillates else Mechanism.divergence
 
     @cached_property
@@ -162,8 +178,13 @@ def _balanced(design: Design) -> np.ndarray | None:
 
     At the whole friction at once it would jump to another branch where springs are soft.
     """
-    raised = [((step + 1) / FIRST_STEPS, math.inf) for step in range(FIRST_STEPS)]
-    return _approach(design, raised + [(1.0, math.inf)] * MOST_NEWTON_STEPS)
+    raised = [
+        ((step + 1) / SLIDING_SEARCH.first_steps, math.inf)
+        for step in range(SLIDING_SEARCH.first_steps)
+    ]
+    return _approach(
+        design, raised + [(1.0, math.inf)] * SLIDING_SEARCH.most_newton_steps
+    )
 
 
 def _followed(design: Design) -> np.ndarray | None:
@@ -172,10 +193,16 @@ def _followed(design: Design) -> np.ndarray | None:
     Pseudo-transient continuation (Kelley and Keyes, SIAM Journal on Numerical Analysis 35 (1998)):
     implicit Euler steps that end as Newton's. Just beyond a fold the mass lingers, then goes far.
     """
-    raised = [((step + 1) / FRICTION_STEPS, PACE) for step in range(FRICTION_STEPS)]
-    settles = [(1.0, PACE)] * FRICTION_STEPS
-    doubled = [min(step, MOST_NEWTON_STEPS) for step in range(MOST_DOUBLED)]
-    ends = [(1.0, PACE * 2.0**step) for step in doubled]
+    raised = [
+        ((step + 1) / SLIDING_SEARCH.friction_steps, SLIDING_SEARCH.pace)
+        for step in range(SLIDING_SEARCH.friction_steps)
+    ]
+    settles = [(1.0, SLIDING_SEARCH.pace)] * SLIDING_SEARCH.friction_steps
+    doubled = [
+        min(step, SLIDING_SEARCH.most_newton_steps)
+        for step in range(SLIDING_SEARCH.most_doubled)
+    ]
+    ends = [(1.0, SLIDING_SEARCH.pace * 2.0**step) for step in doubled]
     return _approach(design, raised + settles + ends)
 
 
@@ -183,7 +210,7 @@ def _approach(design: Design, steps: list[tuple[float, float]]) -> np.ndarray | 
     """A place in balance after steps with a share of friction and a time over 1/rate each."""
     params, stiffness = design.params, np.eye(2) * design.rate**2
     balance = params.k3 * params.preload / params.mass
-    longest = LONGEST_STEP_OVER_SPRING * min(params.length1, params.length2)
+    longest = SLIDING_SEARCH.longest_step * min(params.length1, params.length2)
     place, acceleration, last = np.zeros(2), _acceleration(design), 1.0
     for share, time in steps:
         if share != last:
@@ -194,7 +221,7 @@ def _approach(design: Design, steps: list[tuple[float, float]]) -> np.ndarray | 
             return None
         if not np.isfinite(force).all():
             return None
-        if share == 1.0 and np.abs(force).max() < BALANCE * balance:
+        if share == 1.0 and np.abs(force).max() < SLIDING_SEARCH.balance * balance:
             return place
         try:
             place = place + _step(force, slopes, stiffness, time, longest)
@@ -270,7 +297,9 @@ def _linearized(
     """
     length = design.params.preload
     speed = length * design.rate
-    steps = [COMPLEX_STEP * unit for unit in (length, length, speed, speed)]
+    steps = [
+        SLIDING_SEARCH.complex_step * unit for unit in (length, length, speed, speed)
+    ]
     rest = [float(each) for each in (*place, 0.0, 0.0)]
     values, slopes = (0j, 0j), np.empty((2, count))
     for column in range(count):
@@ -293,5 +322,9 @@ def excess_growth(jacobian: np.ndarray) -> float:
     the sign of growth tells, however slow it is.
     """
     roots = np.linalg.eigvals(jacobian)
-    share = ROUND_OFF if jacobian[2:, 2:].any() else GROWS
+    share = (
+        SLIDING_SEARCH.grows_with_damping
+        if jacobian[2:, 2:].any()
+        else SLIDING_SEARCH.grows
+    )
     return float(roots.real.max() - share * np.abs(roots).max())

@@ -10,7 +10,7 @@ from annotated_types import Ge
 
 from squealpipe.brake.a1.ensemble import run_ensemble
 from squealpipe.brake.a1.jobs import Model
-from squealpipe.brake.assess.sliding import GROWS, Design, Sliding
+from squealpipe.brake.assess.sliding import SLIDING_SEARCH, Design, Sliding
 from squealpipe.brake.basins.smallest_vector import (
     IMPROVED,
     SearchResult,
@@ -117,7 +117,7 @@ def smallest_disturbance(
         "growth_rate": growth,
         "rest_distance": float(np.linalg.norm(rest / scale)),
     }
-    if growth > GROWS * float(np.abs(values).max()):
+    if growth > SLIDING_SEARCH.grows * float(np.abs(values).max()):
         return result(Outcome.already_unstable, **known)
     if goal == LeadsTo.contact_lost:
         known["linear_distance"] = smallest_linear(

@@ -23,14 +23,7 @@ from squealpipe.laws.springs import geometry
 from squealpipe.paper.inference.angle_maps import keeping_share, separating_share
 from squealpipe.paper.inference.candidates import Candidates, StatementMargin
 from squealpipe.paper.schema.growth import LEAST_GROWTH_RATIO, RULE, growth_margin
-from squealpipe.paper.schema.inference import (
-    BOUND,
-    JUMPS,
-    LARGE_REGION,
-    LITTLE,
-    SAME_FORCE,
-    Holds,
-)
+from squealpipe.paper.schema.inference import AS_NUMBERS, Holds
 from squealpipe.parameters import SCENES, Scene
 from squealpipe.schema import Outcome
 
@@ -228,14 +221,16 @@ def _loses_contact(candidates: Candidates) -> StatementMargin:
 @constrains(
     "F2e",
     Stage.contact,
-    f"lowest N/(k3 l_pre) of F2a to F2c within {LITTLE}; margin {LITTLE} − spread",
+    f"lowest N/(k3 l_pre) of F2a to F2c within {AS_NUMBERS.minimal_difference}; "
+    f"margin {AS_NUMBERS.minimal_difference} − spread",
 )
 @compared_near_the_threshold
 def _alike(candidates: Candidates) -> StatementMargin:
     runs = [candidates.contact[name] for name in ("F2a", "F2b", "F2c")]
     lowest = np.stack([np.maximum(run.margin, 0.0) for run in runs])
     return StatementMargin(
-        LITTLE - np.ptp(lowest, axis=0), np.max([run.outcome for run in runs], axis=0)
+        AS_NUMBERS.minimal_difference - np.ptp(lowest, axis=0),
+        np.max([run.outcome for run in runs], axis=0),
     )
 
 
@@ -244,7 +239,7 @@ def _growth_and_size(
 ) -> tuple[Any, Any, np.ndarray]:
     """ln of late over early |x| and of |x| over 2L, and how the runs ended."""
     run = candidates.run(scene)
-    bound = BOUND * np.maximum(
+    bound = AS_NUMBERS.bounded_within * np.maximum(
         candidates.fields["length1"], candidates.fields["length2"]
     )
     size = np.maximum(run.early_max_x, run.late_max_x) / bound
@@ -281,26 +276,31 @@ def _stays_bounded(candidates: Candidates) -> StatementMargin:
 @constrains(
     "F5a",
     Stage.level,
-    f"peak force and time off the belt at (π, π) and (0, 0) differ by d < {SAME_FORCE}; "
-    f"margin ({SAME_FORCE} − d)/({SAME_FORCE} + d)",
+    f"peak force and time off the belt at (π, π) and (0, 0) differ by d < {AS_NUMBERS.same_force}; "
+    f"margin ({AS_NUMBERS.same_force} − d)/({AS_NUMBERS.same_force} + d)",
 )
 def _same_levels(candidates: Candidates) -> StatementMargin:
     first, second = candidates.level, candidates.run(SCENES["F5b"])
     force = np.abs(first.peak_contact_force - second.peak_contact_force)
     share = np.abs(first.separated_time - second.separated_time) / first.time
     difference = np.maximum(force, share)
-    margin = (SAME_FORCE - difference) / (SAME_FORCE + difference)
+    margin = (AS_NUMBERS.same_force - difference) / (AS_NUMBERS.same_force + difference)
     return StatementMargin(margin, np.maximum(first.outcome, second.outcome))
 
 
 @constrains(
     "F5b",
     Stage.level,
-    f"at least {JUMPS} separations at (π, π); margin (separations − {JUMPS - 0.5})/{JUMPS}",
+    f"at least {AS_NUMBERS.again_and_again} separations at (π, π); "
+    f"margin (separations − {AS_NUMBERS.again_and_again - 0.5})/{AS_NUMBERS.again_and_again}",
 )
 def _jumps(candidates: Candidates) -> StatementMargin:
     run = candidates.level
-    return StatementMargin((run.separations - (JUMPS - 0.5)) / JUMPS, run.outcome)
+    return StatementMargin(
+        (run.separations - (AS_NUMBERS.again_and_again - 0.5))
+        / AS_NUMBERS.again_and_again,
+        run.outcome,
+    )
 
 
 @constrains(
@@ -332,7 +332,7 @@ def _unstable_only_without_sliding(candidates: Candidates) -> StatementMargin:
     "A1 separates in more than half of the angle map; margin share/½ − 1",
 )
 def _separates_mostly(candidates: Candidates) -> StatementMargin:
-    return _closed(separating_share(candidates) / LARGE_REGION - 1.0)
+    return _closed(separating_share(candidates) / AS_NUMBERS.large_region - 1.0)
 
 
 @constrains(

@@ -1,6 +1,7 @@
 """Dataset of the parameter inference: samples, the paper's statements, and their margins."""
 
 import re
+from dataclasses import dataclass
 from enum import IntEnum
 
 import xarray as xr
@@ -72,17 +73,25 @@ def in_order(dataset: xr.Dataset) -> xr.Dataset:
     )
 
 
-LITTLE = 0.1
-"""F2e: spread of the contact force over three scenes, in preloads, that is taken for "a minimal
-difference"; the paper gives no number."""
-SAME_FORCE = 1e-10
-"""F5a: difference of normalized contact forces that two identical runs may show."""
-JUMPS = 3
-"""F5b: how many separations count as "again and again"."""
-BOUND = 2.0
-"""F3, F4: |x| over the longer free length up to which the motion is a pendulum's on its springs."""
-LARGE_REGION = 0.5
-"""F7a: share of the angle map from which a region is called large."""
+@dataclass(frozen=True)
+class WordsInNumbers:
+    """Numbers that stand for words of the paper."""
+
+    minimal_difference: float = 0.1
+    """F2e: spread of the contact force over three scenes, in preloads, that is taken for "a minimal
+    difference"; the paper gives no number."""
+    same_force: float = 1e-10
+    """F5a: difference of normalized contact forces that two identical runs may show."""
+    again_and_again: int = 3
+    """F5b: how many separations count as "again and again"."""
+    bounded_within: float = 2.0
+    """F3, F4: |x| over the longer free length up to which the motion is a pendulum's on its
+    springs."""
+    large_region: float = 0.5
+    """F7a: share of the angle map from which a region is called large."""
+
+
+AS_NUMBERS = WordsInNumbers()
 
 
 DAMPED_GRID = 181

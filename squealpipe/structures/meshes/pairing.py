@@ -6,6 +6,7 @@ coordinates, kept within it. Facets are tried whose nodes are near, all at once.
 of a point add up to 1. Cost: a tree of the nodes, and some ten facets a point.
 """
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -20,12 +21,20 @@ from squealpipe.structures.meshes.shape_functions import (
     sizes,
 )
 
-MATCHING = 1e-6
-"""Distance of matching nodes, over the size of a facet; meshers write six digits or more."""
-NEWTON_STEPS = 30
-"""Steps of Newton's method in a facet; a flat one needs one, a warped one three."""
-ROUNDING = 1e-14
-"""Change of ξ and η that is round-off."""
+
+@dataclass(frozen=True)
+class Pairing:
+    """Thresholds of the search for partners on a faceted surface."""
+
+    matching: float = 1e-6
+    """Distance of matching nodes, over the size of a facet; meshers write six digits or more."""
+    newton_steps: int = 30
+    """Steps of Newton's method in a facet; a flat one needs one, a warped one three."""
+    rounding: float = 1e-14
+    """Change of ξ and η that is round-off."""
+
+
+PAIRING = Pairing()
 
 
 class Partner(NamedTuple):
@@ -99,7 +108,7 @@ class FacetedSurface:
         """
         distances, places = self._tree.query(points)
         nearest = self.members[places]
-        matches = distances <= MATCHING * self.node_sizes[nearest]
+        matches = distances <= PAIRING.matching * self.node_sizes[nearest]
         found: dict[int, Partner] = {
             int(index): self._of_node(int(nearest[index]), float(distances[index]))
             for index in np.flatnonzero(matches)
@@ -180,7 +189,7 @@ class FacetedSurface:
             for each in candidates
             if each.distance <= distance + same_distance * extent
             and np.linalg.norm(self._position(each) - self._position(best))
-            <= MATCHING * extent
+            <= PAIRING.matching * extent
         ]
         if len(tied) == 1:
             normal = self._normal(best)
@@ -224,11 +233,11 @@ def nearest_places(
     nodes = positions.shape[1]
     start = 1.0 / 3.0 if is_triangle(nodes) else 0.0
     place = np.full((len(positions), 2), start)
-    for _ in range(NEWTON_STEPS):
+    for _ in range(PAIRING.newton_steps):
         moved = _within(nodes, place + _step(positions, points, place))
         change = np.abs(moved - place).max(initial=0.0)
         place = moved
-        if change < ROUNDING:
+        if change < PAIRING.rounding:
             break
     nearest = _distances(positions, points, place)
     for edge in _edges(nodes):
@@ -286,14 +295,14 @@ def _along_edge(
     """Return the nearest place of one edge of each facet, (facets, 2), by Newton's method."""
     start, direction = edge
     along = np.full(len(positions), 0.5)
-    for _ in range(NEWTON_STEPS):
+    for _ in range(PAIRING.newton_steps):
         place = start + along[:, None] * direction
         _, slopes = shape(positions.shape[1], place)
         slope = np.einsum("fnx,fnd,d->fx", positions, slopes, direction)
         gap = _gaps(positions, points, place)
         step = -(gap * slope).sum(axis=1) / (slope**2).sum(axis=1)
         moved = np.clip(along + step, 0.0, 1.0)
-        if np.abs(moved - along).max(initial=0.0) < ROUNDING:
+        if np.abs(moved - along).max(initial=0.0) < PAIRING.rounding:
             break
         along = moved
     return np.asarray(start + along[:, None] * direction)

@@ -23,7 +23,7 @@ from squealpipe.paper.schema.growth import (
     judge_growth,
     least_growth,
 )
-from squealpipe.paper.schema.inference import BOUND, JUMPS, LITTLE, SAME_FORCE
+from squealpipe.paper.schema.inference import AS_NUMBERS
 from squealpipe.study.evidence import Evidence
 
 rows = StatementRows("4", "fig02")
@@ -84,10 +84,11 @@ def responses_differ_little(run: Evidence) -> Finding:
     closer = spread < apart
     undecided = ClaimVerdict.cannot_be_decided
     return finding(
-        (spread, "≤", LITTLE),
+        (spread, "≤", AS_NUMBERS.minimal_difference),
         f"The lowest forces are {_listed(ends[:3, 0])} of the preload, the highest "
         f"{_listed(ends[:3, 1])}: a spread of {spread:.3g}, and at least {apart:.3g} from the "
-        f"fourth response. The text has no number for “minimal”; the inference took {LITTLE:g}.",
+        "fourth response. The text has no number for “minimal”; "
+        f"the inference took {AS_NUMBERS.minimal_difference:g}.",
         passed=ClaimVerdict.holds if closer else undecided,
         otherwise=undecided if closer else ClaimVerdict.fails,
     )
@@ -134,7 +135,10 @@ def limit_cycle_is_bounded(run: Evidence) -> Finding:
     largest = float(largest_size(motion, "x").max() / longest)
     longer = scene(run, "F4_long")
     later = float(largest_size(longer, "x").max() / longest)
-    bounded = max(largest, later) < BOUND and late < GROWTH_THRESHOLD * early
+    bounded = (
+        max(largest, later) < AS_NUMBERS.bounded_within
+        and late < GROWTH_THRESHOLD * early
+    )
     evidence = (
         f"|x| reaches {largest:.3g} of the longer free length up to {until(run, motion)} "
         f"({early:.3g} l_pre in the first half, {late:.3g} l_pre in the second; "
@@ -177,7 +181,7 @@ def runs_are_identical(run: Evidence) -> Finding:
     )
     difference = float(np.abs(first.values - second.values).max())
     return finding(
-        (difference, "≤", SAME_FORCE),
+        (difference, "≤", AS_NUMBERS.same_force),
         f"The contact forces differ by at most {difference:.1g} of the preload.",
     )
 
@@ -193,7 +197,7 @@ def mass_jumps(run: Evidence) -> Finding:
     flights = events(motion, Event.separation).size
     height = float(extremes(motion, "y")[1].max() / run.parameters.preload)
     return finding(
-        (flights, "≥", JUMPS),
+        (flights, "≥", AS_NUMBERS.again_and_again),
         f"{flights} flights up to {until(run, motion)}, up to y = {height:.3g} l_pre; "
         "the springs lie along x and have no vertical stiffness to first order.",
     )

@@ -13,7 +13,7 @@ from squealpipe.paper.claims.maps import (
 from squealpipe.paper.claims.statement import StatementRows
 from squealpipe.paper.schema.claims import ClaimVerdict
 from squealpipe.paper.schema.growth import GROWTH_WINDOW, Growth, judge_growth
-from squealpipe.paper.schema.inference import LARGE_REGION
+from squealpipe.paper.schema.inference import AS_NUMBERS
 from squealpipe.study.evidence import Evidence
 
 rows = StatementRows("6", "fig06")
@@ -171,7 +171,7 @@ def invalid_where_separated(run: Evidence) -> Finding:
             f" By the curves of its boundary it loses it in {100 * lost:.4g} % of the square of "
             f"angles, right to {100 * error:.1g} %."
         )
-    return finding((lost, ">", LARGE_REGION), evidence)
+    return finding((lost, ">", AS_NUMBERS.large_region), evidence)
 
 
 @rows.add(
