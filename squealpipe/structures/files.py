@@ -21,6 +21,7 @@ from squealpipe.structures.matrices import real_square
 from squealpipe.structures.meshes.face_entries import faces_in, read_pressures
 from squealpipe.structures.meshes.faces import Face, Rotation
 from squealpipe.structures.meshes.from_mesh import names_of, of_mesh
+from squealpipe.structures.packed import plain_name
 from squealpipe.structures.readers import Labelled, read_matrix
 from squealpipe.structures.units import SI, Scales, scales_of
 from squealpipe.systems.inputs.values import brief, is_finite_number
@@ -356,6 +357,11 @@ def _matrix(key: str, entry: Any, folder: Path, triangle: str | None) -> Labelle
             _file_name(key, entry)
         return Labelled(real_square(key, entry))
     path = folder / _file_name(key, str(file) if isinstance(file, PathLike) else file)
+    meant = {".mas": "mass", ".sti": "stiffness"}.get(plain_name(path).suffix.lower())
+    if {key, meant} == {"mass", "stiffness"}:
+        raise ValueError(
+            f"{key}: {path} is the {meant} that CalculiX writes; exchange both names"
+        )
     one = read_matrix(path, key, variable)
     whole = _completed(real_square(f"{key}: {path}", one.matrix), path, one, triangle)
     return one._replace(matrix=whole)

@@ -86,7 +86,10 @@ class ElementMesh:
             )
         surface = self.surfaces[own](self)
         if not any(map(len, surface.facets.values())):
-            raise ValueError(f"{self.source}: surface {name} has no facets")
+            raise ValueError(
+                f"{self.source}: surface or node set {name} has no facets: no facet of the mesh's "
+                "skin has all of its nodes in it; name one that holds whole facets"
+            )
         return surface
 
     @cached_property
@@ -168,8 +171,11 @@ class ElementMesh:
         """
         is_member = np.zeros(len(self.nodes), bool)
         is_member[members] = True
+        chosen = {size: is_member[rows].all(axis=1) for size, rows in self.skin.items()}
         facets = {
-            size: rows[is_member[rows].all(axis=1)] for size, rows in self.skin.items()
+            size: rows[chosen[size]]
+            for size, rows in self.skin.items()
+            if chosen[size].any()
         }
         has_side = all((self._on_solids(rows) >= 0).all() for rows in facets.values())
         return Surface(facets, has_side)

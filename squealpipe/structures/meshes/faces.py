@@ -167,8 +167,12 @@ class Rotation:
 
 def _vector(name: str, given: Any, *, zero: bool = False) -> np.ndarray:
     vector = real_array(name, given)
-    if vector.shape != (3,) or not (zero or vector.any()):
+    if vector.shape != (3,):
         raise ValueError(
             f"{name} = {brief(given)}: three numbers are needed, like [0, 0, 1]"
+        )
+    if not (zero or vector.any()):
+        raise ValueError(
+            f"{name} = {brief(given)} points nowhere: a direction is needed, like [0, 0, 1]"
         )
     return vector

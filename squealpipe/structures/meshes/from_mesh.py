@@ -7,8 +7,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+import scipy.sparse as sp
 
 from squealpipe.structures.contact import Contact
+from squealpipe.structures.matrices import checked_mass
 from squealpipe.structures.meshes.contact_points import Freedoms, contacts_of
 from squealpipe.structures.meshes.element_mesh import ElementMesh
 from squealpipe.structures.meshes.faces import Face, Rotation
@@ -52,6 +54,7 @@ def of_mesh(
     source = replace(source, nodes=source.nodes * length)
     rows = _named_rows(names, source, mass.shape[0])
     _refuse_units(mass, rows, source)
+    _refuse_massless(mass, rows, source)
     freedoms = Freedoms(source, rows)
     if rotation is not None and rotation.body is not None:
         source.surface(rotation.body)
@@ -122,7 +125,9 @@ def _refuse_units(mass: Any, rows: np.ndarray, mesh: ElementMesh) -> None:
     has_shells = any(ELEMENTS[name].is_shell for name in mesh.elements)
     if has_shells or mesh.volume <= 0:
         return
-    along = (rows[:, 1] == 1).astype(float)
+    # a rigid motion does not move what is at no node of the mesh, as incompatible modes
+    at_node = np.isin(rows[:, 0], mesh.numbers)
+    along = (at_node & (rows[:, 1] == 1)).astype(float)
     total = float(along @ (mass @ along))
     density = total / mesh.volume
     # kg/m³, from foam to beyond metals; other mean densities come from mixed units
@@ -131,8 +136,29 @@ def _refuse_units(mass: Any, rows: np.ndarray, mesh: ElementMesh) -> None:
         raise ValueError(
             f"{mesh.source} and the mass do not have the same units: {engineering(total, 'kg')} in "
             f"{mesh.volume:.3g} m³ are {density:.3g} kg/m³; state the units of both, like "
-            "`units: mm-t-s`"
+            "`units: mm-t-s`, and name mass and stiffness each in its place"
         )
+
+
+def _refuse_massless(mass: Any, rows: np.ndarray, mesh: ElementMesh) -> None:
+    """Refuse rows at nodes that the mesh lacks, where some of their motions have no mass.
+
+    CalculiX adds such nodes for the incompatible modes of C3D8I, of which it integrates three to
+    one and the same mass.
+    """
+    added = np.flatnonzero(~np.isin(rows[:, 0], mesh.numbers))
+    if not added.size:
+        return
+    try:
+        checked_mass(sp.csr_array(sp.csr_array(mass)[added][:, added]))
+    except ValueError:
+        nodes = rows[added, 0]
+        raise ValueError(
+            f"{added.size} rows of the matrices are of nodes {nodes.min()} to {nodes.max()}, which "
+            f"{mesh.source} does not list, and some of their motions have no mass; CalculiX adds "
+            "such rows for the incompatible modes of C3D8I: make the matrices anew with C3D8, "
+            "C3D20 or C3D10 in its place"
+        ) from None
 
 
 def _picture(mesh: ElementMesh, rows: np.ndarray) -> StructureMesh:

@@ -81,10 +81,13 @@ class StructureMesh:
 
     @property
     def names(self) -> list[str]:
-        """Names ``node.direction`` of all degrees of freedom."""
+        """Names ``node.direction`` of all degrees of freedom; ``row 12`` where one is at no node.
+
+        CalculiX adds nodes of its own, which no mesh lists, for the incompatible modes of C3D8I.
+        """
         return [
-            f"{self.numbers[node]}.{direction}"
-            for node, direction in self.degree_of_freedom.tolist()
+            f"row {row}" if node == NO_NODE else f"{self.numbers[node]}.{direction}"
+            for row, (node, direction) in enumerate(self.degree_of_freedom.tolist(), 1)
         ]
 
     def displacements(self, values: Any) -> np.ndarray:

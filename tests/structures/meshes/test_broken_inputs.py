@@ -103,6 +103,37 @@ def without_a_direction(folder):
     appended("*EQUATION\n2\n5001, 1, 1., 5002, 1, -1.\n")(folder)
 
 
+def swapped(folder):
+    yaml("mass: M.mas", "mass: M.sti")(folder)
+    yaml("stiffness: M.sti", "stiffness: M.mas")(folder)
+
+
+def node_set_against(nodes):
+    def spoil(folder):
+        appended(f"*NSET, NSET=SOME\n{nodes}\n")(folder)
+        yaml("against: DISC", "against: SOME")(folder)
+
+    return spoil
+
+
+def rows_added(folder, mass):
+    """Two nodes that the mesh does not list, with a mass between them."""
+    first = len(NAMES) + 1
+    for file, block in (("M.mas", mass), ("M.sti", 1e9 * np.eye(2))):
+        with (folder / file).open("a") as lines:
+            for way in range(3):
+                for i, j in ((0, 0), (1, 0), (1, 1)):
+                    row, column = first + way + 3 * i, first + way + 3 * j
+                    lines.write(f"{row} {column} {float(block[i, j])!r}\n")
+    added = [f"{node}.{way}" for node in (6001, 6002) for way in (1, 2, 3)]
+    (folder / "M.dof").write_text("\n".join([*NAMES, *added]) + "\n")
+
+
+def of_incompatible_modes(folder):
+    """CalculiX integrates their masses to one and the same number, as of ccx 2.20's C3D8I."""
+    rows_added(folder, np.full((2, 2), 0.008))
+
+
 def pressures(text):
     def spoil(folder):
         (folder / "p.txt").write_text(text)
@@ -125,7 +156,22 @@ BROKEN = [
     (yaml("against: DISC", "against: PAD"), "cannot rub against itself"),
     (yaml("speed: 20 rad/s", "speed: 0"), "speed = 0: nothing slides"),
     (yaml("speed: 20 rad/s", "speed: 2 m/s"), "rotation: speed = '2 m/s'"),
-    (yaml("axis: [0, 0, 1]", "axis: [0, 0, 0]"), "axis"),
+    (
+        yaml("axis: [0, 0, 1]", "axis: [0, 0, 0]"),
+        r"axis = \[0, 0, 0\] points nowhere: a direction",
+    ),
+    (
+        swapped,
+        "mass: .*M.sti is the stiffness that CalculiX writes; exchange both names",
+    ),
+    (
+        node_set_against("1, 2, 3"),
+        "node set SOME has no facets: .*all of its nodes in it",
+    ),
+    (
+        of_incompatible_modes,
+        "6 rows of the matrices are of nodes 6001 to 6002, .*C3D8I.*with C3D8, C3D20",
+    ),
     (yaml("axis", "axle"), "'axle' is unknown; did you mean 'axis'"),
     (
         yaml("through: [0, 0, 0]", "through: [0.06, 0, 0]"),
@@ -252,6 +298,17 @@ def test_the_brake_that_is_spoilt_below_is_whole(whole):
     structure = Structure.read(whole / "brake.yaml")
     assert len(structure.contacts) == 9
     assert structure.preloads.sum() > 0
+
+
+def test_rows_of_nodes_that_no_mesh_lists_are_kept(whole, tmp_path):
+    for file in whole.iterdir():
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    rows_added(tmp_path, np.diag([1.0, 1e3]))
+    structure = Structure.read(tmp_path / "brake.yaml")
+    assert structure.size == len(NAMES) + 6
+    assert structure.names[-6:] == tuple(
+        f"row {len(NAMES) + row}" for row in range(1, 7)
+    )
 
 
 @pytest.mark.parametrize(("spoil", "words"), BROKEN)
