@@ -67,11 +67,12 @@ def modes(
             face, the contacts lining_1, lining_2, ….
         belt_speed: likewise, m/s, or rad/s (also 200 rpm) where the file has a rotation. Over
             several speeds, those at which a mode turns unstable or stable are located too.
-        frequency_max: highest frequency of the modes, Hz; 20 kHz where neither limit is given.
-        n_modes: number of modes; one of these two limits is needed beyond 1000 degrees of freedom.
+        frequency_max: highest frequency of the modes, Hz. Where neither limit is given it is 20
+            kHz up to 1000 degrees of freedom; beyond, one of both is needed.
+        n_modes: number of modes, by frequency.
         critical: locate where modes turn unstable; --no-critical leaves that out, which is most of
-            the work for a structure of more than 1000 degrees of freedom. There they are sought in
-            a reduced structure and confirmed in the whole.
+            the work for a structure of many degrees of freedom. Beyond 300 they are sought in a
+            reduced structure and confirmed in the whole.
         vary: a further factor with its value or values; repeat for more. preload=0.5:2:7 and
             contact_stiffness=0.5,1,2 multiply those of all contacts, p1_preload and p1_stiffness
             those of a contact p1, mass, damping and stiffness the matrices; modal_damping,

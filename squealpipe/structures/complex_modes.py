@@ -71,11 +71,12 @@ def complex_modes(
         n_modes: so many modes, by frequency. One of both is needed beyond 1000 degrees of freedom;
             with neither, all modes are computed.
         critical: whether ``critical_mu`` is sought, by following modes along friction: most of the
-            work for a large structure. Without it ``onset`` is ``not_sought``. Beyond 1000 degrees
-            of freedom modes are followed in a subspace, which has those of the whole at the
-            frictions asked for, and each ``critical_mu`` is located anew in the whole: where that
-            does not confirm it, ``onset`` is ``not_followed``. That a mode is ``stable`` is known
-            of the whole at the frictions asked for, and of the subspace between them.
+            work for a large structure. Without it ``onset`` is ``not_sought``. Beyond 300 degrees
+            of freedom, where there is a limit, modes are followed in a subspace, which has those of
+            the whole at the frictions asked for, and each ``critical_mu`` is located anew in the
+            whole: where that does not confirm it, ``onset`` is ``not_followed``. That a mode is
+            ``stable`` is known of the whole at the frictions asked for, and of the subspace between
+            them.
         factors: further ones, a number or a 1-D array each: ``mu_static``, ``friction_speed`` (m/s)
             or ``modal_damping`` in place of the structure's; factors of what it has, namely of all
             contacts' ``preload`` and ``contact_stiffness``, of one contact's by its name
@@ -238,7 +239,9 @@ def _ways(structure: ContactStructure, asked: Asked) -> np.ndarray:
         # their numbers
         friction_steps = 9
         path = np.linspace(0.0, float(asked.mu), friction_steps)
-    in_subspace = asked.critical and structure.size > DENSE
+    # below so many degrees of freedom dense algebra is as fast (300: half a second a friction)
+    few = 300
+    in_subspace = asked.critical and structure.size > few and not asked.limits.takes_all
     grid = {"belt_speed": np.atleast_1d(asked.belt_speed), **asked.varied}
     shape = tuple(map(len, grid.values()))
     ways = np.empty(shape, object)

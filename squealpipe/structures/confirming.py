@@ -1,7 +1,7 @@
 """A large structure along friction: followed in a subspace, confirmed in the whole."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -37,7 +37,7 @@ class ConfirmedWay(Way):
         spectra: dict[float, Spectrum] = {}
         for mu in frictions:
             try:
-                spectra[mu] = self.solver.at(mu)
+                spectra[mu] = self._within_limits(self.solver.at(mu))
             except NoSlidingError as error:
                 self.reasons.append(str(error))
         if not spectra:
@@ -45,6 +45,14 @@ class ConfirmedWay(Way):
         self._follow_within(list(spectra.values()))
         for mu, spectrum in spectra.items():
             self._number(mu, spectrum, after)
+
+    def _within_limits(self, spectrum: Spectrum) -> Spectrum:
+        """Return the modes asked for, of all that dense algebra has."""
+        chosen = self.solver.selected(spectrum)
+        pairs = [
+            pair for pair, is_in in zip(spectrum.pairs, chosen, strict=True) if is_in
+        ]
+        return replace(spectrum, pairs=pairs)
 
     def _follow_within(self, spectra: list[Spectrum]) -> None:
         whole = self.solver.structure

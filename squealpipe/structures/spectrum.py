@@ -112,6 +112,11 @@ class Limits:
     frequency_max: float | None = None
     n_modes: int | None = None
 
+    @property
+    def takes_all(self) -> bool:
+        """True if there are none."""
+        return self.frequency_max is None and self.n_modes is None
+
     def as_dict(self) -> dict[str, float | None]:
         """Both by name."""
         return {"frequency_max": self.frequency_max, "n_modes": self.n_modes}
