@@ -101,6 +101,7 @@ class Agreement:
             eigenvalues, 1/s, the fastest first.
         unsure: places of modes that grow in the reduced structure by less than their error, or
             whose partner in the whole is not known.
+        beyond: which of these are beyond the band, mask: they decide nothing about the band.
         errors: the largest relative ones, over the unstable modes of the whole.
         decays: whether every mode of the whole within the band decays.
     """
@@ -109,13 +110,14 @@ class Agreement:
     growth_errors: np.ndarray
     missing: np.ndarray
     unsure: np.ndarray
+    beyond: np.ndarray
     errors: Errors
     decays: bool
 
     @property
     def holds(self) -> bool:
-        """Tell whether the same modes grow in both structures."""
-        return not self.missing.size and not self.unsure.size
+        """Tell whether the same modes grow in both structures, within the band."""
+        return not self.missing.size and bool(self.beyond.all())
 
 
 def exact(spectrum: Spectrum) -> Agreement:
@@ -127,6 +129,7 @@ def exact(spectrum: Spectrum) -> Agreement:
         np.abs(spectrum.errors),
         np.empty(0, complex),
         np.empty(0, int),
+        np.empty(0, bool),
         Errors(0.0, 0.0),
         decays,
     )
@@ -183,12 +186,13 @@ def compared(
             max(errors.frequency, float(abs(nearest.imag - value.imag) / size)),
             max(errors.growth, float(abs(nearest.real - value.real) / scale)),
         )
-    lost = np.array(missing, complex)
+    lost, places = np.array(missing, complex), np.flatnonzero(unsure)
     return Agreement(
         np.abs(off.imag) / (2.0 * np.pi),
         growth,
         lost[np.argsort(-lost.real, kind="stable")],
-        np.flatnonzero(unsure),
+        places,
+        values.imag[places] > truth.limit,
         errors,
         truth.decays,
     )

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import scipy.linalg as la
+import xarray as xr
 
 from squealpipe import Contact, Structure, labels, plot, squealing_modes
 from squealpipe.cli.signatures import in_options
@@ -14,9 +15,11 @@ from squealpipe.structures import elastic_pad
 from squealpipe.structures.agreement import Truth
 from squealpipe.structures.motion_system import component_system
 from squealpipe.structures.reduction import Search, fewest_modes
+from squealpipe.structures.schema.squealing import Kind
 from squealpipe.structures.squeal import plant
 from squealpipe.structures.squeal.attractors import grouped
-from squealpipe.study.report.squealing import lines
+from squealpipe.structures.squeal.squealing_modes import _verdict
+from squealpipe.study.report.squealing import headline, lines
 from squealpipe.systems.linear.matrices import Caps
 
 
@@ -164,6 +167,46 @@ def test_a_missing_mode_makes_the_verdict_undetermined_and_is_named():
         assert np.abs(np.abs(truth.real - growth) - error).min() < 1e-6 * growth
     assert "±" in said[1]
     assert plot(answer).has_data()
+
+
+def test_modes_beyond_the_band_decide_nothing_about_it():
+    """With --n-modes 144 the answer was that 145 would do, again and again."""
+    pad = elastic_pad(elements=(16, 4), mu=0.6).reduce(n_modes=18, frequency_max=12e3)
+    kept = plant.Plant(pad)
+    frequencies = kept.frequencies[kept.unstable]
+    # a mode of the reduced pad at 63 kHz grows, of which nobody knows whether the whole has it
+    assert kept.agreement.unsure.tolist() == [17]
+    assert frequencies == pytest.approx([10.61e3, 42.91e3, 63.23e3], rel=1e-3)
+    assert pad.record["agrees"]
+    assert kept.enough is None
+
+    def verdict(frequency):
+        motion = SimpleNamespace(kind=Kind.cycle, frequency=frequency)
+        return _verdict(kept, 0, [motion], np.array([Verdict.hammers]))
+
+    assert verdict(42.6e3) is Verdict.hammers  # the mode there is one of the whole
+    assert verdict(10.6e3) is Verdict.hammers
+    assert verdict(63.0e3) is Verdict.undetermined
+
+
+def test_a_push_that_ends_beyond_the_band_names_the_band_that_includes_it():
+    told = xr.Dataset(
+        {
+            "verdict": int(Verdict.undetermined),
+            "same_modes_grow": True,
+            "frequency_max": 12e3,
+            "frequency": ("mode", [10.61e3, 63.23e3]),
+            "mode_is_sure": ("mode", [True, False]),
+            "ends_in": ("mode", [0, 0]),
+            "pole_growth_rate": ("pole", [5.0]),
+            "dominant_frequency": ("attractor", [63e3]),
+        },
+        {"mode": [2, 17]},
+    )
+    assert in_options(headline(told)) == (
+        "Undetermined: a small push ends at 63 kHz, beyond the band, and the errors leave open "
+        "whether mode 17 there grows: --frequency-max 69553 includes it."
+    )
 
 
 def test_too_many_contacts_are_told_with_the_modes(monkeypatch):

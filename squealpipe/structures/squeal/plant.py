@@ -176,10 +176,12 @@ class Plant:
 
     @cached_property
     def unstable(self) -> np.ndarray:
-        """Places of the unstable modes in the spectrum, the fastest first."""
+        """Places of the unstable modes in the spectrum, the fastest first; beyond the band last."""
         growth = self.spectrum.values.real
         places = np.flatnonzero(growth > self.spectrum.growth_errors)
-        return places[np.argsort(-growth[places], kind="stable")]
+        limit = np.inf if self.truth is None else self.truth.limit
+        beyond = self.spectrum.values.imag[places] > limit
+        return places[np.lexsort((-growth[places], beyond))]
 
     @cached_property
     def decays(self) -> bool:

@@ -184,6 +184,11 @@ def _verdict(
         return Verdict.undetermined
     if modes[first].kind is Kind.undetermined:
         return Verdict.undetermined
+    # within the band the same modes grow; a motion beyond it may be one that the whole has not
+    if motions[first] != Verdict.quiet and np.isfinite(modes[first].frequency):
+        away = np.abs(plant.frequencies - modes[first].frequency)[plant.unstable]
+        if away.size and plant.unstable[away.argmin()] in plant.agreement.unsure:
+            return Verdict.undetermined
     return Verdict(int(motions[first]))
 
 

@@ -1,5 +1,6 @@
 """The answer of a dataset ``squealing_modes`` in the words of a brake's report."""
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -64,6 +65,8 @@ def headline(answer: xr.Dataset) -> str:
                 "Undetermined: small motions about steady sliding neither grow nor die out; give "
                 "the structure damping."
             )
+        if beyond := _ends_beyond(answer):
+            return beyond
         return (
             "Undetermined: the motion after a small push did not settle, or its kind is "
             "not clear."
@@ -77,6 +80,24 @@ def headline(answer: xr.Dataset) -> str:
     return (
         f"Hammers at {at}: contact {loses.contact.item()} is open "
         f"{_percent(float(loses.separated_fraction))} of the time, {_peak_force(first)}."
+    )
+
+
+def _ends_beyond(answer: xr.Dataset) -> str | None:
+    """Say that a push ends beyond the band in a mode that the whole may not have, if it does."""
+    end, sure = _end(answer), answer.get("mode_is_sure")
+    if end == NO_ATTRACTOR or sure is None or sure.all():
+        return None
+    at = float(answer.dominant_frequency[end])
+    away = np.abs(answer.frequency.values - at)
+    mode = answer.isel(mode=int(np.argmin(away)))
+    if not np.isfinite(at) or bool(mode.mode_is_sure):
+        return None
+    reach = math.ceil(1.1 * float(mode.frequency))
+    return (
+        f"Undetermined: a small push ends at {engineering(at, 'Hz')}, beyond the band, and the "
+        f"errors leave open whether mode {int(mode.mode)} there grows: frequency_max={reach} "
+        "includes it."
     )
 
 
@@ -126,7 +147,8 @@ def _disagreement(answer: xr.Dataset) -> str:
             f"{count} unstable {modes_} of the whole structure ({_named(lost, 'missing_')}"
             f"{fastest}) {'is' if count == 1 else 'are'} missing in {kept}"
         )
-    unsure = answer.isel(mode=~answer.mode_is_sure.values)
+    within = answer.frequency.values <= frequency_max(answer)
+    unsure = answer.isel(mode=~answer.mode_is_sure.values & within)
     if unsure.sizes["mode"]:
         names = ", ".join(f"mode {int(each)}" for each in unsure.mode.values[:LISTED])
         parts.append(f"the errors leave open whether {names} of {kept} grows")
