@@ -5,10 +5,11 @@ The legs' Taylor series are the integrator's.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from itertools import chain
 from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -40,6 +41,12 @@ if TYPE_CHECKING:
     from squealpipe.systems.tracing import TracedSystem as System
 
 
+_FUNCTIONS: WeakKeyDictionary[Any, dict[tuple[str, ...], dict[Any, Any]]] = (
+    WeakKeyDictionary()
+)
+"""Functions of flows by the system whose symbols they are made of, and followed parameters."""
+
+
 class Flow:
     """A system's legs and switches as functions of states and parameters.
 
@@ -58,7 +65,9 @@ class Flow:
         self.time = t.variables[-1] if self.timed else None
         fixed = [parameter(name) for name in (*t.parameters, *t.constants)]
         self.arguments = [*t.variables, *fixed]
-        self._functions: dict[Any, Any] = {}
+        # what is made of the symbols is the same for all flows of systems that share them
+        shared = _FUNCTIONS.setdefault(system.form, {})
+        self._functions: dict[Any, Any] = shared.setdefault(self.followed, {})
         # steps of a leg that are kept at first; one that has more is run again with room for all
         self._room, self._legs = 48, 0
         # a leg of more steps has no end, so that Newton's method gives up; a stiff motion may
@@ -66,38 +75,70 @@ class Flow:
         self.most_steps = 3000
         directions = [*t.variables[: t.size], *self.by, *([self.time] * self.timed)]
         self._directions, self.columns = directions, len(directions)
-        self.is_affine = not self.timed and is_affine(t.rates[: t.size])
-        self.rates = python_function(t.rates[: t.size], self.arguments, np)
-        names = [*system.parameters, TIME_UNIT]
-        self._derived = python_function(
-            system.integrated.derived, [parameter(name) for name in names], np
-        )
         self._known: tuple[Any, Vector] | None = None
         self._sizes: tuple[Any, Vector] | None = None
+        self._numbers: tuple[Any, list[Any]] | None = None
+
+    def _made(self, what: str, make: Callable[[], Any]) -> Any:
+        """Return what is made of the symbols once for all flows."""
+        if what not in self._functions:
+            self._functions[what] = make()
+        return self._functions[what]
+
+    @cached_property
+    def is_affine(self) -> bool:
+        """True if the rates are linear functions of the states, and constants."""
+        rates = self.system.traced.rates[: self.size]
+        return bool(not self.timed and self._made("affine", lambda: is_affine(rates)))
+
+    @cached_property
+    def rates(self) -> Any:
+        """The function that gives the rates of the states."""
+        rates = self.system.traced.rates[: self.size]
+        return self._made("rates", lambda: python_function(rates, self.arguments, np))
+
+    @cached_property
+    def _derived(self) -> Any:
+        """The function that gives the parameters that are computed from others."""
+        names = [parameter(name) for name in (*self.system.parameters, TIME_UNIT)]
+        roots = self.system.integrated.derived
+        return self._made("derived", lambda: python_function(roots, names, np))
 
     @cached_property
     def entries(self) -> list[tuple[int, int, Any]]:
         """∂f/∂(states, followed parameters, time) that are not zero: row, column, symbol."""
-        entries = [
-            (i, j, symbol(derivative(rate, by)))
-            for i, rate in enumerate(self.system.traced.rates[: self.size])
-            for j, by in enumerate(self._directions)
-        ]
-        return [
-            e for e in entries if not (e[2].kind == "number" and not e[2].arguments[0])
-        ]
+
+        def entries() -> list[tuple[int, int, Any]]:
+            every = [
+                (i, j, symbol(derivative(rate, by)))
+                for i, rate in enumerate(self.system.traced.rates[: self.size])
+                for j, by in enumerate(self._directions)
+            ]
+            return [
+                e
+                for e in every
+                if not (e[2].kind == "number" and not e[2].arguments[0])
+            ]
+
+        found: list[tuple[int, int, Any]] = self._made("entries", entries)
+        return found
 
     @cached_property
     def slopes(self) -> Any:
         """The function that gives :attr:`entries`."""
-        return python_function([e[2] for e in self.entries], self.arguments, np)
+        roots = [e[2] for e in self.entries]
+        return self._made("slopes", lambda: python_function(roots, self.arguments, np))
 
     @cached_property
     def rates_by(self) -> Any:
         """∂f/∂(followed parameters), those of a state side by side."""
         rates = self.system.traced.rates[: self.size]
-        roots = [symbol(derivative(rate, by)) for rate in rates for by in self.by]
-        return python_function(roots, self.arguments, np)
+
+        def function() -> Any:
+            roots = [symbol(derivative(rate, by)) for rate in rates for by in self.by]
+            return python_function(roots, self.arguments, np)
+
+        return self._made("rates by", function)
 
     @cached_property
     def period(self) -> Any:
@@ -110,8 +151,11 @@ class Flow:
 
     def numbers(self, values: Mapping[str, float], regime: int) -> list[Any]:
         """Parameters and the regimes' constants, as the functions take them; the time unit is 1."""
-        given = [np.float64(values[name]) for name in self.system.parameters]
-        return [*given, np.float64(1.0), *self.system.joint.constants(regime)]
+        key = regime, *(values[name] for name in self.system.parameters)
+        if self._numbers is None or self._numbers[0] != key:
+            given = [*map(np.float64, key[1:]), np.float64(1.0)]
+            self._numbers = key, [*given, *self.system.joint.constants(regime)]
+        return self._numbers[1]
 
     def sizes(self, values: Mapping[str, float]) -> Vector:
         """Return the typical sizes of the states."""
