@@ -7,6 +7,9 @@ in the middle, which carries them through crossings. A step is done where some m
 along, or surely none does, by the cubic that has values and slopes of both ends; it is halved
 otherwise, also where contacts open or close and where two modes merge, whose slopes have no bound.
 
+A reduced structure is held in modes of its own at each value; for slopes those of the values around
+are turned into those of the value itself (Procrustes), since signs and order of modes are chance.
+
 Invariant: a boundary is bracketed by computed eigenvalues before it is located, whatever the cubics
 say. Stretches narrower than the finest step are missed.
 Cost: three linearizations and one dense eigenvalue problem of 2n for each value; 30 to 300 values.
@@ -14,7 +17,7 @@ Cost: three linearizations and one dense eigenvalue problem of 2n for each value
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import pairwise
@@ -27,7 +30,9 @@ from scipy.optimize import linear_sum_assignment
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.linearized import pencil_about
 from squealpipe.structures.modes import modal_damping_of
+from squealpipe.structures.pencil import one_thread
 from squealpipe.structures.sliding import NoSlidingError, steady_sliding
+from squealpipe.systems.inputs.values import brief
 from squealpipe.vibration.boundaries import QuietInterval
 
 
@@ -35,20 +40,20 @@ from squealpipe.vibration.boundaries import QuietInterval
 class Following:
     """Thresholds of the search; each comment says what another value would do."""
 
-    first_steps: int = 16
-    """Steps that the range is divided into at first. Twice as many: contacts that open and close
-    again within a step are seen, at up to twice the cost."""
-    finest: float = 1e-5
-    """Narrowest step, over the range. Half as much: narrower stretches are seen, one halving more
-    at each boundary."""
+    finest: float = 1e-3
+    """Narrowest step, over the first one. Half as much: narrower stretches are seen, one halving
+    more at each boundary."""
     located: float = 1e-12
-    """Width to which a boundary is located, over the range; more would show in printed digits."""
-    round_off: float = 1e-9
+    """Width to which a boundary is located, over the value; more would show in printed digits."""
+    round_off: float = 1e-13
     """Growth over the largest eigenvalue up to which a mode does not grow. Ten times as much: modes
-    that grow so slowly count as stable; a tenth: round-off of merging modes counts as growth."""
+    that grow so slowly count as stable; a tenth: round-off counts as growth."""
+    undamped: float = 1e-9
+    """The same of structures without damping, whose modes lose half of their digits as they merge.
+    """
     difference: float = 1e-3
-    """Change of the parameter, over the range, whose effect on the matrices gives their slopes,
-    with errors of its fourth power. Twice as much: 16 times the error; half: more round-off."""
+    """Change of the parameter, over the first step, whose effect on the matrices gives their
+    slopes, with errors of its square. Twice as much: 4 times the error; half: more round-off."""
     doubt: float = 2.0
     """Distance of two cubics from the true path, over that of their tangents in the middle."""
 
@@ -57,10 +62,22 @@ FOLLOWING = Following()
 
 
 class _Linear(NamedTuple):
-    """Matrices of small motions about steady sliding, and which contacts are closed there."""
+    """Matrices of small motions about steady sliding, and which contacts are closed there.
+
+    Attributes:
+        modes: of a reduced structure, amplitudes → displacements.
+    """
 
     parts: np.ndarray
     closed: bytes
+    modes: np.ndarray | None
+
+    def along(self, other: _Linear) -> np.ndarray:
+        """Return the matrices in the modes of another value."""
+        if self.modes is None or other.modes is None:
+            return self.parts
+        turn, _ = la.orthogonal_procrustes(self.modes, other.modes)
+        return np.asarray(turn.T @ self.parts @ turn)
 
 
 class _Node:
@@ -77,6 +94,7 @@ class _Node:
         size = len(mass)
         # in units in which frequencies are about 1, so that both halves of a vector count alike
         unit = np.sqrt(np.linalg.norm(stiffness) / np.linalg.norm(mass)) or 1.0
+        self._is_damped = bool(damping.any())
         solved = la.solve(mass, np.hstack([stiffness / unit, damping]), assume_a="pos")
         first = np.block([[np.zeros((size, size)), unit * np.eye(size)], [-solved]])
         self.values, left, right = la.eig(first, left=True)
@@ -98,7 +116,8 @@ class _Node:
     @cached_property
     def limit(self) -> float:
         """Growth that is round-off, 1/s."""
-        return FOLLOWING.round_off * float(np.abs(self.values).max())
+        share = FOLLOWING.round_off if self._is_damped else FOLLOWING.undamped
+        return share * float(np.abs(self.values).max())
 
     @property
     def grows(self) -> bool:
@@ -115,31 +134,29 @@ def _quadratic(parts: np.ndarray, s: np.ndarray) -> np.ndarray:
 
 def linear_intervals(
     structure_at: Callable[[float], ContactStructure],
-    low: float,
-    high: float,
+    values: Sequence[float],
     now: float,
 ) -> list[QuietInterval]:
     """Return all stretches of a parameter in which steady sliding exists and no mode grows.
 
     Args:
         structure_at: structure of few degrees of freedom with a value of the parameter.
-        low, high: range of the parameter.
+        values: ends of the steps that are looked at first, ascending: the first and the last are
+            the range; contacts that open and close again within a step may be missed.
         now: present value.
 
     Returns:
         Intervals, the nearest to the present value first. Ends at which the range ends, and not
         the quiet, are open.
     """
-    if not low < high:
-        raise ValueError(f"low = {low:g}, high = {high:g}: low must be less than high")
-    search = _Search(structure_at, low, high)
-    ends = search.boundaries()
-    intervals = []
-    for begin, end in pairwise(ends):
-        if not search.grows(0.5 * (begin + end)):
-            intervals.append(
-                QuietInterval(begin, end, low_open=begin == low, high_open=end == high)
-            )
+    search = _Search(structure_at, values)
+    low, high = values[0], values[-1]
+    with one_thread():  # with small matrices threads cost more than they save
+        intervals = [
+            QuietInterval(begin, end, low_open=begin == low, high_open=end == high)
+            for begin, end in pairwise(search.boundaries())
+            if not search.grows(0.5 * (begin + end))
+        ]
     return sorted(intervals, key=lambda one: one.distance(now))
 
 
@@ -147,10 +164,16 @@ class _Search:
     """Search of one range for the values where the first mode begins to grow or the last stops."""
 
     def __init__(
-        self, structure_at: Callable[[float], ContactStructure], low: float, high: float
+        self, structure_at: Callable[[float], ContactStructure], values: Sequence[float]
     ) -> None:
-        self.structure_at, self.low, self.high = structure_at, low, high
-        self.range = high - low
+        self.structure_at, self.stations = (
+            structure_at,
+            [float(each) for each in values],
+        )
+        if len(values) < 2 or not (np.diff(values) > 0).all():
+            raise ValueError(
+                f"values = {brief(values)}: at least two, ascending, are needed"
+            )
         self.linear = lru_cache(maxsize=None)(self._linear)
         self.node = lru_cache(maxsize=None)(self._node)
 
@@ -161,7 +184,7 @@ class _Search:
         except NoSlidingError:
             return None
         pencil = pencil_about(structure, state, modal_damping_of(structure))
-        return _Linear(np.array(pencil.dense), state.closed.tobytes())
+        return _Linear(np.array(pencil.dense), state.closed.tobytes(), structure.modes)
 
     def _node(self, at: float) -> _Node | None:
         linear = self.linear(at)
@@ -169,25 +192,29 @@ class _Search:
             return None
         return _Node(at, linear, self._slopes(at, linear))
 
+    def _first_step(self, at: float) -> float:
+        """Return the length of the first step in which a value lies."""
+        place = int(np.searchsorted(self.stations[1:-1], at))
+        return self.stations[place + 1] - self.stations[place]
+
     def _slopes(self, at: float, linear: _Linear) -> np.ndarray:
         """Return derivatives of the matrices, from values where the same contacts are closed."""
-        step = FOLLOWING.difference * self.range
-        while step > FOLLOWING.located * self.range:
-            # at an end of the range differences are one-sided
-            for offsets in ((-1.0, -0.5, 0.5, 1.0), (0.5, 1.0), (-0.5, -1.0)):
+        step = FOLLOWING.difference * self._first_step(at)
+        low, high = self.stations[0], self.stations[-1]
+        for _ in range(4):  # at a contact that opens there is no slope
+            # at an end of the range, and where a contact opens, differences are one-sided
+            for offsets in ((-1.0, 1.0), (1.0, 2.0), (-1.0, -2.0)):
                 places = [at + offset * step for offset in offsets]
-                if not (self.low <= min(places) and max(places) <= self.high):
+                if not (low <= min(places) and max(places) <= high):
                     continue
                 around = [self.linear(place) for place in places]
                 if all(each and each.closed == linear.closed for each in around):
-                    parts = [each.parts for each in around if each]
-                    if len(parts) == 4:
-                        whole, half = parts[3] - parts[0], parts[2] - parts[1]
-                        return np.asarray((4.0 * half - 0.5 * whole) / (3.0 * step))
-                    near, far = (each - linear.parts for each in parts)
-                    sign = offsets[1]
-                    return np.asarray(sign * (4.0 * near - far) / step)
-            step *= 0.125
+                    one, other = (each.along(linear) for each in around if each)
+                    if offsets[0] == -offsets[1]:
+                        return np.asarray((other - one) / (2.0 * step))
+                    slope = (4.0 * one - other - 3.0 * linear.parts) / (2.0 * step)
+                    return np.asarray(offsets[0] * slope)
+            step *= 0.03
         return np.zeros_like(linear.parts)
 
     def grows(self, at: float) -> bool:
@@ -197,25 +224,25 @@ class _Search:
 
     def boundaries(self) -> list[float]:
         """Return the values at which the answer changes, and both ends of the range."""
-        stations = np.linspace(self.low, self.high, FOLLOWING.first_steps + 1).tolist()
-        found = [self.low]
-        steps = [*pairwise(stations)][::-1]
+        found = [self.stations[0]]
+        steps = [*pairwise(self.stations)][::-1]
         while steps:
             a, b = steps.pop()
             changes = self.grows(a) != self.grows(b)
-            is_finest = b - a <= FOLLOWING.finest * self.range
-            if self._is_sure(a, b, is_simple := changes) or is_finest:
-                if is_simple:
+            is_finest = b - a <= FOLLOWING.finest * self._first_step(b)
+            if self._is_sure(a, b, changes) or is_finest:
+                if changes:
                     found.append(self._located(a, b))
                 continue
             middle = 0.5 * (a + b)
             steps += [(middle, b), (a, middle)]
-        return [*found, self.high]
+        return [*found, self.stations[-1]]
 
     def _located(self, a: float, b: float) -> float:
         """Return where the answer changes, by halving: growth may jump, or leave zero as a root."""
         grows = self.grows(b)
-        while b - a > FOLLOWING.located * max(self.range, abs(a), abs(b)):
+        least = FOLLOWING.finest * self._first_step(b)  # next to 0
+        while b - a > FOLLOWING.located * max(abs(a), abs(b), least):
             middle = 0.5 * (a + b)
             if middle in (a, b):
                 break
@@ -238,7 +265,7 @@ class _Search:
         one, other = self.node(a), self.node(b)
         if one is None and other is None:
             # no steady sliding: what lies between is looked at in a few places alone
-            return b - a <= self.range / (4.0 * FOLLOWING.first_steps)
+            return b - a <= 0.25 * self._first_step(b)
         if one is None or other is None or one.closed != other.closed:
             return False
         paths = _Paths.between(one, other)

@@ -251,8 +251,13 @@ class _Held:
         return solve
 
 
-def static_answers(structure: ContactStructure) -> np.ndarray:
+def static_answers(
+    structure: ContactStructure, forces: np.ndarray | None = None
+) -> np.ndarray:
     """Displacements of a large structure with closed contacts by its load and contact forces.
+
+    Args:
+        forces: others in their place, (n, k).
 
     Returns:
         (n, 1 + 2 contacts): those of the load, of normal and of tangential unit forces; none where
@@ -260,6 +265,9 @@ def static_answers(structure: ContactStructure) -> np.ndarray:
     """
     try:
         held = _held(structure)
+        if forces is not None:
+            answers = held.factors.solve(forces)
+            return np.asarray(answers[:, np.isfinite(answers).all(axis=0)])
         answers = np.column_stack(
             [held.factors.solve(structure.load), held.of_normals, held.of_tangentials]
         )

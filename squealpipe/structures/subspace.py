@@ -86,6 +86,13 @@ def subspace(
     return np.asarray(basis @ la.eigh(0.5 * (at_rest + at_rest.T))[1])
 
 
+def with_answers(
+    whole: ContactStructure, basis: np.ndarray, forces: np.ndarray
+) -> np.ndarray:
+    """Return a basis with what forces (n, k) do statically added to it, with VᵀMV = 1."""
+    return np.hstack([basis, _added(whole, basis, static_answers(whole, forces))])
+
+
 def _added(
     whole: ContactStructure, basis: np.ndarray, vectors: np.ndarray
 ) -> np.ndarray:
@@ -114,7 +121,10 @@ def projected(
     at_rest = basis.T @ (whole.stiffness_at_rest @ basis)
     stiffness = basis.T @ (whole.given_stiffness @ basis)
     # round-off would couple the modes at rest
-    stiffness += np.diag(np.diag(at_rest)) - at_rest
+    own = np.sqrt(np.abs(np.diag(at_rest)))
+    round_off = 1e-9 * np.outer(own, own) + 1e-14 * own.max() ** 2
+    is_other = ~np.eye(len(own), dtype=bool)
+    stiffness -= np.where(is_other & (np.abs(at_rest) < round_off), at_rest, 0.0)
     damping = basis.T @ (whole.given_damping @ basis)
     if modal is not None:
         columns = basis.T @ modal.columns

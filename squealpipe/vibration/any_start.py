@@ -49,6 +49,9 @@ class Subjects(Protocol):
     def is_quiet_linearly(self, subject: Any) -> bool:
         """Tell whether steady sliding exists, and small motions about it do not grow."""
 
+    def push(self, subject: Any) -> Start:
+        """Return steady sliding, pushed in the direction in which small motions grow fastest."""
+
     def fading(self, subject: Any) -> float:
         """Return ln of the decay of small motions within the longest run; NaN where they grow."""
 
@@ -99,7 +102,7 @@ class Side:
         return min((value + step, farthest), key=lambda end: abs(end - value))
 
 
-def sides_of(cures: dict[str, Cure]) -> list[Side]:
+def sides_of(cures: Mapping[str, Cure]) -> list[Side]:
     """Both sides of each cure, as far as there are any values."""
     return [
         Side(name, cure, values, cure.value)
@@ -109,7 +112,7 @@ def sides_of(cures: dict[str, Cure]) -> list[Side]:
     ]
 
 
-def nearer(cures: dict[str, Cure], sides: Sequence[Side]) -> dict[str, float]:
+def nearer(cures: Mapping[str, Cure], sides: Sequence[Side]) -> dict[str, float]:
     """The nearer answer of both sides of each cure that has one."""
     steps: dict[str, float] = {}
     for side in sides:
@@ -123,9 +126,9 @@ def nearer(cures: dict[str, Cure], sides: Sequence[Side]) -> dict[str, float]:
 
 
 def any_start(
-    cures: dict[str, Cure],
+    cures: Mapping[str, Cure],
     every: Sequence[Side],
-    nearest: dict[str, float],
+    nearest: Mapping[str, float],
     quiet: bool,
     always: bool,
     subjects: Subjects,

@@ -36,6 +36,9 @@ class Search:
     rungs: int = 8
     """Most values within a stretch that are run. Twice as many: shorter noise within quiet is
     seen, at twice the cost."""
+    tol: float = 1e-9
+    """Smallest tolerance of the runs, since boundaries are located far more coarsely. Less only
+    takes time."""
     root: float = 1e-14
     """Relative width to which the linear boundary is located; more would show in printed digits."""
 
@@ -51,6 +54,7 @@ class Cure(NamedTuple):
         apply: the subject with another value.
         below, above: values on either side that are looked at, away from the present one.
         is_angle: whether values are located absolutely, in rad.
+        of_none: value in hundredths of which a change is told where the present one is 0.
     """
 
     value: float
@@ -58,11 +62,18 @@ class Cure(NamedTuple):
     below: np.ndarray
     above: np.ndarray
     is_angle: bool = False
+    of_none: float = 1.0
 
     @property
     def grid(self) -> np.ndarray:
         """All values that are looked at, ascending or descending with ``above``."""
         return np.unique([*self.below, self.value, *self.above])
+
+    def change(self, value: float) -> float:
+        """Return the change to another value, in per cent of the present one, or degrees."""
+        if self.is_angle:
+            return math.degrees(value - self.value)
+        return 100.0 * (value - self.value) / (self.value or self.of_none)
 
     def scale(self, located: float, value: float) -> float:
         """Return the distance next to a value that counts as located."""

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from squealpipe.brake.assess.cures import Boundary, boundaries, nearest_angles
+from squealpipe.brake.assess.cures import nearest_angles, pad_boundaries
 from squealpipe.brake.assess.levels import levels
 from squealpipe.brake.assess.settling import pushed, settle, start_at, strikes
 from squealpipe.brake.assess.sliding import Design, Sliding
+from squealpipe.brake.assess.snap_through import SnapThrough
 from squealpipe.brake.linear.maps import stability_map
 from squealpipe.brake.schema.assess import CURES
 from squealpipe.codes import Verdict
@@ -19,7 +21,8 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
 from squealpipe.validation import Angle, Tolerance
-from squealpipe.vibration.boundaries import interval_table
+from squealpipe.vibration.boundaries import SEARCH
+from squealpipe.vibration.cures import Boundary, cure_table
 from squealpipe.vibration.schema import ASSESS, Mechanism
 from squealpipe.vibration.settling import FOR_NUMBERS
 
@@ -74,45 +77,33 @@ class Judged:
 
     def without_cures(self) -> xr.Dataset:
         """The answer so far: verdict, cause, frequency and level."""
-        return self._answer({}, (np.nan, np.nan))
+        return self._answer({}, {}, (np.nan, np.nan))
 
     def with_cures(self) -> xr.Dataset:
         """The whole answer; the search takes most of its time."""
-        # Boundaries are located far more coarsely than this tolerance of the runs that search
-        # them
-        search_tolerance = 1e-9
-        coarse = max(self.tol, search_tolerance)
-        cures = boundaries(self.design, self.verdict, self.motions, tol=coarse)
-        return self._answer(
-            cures, nearest_angles(self.design, self.verdict, tol=coarse)
+        coarse = max(self.tol, SEARCH.tol)
+        cures, snaps = pad_boundaries(
+            self.design, self.verdict, self.motions, tol=coarse
         )
+        nearest = nearest_angles(self.design, self.verdict, tol=coarse)
+        return self._answer(cures, snaps, nearest)
 
     def _answer(
-        self, cures: dict[str, Boundary], nearest: tuple[float, float]
+        self,
+        cures: Mapping[str, Boundary],
+        snaps: Mapping[str, SnapThrough],
+        nearest: tuple[float, float],
     ) -> xr.Dataset:
-        names = {
-            "value": "value",
-            "quiet_from": "quiet_from",
-            "quiet_from_any_start": "quiet_from_any_start",
-            "change": "change",
-            "change_any_start": "change_any_start",
-            "lowest_tried": "lowest",
-            "highest_tried": "highest",
-            "snaps_from": "snaps_from",
-            "snap_distance": "snap_distance",
-        }
+        of_cures = [snaps.get(name, SnapThrough()) for name in cures]
         return build(
             ASSESS,
             {
                 **self.facts,
-                **{
-                    name: np.array([getattr(each, key) for each in cures.values()])
-                    for name, key in names.items()
-                },
-                **interval_table([each.intervals for each in cures.values()]),
+                **cure_table(cures, CURES),
+                "snaps_from": np.array([each.value for each in of_cures]),
+                "snap_distance": np.array([each.distance for each in of_cures]),
                 "quiet_alpha1": nearest[0],
                 "quiet_alpha2": nearest[1],
-                "unit": np.array([CURES[name] for name in cures], str),
             },
             {"cure": np.array(list(cures), str), "mode": [1, 2]},
         )

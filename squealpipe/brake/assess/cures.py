@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 
@@ -20,30 +19,14 @@ from squealpipe.brake.assess.sliding import Design, Sliding
 from squealpipe.brake.assess.snap_through import SnapThrough, snap_throughs
 from squealpipe.brake.schema.assess import CURES
 from squealpipe.codes import Verdict
-from squealpipe.vibration.any_start import any_start, dies_out_always, lead, sides_of
 from squealpipe.vibration.boundaries import (
     Cure,
-    QuietInterval,
     linear_intervals,
     nearest_boundary,
     quiet_intervals,
 )
+from squealpipe.vibration.cures import Boundary, boundaries, by_change, pushes_die_out
 from squealpipe.vibration.settled_runs import SettledRun, Start
-
-
-class Boundary(NamedTuple):
-    """Boundary that one cure reaches; values that were not found are NaN."""
-
-    value: float
-    quiet_from: float
-    quiet_from_any_start: float
-    change: float
-    change_any_start: float
-    lowest: float
-    highest: float
-    snaps_from: float
-    snap_distance: float
-    intervals: Sequence[QuietInterval]
 
 
 def growth_margin(design: Design) -> float:
@@ -65,6 +48,12 @@ class Pads:
     def is_quiet_linearly(self, subject: Design) -> bool:
         """Tell whether steady sliding exists, and small motions about it do not grow."""
         return growth_margin(subject) <= 0.0
+
+    def push(self, subject: Design) -> Start:
+        """Return steady sliding, pushed."""
+        sliding = Sliding.of(subject)
+        assert sliding is not None  # noqa: S101 (it is quiet linearly)
+        return pushed(subject, sliding)
 
     def fading(self, subject: Design) -> float:
         """Return ln of the decay of small motions within the longest run; NaN where they grow."""
@@ -88,10 +77,10 @@ class Pads:
         return settle(starts, tol=self.tol)
 
 
-def boundaries(
+def pad_boundaries(
     design: Design, verdict: Verdict, motions: Sequence[np.ndarray], *, tol: float
-) -> dict[str, Boundary]:
-    """All cures of a design.
+) -> tuple[dict[str, Boundary], dict[str, SnapThrough]]:
+    """Return what all cures of a design reach, by ascending change, and where the pad snaps.
 
     Args:
         verdict: of its steady sliding, pushed.
@@ -99,51 +88,19 @@ def boundaries(
     """
     cures = cures_of(design)
     quiet = verdict is Verdict.quiet
-
-    pads = Pads(tol)
     linear = {
         name: linear_intervals(cure, growth_margin) for name, cure in cures.items()
     }
-    dies_out = partial(_dies_out, tol=tol)
-    intervals = quiet_intervals(cures, linear, dies_out, quiet=quiet)
-    nearest = {
-        name: nearest_boundary(intervals[name], cure.value, quiet=quiet)
-        for name, cure in cures.items()
-    }
-    test = partial(dies_out_always, subjects=pads)
-    sides = sides_of(cures)
-    for side in sides:
-        side.motions = list(motions)
-    always = quiet and not motions and Sliding.of(design) is not None
-    if not quiet:
-        lead(sides, nearest, pads)
-    follow = partial(dies_out_always, subjects=pads, kinds=1)
-    anywhere = any_start(cures, sides, nearest, quiet, always, pads, test, follow)
-    snaps = snap_throughs(cures, nearest) if quiet else {}
-    located = {}
-    for name, cure in cures.items():
-        ends = [*cure.below, cure.value, *cure.above]
-        first, second = nearest[name], anywhere.get(name, math.nan)
-        located[name] = Boundary(
-            cure.value,
-            first,
-            second,
-            _change(name, cure.value, first),
-            _change(name, cure.value, second),
-            min(ends),
-            max(ends),
-            *snaps.get(name, SnapThrough()),
-            intervals[name],
-        )
-    return dict(
-        sorted(
-            located.items(),
-            key=lambda item: (
-                math.inf if math.isnan(item[1].change) else abs(item[1].change),
-                list(CURES).index(item[0]),
-            ),
-        )
+    found = boundaries(
+        {name: cures[name] for name in CURES},
+        linear,
+        Pads(tol),
+        motions,
+        quiet=quiet,
+        always=quiet and not motions and Sliding.of(design) is not None,
     )
+    nearest = {name: boundary.quiet_from for name, boundary in found.items()}
+    return by_change(found), snap_throughs(cures, nearest) if quiet else {}
 
 
 def nearest_angles(
@@ -175,7 +132,8 @@ def nearest_angles(
     linear = {
         name: linear_intervals(ray, growth_margin)[:1] for name, ray in rays.items()
     }
-    intervals = quiet_intervals(rays, linear, partial(_dies_out, tol=tol), quiet=quiet)
+    dies_out = partial(pushes_die_out, subjects=Pads(tol))
+    intervals = quiet_intervals(rays, linear, dies_out, quiet=quiet)
     known = {
         name: nearest_boundary(those, 0.0, quiet=quiet)
         for name, those in intervals.items()
@@ -185,27 +143,3 @@ def nearest_angles(
         return math.nan, math.nan
     there = rays[best].apply(known[best])
     return there.alpha1, there.alpha2
-
-
-def _change(name: str, value: float, found: float) -> float:
-    """Per cent of the present value, or degrees; points of critical damping from none."""
-    if name.startswith("alpha"):
-        return math.degrees(found - value)
-    return 100.0 * (found - value) / (value or 1.0)
-
-
-def _dies_out(
-    cures: Sequence[Cure], values: Sequence[float], *, tol: float
-) -> list[bool]:
-    """Tell whether pushed steady sliding ends quiet; where there is none it does not."""
-    rows, starts = [], []
-    for row, (cure, value) in enumerate(zip(cures, values, strict=True)):
-        design = cure.apply(value)
-        sliding = Sliding.of(design)
-        if sliding is not None and not sliding.is_unstable:
-            rows.append(row)
-            starts.append(pushed(design, sliding))
-    answers = [False] * len(cures)
-    for row, settled in zip(rows, settle(starts, tol=tol) if rows else [], strict=True):
-        answers[row] = settled.quiet
-    return answers

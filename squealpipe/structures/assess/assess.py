@@ -18,16 +18,17 @@ from squealpipe.structures.assess.cures import cures_of
 from squealpipe.structures.assess.designs import Design, Structures, pushed, start_at
 from squealpipe.structures.assess.records import levels
 from squealpipe.structures.definition import ContactStructure
+from squealpipe.structures.quiet_intervals import linear_intervals
 from squealpipe.structures.squeal.windows import Running
+from squealpipe.systems.progress import partial_answer, with_progress
 from squealpipe.validation import Natural, Seed, Tolerance, Workers
-from squealpipe.vibration.any_start import any_start, dies_out_always, lead, sides_of
 from squealpipe.vibration.boundaries import (
+    SEARCH,
     Cure,
-    interval_table,
-    linear_intervals,
+    QuietInterval,
     nearest_boundary,
-    quiet_intervals,
 )
+from squealpipe.vibration.cures import Boundary, boundaries, by_change, cure_table
 from squealpipe.vibration.schema import ASSESS, DIRECTIONS
 from squealpipe.vibration.settling import FOR_NUMBERS
 
@@ -53,90 +54,62 @@ class JudgedStructure:
 
     def without_cures(self) -> xr.Dataset:
         """Return the answer so far: verdict, cause, frequency and level."""
-        return self._answer({}, {}, {}, {})
+        return self._answer({}, {})
 
     def with_cures(self) -> xr.Dataset:
-        """Return the whole answer; the search takes most of its time."""
+        """Return the whole answer; the search takes most of its time, and tells each cure."""
         cures, units = cures_of(self.design, self.modifications)
         quiet = self.verdict is Verdict.quiet
-        linear = {
-            name: linear_intervals(cure, lambda design: design.margin)
-            for name, cure in cures.items()
-        }
-        dies_out = partial(_dies_out, family=self.family)
-        intervals = quiet_intervals(cures, linear, dies_out, quiet=quiet)
-        nearest = {
-            name: nearest_boundary(intervals[name], cure.value, quiet=quiet)
-            for name, cure in cures.items()
-        }
-        sides = sides_of(cures)
-        for side in sides:
-            side.motions = list(self.motions)
-        if not quiet:
-            lead(sides, nearest, self.family)
-        anywhere = any_start(
-            cures,
-            sides,
-            nearest,
-            quiet,
-            quiet and not self.motions,
-            self.family,
-            partial(dies_out_always, subjects=self.family),
-            partial(dies_out_always, subjects=self.family, kinds=1),
-        )
-        return self._answer(
-            cures, units, intervals, {"quiet": nearest, "any": anywhere}
-        )
+        linear = {name: _linear_intervals(cure) for name, cure in cures.items()}
+
+        def nearness(name: str) -> float:
+            nearest = nearest_boundary(linear[name], cures[name].value, quiet=quiet)
+            change = abs(cures[name].change(nearest))
+            return math.inf if math.isnan(change) else change
+
+        found: dict[str, Boundary] = {}
+        for name in with_progress(sorted(cures, key=nearness)):
+            found |= boundaries(
+                {name: cures[name]},
+                linear,
+                self.family,
+                self.motions,
+                quiet=quiet,
+                always=quiet and not self.motions,
+            )
+            partial_answer(partial(_in_short, name, found[name]))
+        return self._answer(by_change(found), units)
 
     def _answer(
-        self,
-        cures: Mapping[str, Cure],
-        units: Mapping[str, str],
-        intervals: Mapping[str, Any],
-        found: Mapping[str, Mapping[str, float]],
+        self, found: Mapping[str, Boundary], units: Mapping[str, str]
     ) -> xr.Dataset:
-        nearest, anywhere = found.get("quiet", {}), found.get("any", {})
-        changes = {name: _change(cure, nearest[name]) for name, cure in cures.items()}
-        order = sorted(
-            cures,
-            key=lambda name: (
-                math.inf if math.isnan(changes[name]) else abs(changes[name])
-            ),
-        )
-        tried = {name: cures[name].grid for name in order}
-
-        def table(values: list[float]) -> np.ndarray:
-            return np.array(values, float)
-
-        safe = [anywhere.get(name, math.nan) for name in order]
         plant = self.design.plant
         assert plant is not None  # noqa: S101 (without sliding there is no verdict)
         return build(
             ASSESS,
+            {**self.facts, **cure_table(found, units)},
             {
-                **self.facts,
-                "value": table([cures[name].value for name in order]),
-                "quiet_from": table([nearest[name] for name in order]),
-                "quiet_from_any_start": table(safe),
-                "change": table([changes[name] for name in order]),
-                "change_any_start": table(
-                    [
-                        _change(cures[name], value)
-                        for name, value in zip(order, safe, strict=True)
-                    ]
-                ),
-                "lowest_tried": table([float(tried[name].min()) for name in order]),
-                "highest_tried": table([float(tried[name].max()) for name in order]),
-                **interval_table([intervals[name] for name in order]),
-                "unit": np.array([units[name] for name in order], str),
-            },
-            {
-                "cure": np.array(order, str),
+                "cure": np.array(list(found), str),
                 "mode": np.arange(1, len(plant.frequencies) + 1),
                 "contact": plant.contacts,
                 "direction": list(DIRECTIONS),
             },
         )
+
+
+def _in_short(name: str, boundary: Boundary) -> str:
+    """Return in words what one cure reaches."""
+    safe = boundary.quiet_from_any_start
+    nearest = boundary.quiet_from if math.isnan(safe) else safe
+    if math.isnan(nearest):
+        return f"  {name} (now {boundary.cure.value:.4g}): no change of the verdict"
+    return f"  {name} (now {boundary.cure.value:.4g}): changes the verdict at {nearest:.4g}"
+
+
+def _linear_intervals(cure: Cure) -> list[QuietInterval]:
+    return linear_intervals(
+        lambda value: cure.apply(value).structure, cure.grid.tolist(), cure.value
+    )
 
 
 @recorded(
@@ -213,33 +186,10 @@ def judge_structure(
         "quiet_unless_struck": verdict is Verdict.quiet and bool(lasting),
         "random_starts": len(others),
         "random_starts_noisy": sum(run.lasts for run in others),
-        "degrees_of_freedom": design.whole.size,
+        "degrees_of_freedom": design.given.size,
         "n_modes": plant.size,
         "outcome": outcome,
     }
     motions = [design.to_whole(run.last.final) for run in lasting[:2]]
-    # Boundaries are located far more coarsely than this tolerance of the runs that search them
-    search_tolerance = 1e-9
-    searched = replace(family, tol=max(tol, search_tolerance))
+    searched = replace(family, tol=max(tol, SEARCH.tol))
     return JudgedStructure(design, verdict, motions, facts, searched, named)
-
-
-def _dies_out(cures: Any, values: Any, *, family: Structures) -> list[bool]:
-    """Tell whether pushed steady sliding ends quiet; where there is none it does not."""
-    rows, starts = [], []
-    for row, (cure, value) in enumerate(zip(cures, values, strict=True)):
-        design = cure.apply(value)
-        start = pushed(design) if design.margin <= 0.0 else None
-        if start is not None:
-            rows.append(row)
-            starts.append(start)
-    answers = [False] * len(cures)
-    for row, run in zip(rows, family.settle(starts), strict=True):
-        answers[row] = run.quiet
-    return answers
-
-
-def _change(cure: Cure, found: float) -> float:
-    """Per cent of the present value; of nothing per cent of the largest that is tried."""
-    unit = abs(cure.value) or float(cure.above.max(initial=0.0)) or 1.0
-    return 100.0 * (found - cure.value) / unit

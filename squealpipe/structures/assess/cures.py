@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from squealpipe.structures.assess.designs import Design
-from squealpipe.structures.assess.modifications import read_modification
+from squealpipe.structures.assess.modifications import Modification, read_modification
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.varied_friction import VariedFriction, face_of
 from squealpipe.vibration.boundaries import Cure
@@ -72,9 +72,11 @@ def cures_of(
             raise ValueError(
                 f"modifications: {name!r} is the name of a cure; rename it"
             )
-        change = read_modification(name, content, whole, _leading(design))
+        change = read_modification(name, content, design.given, _leading(design))
         amounts = change.most * np.linspace(0.0, 1.0, RANGES.steps + 1)[1:]
-        cures[name] = Cure(0.0, _whole(design, change.of), np.zeros(0), amounts)
+        cures[name] = Cure(
+            0.0, _modified(design, change), np.zeros(0), amounts, of_none=change.most
+        )
         units[name] = change.unit
     return cures, {name: units[name] for name in cures}
 
@@ -102,6 +104,19 @@ def _whole(design: Design, change: Change) -> Callable[[float], Design]:
     @lru_cache(maxsize=512)
     def apply(value: float) -> Design:
         return design.changed(change(design.whole, value))
+
+    return apply
+
+
+def _modified(design: Design, change: Modification) -> Callable[[float], Design]:
+    """Return the design with some amount of a modification, remembered by the amount."""
+    ready = design.ready_for(lambda given: change.of(given, change.most))
+
+    @lru_cache(maxsize=512)
+    def apply(amount: float) -> Design:
+        if amount == 0.0:
+            return ready
+        return ready.modified(lambda given: change.of(given, amount))
 
     return apply
 
@@ -152,7 +167,13 @@ def _damping(design: Design) -> Cure:
     least = max(mean, 1e-4)
     above = np.geomspace(least, max(RANGES.damping, 2.0 * least), 40)
     below = np.append(mean / _factors(RANGES.factor), 0.0) if mean else np.zeros(0)
-    return Cure(mean, _whole(design, change), below, above[above > mean])
+    return Cure(
+        mean,
+        _whole(design, change),
+        below,
+        above[above > mean],
+        of_none=float(above.max()),
+    )
 
 
 def _frictions(design: Design) -> dict[str, Cure]:

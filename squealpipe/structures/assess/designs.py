@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Self
@@ -15,6 +15,7 @@ from squealpipe.structures.reduction import Kept
 from squealpipe.structures.sliding import NoSlidingError
 from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
 from squealpipe.structures.squeal.windows import Running, followed_windows, run_windows
+from squealpipe.structures.subspace import projected, subspace, with_answers
 from squealpipe.vibration.schema import Mechanism
 from squealpipe.vibration.settled_runs import QUIETNESS, Horizon, SettledRun, Start
 from squealpipe.vibration.settled_runs import settle as settle_runs
@@ -29,14 +30,22 @@ MOST = 20_000.0
 class Design:
     """A structure, and what is run of it.
 
+    A large structure is changed in coordinates that hold its lowest modes at rest, twice as many as
+    are run, and what forces at its contacts do statically: there the modes of what is changed are
+    nearly those of the whole, and cost a thousandth.
+
     Attributes:
-        whole: of all degrees of freedom.
+        whole: the structure, of a large one in these coordinates.
         n_modes: modes in which it is run; None: as it is.
+        origin: large structure of all degrees of freedom; None where that is ``whole``.
+        coordinates: (n of the origin, n of the whole), amplitudes → displacements.
         running: the structure that is run, where it is known.
     """
 
     whole: ContactStructure
     n_modes: int | None = None
+    origin: ContactStructure | None = None
+    coordinates: np.ndarray | None = None
     running: ContactStructure | None = None
 
     @classmethod
@@ -48,21 +57,29 @@ class Design:
             ValueError: it has no contacts, or is too large.
         """
         running = Plant(structure).structure
-        origin = running.reduced_from
-        if origin is None:
+        if running.reduced_from is None:
             return cls(running)
-        return cls(origin.whole, running.size, running)
+        origin = running.reduced_from.whole
+        number = min(2 * running.size, origin.size)
+        coordinates = subspace(origin, [], number)
+        return cls(_projected(origin, coordinates), running.size, origin, coordinates)
+
+    @property
+    def given(self) -> ContactStructure:
+        """Structure of all degrees of freedom."""
+        return self.whole if self.origin is None else self.origin
 
     @cached_property
     def plant(self) -> Plant | None:
         """The structure about its steady sliding; None where there is none."""
         try:
-            return Plant(self._structure)
+            return Plant(self.structure)
         except NoSlidingError:
             return None
 
     @cached_property
-    def _structure(self) -> ContactStructure:
+    def structure(self) -> ContactStructure:
+        """The structure that is run."""
         if self.running is not None:
             return self.running
         if self.n_modes is None:
@@ -74,12 +91,44 @@ class Design:
 
     def changed(self, whole: ContactStructure) -> Design:
         """Return the design of another whole structure, in as many modes of its own."""
-        return Design(whole, self.n_modes)
+        return replace(self, whole=whole, running=None)
+
+    def modified(
+        self, change: Callable[[ContactStructure], ContactStructure]
+    ) -> Design:
+        """Return the design of the structure of all degrees of freedom with a change of it."""
+        if self.origin is None or self.coordinates is None:
+            return self.changed(change(self.whole))
+        return self.changed(_projected(change(self.origin), self.coordinates))
+
+    def ready_for(
+        self, change: Callable[[ContactStructure], ContactStructure]
+    ) -> Design:
+        """Return the design in coordinates that also hold the effect of a change on its modes."""
+        if self.origin is None or self.coordinates is None:
+            return self
+        other = change(self.origin)
+        forces = np.hstack(
+            [
+                (getattr(other, name) - getattr(self.origin, name)) @ self.coordinates
+                for name in ("mass", "given_stiffness")
+            ]
+        )
+        if not forces.any():
+            return self
+        coordinates = with_answers(self.origin, self.coordinates, forces)
+        return replace(
+            self,
+            whole=_projected(self.origin, coordinates),
+            coordinates=coordinates,
+            running=None,
+        )
 
     def slid(self, **changes: Any) -> Design:
         """Return the design with another friction or belt speed, in the same modes at rest."""
-        running = None if self.running is None else self.running.with_(**changes)
-        return Design(self.whole.with_(**changes), self.n_modes, running)
+        running = self.structure.with_(**changes)
+        running.modes = self.structure.modes
+        return replace(self, whole=self.whole.with_(**changes), running=running)
 
     @property
     def margin(self) -> float:
@@ -91,7 +140,7 @@ class Design:
 
     def to_whole(self, state: np.ndarray) -> np.ndarray:
         """Return displacements and velocities of the whole, (2 n,), of a state that is run."""
-        modes = self._structure.modes
+        modes = self.structure.modes
         if modes is None:
             return state
         q, v = np.split(state, 2)
@@ -99,10 +148,13 @@ class Design:
 
     def from_whole(self, state: np.ndarray) -> np.ndarray:
         """Return the state that is run next to one of the whole."""
-        modes = self._structure.modes
+        modes = self.structure.modes
         if modes is None:
             return state
-        both = np.linalg.lstsq(modes, np.stack(np.split(state, 2), axis=1))[0]
+        both = np.stack(np.split(state, 2), axis=1)
+        # coordinates that a change has added are the last ones
+        both = np.pad(both, ((0, max(len(modes) - len(both), 0)), (0, 0)))
+        both = np.linalg.lstsq(modes, both[: len(modes)])[0]
         return np.asarray(both.T.ravel())
 
     @property
@@ -115,9 +167,9 @@ class Design:
         drag = np.abs(self.plant.spectrum.state.drag)
         contacts = [
             replace(each, mu=float(mu), friction_law=COULOMB, mu_static=None)
-            for each, mu in zip(self._structure.contacts, drag, strict=True)
+            for each, mu in zip(self.structure.contacts, drag, strict=True)
         ]
-        level = Plant(self._structure.with_(contacts=contacts))
+        level = Plant(self.structure.with_(contacts=contacts))
         if not level.unstable.size:
             return Mechanism.falling_friction
         leading = self.plant.spectrum.values[self.plant.unstable[0]]
@@ -168,6 +220,18 @@ def _start(design: Design, plant: Plant, state: np.ndarray) -> Start:
     )
 
 
+def _projected(
+    structure: ContactStructure, coordinates: np.ndarray
+) -> ContactStructure:
+    """Return a structure in some coordinates, with its damping of modes."""
+    return projected(structure, None, coordinates).with_(
+        mass=coordinates.T @ (structure.mass @ coordinates),
+        modal_damping=structure.modal_damping[: coordinates.shape[1]]
+        if structure.modal_damping.ndim
+        else structure.modal_damping,
+    )
+
+
 @dataclass
 class Structures:
     """Structures as the search for other motions sees them, and how they are run.
@@ -187,6 +251,12 @@ class Structures:
     def is_quiet_linearly(self, subject: Design) -> bool:
         """Tell whether steady sliding exists, and small motions about it do not grow."""
         return subject.margin <= 0.0
+
+    def push(self, subject: Design) -> Start:
+        """Return steady sliding, pushed."""
+        start = pushed(subject)
+        assert start is not None  # noqa: S101 (it is quiet linearly)
+        return start
 
     def fading(self, subject: Design) -> float:
         """Return ln of the decay of small motions within the longest run; NaN where they grow."""

@@ -95,7 +95,7 @@ def test_the_answer_is_told_before_the_search_for_what_stops_it(
     def interrupted(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("squealpipe.brake.assess.assess.boundaries", interrupted)
+    monkeypatch.setattr("squealpipe.brake.assess.assess.pad_boundaries", interrupted)
     numbers = [f"--{name.replace('_', '-')}={value}" for name, value in NUMBERS.items()]
     run(["assess", "22deg", "46deg", *numbers])
     assert capsys.readouterr().out.splitlines() == list(first_lines(hammering))

@@ -15,7 +15,7 @@ from squealpipe.structures.assess.cures import cures_of
 from squealpipe.structures.assess.designs import Design
 from squealpipe.structures.assess.modifications import read_modification
 from squealpipe.structures.meshes.structure_mesh import StructureMesh
-from squealpipe.vibration.boundaries import linear_intervals
+from squealpipe.structures.quiet_intervals import linear_intervals
 from squealpipe.vibration.schema import Mechanism
 
 MASS, STIFFNESS, PRELOAD, MU = 0.5, 6e6, 3000.0, 0.5
@@ -70,7 +70,11 @@ def test_linear_boundaries_of_cures_are_those_of_own_eigenvalues(cure):
     assert design.plant.rate == pytest.approx(growth(), rel=1e-6)
     assert design.mechanism is Mechanism.flutter
     cures, _ = cures_of(design, MODIFICATIONS)
-    intervals = linear_intervals(cures[cure], lambda each: each.margin)
+    intervals = linear_intervals(
+        lambda value: cures[cure].apply(value).structure,
+        cures[cure].grid.tolist(),
+        cures[cure].value,
+    )
     grid = cures[cure].grid
     found = sorted(edge for each in intervals for edge in each.edges())
     truth = crossings(OTHERS[cure], np.linspace(grid[0], grid[-1], 400))

@@ -1,0 +1,147 @@
+"""Find what stops a vibration: for each parameter alone, all quiet values and the nearest of them.
+
+Idea: the stretches in which small motions die out are known without a run (``linear``). Runs of a
+push tell in which of them, and how far, the subject is quiet; then the motions that last beside
+steady sliding are followed to where the last of them ends.
+
+Invariant: pads and structures differ in their subjects alone. Cost: that of the runs.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from squealpipe.vibration.any_start import (
+    Subjects,
+    any_start,
+    dies_out_always,
+    lead,
+    sides_of,
+)
+from squealpipe.vibration.boundaries import (
+    Cure,
+    QuietInterval,
+    interval_table,
+    nearest_boundary,
+    quiet_intervals,
+)
+
+
+class Boundary(NamedTuple):
+    """Boundary that one cure reaches; values that were not found are NaN.
+
+    Attributes:
+        intervals: all quiet ones, the nearest first.
+    """
+
+    cure: Cure
+    quiet_from: float
+    quiet_from_any_start: float
+    intervals: Sequence[QuietInterval]
+
+    @property
+    def change(self) -> float:
+        """Change of the present value to the nearest quiet one."""
+        return self.cure.change(self.quiet_from)
+
+    @property
+    def change_any_start(self) -> float:
+        """Change of the present value to the nearest that is quiet from any start."""
+        return self.cure.change(self.quiet_from_any_start)
+
+
+def boundaries(
+    cures: Mapping[str, Cure],
+    linear: Mapping[str, Sequence[QuietInterval]],
+    subjects: Subjects,
+    motions: Sequence[np.ndarray],
+    *,
+    quiet: bool,
+    always: bool,
+) -> dict[str, Boundary]:
+    """Return what each cure reaches, in the order of the cures.
+
+    Args:
+        linear: stretches of each in which small motions do not grow.
+        motions: states of motions of the present subject that are not quiet.
+        quiet: whether a push dies out now.
+        always: whether any start does.
+    """
+    dies_out = partial(pushes_die_out, subjects=subjects)
+    intervals = quiet_intervals(cures, linear, dies_out, quiet=quiet)
+    nearest = {
+        name: nearest_boundary(intervals[name], cure.value, quiet=quiet)
+        for name, cure in cures.items()
+    }
+    sides = sides_of(cures)
+    for side in sides:
+        side.motions = list(motions)
+    if not quiet:
+        lead(sides, nearest, subjects)
+    anywhere = any_start(
+        cures,
+        sides,
+        nearest,
+        quiet,
+        always,
+        subjects,
+        partial(dies_out_always, subjects=subjects),
+        partial(dies_out_always, subjects=subjects, kinds=1),
+    )
+    return {
+        name: Boundary(
+            cure, nearest[name], anywhere.get(name, math.nan), intervals[name]
+        )
+        for name, cure in cures.items()
+    }
+
+
+def by_change(found: Mapping[str, Boundary]) -> dict[str, Boundary]:
+    """Return the boundaries by ascending change; those that were not found come last."""
+
+    def size(name: str) -> float:
+        change = abs(found[name].change)
+        return math.inf if math.isnan(change) else change
+
+    return {name: found[name] for name in sorted(found, key=size)}
+
+
+def cure_table(
+    found: Mapping[str, Boundary], units: Mapping[str, str]
+) -> dict[str, np.ndarray]:
+    """Return the variables of the dataset over ``cure``."""
+    rows = list(found.values())
+    columns = {
+        name: [getattr(row, name) for row in rows]
+        for name in ("quiet_from", "quiet_from_any_start", "change", "change_any_start")
+    }
+    columns["value"] = [row.cure.value for row in rows]
+    columns["lowest_tried"] = [row.cure.grid.min() for row in rows]
+    columns["highest_tried"] = [row.cure.grid.max() for row in rows]
+    return {
+        **{name: np.array(values, float) for name, values in columns.items()},
+        **interval_table([row.intervals for row in rows]),
+        "unit": np.array([units[name] for name in found], str),
+    }
+
+
+def pushes_die_out(
+    cures: Sequence[Cure], values: Sequence[float], *, subjects: Subjects
+) -> list[bool]:
+    """Tell whether pushed steady sliding ends quiet; where there is none it does not."""
+    rows, starts = [], []
+    for row, (cure, value) in enumerate(zip(cures, values, strict=True)):
+        subject = cure.apply(value)
+        if subjects.is_quiet_linearly(subject):
+            rows.append(row)
+            starts.append(subjects.push(subject))
+    answers = [False] * len(cures)
+    ends = subjects.settle(starts) if starts else []
+    for row, run in zip(rows, ends, strict=True):
+        answers[row] = run.quiet
+    return answers
