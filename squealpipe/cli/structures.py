@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 from functools import partial
 from pathlib import Path
@@ -14,7 +15,6 @@ from squealpipe.cli.arguments import (
     Files,
     Frequency,
     Frictions,
-    Numbers,
     Output,
     Ranges,
     Share,
@@ -26,7 +26,7 @@ from squealpipe.cli.arguments import (
     Workers,
     pairs_of,
 )
-from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer, say, working
+from squealpipe.cli.console import ANSWER_IS_NO, DONE, SESSION, answer, say, working
 from squealpipe.cli.output import (
     check_output,
     check_picture,
@@ -335,11 +335,16 @@ def operating(
     file: Path,
     /,
     *,
-    pressure: Numbers = None,
+    pressure: SpeedTexts = None,
     speed: SpeedTexts = None,
-    mu: Numbers = None,
+    mu: SpeedTexts = None,
+    temperature: SpeedTexts = None,
+    mu_of: Annotated[
+        list[str] | None, Parameter(metavar="NAME=TABLE", negative="")
+    ] = None,
     measured: Path | None = None,
     frequency_band: Share,
+    band_edges: SpeedTexts = None,
     n_modes: Whole | None = None,
     frequency_max: Frequency = None,
     tol: Tolerance,
@@ -349,43 +354,71 @@ def operating(
 ) -> int:
     """Say at which pressures, speeds and frictions a structure is noisy, at which frequency.
 
-    At each point steady sliding is pushed and run until its motion has settled. Exit code 0: all
-    points are quiet; 1: some are not, or are undetermined.
+    At each point steady sliding is pushed and run until its motion has settled. The same command
+    resumes where it was interrupted. Exit code 0: all points are quiet; 1: some are not, or are
+    undetermined.
 
     Example: `squealpipe operating pad.yaml --pressure 0.5:2:4 --speed 1:4:4 -o operating.nc`
 
     Args:
         file: structure, a YAML file that names its matrices and contacts (see the gallery).
-        pressure: factors of all preloads, a number or first:last:count.
+        pressure: factors of all preloads, a number, a list or first:last:count; with a unit, like
+            "5 bar:20 bar:4", the mean pressure of the faces.
         speed: speeds likewise, m/s, or rad/s (also 200 rpm) where the file has a rotation; that of
             the file by default.
-        mu: friction likewise, of the contacts that have none of their own.
-        measured: list of measured noises (text or Excel) with columns like pressure, speed [km/h],
-            mu, frequency [Hz], level [dB]; an empty frequency is a quiet point. Each is compared
-            with the nearest point of the map.
+        mu: friction likewise, of the contacts that have none of their own; with --mu-of factors.
+        temperature: degrees Celsius, likewise, where friction is a table over it.
+        mu_of: table of friction over temperature, pressure or speed: temperature=mu.csv, with the
+            columns "temperature [°C]" and mu, or "temperature=20:0.45 300:0.35"; repeat for more,
+            which are multiplied.
+        measured: list of measured noises (text or Excel) with columns like pressure [bar],
+            speed [km/h], temperature [°C], mu, frequency [Hz], level [dB]; an empty frequency is a
+            quiet point. Each is compared with the nearest point of the map.
         frequency_band: largest difference between the frequency of a measured noise and the
             predicted one, over the measured one.
+        band_edges: edges of the bands of occurrence, like 1kHz,2kHz,4kHz; third octaves by
+            default.
         n_modes: modes to reduce the structure to; by default as many as errors below 1 % need,
             and no reduction up to 32 degrees of freedom.
         frequency_max: reduce to the modes that the unstable ones up to this frequency need, Hz;
             needed beyond 1000 degrees of freedom.
     """
     refuse_existing(output, force=files.force)
+    check_output(output, force=files.force)
+    drawn = check_picture(files.picture, output, force=files.force)
 
-    import squealpipe
+    from squealpipe.store.rerun.key import rule_key, sources
+    from squealpipe.study.chunks import beside
     from squealpipe.study.report.operating import lines
-
-    def operating_map(structure: Any, **options: Any) -> xr.Dataset:
-        if text := options.pop("speed", None):
-            read = partial(parse_number, units=structure.speed_unit)
-            options["speed"] = parse_range(text, one=read)
-        return squealpipe.operating_map(as_asked(structure, options), **options)
+    from squealpipe.study.sweep import planned, run_sweep
 
     asked: dict[str, Any] = {"pressure": pressure, "speed": speed, "mu": mu}
+    asked |= {"temperature": temperature, "band_edges": band_edges}
     asked |= {"n_modes": n_modes, "frequency_max": frequency_max}
-    asked |= {"tol": tol, "workers": workers, "frequency_band": frequency_band}
+    asked |= {"tol": tol, "frequency_band": frequency_band}
+    asked["mu_of"] = pairs_of("--mu-of", mu_of) if mu_of else None
     asked["measured"] = None if measured is None else str(measured)
-    dataset = _compute(operating_map, file, asked, output, files)
+    settings = {
+        "task": f"{file}:operating_map",
+        "vary": {},
+        "fixed": {name: each for name, each in asked.items() if each is not None},
+    }
+    with errors_in_options():
+        plan = planned(settings)
+    kept = beside(output, rule_key(settings, sources(Path(inspect.getfile(planned)))))
+    count, done = math.prod(map(len, plan.vary.values())), plan.finished(kept)
+    say(
+        f"{count} operating points"
+        + (f"; {done} are there from before" if done else "")
+    )
+    # points that are finished are kept
+    SESSION.remedy = "run the same command again"
+    with working("operating map"):
+        dataset = write(
+            lambda: run_sweep(plan, workers=workers, kept=kept), output, config=settings
+        )
+    kept.remove()
+    finish(dataset, output, drawn, files)
     answer(*lines(dataset))
     quiet = bool((dataset.verdict == Verdict.quiet).all())
     return DONE if quiet else ANSWER_IS_NO

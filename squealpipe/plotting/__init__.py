@@ -112,9 +112,10 @@ def picture(
 
 
 def _schema(dataset: xr.Dataset) -> str:
-    """The schema by which the picture is chosen: that of modes whatever they are over."""
+    """The schema by which the picture is chosen: that of modes or maps whatever they are over."""
     schema = str(dataset.attrs.get("schema", "the file"))
-    return COMPLEX_MODES if schema.startswith(f"{COMPLEX_MODES} over ") else schema
+    name, over, _ = schema.partition(" over ")
+    return name if over and name in (COMPLEX_MODES, "operating_map") else schema
 
 
 def _check_modes(dataset: xr.Dataset) -> None:

@@ -13,6 +13,7 @@ from typing import Any, ParamSpec
 import numpy as np
 import xarray as xr
 
+from squealpipe.inputs import UNITS
 from squealpipe.parameters import Parameters
 from squealpipe.systems.datasets.versions import versions
 from squealpipe.validation import checked
@@ -24,13 +25,14 @@ _HOW: dict[str, tuple[str, str]] = {}
 
 
 def recorded(
-    *, model: str = "", method: str = ""
+    *, model: str = "", method: str = "", units: Mapping[str, str] = UNITS
 ) -> Callable[[Callable[Given, xr.Dataset]], Callable[Given, xr.Dataset]]:
     """Have a task check its arguments, and write what made its dataset into the attributes.
 
     Args:
         model: level of the model, where it is not an argument of the task.
         method: how it is computed, where that is not an argument.
+        units: CF unit by name of the argument, for texts with a unit.
     """
 
     def decorate(task: Callable[Given, xr.Dataset]) -> Callable[Given, xr.Dataset]:
@@ -51,7 +53,7 @@ def recorded(
             dataset.attrs.update(origin(task.__name__, kept))
             return dataset
 
-        return checked(run)
+        return checked(run, units)
 
     return decorate
 

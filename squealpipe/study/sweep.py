@@ -4,13 +4,8 @@ from __future__ import annotations  # help shows Angle, not its checks
 
 import inspect
 import itertools
-import time
-from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
-from multiprocessing import active_children, get_all_start_methods, get_context
 from typing import Any
 
 import numpy as np
@@ -33,6 +28,10 @@ from squealpipe.schema import (
 )
 from squealpipe.schema.origin import origin
 from squealpipe.study.chunks import Chunks, Run
+from squealpipe.study.operating_sweep import TASK as OPERATING_MAP
+from squealpipe.study.operating_sweep import OperatingSweep
+from squealpipe.study.point_sweep import PointSweep
+from squealpipe.study.scatter import join
 from squealpipe.study.schema.sweep import (
     OPTIONS,
     fill_up,
@@ -44,14 +43,9 @@ from squealpipe.study.structure_sweep import StructureSweep
 from squealpipe.study.sweep_plan import SweepPlan
 from squealpipe.study.swept_tasks import MAPS, NO_DEFAULT, TASKS, options_of
 from squealpipe.study.system_sweep import SystemSweep, is_system
-from squealpipe.systems.processes import available_cores, leave_interrupts_to_the_parent
-from squealpipe.systems.progress import alone
 from squealpipe.text import suggestion
 from squealpipe.units import holds_units
 from squealpipe.validation import Line, Workers, checked
-
-MOST_HELD = 2000
-"""Finished runs that are held in memory."""
 
 
 @checked
@@ -66,7 +60,7 @@ def _gate(
 
 
 @dataclass(frozen=True, kw_only=True)
-class Sweep(SweepPlan):
+class Sweep(PointSweep):
     """A sweep: a task, fixed arguments, and the values of those that vary.
 
     Attributes:
@@ -183,36 +177,20 @@ class Sweep(SweepPlan):
             angles = [np.atleast_1d(angle) for angle in angles]
         return task(params, *angles, **given)
 
-    def finished(self, kept: Chunks) -> int:
-        """Return the number of runs that are on disk."""
-        return kept.finished()
+    def arrays(self, point: Sequence[float], workers: int | None) -> Run:
+        """A run as arrays, and its lengths along dimensions that differ from run to run."""
+        run = self.run(point, workers)
+        lengths = {
+            f"{dim}_count": np.asarray(run.sizes.get(dim, 0))
+            for dim in ragged_dims(find(_schema(self.task)))
+        }
+        return {
+            str(name): values.values for name, values in run.variables.items()
+        } | lengths
 
-    def dataset(
-        self, workers: int | None = None, kept: Chunks | None = None
-    ) -> xr.Dataset:
+    def merged(self, runs: Callable[[], Iterator[Run]]) -> xr.Dataset:
         """Return the task's variables with the swept names as leading dimensions."""
-        made: list[Run] = []
-        done, written = (kept.finished(), time.monotonic()) if kept else (0, 0.0)
-        total = len(self.points)
-        number = done
-        with alone() as show:
-            show(done / total)
-            try:
-                for number, run in enumerate(_runs(self, workers, done), done + 1):
-                    made.append(run)
-                    show(number / total)
-                    # after 5 s of new results they go to disk: a stopped sweep loses no more
-                    if kept and (
-                        time.monotonic() - written > 5.0 or len(made) >= MOST_HELD
-                    ):
-                        kept.save(number - len(made), made)
-                        made, written = [], time.monotonic()
-            finally:
-                if kept and made:
-                    kept.save(number - len(made), made)
-        if not kept:
-            return _merge(self, lambda: iter(made))
-        return _merge(self, kept.runs)
+        return _merge(self, runs)
 
     @property
     def origin(self) -> dict[str, Any]:
@@ -226,7 +204,8 @@ def planned(config: Mapping[str, Any]) -> SweepPlan:
     """The sweep of a configuration as :func:`squealpipe.ranges.sweep_config` makes it."""
     given = {key: config[key] for key in ("task", "vary", "fixed")}
     if is_structure(config["task"]):
-        return StructureSweep(**given)
+        of_points = config["task"].endswith(f":{OPERATING_MAP}")
+        return (OperatingSweep if of_points else StructureSweep)(**given)
     if is_system(config["task"]):
         return SystemSweep(**given)
     return Sweep(**given, params=parameters_of(config))
@@ -252,62 +231,21 @@ def run_sweep(
     return sweep.dataset(workers, kept)
 
 
-def _runs(sweep: Sweep, workers: int | None, first: int) -> Iterator[Run]:
-    """Yield the results of the runs from one on, in order."""
-    points = sweep.points[first:]
-    number = min(workers or available_cores(), len(points))
-    if number < 2 or "fork" not in get_all_start_methods():
-        for point in points:
-            yield _arrays(sweep, point, workers)
-        return
-    others = set(active_children())
-    # handing over a short run costs more than the run: up to 32 go together
-    most = max(1, min(32, len(points) // (8 * number)))
-    size, at = 1, 0
-    with ProcessPoolExecutor(
-        number, get_context("fork"), leave_interrupts_to_the_parent
-    ) as pool:
-        try:
-            # not by its map, which cancels runs to come: the pool's thread trips over those;
-            # a few ahead, so that what waits to be read is bounded
-            ahead: deque[Future[tuple[list[Run], float]]] = deque()
-            while ahead or at < len(points):
-                while at < len(points) and len(ahead) <= 4 * number:
-                    ahead.append(pool.submit(_batch, sweep, points[at : at + size]))
-                    at += size
-                runs, seconds = ahead.popleft().result()
-                # so that handing them over costs little, and an interruption loses little
-                # s: an interruption loses the runs under way
-                size = min(max(1, int(len(runs) * 0.5 / max(seconds, 1e-9))), most)
-                yield from runs
-        except BrokenProcessPool as error:
-            raise RuntimeError(
-                "a worker process was killed, perhaps for want of memory; run the same command "
-                "again, with fewer --workers"
-            ) from error
-        except BaseException:
-            for process in set(active_children()) - others:
-                process.terminate()  # the pool is broken then and waits for no other run
-            raise
+def joined(
+    config: Mapping[str, Any], parts: Sequence[xr.Dataset], along: str
+) -> xr.Dataset:
+    """Return a map or sweep from its parts, in order.
 
-
-def _batch(sweep: Sweep, points: Sequence[Sequence[float]]) -> tuple[list[Run], float]:
-    """Run several points; return their results and the time they took, s."""
-    started = time.monotonic()
-    runs = [_arrays(sweep, point, 1) for point in points]
-    return runs, time.monotonic() - started
-
-
-def _arrays(sweep: Sweep, point: Sequence[float], workers: int | None) -> Run:
-    """A run as arrays, and its lengths along dimensions that differ from run to run."""
-    run = sweep.run(point, workers)
-    lengths = {
-        f"{dim}_count": np.asarray(run.sizes.get(dim, 0))
-        for dim in ragged_dims(find(_schema(sweep.task)))
-    }
-    return {
-        str(name): values.values for name, values in run.variables.items()
-    } | lengths
+    Args:
+        config: of the sweep, or of a map.
+        along: what the parts differ in.
+    """
+    if is_structure(str(config.get("task", ""))):
+        plan = planned(config)
+        if isinstance(plan, OperatingSweep):
+            # the share of points in a band is that of the whole map
+            return plan.joined(parts)
+    return join(parts, along)
 
 
 def _merge(sweep: Sweep, runs: Callable[[], Iterator[Run]]) -> xr.Dataset:

@@ -258,7 +258,7 @@ def test_a_sweep_that_was_stopped_goes_on_where_it_was(tmp_path, monkeypatch, fi
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Sweep, "run", stopped)
-        patch.setattr("squealpipe.study.sweep.MOST_HELD", 2)
+        patch.setattr("squealpipe.study.point_sweep.MOST_HELD", 2)
         if finished < 8:
             with pytest.raises(KeyboardInterrupt):
                 run_sweep(plan, workers=1, kept=kept)
@@ -316,7 +316,7 @@ def test_a_damaged_chunk_is_made_again(tmp_path):
 def test_runs_behind_a_lost_chunk_are_made_again(tmp_path, monkeypatch, lost):
     kept, plan = Chunks(tmp_path / ".runs", "0" * 16), Sweep(**RAGGED)
     with monkeypatch.context() as patch:
-        patch.setattr("squealpipe.study.sweep.MOST_HELD", 2)
+        patch.setattr("squealpipe.study.point_sweep.MOST_HELD", 2)
         whole = run_sweep(plan, workers=1, kept=kept)
     chunks = sorted(kept.place.iterdir())
     chunks[lost].unlink()

@@ -6,7 +6,8 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.codes import Verdict
-from squealpipe.text import percent
+from squealpipe.structures.schema.operating_map import Match
+from squealpipe.text import number, percent
 from squealpipe.units import engineering
 
 
@@ -29,21 +30,42 @@ def lines(dataset: xr.Dataset) -> Iterator[str]:
         point = dataset.isel(dict(zip(dataset.verdict.dims, place, strict=True)))
         yield (
             f"Loudest: {engineering(float(point.velocity_rms), 'm s-1')} rms at "
-            f"{engineering(float(point.frequency), 'Hz')}, at {float(point.pressure):.3g} times "
-            f"the preload, speed {float(point.speed):.3g}, friction {float(point.mu):.3g}."
+            f"{engineering(float(point.frequency), 'Hz')}, at {_place(point)}."
         )
         for band, share in zip(
             dataset.band.values, dataset.occurrence.values, strict=True
         ):
             if share > 0:
-                yield f"  third octave at {engineering(float(band), 'Hz')}: {percent(float(share))}"
+                middle = engineering(float(band), "Hz")
+                yield f"  band at {middle}: {percent(float(share))} of all points"
     if "hits" in dataset:
         yield (
-            f"Measured: {int(dataset.hits)} noises predicted within "
-            f"{percent(float(dataset.frequency_band))} of their frequency, {int(dataset.misses)} "
-            f"not; {int(dataset.false_alarms)} false alarms, {int(dataset.quiet_agreed)} points "
-            "quiet in both."
+            f"Measured: {int(dataset.hits)} of {int(dataset.hits) + int(dataset.misses)} noises "
+            f"are predicted within {percent(float(dataset.frequency_band))} of their frequency; "
+            f"of the points that were quiet {int(dataset.quiet_agreed)} are predicted quiet and "
+            f"{int(dataset.false_alarms)} noisy (false alarms)."
         )
+        outside = int((dataset.match == Match.outside).sum())
+        if outside:
+            yield f"  {outside} lines of the list lie beyond the map."
+        if "not_compared" in dataset.attrs:
+            yield f"  Not compared, for the map has none: {dataset.attrs['not_compared']}."
     unknown = int((verdicts == Verdict.undetermined).sum())
     if unknown:
         yield f"Undetermined at {unknown} points: not settled in time, or no steady sliding."
+
+
+def _place(point: xr.Dataset) -> str:
+    """Name an operating point in words."""
+    mean = float(point.mean_pressure * point.pressure)
+    words = [
+        engineering(mean, "Pa")
+        if np.isfinite(mean)
+        else f"{number(float(point.pressure))} times the preload"
+    ]
+    words.append(f"speed {number(float(point.speed))}")
+    if "temperature" in point.coords:
+        words.append(f"{number(float(point.temperature))} °C")
+    if np.isfinite(point.friction):
+        words.append(f"friction {number(float(point.friction))}")
+    return ", ".join(words)

@@ -1,15 +1,23 @@
 """Operating points of two degrees of freedom, against eigenvalues that are written down here."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
+import scipy.sparse
 
 from squealpipe import Contact, Structure, load, operating_map, plot, save
 from squealpipe.codes import Verdict
 from squealpipe.structures.assess.measured import matched, read_noises
+from squealpipe.structures.assess.operating_units import OperatingUnits
+from squealpipe.structures.contact import PointOrigin
 from squealpipe.structures.schema.operating_map import Match
+from squealpipe.study.chunks import Chunks
+from squealpipe.study.sweep import joined, planned, run_sweep
 
 STIFFNESS = 6e6
+UNITS = OperatingUnits("m s-1", np.nan)
 ROD = np.array([[1.2e7, -1.0e6], [-1.0e6, 8.0e6]])
 
 
@@ -97,7 +105,7 @@ def test_a_list_with_known_hits_misses_and_false_alarms_is_matched_so(points, tm
         heard = "" if frequency is None else f"{frequency / 1e3:.6f}".replace(".", ",")
         lines.append(f"{pressure};{speed};{mu};{heard};{'80,5' if heard else ''}")
     path.write_text("\n".join(lines), encoding="utf-8")
-    beside = matched(points, read_noises(path), 0.05)
+    beside = matched(points, read_noises(path, UNITS), 0.05)
     assert [Match(each).name for each in beside["match"]] == [row[-1] for row in rows]
     counts = {name: beside[name] for name in ("hits", "misses", "false_alarms")}
     assert counts == {"hits": 1, "misses": 2, "false_alarms": 1}
@@ -108,7 +116,7 @@ def test_a_list_with_known_hits_misses_and_false_alarms_is_matched_so(points, tm
         [[1.0, 7.2, 0.6, noisy / 1e3, 80.5]], columns=lines[0].split(";")
     )
     table.to_excel(excel, index=False)
-    (only,) = read_noises(excel)
+    (only,) = read_noises(excel, UNITS)
     assert only.point == pytest.approx({"pressure": 1.0, "speed": 2.0, "mu": 0.6})
     assert only.frequency == pytest.approx(noisy)
 
@@ -127,5 +135,90 @@ def test_a_list_that_cannot_be_read_is_refused_with_its_line(text, message, tmp_
     path = tmp_path / "noises.csv"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(ValueError, match=r"noises\.csv") as error:
-        read_noises(path)
+        read_noises(path, UNITS)
     assert message in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"pressure": ["5 bar"]}, "no contact has an area"),
+        ({"speed": [0.0, 1.0]}, "nothing slides"),
+        ({"mu": [0.1, 0.1]}, "each once"),
+        ({"temperature": [20.0]}, "give mu_of"),
+        ({"mu_of": {"temperature": "20:0.4 300:0.3"}}, "give temperature="),
+        ({"mu_of": {"humidity": "0:0.4 1:0.3"}}, "humidity"),
+        ({"mu_of": {"speed": {1.0: 0.4}}}, "two or more knots"),
+        (
+            {"mu_of": {"speed": "1:0.4 3:0.3"}, "speed": [4.0]},
+            "nothing is extrapolated",
+        ),
+        ({"mu_of": {"speed": 0.4}}, "name of a file"),
+        ({"band_edges": [2e3, 1e3]}, "ascending"),
+    ],
+)
+def test_points_that_cannot_be_are_refused_before_any_run(options, message):
+    with pytest.raises(ValueError, match=message):
+        operating_map(structure(), **options)
+
+
+def test_pressures_are_those_of_the_faces_and_tables_may_have_any_unit(tmp_path):
+    """A face of 20 cm² that is pressed with 3 kN has 15 bar."""
+    origin = PointOrigin((1,), (), 20e-4, 0.0, (0.0, 0.0, 0.0))
+    contacts = [replace(each, origin=origin) for each in structure().contacts]
+    pressed = structure().with_(contacts=contacts)
+    table = tmp_path / "mu.csv"
+    table.write_text("temperature [K];mu\n573,15;0,7\n293,15;0,1\n", encoding="utf-8")
+    points = operating_map(
+        pressed,
+        pressure=["7.5 bar", "3 MPa"],
+        speed=["7.2 km/h"],
+        temperature="20:300:3",
+        mu_of={"temperature": table, "pressure": {"5 bar": 0.5, "30 bar": 1.0}},
+        band_edges=["500 Hz", "1 kHz", "20 kHz"],
+        workers=1,
+    )
+    assert points.pressure.values == pytest.approx([0.5, 2.0])
+    assert float(points.mean_pressure) == pytest.approx(1.5e6)
+    assert points.speed.values == pytest.approx([2.0])
+    over_pressure = np.array([0.55, 1.0])
+    truth = over_pressure[:, None] * np.array([0.1, 0.4, 0.7])
+    assert points.friction.values[:, 0] == pytest.approx(truth)
+    for place in np.ndindex(2, 3):
+        at = points.growth_rate.values[place[0], 0, place[1]]
+        assert at == pytest.approx(growth(truth[place], 1.0), rel=1e-6)
+    assert points.band_low.values == pytest.approx([500.0, 1000.0])
+    heard = np.isfinite(points.frequency.values)
+    assert points.occurrence.values.sum() == pytest.approx(heard.mean())
+
+
+def test_a_sweep_in_parts_or_after_an_interruption_is_the_map_of_python(tmp_path):
+    pad = structure()
+    for name, matrix in (("mass", pad.mass), ("stiffness", pad.given_stiffness)):
+        scipy.sparse.save_npz(tmp_path / f"{name}.npz", matrix.tocsr())
+    scipy.sparse.save_npz(tmp_path / "damping.npz", pad.given_damping.tocsr())
+    (tmp_path / "contacts.csv").write_text(
+        f"name,normal,tangential,stiffness,preload\npad,2:1,1:1,{STIFFNESS},3000\n"
+    )
+    (tmp_path / "pad.yaml").write_text(
+        "mass: mass.npz\nstiffness: stiffness.npz\ndamping: damping.npz\n"
+        "contacts: contacts.csv\nload: 0\n"
+    )
+    axes = {"pressure": [1.0, 2.0], "speed": [2.0, 4.0], "mu": [0.05, 0.3, 0.6]}
+    config = {
+        "task": f"{tmp_path / 'pad.yaml'}:operating_map",
+        "vary": {"mu": axes["mu"], "speed": axes["speed"]},
+        "fixed": {"pressure": axes["pressure"]},
+    }
+    whole = operating_map(pad, **axes, workers=1)
+    sweep = planned(config)
+    kept = Chunks(tmp_path / "runs", "key")
+    kept.save(0, [sweep.arrays(point, 1) for point in sweep.points[:5]])
+    assert sweep.finished(kept) == 5
+    resumed = run_sweep(sweep, workers=1, kept=kept)
+    assert resumed.equals(whole)
+    parts = [
+        run_sweep(planned(config).scattered(f"{i}-of-3"), workers=1) for i in (1, 2, 3)
+    ]
+    assert [part.sizes["mu"] for part in parts] == [1, 1, 1]
+    assert joined(config, parts, "mu").equals(whole)

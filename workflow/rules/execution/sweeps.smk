@@ -28,7 +28,8 @@ def sweep_parts(sweep):
 
     A basin is made whole: its attractors are numbered over all starts; so are a structure's modes.
     """
-    if sweep["fixed"].get("run") == "basin" or is_structure(sweep["task"]):
+    followed = is_structure(sweep["task"]) and not sweep["task"].endswith(":operating_map")
+    if sweep["fixed"].get("run") == "basin" or followed:
         return 1
     return min(PARTS, len(sweep["vary"][longest(sweep["vary"])]))
 

@@ -1,0 +1,141 @@
+"""A sweep over the operating points of a structure in a file: ``FILE.yaml:operating_map``."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Self
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.schema.origin import origin
+from squealpipe.structures.assess.operating_map import operating_map
+from squealpipe.structures.assess.operating_points import FLAGS, VALUES, OperatingPoints
+from squealpipe.structures.schema.operating_map import QUANTITIES
+from squealpipe.structures.structure import Structure
+from squealpipe.study.chunks import Run
+from squealpipe.study.point_sweep import PointSweep
+from squealpipe.study.scatter import scattered_values
+from squealpipe.text import suggestion
+
+TASK = operating_map.__name__
+OPTIONS = (
+    *("mu_of", "measured", "frequency_band", "band_edges"),
+    *("n_modes", "frequency_max", "tol"),
+)
+TABLE = "mu_of_"
+"""What begins the name of an option that is a table of friction, like ``mu_of_temperature``."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class OperatingSweep(PointSweep):
+    """Operating points of a structure, one after the other.
+
+    Attributes:
+        task: ``FILE.yaml:operating_map``.
+        vary: pressure, speed, mu or temperature → values.
+        fixed: those that are one value, and options of ``operating_map``, ``n_modes`` and
+            ``frequency_max``.
+        operating: what is asked, of the whole map.
+
+    Raises:
+        FileNotFoundError: no such file.
+        ValueError: a file, name or value that is wrong.
+    """
+
+    operating: OperatingPoints = field(init=False, compare=False)
+    facts: Mapping[str, Any] = field(init=False, compare=False)
+
+    def __post_init__(self) -> None:
+        structure = Structure.read(self.task.rpartition(":")[0])
+        options = dict(self.fixed)
+        tables = {
+            name.removeprefix(TABLE): options.pop(name)
+            for name in self.fixed
+            if name.startswith(TABLE)
+        }
+        if tables:
+            options["mu_of"] = tables
+        for name in self.vary:
+            if name not in QUANTITIES:
+                raise ValueError(
+                    f"{name} cannot be varied; {suggestion(name, QUANTITIES)}"
+                )
+        for name in options:
+            known = [*QUANTITIES, *OPTIONS]
+            if name not in known:
+                raise ValueError(f"{name}: {suggestion(name, known)}")
+        asked = {name: each for name, each in options.items() if each is not None}
+        asked |= self.vary
+        operating = OperatingPoints.of(structure, **asked)
+        object.__setattr__(self, "operating", operating)
+        object.__setattr__(self, "facts", {"structure": structure.as_dict(), **asked})
+        axes = {name: values.tolist() for name, values in operating.axes.items()}
+        object.__setattr__(self, "vary", axes)
+
+    @property
+    def points(self) -> Sequence[Sequence[float]]:
+        """Places of all points in the map."""
+        return [(place,) for place in range(self.operating.count)]
+
+    def scattered(self, item: str) -> Self:
+        """One part of a scattered sweep, ``i-of-n`` along its longest dimension."""
+        axes = {
+            name: np.asarray(values)
+            for name, values in scattered_values(self.vary, item).items()
+        }
+        # the structure stays as it was reduced for the whole map
+        part = replace(self.operating, axes=axes, noises=None)
+        return self._with(part)
+
+    def _with(self, operating: OperatingPoints) -> Self:
+        other = object.__new__(type(self))
+        vary = {name: values.tolist() for name, values in operating.axes.items()}
+        for name, value in {**vars(self), "operating": operating, "vary": vary}.items():
+            object.__setattr__(other, name, value)
+        return other
+
+    def arrays(self, point: Sequence[float], workers: int | None) -> Run:  # noqa: ARG002 (of other sweeps)
+        """Return what is known of one point."""
+        return {
+            name: np.asarray(value)
+            for name, value in self.operating.run(int(point[0])).items()
+        }
+
+    def merged(self, runs: Callable[[], Iterator[Run]]) -> xr.Dataset:
+        """Return the map of all points, in order."""
+        rows = list(runs())
+        columns = {
+            name: np.array([row[name] for row in rows]) for name in (*VALUES, *FLAGS)
+        }
+        dataset = self.operating.dataset(columns)
+        facts = dict(self.facts)
+        numbers = facts.pop("structure")
+        given = {name: facts[name] for name in facts if name not in dataset.coords}
+        given["tol"] = self.operating.tol
+        dataset.attrs.update(origin(TASK, {"structure": _Numbers(numbers), **given}))
+        return dataset
+
+    def joined(self, parts: Sequence[xr.Dataset]) -> xr.Dataset:
+        """Return the whole map of a scattered one's parts, in order."""
+        along = max(self.vary, key=lambda name: len(self.vary[name]))
+        names = (*VALUES, *FLAGS)
+        whole = xr.concat([part[[*names]] for part in parts], along)
+        columns = {
+            name: whole[name].transpose(*self.vary).values.ravel() for name in names
+        }
+        rows = [
+            {name: column[place] for name, column in columns.items()}
+            for place in range(self.operating.count)
+        ]
+        return self.merged(lambda: iter(rows))
+
+
+@dataclass(frozen=True)
+class _Numbers:
+    """Numbers of a structure, as its datasets record them."""
+
+    numbers: Mapping[str, Any]
+
+    def as_dict(self) -> Mapping[str, Any]:
+        """Return the numbers."""
+        return self.numbers
