@@ -8,6 +8,7 @@ every law and without a compiled system, so that thousands of designs cost a sec
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from types import SimpleNamespace
 from typing import Any, NamedTuple, Self
 
 import numpy as np
@@ -144,8 +145,8 @@ class Sliding:
         """Why it is unstable."""
         if not self.is_unstable:
             return Mechanism.none
-        level = _level(self.design)
-        _, slopes = _linearized(_acceleration(level), self.state[:2], level)
+        level = _acceleration(self.design, 1.0)
+        _, slopes = _linearized(level, self.state[:2], self.design)
         if excess_growth(_jacobian(slopes)) <= 0.0:
             return Mechanism.falling_friction
         leading = self._roots[np.argmax(self._roots.real)]
@@ -214,7 +215,7 @@ def _approach(design: Design, steps: list[tuple[float, float]]) -> np.ndarray | 
     place, acceleration, last = np.zeros(2), _acceleration(design), 1.0
     for share, time in steps:
         if share != last:
-            acceleration, last = _acceleration(_level(design, share)), share
+            acceleration, last = _acceleration(design, share), share
         try:
             force, slopes = _linearized(acceleration, place, design, count=2)
         except (OverflowError, ZeroDivisionError):
@@ -251,20 +252,17 @@ def _step(
         time *= 0.5
 
 
-def _level(design: Design, share: float = 1.0) -> Design:
-    """The same brake with the coefficient of belt speed, or a share of it, at any speed."""
-    params = design.params
-    friction = share * abs(params.drag)
-    return design._replace(
-        params=params.with_(
-            friction_law=COULOMB, mu=friction, mu_static=None, friction_speed=1.0
-        )
-    )
+def _acceleration(design: Design, share: float | None = None) -> Any:
+    """Acceleration of the mass that slides slower than the belt, m/s².
 
-
-def _acceleration(design: Design) -> Any:
-    """Acceleration of the mass that slides slower than the belt, m/s²."""
-    params = design.params
+    Args:
+        share: if given, friction has this share of the coefficient of belt speed at any speed.
+    """
+    params: Any = design.params
+    if share is not None:
+        # a validated copy would take longer than Newton's step that it is for
+        level = {"friction_law": COULOMB, "mu": share * abs(params.drag)}
+        params = SimpleNamespace(**vars(params) | level)
     g = Geometry(*map(float, geometry(design.alpha1, design.alpha2)))
     long = tuple(
         length > LONG_SPRING * params.preload
@@ -273,15 +271,11 @@ def _acceleration(design: Design) -> Any:
 
     linear = VARIANT_RULES[design.model].linear_springs
     form = a1.Suspension(linear, long=(long[0], long[1]))
+    direction = design.params.belt_direction
 
     def acceleration(state: Any) -> tuple[Any, Any]:
         return a1.acceleration(
-            a1.State(*state),
-            params,
-            g,
-            contact=1.0,
-            direction=params.belt_direction,
-            form=form,
+            a1.State(*state), params, g, contact=1.0, direction=direction, form=form
         )
 
     return acceleration
