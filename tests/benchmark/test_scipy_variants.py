@@ -11,7 +11,14 @@ from squealpipe.benchmark.scoring import measure
 DATA = {data["name"]: data for data in all_data()}
 
 
-@pytest.mark.parametrize("name", ["relief valve", "A1: hammering", "shaken table"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "relief valve",
+        pytest.param("A1: hammering", marks=pytest.mark.release),
+        "shaken table",
+    ],
+)
 def test_a_compiled_field_takes_the_same_steps(name):
     """Equations with tables of regimes, and with an explicit time: round-off alone differs."""
     plain, compiled = (

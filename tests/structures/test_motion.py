@@ -177,7 +177,11 @@ def assert_agree(compared, rtol):
 
 @pytest.mark.parametrize(
     "parameters",
-    [{}, {"belt_speed": 0.1, "mu": 0.8}, {"belt_speed": -0.2, "preload": 0.6}],
+    [
+        pytest.param({}, marks=pytest.mark.release),
+        {"belt_speed": 0.1, "mu": 0.8},
+        {"belt_speed": -0.2, "preload": 0.6},
+    ],
 )
 def test_the_pad_moves_as_an_integrator_apart_has_it(parameters):
     pad = twelve_modes()

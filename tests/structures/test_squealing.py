@@ -181,6 +181,7 @@ def test_nothing_of_a_transient_is_left_in_the_largest_force_of_a_cycle():
     assert float(at_end.peak_force[0]) == pytest.approx(peaks[0] / force, rel=2e-4)
 
 
+@pytest.mark.release
 def test_a_structure_leaves_a_cycle_that_a_second_mode_destabilizes():
     """Against an own Runge–Kutta run from 6 to 8 s.
 

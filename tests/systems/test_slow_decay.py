@@ -48,7 +48,8 @@ def test_what_round_off_hides_is_a_member_of_a_family(d):
 
 def test_what_dies_out_or_grows_soon_has_its_label():
     assert label(pendulum, d=1e-2) == "equilibrium"
-    assert label(pendulum, d=-1e-2) == "unsettled"
+    # a pendulum that gains energy turns over in the end, and a run of its turns takes seconds
+    assert label(spring, d=-1e-2, start={"x": 1.0}) == "unsettled"
 
 
 DRAWS = np.random.default_rng(67).uniform(size=(300, 6))
@@ -56,8 +57,8 @@ DRAWS = np.random.default_rng(67).uniform(size=(300, 6))
 
 @pytest.mark.parametrize(
     "draws",
-    [DRAWS[:8], pytest.param(DRAWS, marks=pytest.mark.release)],
-    ids=["eight", "all"],
+    [DRAWS[:4], pytest.param(DRAWS, marks=pytest.mark.release)],
+    ids=["four", "all"],
 )
 def test_random_oscillators_have_the_label_of_their_later_energy(draws):
     """Energy decays at a rate between d and 4/3 d, as of the linear and the cubic spring.

@@ -144,7 +144,7 @@ def test_growth_of_a_perturbation_is_that_of_a_nearby_run(law):
 @pytest.mark.parametrize(("length1", "length2"), [(1e7, 1e7), (1e6, 4.0)])
 def test_very_long_springs_keep_their_digits(length1, length2):
     """Against long double, whose own loss is 1e-12 at these lengths; it was 2e-8."""
-    for params, alpha1, alpha2, _ in random_cases(4, seed=39, friction_law="coulomb"):
+    for params, alpha1, alpha2, _ in random_cases(2, seed=39, friction_law="coulomb"):
         plain = FORMER.with_(
             k2=params.k2 / params.k1,
             mu=params.mu,

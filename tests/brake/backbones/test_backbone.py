@@ -64,15 +64,16 @@ def test_a_period_doubling_just_above_grazing_is_found():
 
 
 @pytest.mark.parametrize(
-    "seed", [0, *(pytest.param(n, marks=pytest.mark.release) for n in (1, 2, 3))]
+    ("seed", "count"),
+    [(0, 5), *(pytest.param(n, 12, marks=pytest.mark.release) for n in range(4))],
 )
 def test_special_points_of_random_branches_are_those_of_dense_samples(
-    seed, monkeypatch
+    seed, count, monkeypatch
 ):
     """Each change of sign between 20 times as many orbits has its special point."""
     rng = np.random.default_rng(seed)
     compared = 0
-    for _ in range(12):
+    for _ in range(count):
         k2, k3, mu = rng.uniform([0.5, 0.2, 0.02], [2.0, 2.0, 0.8])
         params = Parameters(k2=k2, k3=k3, mu=mu, length1=5, length2=5, belt_speed=100)
         angles, mode = rng.uniform(0.0, PI, 2), int(rng.integers(1, 3))
@@ -92,7 +93,7 @@ def test_special_points_of_random_branches_are_those_of_dense_samples(
             assert number >= crossings, (kind, params, angles, mode)
             assert number % 2 == crossings % 2, (kind, params, angles, mode)
             compared += crossings
-    assert compared > 5
+    assert compared > 0.4 * count
 
 
 @pytest.mark.parametrize(

@@ -70,6 +70,7 @@ def test_stick_of_no_length_is_an_onset_of_stick(sticking):
     assert np.abs(multipliers[1:] - 1.0).min() < 1e-4
 
 
+@pytest.mark.release
 def test_branch_ends_on_the_cycle_of_half_the_period():
     params = FORMER.with_(
         k1=0.8787958456924088,

@@ -22,7 +22,10 @@ OTHER_WAY = (
 )
 
 
-@pytest.mark.parametrize(("params", "alpha1", "alpha2"), [ONE_WAY, OTHER_WAY])
+@pytest.mark.parametrize(
+    ("params", "alpha1", "alpha2"),
+    [ONE_WAY, pytest.param(*OTHER_WAY, marks=pytest.mark.release)],
+)
 def test_long_runs_jump_at_the_fold(params, alpha1, alpha2):
     """Runs swept down in friction, each from the end of the one before, leave past the fold."""
     angles = (alpha1 * math.pi, alpha2 * math.pi)
@@ -206,7 +209,9 @@ FLUTTER = (
 @pytest.mark.parametrize(
     ("scene", "label", "other", "ends", "to", "start"),
     [
-        (ONE_WAY, "fold", "k3", (0.735, 0.77), 0.05, None),
+        pytest.param(
+            ONE_WAY, "fold", "k3", (0.735, 0.77), 0.05, None, marks=pytest.mark.release
+        ),
         (FLUTTER, "grazing", "alpha1", (0.93, 0.97), 0.7, "onset"),
     ],
 )

@@ -69,7 +69,7 @@ def answers():
 
 def made_of(answers, folder, **further):
     """The datasets of a study, in files, and its pictures."""
-    angles = np.linspace(0.0, math.pi, 5)
+    angles = np.linspace(0.0, math.pi, 3)
     datasets = {
         "verdict_map": verdict_map(PAD, angles, angles, workers=1),
         **{f"assess/{name}": answer for name, answer in answers.items()},

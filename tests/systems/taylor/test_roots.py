@@ -23,7 +23,7 @@ def found(polynomial, step=STEP):
 
 def test_first_of_many_known_roots():
     rng = np.random.default_rng(1)
-    for _ in range(400):
+    for _ in range(150):
         roots = rng.uniform(-2.0, 2.0, rng.integers(1, 10))
         polynomial = np.polynomial.Polynomial.fromroots(roots) * rng.choice([-1.0, 1.0])
         inside = np.sort(roots[(roots > 0) & (roots <= STEP)])
