@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -43,15 +44,6 @@ def coefficient(speed, p):
 def cures_of(design: Design) -> dict[str, Cure]:
     """All cures of a design by name."""
     params = design.params
-
-    def number(name: str) -> Callable[[float], Design]:
-        return lambda value: design._replace(params=params.with_(**{name: value}))
-
-    def angle(name: str) -> Callable[[float], Design]:
-        if name == "alpha1":
-            return lambda value: design._replace(alpha1=value)
-        return lambda value: design._replace(alpha2=value)
-
     cures = {
         "mu": _friction(design),
         "k3": _scaled(
@@ -60,13 +52,15 @@ def cures_of(design: Design) -> dict[str, Cure]:
         ),
     }
     for name in ("k1", "k2", "preload", "belt_speed"):
-        cures[name] = _scaled(getattr(params, name), number(name))
+        cures[name] = _scaled(getattr(params, name), partial(design.at, name))
     for name in ("alpha1", "alpha2"):
         now = getattr(design, name)
         steps = CURE_RANGES.angle_step * np.arange(
             1, 1 + round(CURE_RANGES.farthest_angle / CURE_RANGES.angle_step)
         )
-        cures[name] = Cure(now, angle(name), now - steps, now + steps, is_angle=True)
+        cures[name] = Cure(
+            now, partial(design.at, name), now - steps, now + steps, is_angle=True
+        )
     cures["damping"] = _damping(design)
     return cures
 

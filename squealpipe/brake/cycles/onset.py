@@ -53,28 +53,31 @@ def find_onset(
     sliding = sliding_at(onset)
     if sliding is None:
         return None
-    roots, vectors = np.linalg.eig(sliding.jacobian)
+    system, name = brake_of(design.params, varied=[parameter]), IN_SYSTEM[parameter]
+    there = sliding.design
+    values = parameters_of_run(there.params, there.alpha1, there.alpha2)
+    flow, inside = Flow.of(system, values, (name,))
+    units, second = flow.scale_of(*STATE), float(flow.scale_of(TIME)[0])
+    # eigenvectors have a phase that depends on the units: here the flow's
+    jacobian = sliding.jacobian * second * units / units[:, None]
+    roots, vectors = np.linalg.eig(jacobian)
     mode = int(np.argmax(roots.real + (roots.imag > 0.0)))
     omega = float(roots[mode].imag)
     if omega <= 0.0:
         return None
     shape = np.real(vectors[:, mode] / np.abs(vectors[:2, mode]).max())
-    room = design.params.preload - sliding.state[1]
+    rest = sliding.state / units
+    room = 1.0 - rest[1]
     size = np.array([1.0, 1.0, omega, omega]) * room
-    state = sliding.state + _FIRST_AMPLITUDE * room * shape
-    system, name = brake_of(design.params, varied=[parameter]), IN_SYSTEM[parameter]
-    values = parameters_of_run(
-        sliding.design.params, sliding.design.alpha1, sliding.design.alpha2
+    state = rest + _FIRST_AMPLITUDE * room * shape
+    at_rest = dict(zip(STATE, sliding.state[:, None], strict=True))
+    regime = int(
+        system.first_regimes({**values, **at_rest, TIME: np.zeros(1)}, 1)[0, 0]
     )
-    rest = dict(zip(STATE, sliding.state[:, None], strict=True))
-    regime = int(system.first_regimes({**values, **rest, TIME: np.zeros(1)}, 1)[0, 0])
-    flow, inside = Flow.of(system, values, (name,))
-    units = flow.scale_of(*STATE)
-    period = 2.0 * np.pi / omega / float(flow.scale_of(TIME)[0])
-    followed = np.array([inside[name]])
+    period, followed = 2.0 * np.pi / omega, np.array([inside[name]])
     followed_units = np.maximum(np.abs(followed), 1e-3)
-    equations = EventMap(flow, (), inside, size / units, period, followed_units)
-    equations, guess = eventless(equations, state / units, regime, period, followed)
+    equations = EventMap(flow, (), inside, size, period, followed_units)
+    equations, guess = eventless(equations, state, regime, period, followed)
     # the cycle of that amplitude: its parameter is an unknown
     direction = np.concatenate([shape / size, np.zeros(2)])
     normal = direction / np.linalg.norm(direction)

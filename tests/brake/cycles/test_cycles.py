@@ -163,15 +163,49 @@ def test_rest_is_rest_in_any_units_and_mirrored(settle):
         assert cycle.outcome == Outcome.equilibrium
 
 
-def test_as_a_system_a_pad_has_the_same_cycle_and_branch_in_any_units():
-    """Newtons of 1e-9 would be round-off of a condition that is a square of forces."""
-    mass, length, time = 1e-5, 3e-4, 50.0
+def in_units(params, mass, length, time):
     units = {"mass": mass, "damping1": mass / time, "damping2": mass / time}
     units |= dict.fromkeys(("k1", "k2", "k3"), mass / time**2)
     units |= dict.fromkeys(("preload", "length1", "length2"), length)
     units |= {"belt_speed": length / time, "friction_speed": length / time}
+    return params.with_(
+        **{name: getattr(params, name) * u for name, u in units.items()}
+    )
+
+
+def test_a_branch_begins_at_the_onset_with_the_same_cycle_in_any_units():
+    """An eigenvector's phase depends on units, and with it the state of the first cycle."""
+    mass, length, time = 5.0, 1e-4, 2e-3
+    here = Parameters(
+        friction_law="exponential",
+        mu=0.3,
+        mu_static=0.6,
+        belt_speed=4.0,
+        damping1=0.03,
+        damping2=0.03,
+    )
+    one, other = (
+        cycle_branch(
+            params,
+            0.3,
+            1.6,
+            parameter="belt_speed",
+            to=0.25 * params.belt_speed,
+            start="onset",
+            n_points=3,
+        )
+        for params in (here, in_units(here, mass, length, time))
+    )
+    assert one.sizes["point"] == 3
+    np.testing.assert_allclose(other.x_start, one.x_start * length, rtol=1e-9)
+    np.testing.assert_allclose(other.vy_start, one.vy_start * length / time, rtol=1e-7)
+
+
+def test_as_a_system_a_pad_has_the_same_cycle_and_branch_in_any_units():
+    """Newtons of 1e-9 would be round-off of a condition that is a square of forces."""
+    mass, length, time = 1e-5, 3e-4, 50.0
     here = FORMER.with_(damping1=0.02, damping2=0.02, belt_speed=0.5)
-    there = here.with_(**{name: getattr(here, name) * u for name, u in units.items()})
+    there = in_units(here, mass, length, time)
     angles = 0.4 * math.pi, 0.6 * math.pi
     pad = limit_cycle(here, *angles)
     branches = []
