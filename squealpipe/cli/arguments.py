@@ -289,7 +289,13 @@ class Files(Look):
     force: Force = False
 
 
-BRAKE, WRITTEN, DRAWN, LOOK, FILES = Brake(), Written(), Drawn(), Look(), Files()
+BRAKE, WRITTEN_OUTPUT, DRAWN, LOOK, STRUCTURE_FILES = (
+    Brake(),
+    Written(),
+    Drawn(),
+    Look(),
+    Files(),
+)
 FULL_RANGE = parse_range("0:pi:61", parse_angle)
 """Both spring angles from 0 to π."""
 

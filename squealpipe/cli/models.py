@@ -8,7 +8,7 @@ from cyclopts import Parameter
 from squealpipe.cli.arguments import (
     BRAKE,
     DRAWN,
-    WRITTEN,
+    WRITTEN_OUTPUT,
     Angle1,
     Angle2,
     Brake,
@@ -81,7 +81,7 @@ def infer(
     tol: Tolerance,
     workers: Workers,
     output: Output = Path("inference.nc"),
-    brake: Written = WRITTEN,
+    brake: Written = WRITTEN_OUTPUT,
 ) -> int:
     """Judge parameter sets by the paper's statements, in each reading of the sign of friction.
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from squealpipe.cli.arguments import (
-    FILES,
+    STRUCTURE_FILES,
     Files,
     Frequency,
     Frictions,
@@ -54,7 +54,7 @@ def modes(
     critical: bool = True,
     vary: Ranges | None = None,
     output: Output = Path("modes.nc"),
-    files: Files = FILES,
+    files: Files = STRUCTURE_FILES,
 ) -> int:
     """Compute complex modes of a structure; write a dataset and a picture.
 
@@ -223,7 +223,7 @@ def squeal(
     onset: Switch,
     run: Annotated[Path | None, Parameter(negative="")] = None,
     output: Output = Path("squeal.nc"),
-    files: Files = FILES,
+    files: Files = STRUCTURE_FILES,
 ) -> int:
     """Say which unstable modes of a structure squeal, how loud, and with how much contact loss.
 
@@ -298,7 +298,7 @@ def ladder(
     tol: Tolerance,
     repeats: Whole,
     output: Output = Path("ladder.nc"),
-    files: Files = FILES,
+    files: Files = STRUCTURE_FILES,
 ) -> int:
     """Ask several methods which unstable modes of a structure squeal; chart accuracy and cost.
 
@@ -350,7 +350,7 @@ def operating(
     tol: Tolerance,
     workers: Workers,
     output: Output = Path("operating.nc"),
-    files: Files = FILES,
+    files: Files = STRUCTURE_FILES,
 ) -> int:
     """Say at which pressures, speeds and frictions a structure is noisy, at which frequency.
 

@@ -8,7 +8,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from squealpipe.cli.arguments import (
-    WRITTEN,
+    WRITTEN_OUTPUT,
     Angle1,
     Angle2,
     Output,
@@ -34,7 +34,7 @@ def sweep(
     ] = None,
     workers: Workers = None,
     output: Output = Path("sweep.nc"),
-    brake: Written = WRITTEN,
+    brake: Written = WRITTEN_OUTPUT,
 ) -> int:
     """Run a task at every combination of values; write one dataset with the names as dimensions.
 

@@ -16,7 +16,7 @@ from squealpipe.units import USUAL, UnitError, in_si, is_long_name, is_unit, pla
 COLUMN_UNITS = {"speed": "m s-1", "coefficient": "1", "compression": "m", "force": "N"}
 """Column → CF unit in which its values are stored, and meant where none is written."""
 
-_NAMES = ("c", "in")
+_NO_UNITS_BUT_NAMES = ("c", "in")
 """Last words of names that are hardly the speed of light, or inches."""
 NO_UNIT = {"", "-", "–", "—", "1", "/"}
 
@@ -125,7 +125,9 @@ def _split(name: str, units: str) -> tuple[str, str]:
         re.compile(r"(.+?)[\s_,:;=/-]+([^\s_,:;=]+)"),
     )
     for form in patterns:  # MATLAB writes speed_km_h_
-        if (match := form.fullmatch(name.rstrip("_"))) and match[2] not in _NAMES:
+        if (match := form.fullmatch(name.rstrip("_"))) and match[
+            2
+        ] not in _NO_UNITS_BUT_NAMES:
             unit = _known(match[2].replace("_", "/"), units)
             if _fits(unit, units):
                 return match[1].removesuffix(" in").rstrip(" /"), unit
@@ -252,7 +254,11 @@ def refuse_units_elsewhere(path: Path, place: Place, lines: Iterable[FileLine]) 
         for word in re.findall(
             r"(?<![\d.,]\s)(?<![\w.,/^])[^\W\d][^\s,;:=()\[\]{}]*", line
         ):
-            if word in (usual, *_NAMES) or is_long_name(word) or not _fits(word, units):
+            if (
+                word in (usual, *_NO_UNITS_BUT_NAMES)
+                or is_long_name(word)
+                or not _fits(word, units)
+            ):
                 continue
             raise ValueError(
                 f"{path}, row {number} speaks of {word}, and column {place.head!r} has no unit; "

@@ -16,7 +16,7 @@ from squealpipe.plotting import style
 from squealpipe.plotting.mechanism import arrow
 from squealpipe.plotting.motion_panels import (
     COLOURS_IN_WORDS,
-    CONTACT,
+    CONTACT_LOOKS,
     Panels,
     Traces,
     contact_legend,
@@ -167,7 +167,7 @@ class Body:
             self.facets.show(nodes)
         self.marks.set_offsets(nodes[self.at] @ self.view[:2].T)
         regimes = self.motion.regimes[self.frames[place]]
-        colours = [CONTACT[Regime(int(each))][1] for each in regimes]
+        colours = [CONTACT_LOOKS[Regime(int(each))][1] for each in regimes]
         # open contacts are hollow: they differ without colour too
         is_open = regimes == Regime.separated
         self.marks.set_facecolor(

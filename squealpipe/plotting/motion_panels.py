@@ -16,7 +16,7 @@ from squealpipe.plotting.cycles import joined
 from squealpipe.text import number
 from squealpipe.units import shown_in
 
-CONTACT = {
+CONTACT_LOOKS = {
     Regime.slip_slower: ("slip", style.BLUE),
     Regime.slip_faster: ("slip", style.BLUE),
     Regime.stick: ("stick", style.ORANGE),
@@ -106,8 +106,8 @@ class Panels:
     def _draw_path(self, axes: Axes, motion: Traces) -> Line2D:
         self.unit_factor, unit = shown_in(float(np.abs(motion.place).max()), "m")
         x, y = self.unit_factor * motion.place.T
-        for word, colour in dict(CONTACT.values()).items():
-            codes = [code for code, (name, _) in CONTACT.items() if name == word]
+        for word, colour in dict(CONTACT_LOOKS.values()).items():
+            codes = [code for code, (name, _) in CONTACT_LOOKS.items() if name == word]
             shown = np.where(joined(np.isin(motion.regimes, codes)), y, np.nan)
             axes.plot(x, shown, color=colour, lw=0.7)
         limit = self.unit_factor * motion.limit
@@ -132,12 +132,12 @@ class Panels:
         x, y = self.unit_factor * shown.place[frame]
         self.dot.set_data([x], [y])
         for mark in (self.now, self.dot):
-            mark.set_color(CONTACT[Regime(int(shown.regimes[frame]))][1])
+            mark.set_color(CONTACT_LOOKS[Regime(int(shown.regimes[frame]))][1])
 
 
 def contact_legend(axes: Axes) -> None:
     """Name the colours of contacts below axes."""
-    words = dict(CONTACT.values())
+    words = dict(CONTACT_LOOKS.values())
     axes.legend(
         handles=[Patch(color=colour, label=word) for word, colour in words.items()],
         loc="lower center",

@@ -16,7 +16,7 @@ from squealpipe.plotting import style
 from squealpipe.plotting.mechanism import arrow, coil, displaced_springs
 from squealpipe.plotting.motion_panels import (
     COLOURS_IN_WORDS,
-    CONTACT,
+    CONTACT_LOOKS,
     Panels,
     Traces,
     contact_legend,
@@ -185,7 +185,7 @@ class Mechanism:
         for line, path in zip(self.springs, paths, strict=True):
             line.set_data(*path.T)
         regime = Regime(int(self.motion.regimes[frame]))
-        word, colour = CONTACT[regime]
+        word, colour = CONTACT_LOOKS[regime]
         foot = geometry.foot(middle, separated=regime is Regime.separated)
         lower = (float(middle[0]), float(middle[1]) - geometry.radius)
         self.contact.set_data(

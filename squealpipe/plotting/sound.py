@@ -42,7 +42,7 @@ from squealpipe.vibration.spectrum import (
     strongest_lines,
 )
 
-RATE = 48_000
+SAMPLING_RATE = 48_000
 """Samples of a file in a second."""
 
 
@@ -114,9 +114,9 @@ class Sound:
 
     def samples(self, seconds: float) -> np.ndarray:
         """Return the loop repeated for some time, faded in and out, (n,) of 16 bit."""
-        count = max(round(seconds * RATE), 2)
+        count = max(round(seconds * SAMPLING_RATE), 2)
         played = np.resize(self.loop, count)
-        edge = min(round(LISTENING.fade * RATE), count // 2)
+        edge = min(round(LISTENING.fade * SAMPLING_RATE), count // 2)
         ramp = np.sin(0.5 * np.pi * (np.arange(edge) + 0.5) / edge) ** 2
         played[:edge] *= ramp
         played[-edge:] *= ramp[::-1]
@@ -134,7 +134,7 @@ class Sound:
                 f", played {factor} times {'faster' if faster else 'slower'} than in reality: "
                 f"heard at {heard}"
             )
-        length = self.loop.size / RATE
+        length = self.loop.size / SAMPLING_RATE
         if self.correlation < LISTENING.repeats:
             line += f"; it does not repeat, and is cross-faded every {engineering(length, 's', 2)}"
         return line
@@ -145,7 +145,7 @@ class Sound:
         with wave.open(content, "wb") as file:
             file.setnchannels(1)
             file.setsampwidth(2)
-            file.setframerate(RATE)
+            file.setframerate(SAMPLING_RATE)
             file.writeframes(self.samples(seconds).tobytes())
         facts = {
             "title": f"Velocity {self.component}",
@@ -407,6 +407,6 @@ def _loop(
     correlation = float(np.clip(peak, -0.5, 1.0))
     power = (1 - weight) ** 2 + weight**2 + 2 * correlation * weight * (1 - weight)
     looped = ((1.0 - weight) * curve(places) + weight * before) / np.sqrt(power)
-    number_ = max(round(lag * step / speed * RATE), 2)
+    number_ = max(round(lag * step / speed * SAMPLING_RATE), 2)
     played = resample(looped - looped.mean(), number_)
     return np.asarray(played / np.abs(played).max()), correlation

@@ -14,7 +14,7 @@ from squealpipe.structures.meshes.datasets import mesh_of
 from squealpipe.structures.meshes.structure_mesh import NO_NODE, StructureMesh
 
 SCHEMA = "structure_run"
-DIRECTIONS = {1: "along x", 2: "along y", 3: "along z"}
+DIRECTION_NAMES = {1: "along x", 2: "along y", 3: "along z"}
 
 
 @dataclass(frozen=True)
@@ -119,7 +119,7 @@ class StructureMotion:
                 )
             return np.arange(len(self.shapes))
         node, direction = self.mesh.degree_of_freedom.T
-        moves = (node != NO_NODE) & (direction <= len(DIRECTIONS))
+        moves = (node != NO_NODE) & (direction <= len(DIRECTION_NAMES))
         if at is not None:
             number, _, way = at.partition(".")
             numbers = np.where(node == NO_NODE, -1, self.mesh.numbers[node]).astype(str)
@@ -137,7 +137,7 @@ class StructureMotion:
         if self.mesh is None:
             return f"degree of freedom {row}, counted from 0"
         node, direction = self.mesh.degree_of_freedom[row]
-        return f"node {self.mesh.numbers[node]} {DIRECTIONS[int(direction)]}"
+        return f"node {self.mesh.numbers[node]} {DIRECTION_NAMES[int(direction)]}"
 
     def nodes_at(self, frames: np.ndarray) -> np.ndarray:
         """Return displacements of the nodes from their means, (frames, nodes, 3), m."""

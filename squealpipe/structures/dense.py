@@ -24,7 +24,7 @@ from squealpipe.structures.refinement import (
     quotient,
     unit_vector,
 )
-from squealpipe.structures.stiff import GAP, condensation, stiff_degrees
+from squealpipe.structures.stiff import SPECTRAL_GAP, condensation, stiff_degrees
 
 BACKWARD = 8.0
 """Backward error of LAPACK's eigenvalues, in units of round-off of the norm of the matrix."""
@@ -282,7 +282,7 @@ def _damped_slowly(pencil: Pencil) -> list[Eigenpair]:
     if not gaps.size:
         return _damped(pencil)
     # far from all that is kept, and near enough for round-off not to count
-    cap = 1e5 * max(ascending[gaps[0]], np.sqrt(GAP.least) * pencil.unit)
+    cap = 1e5 * max(ascending[gaps[0]], np.sqrt(SPECTRAL_GAP.least) * pencil.unit)
     fast = rates > cap
     added = np.where(fast, mass.diagonal() * (rates / cap), 0.0)
     lifted = replace(pencil, mass=sp.csr_array(pencil.mass + sp.diags_array(added)))

@@ -27,7 +27,7 @@ from squealpipe.systems.belt_contact import (
     negative,
 )
 from squealpipe.systems.components import MOST_COMPONENTS, Component, Switch
-from squealpipe.systems.definition import MOST_STATES
+from squealpipe.systems.definition import SIZE_LIMITS
 from squealpipe.systems.inputs.values import brief, is_finite_number, is_whole_number
 from squealpipe.systems.linear.matrices import (
     COULOMB,
@@ -137,7 +137,7 @@ def component_system(
             directions are dependent.
     """
     size = structure.size
-    _check_size(structure, Caps(MOST_STATES // 2, MOST_COMPONENTS))
+    _check_size(structure, Caps(SIZE_LIMITS.states // 2, MOST_COMPONENTS))
     if conflict := conflict_in_stick(structure):
         raise ValueError(conflict)
     equations = Equations(structure)

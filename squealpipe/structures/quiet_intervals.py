@@ -58,7 +58,7 @@ class Following:
     """Distance of two cubics from the true path, over that of their tangents in the middle."""
 
 
-FOLLOWING = Following()
+INTERVAL_FOLLOWING = Following()
 
 
 class _Linear(NamedTuple):
@@ -116,7 +116,11 @@ class _Node:
     @cached_property
     def limit(self) -> float:
         """Growth that is round-off, 1/s."""
-        share = FOLLOWING.round_off if self._is_damped else FOLLOWING.undamped
+        share = (
+            INTERVAL_FOLLOWING.round_off
+            if self._is_damped
+            else INTERVAL_FOLLOWING.undamped
+        )
         return share * float(np.abs(self.values).max())
 
     @property
@@ -199,7 +203,7 @@ class _Search:
 
     def _slopes(self, at: float, linear: _Linear) -> np.ndarray:
         """Return derivatives of the matrices, from values where the same contacts are closed."""
-        step = FOLLOWING.difference * self._first_step(at)
+        step = INTERVAL_FOLLOWING.difference * self._first_step(at)
         low, high = self.stations[0], self.stations[-1]
         for _ in range(4):  # at a contact that opens there is no slope
             # at an end of the range, and where a contact opens, differences are one-sided
@@ -229,7 +233,7 @@ class _Search:
         while steps:
             a, b = steps.pop()
             changes = self.grows(a) != self.grows(b)
-            is_finest = b - a <= FOLLOWING.finest * self._first_step(b)
+            is_finest = b - a <= INTERVAL_FOLLOWING.finest * self._first_step(b)
             if self._is_sure(a, b, changes) or is_finest:
                 if changes:
                     found.append(self._located(a, b))
@@ -241,8 +245,8 @@ class _Search:
     def _located(self, a: float, b: float) -> float:
         """Return where the answer changes, by halving: growth may jump, or leave zero as a root."""
         grows = self.grows(b)
-        least = FOLLOWING.finest * self._first_step(b)  # next to 0
-        while b - a > FOLLOWING.located * max(abs(a), abs(b), least):
+        least = INTERVAL_FOLLOWING.finest * self._first_step(b)  # next to 0
+        while b - a > INTERVAL_FOLLOWING.located * max(abs(a), abs(b), least):
             middle = 0.5 * (a + b)
             if middle in (a, b):
                 break
@@ -311,7 +315,7 @@ class _Paths:
             + first * t * (1 - t) ** 2
             - last * t**2 * (1 - t)
         )
-        off = FOLLOWING.doubt * apart[rows, columns]
+        off = INTERVAL_FOLLOWING.doubt * apart[rows, columns]
         return cls(cubic, off, max(one.limit, other.limit))
 
     @property

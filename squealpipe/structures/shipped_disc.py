@@ -15,7 +15,7 @@ from squealpipe.structures.multilinear_elements import mass_and_stiffness
 from squealpipe.structures.structure import Structure
 from squealpipe.validation import Natural, NotNegative, Number, Positive, checked
 
-UNITS = {
+DISC_UNITS = {
     "stiffness": "N m-1",
     "pressure": "Pa",
     "mu": "1",
@@ -138,7 +138,7 @@ def brake_mesh() -> BrakeMesh:
     return BrakeMesh(nodes, elements, faces, corners, disc[:, :, 0].T.ravel().tolist())
 
 
-@partial(checked, units=UNITS)
+@partial(checked, units=DISC_UNITS)
 def disc_brake(
     *,
     stiffness: Positive = 2.5e9,

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from squealpipe.store.whole_files import whole_file
 from squealpipe.systems.processes import cpu_time
 
-COSTS = Path(".snakemake/squealpipe/costs")
+COSTS_FOLDER = Path(".snakemake/squealpipe/costs")
 """Folder of one record a job, beside Snakemake's own."""
 
 
@@ -33,7 +33,7 @@ def record_cost(rule: str, item: str) -> None:
     Args:
         item: part of what is scattered, "i-of-n".
     """
-    if not COSTS.parents[1].is_dir():
+    if not COSTS_FOLDER.parents[1].is_dir():
         return  # a script that was not started by Snakemake
     # a job that has not imported the compiler has compiled nothing
     compiled = sys.modules.get("squealpipe.systems.compiled")
@@ -43,15 +43,15 @@ def record_cost(rule: str, item: str) -> None:
         "cpu": cpu_time(),
         "compiling": compiled.compile_time() if compiled else 0.0,
     }
-    COSTS.mkdir(parents=True, exist_ok=True)
-    with whole_file(COSTS / f"{rule}.{item}.json") as temporary:
+    COSTS_FOLDER.mkdir(parents=True, exist_ok=True)
+    with whole_file(COSTS_FOLDER / f"{rule}.{item}.json") as temporary:
         temporary.write_text(json.dumps(known), encoding="utf-8")
 
 
 def job_costs(directory: Path) -> dict[str, JobCost]:
     """Rule → what it took when it last ran; the parts of a scattered rule are added up."""
     records: dict[str, list[dict[str, Any]]] = {}
-    files = (directory / COSTS).glob("*.json")
+    files = (directory / COSTS_FOLDER).glob("*.json")
     for path in sorted(files, key=lambda each: each.stat().st_mtime):
         record = json.loads(path.read_text(encoding="utf-8"))
         records.setdefault(record["rule"], []).append(record)

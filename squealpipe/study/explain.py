@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from squealpipe.store.keys import misfits
-from squealpipe.store.rerun.key import PLAN
+from squealpipe.store.rerun.key import PLAN_VARIABLE
 from squealpipe.store.rerun.sources import PACKAGE, WORKFLOW
 from squealpipe.store.sealed import attributes
 from squealpipe.store.whole_files import StoreError
@@ -120,7 +120,7 @@ def explain(
         done = subprocess.run(
             [*command, "--summary"],
             cwd=there,
-            env={**os.environ, PLAN: plan.name},
+            env={**os.environ, PLAN_VARIABLE: plan.name},
             capture_output=True,
             text=True,
             check=False,

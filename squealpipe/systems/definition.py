@@ -3,6 +3,7 @@
 from __future__ import annotations  # help shows Angle, not its checks
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, Any
 
@@ -50,7 +51,19 @@ StartValue = Annotated[
 Field = Annotated[
     Function | Mapping[str, Function], needed("a function, or one for each regime, is")
 ]
-MOST_STATES, MOST_SURFACES, MOST_REGIMES = 64, 64, 256
+
+
+@dataclass(frozen=True)
+class SizeLimits:
+    """Largest sizes of a system that is compiled; code grows with their product."""
+
+    states: int = 64
+    surfaces: int = 64
+    regimes: int = 256
+
+
+SIZE_LIMITS = SizeLimits()
+
 ARGUMENTS = frozenset(
     (
         *("t_end", "t_start", "times", "start", "tol", "sensitivity", "t_late"),
@@ -106,7 +119,7 @@ class Definition:
 
     batch: Any = None
     """Integrator of runs in place of series that are compiled for the system; None: these."""
-    most_states, most_regimes = MOST_STATES, MOST_REGIMES
+    most_states, most_regimes = SIZE_LIMITS.states, SIZE_LIMITS.regimes
     scales: Any = None
     has_typical_sizes = True
 

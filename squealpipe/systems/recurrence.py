@@ -1,15 +1,25 @@
 """Detection of repetition in a sequence of events."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
-LEAST_REPEATS = 3
-"""Whole periods that a sequence must show."""
-REPEATED = 1e-6
-"""Largest difference in a repetition: of intervals over their mean, of states over their ranges."""
-EVENTS_AT_ONCE = 2**20
-"""Logged events that are held in memory at once, 48 bytes each."""
+
+@dataclass(frozen=True)
+class Recurrence:
+    """Thresholds by which a sequence of events repeats."""
+
+    least_repeats: int = 3
+    """Whole periods that a sequence must show."""
+    repeated: float = 1e-6
+    """Largest difference in a repetition: of intervals over their mean, of states over their
+    ranges."""
+    events_at_once: int = 2**20
+    """Logged events that are held in memory at once, 48 bytes each."""
+
+
+RECURRENCE = Recurrence()
 
 
 def repeats_after(
@@ -32,7 +42,7 @@ def repeats_after(
     """
     intervals, kinds = np.diff(times), kinds[:-1]
     marks = np.empty((len(times), 0)) if states is None else states
-    lags = np.arange(1, intervals.size // LEAST_REPEATS + 1)
+    lags = np.arange(1, intervals.size // RECURRENCE.least_repeats + 1)
     if not lags.size:
         return 0
     allowed = tolerance * intervals.mean()
@@ -69,6 +79,6 @@ def in_blocks(rows: np.ndarray, events: np.ndarray) -> Iterator[np.ndarray]:
     """Rows, so many at a time that their logs fit; the busiest first, so that few are wide."""
     rows = rows[np.argsort(-events[rows], kind="stable")]
     while rows.size:
-        count = max(1, EVENTS_AT_ONCE // max(1, int(events[rows[0]])))
+        count = max(1, RECURRENCE.events_at_once // max(1, int(events[rows[0]])))
         yield rows[:count]
         rows = rows[count:]

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-PLAIN = ("1", "rad")
+UNITS_WITHOUT_SCALE = ("1", "rad")
 """Units of numbers that have none."""
 
 
@@ -43,10 +43,14 @@ class Scales:
         Raises:
             ValueError: no scale is known of a part of the unit.
         """
-        if unit in PLAIN:
+        if unit in UNITS_WITHOUT_SCALE:
             return 1.0
         if unit not in self.known:
-            parts = [(base, n) for base, n in powers_of(unit) if base not in PLAIN]
+            parts = [
+                (base, n)
+                for base, n in powers_of(unit)
+                if base not in UNITS_WITHOUT_SCALE
+            ]
             if missing := [base for base, _ in parts if base not in self.known]:
                 raise ValueError(
                     f"unit {unit!r}: no scale is given of {missing[0]!r}; scales has "
@@ -71,7 +75,7 @@ class Scales:
         """
         return {
             name: value
-            if units.get(name, "1") in PLAIN
+            if units.get(name, "1") in UNITS_WITHOUT_SCALE
             # adding 0 makes −0 to 0: equal values have equal bits
             else value / self.of(units[name]) + 0.0
             for name, value in values.items()

@@ -10,7 +10,7 @@ from typing import Any, Self
 import numpy as np
 
 from squealpipe.systems.components import Switch
-from squealpipe.systems.definition import MOST_SURFACES, Definition
+from squealpipe.systems.definition import SIZE_LIMITS, Definition
 from squealpipe.systems.entries import Entries, constants_of
 from squealpipe.systems.joint import Joint
 from squealpipe.systems.starts import Starts
@@ -304,9 +304,9 @@ class TracedSystem(Definition):
             watched += [
                 (regime, (same + opposite)[0], rises, number) for regime in regimes
             ]
-        if len(surfaces) > MOST_SURFACES:
+        if len(surfaces) > SIZE_LIMITS.surfaces:
             raise ValueError(
-                f"{len(surfaces)} surfaces; at most {MOST_SURFACES} can be watched"
+                f"{len(surfaces)} surfaces; at most {SIZE_LIMITS.surfaces} can be watched"
             )
         table = np.full((2, len(self.regimes), len(surfaces)), -1, np.int64)
         for regime, index, rises, number in watched:

@@ -21,7 +21,7 @@ SAMPLES = 800
 LINES = 3200
 """Lines of its spectrum."""
 HARMONICS = 5
-REGIMES = {**{int(each): each.name for each in Regime}, -1: "not_reached"}
+REGIME_NAMES = {**{int(each): each.name for each in Regime}, -1: "not_reached"}
 """Meaning of regime."""
 DIRECTIONS = ("along", "across")
 """Directions of velocities at a contact: along the belt, and away from it."""
@@ -196,7 +196,7 @@ ASSESS = DatasetSchema(
         "path_y": _path("displacement across the belt", "m"),
         "path_force": _path("contact force over preload", "1"),
         "path_regime": flag(
-            "regime of the settled motion", REGIMES, "sample", volatile=True
+            "regime of the settled motion", REGIME_NAMES, "sample", volatile=True
         ),
         "value": or_nan(
             "present value (for mu the friction coefficient at belt speed)",

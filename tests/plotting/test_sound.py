@@ -11,7 +11,7 @@ import xarray as xr
 from squealpipe import Parameters, assess, load, simulate
 from squealpipe.brake.dynamics.again import settled_run, simulated_again
 from squealpipe.cli import run
-from squealpipe.plotting.sound import RATE, TooCoarseError, sound
+from squealpipe.plotting.sound import SAMPLING_RATE, TooCoarseError, sound
 from squealpipe.store import save
 
 PAD = Parameters(
@@ -44,7 +44,7 @@ def strongest(signal, rate):
 def heard(content):
     """Samples of a wav file, as scipy reads them."""
     rate, samples = scipy.io.wavfile.read(io.BytesIO(content))
-    assert rate == RATE
+    assert rate == SAMPLING_RATE
     assert samples.dtype == np.int16
     return samples.astype(float)
 
@@ -95,10 +95,10 @@ def test_the_strongest_line_of_a_pad_is_heard(params, degrees, t_end, speed):
     louder = max((pad.vx.values[half:], pad.vy.values[half:]), key=np.std)
     truth = strongest(louder, 1.0 / float(pad.time[1]))
     samples = heard(sound(pad, speed=speed).wav(3.0))
-    assert samples.size == 3 * RATE
-    assert strongest(samples, RATE) == pytest.approx(truth * speed, rel=2e-3)
+    assert samples.size == 3 * SAMPLING_RATE
+    assert strongest(samples, SAMPLING_RATE) == pytest.approx(truth * speed, rel=2e-3)
     if degrees == (22.0, 46.0):
-        assert strongest(samples, RATE) == pytest.approx(830.9, abs=5.0)
+        assert strongest(samples, SAMPLING_RATE) == pytest.approx(830.9, abs=5.0)
 
 
 def test_a_periodic_motion_is_looped_without_a_click():
@@ -106,13 +106,13 @@ def test_a_periodic_motion_is_looped_without_a_click():
     base = 437.31
     tone = tones([base, 2 * base, 3 * base], 0.2, 30e3)
     made = sound(written(0.1 * tone, tone, 1 / 30e3))
-    samples = heard(made.wav(3.0))[RATE // 4 : -RATE // 4]
+    samples = heard(made.wav(3.0))[SAMPLING_RATE // 4 : -SAMPLING_RATE // 4]
     lines = np.abs(np.fft.rfft(samples * np.blackman(samples.size)))
-    frequency = np.fft.rfftfreq(samples.size, 1 / RATE)
+    frequency = np.fft.rfftfreq(samples.size, 1 / SAMPLING_RATE)
     away = np.abs(frequency / base - np.round(frequency / base)) * base
     between = lines[(away > 10.0) | (frequency < 100.0) | (frequency > 1400.0)]
     assert between.max() < 1e-4 * lines.max()
-    assert strongest(samples, RATE) == pytest.approx(base, abs=0.1)
+    assert strongest(samples, SAMPLING_RATE) == pytest.approx(base, abs=0.1)
     assert "cross-faded" not in made.told()
 
 
@@ -127,7 +127,7 @@ def test_a_motion_that_does_not_repeat_keeps_its_level_across_the_fade():
     assert "does not repeat" in made.told()
     samples = heard(made.wav(2.0))[480:-480]
     jumps = np.abs(np.diff(samples, 2)).max() / np.abs(samples).max()
-    assert jumps < 1.2 * (2 * np.pi * 900.0 / RATE) ** 2
+    assert jumps < 1.2 * (2 * np.pi * 900.0 / SAMPLING_RATE) ** 2
     loop = made.loop
     quarter = loop.size // 4
     last, rest = loop[-quarter:], loop[:-quarter]
@@ -144,7 +144,7 @@ def test_the_file_says_how_fast_it_is_played_and_stays_below_full_scale():
     assert told == made.told()
     assert "10 times slower than in reality: heard at 4.16 kHz" in told
     samples = heard(content)
-    assert strongest(samples, RATE) == pytest.approx(4160.0, abs=2.0)
+    assert strongest(samples, SAMPLING_RATE) == pytest.approx(4160.0, abs=2.0)
     peak = 20 * np.log10(np.abs(samples).max() / 32767)
     assert peak == pytest.approx(-3.0, abs=0.01)
 
@@ -227,8 +227,8 @@ def test_the_command_writes_a_sound(tmp_path, monkeypatch, capsys):
     told = capsys.readouterr().out
     assert "828.5 Hz, played 2 times faster than in reality: heard at 1.657 kHz" in told
     samples = heard((tmp_path / "run.wav").read_bytes())
-    assert samples.size == 1.5 * RATE
-    assert strongest(samples, RATE) == pytest.approx(2 * 828.5, abs=2.0)
+    assert samples.size == 1.5 * SAMPLING_RATE
+    assert strongest(samples, SAMPLING_RATE) == pytest.approx(2 * 828.5, abs=2.0)
     assert run(["listen", "run.nc"]) == 2
     assert "--force" in capsys.readouterr().err
     assert run(["listen", "run.nc", "--fast", "2", "--slow", "2", "--force"]) == 2

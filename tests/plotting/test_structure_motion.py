@@ -8,7 +8,7 @@ from squealpipe import load, plot, squealing_modes
 from squealpipe.cli import run
 from squealpipe.codes import Regime
 from squealpipe.plotting.animation import film_of, phases
-from squealpipe.plotting.sound import RATE, sound
+from squealpipe.plotting.sound import SAMPLING_RATE, sound
 from squealpipe.schema import Outcome, build
 from squealpipe.store import save
 from squealpipe.structures import elastic_pad
@@ -125,7 +125,7 @@ def test_the_frequency_of_the_answer_is_heard(made):
     motion = squealing_run(structure, answer)
     assert motion.sizes["time"] == 16001
     heard_ = sound(motion)
-    line = strongest(heard(heard_.wav(3.0)), RATE)
+    line = strongest(heard(heard_.wav(3.0)), SAMPLING_RATE)
     told = float(motion.dominant_frequency)
     # of a torus a velocity may ring louder at another of its lines than the energy does
     velocity = motion.velocity.values @ motion.mode_shape.values.T

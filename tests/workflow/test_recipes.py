@@ -10,7 +10,7 @@ from textwrap import indent
 
 import pytest
 
-from squealpipe.store.rerun.key import PLAN
+from squealpipe.store.rerun.key import PLAN_VARIABLE
 from tests.conftest import ROOT
 
 ROW, LAW, LAW_NAME, RECORD, FIGURE, FIGURE_NAME, SYSTEM = range(7)
@@ -260,7 +260,7 @@ def test_workflow_plans_the_new_figure_and_watches_the_new_law(
     extended, snakemake, tmp_path, monkeypatch
 ):
     folder, _ = extended
-    monkeypatch.setenv(PLAN, str(tmp_path / "plan.json"))
+    monkeypatch.setenv(PLAN_VARIABLE, str(tmp_path / "plan.json"))
     figure, ladder = "results/figures/impacts.png", "results/data/model_ladder.nc"
     run = snakemake(folder, "--dry-run", figure, ladder)
     assert run.returncode == 0, run.stderr[-3000:]

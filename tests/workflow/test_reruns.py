@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from squealpipe.store.rerun.key import PLAN, WATCHERS
+from squealpipe.store.rerun.key import PLAN_VARIABLE, WATCHERS
 from squealpipe.store.rerun.sources import PACKAGE, closure
 from squealpipe.store.yaml_files import flat
 from squealpipe.study.configuration.settings import Study
@@ -34,7 +34,7 @@ def planned(tmp_path_factory):
     subprocess.run(
         [sys.executable, *words, "--configfile", "workflow/config/tiny.yaml"],
         cwd=ROOT,
-        env={**os.environ, PLAN: str(folder / "plan.json")},
+        env={**os.environ, PLAN_VARIABLE: str(folder / "plan.json")},
         capture_output=True,
         check=True,
     )

@@ -26,8 +26,8 @@ BLOCK = 2**17
 """Runs of a map that are held in memory at once, about 1 kB each."""
 NEAR_PIVOT = 1e-3
 """Distance from a pivot, in free lengths, from which an overflow is its doing."""
-REACH, PEAK = f"{LARGEST}reach", f"{LARGEST}contact_force"
-TRACKED = ("x", "vx", "contact_force", REACH)
+LARGEST_REACH, LARGEST_CONTACT_FORCE = f"{LARGEST}reach", f"{LARGEST}contact_force"
+TRACKED = ("x", "vx", "contact_force", LARGEST_REACH)
 """Quantities of the system whose extremes an :class:`Ensemble` may hold, or ``PEAK`` of them."""
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.brake.a1.ensemble import PEAK, run_ensemble
+from squealpipe.brake.a1.ensemble import LARGEST_CONTACT_FORCE, run_ensemble
 from squealpipe.brake.assess.sliding import Design, Sliding
 from squealpipe.codes import Regime
 from squealpipe.laws.contact import normal_force
@@ -45,7 +45,7 @@ def _record(design: Design, state: np.ndarray, *, tol: float) -> Record:
         times=times,
         initial_state=state,
         tol=tol,
-        tracked=(PEAK,),
+        tracked=(LARGEST_CONTACT_FORCE,),
         sums=True,
         log_events=MEASUREMENT.most_events,
         workers=1,

@@ -5,7 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.brake.a1.ensemble import PEAK, REACH, Ensemble, run_ensemble
+from squealpipe.brake.a1.ensemble import (
+    LARGEST_CONTACT_FORCE,
+    LARGEST_REACH,
+    Ensemble,
+    run_ensemble,
+)
 from squealpipe.brake.assess.sliding import Design
 from squealpipe.laws.tables import is_table
 from squealpipe.parameters import TABLE
@@ -78,7 +83,7 @@ def _ensemble(
         times=lengths[:, None] * np.linspace(0.0, 1.0, rules.samples + 1)[1:],
         initial_state=starts,
         tol=tol,
-        tracked=(PEAK, REACH),
+        tracked=(LARGEST_CONTACT_FORCE, LARGEST_REACH),
         sums=rules.follows_perturbation,
         tangent=rules.follows_perturbation,
         workers=1,

@@ -7,14 +7,19 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
-from squealpipe.brake.a1.ensemble import PEAK, REACH, Ensemble, run_map
+from squealpipe.brake.a1.ensemble import (
+    LARGEST_CONTACT_FORCE,
+    LARGEST_REACH,
+    Ensemble,
+    run_map,
+)
 from squealpipe.brake.dynamics import motion
 from squealpipe.brake.normal_form import NormalForm
 from squealpipe.brake.schema.dynamics.runs import HAMMERING_MAP
 from squealpipe.parameters import Parameters
 from squealpipe.schema import build
 from squealpipe.schema.origin import recorded
-from squealpipe.systems.recurrence import EVENTS_AT_ONCE
+from squealpipe.systems.recurrence import RECURRENCE
 from squealpipe.validation import Angles, Positive, Tolerance, Workers
 
 
@@ -63,11 +68,11 @@ def hammering_map(
         rows,
         columns,
         partial(_hammering, params=form.params, t_end=t_end, workers=workers),
-        at_once=EVENTS_AT_ONCE // motion.room_for_events(t_end, params),
+        at_once=RECURRENCE.events_at_once // motion.room_for_events(t_end, params),
         **motion.with_log(t_end, params),
         tol=tol,
         t_late="return",
-        tracked=(PEAK, REACH),
+        tracked=(LARGEST_CONTACT_FORCE, LARGEST_REACH),
         workers=workers,
     )
     maps["turns"] = form.sign * maps["turns"]

@@ -8,7 +8,7 @@ import warnings
 import numpy as np
 import xarray as xr
 
-from squealpipe.brake.a1.ensemble import REACH, Ensemble, integrate, run_map
+from squealpipe.brake.a1.ensemble import LARGEST_REACH, Ensemble, integrate, run_map
 from squealpipe.brake.a1.jobs import Model, jobs_of
 from squealpipe.brake.linear.maps import stability_map
 from squealpipe.brake.models.variants import VARIANT_RULES
@@ -83,7 +83,7 @@ def simulate(
         room = logged
         run = integrate(
             job,
-            ("x", "y", "vx", "contact_force", REACH),
+            ("x", "y", "vx", "contact_force", LARGEST_REACH),
             tangent=growth,
             log_events=room,
             extremes_between=True,

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.brake.a1.ensemble import REACH, run_ensemble
+from squealpipe.brake.a1.ensemble import LARGEST_REACH, run_ensemble
 from squealpipe.brake.dynamics.motion import judge, with_log
 from squealpipe.brake.normal_form import NormalForm
 from squealpipe.brake.schema.dynamics.long_runs import TRANSIENT, WHIRL
@@ -53,7 +53,7 @@ def whirl_sizes(
         **with_log(t_end, params),
         tol=tol,
         t_late=0.8 * t_end,
-        tracked=("x", REACH),
+        tracked=("x", LARGEST_REACH),
         workers=workers,
     )
     motion, changed = judge(run, form.params, t_end, workers=workers)

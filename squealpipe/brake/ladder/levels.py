@@ -4,7 +4,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from squealpipe.brake.a1.ensemble import PEAK, REACH, run_ensemble
+from squealpipe.brake.a1.ensemble import (
+    LARGEST_CONTACT_FORCE,
+    LARGEST_REACH,
+    run_ensemble,
+)
 from squealpipe.brake.ladder.modal_bounds import ModalMotion, modal_motion
 from squealpipe.brake.ladder.questions import answer_of, answer_of_samples
 from squealpipe.brake.models import a3, a4
@@ -94,7 +98,7 @@ def _in_time(level: Level, scenes: Scenes) -> Answers:
         t_end=end,
         model=level.model,
         times=times,
-        tracked=("vx", PEAK, REACH),
+        tracked=("vx", LARGEST_CONTACT_FORCE, LARGEST_REACH),
         workers=workers,
     )
     values = np.stack([answer_of(runs, question, times) for question in QUESTIONS])

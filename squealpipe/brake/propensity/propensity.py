@@ -12,7 +12,7 @@ import scipy
 import xarray as xr
 from annotated_types import Ge, Interval, MinLen
 
-from squealpipe.brake.a1.ensemble import REACH, run_ensemble
+from squealpipe.brake.a1.ensemble import LARGEST_REACH, run_ensemble
 from squealpipe.brake.dynamics.motion import as_judged, classify_motion
 from squealpipe.brake.models import a3
 from squealpipe.brake.models.contact_system import contact_system, with_drag
@@ -186,7 +186,7 @@ def _events(
         alpha2,
         **as_judged(t_end),
         tol=tol,
-        tracked=(REACH,),
+        tracked=(LARGEST_REACH,),
         workers=workers,
     )
     motion, _ = classify_motion(run, SimpleNamespace(**fields))

@@ -31,7 +31,9 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.systems.continuation import Continuation, ContinuationSettings
 
-BASE = Parameters(k3=0.75, mu=0.3, belt_speed=100.0, length1=5.0, length2=5.0)
+BASE_PARAMETERS = Parameters(
+    k3=0.75, mu=0.3, belt_speed=100.0, length1=5.0, length2=5.0
+)
 """Parameters at which the scenes are hard, whatever the study's are."""
 EXACT_ORBIT, CLOSED_FORM_BALANCE = "closed form, exact orbit", "closed-form balance"
 COLD = "cold Newton, sampled"
@@ -151,7 +153,7 @@ def judge_balances() -> xr.Dataset:
 
 
 def _branch(case: BranchCase) -> HardScene:
-    scene = scaled_system(BASE, *case.angles)
+    scene = scaled_system(BASE_PARAMETERS, *case.angles)
     exact, _ = find_orbit(scene, case.mode, case.y_peak)
     balance = CosineBalance(
         scene.system, contact_of(CASE_HARMONICS, 1.0, case.n_time, case.sigma)
@@ -188,7 +190,9 @@ def _branch(case: BranchCase) -> HardScene:
 
 
 def _exact_orbit(case: BranchCase) -> Answer:
-    orbit = periodic_orbit(BASE, *case.angles, mode=case.mode, y_peak=case.y_peak)
+    orbit = periodic_orbit(
+        BASE_PARAMETERS, *case.angles, mode=case.mode, y_peak=case.y_peak
+    )
     return Answer(float(orbit.omega), _flag(orbit.outcome))
 
 
@@ -199,13 +203,17 @@ def _our_balance(case: BranchCase) -> Answer:
         return Answer(math.nan, flag)
     away = float(branch.waveform_error[-1])
     # a balance point farther from the exact orbit, over l_pre, warns
-    flag = "" if away < 0.01 * BASE.preload else f"{away:.2g} away from the exact orbit"
+    flag = (
+        ""
+        if away < 0.01 * BASE_PARAMETERS.preload
+        else f"{away:.2g} away from the exact orbit"
+    )
     return Answer(float(branch.omega[-1]), flag)
 
 
 def _series(angles: tuple[float, float], mode: int, y_peak: float) -> xr.Dataset:
     return backbone(
-        BASE,
+        BASE_PARAMETERS,
         *angles,
         mode=mode,
         y_peak_max=y_peak,
@@ -295,13 +303,13 @@ def _flag(outcome: Any) -> str:
 def _period_doubling() -> HardScene:
     """Is the motion stable? Inside the window its multipliers are real and negative."""
     angles, mode, y_peak = (0.3 * math.pi, 0.9 * math.pi), 1, 4.0
-    scene = scaled_system(BASE, *angles)
+    scene = scaled_system(BASE_PARAMETERS, *angles)
     exact, _ = find_orbit(scene, mode, y_peak)
     hill_harmonics = 16
     balance = CosineBalance(scene.system, contact_of(hill_harmonics, 1.0, None, None))
 
     def ours() -> Answer:
-        found = periodic_orbit(BASE, *angles, mode=mode, y_peak=y_peak)
+        found = periodic_orbit(BASE_PARAMETERS, *angles, mode=mode, y_peak=y_peak)
         return Answer(float(abs(float(found.stability_index)) > 2.0))
 
     def series() -> Answer:
@@ -336,13 +344,19 @@ def _singular_static_state() -> HardScene:
     angle = np.array([0.5 * math.pi])
 
     def ours() -> Answer:
-        found = quasi_static_map(BASE, angle, angle).squeeze()
+        found = quasi_static_map(BASE_PARAMETERS, angle, angle).squeeze()
         return Answer(float(found.x_static), _flag(found.outcome))
 
     def numeric() -> Answer:
-        stiffness = linear_stiffness(BASE, geometry(angle[0], angle[0]))
-        a11, a12, a21, a22 = a4.contact_matrix(stiffness, BASE.k3, BASE.mu)
-        load = BASE.k3 * BASE.preload * np.array([BASE.mu, 1.0])
+        stiffness = linear_stiffness(BASE_PARAMETERS, geometry(angle[0], angle[0]))
+        a11, a12, a21, a22 = a4.contact_matrix(
+            stiffness, BASE_PARAMETERS.k3, BASE_PARAMETERS.mu
+        )
+        load = (
+            BASE_PARAMETERS.k3
+            * BASE_PARAMETERS.preload
+            * np.array([BASE_PARAMETERS.mu, 1.0])
+        )
         try:
             return Answer(float(np.linalg.solve([[a11, a12], [a21, a22]], load)[0]))
         except np.linalg.LinAlgError as error:

@@ -21,7 +21,7 @@ from squealpipe.schema import (
 from squealpipe.systems.datasets.agreement import ComparedAs, RoundOff
 from squealpipe.vibration.shares import CONFIDENCE
 
-SAMPLE = ("sample",)
+BY_SAMPLE = ("sample",)
 STATEMENT = ("statement",)
 READING = ("reading",)
 SAMPLE_BY_READING = ("sample", "reading")
@@ -107,7 +107,7 @@ PARAMETER_INFERENCE = DatasetSchema(
     name="parameter_inference",
     title="Which parameters agree with the paper's statements, in which reading of its friction",
     coordinates={
-        "sample": count("number of the sample", *SAMPLE),
+        "sample": count("number of the sample", *BY_SAMPLE),
         "reading": text("reading of the sign of friction", *READING),
         "statement": text("id of the statement", *STATEMENT),
         "consequence": text(
@@ -115,10 +115,12 @@ PARAMETER_INFERENCE = DatasetSchema(
         ),
     },
     variables={
-        "kappa": Variable("contact stiffness k3/k", dims=SAMPLE),
-        "mu": Variable("friction coefficient", dims=SAMPLE),
-        "length_ratio": Variable("free length of the springs over l_pre", dims=SAMPLE),
-        "speed_ratio": Variable("belt speed over l_pre √(k/m)", dims=SAMPLE),
+        "kappa": Variable("contact stiffness k3/k", dims=BY_SAMPLE),
+        "mu": Variable("friction coefficient", dims=BY_SAMPLE),
+        "length_ratio": Variable(
+            "free length of the springs over l_pre", dims=BY_SAMPLE
+        ),
+        "speed_ratio": Variable("belt speed over l_pre √(k/m)", dims=BY_SAMPLE),
         "holds": flag(
             "whether the statement holds: undecided where indistinguishable starts disagree, "
             "not judged where cheaper statements had already failed",

@@ -20,7 +20,7 @@ from typing import Any
 import yaml
 
 from squealpipe.store.rerun.sources import (
-    INPUT_FILES,
+    DECLARED_BY,
     PACKAGE,
     closure,
     law_files,
@@ -36,7 +36,7 @@ WATCHERS = frozenset({"sources.py", "key.py", "progress.py", "durations.py"})
 STARTED = "SQUEALPIPE_STARTED"
 """Environment variable with the time at which the workflow read its sources, s since 1970."""
 
-PLAN = "SQUEALPIPE_PLAN"
+PLAN_VARIABLE = "SQUEALPIPE_PLAN"
 """Environment variable with the file into which the workflow writes what its results should be."""
 
 
@@ -132,7 +132,7 @@ def refuse_edited(output: str | os.PathLike[str]) -> None:
                 file,
                 *(
                     read
-                    for each in getattr(module, INPUT_FILES, ())
+                    for each in getattr(module, DECLARED_BY, ())
                     for read in file.parent.glob(each)
                 ),
             }

@@ -14,7 +14,7 @@ from typing import NamedTuple
 PACKAGE = Path(__file__).resolve().parents[2]
 STATEMENT_CHECKS = PACKAGE / "paper/claims/checks"
 """Docstrings here are results: the table of statements shows them."""
-INPUT_FILES = "INPUT_FILES"
+DECLARED_BY = "INPUT_FILES"
 """Constant in which a module names what it reads beside what it imports."""
 WORKFLOW = (PACKAGE / "workflow").resolve()
 """Rules, scripts and configurations: in a checkout a folder of its own, in a wheel within."""
@@ -167,7 +167,7 @@ def _parse(content: bytes, documented: bool) -> _Module:
 def _input_files(node: ast.stmt) -> Sequence[str]:
     """The patterns of ``INPUT_FILES``, if a statement assigns them."""
     assigned = isinstance(node, ast.Assign) and any(
-        isinstance(target, ast.Name) and target.id == INPUT_FILES
+        isinstance(target, ast.Name) and target.id == DECLARED_BY
         for target in node.targets
     )
     return ast.literal_eval(node.value) if assigned else ()  # type: ignore[attr-defined, no-any-return]

@@ -34,7 +34,7 @@ class Ranges:
 
 
 RANGES = Ranges()
-UNITS = {
+CURE_UNITS = {
     "mu": "1",
     "contact_stiffness": "1",
     "preload": "1",
@@ -56,7 +56,7 @@ def cures_of(
         ValueError: a modification that cannot be read, or has the name of another cure.
     """
     whole = design.whole
-    cures, units = _frictions(design), dict(UNITS)
+    cures, units = _frictions(design), dict(CURE_UNITS)
     units |= dict.fromkeys(cures, "1")
     if whole.rotation is not None:
         units["belt_speed"] = "rad s-1"

@@ -22,7 +22,7 @@ from squealpipe.vibration.settled_runs import settle as settle_runs
 from squealpipe.vibration.settling import FOR_VERDICTS, Settling
 from squealpipe.vibration.windows import joined
 
-MOST = 20_000.0
+MOST_PERIODS = 20_000.0
 """Periods after which a motion that has not settled is undetermined."""
 
 
@@ -262,7 +262,7 @@ class Structures:
         """Return ln of the decay of small motions within the longest run; NaN where they grow."""
         if subject.plant is None or subject.margin > 0.0:
             return np.nan
-        return subject.plant.rate * MOST / subject.plant.slowest
+        return subject.plant.rate * MOST_PERIODS / subject.plant.slowest
 
     def starts(
         self, subject: Design, number: int, motions: Sequence[np.ndarray]
@@ -300,7 +300,9 @@ class Structures:
         period = np.array([start.period for start in starts])
         first = np.array([_first_window(start) for start in starts]) * period
         advance = _Advance(starts, Running(self.tol, self.seed, self.workers), rules)
-        return settle_runs(starts, advance, Horizon(first, first, MOST * period), rules)
+        return settle_runs(
+            starts, advance, Horizon(first, first, MOST_PERIODS * period), rules
+        )
 
 
 def _of_whole(design: Design, last: Any) -> Any:
@@ -314,7 +316,7 @@ def _first_window(start: Start) -> float:
     # in periods of the slowest mode that grows, or of any; twice as many take twice as long where
     # the motion settles at once
     first_window = 50.0
-    return float(np.clip(shown, first_window, 0.25 * MOST))
+    return float(np.clip(shown, first_window, 0.25 * MOST_PERIODS))
 
 
 @dataclass

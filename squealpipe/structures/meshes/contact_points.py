@@ -15,7 +15,7 @@ import numpy as np
 
 from squealpipe.structures.contact import Contact, PointOrigin
 from squealpipe.structures.meshes.element_mesh import ElementMesh, turned
-from squealpipe.structures.meshes.faces import BELT, Face, Rotation
+from squealpipe.structures.meshes.faces import THE_BELT, Face, Rotation
 from squealpipe.structures.meshes.merging import merged
 from squealpipe.structures.meshes.pairing import FacetedSurface, Partner
 from squealpipe.structures.meshes.shape_functions import shares
@@ -262,7 +262,7 @@ def _points(face: Face, mesh: ElementMesh, rotation: Rotation | None) -> list[_P
     # corners of quadratic triangles carry no area, but for round-off
     members = members[np.abs(area[members]) > 1e-9 * np.abs(area).max()]
     _refuse_opposite(own, members, mesh, face.surface)
-    if face.against == BELT:
+    if face.against == THE_BELT:
         partners: list[Partner | None] = [None] * len(members)
         normals = -own.normals[members]
     else:

@@ -11,7 +11,7 @@ from squealpipe.parameters import TABLE, finite_number
 from squealpipe.systems.inputs.values import brief, is_whole_number
 from squealpipe.validation import real_array
 
-BELT = "belt"
+THE_BELT = "belt"
 """Word for a rigid belt in place of a surface."""
 
 
@@ -38,7 +38,7 @@ class Face:
     """
 
     surface: str
-    against: str = BELT
+    against: str = THE_BELT
     stiffness: float | None = None
     stiffness_per_area: float | None = None
     pressure: float | None = None
@@ -54,7 +54,7 @@ class Face:
         if self.surface == self.against:
             raise ValueError(
                 f"against = {self.against!r}: a surface cannot rub against itself; name the other "
-                f"one, or {BELT}"
+                f"one, or {THE_BELT}"
             )
         for key, units in {
             "stiffness": "N m-1",

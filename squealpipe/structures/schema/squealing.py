@@ -53,7 +53,7 @@ class OnsetKind(IntEnum):
 
 
 _MODE, _ATTRACTOR, _SAMPLE, _POLE = ("mode",), ("attractor",), ("sample",), ("pole",)
-_AT = ("attractor", "contact")
+_ATTRACTOR_BY_CONTACT = ("attractor", "contact")
 
 
 def _of_onset(long_name: str, units: str = "1", *dims: str, **other: Any) -> Variable:
@@ -72,7 +72,7 @@ def _level(long_name: str, units: str = "1", *, rtol: float = 0.05) -> Variable:
 
 
 def _of_contact(long_name: str, units: str = "1") -> Variable:
-    return or_nan(long_name, units, _AT, rtol=0.05, atol=0.01)
+    return or_nan(long_name, units, _ATTRACTOR_BY_CONTACT, rtol=0.05, atol=0.01)
 
 
 SQUEALING = DatasetSchema(
@@ -204,7 +204,12 @@ SQUEALING = DatasetSchema(
             "where the contact is open then"
         ),
         "peak_normal_force": or_nan(
-            "largest normal force", "N", _AT, rtol=0.05, atol=0.01, optional=True
+            "largest normal force",
+            "N",
+            _ATTRACTOR_BY_CONTACT,
+            rtol=0.05,
+            atol=0.01,
+            optional=True,
         ),
         "sliding_force": or_nan(
             "normal force in steady sliding, 0 where the contact is open",

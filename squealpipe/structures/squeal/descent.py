@@ -15,12 +15,7 @@ import numpy as np
 from squealpipe.structures.schema.squealing import ABOVE, NARROW
 from squealpipe.structures.squeal.onset import FirstOnset
 from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
-from squealpipe.structures.squeal.settling import (
-    FIRST_WINDOW,
-    GROWTH,
-    LONGEST_GROWTH,
-    start_at,
-)
+from squealpipe.structures.squeal.settling import GROWTH, RUN_LENGTHS, start_at
 from squealpipe.structures.squeal.windows import Running, StructureWindows, run_windows
 from squealpipe.vibration.settled_runs import Horizon, settle
 from squealpipe.vibration.settling import FOR_VERDICTS
@@ -131,7 +126,7 @@ def _run_on(
     plant: Plant, start: TrackState, frictions: np.ndarray, how: Running
 ) -> list[StructureWindows | None]:
     """Return what a motion becomes at other frictions; None where it dies out."""
-    first = FIRST_WINDOW / plant.slowest
+    first = RUN_LENGTHS.first_window / plant.slowest
     subjects = [Plant(plant.structure.with_(mu=mu)) for mu in frictions.tolist()]
     starts = [
         replace(start_at(each, start.state), period=1.0 / plant.slowest)
@@ -171,7 +166,7 @@ def just_above(onset: FirstOnset, plant: Plant, how: Running) -> TrackState | No
     window = run_windows(
         plant,
         np.tile(above.pushed(place, PUSH_OF_A_MODE), (1, 1)),
-        min(GROWTH / rate, LONGEST_GROWTH * period),
+        min(GROWTH / rate, RUN_LENGTHS.longest_growth * period),
         how,
         frictions=frictions,
     ).row(0)

@@ -22,12 +22,20 @@ from squealpipe.vibration.settling import (
     agreement,
 )
 
-SAME_MODE = 0.1
-"""Distance of frequencies within which a mode of another reduction is the same one's."""
-SAMPLES_PER_FAST_PERIOD = 12.0
-"""Samples in a period of the fastest mode."""
-MOST_SAMPLES = 2**16
-"""Samples in each window."""
+
+@dataclass(frozen=True)
+class EndSearch:
+    """Samples and frequencies by which methods' motions are compared."""
+
+    same_mode: float = 0.1
+    """Distance of frequencies within which a mode of another reduction is the same one's."""
+    samples_per_fast_period: float = 12.0
+    """Samples in a period of the fastest mode."""
+    most_samples: int = 2**16
+    """Most samples in each window."""
+
+
+END_SEARCH = EndSearch()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,8 +95,8 @@ def exact_ends(
     """Return the end of each push, over the starts that belong to it; the frequency from a run
     behind.
     """
-    step = 1.0 / (SAMPLES_PER_FAST_PERIOD * plant.fastest)
-    length = int(min(np.ceil(float(now.length[0]) / step), MOST_SAMPLES))
+    step = 1.0 / (END_SEARCH.samples_per_fast_period * plant.fastest)
+    length = int(min(np.ceil(float(now.length[0]) / step), END_SEARCH.most_samples))
     times = step * np.arange(1, length + 1)
     how = Running(tol, workers=1)
     raw = run(plant, now.final, times, how, regime=now.regimes)
@@ -117,7 +125,7 @@ def exact_ends(
         )
         quiet = all(calm)
         # starts that end apart have not settled to one motion
-        together = quiet or (scatter[0] < SAME_MODE and not any(calm))
+        together = quiet or (scatter[0] < END_SEARCH.same_mode and not any(calm))
         outcome = Outcome.no_convergence
         if finished:
             outcome = Outcome.unresolved

@@ -27,18 +27,35 @@ from squealpipe.vibration.settled_runs import SettledRun
 from squealpipe.vibration.settling import FOR_NUMBERS, late_growth
 from squealpipe.vibration.spectrum import amplitude_spectrum
 
-NEIGHBOURS, OFF = 7, 1e-8
-"""Runs beside the motion, and how far off they start, over its extent."""
-PERIODS = 300.0
-"""Length of the run, in periods of the slowest mode that grows."""
-SAMPLES_PER_PERIOD_OF_KINDS, MOST_SEPARATION_SAMPLES = 6.0, 2**16
-"""Samples in a period of the fastest mode, and of all."""
-APART, FAR = 1e3, 1e-2
-"""Growth of the distance from which it is exponential; extent beyond which it grows no more."""
-LINEAR_GROWTH = 30.0
-"""Growth of the distance up to which it may be one of phases, as on a torus."""
-REPEATED_INTERVALS, NEARLY = 1e-5, 1e-3
-"""Largest difference of intervals, over their mean, of what repeats, and of what may do so."""
+
+@dataclass(frozen=True)
+class KindRules:
+    """Thresholds by which the kind of a settled motion is told."""
+
+    neighbours: int = 7
+    """Runs beside the motion whose distances from it are followed."""
+    first_distance: float = 1e-8
+    """Distance at which they start, over the motion's extent."""
+    periods: float = 300.0
+    """Length of the run, in periods of the slowest mode that grows. Half as long: slow separation
+    is taken for a torus."""
+    samples_per_period: float = 6.0
+    """Samples in a period of the fastest mode."""
+    most_samples: int = 2**16
+    """Most samples of the run; a longer one is cut off there."""
+    exponential_growth: float = 1e3
+    """Growth of the distance from which it is exponential and the motion irregular."""
+    saturation: float = 1e-2
+    """Distance, over the extent, beyond which neighbours separate no further."""
+    linear_growth: float = 30.0
+    """Growth of the distance up to which it may be one of phases, as on a torus."""
+    repeated_intervals: float = 1e-5
+    """Largest difference of intervals between events, over their mean, of a motion that repeats."""
+    nearly_repeated: float = 1e-3
+    """The same of a motion whose cycle is worth a search."""
+
+
+KIND_RULES = KindRules()
 
 
 @dataclass(frozen=True)
@@ -85,18 +102,18 @@ def described(
         return Described(
             Kind.steady_sliding, np.nan, np.nan, np.nan, None, nothing, nothing
         )
-    length = max(PERIODS / plant.slowest, 0.5 * float(settled.last.length))
-    step = 1.0 / (SAMPLES_PER_PERIOD_OF_KINDS * plant.fastest)
-    count = int(min(np.ceil(length / step), MOST_SEPARATION_SAMPLES))
+    length = max(KIND_RULES.periods / plant.slowest, 0.5 * float(settled.last.length))
+    step = 1.0 / (KIND_RULES.samples_per_period * plant.fastest)
+    count = int(min(np.ceil(length / step), KIND_RULES.most_samples))
     length = count * step
     times = step * np.arange(1, count + 1)
     rng = np.random.default_rng(how.seed)
     base = settled.last.final
     extent = float(plant.sizes(base - plant.sliding))
-    directions = rng.standard_normal((NEIGHBOURS, base.size)) * np.abs(
+    directions = rng.standard_normal((KIND_RULES.neighbours, base.size)) * np.abs(
         base - plant.sliding
     )
-    directions *= OFF * extent / plant.sizes(directions)[:, None]
+    directions *= KIND_RULES.first_distance * extent / plant.sizes(directions)[:, None]
     states = np.concatenate([base[None], base + directions])
     # all start in the regimes of the motion, but for a contact that is just at a switch
     regimes = np.tile(settled.last.regimes, (len(states), 1))
@@ -111,16 +128,18 @@ def described(
     kind, cycle = Kind.undetermined, None
     rules = FOR_NUMBERS
     leaves = late > rules.still_grows and late > rules.proportional * before
-    if grown >= APART:
+    if grown >= KIND_RULES.exponential_growth:
         kind = Kind.irregular
         leaves = exponent * float(settled.last.length) < rules.irregular
     else:
         # on a torus near returns are many, and closing each takes minutes
-        if _repeats(raw, length, NEARLY):
+        if _repeats(raw, length, KIND_RULES.nearly_repeated):
             cycle = _closed(plant, settled, raw, frequency)
         if cycle is not None:
             kind, leaves = Kind.cycle, False
-        elif grown <= LINEAR_GROWTH and not _repeats(raw, length, REPEATED_INTERVALS):
+        elif grown <= KIND_RULES.linear_growth and not _repeats(
+            raw, length, KIND_RULES.repeated_intervals
+        ):
             kind = Kind.torus
     window = statistics_of(plant, raw, length).row(0)
     lines = omega / (2.0 * np.pi)
@@ -153,7 +172,7 @@ def _apart(
         areas[place] = np.sqrt(max(0.5 * float(area.max()), 0.0))
     middles = np.array([times[block].mean() for block in blocks])
     grown = float(spread.max() / spread[0])
-    far = np.flatnonzero(spread > FAR)
+    far = np.flatnonzero(spread > KIND_RULES.saturation)
     grows = slice(max(int(far[0]), 3) + 1 if far.size else None)
     rate = np.polyfit(middles[grows], np.log(spread[grows] + 1e-300), 1)[0]
     return grown, float(rate), float(late_growth(np.log(areas + 1e-300)))

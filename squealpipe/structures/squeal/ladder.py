@@ -31,11 +31,7 @@ from squealpipe.structures.squeal.methods import (
     smoothed_told,
 )
 from squealpipe.structures.squeal.plant import Plant
-from squealpipe.structures.squeal.settling import (
-    FEWEST_PERIODS_OF_A_RUN,
-    FIRST_WINDOW,
-    horizon,
-)
+from squealpipe.structures.squeal.settling import RUN_LENGTHS, horizon
 from squealpipe.structures.squeal.squealing_modes import nearest
 from squealpipe.systems.datasets.outcomes import Outcome
 from squealpipe.systems.progress import alone
@@ -154,7 +150,9 @@ def _horizon(plant: Plant, places: np.ndarray, t_end: float | None) -> Horizon:
     """
     if t_end is not None:
         horizon(plant, t_end)  # says what is too short
-        window = min(FIRST_WINDOW / plant.slowest, t_end / FEWEST_PERIODS_OF_A_RUN)
+        window = min(
+            RUN_LENGTHS.first_window / plant.slowest, t_end / RUN_LENGTHS.fewest_periods
+        )
         return Horizon(t_end - 2.0 * window, window)
     rates = plant.spectrum.values.real[places]
     growing, first, most = horizon(plant, None)

@@ -12,10 +12,18 @@ from squealpipe.structures.schema.structures import Onset
 from squealpipe.structures.sliding import NoSlidingError
 from squealpipe.structures.squeal.plant import Plant
 
-SEARCHED_FACTOR = 2.0
-"""Factor of the structure's own friction up to which an onset is sought where nothing grows."""
-BELOW = 0.99
-"""Friction over that of the onset at which small motions have to die out."""
+
+@dataclass(frozen=True)
+class OnsetSearch:
+    """Range in which the onset of squeal is sought."""
+
+    searched_factor: float = 2.0
+    """Factor of the structure's own friction up to which an onset is sought where nothing grows."""
+    below: float = 0.99
+    """Friction over that of the onset at which small motions have to die out."""
+
+
+ONSET_SEARCH = OnsetSearch()
 
 
 @dataclass(frozen=True)
@@ -50,9 +58,11 @@ def confirmed_onset(plant: Plant) -> FirstOnset | Outcome:
         except NoSlidingError:
             return False
 
-    most = min(SEARCHED_FACTOR * plant.structure.mu, plant.structure.largest_mu)
+    most = min(
+        ONSET_SEARCH.searched_factor * plant.structure.mu, plant.structure.largest_mu
+    )
     if isinstance(found, FirstOnset):
-        agrees = grows(ABOVE * found.mu) and not grows(BELOW * found.mu)
+        agrees = grows(ABOVE * found.mu) and not grows(ONSET_SEARCH.below * found.mu)
     elif found is Outcome.already_unstable:
         agrees = grows(0.0)
     else:
@@ -71,7 +81,7 @@ def first_onset(plant: Plant) -> FirstOnset | Outcome:
     if (modes.onset == Onset.unstable_throughout).any():
         return Outcome.already_unstable
     if not plant.unstable.size:
-        frictions = np.linspace(1.0, SEARCHED_FACTOR, 24) * structure.mu
+        frictions = np.linspace(1.0, ONSET_SEARCH.searched_factor, 24) * structure.mu
         frictions = frictions[frictions <= most]
         if len(frictions) < 2 or not structure.mu:
             return Outcome.not_reached
@@ -85,5 +95,5 @@ def first_onset(plant: Plant) -> FirstOnset | Outcome:
         return Outcome.unresolved
     frequency = float(above.frequencies[above.unstable[0]])
     return FirstOnset(
-        mu, frequency, above, Plant(structure.with_(mu=BELOW * mu)).decays
+        mu, frequency, above, Plant(structure.with_(mu=ONSET_SEARCH.below * mu)).decays
     )

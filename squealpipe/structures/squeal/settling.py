@@ -6,7 +6,7 @@ nonlinear, so that none of it enters a number.
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -23,12 +23,23 @@ from squealpipe.vibration.settling import FOR_VERDICTS
 GROWTH = np.log(1e4)
 """Growth of a small push before statistics start (ln; from 1 % of the static deformation to
 saturation)."""
-FIRST_WINDOW = 100.0
-"""Length of the first window of statistics, in periods of the slowest unstable mode."""
-LONGEST_GROWTH, MOST_PERIODS_OF_A_RUN = 4_000.0, 8_000.0
-"""Most periods in which a push may grow, and of a run, if no other end is given."""
-FEWEST_PERIODS_OF_A_RUN = 4.0
-"""Fewest periods of a run: the first windows are a quarter of it."""
+
+
+@dataclass(frozen=True)
+class RunLengths:
+    """Lengths of the runs that settle."""
+
+    first_window: float = 100.0
+    """Length of the first window of statistics, in periods of the slowest unstable mode."""
+    longest_growth: float = 4_000.0
+    """Longest time that small motions get to grow, in periods of the slowest mode that grows."""
+    most_periods: float = 8_000.0
+    """Most periods in which a push may grow, and of a run, if no other end is given."""
+    fewest_periods: float = 4.0
+    """Fewest periods of a run: the first windows are a quarter of it."""
+
+
+RUN_LENGTHS = RunLengths()
 
 
 def arrival(run: SettledRun) -> float:
@@ -48,17 +59,17 @@ def arrival(run: SettledRun) -> float:
 def horizon(plant: Plant, t_end: float | None) -> tuple[float, float, float]:
     """Time for growth, length of the first window, and the end of all runs, s."""
     period = 1.0 / plant.slowest
-    if t_end is not None and t_end < FEWEST_PERIODS_OF_A_RUN * period:
+    if t_end is not None and t_end < RUN_LENGTHS.fewest_periods * period:
         raise ValueError(
-            f"t_end = {t_end!r}: {FEWEST_PERIODS_OF_A_RUN:g} periods of the slowest mode are "
-            f"needed at least, {FEWEST_PERIODS_OF_A_RUN * period:.3g} s"
+            f"t_end = {t_end!r}: {RUN_LENGTHS.fewest_periods:g} periods of the slowest mode are "
+            f"needed at least, {RUN_LENGTHS.fewest_periods * period:.3g} s"
         )
-    first = FIRST_WINDOW * period
+    first = RUN_LENGTHS.first_window * period
     growing = 0.0
     if plant.unstable.size:
         rate = plant.spectrum.values.real[plant.unstable].min()
-        growing = min(GROWTH / rate, LONGEST_GROWTH * period)
-    most = MOST_PERIODS_OF_A_RUN * period + growing if t_end is None else t_end
+        growing = min(GROWTH / rate, RUN_LENGTHS.longest_growth * period)
+    most = RUN_LENGTHS.most_periods * period + growing if t_end is None else t_end
     growing = min(max(growing, first), 0.25 * most)
     return growing, min(first, 0.25 * most), most
 
@@ -96,10 +107,12 @@ def settle_on(
     _, _, most = horizon(plant, t_end)
     if t_end is None:
         # a run that leaves what it seemed to have settled on goes on for so many periods
-        most *= 20_000.0 / MOST_PERIODS_OF_A_RUN
+        most *= 20_000.0 / RUN_LENGTHS.most_periods
     length = 2.0 * max(float(run.last.length) for run in settled)
     left = most - max(run.elapsed for run in settled)
-    if left < FEWEST_PERIODS_OF_A_RUN * length:  # without statistics, and two windows
+    if (
+        left < RUN_LENGTHS.fewest_periods * length
+    ):  # without statistics, and two windows
         return [replace(run, verdict=Verdict.undetermined) for run in settled]
     starts = [start_at(plant, run.last.final) for run in settled]
     regimes = np.array([run.last.regimes for run in settled])

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-PACKAGE = Path(__file__).resolve().parents[2]
+PACKAGE_FOLDER = Path(__file__).resolve().parents[2]
 
 Item = TypeVar("Item")
 Draw = TypeVar("Draw", bound=Callable[..., "Figure"])
@@ -73,7 +73,7 @@ def find_module(name: str) -> Path:
     Raises:
         ValueError: if no module, or more than one, has this name.
     """
-    files = list(PACKAGE.glob(f"*/figures/*/{name}.py"))
+    files = list(PACKAGE_FOLDER.glob(f"*/figures/*/{name}.py"))
     if len(files) != 1:
         raise ValueError(
             f"{len(files)} modules figures/<topic>/{name}.py; one is needed"
@@ -179,7 +179,7 @@ def registered(name: str) -> ReportFigure:
     Raises:
         ValueError: if the module registers no figure.
     """
-    path = find_module(name).relative_to(PACKAGE.parent).with_suffix("")
+    path = find_module(name).relative_to(PACKAGE_FOLDER.parent).with_suffix("")
     module = import_module(".".join(path.parts))
     if name not in _registered:
         raise ValueError(

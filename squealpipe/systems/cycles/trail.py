@@ -14,10 +14,19 @@ from squealpipe.systems.cycles.line import AT_SPECIAL_POINTS
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.datasets import Outcome
 
-_AT_REST = 1e-3
-"""Size of a cycle, over the largest on its branch, below which one that shrinks comes to rest."""
-_MET = 0.03
-"""Distance from a cycle of a part of the period, over its extent, where a branch ends on it."""
+
+@dataclass(frozen=True)
+class TrailDistances:
+    """Distances along a branch of cycles by which its end is told."""
+
+    at_rest: float = 1e-3
+    """Size of a cycle, over the largest on its branch, below which one that shrinks comes to
+    rest."""
+    met: float = 0.03
+    """Distance from a cycle of a part of the period, over its extent, where a branch ends on it."""
+
+
+TRAIL = TrailDistances()
 
 
 @dataclass(frozen=True)
@@ -83,7 +92,8 @@ class Trail:
     def is_met(self, point: BranchPoint) -> bool:
         """Return whether a fold is where the branch ends on a cycle of a part of the period."""
         near = (
-            min(float(np.linalg.norm(point.cycle.after_part(n))) for n in (2, 3)) < _MET
+            min(float(np.linalg.norm(point.cycle.after_part(n))) for n in (2, 3))
+            < TRAIL.met
         )
         return near and point.label == Label.fold
 
@@ -98,7 +108,7 @@ class Trail:
         parts = [float(np.linalg.norm(cycle.after_part(n))) for n in (2, 3)]
         return (
             Outcome.tongue_end
-            if min(parts) < _MET and second < _MET
+            if min(parts) < TRAIL.met and second < TRAIL.met
             else Outcome.branch_lost
         )
 
@@ -117,7 +127,7 @@ class Trail:
         rises = bool((np.diff(periods[first:]) > -1e-6 * periods[-1]).all())
         return rises and bool(periods[-1] >= 1.5 * periods[first])
 
-    def has_shrunk(self, cycle: Cycle, share: float = _AT_REST) -> bool:
+    def has_shrunk(self, cycle: Cycle, share: float = TRAIL.at_rest) -> bool:
         """Return whether a cycle without forcing is next to a state of rest."""
         if cycle.map.periods:
             return False
@@ -131,7 +141,7 @@ class Trail:
         Of the smallest cycles round-off decides the parameter.
         """
         sizes, last = _sizes_of(self.shapes), self.points[-1].parameter
-        fit = np.flatnonzero(sizes > 0.2 * _AT_REST * sizes.max())[-3:]
+        fit = np.flatnonzero(sizes > 0.2 * TRAIL.at_rest * sizes.max())[-3:]
         shapes = []
         for state, equations in (
             (self.points[i].state, self.points[i].cycle.map) for i in fit
@@ -145,4 +155,4 @@ class Trail:
         unit = float(self.points[-1].cycle.map.units[-1])
         beyond = np.array([shape[0] for shape in shapes]) * unit - last
         rest = float(scipy.interpolate.barycentric_interpolate(squares, beyond, 0.0))
-        return last + rest if abs(rest) < _AT_REST * np.abs(beyond).max() else None
+        return last + rest if abs(rest) < TRAIL.at_rest * np.abs(beyond).max() else None

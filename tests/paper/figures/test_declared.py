@@ -27,7 +27,7 @@ def test_every_figure_of_the_report_can_be_drawn_from_what_it_declares(name):
 def test_no_module_is_left_without_a_place():
     declaring = {
         path.stem
-        for path in declared.PACKAGE.glob("*/figures/*/*.py")
+        for path in declared.PACKAGE_FOLDER.glob("*/figures/*/*.py")
         if "\n@report_figure(" in path.read_text()
     }
     assert declaring == {*PAPER_FIGURES, *OWN, *STRUCTURE}

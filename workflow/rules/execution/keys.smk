@@ -6,7 +6,7 @@ Included when all rules are known; no rule has to name what its script imports.
 import base64
 import json
 
-from squealpipe.store.rerun.key import PLAN, digest, file_key, rule_key, sources
+from squealpipe.store.rerun.key import PLAN_VARIABLE, digest, file_key, rule_key, sources
 from squealpipe.store.keys import misfits, refuse_misfits
 
 MAKERS = {str(path): known for known in workflow.rules for path in known.output}
@@ -81,7 +81,7 @@ def misjudged(path):
     return unseen and Path(path).is_file() and bool(misfits({path: KEYS[path]}))
 
 
-ASKED = os.environ.get(PLAN)
+ASKED = os.environ.get(PLAN_VARIABLE)
 if workflow.is_main_process and not ASKED:
     refuse_misfits({path: KEYS[path] for path in KEYS if misjudged(path)})
 

@@ -5,7 +5,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from squealpipe.paper.figures.comparison.work_precision_benchmark import (
-    COSTS,
+    COST_NAMES,
     knowable,
     medians,
     where_solvers_ran,
@@ -53,7 +53,7 @@ def draw(benchmark: xr.Dataset) -> Figure:
         "cpu_ratio": "CPU time over that of DOP853 at 10⁻⁸",
         "evaluations": "calls",
     }
-    for panel, letter, cost in zip(axes[0], "ab", sorted(COSTS), strict=True):
+    for panel, letter, cost in zip(axes[0], "ab", sorted(COST_NAMES), strict=True):
         draw_methods(panel, runs, cost, 1.0, methods)
         _draw_spread(panel, scenes, runs, cost)
         panel.set(xlabel="median error over growth", ylabel=labels[cost])

@@ -11,7 +11,7 @@ from squealpipe.plotting.style import PAGE, new_figure, panel_letter
 from squealpipe.plotting.work_precision import draw_methods, foot
 from squealpipe.study.figures.declared import report_figure
 
-COSTS = {"evaluations": "evaluations", "cpu_ratio": "CPU time"}
+COST_NAMES = {"evaluations": "evaluations", "cpu_ratio": "CPU time"}
 
 
 def caption(benchmark: xr.Dataset) -> str:
@@ -78,7 +78,7 @@ def draw(benchmark: xr.Dataset) -> Figure:
     known = benchmark.isel(problem=knowable(benchmark).values)
     groups = list(dict.fromkeys(known.group.values.tolist()))
     classes_in_a_row = 2
-    rows, width = -(-len(groups) // classes_in_a_row), len(COSTS)
+    rows, width = -(-len(groups) // classes_in_a_row), len(COST_NAMES)
     figure, axes = new_figure(
         PAGE, 1.4 * rows + 1.2, nrows=rows, ncols=classes_in_a_row * width, sharex=True
     )
@@ -88,9 +88,9 @@ def draw(benchmark: xr.Dataset) -> Figure:
         "abcdefghijklmnopqrstuvwxyz", panels, groups, strict=False
     ):
         of_group = known.isel(problem=known.group.values == group)
-        for panel, cost in zip(pair, COSTS, strict=True):
+        for panel, cost in zip(pair, COST_NAMES, strict=True):
             draw_methods(panel, medians(of_group), cost, 1.0, methods)
-            panel.set_ylabel(COSTS[cost], fontsize=6, labelpad=1)
+            panel.set_ylabel(COST_NAMES[cost], fontsize=6, labelpad=1)
             panel.tick_params(labelsize=6)
         panel_letter(pair[0], letter, group)
     for pair in panels[len(groups) :]:
@@ -110,7 +110,7 @@ def draw(benchmark: xr.Dataset) -> Figure:
 
 def medians(benchmark: xr.Dataset) -> xr.Dataset:
     """Medians over problems and the worst verdict, a run for each solver and tolerance."""
-    asked = benchmark[["error", *COSTS]].where(benchmark.error.notnull())
+    asked = benchmark[["error", *COST_NAMES]].where(benchmark.error.notnull())
     asked["error"] = asked.error.clip(max=1.0)  # above, an answer says nothing
     runs = asked.median("problem")
     runs["worth"] = benchmark.verdict.max("problem")
