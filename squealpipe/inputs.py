@@ -221,5 +221,5 @@ def _quantity(name: str, value: Any, units: Mapping[str, str]) -> Any:
 
 def _radians(degrees: Any) -> Any:
     if isinstance(degrees, list):
-        return [_radians(each) for each in degrees]
+        return [_radians(degree) for degree in degrees]
     return math.radians(degrees)

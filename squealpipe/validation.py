@@ -82,7 +82,9 @@ def checked(
         TypeError: an argument is missing, unknown or given twice.
     """
     arguments = inspect.signature(function).parameters
-    further = any(each.kind == each.VAR_KEYWORD for each in arguments.values())
+    further = any(
+        argument.kind == argument.VAR_KEYWORD for argument in arguments.values()
+    )
     # keywords beyond the arguments are parameters where the function takes those of a brake
     more = units if further and "params" in arguments else ()
 

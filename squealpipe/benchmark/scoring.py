@@ -265,7 +265,9 @@ def benchmark(
         raise ValueError(
             f"problem {unknown[0]!r} is unknown; one of {'; '.join(known)}"
         )
-    tolerances = [finite_number("tolerances", each, "1") for each in tolerances]
+    tolerances = [
+        finite_number("tolerances", tolerance, "1") for tolerance in tolerances
+    ]
     time_limit = finite_number("time_limit", time_limit, "s")
     if min(tolerances) <= 0.0:
         raise ValueError(f"tolerance {min(tolerances):g}: has to be above 0")

@@ -71,8 +71,8 @@ def explorer_data(
                 others.tolist() if modes else (), row * count
             ):
                 scene = scaled_system(params, float(angles[row]), alpha2)
-                for place, mode in enumerate(modes):
-                    _branch(arrays, (cell, place), params, scene, mode)
+                for index, mode in enumerate(modes):
+                    _branch(arrays, (cell, index), params, scene, mode)
 
     history = (count * count, samples)
     branch = (count * count, len(modes), branch_points)

@@ -94,8 +94,8 @@ def application() -> App:
         suppress_keyboard_interrupt=False,
         result_action="return_int_as_exit_code_else_zero",
     )
-    for place, (name, command) in enumerate(COMMANDS.items()):
-        app.command(command, name=name, sort_key=place, help_epilogue="")
+    for index, (name, command) in enumerate(COMMANDS.items()):
+        app.command(command, name=name, sort_key=index, help_epilogue="")
     peers = App(name="benchmark", sort_key=len(COMMANDS), help_epilogue="")
     peers.default(benchmark.run)
     peers.command(benchmark.compare, name="compare")

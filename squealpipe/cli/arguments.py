@@ -202,7 +202,7 @@ Force = Annotated[bool, Parameter(negative="", help="overwrite files that exist.
 Tolerances = Annotated[
     list[float] | None,
     Parameter(
-        converter=lambda _, tokens: [parse_share(each.value) for each in tokens],
+        converter=lambda _, tokens: [parse_share(token.value) for token in tokens],
         negative="",
         metavar="FLOAT",
         n_tokens=1,
@@ -338,7 +338,9 @@ def modifications_of(texts: Sequence[str]) -> dict[str, Any]:
                 'damping ratio, "shim=patch BACK 0.2 0.05"'
             )
         place, *amounts = words
-        values = [each if has_unit(each) else as_number(each) for each in amounts]
+        values = [
+            amount if has_unit(amount) else as_number(amount) for amount in amounts
+        ]
         if kind == "chamfer":
             found[name] = {kind: {"face": place, "share": values[0]}}
         elif kind == "patch":
@@ -357,7 +359,9 @@ def modifications_of(texts: Sequence[str]) -> dict[str, Any]:
 def _nodes(text: str) -> str | list[int]:
     """Read the name of a node set, or numbers of nodes like 5005,5006."""
     numbers = text.split(",")
-    return [int(each) for each in numbers] if all(map(str.isdigit, numbers)) else text
+    return (
+        [int(number) for number in numbers] if all(map(str.isdigit, numbers)) else text
+    )
 
 
 def _freedom(text: str) -> int | str:

@@ -61,8 +61,10 @@ def session(arguments: Sequence[str]) -> Iterator[list[str]]:
         "-v": "verbose",
         "--verbose": "verbose",
     }
-    switches = {meanings[each] for each in arguments[:end] if each in meanings}
-    kept = [each for each in arguments[:end] if each not in meanings]
+    switches = {
+        meanings[argument] for argument in arguments[:end] if argument in meanings
+    }
+    kept = [argument for argument in arguments[:end] if argument not in meanings]
     SESSION.quiet = "quiet" in switches
     SESSION.verbose = "verbose" in switches or os.environ.get(TRACEBACK, "0") not in {
         "",

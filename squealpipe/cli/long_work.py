@@ -26,9 +26,9 @@ def say_what_it_takes(
     Raises:
         ValueError: it does not fit into the memory of this machine.
     """
-    if len(angles) != 2 or not all(hasattr(each, "__len__") for each in angles):
+    if len(angles) != 2 or not all(hasattr(angle, "__len__") for angle in angles):
         return
-    sizes = [len(each) for each in angles]
+    sizes = [len(angle) for angle in angles]
     cells = prod(sizes)
     if cells < MANY:
         return
@@ -48,7 +48,7 @@ def say_what_it_takes(
     import squealpipe
 
     # a map of 12 × 12 angles tells the time of the whole well enough
-    few = [list(each)[:: max(1, len(each) // 12)] for each in angles]
+    few = [list(angle)[:: max(1, len(angle) // 12)] for angle in angles]
     task = getattr(squealpipe, function)
     task(params, few[0][:2], few[1][:2], **options)  # what is compiled first
     started = time.perf_counter()

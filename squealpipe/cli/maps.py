@@ -152,7 +152,7 @@ def basin(
         for name, values in given.items()
         if values
     }
-    if sum(isinstance(each, list) for each in starts.values()) not in {1, 2}:
+    if sum(isinstance(start, list) for start in starts.values()) not in {1, 2}:
         raise ValueError(
             "give a range of one or two of x, y, vx, vy, like --vx -5:5:21"
         )

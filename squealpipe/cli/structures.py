@@ -107,7 +107,7 @@ def modes(
             read = partial(parse_number, units=structure.speed_unit)
             options["belt_speed"] = _one_or_more(parse_range(text, one=read))
         values = [*options.values(), *_values_of(options.get("mu"))]
-        points = math.prod(len(each) for each in values if isinstance(each, list))
+        points = math.prod(len(value) for value in values if isinstance(value, list))
         told = library.cost_beforehand(structure, points, options.get("n_modes"))
         if told is not None:
             say(told)

@@ -137,7 +137,9 @@ def _verdicts_of(
         held = judge_consequences(some).items()
         verdicts |= {name: (values, np.ones(some.size, bool)) for name, values in held}
         for k, i in enumerate(places):
-            rows[i] = [_share(*(each[[k]] for each in verdicts[n])) for n in names]
+            rows[i] = [
+                _share(*(verdict[[k]] for verdict in verdicts[n])) for n in names
+            ]
     return rows
 
 

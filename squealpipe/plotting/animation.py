@@ -149,9 +149,9 @@ def draw_phases(panels: list[Axes], run: xr.Dataset) -> str:
     shown = motion.at(last - period * (1.0 - np.arange(count) / count))
     around = motion.from_(last - period)
     geometry = Geometry(around if around.time.size > 3 else motion)
-    for place, panel in enumerate(panels):
-        Mechanism(panel, geometry, shown, small=True).show(place)
-        panel.set_title(engineering(period * place / count, "s"), fontsize=7)
+    for index, panel in enumerate(panels):
+        Mechanism(panel, geometry, shown, small=True).show(index)
+        panel.set_title(engineering(period * index / count, "s"), fontsize=7)
     return f"one period of {engineering(period, 's')}; motion drawn {geometry.told}"
 
 
@@ -161,10 +161,10 @@ def _phases_of_structure(run: xr.Dataset, count: int) -> Figure:
     instants = last - period * (1.0 - np.arange(count) / count)
     frames = np.searchsorted(0.5 * (motion.time[1:] + motion.time[:-1]), instants)
     figure, panels = _strip(count, 1.25)
-    for place, panel in enumerate(panels):
+    for index, panel in enumerate(panels):
         body = Body(panel, motion, frames, small=True)
-        body.show(place)
-        panel.set_title(engineering(period * place / count, "s"), fontsize=7)
+        body.show(index)
+        panel.set_title(engineering(period * index / count, "s"), fontsize=7)
     words = f"one period of {engineering(period, 's')}; vibration drawn {body.told}"
     figure.suptitle(words, fontsize=8)
     return figure

@@ -48,8 +48,8 @@ def in_units(figure: Figure, wanted: Sequence[str], dataset: xr.Dataset) -> None
     Raises:
         ValueError: no axis measures what a unit does, or two units measure the same.
     """
-    for place, one in enumerate(wanted):
-        for other in wanted[:place]:
+    for index, one in enumerate(wanted):
+        for other in wanted[:index]:
             if conversion(one, other) is not None:
                 raise ValueError(
                     f"unit {one} and unit {other} measure the same; give one of them"

@@ -129,13 +129,13 @@ class Film:
         # one palette for all: colours that change from frame to frame flicker
         sample = Image.fromarray(
             np.concatenate(
-                [np.asarray(each) for each in pictures[:: len(pictures) // 6 + 1]]
+                [np.asarray(picture) for picture in pictures[:: len(pictures) // 6 + 1]]
             )
         )
         palette = sample.quantize(64, method=Image.Quantize.MEDIANCUT)
         shown = [
-            each.quantize(palette=palette, dither=Image.Dither.NONE)
-            for each in pictures
+            picture.quantize(palette=palette, dither=Image.Dither.NONE)
+            for picture in pictures
         ]
         content = io.BytesIO()
         shown[0].save(

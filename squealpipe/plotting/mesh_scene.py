@@ -167,7 +167,7 @@ class Body:
             self.facets.show(nodes)
         self.marks.set_offsets(nodes[self.at] @ self.view[:2].T)
         regimes = self.motion.regimes[self.frames[place]]
-        colours = [CONTACT_LOOKS[Regime(int(each))][1] for each in regimes]
+        colours = [CONTACT_LOOKS[Regime(int(regime))][1] for regime in regimes]
         # open contacts are hollow: they differ without colour too
         is_open = regimes == Regime.separated
         self.marks.set_facecolor(
@@ -226,9 +226,9 @@ def draw_forces(axes: Axes, run: xr.Dataset) -> None:
     last = float(run.time[-1])
     shown = run.sel(time=slice(last - 6.0 / float(run.dominant_frequency), None))
     factor, unit = shown_in(last, "s")
-    for place, name in enumerate(shown.contact.values[: len(style.PALETTE)]):
-        force = shown.normal_force[:, place]
-        axes.plot(factor * shown.time, force, color=style.PALETTE[place], label=name)
+    for index, name in enumerate(shown.contact.values[: len(style.PALETTE)]):
+        force = shown.normal_force[:, index]
+        axes.plot(factor * shown.time, force, color=style.PALETTE[index], label=name)
     axes.set(xlabel=f"time ({unit})", ylabel="normal force (N)")
     axes.legend(ncols=3)
 

@@ -171,7 +171,9 @@ def _draw_occurrence(axes: Axes, dataset: xr.Dataset) -> None:
         color=style.BLUE,
         label="points of the map",
     )
-    axes.bar_label(bars, [_percent(each) for each in dataset.occurrence.values], size=6)
+    axes.bar_label(
+        bars, [_percent(value) for value in dataset.occurrence.values], size=6
+    )
     if measured:
         heard = axes.bar(
             place + shift,

@@ -83,9 +83,9 @@ def _poles(axes: Axes, answer: xr.Dataset) -> None:
     unstable = np.isin(answer.pole.values, answer.mode.values)
     _errors(axes, answer, factor)
     axes.axhline(0.0, color=style.GREY, linewidth=0.6)
-    for place, ring in enumerate(answer.dominant_frequency.values * factor):
+    for index, ring in enumerate(answer.dominant_frequency.values * factor):
         if np.isfinite(ring):
-            label = None if place else "strongest line"
+            label = None if index else "strongest line"
             axes.axvline(
                 ring, color=style.BLACK, linewidth=0.8, linestyle="--", label=label
             )
@@ -142,7 +142,7 @@ def draw_shares(axes: Axes, answer: xr.Dataset) -> None:
 def _names(answer: xr.Dataset) -> list[str]:
     """Each attractor by its frequency and kind."""
     kinds = meanings(answer.kind)
-    words = [style.flag_words(kinds[int(kind)]) for kind in answer.kind.values]
+    words = [style.flag_words(kinds[int(value)]) for value in answer.kind.values]
     return [
         word.replace(" ", "\n")
         if np.isnan(frequency)
@@ -156,10 +156,10 @@ def _losses(axes: Axes, answer: xr.Dataset) -> None:
     names = answer.contact.values.tolist()
     separated = answer.separated_fraction.values
     step = BARS_HEIGHT / len(names)
-    for place, name in enumerate(names):
-        at = np.arange(len(separated)) + (place + 0.5) * step - 0.5 * BARS_HEIGHT
-        axes.barh(at, separated[:, place], 0.8 * step, color=style.ORANGE, **_EDGE)
-        for row, value in zip(at, separated[:, place], strict=True):
+    for index, name in enumerate(names):
+        at = np.arange(len(separated)) + (index + 0.5) * step - 0.5 * BARS_HEIGHT
+        axes.barh(at, separated[:, index], 0.8 * step, color=style.ORANGE, **_EDGE)
+        for row, value in zip(at, separated[:, index], strict=True):
             axes.annotate(
                 name,
                 (value, row),

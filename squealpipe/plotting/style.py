@@ -174,7 +174,7 @@ def draw_lines(
 ) -> None:
     """Lines, (x, y), with a gap wherever another curve begins."""
     ends = np.flatnonzero(np.diff(curve)) + 1
-    axes.plot(*(np.insert(each, ends, np.nan) for each in lines), **look)
+    axes.plot(*(np.insert(line, ends, np.nan) for line in lines), **look)
 
 
 def hatch(axes: Axes, dataset: xr.Dataset, mask: np.ndarray) -> None:

@@ -26,8 +26,8 @@ def draw_states(axes: Axes, run: xr.Dataset) -> None:
         for instant in run.event_time.values:
             axes.axvline(instant, color=GREY, linewidth=0.4)
     dashes = ("-", "--", ":")
-    for place, state in enumerate(alike):
-        turn, colour = divmod(place, len(PALETTE))
+    for index, state in enumerate(alike):
+        turn, colour = divmod(index, len(PALETTE))
         axes.plot(
             run.time,
             state,
@@ -61,7 +61,7 @@ def _draw_regimes(axes: Axes, run: xr.Dataset) -> list[Patch]:
         What a legend shows of the regimes.
     """
     names = meanings(run.event_regime)
-    components = [str(each) for each in run.component.values]
+    components = [str(value) for value in run.component.values]
     # of components c and c_2, regime c_2_stick is one of the latter
     owners = {
         number: max((c for c in components if name.startswith(f"{c}_")), key=len)
@@ -77,11 +77,11 @@ def _draw_regimes(axes: Axes, run: xr.Dataset) -> list[Patch]:
     bottom, top = axes.get_ylim()
     height = 0.06 * (top - bottom)
     end = float(run.end_time)
-    for place, component in enumerate(components):
+    for index, component in enumerate(components):
         mine = [owners[int(n)] == component for n in run.event_regime]
         times = [0.0, *run.event_time.values[mine], end]
-        entered = [run.regime.values[0, place], *run.event_regime.values[mine]]
-        base = bottom - (place + 1) * height
+        entered = [run.regime.values[0, index], *run.event_regime.values[mine]]
+        base = bottom - (index + 1) * height
         axes.broken_barh(
             list(zip(times[:-1], np.diff(times), strict=True)),
             (base, 0.8 * height),

@@ -68,13 +68,13 @@ def convert(dataset: xr.Dataset, path: AnyPath) -> list[Path]:
         return _write_sheets(dataset, target)
     files = []
     tables = _tables(dataset) or {(): _table_of_numbers(dataset)}
-    for place, (dims, frame) in enumerate(tables.items()):
+    for index, (dims, frame) in enumerate(tables.items()):
         files.append(
-            target.with_suffix(f".{'_'.join(dims)}{target.suffix}") if place else target
+            target.with_suffix(f".{'_'.join(dims)}{target.suffix}") if index else target
         )
         with whole_file(files[-1]) as temporary:
             if target.suffix == ".csv":
-                head = _head_of_csv(dataset, frame, target, with_numbers=not place)
+                head = _head_of_csv(dataset, frame, target, with_numbers=not index)
                 _write_csv(head, frame, temporary)
             else:
                 frame.attrs = _about(dataset)

@@ -163,7 +163,7 @@ def _dataset(structure: ContactStructure, asked: Asked) -> xr.Dataset:
         del coords["mu"]
         tables["critical_scale"] = tables["critical_mu"]
         tables["critical_mu"] = [
-            np.full_like(each, np.nan) for each in tables["critical_scale"]
+            np.full_like(table, np.nan) for table in tables["critical_scale"]
         ]
     if names := [contact.name for contact in structure.contacts]:
         coords["contact"] = names
@@ -297,7 +297,7 @@ def _neighbour(ways: np.ndarray, place: tuple[int, ...]) -> Way | None:
 def _tables(ways: list[Way], frictions: list[float]) -> dict[str, list[np.ndarray]]:
     """Each variable over (friction, mode), or over mode, for each way."""
     numbers = _numbers(ways, frictions)
-    place_of = {number: place for place, number in enumerate(numbers)}
+    place_of = {number: index for index, number in enumerate(numbers)}
     tables: dict[str, list[np.ndarray]] = {}
     floats = (
         "growth_rate",
@@ -335,7 +335,7 @@ def _tables(ways: list[Way], frictions: list[float]) -> dict[str, list[np.ndarra
 def _numbers(ways: list[Way], frictions: list[float]) -> list[int]:
     """Numbers of modes within the limits anywhere, by the frequency at which they appear."""
     first: dict[int, tuple[int, float, float]] = {}
-    for place, (way, mu) in enumerate((way, mu) for way in ways for mu in frictions):
+    for index, (way, mu) in enumerate((way, mu) for way in ways for mu in frictions):
         if (step := way.steps.get(mu)) is None:
             continue
         chosen = way.solver.selected(step.spectrum)
@@ -343,7 +343,7 @@ def _numbers(ways: list[Way], frictions: list[float]) -> list[int]:
             step.numbers[chosen], step.spectrum.values[chosen], strict=True
         ):
             # a mode that only comes into the band later stands behind those of the first
-            first.setdefault(int(number), (place, value.imag, -value.real))
+            first.setdefault(int(number), (index, value.imag, -value.real))
     return sorted(first, key=first.__getitem__)
 
 

@@ -209,7 +209,9 @@ def directions(contacts: Sequence[Contact], size: int) -> tuple[np.ndarray, np.n
         if names.count(name) > 1:
             raise ValueError(f"contacts: {name!r} is the name of two; rename one")
     normal, tangential = (
-        np.array([each.direction(which, size) for each in contacts]).reshape(-1, size).T
+        np.array([contact.direction(which, size) for contact in contacts])
+        .reshape(-1, size)
+        .T
         for which in ("normal", "tangential")
     )
     for n, t, name in zip(normal.T, tangential.T, names, strict=True):
@@ -242,18 +244,19 @@ def transversals(
         ValueError: one lies in the plane of the normal and the tangential direction.
     """
     across = np.zeros_like(normals)
-    for place, each in enumerate(contacts):
-        if not each.transverse_damping:
+    for index, contact in enumerate(contacts):
+        if not contact.transverse_damping:
             continue
-        across[:, place] = each.direction("across", len(normals))
-        both = normals[:, place], tangentials[:, place]
+        across[:, index] = contact.direction("across", len(normals))
+        both = normals[:, index], tangentials[:, index]
         # a structure reduced to few modes cannot tell three directions apart
         if (
             len(normals) > 3
-            and _dependent(np.stack([*both, across[:, place]], axis=1)) is not None
+            and _dependent(np.stack([*both, across[:, index]], axis=1)) is not None
         ):
             raise ValueError(
-                f"contact {each.name}: across lies in the plane of normal and tangential; a third "
+                f"contact {contact.name}: across lies in the plane of normal and tangential; "
+                "a third "
                 "direction is needed"
             )
     return across

@@ -213,24 +213,24 @@ def write_contacts(
         path: a text file (.csv).
     """
     rows = []
-    for each in contacts:
-        row = {"name": each.name}
+    for contact in contacts:
+        row = {"name": contact.name}
         for which in ("normal", "tangential", "across"):
-            if getattr(each, which) is not None:
-                vector = each.direction(which, len(names))
+            if getattr(contact, which) is not None:
+                vector = contact.direction(which, len(names))
                 row[which] = " ".join(
                     f"{names[place]}:{float(vector[place])!r}"
                     for place in np.flatnonzero(vector).tolist()
                 )
         row |= {
-            "stiffness": f"{each.stiffness!r} N/m",
-            "preload": f"{each.preload!r} N",
-            "speed": f"{each.speed!r} m" if turning else repr(each.speed),
+            "stiffness": f"{contact.stiffness!r} N/m",
+            "preload": f"{contact.preload!r} N",
+            "speed": f"{contact.speed!r} m" if turning else repr(contact.speed),
         }
         for key in ("mu", "mu_static"):
-            if getattr(each, key) is not None:
-                row[key] = repr(getattr(each, key))
-        if (origin := each.origin) is not None:
+            if getattr(contact, key) is not None:
+                row[key] = repr(getattr(contact, key))
+        if (origin := contact.origin) is not None:
             row |= {
                 "nodes": " ".join(map(str, origin.nodes)),
                 "against": " ".join(map(str, origin.against)),

@@ -180,17 +180,17 @@ class ContactStructure:
     @property
     def has_own_mu(self) -> np.ndarray:
         """Mask of the contacts whose coefficient is not the structure's, (contacts,)."""
-        return np.array([has_own_mu(each) for each in self.contacts], bool)
+        return np.array([has_own_mu(contact) for contact in self.contacts], bool)
 
     @property
     def mu_of_contacts(self) -> np.ndarray:
         """Coefficient of each contact, its own or the structure's, (contacts,)."""
-        return np.array([each.mu for each in self.frictions])
+        return np.array([friction.mu for friction in self.frictions])
 
     @property
     def mu_static_of_contacts(self) -> np.ndarray:
         """Largest friction over normal force in stick, of each contact, (contacts,)."""
-        return np.array([each.static_mu for each in self.frictions])
+        return np.array([friction.static_mu for friction in self.frictions])
 
     def with_common_mu(self) -> Self:
         """Return the structure with the ``mu`` of its contacts as its own, where all have one.
@@ -198,14 +198,14 @@ class ContactStructure:
         Contacts of a single face all have the same, and so the structure's can be varied. Where
         they differ, or have laws or limits of stick of their own, it is itself.
         """
-        own = {each.mu for each in self.contacts}
+        own = {contact.mu for contact in self.contacts}
         has_law = any(
-            each.friction_law is not None or each.mu_static is not None
-            for each in self.contacts
+            contact.friction_law is not None or contact.mu_static is not None
+            for contact in self.contacts
         )
         if len(own) != 1 or None in own or has_law or self.mu_static is not None:
             return self
-        contacts = [dataclasses.replace(each, mu=None) for each in self.contacts]
+        contacts = [dataclasses.replace(contact, mu=None) for contact in self.contacts]
         other = self.with_(contacts=contacts, mu=own.pop())
         if self.reduced_from is not None:
             origin = self.reduced_from
@@ -224,24 +224,26 @@ class ContactStructure:
         """The largest structure's ``mu`` that limits of stick allow; infinite without any."""
         own = self.has_own_mu
         free = [
-            each for each, is_own in zip(self.frictions, own, strict=True) if not is_own
+            friction
+            for friction, is_own in zip(self.frictions, own, strict=True)
+            if not is_own
         ]
         return min((each.largest_mu for each in [self.friction, *free]), default=np.inf)
 
     @property
     def preloads(self) -> np.ndarray:
         """Preload of each contact, N."""
-        return np.array([each.preload for each in self.contacts])
+        return np.array([contact.preload for contact in self.contacts])
 
     @property
     def stiffnesses(self) -> np.ndarray:
         """Stiffness of each contact, N/m."""
-        return np.array([each.stiffness for each in self.contacts])
+        return np.array([contact.stiffness for contact in self.contacts])
 
     @property
     def speeds(self) -> np.ndarray:
         """Belt speed at each contact over ``belt_speed``."""
-        return np.array([each.speed for each in self.contacts])
+        return np.array([contact.speed for contact in self.contacts])
 
     @property
     def speed_unit(self) -> str:
@@ -296,7 +298,7 @@ class ContactStructure:
         return vector
 
     def __repr__(self) -> str:
-        names = ", ".join(each.name for each in self.contacts) or "none"
+        names = ", ".join(contact.name for contact in self.contacts) or "none"
         return (
             f"Structure({self.size} degrees of freedom; contacts {names}; mu = {self.mu:g}, "
             f"belt_speed = {self.belt_speed:g})"
@@ -350,18 +352,18 @@ class ContactStructure:
         for array in (self.normals, self.tangentials, self.load, self.transversals):
             content.update(np.ascontiguousarray(array).tobytes())
         contacts = {
-            each.name: {
-                "stiffness": each.stiffness,
-                "preload": each.preload,
-                "speed": each.speed,
+            contact.name: {
+                "stiffness": contact.stiffness,
+                "preload": contact.preload,
+                "speed": contact.speed,
             }
-            | ({} if each.origin is None else each.origin.as_dict())
+            | ({} if contact.origin is None else contact.origin.as_dict())
             | {
-                key: getattr(each, key)
+                key: getattr(contact, key)
                 for key in ("mu", "friction_law", "mu_static")
-                if getattr(each, key) is not None
+                if getattr(contact, key) is not None
             }
-            for each in self.contacts
+            for contact in self.contacts
         }
         return {
             "degrees_of_freedom": self.size,
@@ -389,13 +391,13 @@ def _distinct(names: Sequence[str] | None) -> tuple[str, ...] | None:
     if names is None:
         return None
     if not isinstance(names, list | tuple) or not all(
-        isinstance(each, str) for each in names
+        isinstance(name, str) for name in names
     ):
         raise ValueError(
             f"names = {brief(names)}: a list of names like '12.1' is needed"
         )
     if len(set(names)) < len(names):
-        twice = next(each for each in names if names.count(each) > 1)
+        twice = next(name for name in names if names.count(name) > 1)
         raise ValueError(f"names: {twice!r} is there twice; each row needs its own")
     return tuple(names)
 

@@ -134,8 +134,8 @@ def _told_apart(pencil: Pencil, pairs: list[Eigenpair]) -> list[Eigenpair]:
     squares = np.array([-(pair.value**2) for pair in pairs])
     told = list(pairs)
     waiting = {
-        place
-        for place, pair in enumerate(pairs)
+        index
+        for index, pair in enumerate(pairs)
         # less of an error comes from round-off alone, not from a near neighbour
         if pair.error > 1e-9 * abs(pair.value) and pair.value.imag
     }
@@ -229,7 +229,7 @@ def _of_real_square(
     v, w = unit_vector(right), unit_vector(left)
     error = _error_of_square(pencil, v, w, scale)
     if abs(square) > error:
-        mass, _, stiffness = (w @ each for each in pencil.products(v))
+        mass, _, stiffness = (w @ product for product in pencil.products(v))
         refined = float((stiffness / mass).real) if mass else np.inf
         bound = error**2 / scale + error_of_rounding_of_square(pencil, refined, v, w)
         # where two modes merge wᴴMv is 0, and the quotient is all round-off
@@ -241,8 +241,8 @@ def _of_real_square(
     values = [1j * root] if square > 0 else [-root, root]
     spread = error / (2.0 * root)
     return [
-        Eigenpair(complex(each), v.astype(complex), w.astype(complex), spread)
-        for each in values
+        Eigenpair(complex(value), v.astype(complex), w.astype(complex), spread)
+        for value in values
     ]
 
 
@@ -314,7 +314,7 @@ def _damped(pencil: Pencil) -> list[Eigenpair]:
     pairs = []
     shapes = la.solve_triangular(lower.T, right[:size]).T
     shapes_left = la.solve_triangular(lower.T, left[size:]).T
-    for place, (value, x, y) in enumerate(zip(values, right.T, left.T, strict=True)):
+    for index, (value, x, y) in enumerate(zip(values, right.T, left.T, strict=True)):
         if value.imag < 0:
             continue
         condition = (
@@ -322,11 +322,11 @@ def _damped(pencil: Pencil) -> list[Eigenpair]:
         )
         bound = BACKWARD * np.finfo(float).eps * norm
         error = min(bound * condition, np.sqrt(bound * norm))
-        v = unit_vector(shapes[place].astype(complex))
-        w = unit_vector(shapes_left[place].astype(complex))
+        v = unit_vector(shapes[index].astype(complex))
+        w = unit_vector(shapes_left[index].astype(complex))
         if error > REFINEMENT.enough * max(abs(value.real), 1.0):
             root, rate = quotient(pencil, value, v, w)
-            gap = np.abs(np.delete(values, place) - value).min(initial=np.inf)
+            gap = np.abs(np.delete(values, index) - value).min(initial=np.inf)
             second = error**2 / gap if gap else np.inf
             better = error_of_rounding(pencil, value, v, w, rate) + second
             if better < error and abs(root - value) <= error:

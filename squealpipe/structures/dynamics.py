@@ -93,7 +93,7 @@ class Motion:
         self, structure: ContactStructure, numbers: Numbers, s: Any, p: Any, r: Any
     ) -> None:
         self.structure, self.numbers, self.p = structure, numbers, p
-        self.regimes = [getattr(r, each.name) for each in structure.contacts]
+        self.regimes = [getattr(r, contact.name) for contact in structure.contacts]
         places = range(1, structure.size + 1)
         self.displacements = [getattr(s, f"q{i}") for i in places]
         self.velocities = [getattr(s, f"v{i}") for i in places]
@@ -133,8 +133,8 @@ class Motion:
     def limits(self) -> list[Any]:
         """The largest friction that holds each contact, N."""
         return [
-            stick_limit(force, friction_at(self.structure, place, self.p))
-            for place, force in enumerate(self.pressing)
+            stick_limit(force, friction_at(self.structure, index, self.p))
+            for index, force in enumerate(self.pressing)
         ]
 
     @cached_property
@@ -144,8 +144,8 @@ class Motion:
         contacts = zip(
             self.regimes, self.normal_forces, self.sliding_speeds, strict=True
         )
-        for place, (regime, force, speed) in enumerate(contacts):
-            law = friction_at(self.structure, place, self.p, regime)
+        for index, (regime, force, speed) in enumerate(contacts):
+            law = friction_at(self.structure, index, self.p, regime)
             coefficient = law.factor * friction_laws.coefficient(
                 regime.direction * speed, law
             )

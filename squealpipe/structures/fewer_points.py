@@ -48,9 +48,9 @@ def with_points(structure: Any, points: int) -> Any:
             contacts += members
             continue
         groups = merged(
-            np.array([_origin(each).position for each in members]),
-            np.array([_origin(each).area for each in members]),
-            np.array([_origin(each).nodes[0] for each in members]),
+            np.array([_origin(member).position for member in members]),
+            np.array([_origin(member).area for member in members]),
+            np.array([_origin(member).nodes[0] for member in members]),
             int(points),
         )
         contacts += [
@@ -78,9 +78,9 @@ def fewer_points(structure: Any, *, frequency_max: float | None = None) -> xr.Da
         ValueError: no contact comes from a mesh; a reduced structure; an argument.
     """
     of_faces = Counter(
-        face_of(each.name) or each.name
-        for each in structure.contacts
-        if each.origin is not None
+        face_of(contact.name) or contact.name
+        for contact in structure.contacts
+        if contact.origin is not None
     )
     if not of_faces:
         raise ValueError(
@@ -89,7 +89,7 @@ def fewer_points(structure: Any, *, frequency_max: float | None = None) -> xr.Da
         )
     most = max(of_faces.values())
     points = [2**power for power in range((most - 1).bit_length())] + [most]
-    rows = [_growing(structure.with_points(each), frequency_max) for each in points]
+    rows = [_growing(structure.with_points(point), frequency_max) for point in points]
     return build(
         FEWER_POINTS,
         {name: np.array([row[name] for row in rows]) for name in rows[0]},
@@ -140,13 +140,13 @@ def _origin(contact: Contact) -> PointOrigin:
 
 def _joined(name: str, members: list[Contact], size: int) -> Contact:
     """Return one contact in place of several."""
-    forces = np.array([each.preload for each in members])
-    stiffnesses = np.array([each.stiffness for each in members])
+    forces = np.array([member.preload for member in members])
+    stiffnesses = np.array([member.stiffness for member in members])
     acting = forces if forces.sum() > 0 else stiffnesses
     weights = acting / acting.sum()
-    origins = [_origin(each) for each in members]
+    origins = [_origin(member) for member in members]
     directions = {
-        which: weights @ [each.direction(which, size) for each in members]
+        which: weights @ [member.direction(which, size) for member in members]
         for which in ("normal", "tangential")
     }
     return replace(
@@ -156,12 +156,12 @@ def _joined(name: str, members: list[Contact], size: int) -> Contact:
         tangential=directions["tangential"],
         stiffness=float(stiffnesses.sum()),
         preload=float(forces.sum()),
-        speed=float(weights @ [each.speed for each in members]),
+        speed=float(weights @ [member.speed for member in members]),
         origin=PointOrigin(
-            tuple(node for each in origins for node in each.nodes),
-            tuple(sorted({node for each in origins for node in each.against})),
-            sum(each.area for each in origins),
-            max((each.gap for each in origins), key=abs),
-            tuple((weights @ [each.position for each in origins]).tolist()),
+            tuple(node for origin in origins for node in origin.nodes),
+            tuple(sorted({node for origin in origins for node in origin.against})),
+            sum(origin.area for origin in origins),
+            max((origin.gap for origin in origins), key=abs),
+            tuple((weights @ [origin.position for origin in origins]).tolist()),
         ),
     )

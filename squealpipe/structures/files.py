@@ -119,7 +119,7 @@ def read(path: str | PathLike[str], form: type[Form]) -> Form:
     if "load" in content:
         arguments["load"] = _load(content["load"], folder, scales)
     if labels is not None and "mesh" not in arguments:
-        arguments["names"] = [str(each) for each in labels]
+        arguments["names"] = [str(label) for label in labels]
     try:
         return form(**arguments, rotation=rotation)
     except ValueError as error:
@@ -218,7 +218,7 @@ def from_mesh(
 ) -> Form:
     """A structure whose contacts are faces of a mesh; see :meth:`Structure.from_mesh`."""
     if not isinstance(faces, Mapping) or not all(
-        isinstance(each, Face) for each in faces.values()
+        isinstance(face, Face) for face in faces.values()
     ):
         raise ValueError(
             f"contacts = {brief(faces)}: {{name: Face}} is needed, like {{'lining': Face('PAD', "
@@ -430,7 +430,7 @@ def _in_order(key: str, given: Labelled, labels: list[str] | None) -> Any:
         if size != len(labels):
             raise ValueError(f"{key} has {size} rows, but {len(labels)} are labelled")
         return given.matrix
-    place_of = {label: place for place, label in enumerate(labels)}
+    place_of = {label: index for index, label in enumerate(labels)}
     if unknown := [label for label in given.labels if label not in place_of]:
         raise ValueError(
             f"{key} has {unknown[0]} (node.direction), which the mass has not; condense what has "

@@ -41,7 +41,7 @@ def shape_variables(
     values = step.spectrum.values
     # unstable ones first, then by frequency
     order = np.lexsort((values.imag, -(values.real > 0).astype(int)))
-    place_of = {number: place for place, number in enumerate(numbers)}
+    place_of = {number: index for index, number in enumerate(numbers)}
     # of all shapes together: beyond it, stable modes of the highest frequencies are left out
     most_bytes = 50e6
     for column in order[: int(most_bytes / (8 * size))]:

@@ -91,7 +91,7 @@ def system(
         states=_states(structure, scale),
         parameters=_parameters(structure),
         matrices=matrices_of(structure, equations.numbers, scale, [*shapes.values()]),
-        contacts=[each.name for each in structure.contacts],
+        contacts=[contact.name for contact in structure.contacts],
         coefficients=coefficient_names(structure),
         outputs=dict.fromkeys(shapes, "m"),
         time_scale=scale.time,
@@ -103,7 +103,9 @@ def system(
 def _check_size(structure: ContactStructure, caps: Caps) -> None:
     """Raise if a structure is larger than can be run, or has what runs cannot have."""
     size, count = structure.size, len(structure.contacts)
-    damped = [each.name for each in structure.contacts if each.transverse_damping]
+    damped = [
+        contact.name for contact in structure.contacts if contact.transverse_damping
+    ]
     if damped:
         raise ValueError(
             f"contact {damped[0]}: transverse_damping is a part of complex modes; in a run "
@@ -144,8 +146,8 @@ def component_system(
     scale = Scale.of(structure)
     states = _states(structure, scale)
     contacts = {
-        each.name: _Contact(equations, place, scale.force).component()
-        for place, each in enumerate(structure.contacts)
+        contact.name: _Contact(equations, index, scale.force).component()
+        for index, contact in enumerate(structure.contacts)
     }
     parts: dict[str, Any] = {"components": contacts}
     if not contacts:
@@ -177,7 +179,7 @@ def matrices_of(
     shapes: Sequence[np.ndarray],
 ) -> ContactMatrices:
     """Return the matrices that the loop of linear structures runs."""
-    laws = [law_in_use(each) for each in structure.frictions]
+    laws = [law_in_use(friction) for friction in structure.frictions]
     tables = [law for law in laws if is_table(law)]
     numbers_of_laws = {
         "coulomb": COULOMB,
@@ -212,7 +214,7 @@ def is_in_loop(structure: ContactStructure) -> bool:
 
     It has the laws of the package, and one table for all contacts; others are traced.
     """
-    laws = {law_in_use(each) for each in structure.frictions}
+    laws = {law_in_use(friction) for friction in structure.frictions}
     return laws <= set(friction_laws.LAWS) or (len(laws) == 1 and is_table(*laws))
 
 
@@ -222,8 +224,8 @@ def coefficient_names(structure: ContactStructure) -> list[tuple[str, str | None
     The speed is a number where no parameter is.
     """
     found: list[tuple[str, str | None, Any]] = []
-    for place, friction in enumerate(structure.frictions):
-        names = [*coefficients_of(structure, place)]
+    for index, friction in enumerate(structure.frictions):
+        names = [*coefficients_of(structure, index)]
         static = names[1] if len(names) > 1 else None
         fixed = friction.friction_speed
         found.append(
@@ -269,9 +271,9 @@ class Equations:
     def outputs(self, displacements: Mapping[str, Any]) -> dict[str, Any]:
         """Normal force and sliding speed of each contact, and displacements."""
         outputs: dict[str, Any] = {}
-        for place, contact in enumerate(self.structure.contacts):
-            force = self.of_contact("normal_forces", place)
-            speed = self.of_contact("sliding_speeds", place)
+        for index, contact in enumerate(self.structure.contacts):
+            force = self.of_contact("normal_forces", index)
+            speed = self.of_contact("sliding_speeds", index)
             outputs[f"{contact.name}_normal_force"] = ("N", force)
             outputs[f"{contact.name}_speed"] = ("m s-1", speed)
         for name, given in displacements.items():

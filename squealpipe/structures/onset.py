@@ -324,8 +324,8 @@ def _projected(pencil: Pencil, right: np.ndarray, left: np.ndarray) -> Any:
     """(WᵀMV)⁻¹ WᵀKV, summed in extended precision."""
     columns = [pencil.products(column) for column in right.T]
     rows = left.T.astype(np.longdouble)
-    mass = np.stack([rows @ each[0].real for each in columns], 1)
-    stiffness = np.stack([rows @ each[2].real for each in columns], 1)
+    mass = np.stack([rows @ column[0].real for column in columns], 1)
+    stiffness = np.stack([rows @ column[2].real for column in columns], 1)
     if len(mass) == 1:
         return stiffness / mass
     (a, b), (c, d) = mass
@@ -354,9 +354,9 @@ def _solver(
 
     def solve(vectors: Any, transposed: bool) -> Any:
         trans = "T" if transposed else "N"
-        for each in factors:
+        for factor in factors:
             right = pencil.mass @ vectors
-            vectors = each.solve(
+            vectors = factor.solve(
                 right.astype(complex) if is_pair else right, trans=trans
             )
         # the matrices are real: factors about a root are those about its conjugate

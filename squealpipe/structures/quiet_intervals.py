@@ -172,7 +172,7 @@ class _Search:
     ) -> None:
         self.structure_at, self.stations = (
             structure_at,
-            [float(each) for each in values],
+            [float(value) for value in values],
         )
         if len(values) < 2 or not (np.diff(values) > 0).all():
             raise ValueError(

@@ -141,18 +141,18 @@ class Kept:
 
     def parallel_contact(self, number: int) -> str | None:
         """Name the first contact whose two directions are one in the lowest of these modes."""
-        for place, each in enumerate(self.whole.contacts):
+        for index, contact in enumerate(self.whole.contacts):
             normal, along = (
-                self.normals[:number, place],
-                self.tangentials[:number, place],
+                self.normals[:number, index],
+                self.tangentials[:number, index],
             )
             if not normal.any() or not along.any() or are_parallel(normal, along):
-                return each.name
+                return contact.name
         return None
 
     def dependent(self, number: int) -> list[str]:
         """Name the contacts whose sliding directions are dependent in the lowest of these modes."""
-        names = [each.name for each in self.whole.contacts]
+        names = [contact.name for contact in self.whole.contacts]
         return dependent_contacts(names, self.tangentials[:number])
 
     def reduced(self, number: int) -> ContactStructure:
@@ -175,7 +175,7 @@ class Kept:
         reduced = self.reduced(number)
         state = steady_sliding(reduced, reduced.mu, reduced.belt_speed)
         pairs = all_modes(pencil_about(reduced, state, None))
-        return np.array([each.value for each in pairs])
+        return np.array([pair.value for pair in pairs])
 
     def small_motions(self, number: int) -> tuple[np.ndarray, np.ndarray]:
         """Return stiffness and damping about steady sliding, (number, number); the mass is 1.
@@ -321,7 +321,7 @@ def quick_values(stiffness: np.ndarray, damping: np.ndarray) -> np.ndarray:
 
 def dependent_of(structure: ContactStructure) -> list[str]:
     """Name the contacts of a structure that cannot all stick at once."""
-    names = [each.name for each in structure.contacts]
+    names = [contact.name for contact in structure.contacts]
     return dependent_contacts(names, structure.tangentials)
 
 

@@ -66,7 +66,7 @@ def quotient(
 ) -> tuple[complex, complex]:
     """The root s next to ``value`` of wᴴ Q(s) v, and wᴴ Q'(s) v there."""
     adjoint = left.conj().astype(np.clongdouble)
-    mass, damping, stiffness = (adjoint @ each for each in pencil.products(right))
+    mass, damping, stiffness = (adjoint @ product for product in pencil.products(right))
     root = np.clongdouble(value)
     rate = 2 * mass * root + damping
     for _ in range(3):
@@ -161,11 +161,11 @@ def polished(
 
 def refined(pencil: Pencil, estimates: Sequence[Estimate]) -> Iterator[Eigenpair]:
     """Each eigenpair by Rayleigh's quotient, polished where that is not accurate enough."""
-    values = np.array([each.value for each in estimates])
-    for place, each in enumerate(with_progress(estimates)):
+    values = np.array([estimate.value for estimate in estimates])
+    for index, each in enumerate(with_progress(estimates)):
         right, left = unit_vector(each.right), unit_vector(each.left)
         value, rate = quotient(pencil, each.value, right, left)
-        others = np.abs(np.delete(values, place) - value)
+        others = np.abs(np.delete(values, index) - value)
         # what is left of the vectors' errors, wᴴQ Q⁻¹ Q v, by the factors of a point nearby: these
         # see the part along a neighbour smaller by its distance over that of the point
         residual = sum(pencil.terms(value, right)).astype(complex)

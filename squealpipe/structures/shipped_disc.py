@@ -74,7 +74,9 @@ class BrakeMesh:
 
     def facets(self, name: str) -> list[list[int]]:
         """Return the nodes of the facets of a surface."""
-        rows = {n: row for each in self.elements.values() for n, row in each.items()}
+        rows = {
+            n: row for element in self.elements.values() for n, row in element.items()
+        }
         return [[rows[n][i] for i in SIDES[side]] for n, side in self.faces[name]]
 
     def skin(self) -> list[list[int]]:
@@ -82,7 +84,9 @@ class BrakeMesh:
         named = {tuple(sorted(f)) for name in self.faces for f in self.facets(name)}
         facets: dict[tuple[int, ...], list[int]] = {}
         inner = set()
-        for row in (row for each in self.elements.values() for row in each.values()):
+        for row in (
+            row for element in self.elements.values() for row in element.values()
+        ):
             for side in SIDES:
                 facet = [row[i] for i in side]
                 key = tuple(sorted(facet))
@@ -238,8 +242,8 @@ def deck(mesh: BrakeMesh) -> str:
     for direction, spring in enumerate(SPRINGS, 1):
         lines.append(f"*ELEMENT, TYPE=SPRING1, ELSET=S{direction}")
         lines += [
-            f"{30000 + 100 * direction + place}, {node}"
-            for place, node in enumerate(mesh.corners)
+            f"{30000 + 100 * direction + index}, {node}"
+            for index, node in enumerate(mesh.corners)
         ]
         lines += [f"*SPRING, ELSET=S{direction}", f"{direction}", f"{spring!r}"]
     lines += ["*BOUNDARY", *(f"{node}, 1, 3" for node in mesh.fixed)]

@@ -118,7 +118,7 @@ def steady_sliding(
         # with much friction pivoting may pass the state by
         if closed.tobytes() in seen:
             closed = _sought(structure, drag)
-    names = [each.name for each in structure.contacts]
+    names = [contact.name for contact in structure.contacts]
     reason = (
         f"the contacts {', '.join(names)} can be neither open nor closed together"
         if len(names) <= BALANCE.most_sought

@@ -43,18 +43,18 @@ class Spectrum:
     @cached_property
     def values(self) -> np.ndarray:
         """Eigenvalues s, (modes,)."""
-        return np.array([each.value for each in self.pairs], complex)
+        return np.array([pair.value for pair in self.pairs], complex)
 
     @cached_property
     def shapes(self) -> np.ndarray:
         """Right eigenvectors, (n, modes)."""
         size = self.pencil.size
-        return np.array([each.right for each in self.pairs]).reshape(-1, size).T
+        return np.array([pair.right for pair in self.pairs]).reshape(-1, size).T
 
     @cached_property
     def errors(self) -> np.ndarray:
         """Errors of the eigenvalues, rad/s."""
-        return np.array([each.error for each in self.pairs])
+        return np.array([pair.error for pair in self.pairs])
 
     @property
     def growth_errors(self) -> np.ndarray:

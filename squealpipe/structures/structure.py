@@ -103,7 +103,9 @@ class Structure(ContactStructure):  # noqa: D101 (that of the definition)
                 "contacts of a reduced structure act on its modes; write those of the whole"
             )
         with_law = [
-            each.name for each in self.contacts if each.friction_law is not None
+            contact.name
+            for contact in self.contacts
+            if contact.friction_law is not None
         ]
         if with_law:
             raise ValueError(

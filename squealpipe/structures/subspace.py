@@ -39,12 +39,12 @@ def in_coordinates(
     normals, tangentials, transversals = directions
     contacts = [
         replace(
-            each,
-            normal=normals[:, place],
-            tangential=tangentials[:, place],
-            across=transversals[:, place] if each.transverse_damping else None,
+            contact,
+            normal=normals[:, index],
+            tangential=tangentials[:, index],
+            across=transversals[:, index] if contact.transverse_damping else None,
         )
-        for place, each in enumerate(whole.contacts)
+        for index, contact in enumerate(whole.contacts)
     ]
     return type(whole)(
         **{

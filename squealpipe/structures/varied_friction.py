@@ -43,7 +43,7 @@ class VariedFriction:
         Raises:
             ValueError: there is no such contact or face.
         """
-        names = [each.name for each in structure.contacts]
+        names = [contact.name for contact in structure.contacts]
         chosen = np.array([each == name for each in names], bool)
         if not chosen.any():
             chosen = np.array([face_of(each) == name for each in names], bool)
@@ -114,7 +114,7 @@ def varied_by(structure: ContactStructure, mu: Any) -> tuple[VariedFriction, Any
         )
         return varied, varied.now(structure)
     if all_own:
-        names = [each.name for each in structure.contacts]
+        names = [contact.name for contact in structure.contacts]
         one = next(filter(None, map(face_of, names)), names[0])
         raise ValueError(
             f"mu = {brief(mu)}: every contact has a mu of its own, so that none has the "

@@ -86,8 +86,8 @@ def _end_to_end(runs: list[Run]) -> dict[str, Any]:
     arrays = {}
     for name in runs[0]:
         values = [run[name] for run in runs]
-        arrays[name] = np.concatenate([each.ravel() for each in values])
-        arrays[name + SHAPES] = np.array([each.shape for each in values])
+        arrays[name] = np.concatenate([value.ravel() for value in values])
+        arrays[name + SHAPES] = np.array([value.shape for value in values])
     return arrays
 
 

@@ -163,7 +163,7 @@ def stops_raise() -> Iterator[None]:
         raise StoppedError(number)
 
     heeded = [
-        each for each in STOPS if signal.getsignal(each) != signal.SIG_IGN
+        stop for stop in STOPS if signal.getsignal(stop) != signal.SIG_IGN
     ]  # nohup
     before = {number: signal.signal(number, stop) for number in heeded}
     try:

@@ -108,7 +108,7 @@ class Composition:
         regimes: dict[str, Mapping[str, float]] = {}
         switches: list[Switch] = []
         starts, places = [], []
-        for place, (name, component) in enumerate(components.items()):
+        for index, (name, component) in enumerate(components.items()):
             for regime, constants in component.regimes.items():
                 long = joined(name, regime)
                 if long in regimes:
@@ -116,10 +116,10 @@ class Composition:
                         f"two components form the name {long!r}; rename a component or a regime"
                     )
                 regimes[long] = constants
-                places.append(place)
+                places.append(index)
             known = list(component.regimes)
             switches += sorted(
-                (_renamed(name, each, known) for each in component.switches),
+                (_renamed(name, switch, known) for switch in component.switches),
                 key=lambda each: each.name,
             )
             starts.append([_renamed_start(name, each) for each in component.starts_in])

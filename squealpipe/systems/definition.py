@@ -248,7 +248,7 @@ class Definition:
         return {name: f"{name}{mark}0" for name in self.units}
 
     def __repr__(self) -> str:
-        switches = ", ".join(each.name for each in self.switches)
+        switches = ", ".join(switch.name for switch in self.switches)
         return f"System({self.name!r}: {', '.join(self.states)}; switches {switches or 'none'})"
 
     def _check_names(self) -> None:
@@ -262,7 +262,7 @@ class Definition:
             "state": self.units,
             "name": (*self.units, *self.outputs),
             "regime": self.regimes,
-            "event": [each.name for each in self.switches],
+            "event": [switch.name for switch in self.switches],
         }
         starts = self.start_names.values()
         taken = ARGUMENTS | names_in_results(own) | {*starts}
@@ -281,7 +281,7 @@ class Definition:
         if missing := [name for name in self.units if name not in self.start]:
             raise ValueError(f"start lacks the state {missing[0]!r}")
         self.check_regime(self.start)
-        names = [each.name for each in self.switches]
+        names = [switch.name for switch in self.switches]
         if len(set(names)) < len(names):
             raise ValueError(f"two switches share a name: {', '.join(names)}")
 

@@ -231,7 +231,9 @@ def _powers(tracer: Tracer, traced: Traced, regime: int) -> Iterator[Symbol]:
         if id(node) in seen or elsewhere:
             continue
         seen.add(id(node))
-        waiting += [each for each in node.arguments if isinstance(each, Symbol)]
+        waiting += [
+            argument for argument in node.arguments if isinstance(argument, Symbol)
+        ]
         if node.varies and (
             node.kind == "log" or (node.kind == "**" and node.arguments[1] % 1.0)
         ):

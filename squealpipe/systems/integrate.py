@@ -482,6 +482,6 @@ def _state_sizes(
 def table_of(size: int, *columns: Any) -> np.ndarray:
     """Columns side by side, each a number or an array (size,)."""
     table = np.empty((size, len(columns)))
-    for place, column in enumerate(columns):
-        table[:, place] = column
+    for index, column in enumerate(columns):
+        table[:, index] = column
     return table

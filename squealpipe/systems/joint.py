@@ -33,7 +33,7 @@ class Joint:
 
     def number(self, regimes: Sequence[int]) -> int:
         """Return the number of a combination of the components' regimes."""
-        key = tuple(int(each) for each in regimes)
+        key = tuple(int(regime) for regime in regimes)
         if key not in self._numbers:
             self._numbers[key] = len(self._rows)
             self._rows.append(key)
@@ -100,15 +100,15 @@ class Joint:
 
         def at(roots: Any, constants: dict[str, Any]) -> np.ndarray:
             with np.errstate(all="ignore"):
-                numbers = evaluate([symbol(each) for each in roots], values | constants)
+                numbers = evaluate([symbol(root) for root in roots], values | constants)
             return np.array([np.broadcast_to(each, 16) for each in numbers])
 
         rates = at(t.rates, here)
-        for place, surface in enumerate(t.surfaces):
-            seen = self.constants(self.seen(number, place))
+        for index, surface in enumerate(t.surfaces):
+            seen = self.constants(self.seen(number, index))
             slopes = at(
                 [derivative(surface, z) for z in t.variables],
                 dict(zip(t.constants, seen, strict=True)),
             )
-            held[place] = np.abs((slopes * rates).sum(axis=0)).max() < 1e-14
+            held[index] = np.abs((slopes * rates).sum(axis=0)).max() < 1e-14
         return held

@@ -44,8 +44,8 @@ def part_of_work(first: float, size: float) -> Iterator[None]:
 
 def with_progress(items: Sequence[Item]) -> Iterator[Item]:
     """The items one after another, each an equal part of the work."""
-    for place, item in enumerate(items):
-        with part_of_work(place / len(items), 1 / len(items)):
+    for index, item in enumerate(items):
+        with part_of_work(index / len(items), 1 / len(items)):
             yield item
 
 

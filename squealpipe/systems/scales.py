@@ -129,6 +129,6 @@ class Scales:
     def table(self, units: Sequence[str], size: int) -> np.ndarray:
         """Return the scales of some units in each of so many runs, (runs, units)."""
         found = np.empty((size, len(units)))
-        for place, unit in enumerate(units):
-            found[:, place] = self.of(unit)
+        for index, unit in enumerate(units):
+            found[:, index] = self.of(unit)
         return found

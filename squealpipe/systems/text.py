@@ -58,7 +58,9 @@ def _written(
     lengths: dict[int, int] = {}
     uses = dict.fromkeys(map(id, nodes), 0)
     for node in nodes:
-        inner = [each for each in node.arguments if isinstance(each, Symbol)]
+        inner = [
+            argument for argument in node.arguments if isinstance(argument, Symbol)
+        ]
         lengths[id(node)] = 8 + sum(lengths[id(each)] for each in inner)
         for each in inner:
             uses[id(each)] += 1

@@ -141,14 +141,14 @@ class Traced:
 
         switches = tuple(
             SwitchSymbols(
-                of(each.surface),
-                tuple((regime, of(c), kind) for regime, c, kind in each.targets),
+                of(switch.surface),
+                tuple((regime, of(c), kind) for regime, c, kind in switch.targets),
                 {
                     regime: {place: of(value) for place, value in reset.items()}
-                    for regime, reset in each.resets.items()
+                    for regime, reset in switch.resets.items()
                 },
             )
-            for each in self.switches
+            for switch in self.switches
         )
         replaced = replace(
             self,

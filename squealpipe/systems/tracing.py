@@ -144,7 +144,7 @@ class TracedSystem(Definition):
             tracer.one(f"output {name!r}", f) for name, (_, f) in self.outputs.items()
         ]
         starts = [
-            tuple(self._trace_start(tracer, each) for each in entries)
+            tuple(self._trace_start(tracer, entry) for entry in entries)
             for entries in self.composition.starts
         ]
         for entries in starts:
@@ -286,7 +286,7 @@ class TracedSystem(Definition):
         first = self.composition.regimes_of(0).tolist()
         places = [*leaves, *[first] * len(stops)]
         owner: list[int] = []
-        every = [*(each.surface for each in switches), *stops]
+        every = [*(switch.surface for switch in switches), *stops]
         for number, (surface, regimes) in enumerate(zip(every, places, strict=True)):
             with np.errstate(all="ignore"):
                 (value,) = evaluate([surface], probe)
@@ -311,7 +311,7 @@ class TracedSystem(Definition):
         table = np.full((2, len(self.regimes), len(surfaces)), -1, np.int64)
         for regime, index, rises, number in watched:
             if table[rises, regime, index] >= 0:
-                names = [each.name for each in self.switches] + list(self.stops)
+                names = [switch.name for switch in self.switches] + list(self.stops)
                 earlier = names[table[rises, regime, index]]
                 raise ValueError(
                     f"{earlier!r} and {names[number]!r} fire at the same surface in regime "

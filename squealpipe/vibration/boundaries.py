@@ -297,12 +297,12 @@ def _bisect(stretches: Sequence[_Stretch], test: Test, located: float) -> None:
     """Halve brackets until each is as narrow as a boundary is located."""
     while True:
         asked = []
-        for each in stretches:
-            for one, other in each.brackets():
+        for stretch in stretches:
+            for one, other in stretch.brackets():
                 # next to a boundary of growth the bracket is as narrow as it can be
                 near = min(one, other, key=abs)
-                if abs(one - other) > each.cure.scale(located, near) * (1.0 + 1e-9):
-                    asked.append((each, 0.5 * (one + other)))
+                if abs(one - other) > stretch.cure.scale(located, near) * (1.0 + 1e-9):
+                    asked.append((stretch, 0.5 * (one + other)))
         if not asked:
             return
         _run(asked, test)
@@ -312,10 +312,10 @@ def _quiet_parts(stretch: _Stretch) -> list[QuietInterval]:
     """Return the quiet parts of a stretch by what was tried in it."""
     order = sorted(stretch.tried)
     parts: list[QuietInterval] = []
-    for place, value in enumerate(order):
+    for index, value in enumerate(order):
         if not stretch.tried[value]:
             continue
-        if place and stretch.tried[order[place - 1]]:
+        if index and stretch.tried[order[index - 1]]:
             parts[-1].high = value
         else:
             parts.append(QuietInterval(value, value))
@@ -340,12 +340,17 @@ def nearest_boundary(
         quiet: whether the present value is quiet.
     """
     if quiet:
-        edges = [e for each in intervals if each.contains(value) for e in each.edges()]
+        edges = [
+            e
+            for interval in intervals
+            if interval.contains(value)
+            for e in interval.edges()
+        ]
     else:
         edges = [
-            each.low if each.low > value else each.high
-            for each in intervals
-            if not each.contains(value)
+            interval.low if interval.low > value else interval.high
+            for interval in intervals
+            if not interval.contains(value)
         ]
     return min(edges, key=lambda edge: abs(edge - value), default=math.nan)
 
@@ -354,7 +359,7 @@ def interval_table(rows: Sequence[Sequence[QuietInterval]]) -> dict[str, np.ndar
     """Return ``quiet_low`` and ``quiet_high``, (cures, intervals); NaN where there are fewer."""
     count = max((len(row) for row in rows), default=0)
     table = np.full((2, len(rows), count), np.nan)
-    for place, row in enumerate(rows):
-        table[0, place, : len(row)] = [each.low for each in row]
-        table[1, place, : len(row)] = [each.high for each in row]
+    for index, row in enumerate(rows):
+        table[0, index, : len(row)] = [each.low for each in row]
+        table[1, index, : len(row)] = [each.high for each in row]
     return {"quiet_low": table[0], "quiet_high": table[1]}

@@ -254,7 +254,7 @@ def _by_contact(blocks: Sequence[Record]) -> dict[str, np.ndarray]:
         else np.full((count, 2), np.nan),
         "contact_separated_fraction": np.mean(opened, axis=0) if opened else nothing,
         "contact_stick_fraction": np.mean(stuck, axis=0) if stuck else nothing,
-        "contact_peak_force": np.max([each.peak_forces for each in blocks], axis=0),
+        "contact_peak_force": np.max([block.peak_forces for block in blocks], axis=0),
     }
 
 
@@ -307,7 +307,7 @@ def _spectrum(blocks: Sequence[Record]) -> dict[str, Any]:
     finite = np.isfinite(deviation).all()
     contact = int(np.argmax((deviation**2).sum(axis=0))) if finite else 0
     signals = np.stack(
-        [[*each.signals[:, contact], each.forces[:, contact]] for each in blocks],
+        [[*block.signals[:, contact], block.forces[:, contact]] for block in blocks],
         axis=1,
     )
     if not np.isfinite(signals).all():

@@ -177,8 +177,8 @@ def settle(
             if regimes is None:
                 regimes = np.zeros((count, ran.regimes.shape[1]), ran.regimes.dtype)
             elapsed[rows] += length[rows]
-            for place, row in enumerate(rows):
-                now = ran.row(place)
+            for index, row in enumerate(rows):
+                now = ran.row(index)
                 compared = len(windows[row]) > (1 if horizon.grows_first else 0)
                 before = windows[row][-1] if compared else None
                 windows[row].append(now)

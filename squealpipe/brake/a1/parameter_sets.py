@@ -162,15 +162,15 @@ def _systems(
         *(numbers[name] > long for name in ("length1", "length2")),
     )
     code = sum(
-        np.unique(each, return_inverse=True)[1].reshape(each.shape) * 8**i
-        for i, each in enumerate(forms)
+        np.unique(form, return_inverse=True)[1].reshape(form.shape) * 8**i
+        for i, form in enumerate(forms)
     )
     if not code.size:
         return (brake(model=model, one_mu=True),), code
     _, first, which = np.unique(code, return_index=True, return_inverse=True)
     systems = []
     for at in first:
-        law, damps, same, *are_long = (each.reshape(-1)[at].item() for each in forms)
+        law, damps, same, *are_long = (form.reshape(-1)[at].item() for form in forms)
         if model == "A4" and (law != COULOMB or damps or not same):
             raise ValueError(
                 f"model A4 carries no damping and Coulomb's law with one μ: {WHY_A4}"

@@ -50,11 +50,11 @@ def verdict_map(
             settled = settle(starts, tol=tol, most=most_periods)
             arrays["verdict"][cells] = [each.verdict for each in settled]
             arrays["mechanism"][cells] = [
-                Mechanism.no_sliding_state if each is None else each.mechanism
-                for each in slides
+                Mechanism.no_sliding_state if sliding is None else sliding.mechanism
+                for sliding in slides
             ]
             arrays["growth"][cells] = [
-                np.nan if each is None else each.growth_rate for each in slides
+                np.nan if sliding is None else sliding.growth_rate for sliding in slides
             ]
 
     cells = (alpha1.size * count,)

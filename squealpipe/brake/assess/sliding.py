@@ -300,8 +300,8 @@ def _linearized(
         state: list[complex] = [*rest]
         state[column] += 1j * steps[column]
         values = acceleration(state)
-        slopes[:, column] = [each.imag / steps[column] for each in values]
-    return np.array([each.real for each in values]), slopes
+        slopes[:, column] = [value.imag / steps[column] for value in values]
+    return np.array([value.real for value in values]), slopes
 
 
 def _jacobian(slopes: np.ndarray) -> np.ndarray:

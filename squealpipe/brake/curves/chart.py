@@ -70,7 +70,7 @@ def regime_chart(
     )
 
     regimes = Regimes(square)
-    coarse = max(each.size for each in axes.values())
+    coarse = max(axis.size for axis in axes.values())
     # the second, finer grid is taken where the first one cuts a tongue
     for finest in (60, 120):
         # lines are right to 1e-6 of the ranges from few runs: in the middle of a chord a line is
@@ -119,7 +119,7 @@ def regime_chart(
         for which, line, curve in cycles:
             loops[which].append(_smooth(line, square.width, curve.label.values))
         far = [
-            [nearest_on(each, at, limits)[1] for each in loops.values()]
+            [nearest_on(loop, at, limits)[1] for loop in loops.values()]
             for at in places
         ]
         data = {"design": places, "distance": far}

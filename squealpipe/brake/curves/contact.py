@@ -50,8 +50,8 @@ class Square:
         """Places where the mass was once as fast as the belt, and the reserves there."""
         self.sticks = False
         """Whether a mass was as fast as the belt before it lost contact."""
-        self.low = np.array([each[0] for each in axes.values()])
-        self.width = np.array([each[-1] - each[0] for each in axes.values()])
+        self.low = np.array([axis[0] for axis in axes.values()])
+        self.width = np.array([axis[-1] - axis[0] for axis in axes.values()])
 
     def is_its_mirror_image(self) -> bool:
         """Tell whether (u, v) and (1 − v, 1 − u) are the same motion.
@@ -290,7 +290,7 @@ def contact_boundary(
     t_end = HORIZON * params.time_unit if t_end is None else t_end
     options = {"t_end": t_end, "tol": tol, "workers": workers}
     square = Square(params, fixed, axes, options, model)
-    coarse = max(each.size for each in axes.values())
+    coarse = max(axis.size for axis in axes.values())
     # cells per side, at least, of the grid on whose edges the curves begin
     return _dataset(square, lines_of(square, coarse, 900), axes)
 
@@ -359,7 +359,7 @@ def boundary_distance(boundary: xr.Dataset, design: Mapping[str, Number]) -> xr.
 def _dataset(
     square: Square, lines: ZeroLines, axes: Mapping[str, Vector]
 ) -> xr.Dataset:
-    chains, coarse = chains_of(lines.chords), max(each.size for each in axes.values())
+    chains, coarse = chains_of(lines.chords), max(axis.size for axis in axes.values())
     # on the border itself either side would do
     shares = [
         np.clip((a - a[0]) / (a[-1] - a[0]), LOST_SIDE, 1.0 - LOST_SIDE)
@@ -402,7 +402,7 @@ def _dataset(
             "kept_share_error": errors[inside].sum() / areas.sum(),
             "outline": np.concatenate([*outlines, np.empty((0, 2))]),
             "outline_loop": np.repeat(
-                np.arange(len(outlines)), [len(each) for each in outlines]
+                np.arange(len(outlines)), [len(outline) for outline in outlines]
             ),
             "range": np.stack([square.low, square.low + square.width], axis=1),
             "t_end": square.options["t_end"],

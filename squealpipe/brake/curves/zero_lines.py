@@ -451,8 +451,8 @@ class ZeroLines(Chords):
         start[lost], way[lost], *across_values = self._searched_across(
             foot[lost], left[lost]
         )
-        for each, found in zip((share, *there), across_values, strict=True):
-            each[lost] = found
+        for each, across_value in zip((share, *there), across_values, strict=True):
+            each[lost] = across_value
         doubt *= np.where(steep | lost, 1.0, np.abs(off))
         return doubt, start + share[:, None] * way, way, *there
 

@@ -104,7 +104,7 @@ def _methods(
     name = "exact orbit (shooting)"
     yield name, "with monodromy", Role.our_setting, partial(_shooting, scene)
     # the paper's pseudo-inverse costs the cube of the number of harmonics
-    for count in (each for each in harmonics if each <= 16):
+    for count in (harmonic for harmonic in harmonics if harmonic <= 16):
         setting = f"N_h {count}, N {4 * count + 2}, sigma {PAPER_SIGMA:g}"
         for name, printed in ((CORRECTED, False), (AS_PRINTED, True)):
             yield (

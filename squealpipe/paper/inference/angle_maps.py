@@ -72,7 +72,7 @@ def keeping_share(candidates: Candidates) -> np.ndarray:
         number = np.array([alpha1.size for alpha1, _ in cells], int)
         owner = np.repeat(np.arange(left.size), number)
         alpha1, alpha2 = (
-            np.concatenate([*(each[i] for each in cells), []]) for i in (0, 1)
+            np.concatenate([*(cell[i] for cell in cells), []]) for i in (0, 1)
         )
         kept = (
             _outcome(candidates.subset(left[owner]), alpha1, alpha2)

@@ -367,9 +367,9 @@ def measure(
 ) -> dict[str, StatementMargin]:
     """The margin of every statement of some stages, for every candidate."""
     return {
-        each.name: each.check(candidates)
-        for each in CONSTRAINTS
-        if each.stage in stages
+        constraint.name: constraint.check(candidates)
+        for constraint in CONSTRAINTS
+        if constraint.stage in stages
     }
 
 

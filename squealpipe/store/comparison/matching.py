@@ -95,9 +95,9 @@ def match(
     if sizes[0] == sizes[1] and kinds[0] == kinds[1] and not how.fillers:
         return [], ""
     pairs: list[tuple[int, int]] = []
-    for kind in dict.fromkeys(kinds[0]):
-        places = [np.flatnonzero([item == kind for item in side]) for side in kinds]
-        fills = kind[:1] and kind[0] in how.fillers
+    for fromkey in dict.fromkeys(kinds[0]):
+        places = [np.flatnonzero([item == fromkey for item in side]) for side in kinds]
+        fills = fromkey[:1] and fromkey[0] in how.fillers
         if not fills and len(places[0]) == len(places[1]):
             pairs += zip(*(each.tolist() for each in places), strict=True)
             continue

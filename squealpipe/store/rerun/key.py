@@ -63,11 +63,11 @@ def sources(*scripts: Path) -> list[Path]:
     """Scripts and modules whose code decides their results, with all that they import."""
     packages = [  # in a wheel scripts lie below the package too, in folders that are none
         folder / "__init__.py"
-        for each in scripts
-        for folder in each.parents
+        for script in scripts
+        for folder in script.parents
         if folder.is_relative_to(PACKAGE) and (folder / "__init__.py").is_file()
     ]
-    imported = [path for each in scripts for path in closure(each)]
+    imported = [path for script in scripts for path in closure(script)]
     found = dict.fromkeys([*scripts, *packages, *imported])
     return [path for path in found if path.name not in WATCHERS]
 

@@ -138,7 +138,8 @@ def _factor(design: Design, change: Change) -> Cure:
 
 def _with_stiffness(structure: ContactStructure, factor: float) -> ContactStructure:
     contacts = [
-        replace(each, stiffness=factor * each.stiffness) for each in structure.contacts
+        replace(contact, stiffness=factor * contact.stiffness)
+        for contact in structure.contacts
     ]
     return structure.with_(contacts=contacts)
 
@@ -146,7 +147,8 @@ def _with_stiffness(structure: ContactStructure, factor: float) -> ContactStruct
 def with_preload(structure: ContactStructure, factor: float) -> ContactStructure:
     """Everything that presses, times a factor: preloads, and a load that is given."""
     contacts = [
-        replace(each, preload=factor * each.preload) for each in structure.contacts
+        replace(contact, preload=factor * contact.preload)
+        for contact in structure.contacts
     ]
     load = structure.given_load
     scaled = None if load is None else factor * np.asarray(load, float)
@@ -182,12 +184,12 @@ def _frictions(design: Design) -> dict[str, Cure]:
     own = whole.has_own_mu
     if not own.all():
         cures["mu"] = _friction(whole.mu, _sliding(design, "mu"), whole.largest_mu)
-    names = [face_of(each.name) or each.name for each in whole.contacts]
+    names = [face_of(contact.name) or contact.name for contact in whole.contacts]
     groups = dict.fromkeys(
         name for name, is_own in zip(names, own, strict=True) if is_own
     )
     if len(dict.fromkeys(names)) > 1 and any(
-        face_of(each.name) for each in whole.contacts
+        face_of(contact.name) for contact in whole.contacts
     ):
         groups = dict.fromkeys(names)  # faces side by side are changed one by one
     for name in groups:
@@ -200,8 +202,8 @@ def _frictions(design: Design) -> dict[str, Cure]:
             structure: ContactStructure, value: float, varied: VariedFriction = varied
         ) -> ContactStructure:
             contacts = [
-                replace(each, mu=value) if chosen else each
-                for each, chosen in zip(
+                replace(contact, mu=value) if chosen else contact
+                for contact, chosen in zip(
                     structure.contacts, varied.contacts, strict=True
                 )
             ]

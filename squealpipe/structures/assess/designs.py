@@ -166,8 +166,8 @@ class Design:
             return Mechanism.none
         drag = np.abs(self.plant.spectrum.state.drag)
         contacts = [
-            replace(each, mu=float(mu), friction_law=COULOMB, mu_static=None)
-            for each, mu in zip(self.structure.contacts, drag, strict=True)
+            replace(contact, mu=float(mu), friction_law=COULOMB, mu_static=None)
+            for contact, mu in zip(self.structure.contacts, drag, strict=True)
         ]
         level = Plant(self.structure.with_(contacts=contacts))
         if not level.unstable.size:

@@ -272,8 +272,10 @@ class Chamfer:
             )
         share = _positive(f"{title}: share", entries["share"], "1")
         face = entries["face"]
-        names = [face_of(each.name) or each.name for each in structure.contacts]
-        chosen = [place for place, name in enumerate(names) if name == face]
+        names = [
+            face_of(contact.name) or contact.name for contact in structure.contacts
+        ]
+        chosen = [index for index, name in enumerate(names) if name == face]
         if not chosen:
             raise ValueError(
                 f"{title}: face = {brief(face)}: {suggestion(str(face), [*dict.fromkeys(names)])}"
@@ -304,8 +306,10 @@ class Chamfer:
         before, after = structure.preloads[of_face].sum(), preloads[of_face].sum()
         preloads[of_face] *= before / after if after else 1.0
         contacts = [
-            replace(each, stiffness=share * each.stiffness, preload=float(preload))
-            for each, share, preload in zip(
+            replace(
+                contact, stiffness=share * contact.stiffness, preload=float(preload)
+            )
+            for contact, share, preload in zip(
                 structure.contacts, kept.tolist(), preloads, strict=True
             )
             if share

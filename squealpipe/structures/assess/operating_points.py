@@ -221,7 +221,7 @@ class OperatingPoints:
         coordinates = {
             **self.axes,
             "band": bands.pop("band"),
-            "contact": [each.name for each in self.structure.contacts],
+            "contact": [contact.name for contact in self.structure.contacts],
         }
         known = {
             **values,
@@ -240,7 +240,7 @@ class OperatingPoints:
         compared = matched(points, noises, self.frequency_band)
         compared["measured_occurrence"] = _share(compared["measured_frequency"], bands)
         found = build(schema, {**known, **compared}, coordinates)
-        named = {name for each in noises for name in each.point}
+        named = {name for noise in noises for name in noise.point}
         if left_out := sorted(named - {*self.axes}):
             found.attrs["not_compared"] = ", ".join(left_out)
         return found
@@ -254,7 +254,9 @@ class OperatingPoints:
         if self.band_edges is not None:
             low, high = self.band_edges[:-1], self.band_edges[1:]
             return {"band": np.sqrt(low * high), "band_low": low, "band_high": high}
-        known = np.array([each for each in frequencies if np.isfinite(each)])
+        known = np.array(
+            [frequency for frequency in frequencies if np.isfinite(frequency)]
+        )
         numbers = np.rint(10.0 * np.log10(known / 1000.0)).astype(int)
         first, last = (numbers.min(), numbers.max()) if known.size else (0, -1)
         middle = 1000.0 * 10.0 ** (np.arange(first, last + 1) / 10.0)
@@ -311,8 +313,8 @@ def _axis(name: str, values: Any, units: OperatingUnits) -> np.ndarray:
 
 def _plain(values: Sequence[Any]) -> Iterator[Any]:
     """Yield numbers of numpy as Python's."""
-    for each in values:
-        yield each.item() if isinstance(each, np.generic) else each
+    for value in values:
+        yield value.item() if isinstance(value, np.generic) else value
 
 
 def _edges(written: Any) -> np.ndarray:

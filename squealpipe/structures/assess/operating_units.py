@@ -43,9 +43,9 @@ class OperatingUnits:
     def of(cls, structure: ContactStructure) -> Self:
         """Return the units of a structure."""
         known = [
-            (each.preload, each.origin.area)
-            for each in structure.contacts
-            if each.origin is not None and each.origin.area > 0.0
+            (contact.preload, contact.origin.area)
+            for contact in structure.contacts
+            if contact.origin is not None and contact.origin.area > 0.0
         ]
         force, area = np.sum(known, axis=0) if known else (math.nan, math.nan)
         mean = force / area if force > 0.0 else math.nan

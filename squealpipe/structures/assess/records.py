@@ -127,8 +127,8 @@ def _impact_speed(
     kinds = row["event_kinds"][:logged]
     velocities = row["event_states"][:logged, plant.size :]
     speeds = [
-        -(velocities[kinds == kind] @ plant.structure.normals[:, place])
-        for place, kind in enumerate(landing)
+        -(velocities[kinds == kind] @ plant.structure.normals[:, index])
+        for index, kind in enumerate(landing)
     ]
     every = np.abs(np.concatenate(speeds)) if speeds else np.zeros(0)
     return float(every.max()) if every.size else np.nan

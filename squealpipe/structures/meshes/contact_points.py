@@ -106,14 +106,14 @@ def contacts_of(
     groups = _carriers(points, mesh, face)
     if face.points is not None and face.points < len(groups):
         groups = _merged(groups, points, mesh, face.points)
-    area = sum(each.area for each in points)
+    area = sum(point.area for point in points)
     per_area = face.stiffness_per_area or (face.stiffness or 0.0) / area
     contacts = []
     for number, group in enumerate(groups, 1):
         label = f"{name}_{number}"
-        members = [points[place] for place in group.shares]
+        members = [points[share] for share in group.shares]
         shared = np.array(list(group.shares.values()))
-        forces = shared * [each.pressure for each in members]
+        forces = shared * [member.pressure for member in members]
         # several points act as one at the middle of their forces
         acting = forces if forces.sum() > 0 else shared
         weights = acting / acting.sum()
@@ -136,7 +136,7 @@ def contacts_of(
                 tangential,
                 per_area * float(shared.sum()),
                 float(forces.sum()),
-                float(weights @ [each.speed for each in members]),
+                float(weights @ [member.speed for member in members]),
                 mu=face.mu,
                 origin=_origin(members, shared, weights, mesh),
             )
@@ -163,9 +163,11 @@ def _carriers(points: list[_Point], mesh: ElementMesh, face: Face) -> list[_Grou
     carried by the middles of the edges beside it, half of a single facet's corner by each: the
     forces on all nodes stay the same.
     """
-    place_of = {each.node: place for place, each in enumerate(points)}
+    place_of = {point.node: index for index, point in enumerate(points)}
     groups = {
-        place: {place: each.area} for place, each in enumerate(points) if each.area > 0
+        index: {index: point.area}
+        for index, point in enumerate(points)
+        if point.area > 0
     }
     rows = mesh.surface(face.surface).facets.get(8, np.empty((0, 8), int))
     beside: dict[int, dict[int, None]] = {}
@@ -189,15 +191,17 @@ def _merged(
     groups: list[_Group], points: list[_Point], mesh: ElementMesh, count: int
 ) -> list[_Group]:
     """Return so many groups of neighbours."""
-    positions = mesh.nodes[[each.node for each in points]]
-    weights = np.array([sum(each.shares.values()) for each in groups])
+    positions = mesh.nodes[[point.node for point in points]]
+    weights = np.array([sum(group.shares.values()) for group in groups])
     middles = np.array(
         [
-            np.array(list(each.shares.values())) @ positions[list(each.shares)] / weight
-            for each, weight in zip(groups, weights, strict=True)
+            np.array(list(group.shares.values()))
+            @ positions[list(group.shares)]
+            / weight
+            for group, weight in zip(groups, weights, strict=True)
         ]
     )
-    numbers = np.array([each.number for each in groups])
+    numbers = np.array([group.number for group in groups])
     joined = []
     for members in merged(middles, weights, numbers, count):
         shares: dict[int, float] = {}
@@ -231,17 +235,17 @@ def _origin(
     """Return how the contact of these points came about."""
     numbers = mesh.numbers
     partners = [
-        (each, each.partner.nodes, each.partner.position)
-        for each in points
-        if each.partner is not None
+        (point, point.partner.nodes, point.partner.position)
+        for point in points
+        if point.partner is not None
     ]
     gaps = [
         float((mesh.nodes[each.node] - position) @ each.normal)
         for each, _, position in partners
     ]
-    position = weights @ mesh.nodes[[each.node for each in points]]
+    position = weights @ mesh.nodes[[point.node for point in points]]
     return PointOrigin(
-        tuple(int(numbers[each.node]) for each in points),
+        tuple(int(numbers[point.node]) for point in points),
         tuple(
             sorted({int(numbers[node]) for _, nodes, _ in partners for node in nodes})
         ),
@@ -269,7 +273,9 @@ def _points(face: Face, mesh: ElementMesh, rotation: Rotation | None) -> list[_P
         other = mesh.surface(face.against)
         own, rubbed = _facing(own, surface.has_side, other, mesh)
         partners = list(rubbed.partners(mesh.nodes[members]))
-        normals = np.array([each.normal for each in partners if each is not None])
+        normals = np.array(
+            [partner.normal for partner in partners if partner is not None]
+        )
         _refuse_shared(partners, members, mesh, face)
         _refuse_gaps(partners, members, mesh, face)
         _refuse_facing(own.normals[members], normals, members, mesh, face)
@@ -287,12 +293,12 @@ def _points(face: Face, mesh: ElementMesh, rotation: Rotation | None) -> list[_P
             int(node),
             float(area[node]),
             partner,
-            normals[place],
-            tangentials[place],
-            float(speeds[place]),
-            float(pressures[place]),
+            normals[index],
+            tangentials[index],
+            float(speeds[index]),
+            float(pressures[index]),
         )
-        for place, (node, partner) in enumerate(zip(members, partners, strict=True))
+        for index, (node, partner) in enumerate(zip(members, partners, strict=True))
     ]
 
 

@@ -27,8 +27,10 @@ def mesh_variables(structure: Any) -> tuple[dict[str, Any], dict[str, Any]]:
     if structure.contacts and len(whole.normals) == len(mesh.degree_of_freedom):
         data["contact_position"] = np.array(
             [
-                mesh.center(normal) if each.origin is None else each.origin.position
-                for each, normal in zip(
+                mesh.center(normal)
+                if contact.origin is None
+                else contact.origin.position
+                for contact, normal in zip(
                     structure.contacts, whole.normals.T, strict=True
                 )
             ]

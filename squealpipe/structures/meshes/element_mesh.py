@@ -121,9 +121,9 @@ class ElementMesh:
     def _solid_facets(self) -> dict[tuple[int, ...], int]:
         """Nodes of a facet of the skin of solids, ascending → its place among those of its size."""
         return {
-            tuple(row): place
+            tuple(row): index
             for rows in self.solid_skin.values()
-            for place, row in enumerate(np.sort(rows, axis=1).tolist())
+            for index, row in enumerate(np.sort(rows, axis=1).tolist())
         }
 
     def _on_solids(self, rows: np.ndarray) -> np.ndarray:

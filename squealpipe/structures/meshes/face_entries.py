@@ -12,7 +12,7 @@ from squealpipe.structures.units import SI, Scales
 from squealpipe.systems.inputs.values import brief, is_finite_number
 from squealpipe.text import suggestion
 
-FACE_KEYS = tuple(each.name for each in fields(Face))
+FACE_KEYS = tuple(field.name for field in fields(Face))
 
 
 def faces_in(content: Any, folder: Path, scales: Scales) -> dict[str, Face]:

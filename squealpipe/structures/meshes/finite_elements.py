@@ -30,7 +30,7 @@ def _quadratic(
     Args:
         edges: of the element, in the order in which their middles follow its corners.
     """
-    middles = {frozenset(edge): corners + place for place, edge in enumerate(edges)}
+    middles = {frozenset(edge): corners + index for index, edge in enumerate(edges)}
     return tuple(
         (*face, *(middles[frozenset(edge)] for edge in pairwise((*face, face[0]))))
         for face in faces

@@ -84,7 +84,7 @@ def _named_rows(
             f"mesh {len(mesh.nodes)} nodes; name the file that says node and direction of each "
             "row, like `degrees_of_freedom: brake.dof`"
         )
-    rows = np.array([_pair(each) for each in names], int).reshape(-1, 2)
+    rows = np.array([_pair(name) for name in names], int).reshape(-1, 2)
     if len(rows) != size:
         raise ValueError(
             f"degrees_of_freedom names {len(rows)} rows, but the matrices have {size}"
@@ -174,7 +174,7 @@ def _picture(mesh: ElementMesh, rows: np.ndarray) -> StructureMesh:
     new[np.flatnonzero(used)] = np.arange(used.sum())
     return StructureMesh(
         mesh.nodes[used],
-        [new[each].tolist() for each in facets],
+        [new[facet].tolist() for facet in facets],
         np.column_stack([new[at], rows[:, 1]]),
         mesh.numbers[used],
         {name: mesh.numbers[places] for name, places in mesh.node_sets.items()},

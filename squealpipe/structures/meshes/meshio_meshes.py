@@ -184,7 +184,7 @@ def of_meshio(mesh: Any, source: str, *, counts_nodes: bool) -> ElementMesh:
     sets: dict[str, np.ndarray] = {}
     for name, rows in _named_cells(mesh).items():
         surfaces[name] = lambda whole, rows=rows: whole.of_shells(rows)  # type: ignore[misc]
-        sets[name] = np.unique(np.concatenate([each.ravel() for each in rows]))
+        sets[name] = np.unique(np.concatenate([row.ravel() for row in rows]))
     for name, members in mesh.point_sets.items():
         places = np.asarray(members, int)
         sets.setdefault(name, places)

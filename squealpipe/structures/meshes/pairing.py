@@ -77,7 +77,7 @@ class FacetedSurface:
     def __init__(self, nodes: np.ndarray, facets: Facets) -> None:
         self.nodes, self.facets = nodes, facets
         self.members = np.unique(
-            np.concatenate([each.ravel() for each in facets.values()])
+            np.concatenate([facet.ravel() for facet in facets.values()])
         )
         positions = {size: nodes[rows] for size, rows in facets.items()}
         self.areas = {size: normal_integrals(each) for size, each in positions.items()}
@@ -185,10 +185,10 @@ class FacetedSurface:
         # on their common edge
         same_distance = 1e-9
         tied = [
-            each
-            for each in candidates
-            if each.distance <= distance + same_distance * extent
-            and np.linalg.norm(self._position(each) - self._position(best))
+            candidate
+            for candidate in candidates
+            if candidate.distance <= distance + same_distance * extent
+            and np.linalg.norm(self._position(candidate) - self._position(best))
             <= PAIRING.matching * extent
         ]
         if len(tied) == 1:

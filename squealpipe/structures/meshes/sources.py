@@ -69,7 +69,7 @@ def of_arrays(nodes: Any, faces: Any) -> ElementMesh:
     for name, facets in faces.items():
         surface = Surface(joined(_rows(mesh, str(name), facets)))
         sets[str(name)] = np.unique(
-            np.concatenate([each.ravel() for each in surface.facets.values()])
+            np.concatenate([facet.ravel() for facet in surface.facets.values()])
         )
         surfaces[str(name)] = lambda _, surface=surface: surface  # type: ignore[misc]
     return ElementMesh(

@@ -129,8 +129,8 @@ def _run_on(
     first = RUN_LENGTHS.first_window / plant.slowest
     subjects = [Plant(plant.structure.with_(mu=mu)) for mu in frictions.tolist()]
     starts = [
-        replace(start_at(each, start.state), period=1.0 / plant.slowest)
-        for each in subjects
+        replace(start_at(subject, start.state), period=1.0 / plant.slowest)
+        for subject in subjects
     ]
 
     def advance(

@@ -37,7 +37,7 @@ def add_fold(plant: Plant, track: Track, onset: float, width: float) -> None:
         return
     track.fold = fold
     track.unstable = UnstableCycles(
-        frictions[place:], np.array([_speed(plant, each) for each in points[place:]])
+        frictions[place:], np.array([_speed(plant, point) for point in points[place:]])
     )
 
 

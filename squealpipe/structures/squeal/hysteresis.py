@@ -34,7 +34,7 @@ def hysteresis(plant: Plant, settled: list[SettledRun], how: Running) -> dict[st
     decays = onset.damped if onset else plant.decays
     limit = onset.mu if onset else math.inf
     if decays:
-        moving = [place for place, each in enumerate(settled) if not each.quiet]
+        moving = [index for index, each in enumerate(settled) if not each.quiet]
         # the three motions that most random starts settle on
         for place in moving[:3]:
             start = state_of(plant, mu, settled[place].last)
@@ -137,6 +137,6 @@ def _tracks(tracks: dict[int, Track], onset: float) -> dict[str, Any]:
 def _padded(rows: Sequence[Any]) -> np.ndarray:
     """Rows of different lengths as a table, NaN where there is nothing."""
     table = np.full((len(rows), max(map(len, rows), default=0)), np.nan)
-    for place, row in enumerate(rows):
-        table[place, : len(row)] = row
+    for index, row in enumerate(rows):
+        table[index, : len(row)] = row
     return table

@@ -162,14 +162,14 @@ def _apart(
     # many periods at once: distances swing within each
     blocks = np.array_split(np.arange(len(times)), 40)
     spread, areas = np.empty(len(blocks)), np.empty(len(blocks))
-    for place, block in enumerate(blocks):
+    for index, block in enumerate(blocks):
         away = plant.coordinates(samples[1:, block] - samples[:1, block]) / extent
         gram = np.einsum("itk,jtk->tij", away, away)
         square = np.einsum("tii->ti", gram)
-        spread[place] = np.median(np.sqrt(square.max(axis=0)))
+        spread[index] = np.median(np.sqrt(square.max(axis=0)))
         # the sum of all areas of two, by the second elementary symmetric polynomial of the roots
         area = square.sum(axis=1) ** 2 - (gram**2).sum(axis=(1, 2))
-        areas[place] = np.sqrt(max(0.5 * float(area.max()), 0.0))
+        areas[index] = np.sqrt(max(0.5 * float(area.max()), 0.0))
     middles = np.array([times[block].mean() for block in blocks])
     grown = float(spread.max() / spread[0])
     far = np.flatnonzero(spread > KIND_RULES.saturation)

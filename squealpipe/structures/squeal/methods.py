@@ -116,7 +116,7 @@ def exact_told(
 ) -> Told:
     """Runs with every event located, several at once from pushes that differ a little."""
     pushes = _pushes(plant, frequencies)
-    known = [place for place in pushes if place is not None]
+    known = [push for push in pushes if push is not None]
     # runs from pushes that differ a little: their scatter is an error
     count = 4 if len(known) > 1 else 5
     # each of several pushes is 5 % larger than the one before
@@ -187,11 +187,11 @@ def smoothed_told(
     )
     step, times = _instants(plant, horizon)
     ends, spent, evaluations = [], 0.0, 0
-    for place in _pushes(plant, frequencies):
-        if place is None:
+    for push in _pushes(plant, frequencies):
+        if push is None:
             ends.append(without_mode(structure))
             continue
-        start = plant.pushed(place, PUSH_OF_A_MODE)
+        start = plant.pushed(push, PUSH_OF_A_MODE)
         samples, once = _timed(lambda start=start: model.run(start, times, tol), 1)  # type: ignore[misc]
         spent, evaluations = spent + once, evaluations + samples.evaluations
         ends.append(smoothed_end(plant, samples, model.friction_width, belt, step))
@@ -234,7 +234,9 @@ def _same(frequencies: np.ndarray, grows: np.ndarray, frequency: float) -> int |
 
 def _pushes(plant: Plant, frequencies: np.ndarray) -> list[int | None]:
     grows = np.isin(np.arange(len(plant.frequencies)), plant.unstable)
-    return [_same(plant.frequencies, grows, float(each)) for each in frequencies]
+    return [
+        _same(plant.frequencies, grows, float(frequency)) for frequency in frequencies
+    ]
 
 
 def _instants(plant: Plant, horizon: Horizon) -> tuple[float, np.ndarray]:

@@ -198,7 +198,9 @@ class Plant:
     @property
     def is_linear(self) -> bool:
         """True if motions during which no contact switches are linear: friction is constant."""
-        return all(each.friction_law == COULOMB for each in self.structure.frictions)
+        return all(
+            friction.friction_law == COULOMB for friction in self.structure.frictions
+        )
 
     @cached_property
     def rest(self) -> tuple[np.ndarray, np.ndarray]:

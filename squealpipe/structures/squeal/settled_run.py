@@ -191,7 +191,7 @@ def _regimes(run: xr.Dataset, contacts: list[str]) -> np.ndarray:
     codes = np.zeros(max(flags) + 1, int)
     for value, name in flags.items():
         # of contacts c and c_2, regime c_2_stick is one of the latter
-        owners = [each for each in contacts if name.startswith(f"{each}_")]
+        owners = [contact for contact in contacts if name.startswith(f"{contact}_")]
         codes[value] = Regime[name.removeprefix(f"{max(owners, key=len)}_")]
     # a single component has no dimension of its own
     return np.asarray(codes[run.regime.values].reshape(-1, len(contacts)))

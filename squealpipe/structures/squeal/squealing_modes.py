@@ -131,7 +131,7 @@ def squealing_of(
     if onset and not plant.obstacle:
         below = hysteresis(plant, [runs[0] for runs in members], how)
     verdict = _verdict(plant, int(numbers[0]), modes, of_attractor["motion"])
-    loud = [place for place, each in enumerate(modes) if not members[place][0].quiet]
+    loud = [index for index, mode in enumerate(modes) if not members[index][0].quiet]
     drawn_in = set(numbers[len(pushes) :].tolist())
     damping, damping_outcome = added_damping(plant)
     of_mesh, mesh_coordinates = mesh_variables(plant.structure)
@@ -280,10 +280,10 @@ def _of_modes(
     ends = numbers[:count]
     frequency = plant.frequencies[plant.unstable]
     squeals = np.zeros(count, bool)
-    for place, number in enumerate(ends):
+    for index, number in enumerate(ends):
         if number != NO_ATTRACTOR and np.isfinite(found[number].frequency):
             away = np.abs(found[number].frequency - frequency)
-            squeals[place] = away.argmin() == place
+            squeals[index] = away.argmin() == index
     times = [
         arrival(run) if run.agrees and not run.quiet else np.nan
         for run in settled[:count]
@@ -309,12 +309,12 @@ def _of_attractors(
     near = [nearest(plant, each) for each in frequency]
     multipliers = np.full((count, 2 * plant.size), np.nan, complex)
     largest = np.full(count, np.nan)
-    for place, each in enumerate(found):
+    for index, each in enumerate(found):
         if each.cycle is not None:
             values = each.cycle.multipliers
-            multipliers[place] = values
+            multipliers[index] = values
             trivial = np.abs(values - 1.0).argmin()
-            largest[place] = np.abs(np.delete(values, trivial)).max()
+            largest[index] = np.abs(np.delete(values, trivial)).max()
     force = _table(rows, "forces", shape)
     # a contact that is open in steady sliding has no force to compare with
     at_rest = np.where(plant.spectrum.state.force > 0, plant.pressed, np.nan)
@@ -419,12 +419,12 @@ def _spectra(found: list[Described]) -> tuple[np.ndarray, np.ndarray]:
     lines_kept = 1024
     edges = np.linspace(0.0, top, lines_kept + 1)
     spectra = np.full((len(found), lines_kept), np.nan)
-    for place, each in enumerate(found):
+    for index, each in enumerate(found):
         if each.lines.size:
             within = np.clip(np.searchsorted(edges, each.lines) - 1, 0, lines_kept - 1)
             held = np.zeros(lines_kept)
             np.maximum.at(held, within, each.amplitudes)
-            spectra[place] = held / np.sqrt((each.amplitudes**2).sum())
+            spectra[index] = held / np.sqrt((each.amplitudes**2).sum())
     return 0.5 * (edges[1:] + edges[:-1]), spectra
 
 

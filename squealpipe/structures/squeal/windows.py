@@ -300,9 +300,9 @@ def _regimes(plant: Plant, word: str) -> list[list[int]]:
         [
             i
             for i, (name, owner) in numbered
-            if owner == place and name.startswith(f"{contact}_{word}")
+            if owner == index and name.startswith(f"{contact}_{word}")
         ]
-        for place, contact in enumerate(plant.contacts)
+        for index, contact in enumerate(plant.contacts)
     ]
 
 

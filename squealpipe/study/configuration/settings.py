@@ -186,8 +186,8 @@ def files_of_laws(path: Path) -> list[Path]:
     entries = [given for _, given, _ in laws_in(read_yaml(path).get("parameters"))]
     return [
         Path(file)
-        for given in entries
-        for file in (given.values() if isinstance(given, dict) else [given])
+        for entry in entries
+        for file in (entry.values() if isinstance(entry, dict) else [entry])
         if str(file).lower().endswith((*ENDINGS, ".py"))
     ]
 

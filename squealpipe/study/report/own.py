@@ -191,13 +191,13 @@ def _scatter(run: Evidence) -> dict[str, Any] | None:
         ],
         "shares": [
             {
-                "what": str(kind),
+                "what": str(value),
                 "share": percent(float(of_kind.share)),
                 "interval": f"{percent(float(of_kind.share_low))} to "
                 f"{percent(float(of_kind.share_high))}",
             }
-            for kind in shares.kind.values
-            for of_kind in [shares.sel(kind=kind)]
+            for value in shares.kind.values
+            for of_kind in [shares.sel(kind=value)]
         ],
     }
 

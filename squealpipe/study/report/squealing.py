@@ -150,7 +150,7 @@ def _disagreement(answer: xr.Dataset) -> str:
     within = answer.frequency.values <= frequency_max(answer)
     unsure = answer.isel(mode=~answer.mode_is_sure.values & within)
     if unsure.sizes["mode"]:
-        names = ", ".join(f"mode {int(each)}" for each in unsure.mode.values[:LISTED])
+        names = ", ".join(f"mode {int(value)}" for value in unsure.mode.values[:LISTED])
         parts.append(f"the errors leave open whether {names} of {kept} grows")
     return "; and ".join(parts)
 

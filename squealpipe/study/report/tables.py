@@ -56,7 +56,7 @@ def write_tables(
             "velocity across (m/s)": told.velocity_spectrum_across,
             "contact force over preload": told.force_spectrum,
         }
-        rows = np.stack([each.values for each in columns.values()], axis=1)
+        rows = np.stack([column.values for column in columns.values()], axis=1)
         _fill(sheet, list(columns), rows[np.isfinite(rows).all(axis=1)].tolist())
     with whole_file(path) as temporary:
         book.save(temporary)

@@ -214,7 +214,7 @@ class _Way:
         number = event.switch
         if key.kind in {MarginKind.touch, MarginKind.edge}:
             number = int(max(of(event.before)[key.which] for of in watched))
-        names = [*(each.name for each in system.switches), *system.stops]
+        names = [*(switch.name for switch in system.switches), *system.stops]
         reason = f"order_changes_{key.kind.name}_of_{names[number]}".replace(" ", "_")
         return _End(share, met, reason, order_changes=True)
 
@@ -253,7 +253,7 @@ def follow_curve(
         algorithm.solve(curve, guess, normal, BRANCH_STEPS.first_step)
         for normal in normals
     )
-    first = next((found for found in starts if found is not None), None)
+    first = next((start for start in starts if start is not None), None)
     if first is None:
         raise ValueError(f"start: no curve of {label.name} is found there")
     ways = [_Way(replace(curve), scaled) for _ in range(2)]

@@ -70,7 +70,7 @@ def _of_hold(system: System, switch: int, among: int) -> bool:
         joint.entered(among, regime) for regime, _, _ in t.switches[switch].targets
     ]
     left = [joint.entered(among, regime) for regime in leaves.tolist()]
-    return any(joint.holds(each)[surfaces].any() for each in targets) or all(
+    return any(joint.holds(target)[surfaces].any() for target in targets) or all(
         joint.holds(each).any() for each in left
     )
 

@@ -94,7 +94,9 @@ def checked(
 
 def _refusal(error: ValidationError, title: str, names: list[str]) -> Exception:
     faults = error.errors(include_url=False)
-    first = next((each for each in faults if "unexpected" in each["type"]), faults[0])
+    first = next(
+        (fault for fault in faults if "unexpected" in fault["type"]), faults[0]
+    )
     place, *inside = first["loc"]
     name = names[place] if isinstance(place, int) and place < len(names) else place
     if "argument" in first["type"]:

@@ -52,8 +52,8 @@ def distances(
     """Table of how far each scene is from the nearest line of each kind: columns and rows."""
     known = _known(angles, scenes)
     rows = []
-    for place, name in enumerate(sorted(scenes)):
-        of_angles = _listed(known, angles, place, np.degrees(1.0))
+    for index, name in enumerate(sorted(scenes)):
+        of_angles = _listed(known, angles, index, np.degrees(1.0))
         rows.append([f"{_title(name)}: angles (°)", *of_angles])
         rows.append([f"{_title(name)}: (κ, μ)", *_listed(known, scenes[name], 0, 1.0)])
     return {
@@ -67,7 +67,7 @@ def _known(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> list[ChartLi
     return [
         which
         for which in LINE_LOOKS
-        if any(which.name in each.boundary for each in charts)
+        if any(which.name in chart.boundary for chart in charts)
     ]
 
 
@@ -110,7 +110,7 @@ def draw(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> Figure:
     charts = [angles, *scenes.values()]
     # a region of less than 0.1 % of the chart is not visible in print
     shown = [
-        max((_kinds(each) == k).mean() for each in charts) > 1e-3
+        max((_kinds(chart) == k).mean() for chart in charts) > 1e-3
         for k in range(len(CELL_KINDS))
     ]
     tones = style.patches(
