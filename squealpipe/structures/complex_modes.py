@@ -1,4 +1,11 @@
-"""Complex modes of a structure as a dataset: growth, frequency and critical friction by mode."""
+"""Compute complex modes of a structure as a dataset: growth, frequency, critical friction.
+
+Idea: each combination of belt speed and further factors is a way along friction, on which modes
+keep their numbers (:mod:`squealpipe.structures.numbering`); the tables of all ways become one
+dataset, whose modes are ordered by the frequency at which they appear. Invariant: a mode has one
+number at every friction, also through a merge with another. Cost: the eigenvalue problems along all
+ways; :func:`cost_beforehand` states it for large structures.
+"""
 
 import functools
 import inspect

@@ -1,4 +1,12 @@
-"""The modes of a structure along friction, each with a number that it keeps."""
+"""Follow the modes of a structure along friction, each with a number that it keeps.
+
+Idea: two neighbouring frictions are matched by overlap of left and right eigenvectors; where the
+match is not clear the step is halved. Contacts that open or close in between bend the branches, so
+steps end there. The onset of a mode is the friction at which its growth passes zero, located
+between two steps; without damping it is where two modes merge. Invariant: a number is given once,
+and never to two modes of one friction. Cost: one eigenvalue problem for each friction, and some ten
+more for each onset.
+"""
 
 from dataclasses import dataclass, field
 from itertools import pairwise

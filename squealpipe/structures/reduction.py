@@ -1,4 +1,12 @@
-"""A structure of no more modes than its unstable complex modes need."""
+"""Reduce a structure to the fewest modes that its unstable complex modes need.
+
+Idea: the lowest modes at rest are computed once, and for each number of them the small dense
+structure is compared with the whole: the same modes have to grow, at the same rate and frequency
+within a tolerance, and contacts that can stick together have to be able to in these modes.
+Convergence is not monotonic, so the next larger numbers have to do as well. Invariant: the mass
+matrix in modal coordinates is 1. Cost: the modes of the whole, and a small eigenvalue problem for
+each number that is tried.
+"""
 
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,15 @@
-"""Steady sliding of a structure.
+"""Find steady sliding of a structure: which contacts stay closed, and the forces in them.
 
 With σᵢ = sgn(speedᵢ V) and μᵢ = μ(|speedᵢ V|) the state is that of
 K q = f + Σ (nᵢ + σᵢ μᵢ tᵢ) Nᵢ, Nᵢ = max(preloadᵢ − kᵢ nᵢᵀq, 0).
+
+Idea: for given closed contacts this is linear, so it is computed for contacts that are all closed,
+and the first contact that pulls, or overlaps, is changed until none does. Such pivoting ends or
+comes back; where it comes back, all combinations of up to 16 contacts are tried. One factorization
+of the structure with all contacts closed serves every set and every friction, since each differs
+from it by as many columns as there are contacts (Woodbury's identity). The last correction is
+computed with a residual that is rounded once. Invariant: an answer fits its own inequalities. Cost:
+a factorization, and a small dense system for each set.
 """
 
 from collections.abc import Callable

@@ -1,4 +1,11 @@
-"""Complex modes about one state of steady sliding, within limits of frequency or number."""
+"""Solve for complex modes about one steady sliding, within limits of frequency or number.
+
+Idea: up to a thousand degrees of freedom all eigenvalues are computed by dense algebra; of larger
+structures those in a band of frequency, by shifts along it, until right and left eigenvectors about
+other points have the same ones. Each eigenvalue has an error that covers rounding of the matrices
+and of the solution, by which growth is told from none. Invariant: a spectrum that may lack a mode
+raises and is not returned.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field

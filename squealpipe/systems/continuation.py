@@ -1,4 +1,10 @@
-"""Pseudo-arclength continuation of F(z) = 0 with one unknown more than equations.
+"""Continue a branch of F(z) = 0 with one unknown more than equations, by pseudo-arclength.
+
+Idea: predict along the tangent, bent as the last steps were, and correct by Newton's method in the
+plane normal to it, so that folds are nothing special. A step is halved where Newton's method
+converges slowly or turns too far, and grows where it converges at once. Source: H. B. Keller, in
+Applications of Bifurcation Theory (1977). Invariant: tangents keep their sense along a branch.
+Cost: two to four evaluations of F and its Jacobian a step.
 
 Settings, algorithm and state are separate; a :class:`Continuation` is iterated and
 yields one state after the other, so the caller decides when to stop.

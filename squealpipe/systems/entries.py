@@ -1,6 +1,11 @@
-"""Checks where regimes are entered: switches make progress, and fields have a Taylor series there.
+"""Check how regimes are entered: switches make progress, and fields have a Taylor series there.
 
-Both are tried on random states of a switch's surface.
+Idea: a switch that leads to a regime which it leaves at once, or a power whose base is zero where
+its regime begins, fails only in the middle of a run. Both are therefore tried beforehand, on random
+states of each switch's surface: such a state lies on the line between two random ones of which the
+surface has different signs. Invariant: a system is refused only for a state that was found, which
+the message names; a random search proves nothing about others. Cost: some thousand evaluations of
+the fields, without compilation.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

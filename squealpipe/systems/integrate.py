@@ -1,4 +1,10 @@
-"""Raw results of many runs of a system: what the compiled loop is given, and what it gives back."""
+"""Integrate many runs of a system by compiled code, and return raw arrays.
+
+Idea: the series, switches and resets of a system are written once as machine code, kept on disk
+under a digest of the text; a batch of runs is laid out in rows of lanes that this code advances
+side by side (:mod:`squealpipe.systems.taylor.loop`). Invariant: a run's result does not depend on
+the runs beside it. Cost: compilation takes seconds once.
+"""
 
 import math
 import weakref

@@ -1,4 +1,9 @@
-"""In which regimes runs start."""
+"""Find the regimes in which runs may start, from what each regime asks of the state.
+
+Idea: a switch out of a regime on one sign of a surface says that the regime holds on the other
+sign; a regime that a constraint holds, as stick, asks for a zero as well. The first regime whose
+conditions all hold is that of the start.
+"""
 
 from collections.abc import Mapping
 from copy import copy

@@ -121,7 +121,7 @@ def a1_beside_a4(
     )
 
 
-def _repeated(rows: Vector, point: Vector) -> Vector:
+def _repeated(rows: NDArray[np.void], point: Vector) -> Vector:
     """y over all periods of the run, from half a period by symmetry."""
     half = sample(
         rows, point, np.linspace(0.0, math.pi, run_settings.samples // 2 + 1)

@@ -1,4 +1,13 @@
-"""The boundary of kept contact over two parameters, as curves."""
+"""Trace the boundary of kept contact over two parameters, as curves.
+
+Idea: the reserve, the lowest contact force of a run in which the contact spring pulls too, is
+smooth across the boundary, where it is zero. So zero lines of one smooth function are followed
+(:mod:`squealpipe.brake.curves.zero_lines`), and no cell of a map is judged by yes or no. While the
+mass is slower than the belt the reserve does not depend on how A1 changes regime; where it is
+faster, that part is computed anew. Invariant: regions that no other line leads to are guaranteed to
+be found only above the size of a cell of the first grid. Cost: one run for each point that is
+evaluated, all points of a round together.
+"""
 
 from __future__ import annotations
 

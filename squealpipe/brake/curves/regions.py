@@ -1,4 +1,10 @@
-"""The regions of the unit square that lines of zeros bound."""
+"""Turn lines of zeros of a function on the unit square into the regions that they bound.
+
+Idea: pieces of lines are joined into chains; chains that end at the border are closed along it, on
+the side where the function is positive. A loop that another one contains is a hole of it.
+Invariant: loops run counter-clockwise around a region and clockwise around a hole, so areas add up;
+a point is inside if an odd number of loops surround it.
+"""
 
 from collections.abc import Sequence
 from itertools import pairwise

@@ -1,4 +1,10 @@
-"""Assumptions of each model level, checked along the motion that it computes itself."""
+"""Check the assumptions of each model level along the motion that it computes itself.
+
+Idea: A2 and A3 drop terms that are small only if the motion is; each level's own motion is
+therefore measured: its lowest contact force, its speed beside the belt's, the turn of its springs.
+Extremes between samples are those of a parabola through three of them. Source: Table 1 of the
+paper.
+"""
 
 from collections.abc import Iterable
 from typing import Any, NamedTuple

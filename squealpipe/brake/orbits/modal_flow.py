@@ -5,8 +5,10 @@ B = A − λm I, every function of A is α I + β B, where α is the mean and β
 of the function at the eigenvalues ω1², ω2². Written with ω2 ± ω1 these stay exact for repeated,
 zero, negative and complex eigenvalues, where eigenvectors do not exist or lose digits.
 
-A *state row* holds λm, B11, B12, B21, δ² = −det B, Re ω1, Im ω1, Re ω2, Im ω2, b1, b2 and the
-threshold of y (see :class:`squealpipe.brake.orbits.piecewise_linear.PiecewiseLinearSystem`).
+A *state row* holds these numbers by name (:data:`STATE_ROW`): of A the mean λm of its diagonal,
+half the difference B11 of both, the couplings B12 and B21 and the discriminant δ² = −det B; ω1 and
+ω2, real and imaginary; the load b; and the threshold of y
+(see :class:`squealpipe.brake.orbits.piecewise_linear.PiecewiseLinearSystem`).
 """
 
 from typing import Any
@@ -15,6 +17,17 @@ import numpy as np
 
 from squealpipe.systems.compiled import compiled
 
+STATE_ROW = np.dtype(
+    [
+        (name, "f8")
+        for name in (
+            *("mean", "half_difference", "a12", "a21", "discriminant"),
+            *("omega1", "omega1_imaginary", "omega2", "omega2_imaginary"),
+            *("load_x", "load_y", "threshold"),
+        )
+    ]
+)
+"""One linear state as compiled code reads it."""
 # A bound on the curvature replaces trial and error up to this phase of the fastest mode, rad.
 _LONGEST_LOOK_AHEAD = 1.0
 # Below this part of the longest look-ahead a touch without crossing is passed over.
@@ -80,13 +93,25 @@ def modal_coefficients(omega1: Any, omega2: Any, time: Any) -> Any:
 @compiled
 def coefficients_at(row: Any, time: float) -> Any:
     """(α, β) of C, S, −A S and G of a state row over a time: eight numbers."""
-    if row[6] == 0.0 and row[8] == 0.0:
-        ca, cb, sa, sb, ga, gb = modal_coefficients(row[5], row[7], time)
+    if row.omega1_imaginary == 0.0 and row.omega2_imaginary == 0.0:
+        ca, cb, sa, sb, ga, gb = modal_coefficients(row.omega1, row.omega2, time)
     else:
-        omega1, omega2 = complex(row[5], row[6]), complex(row[7], row[8])
+        omega1, omega2 = (
+            complex(row.omega1, row.omega1_imaginary),
+            complex(row.omega2, row.omega2_imaginary),
+        )
         c0, c1, s0, s1, g0, g1 = modal_coefficients(omega1, omega2, complex(time))
         ca, cb, sa, sb, ga, gb = c0.real, c1.real, s0.real, s1.real, g0.real, g1.real
-    return ca, cb, sa, sb, -(row[0] * sa + row[4] * sb), -(sa + row[0] * sb), ga, gb
+    return (
+        ca,
+        cb,
+        sa,
+        sb,
+        -(row.mean * sa + row.discriminant * sb),
+        -(sa + row.mean * sb),
+        ga,
+        gb,
+    )
 
 
 @compiled
@@ -102,8 +127,14 @@ def moved_tangent(
     row: Any, coefficients: Any, x: float, y: float, vx: float, vy: float
 ) -> Any:
     """A tangent vector (δx, δy, δvx, δvy) later."""
-    bux, buy = row[1] * x + row[2] * y, row[3] * x - row[1] * y
-    bvx, bvy = row[1] * vx + row[2] * vy, row[3] * vx - row[1] * vy
+    bux, buy = (
+        row.half_difference * x + row.a12 * y,
+        row.a21 * x - row.half_difference * y,
+    )
+    bvx, bvy = (
+        row.half_difference * vx + row.a12 * vy,
+        row.a21 * vx - row.half_difference * vy,
+    )
     ca, cb, sa, sb = coefficients[0], coefficients[1], coefficients[2], coefficients[3]
     da, db = coefficients[4], coefficients[5]
     return (
@@ -121,8 +152,11 @@ def moved_state(
     """A state (x, y, vx, vy) later, load b included."""
     x, y, vx, vy = moved_tangent(row, coefficients, x, y, vx, vy)
     sa, sb, ga, gb = coefficients[2], coefficients[3], coefficients[6], coefficients[7]
-    bx, by = row[9], row[10]
-    bbx, bby = row[1] * bx + row[2] * by, row[3] * bx - row[1] * by
+    bx, by = row.load_x, row.load_y
+    bbx, bby = (
+        row.half_difference * bx + row.a12 * by,
+        row.a21 * bx - row.half_difference * by,
+    )
     return (
         x + (ga * bx + gb * bbx),
         y + (ga * by + gb * bby),
@@ -158,8 +192,8 @@ def copy_state(source: Any, target: Any) -> None:
 def acceleration(row: Any, x: float, y: float) -> tuple[float, float]:
     """−A u + b."""
     return (
-        row[9] - (row[0] + row[1]) * x - row[2] * y,
-        row[10] - row[3] * x - (row[0] - row[1]) * y,
+        row.load_x - (row.mean + row.half_difference) * x - row.a12 * y,
+        row.load_y - row.a21 * x - (row.mean - row.half_difference) * y,
     )
 
 
@@ -168,13 +202,15 @@ def _jerk_bound(
     row: Any, ax: float, ay: float, vx: float, vy: float, step: float
 ) -> float:
     """Bound on |d³y/dt³| over the next ``step`` from the state at its start."""
-    norm_b = abs(row[1]) + max(abs(row[2]), abs(row[3]))
+    norm_b = abs(row.half_difference) + max(abs(row.a12), abs(row.a21))
     growth = 1.0 + 0.5 * norm_b * step * step
-    if row[6] != 0.0 or row[8] != 0.0:
-        growth *= np.exp(max(abs(row[6]), abs(row[8])) * step)
-    jx = (row[0] + row[1]) * vx + row[2] * vy
-    jy = row[3] * vx + (row[0] - row[1]) * vy
-    later = (abs(row[0]) + norm_b) * step * np.sqrt(ax * ax + ay * ay)
+    if row.omega1_imaginary != 0.0 or row.omega2_imaginary != 0.0:
+        growth *= np.exp(
+            max(abs(row.omega1_imaginary), abs(row.omega2_imaginary)) * step
+        )
+    jx = (row.mean + row.half_difference) * vx + row.a12 * vy
+    jy = row.a21 * vx + (row.mean - row.half_difference) * vy
+    later = (abs(row.mean) + norm_b) * step * np.sqrt(ax * ax + ay * ay)
     return float(growth * (np.sqrt(jx * jx + jy * jy) + later))
 
 
@@ -202,7 +238,7 @@ def _refine_crossing(
     time = guess if start < guess < end else 0.5 * (start + end)
     for _ in range(100):
         x, y, _, vy = moved_state(row, coefficients_at(row, time), x0, y0, vx0, vy0)
-        distance, slope = sign * (y - row[11]), sign * vy
+        distance, slope = sign * (y - row.threshold), sign * vy
         if distance > 0.0:
             start = time
         else:
@@ -235,13 +271,14 @@ def next_crossing(row: Any, origin: Any, sign: float, horizon: float) -> float:
     x0, y0, vx0, vy0 = origin[0], origin[1], origin[2], origin[3]
     x, y, vx, vy = x0, y0, vx0, vy0
     longest = _LONGEST_LOOK_AHEAD / max(
-        np.sqrt(row[7] * row[7] + row[8] * row[8]), 1e-300
+        np.sqrt(row.omega2 * row.omega2 + row.omega2_imaginary * row.omega2_imaginary),
+        1e-300,
     )
     time = 0.0
     for _ in range(_MOST_LOOKS):
         if not time < horizon:
             return -1.0
-        distance = max(sign * (y - row[11]), 0.0)
+        distance = max(sign * (y - row.threshold), 0.0)
         slope = sign * vy
         ax, ay = acceleration(row, x, y)
         curvature = sign * ay
@@ -259,7 +296,7 @@ def next_crossing(row: Any, origin: Any, sign: float, horizon: float) -> float:
             step *= 0.5
         ahead = time + step
         x, y, vx, vy = moved_state(row, coefficients_at(row, ahead), x0, y0, vx0, vy0)
-        if falls and sign * (y - row[11]) <= 0.0:
+        if falls and sign * (y - row.threshold) <= 0.0:
             root = np.sqrt(slope * slope - 2.0 * curvature * distance)  # NaN: no guess
             guess = time + 2.0 * distance / (root - slope)
             return _refine_crossing(row, origin, time, ahead, guess, sign)

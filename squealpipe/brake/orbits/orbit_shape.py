@@ -1,4 +1,10 @@
-"""Shape of a symmetric orbit: its waveform, its extremes and its largest speed."""
+"""Compute the shape of a symmetric orbit: its waveform, its extremes and its largest speed.
+
+Idea: within a segment the flow has a closed form, so the waveform is evaluated, not integrated. An
+extreme is bracketed between samples of a segment and located as a zero of the slope by Newton's
+method, which falls back to halving the bracket. Cost: a dozen evaluations for each period of the
+faster mode in a segment.
+"""
 
 from typing import Any
 
@@ -44,7 +50,7 @@ def _rates(row: Any, state: Any, kind: int) -> tuple[float, float, float]:
         return state[0], state[2], ax
     if kind == 1:
         return state[1], state[3], ay
-    jerk = -((row[0] + row[1]) * state[2] + row[2] * state[3])
+    jerk = -((row.mean + row.half_difference) * state[2] + row.a12 * state[3])
     return state[2], ax, jerk
 
 
@@ -64,9 +70,8 @@ def extremes(rows: Any, point: Any, out: Any) -> None:
     for leg in range(count):
         row = rows[int(segments[leg, 8])]
         end = switches[leg] if leg < count - 1 else point[2]
-        # row[7]: the higher frequency
         looks = samples_per_piece * max(
-            1, int(np.ceil(row[7] * (end - begin) / (2.0 * np.pi)))
+            1, int(np.ceil(row.omega2 * (end - begin) / (2.0 * np.pi)))
         )
         for kind in range(3):
             slope_before = 0.0
@@ -128,7 +133,7 @@ def _turn(
 
 
 def sample(
-    rows: NDArray[np.float64], point: NDArray[np.float64], phases: NDArray[np.float64]
+    rows: NDArray[np.void], point: NDArray[np.float64], phases: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """(n, 4) states at ascending phases in [0, π]; see :func:`waveform`."""
     out = np.empty((len(phases), 4))

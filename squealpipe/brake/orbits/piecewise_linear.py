@@ -7,6 +7,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from squealpipe.brake.orbits.modal_flow import STATE_ROW
+
 Matrix = tuple[tuple[float, float], tuple[float, float]]
 
 
@@ -31,15 +33,26 @@ class LinearState:
             a11 * a22 - a12 * a21
         )
 
-    def row(self, threshold: float) -> list[float]:
-        """State row of :mod:`squealpipe.brake.orbits.modal_flow`."""
+    def row(self, threshold: float) -> np.void:
+        """Return the state row of :mod:`squealpipe.brake.orbits.modal_flow`."""
         (a11, a12), (a21, a22) = self.matrix
         mean, half = 0.5 * (a11 + a22), 0.5 * (a11 - a22)
         discriminant = half * half + a12 * a21  # negative for a complex pair
         root = cmath.sqrt(discriminant)
         omega1, omega2 = cmath.sqrt(mean - root), cmath.sqrt(mean + root)
         frequencies = (omega1.real, omega1.imag, omega2.real, omega2.imag)
-        return [mean, half, a12, a21, discriminant, *frequencies, *self.load, threshold]
+        numbers = (
+            mean,
+            half,
+            a12,
+            a21,
+            discriminant,
+            *frequencies,
+            *self.load,
+            threshold,
+        )
+        row: np.void = np.array([numbers], STATE_ROW)[0]
+        return row
 
 
 @dataclass(frozen=True)
@@ -54,10 +67,10 @@ class PiecewiseLinearSystem:
     threshold: float
 
     @cached_property
-    def rows(self) -> NDArray[np.float64]:
-        """(2, 12) state rows for the compiled kernels."""
+    def rows(self) -> NDArray[np.void]:
+        """Both states for the compiled kernels, (2,) records of ``STATE_ROW``."""
         return np.array(
-            [self.below.row(self.threshold), self.above.row(self.threshold)]
+            [self.below.row(self.threshold), self.above.row(self.threshold)], STATE_ROW
         )
 
     @property

@@ -36,7 +36,7 @@ def dot(left: Any, right: Any) -> float:
 @compiled
 def fastest(rows: Any) -> float:
     """Frequency of the fastest mode of either state."""
-    return float(max(rows[0, 7], rows[1, 7]))
+    return float(max(rows[0].omega2, rows[1].omega2))
 
 
 @compiled
@@ -61,7 +61,7 @@ def shoot(
     if not fastest(rows) * half_period < LONGEST_PHASE:
         return 0
     final[0], final[1], final[2], final[3] = x0, y0, 0.0, 0.0
-    side = 1 if y0 > rows[0, 11] else 0
+    side = 1 if y0 > rows[0].threshold else 0
     time = 0.0
     for count in range(MAX_SEGMENTS):
         row = rows[side]
@@ -78,7 +78,7 @@ def shoot(
         if crossing < 0.0:
             return count + 1
         switches[count] = time
-        final[1] = row[11]
+        final[1] = row.threshold
         side = 1 - side
     return 0
 

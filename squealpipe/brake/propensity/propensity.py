@@ -1,4 +1,10 @@
-"""Propensities over distributed parameters, and Sobol indices of what they depend on."""
+"""Estimate propensities over distributed parameters, and Sobol indices of what they depend on.
+
+Idea: samples are scrambled Sobol sequences, in several independent replicates, so that the scatter
+between replicates states the error. First and total indices use Saltelli's matrices: two samples,
+and one more for each input. Source: Saltelli et al., Comput. Phys. Commun. 181 (2010) 259-270.
+Cost: (2 + inputs) runs a sample; flutter needs none, and gets a larger sample.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,11 @@
-"""Two archives, runs, folders or files: what is equal, within tolerance or different; where."""
+"""Compare two archives, runs, folders or files: equal, within tolerance or different, and where.
+
+Idea: datasets are paired by name, brought onto what they share
+(:mod:`squealpipe.store.comparison.matching`) and compared variable by variable, each with the
+tolerance and the round-off that its schema states. What has one value on each side is compared;
+what only one side has is told. Invariant: bad input gives a verdict, ``not_comparable`` with its
+reason, and never a traceback.
+"""
 
 import json
 import math

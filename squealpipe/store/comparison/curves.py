@@ -1,4 +1,10 @@
-"""Points of a curve that lie between those of another: whether they lie on it."""
+"""Compare points of a curve with another curve that has its points elsewhere.
+
+Idea: step control moves the points of a branch along it without moving the branch. A point without
+a counterpart is therefore compared with the cubic through the four nearest points of the other
+curve, and may be off by what that cubic is uncertain by: its difference from the parabolas through
+three of them. Labels and counts have no values in between and have to be those of a neighbour.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

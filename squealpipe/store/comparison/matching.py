@@ -1,4 +1,10 @@
-"""Two datasets brought onto what they share: grid points by value, entries of lists by meaning."""
+"""Bring two datasets onto what they share: grid points by value, entries of lists by meaning.
+
+Idea: a map on a finer grid has the points of a coarser one, and a branch has its folds wherever
+step control put other points. So dimensions with units are matched by value within round-off, and
+entries of lists by the kind that the schema names, each with the nearest of its kind on the other
+side. Invariant: each point is used once, and what has no partner is noted.
+"""
 
 from dataclasses import dataclass
 

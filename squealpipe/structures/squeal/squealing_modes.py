@@ -1,4 +1,11 @@
-"""The unstable modes of a structure that squeal, as a dataset."""
+"""Find which unstable modes of a structure squeal, and with what motion, as a dataset.
+
+Idea: linear growth says which modes leave steady sliding, not where they end. Each is pushed by 1 %
+along itself and run until its motion has settled; random starts show motions that no push leads to.
+Equal motions are one attractor. A motion that leaves what repels it is run on. Invariant:
+statistics begin after a motion has settled. Cost: nearly all is in the runs, some thousand periods
+of the slowest unstable mode each.
+"""
 
 from __future__ import annotations  # help shows Angle, not its checks
 

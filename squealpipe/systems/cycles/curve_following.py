@@ -1,4 +1,13 @@
-"""Curves of special cycles as they are followed: what else happens there, and where they end."""
+"""Follow curves of special cycles over two parameters; name what happens on them and at their ends.
+
+Idea: a fold, period doubling or torus of a cycle is one equation more, so over two parameters it
+lies on a curve, which pseudo-arclength continuation follows both ways. Between two points,
+quantities whose zero means something else (a further multiplier on the circle, an event that
+vanishes or appears, a limit of the parameters) are watched for a change of sign, and the place is
+located. Invariant: every point solves its equations to round-off of the flow, with events in the
+order that the motion has there. Cost: one Newton solution, that is a few runs of one period with
+derivatives, for each point.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,10 @@
-"""Changes of the order of a cycle's events: their names, and how a branch goes on from there."""
+"""Name changes of the order of a cycle's events, and go on with the order beyond.
+
+Idea: a leg of zero length, or an event at zero speed, ends the range of one order of events. Which
+margins vanish there together says what happened: a grazing, the begin or end of a stick, two events
+that change places. Beyond, a run next to the last cycle shows the new order, and the branch goes on
+with that if its cycle is a motion of the system.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,11 @@
-"""Cycles of systems without forcing: the run comes back to where it was, at a time of its own."""
+"""Find cycles of systems without forcing: a run comes back to where it was, after an unknown time.
+
+Idea: a run is sampled in windows that grow. A near return gives a guess of the events and the
+period, and Newton's method on the map of events closes it. A run that shrinks at the rate of its
+state of rest, or moves no more, has none. Invariant: a cycle is accepted only if its states agree
+with the run that it was found in, since Newton's method may lead to another motion. Cost: the run
+until it has settled; closing a cycle takes a few runs of one period.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,12 @@
-"""Equations and a guess of a cycle, from a run that nearly repeats or from another cycle."""
+"""Make equations and a guess of a cycle, from a run that nearly repeats or from another cycle.
+
+Idea: a cycle is a sequence of legs, each in one regime and ended by one event; its unknowns are the
+state at the first event and the durations. A run that repeats after some events gives the order of
+the events, the states and the durations. Where an event is about to vanish, round-off decides
+whether a run has it, so guesses without brief legs, or with neighbouring ones merged, are made as
+well. Invariant: only what :func:`as_motion` accepts counts as a cycle: its legs stay inside their
+regimes.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,9 @@
-"""A cycle: a solution of an event map, its stability, its extremes and its states in time."""
+"""Describe a cycle that was solved for: stability, extremes, and states in time.
+
+Idea: the derivative of one turn is the product of the derivatives of the legs and of the saltation
+matrices between them; its eigenvalues are the Floquet multipliers.  Cost: one run of a period with
+derivatives, which is kept.
+"""
 
 from __future__ import annotations
 

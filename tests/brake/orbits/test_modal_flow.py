@@ -35,7 +35,7 @@ def _flow(matrix, state, time):
 @pytest.mark.parametrize("matrix", MATRICES.values(), ids=MATRICES)
 @pytest.mark.parametrize("time", [1e-6, 0.3, 2.0, 11.0])
 def test_flow_agrees_with_the_matrix_exponential(matrix, time):
-    row = np.array(LinearState(matrix, LOAD).row(1.0))
+    row = LinearState(matrix, LOAD).row(1.0)
     state = np.array([0.4, 1.3, -0.2, 0.6])
     expected = _flow(matrix, state, time)
     coefficients = np.empty(8)
@@ -45,7 +45,7 @@ def test_flow_agrees_with_the_matrix_exponential(matrix, time):
 
 
 def test_crossing_of_one_oscillator_is_where_the_arc_cosine_says():
-    row = np.array(LinearState(((1.0, 0.0), (0.0, 2.25)), (0.0, 0.0)).row(0.4))
+    row = LinearState(((1.0, 0.0), (0.0, 2.25)), (0.0, 0.0)).row(0.4)
     origin = np.array([0.0, 1.0, 0.0, 0.0])
     found = next_crossing(row, origin, 1.0, 10.0)
     assert found == pytest.approx(math.acos(0.4) / 1.5, rel=1e-15)
@@ -53,7 +53,7 @@ def test_crossing_of_one_oscillator_is_where_the_arc_cosine_says():
 
 @pytest.mark.parametrize("depth", [1e-3, 1e-5, 1e-7, 1e-9, 1e-11])
 def test_a_grazing_pair_of_crossings_is_not_stepped_over(depth):
-    row = np.array(LinearState(((1.0, 0.0), (0.0, 1.0)), (0.0, 0.0)).row(-1.0 + depth))
+    row = LinearState(((1.0, 0.0), (0.0, 1.0)), (0.0, 0.0)).row(-1.0 + depth)
     origin = np.array([0.0, 1.0, 0.0, 0.0])
     found = next_crossing(row, origin, 1.0, 10.0)
     # acos loses half its digits next to −1; the half-angle form does not
@@ -62,13 +62,13 @@ def test_a_grazing_pair_of_crossings_is_not_stepped_over(depth):
 
 
 def test_staying_clear_of_the_threshold_has_no_crossing():
-    row = np.array(LinearState(((1.0, 0.3), (0.3, 2.0)), (0.0, 0.0)).row(-5.0))
+    row = LinearState(((1.0, 0.3), (0.3, 2.0)), (0.0, 0.0)).row(-5.0)
     origin = np.array([0.5, 1.0, 0.0, 0.0])
     assert next_crossing(row, origin, 1.0, 200.0) == -1.0
 
 
 def test_a_start_on_the_threshold_finds_the_way_back():
     """y = sin t leaves 0 upwards and comes back at π."""
-    row = np.array(LinearState(((1.0, 0.0), (0.0, 1.0)), (0.0, 0.0)).row(0.0))
+    row = LinearState(((1.0, 0.0), (0.0, 1.0)), (0.0, 0.0)).row(0.0)
     found = next_crossing(row, np.array([0.0, 0.0, 0.0, 1.0]), 1.0, 10.0)
     assert found == pytest.approx(math.pi, rel=1e-15)
