@@ -21,6 +21,12 @@ structure:
   # t_end: 1 s # longest time of a run; by default 8000 periods of the slowest unstable mode
   # n_modes: 12 # to reduce it to; by default as many as errors below 1 % need
   # frequency_max: 10 kHz # highest mode of interest; needed beyond 1000 degrees of freedom
+
+# operating: # where it is noisy, at which frequency, as a dynamometer tests it
+#   pressure: 0.5:2:4 # factors of all preloads
+#   speed: 1:4:4 # m/s
+#   mu: [0.3, 0.5] # or temperature: 20:300:3 with mu_of: {{temperature: {{20: 0.5, 300: 0.3}}}}
+#   measured: noises.csv # with columns pressure, speed [km/h], mu, frequency [Hz], level [dB]
 """
 EXAMPLE_FILES = {
     "structure.yaml": """\
@@ -76,6 +82,12 @@ structure:
   seed: 0 # that they follow from
   # t_end: 1 s # longest time of a run; by default 8000 periods of the slowest unstable mode
   # n_modes: 12 # to reduce it to; by default as many as errors below 1 % need
+
+# operating: # where it is noisy, at which frequency, as a dynamometer tests it
+#   pressure: 2 bar:10 bar:4 # mean pressure of the face
+#   speed: 5:40:4 # rad/s
+#   mu: [0.4, 0.6] # or temperature: 20:300:3 with mu_of: {{temperature: {{20: 0.6, 300: 0.4}}}}
+#   measured: noises.csv # with columns pressure [bar], speed [rpm], frequency [Hz], level [dB]
 """
 DISC = """\
 # A disc, a lining and a back plate. `ccx brake` writes the matrices and the order of their rows

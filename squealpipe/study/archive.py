@@ -27,7 +27,7 @@ from squealpipe.store.runs import (
 from squealpipe.store.whole_files import MANIFEST, SEAL, checksum, not_written, sync
 from squealpipe.store.yaml_files import read_yaml
 from squealpipe.study.configuration.settings import Study, files_of_laws, read_study
-from squealpipe.study.configuration.structure import file_in
+from squealpipe.study.configuration.structure import file_in, files_of_operating
 
 
 def archive(
@@ -152,7 +152,9 @@ def _copy_setting(
     folder.mkdir(parents=True)
     for path in configs:
         shutil.copyfile(path, folder / path.name)
-        for file in files_of_laws(path):
+        content = read_yaml(path)
+        tables = [Path(section[key]) for section, key in files_of_operating(content)]
+        for file in [*files_of_laws(path), *tables]:
             copy = folder / file
             if copy.resolve().is_relative_to(folder.resolve()):  # resolved.yaml has any
                 copy.parent.mkdir(parents=True, exist_ok=True)
@@ -161,6 +163,12 @@ def _copy_setting(
     for path in configs:
         if (named := file_in(read_yaml(path))) is not None:
             resolved["structure"]["file"] = _copy_structure(path, named, folder)
+        content = read_yaml(path)
+        for section, key in files_of_operating(content):
+            there = resolved["operating"]
+            (there if section is content["operating"] else there["mu_of"])[key] = (
+                section[key]
+            )
     (folder / "resolved.yaml").write_text(yaml.safe_dump(resolved), encoding="utf-8")
     for name in ("requirements.lock", "LICENSE", "CITATION.cff"):
         if (base / name).is_file():

@@ -18,10 +18,8 @@ from squealpipe.study.scatter import scattered_values
 from squealpipe.text import suggestion
 
 TASK = operating_map.__name__
-OPTIONS = (
-    *("mu_of", "measured", "frequency_band", "band_edges"),
-    *("n_modes", "frequency_max", "tol"),
-)
+REDUCTION = ("n_modes", "frequency_max")
+OPTIONS = ("mu_of", "measured", "frequency_band", "band_edges", "tol", *REDUCTION)
 TABLE = "mu_of_"
 """What begins the name of an option that is a table of friction, like ``mu_of_temperature``."""
 
@@ -66,7 +64,8 @@ class OperatingSweep(PointSweep):
                 raise ValueError(f"{name}: {suggestion(name, known)}")
         asked = {name: each for name, each in options.items() if each is not None}
         asked |= self.vary
-        operating = OperatingPoints.of(structure, **asked)
+        modes = {name: asked.pop(name, None) for name in REDUCTION}
+        operating = OperatingPoints.of(structure, **asked).reduced(**modes)
         object.__setattr__(self, "operating", operating)
         object.__setattr__(self, "facts", {"structure": structure.as_dict(), **asked})
         axes = {name: values.tolist() for name, values in operating.axes.items()}

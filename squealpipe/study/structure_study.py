@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from squealpipe.structures.assess.operating_points import OperatingPoints
 from squealpipe.structures.fewer_points import fewer_points
 from squealpipe.structures.pencil import DENSE
 from squealpipe.structures.schema.squealing import MOST_MODES
@@ -18,6 +19,8 @@ from squealpipe.structures.squeal.settled_run import (
 from squealpipe.structures.squeal.squealing_modes import squealing_modes
 from squealpipe.structures.structure import Structure
 from squealpipe.structures.varied_friction import VariedFriction, face_of
+from squealpipe.study.operating_sweep import TASK as OPERATING_MAP
+from squealpipe.study.operating_sweep import OperatingSweep
 
 
 def read_structure(section: Mapping[str, Any]) -> Structure:
@@ -39,6 +42,34 @@ def read_structure(section: Mapping[str, Any]) -> Structure:
             f"structure.file: {section['file']} names no contacts: nothing rubs"
         )
     return structure
+
+
+def operating_options(
+    structure: Structure, section: Mapping[str, Any], operating: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return the options of the operating map of a study, with those of the reduction.
+
+    Raises:
+        FileNotFoundError: a list or table is missing.
+        ValueError: a key of the section that is wrong.
+    """
+    asked = {name: value for name, value in operating.items() if value is not None}
+    try:
+        OperatingPoints.of(structure, **asked)
+    except ValueError as error:
+        raise ValueError(f"operating: {error}") from error
+    band = _band(structure, section["frequency_max"])
+    return asked | {"n_modes": section["n_modes"], "frequency_max": band}
+
+
+def operating_sweep(
+    section: Mapping[str, Any], operating: Mapping[str, Any]
+) -> OperatingSweep:
+    """Return the operating points of a study as a sweep."""
+    options = operating_options(read_structure(section), section, operating)
+    return OperatingSweep(
+        task=f"{section['file']}:{OPERATING_MAP}", vary={}, fixed=options
+    )
 
 
 def modes_over_friction(structure: Structure, section: Mapping[str, Any]) -> xr.Dataset:

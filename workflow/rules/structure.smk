@@ -7,10 +7,12 @@ STRUCTURE = settings("structure")
 
 if workflow.is_main_process:  # jobs need not check again: the import takes a second
     from squealpipe.store.mistakes import ConfigError
-    from squealpipe.study.structure_study import read_structure
+    from squealpipe.study.structure_study import operating_options, read_structure
 
     try:
-        read_structure(STRUCTURE["structure"])
+        of_study = read_structure(STRUCTURE["structure"])
+        if STUDY.operating is not None:
+            operating_options(of_study, STRUCTURE["structure"], STUDY.slice("operating")["operating"])
     except (ValueError, FileNotFoundError) as fault:
         raise ConfigError([str(fault)]) from fault
 
@@ -28,6 +30,21 @@ rule analyse_structure:
     threads: workflow.cores
     script:
         "../scripts/structure/analyse_structure.py"
+
+
+if STUDY.operating is not None:
+    OPERATING = settings("structure", "operating")
+
+    rule map_operating_points:
+        input:
+            files=sorted(set(files_named_in(OPERATING))),
+        output:
+            data("structure/operating"),
+        params:
+            settings=OPERATING,
+        threads: workflow.cores
+        script:
+            "../scripts/structure/map_operating_points.py"
 
 
 _contacts = read_yaml(Path(STRUCTURE["structure"]["file"])).get("contacts")

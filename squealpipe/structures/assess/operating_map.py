@@ -89,7 +89,7 @@ def operating_map(
         frequency_band=frequency_band,
         band_edges=band_edges,
         tol=tol,
-    )
+    ).reduced()
 
     def fill(arrays: dict[str, np.ndarray], first: int, stride: int) -> None:
         for place in with_progress(range(first, points.count, stride)):

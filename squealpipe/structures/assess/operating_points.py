@@ -34,7 +34,7 @@ from squealpipe.structures.schema.operating_map import (
     OVER_TEMPERATURE,
     QUANTITIES,
 )
-from squealpipe.structures.squeal.plant import in_modes
+from squealpipe.structures.squeal.plant import Plant, in_modes
 from squealpipe.structures.squeal.windows import Running
 from squealpipe.systems.inputs.values import brief
 from squealpipe.text import suggestion
@@ -53,7 +53,7 @@ class OperatingPoints:
     """Operating points of a structure.
 
     Attributes:
-        structure: in the modes in which it is run, at its own preload.
+        structure: at its own preload; of points that are run, in the modes in which it is run.
         axes: values of each dimension of the map.
         tables: of friction, each over one quantity.
         factor: of friction, ``mu`` where that is no dimension.
@@ -87,18 +87,15 @@ class OperatingPoints:
         measured: Any = None,
         frequency_band: float = 0.05,
         band_edges: Any = None,
-        n_modes: int | None = None,
-        frequency_max: float | None = None,
         tol: float = 1e-9,
     ) -> Self:
-        """Check what is asked, and reduce the structure; arguments as of :func:`.operating_map`.
+        """Check what is asked of a structure, which is not reduced yet.
 
-        Args:
-            n_modes, frequency_max: of the reduction; None: as many modes as give the answer.
+        Arguments are those of :func:`.operating_map`.
 
         Raises:
             FileNotFoundError: a file is missing.
-            ValueError: an argument; no contacts; a structure that is too large.
+            ValueError: an argument.
         """
         whole = structure.with_common_mu()
         units = OperatingUnits.of(whole)
@@ -158,15 +155,28 @@ class OperatingPoints:
             raise ValueError(
                 f"mu = {largest:g} is above {whole.largest_mu:g}, which mu_static allows"
             )
-        # modes that grow at the largest friction are those that count
-        reference = whole.with_(mu=largest) if varies else whole
-        running = Design.of(in_modes(reference, n_modes, frequency_max)).plant
-        assert running is not None  # noqa: S101 (Design.of has raised)
+        return asked
+
+    def reduced(
+        self, n_modes: int | None = None, frequency_max: float | None = None
+    ) -> Self:
+        """Return the points of the structure in the modes in which it is run.
+
+        Those that its largest friction needs: modes that grow there are the ones that count.
+
+        Args:
+            n_modes, frequency_max: of the reduction; None: as many modes as give the answer.
+
+        Raises:
+            ValueError: no contacts; a structure that is too large.
+        """
+        reference = self.structure.with_(mu=float(self.frictions.max()))
+        running = Plant(in_modes(reference, n_modes, frequency_max))
         if running.obstacle:
             raise ValueError(f"the structure cannot be run: {running.obstacle}")
         # without the whole structure, which would be handed to every process
         bare = running.structure.with_(contacts=running.structure.contacts)
-        return replace(asked, structure=bare)
+        return replace(self, structure=bare)
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -25,7 +25,11 @@ from squealpipe.study.configuration import sections
 from squealpipe.study.configuration.own import Name, OwnScene, SweepSection
 from squealpipe.study.configuration.quantities import scales
 from squealpipe.study.configuration.sections import Section
-from squealpipe.study.configuration.structure import StructureSection, place_file
+from squealpipe.study.configuration.structure import (
+    OperatingSection,
+    StructureSection,
+    place_files,
+)
 from squealpipe.substitutes import rivals, stands_for
 
 PAPER = WORKFLOW / "config/paper.yaml"
@@ -50,6 +54,7 @@ class Study(Section):
     robustness: sections.RobustnessSection = sections.RobustnessSection()
     contact_points: sections.ContactPointsSection = sections.ContactPointsSection()
     explorer: sections.ExplorerSection = sections.ExplorerSection()
+    operating: OperatingSection | None = None
     sweeps: dict[Name, SweepSection] = Field(default={})
 
     @field_validator("results")
@@ -72,6 +77,11 @@ class Study(Section):
                     "structure: it has a study of its own; write paper: false, and scenes into "
                     "another configuration"
                 )
+        elif self.operating is not None:
+            raise ValueError(
+                "operating: operating points are those of a structure; write structure: {file: "
+                "pad.yaml} beside it"
+            )
         elif not self.paper and not self.scenes:
             raise ValueError(
                 "paper: false makes a report of scenes of your own and needs one; write for "
@@ -128,7 +138,7 @@ def read_study(*paths: str | Path, changes: Mapping[str, Any] | None = None) -> 
     for path in map(Path, paths):
         content = read_yaml(path)
         faults.extend(_read_laws(path, content))
-        faults.extend(place_file(path, content))
+        faults.extend(place_files(path, content))
         faults.extend(_lay_over(merged, content))
     faults.extend(_lay_over(merged, changes or {}))
     return parse_study(merged, faults)

@@ -1,11 +1,11 @@
-"""The section ``structure`` of a study: a structure in a file, and how it is run."""
+"""Sections ``structure`` and ``operating`` of a study: a structure in a file, and how it is run."""
 
 import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import Field, WithJsonSchema
 
 from squealpipe.study.configuration.quantities import In
 from squealpipe.study.configuration.sections import WHOLE, Positive, Section
@@ -22,6 +22,44 @@ class StructureSection(Section):
     frequency_max: Annotated[Positive, In("Hz")] | None = None
 
 
+Axis = Annotated[
+    str | float | int | tuple[str | float | int, ...],
+    WithJsonSchema(
+        {"type": ["string", "number", "array"], "items": {"type": ["string", "number"]}}
+    ),
+]
+"""Values of a quantity: a number, a list of them or first:last:count; texts may have a unit."""
+
+
+class OperatingSection(Section):
+    """Operating points of the structure; keys are those of ``operating_map``."""
+
+    pressure: Axis | None = None
+    speed: Axis | None = None
+    mu: Axis | None = None
+    temperature: Axis | None = None
+    mu_of: dict[str, str | dict[str, float]] | None = None
+    measured: str | None = None
+    frequency_band: Annotated[Positive, In("1")] = 0.05
+    band_edges: Axis | None = None
+    tol: Positive = 1e-9
+
+
+def files_of_operating(
+    content: Mapping[str, Any],
+) -> Iterator[tuple[dict[str, Any], str]]:
+    """Yield the mapping and the key of each file that the section ``operating`` names."""
+    section = content.get("operating")
+    if not isinstance(section, dict):
+        return
+    if isinstance(section.get("measured"), str):
+        yield section, "measured"
+    tables = section.get("mu_of")
+    for name, table in tables.items() if isinstance(tables, dict) else ():
+        if isinstance(table, str) and ":" not in table:  # 20:0.45 300:0.35 is no file
+            yield tables, name
+
+
 def file_in(content: Mapping[str, Any]) -> str | None:
     """The file that a configuration names, as it names it."""
     section = content.get("structure")
@@ -29,18 +67,26 @@ def file_in(content: Mapping[str, Any]) -> str | None:
     return file if isinstance(file, str) else None
 
 
-def place_file(config: Path, content: dict[str, Any]) -> Iterator[str]:
-    """Name the file from where one is instead of from the configuration's folder; faults."""
+def place_files(config: Path, content: dict[str, Any]) -> Iterator[str]:
+    """Name files from where one is instead of from the configuration's folder; faults."""
     file = file_in(content)
-    if file is None:
-        return
-    path = Path(os.path.normpath(Path.cwd() / config.parent / file))
-    if not path.is_file():
-        yield (
-            f"structure.file = {file!r}: no file {path}; name it relative to the folder of the "
-            "configuration, or `squealpipe init NAME.yaml --structure` writes an example"
-        )
+    named: list[tuple[dict[str, Any], str, str, str]] = []
+    if file is not None:
+        remedy = "or `squealpipe init NAME.yaml --structure` writes an example"
+        named.append((content["structure"], "file", "structure.file", remedy))
+    for section, key in files_of_operating(content):
+        where = f"operating.{key if key == 'measured' else f'mu_of.{key}'}"
+        named.append((section, key, where, "or leave it out"))
     here = Path.cwd()
-    content["structure"]["file"] = (
-        path.relative_to(here).as_posix() if path.is_relative_to(here) else str(path)
-    )
+    for section, key, where, remedy in named:
+        path = Path(os.path.normpath(here / config.parent / section[key]))
+        if not path.is_file():
+            yield (
+                f"{where} = {section[key]!r}: no file {path}; name it relative to the folder of "
+                f"the configuration, {remedy}"
+            )
+        section[key] = (
+            path.relative_to(here).as_posix()
+            if path.is_relative_to(here)
+            else str(path)
+        )

@@ -3,5 +3,8 @@
 OWN = ("own_settled", "own_phases", "own_map", "own_model", "own_motion", "propensity")
 """Figures of the report of a study of one's own."""
 
-STRUCTURE = ("what_squeals", "squealing_phases", "mode_shapes", "modes_over_friction")
+STRUCTURE = (
+    *("what_squeals", "squealing_phases", "mode_shapes"),
+    *("operating_points", "modes_over_friction"),
+)
 """Figures of the report of a structure."""

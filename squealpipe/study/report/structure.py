@@ -15,6 +15,7 @@ from squealpipe.structures.schema.squealing import MOST_DAMPING, NO_ATTRACTOR
 from squealpipe.structures.schema.structures import Onset
 from squealpipe.study.report import squealing
 from squealpipe.study.report.media import media_of
+from squealpipe.study.report.operating import lines
 from squealpipe.study.report.parts import Made, pictures
 from squealpipe.study.report.sections import STRUCTURE
 from squealpipe.text import number, percent
@@ -46,6 +47,7 @@ def gather_structure(
         "stops": stops(modes, answer),
         "fates": [*squealing.modes(answer), *squealing.missing(answer)],
         "ends": list(squealing.attractors(answer)),
+        "operating": operating(run.get("structure/operating")),
         "onsets": onsets(modes),
         "contacts": contacts(answer),
         "points": points(run.get("structure/fewer_points")),
@@ -53,6 +55,11 @@ def gather_structure(
         "rest": not_examined(answer),
         "figures": pictures(STRUCTURE, figures, run),
     }
+
+
+def operating(points: xr.Dataset | None) -> list[str]:
+    """Return sentences on the operating points; none where no map was asked for."""
+    return [] if points is None else [line.strip() for line in lines(points)]
 
 
 def media_of_structure(datasets: Mapping[str, Made]) -> dict[str, str]:
