@@ -55,7 +55,9 @@ def files_of_operating(
     if isinstance(section.get("measured"), str):
         yield section, "measured"
     tables = section.get("mu_of")
-    for name, table in tables.items() if isinstance(tables, dict) else ():
+    if not isinstance(tables, dict):
+        return
+    for name, table in tables.items():
         if isinstance(table, str) and ":" not in table:  # 20:0.45 300:0.35 is no file
             yield tables, name
 

@@ -187,6 +187,7 @@ def test_the_answer_comes_first_and_says_mode_sound_cause_and_remedy(
         "stops": stops,
         "fates": list(words.modes(answer)),
         "ends": list(words.attractors(answer)),
+        "operating": ["Quiet at all 4 operating points that were settled."],
         "onsets": report.onsets(modes),
         "contacts": report.contacts(answer),
         "points": report.points(fewer),
