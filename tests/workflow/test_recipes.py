@@ -13,7 +13,7 @@ import pytest
 from squealpipe.store.rerun.key import PLAN_VARIABLE
 from tests.conftest import ROOT
 
-ROW, LAW, LAW_NAME, RECORD, FIGURE, FIGURE_NAME, SYSTEM = range(7)
+ROW, LAW, LAW_NAME, RECORD, FIGURE, FIGURE_NAME, SYSTEM, READER = range(8)
 FILES = {
     LAW: "squealpipe/laws/friction_laws/rising.py",
     FIGURE: "squealpipe/paper/figures/dynamics/impacts.py",
@@ -25,6 +25,7 @@ LINES = {
         "\n    def __post_init__(self) -> None:\n        for name",
     ),
     RECORD: ("squealpipe/brake/schema/ladder.py", "    a1_short = ("),
+    READER: ("squealpipe/structures/readers.py", '        ".npy": lambda'),
     LAW_NAME: ("squealpipe/laws/friction_laws/__init__.py", None),
     FIGURE_NAME: ("squealpipe/paper/report/sections.py", None),
 }
@@ -43,6 +44,7 @@ def write_down(folder):
     changed = {}
     for number in (ROW, RECORD, FIGURE_NAME):  # these stand in a class or a table
         blocks[number] = indent(blocks[number], "    ")
+    blocks[READER] = indent(blocks[READER], " " * 8)
     for number, (name, place) in LINES.items():
         path = folder / name
         assert name in recipes
@@ -68,7 +70,7 @@ def write_down(folder):
 
 @pytest.fixture(scope="module")
 def extended(new_checkout, tmp_path_factory):
-    """A copy with a parameter, a law, a level and a figure more; and what that took."""
+    """A copy with one more of each thing that has a recipe; and what that took."""
     folder = new_checkout(tmp_path_factory.mktemp("recipes") / "squealpipe")
     return folder, write_down(folder)
 
@@ -94,6 +96,7 @@ def test_the_steps_are_as_few_as_promised(extended):
         "squealpipe/brake/schema/ladder.py": (9, 0),
         "squealpipe/laws/friction_laws/__init__.py": (1, 1),
         "squealpipe/paper/report/sections.py": (3, 1),
+        "squealpipe/structures/readers.py": (1, 0),
     }
 
 
@@ -198,6 +201,15 @@ assert run.sizes["event"] > 4
 np.testing.assert_allclose(energy, float(energy[0]) * 0.81**impacts, rtol=1e-10)
 """
 
+TRIPLETS = """
+import pathlib
+import numpy as np
+from squealpipe.structures.readers import read_matrix
+pathlib.Path("mass.triplets").write_text("1 1 2.0\\n2 2 3.0\\n2 1 -0.5\\n")
+read = read_matrix(pathlib.Path("mass.triplets"), "mass").matrix.toarray()
+np.testing.assert_array_equal(read, [[2.0, 0.0], [-0.5, 3.0]])
+"""
+
 LADDER = """
 import numpy as np
 from squealpipe import Parameters
@@ -221,7 +233,7 @@ declared.draw("impacts", datasets).savefig("impacts.png")
 
 
 @pytest.mark.parametrize(
-    "script", [PARAMETER_AND_LAW, ENGINE, PENDULUM, LADDER, PICTURE]
+    "script", [PARAMETER_AND_LAW, ENGINE, PENDULUM, TRIPLETS, LADDER, PICTURE]
 )
 def test_what_was_added_is_right(extended, script):
     python(extended[0], script)
