@@ -17,7 +17,7 @@ export XDG_CACHE_HOME := $(CURDIR)/.snakemake/cache
 export MPLCONFIGDIR := $(CURDIR)/.snakemake/cache/matplotlib
 endif
 
-.PHONY: reproduce test test-release test-processors cost bench env dev lock lint docs dictionary clean
+.PHONY: reproduce test test-release test-long test-processors cost bench env dev lock lint docs dictionary clean
 
 reproduce: env  ## the whole study: datasets, figures, report
 	$(BIN)/snakemake
@@ -26,7 +26,10 @@ test: dev  ## the tests of each change, minutes
 	$(TESTS)
 
 test-release: dev  ## the rest: whole studies, cluster, faults, browser, recipes, large samples
-	$(TESTS) -m release --timeout 3000
+	$(TESTS) -m "release and not long" --timeout 3000
+
+test-long: dev  ## samples that take minutes each, of which test-release has a part; outside .ci/run
+	SQUEALPIPE_SAMPLES=all $(TESTS) -m long --timeout 3000
 
 TINY := -q all --cores 2 --configfile workflow/config/tiny.yaml
 # In .ci/run the first tier has made the study already.

@@ -65,6 +65,12 @@ def run_snakemake(directory, *arguments, surroundings=None):
     )
 
 
+def pytest_itemcollected(item):
+    """What is long is not for each change either."""
+    if item.get_closest_marker("long"):
+        item.add_marker(pytest.mark.release)
+
+
 def pytest_collection_modifyitems(items):
     """The long files first, so that two processes end at about the same time."""
     long = (

@@ -243,7 +243,7 @@ SIMPLE = {
 """Numbers that count as simple, of each group, within the ranges of the inference."""
 
 
-@pytest.mark.release
+@pytest.mark.long
 def test_the_study_meets_every_statement_and_no_simple_numbers_meet_them_by_far_more():
     """What docs/linear-models.md and the report say of the choice of parameters."""
     groups = dict(zip(SIMPLE, np.array(list(product(*SIMPLE.values()))).T, strict=True))

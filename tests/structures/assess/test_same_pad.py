@@ -109,7 +109,9 @@ def test_pads_as_parameters_and_as_matrices_have_one_level():
 
 
 @pytest.mark.release
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize(
+    "seed", [0, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(1, 30))]
+)
 def test_thirty_pads_as_parameters_and_as_matrices_have_one_answer(seed):
     pad, angles = random_pad(seed)
     one = assess(pad, *angles)
