@@ -13,6 +13,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs
 
+from squealpipe.structures.dense import told_apart
 from squealpipe.structures.pencil import Factors, Pencil
 from squealpipe.structures.refinement import Eigenpair, Estimate, refined
 from squealpipe.systems.progress import with_progress
@@ -80,7 +81,10 @@ def modes_in_band(pencil: Pencil, omega_max: float) -> list[Eigenpair]:
         ]
         pairs, single = _matched(sides[0], sides[1], region)
         if not single:
-            return [pair for pair in refined(pencil, pairs) if region.holds(pair.value)]
+            told = list(refined(pencil, pairs))
+            if pencil.is_undamped:
+                told = told_apart(pencil, told)
+            return [pair for pair in told if region.holds(pair.value)]
     values = ", ".join(f"{value:.6g}" for value in single)
     raise IncompleteError(
         f"the searches by right and by left eigenvectors differ at {values} rad/s; change "

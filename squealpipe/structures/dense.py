@@ -38,7 +38,7 @@ def all_modes(pencil: Pencil) -> list[Eigenpair]:
     find = _undamped if pencil.is_undamped else _damped_slowly
     pairs = [_accurate(pencil, pair) for pair in _without_stiff(pencil, find)]
     if pencil.is_undamped:
-        pairs = _told_apart(pencil, pairs)
+        pairs = told_apart(pencil, pairs)
     return sorted(pairs, key=lambda each: (each.value.imag, each.value.real))
 
 
@@ -124,7 +124,7 @@ def _undamped(pencil: Pencil) -> list[Eigenpair]:
     return pairs
 
 
-def _told_apart(pencil: Pencil, pairs: list[Eigenpair]) -> list[Eigenpair]:
+def told_apart(pencil: Pencil, pairs: list[Eigenpair]) -> list[Eigenpair]:
     """Replace undamped pairs next to a double eigenvalue by those of their common subspace.
 
     Where two modes merge their vectors become one, and the error of each alone has no bound. The
@@ -133,7 +133,14 @@ def _told_apart(pencil: Pencil, pairs: list[Eigenpair]) -> list[Eigenpair]:
     """
     squares = np.array([-(pair.value**2) for pair in pairs])
     told = list(pairs)
-    waiting = {
+    # two that are told apart by so little may be one double eigenvalue, which round-off of the
+    # matrices splits by its square root: more than the errors of both by themselves
+    split = {
+        index
+        for index, pair in enumerate(pairs)
+        if 0 < abs(pair.value.real) <= 1e-6 * abs(pair.value.imag)
+    }
+    waiting = split | {
         index
         for index, pair in enumerate(pairs)
         # less of an error comes from round-off alone, not from a near neighbour
@@ -148,7 +155,7 @@ def _told_apart(pencil: Pencil, pairs: list[Eigenpair]) -> list[Eigenpair]:
             continue
         waiting.discard(other)
         both = _of_block(pencil, pairs[place], pairs[other])
-        if both is not None and both[0].error < pairs[place].error:
+        if both is not None and (place in split or both[0].error < pairs[place].error):
             told[place], told[other] = both
     return told
 
@@ -185,6 +192,8 @@ def _of_block(
     )
     entry = 2.0 * moved / max(carried, 1e-300)
     half = 0.5 * (matrix[0, 0] - matrix[1, 1])
+    # the products that made the matrices have rounded their entries more than once
+    entry *= 4.0
     doubt = 2.0 * (abs(half) + abs(matrix[0, 1]) + abs(matrix[1, 0])) * entry + entry**2
     split = 0.0 if abs(block.split) <= doubt else block.split
     distance = np.sqrt(complex(split))

@@ -3,6 +3,8 @@
 import mpmath
 import numpy as np
 import pytest
+import scipy.linalg as la
+import scipy.sparse as sp
 
 from squealpipe import Contact, Structure
 from squealpipe.schema import Outcome
@@ -214,3 +216,53 @@ def test_a_row_without_mass_to_speak_of_on_a_dashpot_follows_late(mass):
     place = int(modes.frequency.values.argmax())
     assert modes.frequency.values[place] == pytest.approx(pair.imag / (2 * np.pi), 1e-6)
     assert modes.growth_rate.values[place] == pytest.approx(pair.real, rel=1e-6)
+
+
+def coupled_one_way(stiffness, turn, contact):
+    """Equal frequencies of two motions, of which friction couples one into the other alone.
+
+    The double eigenvalue has one vector, and nothing grows.
+    """
+    first, second = turn[:, 0], turn[:, 1]
+    return Structure(
+        sp.eye_array(len(first)),
+        stiffness,
+        contacts=[
+            Contact(
+                "c", normal=first, tangential=second, stiffness=contact, preload=1.0
+            )
+        ],
+        mu=0.5,
+    )
+
+
+@pytest.mark.parametrize("seed", [1, 7, 57, 63])
+def test_a_double_frequency_that_friction_couples_one_way_does_not_grow(seed):
+    """Growth of 1e-5 1/s was told, 2.4 times its stated error."""
+    rng = np.random.default_rng(seed)
+    size = int(rng.integers(2, 30))
+    squares, contact = 10 ** rng.uniform(5, 9, size), 10 ** rng.uniform(5, 8)
+    squares[1] = squares[0] + contact
+    turn = la.qr(rng.normal(size=(size, size)))[0]
+    stiffness = turn @ np.diag(squares) @ turn.T
+    pad = coupled_one_way(0.5 * (stiffness + stiffness.T), turn, contact)
+    assert not pad.complex_modes(critical=False).unstable.any()
+
+
+def test_double_frequencies_of_a_large_structure_do_not_grow():
+    rng = np.random.default_rng(0)
+    links = 10 ** rng.uniform(6, 7, 521)
+    chain = sp.diags_array(
+        [links[:-1] + links[1:], -links[1:-1], -links[1:-1]], offsets=[0, 1, -1]
+    )
+    twins = sp.lil_array(sp.block_diag([chain, chain]))
+    twins[525, 525] += 1e6  # as the contact adds to the first of both
+    turn = np.zeros((1040, 2))
+    turn[5, 0] = turn[525, 1] = 1.0
+    modes = coupled_one_way(twins.tocsr(), turn, 1e6).complex_modes(
+        n_modes=6, critical=False
+    )
+    assert not modes.unstable.any()
+    # each frequency of the chain is there twice
+    pairs = modes.frequency.values.reshape(3, 2)
+    assert pairs[:, 0] == pytest.approx(pairs[:, 1], rel=1e-6)
