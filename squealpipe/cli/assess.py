@@ -146,9 +146,12 @@ def _assess_structure(
     import squealpipe
     from squealpipe.cli.structures import as_asked
     from squealpipe.structures.assess.assess import judge_structure
+    from squealpipe.structures.assess.modifications import read_modification
 
     whole = squealpipe.Structure.read(file)
     named = modifications_of(modify or [])
+    for name, content in named.items():  # a mistake is told before modes are computed
+        read_modification(name, content, whole, 1.0)
     stated = options | {"modify": modify or []} | modes
     with errors_in_options():
         structure = as_asked(whole, modes)

@@ -80,7 +80,7 @@ def init(
         structure: a study of a structure with contacts instead, with an example of its files in a
             folder NAME beside it.
         disc: likewise, with a disc brake as the example: its deck, and its matrices as CalculiX
-            writes them.
+            writes them. Implies --structure.
     """
     from squealpipe.cli.structure_example import (
         DISC_STUDY,
@@ -92,7 +92,8 @@ def init(
     from squealpipe.study.configuration.settings import PAPER, read_study
 
     check_output(file, force=force, kinds=(".yaml", ".yml"), option="FILE")
-    asked = {"--own": own, "--structure": structure, "--disc": disc}
+    # a disc brake is a structure: both together ask for no more than --disc
+    asked = {"--own": own, "--structure": structure and not disc, "--disc": disc}
     if sum(asked.values()) > 1:
         names = " and ".join(name for name, is_asked in asked.items() if is_asked)
         raise ValueError(f"{names} are different studies; choose one")

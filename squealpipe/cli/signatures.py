@@ -72,6 +72,8 @@ def options_of(task: str) -> Callable[[Command], Command]:
 
 def in_options(text: str) -> str:
     """The words of a task in those of a terminal: ``--n-modes 32`` for ``n_modes=32``."""
+    text = re.sub(r"\bmu=\{'(\w+)': …\}", r"--mu \1=…", text)
+    text = re.sub(r"\bmu = (?=[\d.])", "--mu ", text)
     # arguments of structures that messages name are named as the options are
     for name in ("n_modes", "frequency_max", "t_end"):
         option = f"--{name.replace('_', '-')}"

@@ -130,6 +130,13 @@ def modes(
     # more unstable modes than twenty are a table for a file, not for a terminal
     for number in dataset.mode.values[ever.values][:20]:
         answer(_line(dataset.sel(mode=number)))
+    if (opened := dataset.attrs["open_contacts"]) != "none":
+        names = opened.split(", ")
+        few = ", ".join(names[:8]) + (", …" if len(names) > 8 else "")
+        answer(
+            f"{len(names)} of {dataset.sizes['contact']} contacts are open in steady sliding and "
+            f"left out there: {few}"
+        )
     return DONE
 
 

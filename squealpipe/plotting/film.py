@@ -20,9 +20,11 @@ from typing import Any, Protocol
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from PIL import Image
 
+from squealpipe.plotting import style
 from squealpipe.store.whole_files import whole_file
 
 FRAMES_PER_SECOND = 25
@@ -132,7 +134,14 @@ class Film:
                 [np.asarray(picture) for picture in pictures[:: len(pictures) // 6 + 1]]
             )
         )
-        palette = sample.quantize(64, method=Image.Quantize.MEDIANCUT)
+        # what is seen most has most colours of 64; those that mean something are kept as they are,
+        # since marks of stick and of open contacts are small and would get one and the same
+        colours = sample.quantize(
+            64 - len(style.PALETTE), method=Image.Quantize.MEDIANCUT
+        ).getpalette()
+        kept = [round(255 * part) for each in style.PALETTE for part in to_rgb(each)]
+        palette = Image.new("P", (1, 1))
+        palette.putpalette([*kept, *(colours or [])])
         shown = [
             picture.quantize(palette=palette, dither=Image.Dither.NONE)
             for picture in pictures

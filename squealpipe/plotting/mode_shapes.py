@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
@@ -34,26 +35,29 @@ def shape_of(modes: xr.Dataset, mode: int) -> np.ndarray:
     if not np.isfinite(shape).all():
         raise ValueError(
             f"mode = {mode!r} has no stored shape: shapes are those of the modes that exist at "
-            f"mu = {float(modes.shape_mu):g}, of a large structure the unstable and the lowest ones"
+            f"{_friction(modes)}, of a large structure the unstable and the lowest ones"
         )
     return np.asarray(shape)
 
 
 def draw_shape(
     axes: Axes, modes: xr.Dataset, mode: int, *, quarter: bool = False
-) -> None:
+) -> ScalarMappable | None:
     """Draw a mode: undeformed grey, deformed coloured by how far each place moves.
 
     Args:
         mode: its number.
         quarter: a quarter of a period after the instant of the largest displacement.
+
+    Returns:
+        What a colour bar takes; None where there is no mesh.
     """
     shape = shape_of(modes, mode)
     moved = -shape.imag if quarter else shape.real
     mesh = mesh_of(modes)
     if mesh is None:
         _draw_arrows(axes, moved)
-        return
+        return None
     nodes = mesh.displacements(moved)
     amplitude = np.linalg.norm(np.abs(mesh.displacements(shape)), axis=1)
     view = projection(mesh.nodes)
@@ -65,8 +69,9 @@ def draw_shape(
     Facets(axes, mesh, view, facecolor="none", edgecolor=style.LIGHT, linewidth=0.4)
     drawn = Facets(axes, mesh, view, cmap="cividis", edgecolor="#404040", linewidth=0.3)
     drawn.show(mesh.nodes + scale * nodes)
-    drawn.drawn.set_array(np.array([amplitude[row].mean() for row in drawn.rows]))
-    drawn.drawn.set_clim(0.0, float(amplitude.max()))
+    share = amplitude / max(float(amplitude.max()), 1e-300)
+    drawn.drawn.set_array(np.array([share[row].mean() for row in drawn.rows]))
+    drawn.drawn.set_clim(0.0, 1.0)
     flat = mesh.nodes @ view[:2].T
     low, high = (
         flat.min(axis=0) - largest_deflection * extent,
@@ -80,6 +85,7 @@ def draw_shape(
     axes.margins(0.02)
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_axis_off()
+    return drawn.drawn  # type: ignore[no-any-return]
 
 
 def _draw_arrows(axes: Axes, moved: np.ndarray) -> None:
@@ -122,16 +128,28 @@ def title_of(modes: xr.Dataset, mode: int) -> str:
     one = one.isel(dict.fromkeys(one.frequency.dims, 0))
     frequency = engineering(float(one.frequency), "Hz", 4)
     return (
-        f"mode {mode}: {frequency}, growth rate {number(float(one.growth_rate))} 1/s "
-        f"at mu = {number(float(modes.shape_mu))}"
+        f"mode {mode}: {frequency}, growth rate {number(float(one.growth_rate))} 1/s at "
+        f"{_friction(modes)}"
     )
+
+
+def _friction(modes: xr.Dataset) -> str:
+    """Return the friction at which the shapes are, in words."""
+    at = number(float(modes.shape_mu))
+    if "mu_of" in modes.attrs:
+        return f"mu of {modes.attrs['mu_of']} = {at}"
+    if "critical_scale" not in modes:
+        return f"mu = {at}"
+    # every contact has a friction of its own, and what is varied is a factor of all
+    return "the friction of each contact" if at == "1" else f"{at} times every friction"
 
 
 def figure_of_mode(modes: xr.Dataset, mode: int) -> Figure:
     """Draw one mode at the instant of its largest displacement and a quarter period later."""
     made, axes = style.new_figure(style.PAGE, 2.6, ncols=2)
     for panel, quarter in zip(axes[0], (False, True), strict=True):
-        draw_shape(panel, modes, mode, quarter=quarter)
+        coloured = draw_shape(panel, modes, mode, quarter=quarter)
+    _add_colour_bar(made, axes, coloured)
     style.panel_letters(axes[0], ("largest displacement", "a quarter period later"))
     made.suptitle(title_of(modes, mode), fontsize=9)
     return made
@@ -167,7 +185,20 @@ def figure_of_modes(modes: xr.Dataset, most: int = 4) -> Figure:
         panel.set_axis_off()
     if not numbers:
         style.say_instead(axes[0, 0], "no mode has a shape")
+    coloured = None
     for panel, mode in zip(axes.flat, numbers, strict=False):
-        draw_shape(panel, modes, mode)
-        panel.set_title(title_of(modes, mode).partition(" at mu")[0], fontsize=8)
+        coloured = draw_shape(panel, modes, mode)
+        panel.set_title(
+            title_of(modes, mode).partition(" 1/s at ")[0] + " 1/s", fontsize=8
+        )
+    _add_colour_bar(made, axes, coloured)
     return made
+
+
+def _add_colour_bar(
+    made: Figure, axes: np.ndarray, coloured: ScalarMappable | None
+) -> None:
+    """Add the scale of the colours beside all panels, where a mesh is drawn."""
+    if coloured is not None:
+        bar = made.colorbar(coloured, ax=axes.ravel().tolist(), shrink=0.8, pad=0.01)
+        bar.set_label("amplitude over the largest")

@@ -85,18 +85,30 @@ def _draw_along(axes: Axes, modes: xr.Dataset, name: str, dim: str) -> None:
     if name == "frequency":
         factor, unit = frequency_unit(values)
         values, words = values * factor, f"frequency ({unit})"
-    axes.plot(x, values, color=style.BLUE, linewidth=0.7)
-    axes.plot(x, np.where(unstable, values, np.nan), ".-", color=style.RED, ms=3)
+    onsets = np.full(modes.sizes["mode"], np.nan)
     if dim == "mu":
         onsets = modes.critical_mu.values
-        for place in np.flatnonzero(np.isfinite(onsets)):
-            at = np.interp(onsets[place], x, values[:, place])
-            at = at if name == "frequency" else 0.0
-            axes.plot(onsets[place], at, "D", color=style.BLACK, ms=3)
+    for values_of_mode, grows, onset in zip(values.T, unstable.T, onsets, strict=True):
+        places, heights = x, values_of_mode
+        if np.isfinite(onset):
+            # a straight line between two frictions would pass zero beside the onset
+            at = np.interp(onset, x, heights) if name == "frequency" else 0.0
+            behind = int(np.searchsorted(x, onset))
+            places, heights = (
+                np.insert(np.asarray(each, float), behind, value)
+                for each, value in ((x, onset), (heights, at))
+            )
+            grows = np.insert(grows, behind, True)
+            axes.plot(onset, at, "D", color=style.BLACK, ms=3, zorder=3)
+        axes.plot(places, heights, color=style.BLUE, linewidth=0.7)
+        axes.plot(places, np.where(grows, heights, np.nan), ".-", color=style.RED, ms=3)
     if name == "growth_rate":
         axes.axhline(0.0, color=style.GREY, linewidth=0.6)
         show_what_grows(axes, values)
-    axes.set(xlabel=label(modes[dim]), ylabel=words)
+    varied = (
+        f" of {modes.attrs['mu_of']}" if dim == "mu" and "mu_of" in modes.attrs else ""
+    )
+    axes.set(xlabel=label(modes[dim]) + varied, ylabel=words)
 
 
 def frequency_unit(frequencies: np.ndarray) -> tuple[float, str]:

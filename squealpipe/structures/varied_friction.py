@@ -118,7 +118,6 @@ def varied_by(structure: ContactStructure, mu: Any) -> tuple[VariedFriction, Any
         one = next(filter(None, map(face_of, names)), names[0])
         raise ValueError(
             f"mu = {brief(mu)}: every contact has a mu of its own, so that none has the "
-            f"structure's; vary one, like mu={{{one!r}: …}} (--mu {one}=…), or leave mu out to "
-            "scale all together"
+            f"structure's; vary one, like mu={{{one!r}: …}}, or leave mu out to scale all together"
         )
     return VariedFriction.common(structure), mu

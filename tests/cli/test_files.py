@@ -327,6 +327,14 @@ def test_options_may_follow_negative_angles(capsys):
     assert load("a.nc").attrs["arguments"].count("-0.62831") == 1
 
 
+def test_a_study_of_a_disc_is_one_of_a_structure(tmp_path):
+    assert run(["init", "both.yaml", "--structure", "--disc"]) == 0
+    assert run(["init", "disc.yaml", "--disc"]) == 0
+    both = Path("both.yaml").read_text(encoding="utf-8")
+    assert both.replace("both", "disc") == Path("disc.yaml").read_text("utf-8")
+    assert run(["init", "other.yaml", "--own", "--disc"]) == 2
+
+
 def test_what_init_writes_is_what_run_reads(capsys):
     assert run(["init", "brake 1.yaml"]) == 0
     assert "run --config 'brake 1.yaml'" in capsys.readouterr().out

@@ -6,12 +6,13 @@ import sys
 import imageio_ffmpeg
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
 from PIL import Image
 from scipy.ndimage import binary_erosion, center_of_mass, label
 
 from squealpipe import Parameters, load, simulate
 from squealpipe.cli import run
-from squealpipe.plotting import film
+from squealpipe.plotting import film, style
 from squealpipe.plotting.animation import film_of, phases
 from squealpipe.store import save
 from tests.browser import chromium_path, open_page
@@ -113,6 +114,10 @@ def test_a_gif_repeats_and_has_the_frames_of_the_film(pad):
         assert picture.n_frames == 25
         assert picture.info["duration"] == 40
         assert picture.info["loop"] == 0
+        # marks are small: those of stick and of open contacts once had one colour
+        palette = np.array(picture.getpalette()).reshape(-1, 3).tolist()
+    for colour in (style.ORANGE, style.RED):
+        assert [round(255 * part) for part in to_rgb(colour)] in palette
 
 
 def test_without_ffmpeg_a_page_shows_frames_and_mp4_is_refused(pad, monkeypatch):

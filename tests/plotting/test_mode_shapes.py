@@ -1,5 +1,7 @@
 """Mode shapes: against an eigenproblem assembled here, as pictures, and for ParaView."""
 
+from dataclasses import replace
+
 import meshio
 import numpy as np
 import pytest
@@ -8,7 +10,14 @@ from matplotlib.figure import Figure
 
 from squealpipe import convert, load, plot, save
 from squealpipe.cli import run
-from squealpipe.plotting.mode_shapes import figure_of_modes, shape_of, unstable_modes
+from squealpipe.plotting import modes as picture
+from squealpipe.plotting.mode_shapes import (
+    figure_of_mode,
+    figure_of_modes,
+    shape_of,
+    title_of,
+    unstable_modes,
+)
 from squealpipe.structures import elastic_pad
 from squealpipe.structures.meshes.datasets import mesh_of
 from tests.structures.test_squealing import two_pads
@@ -107,3 +116,42 @@ def test_the_commands_draw_and_convert_modes(modes, tmp_path, monkeypatch, capsy
     capsys.readouterr()
     assert run(["plot", "modes.nc", "--mode", "99", "--force"]) == 2
     assert "mode = 99: the dataset has modes 1 to" in capsys.readouterr().err
+
+
+@pytest.fixture(scope="module")
+def of_lining(pad):
+    """Modes over the friction of a contact, where each has its own."""
+    own = pad.with_(contacts=[replace(each, mu=0.6) for each in pad.contacts])
+    name = own.contacts[1].name
+    limits = {"frequency_max": 50e3}
+    return own.complex_modes(mu={name: [0.0, 0.3, 0.6]}, **limits), own.complex_modes(
+        **limits, critical=False
+    )
+
+
+def test_titles_say_which_friction_and_a_bar_what_the_colours_mean(of_lining):
+    over, own = of_lining
+    mode = int(own.mode[0])
+    made = figure_of_mode(own, mode)
+    assert made.get_suptitle().endswith("1/s at the friction of each contact")
+    assert made.axes[-1].get_ylabel() == "amplitude over the largest"
+    assert title_of(over, int(over.mode[0])).endswith("at mu of p2 = 0.6")
+
+
+def test_growth_over_friction_is_zero_at_the_mark_of_its_onset(pad, of_lining):
+    frequency, _ = picture.figure(of_lining[0]).axes
+    assert frequency.get_xlabel() == "coefficient of friction of p2"
+    over = pad.complex_modes(mu=[0.0, 0.3, 0.6, 0.9], frequency_max=80e3)
+    _, growth = picture.figure(over).axes
+    onsets = over.critical_mu.values[np.isfinite(over.critical_mu.values)]
+    assert onsets.size
+    for onset in onsets:
+        through = [
+            line
+            for line in growth.lines
+            if len(line.get_xdata()) > 1 and onset in np.asarray(line.get_xdata())
+        ]
+        assert through
+        for line in through:
+            at = np.asarray(line.get_xdata()) == onset
+            assert np.asarray(line.get_ydata())[at] == [0.0]

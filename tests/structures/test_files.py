@@ -607,3 +607,40 @@ def test_contacts_that_are_open_or_dependent_are_named():
     system = both.system()
     with pytest.raises(ValueError, match="contacts p1 and again cannot all stick"):
         system.limit_cycle()
+
+
+def test_a_terminal_is_told_in_its_words_what_is_wrong_before_anything_is_computed(
+    tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    text = as_calculix(tmp_path)
+    contacts = BY_NODE.replace("speed", "speed,mu").replace("-2\n", "-2,0.5\n")
+    structure_of(tmp_path, text, contacts)
+    assert run(["modes", "pad.yaml", "--mu", "0", "-o", "modes.nc"]) == 2
+    assert (
+        "--mu 0.0: every contact has a mu of its own, so that none has the structure's; vary one, "
+        "like --mu edge=…, or leave mu out"
+    ) in capsys.readouterr().err
+
+    def computed(*_):
+        raise AssertionError
+
+    monkeypatch.setattr("squealpipe.cli.structures.as_asked", computed)
+    assert run(["assess", "pad.yaml", "--modify", "w=added_mass 99999.1 0.1"]) == 2
+    assert "w: added_mass['99999.1']" in capsys.readouterr().err
+
+
+def test_contacts_that_are_open_in_steady_sliding_are_named(
+    tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    text = as_calculix(tmp_path) + "load: 0\n"
+    more = "open,17.1:-1,3.2:1,4.0,0,1\n"
+    structure_of(tmp_path, text, BY_NODE + more)
+    assert run(["modes", "pad.yaml", "--no-critical", "-o", "modes.nc"]) == 0
+    opened = load("modes.nc").attrs["open_contacts"]
+    assert opened == "open"
+    assert (
+        "1 of 2 contacts are open in steady sliding and left out there: open"
+        in capsys.readouterr().out
+    )
