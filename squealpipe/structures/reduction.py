@@ -333,31 +333,6 @@ def dependent_of(structure: ContactStructure) -> list[str]:
     return dependent_contacts(names, structure.tangentials)
 
 
-def conflict_in_stick(structure: ContactStructure) -> str | None:
-    """Say which contacts cannot stick at once, so that nothing can be run, and what helps."""
-    names = dependent_of(structure)
-    if not names:
-        return None
-    who = f"contacts {', '.join(names[:-1])} and {names[-1]} cannot all stick at once"
-    origin = structure.reduced_from
-    if origin is None or dependent_of(origin.whole):
-        return (
-            f"{who}: their sliding directions are linearly dependent in the structure itself, and "
-            "so their friction forces in stick are undetermined; runs need a degree of freedom "
-            "with the elasticity between them (complex modes do not)"
-        )
-    kept = Kept(origin.whole, origin.whole.size)
-    enough = next(
-        each
-        for each in range(structure.size, origin.whole.size + 1)
-        if not kept.dependent(each)
-    )
-    return (
-        f"{who}: their sliding directions are linearly dependent in the {structure.size} modes "
-        f"kept; keep more modes (n_modes={enough} suffices)"
-    )
-
-
 def agreement_of(truth: Truth, spectrum: Any, modes: np.ndarray) -> Agreement:
     """Return how the modes of a reduced structure agree with those of the whole.
 

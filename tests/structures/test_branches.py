@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 
 from squealpipe import Contact, Structure
-from squealpipe.structures.motion_system import component_system
-from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.variational import leg_derivatives
 from tests.oracles.exponentials import OPEN, SLOWER, STICK, Exponentials
 
@@ -52,10 +50,10 @@ def after(structure, regimes, state, time):
 )
 def test_derivatives_along_a_leg_are_those_of_a_matrix_exponential(names, regimes):
     structure = two_modes(0.8, beside=True)
-    system = component_system(structure)
+    system = structure.system()
     state = np.random.default_rng(1).standard_normal(8) * system.sizes_in({})
     time = 2.3 / UNITS
-    flow, places = Flow(system, ("mu",)), list(system.regimes)
+    flow, places = system.flow(("mu",)), list(system.regimes)
     number = system.joint.number(
         [places.index(f"{c}_{n}") for c, n in zip("cd", names, strict=True)]
     )

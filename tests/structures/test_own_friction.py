@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import scipy.linalg as la
+from scipy.integrate import solve_ivp
 
 from squealpipe import Contact, Structure, squealing_modes
 from squealpipe.structures.files import read
@@ -171,6 +172,52 @@ def test_a_friction_that_none_has_is_refused_by_its_contact(what):
     own, words = REFUSED[what]
     with pytest.raises(ValueError, match=words):
         structure_of(random_case(0), own=(own, {}, {}))
+
+
+def test_runs_have_different_tables_side_by_side():
+    """A table of two pieces, one of three and Coulomb's law, against SciPy."""
+    case = random_case(4, size=4)
+    other = "linear 0:0.6 2.2:0.4 2.5:0.5"
+    own = ({"friction_law": TABLE, "mu": 0.5}, {"friction_law": other}, {"mu": 0.2})
+    speeds, belt_speed = np.array([1.0, -1.0, 2.0]), 2.0
+    structure = structure_of(case, speeds, own, belt_speed=belt_speed)
+    mass, damping, stiffness, normal, tangential, springs, preload = case
+
+    def rates(_, z):
+        press = preload - springs * (normal.T @ z[:4])
+        slip = speeds * belt_speed - tangential.T @ z[4:]
+        assert (press > 0).all()
+        size = np.abs(slip)
+        mu = [
+            0.5 * np.interp(size[0], [0, 4], [0.5, 0.3]),
+            np.interp(size[1], [0, 2.2, 2.5], [0.6, 0.4, 0.5]),
+            0.2,
+        ]
+        force = normal @ (press - preload) + tangential @ (mu * np.sign(slip) * press)
+        rest = force - stiffness @ z[:4] - damping @ z[4:]
+        return np.concatenate([z[4:], la.solve(mass, rest)])
+
+    start = np.zeros(8)
+    truth = solve_ivp(
+        rates, (0.0, 0.2), start, "DOP853", rtol=1e-11, atol=1e-12, max_step=2e-3
+    )
+    system = structure.system()
+    run = system.simulate(
+        0.2, start=dict(zip(system.states, start, strict=True)), times=[0.2]
+    )
+    kinds = run.event_kind.attrs["flag_meanings"].split()
+    assert "b_knot" in [kinds[number] for number in run.event_kind.values]
+    assert "c_slip_slower" in system.regimes
+    assert "b_slip_faster_2" in system.regimes
+    found = np.array([float(run[name][-1]) for name in system.states])
+    assert found == pytest.approx(truth.y[:, -1], abs=1e-7)
+
+
+def test_a_law_in_python_is_refused_by_runs():
+    law = "def coefficient(speed, p):\n    return p.mu + 0.1 * speed\n"
+    structure = structure_of(random_case(0), own=({"friction_law": law}, {}, {}))
+    with pytest.raises(ValueError, match=r"contact a: friction_law = a law in Python"):
+        structure.system()
 
 
 def test_a_reduced_structure_and_its_runs_have_them():

@@ -13,7 +13,6 @@ from squealpipe.cli.signatures import in_options
 from squealpipe.codes import Verdict
 from squealpipe.structures import elastic_pad
 from squealpipe.structures.agreement import Truth
-from squealpipe.structures.motion_system import component_system
 from squealpipe.structures.reduction import Search, fewest_modes
 from squealpipe.structures.schema.squealing import Kind
 from squealpipe.structures.squeal import plant
@@ -127,20 +126,6 @@ def test_a_mirror_symmetric_structure_is_reduced_by_itself(links):
     assert reduced.record["agrees"]
     reduced.system()  # both contacts can stick
     assert np.linalg.matrix_rank(reduced.tangentials, tol=1e-6) == 2
-
-
-def test_directions_dependent_in_the_modes_kept_name_the_number_for_cycles():
-    whole = chain(20)
-    few = whole.reduce(n_modes=2)
-    assert few.complex_modes().sizes["mode"] == 2
-    with pytest.raises(
-        ValueError, match=r"contacts left and right cannot all stick"
-    ) as error:
-        few.system().limit_cycle()
-    enough = int(str(error.value).partition("n_modes=")[2].partition(" ")[0])
-    component_system(whole.reduce(n_modes=enough))
-    with pytest.raises(ValueError, match="dependent in the"):
-        component_system(whole.reduce(n_modes=enough - 1))
 
 
 def test_a_missing_mode_makes_the_verdict_undetermined_and_is_named():

@@ -130,6 +130,12 @@ def test_runs_turn_at_any_speed():
     end = la.expm(first * float(run.time[-1])) @ state
     found = np.array([run[f"q{i}"].values[-1] for i in range(1, rotor.size + 1)])
     assert np.allclose(found, rest + end[: rotor.size], atol=1e-9)
+    # side by side with another speed, whose matrices are others
+    both = system.ensemble(
+        2.0, start=start, belt_speed=[3.0, 5.0], mu=[0.1, system.parameters["mu"]]
+    )
+    last = both.isel(belt_speed=1, mu=1)
+    assert [float(last[f"q{i}"]) for i in range(1, rotor.size + 1)] == found.tolist()
 
 
 def test_with_a_rotation_speeds_are_in_rad_per_s():

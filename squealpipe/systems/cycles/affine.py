@@ -6,7 +6,8 @@ parameters and 1 obey one linear equation with constant coefficients: ẏ = A y 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -15,8 +16,20 @@ from numpy.typing import NDArray
 from squealpipe.systems.taylor.symbols import Symbol, degree
 
 Vector = NDArray[np.float64]
-Rates = Callable[[Vector], Vector]
-"""Rates of many states at once: (n, many) → (rates, many)."""
+
+
+class Affine(NamedTuple):
+    """Rates A x + c and their derivatives by parameters, B x + d.
+
+    Attributes:
+        matrix, constant: A, (n, n), and c, (n,).
+        by_matrix, by_constant: B, (p, n, n), and d, (p, n).
+    """
+
+    matrix: Vector
+    constant: Vector
+    by_matrix: Vector
+    by_constant: Vector
 
 
 def is_affine(rates: Sequence[Symbol]) -> bool:
@@ -25,33 +38,31 @@ def is_affine(rates: Sequence[Symbol]) -> bool:
 
 
 def derivatives(
-    field: Rates, by: Rates, sizes: Vector, units: Vector, start: Vector, length: float
+    rates: Affine, sizes: Vector, units: Vector, start: Vector, length: float
 ) -> Vector:
     """Return the derivatives of the state after a leg by its start and parameters, (n, n + p).
 
     Args:
-        field: rates of the states, (n, many).
-        by: their derivatives by the parameters, (n p, many), those of a state side by side.
         sizes: units of the states, (n,).
         units: of the parameters, (p,).
         start: state at the start, (n,).
         length: of the leg, s.
     """
     n, p = len(sizes), len(units)
-    # at the origin and at one unit of each state: what is affine is known by these
-    places = np.column_stack([np.zeros(n), np.diag(sizes)])
-    rates = field(places) / sizes[:, None]
-    slopes = by(places).reshape(n, p, n + 1) * (units[:, None] / sizes[:, None, None])
+    matrix = rates.matrix * (sizes / sizes[:, None])
     if p == 0:
-        moved = scipy.linalg.expm((rates[:, 1:] - rates[:, :1]) * length)
+        moved = scipy.linalg.expm(matrix * length)
         return np.asarray(moved * (sizes[:, None] / sizes))
     size = n * (1 + p)
     whole = np.zeros((size + 1, size + 1))
-    for block, values in enumerate((rates, *slopes.transpose(1, 0, 2))):
-        rows = slice(block * n, block * n + n)
-        whole[rows, :n] = values[:, 1:] - values[:, :1]
-        whole[rows, size] = values[:, 0]
-        whole[rows, rows] = rates[:, 1:] - rates[:, :1]
+    whole[:n, :n], whole[:n, size] = matrix, rates.constant / sizes
+    for number, (by_matrix, by_constant) in enumerate(
+        zip(rates.by_matrix, rates.by_constant, strict=True)
+    ):
+        rows = slice((number + 1) * n, (number + 2) * n)
+        whole[rows, :n] = by_matrix * (sizes / sizes[:, None]) * units[number]
+        whole[rows, size] = by_constant * (units[number] / sizes)
+        whole[rows, rows] = matrix
     moved = scipy.linalg.expm(whole * length)
     found = np.empty((n, n + p))
     found[:, :n] = moved[:n, :n] * (sizes[:, None] / sizes)

@@ -1,10 +1,13 @@
 """Motion along legs of one regime each: a system's switches and fields as functions.
 
-The legs' Taylor series are the integrator's.
+Cycles are solved from a :class:`Flow`, whatever the system is made of: symbols, whose derivatives
+are symbols (:class:`TracedFlow`), or matrices (:mod:`squealpipe.systems.cycles.linear_flow`). The
+legs' Taylor series are the integrator's.
 """
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from itertools import chain
@@ -12,8 +15,9 @@ from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from numpy.typing import NDArray
 
-from squealpipe.systems.cycles.affine import is_affine
+from squealpipe.systems.cycles.affine import Affine, is_affine
 from squealpipe.systems.cycles.crossing import Crossing
 from squealpipe.systems.cycles.legs import LegEnd, Path, Vector
 from squealpipe.systems.integrate import compiled, symbolic
@@ -47,12 +51,15 @@ _FUNCTIONS: WeakKeyDictionary[Any, dict[tuple[str, ...], dict[Any, Any]]] = (
 """Functions of flows by the system whose symbols they are made of, and followed parameters."""
 
 
-class Flow:
+class Flow(ABC):
     """A system's legs and switches as functions of states and parameters.
 
     Attributes:
+        system, followed: the system, and the parameters by which derivatives are taken.
         scales: of a system that states them, those in which states, times and parameters are
             numbers here; None: all are in the system's own units.
+        size, columns: number of states; with the followed parameters and explicit time.
+        timed: whether the time is explicit.
     """
 
     def __init__(
@@ -61,6 +68,134 @@ class Flow:
         self.system, self.followed, self.scales = system, tuple(followed), scales
         t = system.traced
         self.size, self.timed = t.size, len(t.variables) > t.size
+        self.columns = self.size + len(self.followed) + self.timed
+        # a leg of more steps has no end, so that Newton's method gives up; a stiff motion may
+        # need more: the run that its cycle is guessed from says how many
+        self.most_steps = 3000
+        self._sizes: tuple[Any, Vector] | None = None
+
+    def sizes(self, values: Mapping[str, float]) -> Vector:
+        """Return the typical sizes of the states."""
+        key = tuple(values[name] for name in self.system.parameters)
+        if self._sizes is None or self._sizes[0] != key:
+            self._sizes = key, self.system.sizes_in(values)
+        return self._sizes[1]
+
+    @staticmethod
+    def of(
+        system: System, values: Mapping[str, Any], followed: Sequence[str] = ()
+    ) -> tuple[Flow, dict[str, Any]]:
+        """Return a flow in the scales that a system states, and parameters as numbers in them."""
+        flow = system.flow(followed, system.scales_in(values))
+        if flow.scales is None:
+            return flow, dict(values)
+        return flow, flow.scales.into(system.units_of_values, values)
+
+    def following(self, *followed: str) -> Flow:
+        """Return the flow of the same system with other followed parameters."""
+        return self.system.flow(followed, self.scales)
+
+    def scale_of(self, *names: str) -> Vector:
+        """Return what 1 is here of states, parameters, outputs or ``time``, in their own units."""
+        if self.scales is None:
+            return np.ones(len(names))
+        units = {
+            **self.system.units_of_values,
+            **{name: unit for name, (unit, _) in self.system.outputs.items()},
+            TIME: "s",
+        }
+        return np.array([float(self.scales.of(units[name])) for name in names])
+
+    def unit(self, values: Mapping[str, float]) -> float:
+        """The system's unit of time, s."""
+        scale = self.system.time_scale
+        return float(scale(Names("the system", values)) if callable(scale) else scale)
+
+    @property
+    @abstractmethod
+    def is_affine(self) -> bool:
+        """Whether all rates are affine in the states."""
+
+    @abstractmethod
+    def forcing(self, values: Mapping[str, float]) -> tuple[float, Vector]:
+        """The forcing's period, s, and its derivatives."""
+
+    @abstractmethod
+    def field(
+        self, values: Mapping[str, float], regime: int, state: Vector, time: float
+    ) -> Vector:
+        """Rates of the states."""
+
+    @abstractmethod
+    def jacobian(
+        self, values: Mapping[str, float], regime: int, state: Vector, time: float = 0.0
+    ) -> Vector:
+        """∂f/∂(states, followed parameters, time), (n, n + p)."""
+
+    @abstractmethod
+    def affine_at(self, values: Mapping[str, float], regime: int) -> Affine:
+        """Return the rates as a matrix and a constant, where they are affine in the states."""
+
+    @abstractmethod
+    def slopes_along(
+        self, values: Mapping[str, float], regimes: NDArray[np.int64], states: Vector
+    ) -> Vector:
+        """Return ∂f/∂(states, followed parameters, time) at many states, (n, n + p, nodes, many).
+
+        Args:
+            regimes: (many,).
+            states: (states and time, nodes, many).
+        """
+
+    @abstractmethod
+    def crossing(
+        self,
+        values: Mapping[str, float],
+        switch: int,
+        surface: int,
+        regimes: tuple[int, int],
+        state: Vector,
+        time: float,
+    ) -> Crossing:
+        """A switch from one regime to another at a state.
+
+        Of a surface alone with −1 as ``switch``; of neither with −1 as ``surface``, too.
+        """
+
+    @abstractmethod
+    def quantity(
+        self,
+        values: Mapping[str, float],
+        event: LegEnd,
+        condition: int | None,
+        state: Vector,
+        time: float,
+    ) -> Vector:
+        """Return the rate of an event's surface before it, or a condition of its switch.
+
+        With its derivatives by the states, the time if it is explicit, and the followed parameters.
+        """
+
+    @abstractmethod
+    def run(
+        self,
+        values: Mapping[str, float],
+        states: Vector,
+        regimes: Sequence[int],
+        starts: Vector,
+        durations: Vector,
+    ) -> Path:
+        """Run legs from states (legs, n), each in its regime for its duration."""
+
+
+class TracedFlow(Flow):
+    """Legs and switches of a system whose functions are symbols."""
+
+    def __init__(
+        self, system: System, followed: Sequence[str] = (), scales: Scales | None = None
+    ) -> None:
+        super().__init__(system, followed, scales)
+        t = system.traced
         self.by = [parameter(name) for name in followed]
         self.time = t.variables[-1] if self.timed else None
         fixed = [parameter(name) for name in (*t.parameters, *t.constants)]
@@ -70,13 +205,12 @@ class Flow:
         self._functions: dict[Any, Any] = shared.setdefault(self.followed, {})
         # steps of a leg that are kept at first; one that has more is run again with room for all
         self._room, self._legs = 48, 0
-        # a leg of more steps has no end, so that Newton's method gives up; a stiff motion may
-        # need more: the run that its cycle is guessed from says how many
-        self.most_steps = 3000
-        directions = [*t.variables[: t.size], *self.by, *([self.time] * self.timed)]
-        self._directions, self.columns = directions, len(directions)
+        self._directions = [
+            *t.variables[: t.size],
+            *self.by,
+            *([self.time] * self.timed),
+        ]
         self._known: tuple[Any, Vector] | None = None
-        self._sizes: tuple[Any, Vector] | None = None
         self._numbers: tuple[Any, list[Any]] | None = None
 
     def _made(self, what: str, make: Callable[[], Any]) -> Any:
@@ -157,43 +291,6 @@ class Flow:
             self._numbers = key, [*given, *self.system.joint.constants(regime)]
         return self._numbers[1]
 
-    def sizes(self, values: Mapping[str, float]) -> Vector:
-        """Return the typical sizes of the states."""
-        key = tuple(values[name] for name in self.system.parameters)
-        if self._sizes is None or self._sizes[0] != key:
-            self._sizes = key, self.system.sizes_in(values)
-        return self._sizes[1]
-
-    @classmethod
-    def of(
-        cls, system: System, values: Mapping[str, Any], followed: Sequence[str] = ()
-    ) -> tuple[Flow, dict[str, Any]]:
-        """Return a flow in the scales that a system states, and parameters as numbers in them."""
-        flow = cls(system, followed, system.scales_in(values))
-        if flow.scales is None:
-            return flow, dict(values)
-        return flow, flow.scales.into(system.units_of_values, values)
-
-    def following(self, *followed: str) -> Flow:
-        """Return the flow of the same system with other followed parameters."""
-        return Flow(self.system, followed, self.scales)
-
-    def scale_of(self, *names: str) -> Vector:
-        """Return what 1 is here of states, parameters, outputs or ``time``, in their own units."""
-        units = {
-            **self.system.units_of_values,
-            **{name: unit for name, (unit, _) in self.system.outputs.items()},
-            TIME: "s",
-        }
-        if self.scales is None:
-            return np.ones(len(names))
-        return np.array([float(self.scales.of(units[name])) for name in names])
-
-    def unit(self, values: Mapping[str, float]) -> float:
-        """The system's unit of time, s."""
-        scale = self.system.time_scale
-        return float(scale(Names("the system", values)) if callable(scale) else scale)
-
     def forcing(self, values: Mapping[str, float]) -> tuple[float, Vector]:
         """The forcing's period, s, and its derivatives."""
         blank = [np.float64(0.0)] * len(self.system.traced.variables)
@@ -228,6 +325,42 @@ class Flow:
             found[i, j] = value
         return found
 
+    def affine_at(self, values: Mapping[str, float], regime: int) -> Affine:
+        """Return the rates as a matrix and a constant, where they are affine in the states."""
+        n, p = self.size, len(self.by)
+        numbers, sizes = self.numbers(values, regime), self.sizes(values)
+        # at the origin and at one unit of each state: what is affine is known by these
+        places = np.column_stack([np.zeros(n), np.diag(sizes)])
+
+        def parts(function: Any) -> tuple[Vector, Vector]:
+            rows = function(*places, *numbers)
+            found = np.array([np.broadcast_to(row, n + 1) for row in rows])
+            found = found.reshape(-1, n + 1)
+            return (found[:, 1:] - found[:, :1]) / sizes, found[:, 0]
+
+        matrix, constant = parts(self.rates)
+        by_matrix, by_constant = parts(self.rates_by)
+        return Affine(
+            matrix,
+            constant,
+            by_matrix.reshape(n, p, n).transpose(1, 0, 2),
+            by_constant.reshape(n, p).T,
+        )
+
+    def slopes_along(
+        self, values: Mapping[str, float], regimes: NDArray[np.int64], states: Vector
+    ) -> Vector:
+        """Return derivatives of the rates at many states; see :meth:`Flow.slopes_along`."""
+        joint, given = self.system.joint, len(self.system.traced.parameters)
+        known = {regime: joint.constants(regime) for regime in set(regimes.tolist())}
+        constants = np.array([known[regime] for regime in regimes.tolist()]).T
+        numbers = self.numbers(values, 0)[:given]
+        found = np.zeros((self.size, self.columns, *states.shape[1:]))
+        entries = self.slopes(*states, *numbers, *constants)
+        for (i, j, _), value in zip(self.entries, entries, strict=True):
+            found[i, j] = value
+        return found
+
     def crossing(
         self,
         values: Mapping[str, float],
@@ -237,10 +370,7 @@ class Flow:
         state: Vector,
         time: float,
     ) -> Crossing:
-        """A switch from one regime to another at a state.
-
-        Of a surface alone with −1 as ``switch``; of neither with −1 as ``surface``, too.
-        """
+        """A switch at a state; see :meth:`Flow.crossing`."""
         t = self.system.traced
         each = t.switches[switch] if switch >= 0 else None
         entered = -1
@@ -289,10 +419,7 @@ class Flow:
         state: Vector,
         time: float,
     ) -> Vector:
-        """Return the rate of an event's surface before it, or a condition of its switch.
-
-        With its derivatives by the states, the time if it is explicit, and the followed parameters.
-        """
+        """Return the rate of a surface or a condition; see :meth:`Flow.quantity`."""
         key = event.switch, event.surface, condition
         if key not in self._functions:
             t = self.system.traced
@@ -397,28 +524,19 @@ class Flow:
             self._legs = 0
             return self.run(values, states, regimes, starts, durations)
         used = np.arange(self._room) < counts[:, None]
-        steps, series = arrays["steps"][used], arrays["kept"][used]
-        leg = np.repeat(np.arange(len(states)), counts)
-        total = np.cumsum(steps) - steps
-        first = np.searchsorted(leg, np.arange(len(states)))
-        last = first + counts - 1
-        orders = np.arange(series.shape[2])
-        ends = (series[last, : self.size] * steps[last, None, None] ** orders).sum(
-            axis=2
+        path = Path.of(
+            arrays["kept"][used],
+            arrays["steps"][used],
+            counts,
+            self.size,
+            regimes=regimes,
+            starts=starts,
+            durations=durations,
+            unit=unit,
         )
         if endless:
-            ends[:] = np.nan
-        return Path(
-            leg,
-            steps,
-            total - total[first][leg],
-            series,
-            np.array(regimes),
-            np.array(starts),
-            np.array(durations),
-            ends,
-            unit,
-        )
+            path.ends[:] = np.nan
+        return path
 
     def _constants_of(self, regime: int, parameters: Vector) -> Vector:
         """The regimes' constants and what is computed from them, as the series take them."""

@@ -73,6 +73,9 @@ class FreeCycleSearch:
     most_events: int = 48
     """A cycle of more events is sought only if the run goes through it twice and returns closely:
     a chaotic run has such returns, and Newton's method on hundreds of legs takes a minute."""
+    most_unknowns: int = 20_000
+    """A return with more unknowns, events times states, is passed over: the matrix of Newton's
+    method would take 3 GB, and with twice as many four times that."""
     close_return: float = 1e-3
     """Largest distance of such a close return."""
     rest: float = 1e-9
@@ -280,6 +283,8 @@ def _cycles(
         if distance > far:
             return
         if any(abs(period - other) < 1e-3 * period for other in tried):
+            continue
+        if count * (flow.size + 1) > search.most_unknowns:
             continue
         tried.append(period)
         if not count:

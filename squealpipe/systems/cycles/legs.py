@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,6 +69,44 @@ class Path:
     durations: Vector
     ends: Vector
     unit: float
+
+    @classmethod
+    def of(
+        cls,
+        series: Vector,
+        steps: Vector,
+        counts: NDArray[np.int64],
+        size: int,
+        *,
+        regimes: Sequence[int],
+        starts: Vector,
+        durations: Vector,
+        unit: float,
+    ) -> Self:
+        """Return the path of legs whose steps follow one another.
+
+        Args:
+            counts: (legs,) steps of each.
+            size: number of states, the first of the series.
+        """
+        leg, orders = (
+            np.repeat(np.arange(len(counts)), counts),
+            np.arange(series.shape[2]),
+        )
+        total = np.cumsum(steps) - steps
+        last = np.cumsum(counts) - 1
+        ends = (series[last, :size] * steps[last, None, None] ** orders).sum(axis=2)
+        return cls(
+            leg,
+            steps,
+            total - total[last - counts + 1][leg],
+            series,
+            np.array(regimes),
+            np.array(starts),
+            np.array(durations),
+            ends,
+            unit,
+        )
 
     @cached_property
     def scaled(self) -> Vector:

@@ -9,8 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -78,15 +76,8 @@ def _affine(flow: Flow, values: Mapping[str, float], path: Path) -> Vector:
     units = np.where(followed == 0.0, 1.0, np.abs(followed))
     found = np.empty((len(starts), flow.size, flow.columns))
     for leg, regime in enumerate(path.regimes.tolist()):
-        numbers = flow.numbers(values, regime)
-
-        def many(function: Any, places: Vector, numbers: Any = numbers) -> Vector:
-            rows = function(*places, *numbers)
-            return np.array([np.broadcast_to(row, len(places.T)) for row in rows])
-
         found[leg] = affine_derivatives(
-            partial(many, flow.rates),
-            partial(many, flow.rates_by),
+            flow.affine_at(values, regime),
             flow.sizes(values),
             units,
             starts[leg],
@@ -109,14 +100,6 @@ def _slopes_along(
     powers = nodes ** np.arange(scaled.shape[2])[:, None]
     states = (scaled[:, :variables] @ powers).reshape(steps, variables, count, pieces)
     flat = states.transpose(1, 2, 0, 3).reshape(variables, count, -1)
-    joint = flow.system.joint
-    of_legs = np.array([joint.constants(regime) for regime in path.regimes])
-    constants = np.repeat(of_legs[leg], pieces, axis=0).T
-    numbers = flow.numbers(values, 0)[: len(flow.system.traced.parameters)]
-    found = np.zeros((flow.size, flow.columns, *flat.shape[1:]))
     with np.errstate(all="ignore"):
-        for (i, j, _), value in zip(
-            flow.entries, flow.slopes(*flat, *numbers, *constants), strict=True
-        ):
-            found[i, j] = value
+        found = flow.slopes_along(values, np.repeat(path.regimes[leg], pieces), flat)
     return found, np.repeat(lengths, pieces) * path.unit / pieces

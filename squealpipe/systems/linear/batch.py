@@ -1,15 +1,39 @@
 """Many runs of contacts on a belt, as the compiled loop of linear structures reads them."""
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from squealpipe.systems.integrate import Batch, table_of
+from squealpipe.systems.integrate import Batch, RunOptions, table_of
 from squealpipe.systems.linear.loop import functions, loop
 from squealpipe.systems.linear.matrices import COULOMB, TABLE, ContactMatrices
 from squealpipe.systems.linear.numbering import MARGIN, Numbering
 from squealpipe.systems.linear.plan import plan
+
+
+def coefficients_of_contacts(
+    matrices: ContactMatrices,
+    coefficients: Sequence[tuple[str, str | None, Any]],
+    values: Mapping[str, Any],
+) -> Iterator[tuple[Any, Any, Any]]:
+    """Yield μ, its static limit and the reference speed of each contact.
+
+    Args:
+        coefficients: see :func:`numbers_of_runs`.
+    """
+    for law, pieces, (mu, static, speed) in zip(
+        matrices.laws, matrices.pieces, coefficients, strict=True
+    ):
+        # of a table μ is a factor
+        at_rest = pieces[0, 2] if law == TABLE else 1.0
+        yield (
+            values[mu],
+            values[mu] * at_rest if static is None else values[static],
+            values[speed] if isinstance(speed, str) else speed,
+        )
 
 
 def numbers_of_runs(
@@ -27,14 +51,8 @@ def numbers_of_runs(
         values: parameters by name, (runs,) each.
     """
     columns: list[Any] = [0.0, values["belt_speed"], values["preload"]]
-    for law, (mu, static, speed) in zip(matrices.laws, coefficients, strict=True):
-        # of a table μ is a factor
-        at_rest = matrices.pieces[0, 2] if law == TABLE else 1.0
-        columns += [
-            values[mu],
-            values[mu] * at_rest if static is None else values[static],
-            values[speed] if isinstance(speed, str) else speed,
-        ]
+    for each in coefficients_of_contacts(matrices, coefficients, values):
+        columns += each
     numbers = table_of(len(unit), *columns, unit)
     numbers[:, 0] = np.array([address], np.int64).view(float)[0]
     return numbers
@@ -44,6 +62,50 @@ class LinearBatch(Batch):
     """Runs of one set of matrices; see :class:`squealpipe.systems.integrate.Batch`."""
 
     loop = staticmethod(loop)
+
+    def __init__(
+        self,
+        system: Any,
+        values: Mapping[str, np.ndarray],
+        t_end: np.ndarray,
+        options: RunOptions,
+        tol: float,
+    ) -> None:
+        # the loop carries no perturbation: its growth follows from the events of each run
+        super().__init__(system, values, t_end, replace(options, tangent=False), tol)
+        self.asked, self.values, self.t_end = options, values, t_end
+
+    def named(
+        self, arrays: dict[str, np.ndarray], clock: Any = 1.0
+    ) -> dict[str, np.ndarray]:
+        """Return the results by name."""
+        raw = super().named(arrays, clock)
+        if self.asked.tangent:
+            each = [self._growth(run) for run in range(self.size)]
+            raw["log_growth"], raw["horizon"] = np.array(each).reshape(-1, 2).T
+        return raw
+
+    def _growth(self, run: int) -> tuple[float, float]:
+        """Return the growth of a perturbation of a run, and its horizon, s."""
+        from squealpipe.systems.cycles.sensitivity import growth
+        from squealpipe.systems.record import single_run
+
+        system: Any = self.system
+        values = {
+            name: float(np.broadcast_to(self.values[name], self.size)[run])
+            for name in (*system.states, *system.parameters)
+        }
+        t_end = float(self.t_end[run])
+        # a perturbation is looked at once a unit of time, in at most so many instants
+        count = 1 + math.ceil(min(t_end / float(self.unit[run]), 1e4))
+        times = np.linspace(0.0, t_end, count)
+        options = RunOptions(
+            regime=self.regimes[run : run + 1],
+            times=times,
+            most_steps=self.asked.most_steps,
+        )
+        motion = single_run(system, values, t_end, options, tol=self.tol)
+        return growth(system.flow(), values, motion, times, self.tol)
 
     def _parameters(self, values: Mapping[str, np.ndarray]) -> np.ndarray:
         system: Any = self.system
@@ -91,12 +153,12 @@ def first_regimes(
         states: (runs, states).
         chosen: (contacts,) regimes that are given; −1 of others.
     """
-    each = len(numbering.regime_names)
-    own = np.where(chosen < 0, -1, chosen % each)
+    first = numbering.first_regime[:-1]
+    own = np.where(chosen < 0, -1, chosen - first)
     numbers = np.tile(own, (len(states), 1)).astype(np.int64)
     unit = np.ones(len(states))
     given = numbers_of_runs(matrices, coefficients, values, unit, 0)
     table = plan(matrices, numbering, np.hstack([given, states]), numbers)
     address = table.pointer.value or 0
     functions()["starts"].ctypes(address)
-    return numbers + each * np.arange(matrices.n_contacts)
+    return np.asarray(numbers + first)

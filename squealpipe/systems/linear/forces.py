@@ -529,10 +529,11 @@ def slip_regime(k: Any, rows: Any, i: int, speed: float) -> Any:
     """Return the regime of slip, among those of a contact, by the sliding speed."""
     _, _, reference = _coefficients(k, rows, i)
     side = 0 if speed >= 0.0 else 1
-    piece = k.n_pieces - 1
+    first = k.first[0, i]
+    piece = (k.first[0, i + 1] - first) // 2 - 2
     while (
         piece > 0
-        and abs(speed) - reference * k.table[2 * piece + side, FIRST_OF_PIECE] < 0.0
+        and abs(speed) - reference * k.table[first + 2 * piece, FIRST_OF_PIECE] < 0.0
     ):
         piece -= 1
     return 2 * piece + side
@@ -542,8 +543,8 @@ def slip_regime(k: Any, rows: Any, i: int, speed: float) -> Any:
 def change_state(k: Any, rows: Any, which: int, z: Any, out: Any) -> None:
     """Write the regime that a switch enters, the kind of the event, and the state after it."""
     what, i, target = k.switches[which, 0], k.switches[which, 1], k.switches[which, 2]
-    n, regimes = k.n, k.n_regimes // k.c
-    kinds = 6 if k.n_pieces > 1 else 5
+    n, first = k.n, k.first[0, i]
+    regimes = k.first[0, i + 1] - first
     after = out[2 : 2 + 2 * n]
     for j in range(2 * n):
         after[j] = z[j]
@@ -551,7 +552,7 @@ def change_state(k: Any, rows: Any, which: int, z: Any, out: Any) -> None:
     if what == SEPARATION:
         regime, kind = regimes - 1, SEPARATES
     elif what == KNOT:
-        regime, kind = target - i * regimes, PASSES
+        regime, kind = target - first, PASSES
     elif what == SLIPS or (what != CONTACT and what != REVERSAL):
         regime, kind = (0 if what == SLIPS else 1), SLIPS_AWAY
     else:
@@ -569,7 +570,7 @@ def change_state(k: Any, rows: Any, which: int, z: Any, out: Any) -> None:
                 regime, kind = regimes - 2, STICKS
             elif _constant(k, rows, i, DIRECTION) >= 0.0:
                 regime = 1
-    out[0], out[1] = float(i * regimes + regime), float(i * kinds + kind)
+    out[0], out[1] = float(first + regime), float(k.first[1, i] + kind)
 
 
 @part

@@ -59,7 +59,7 @@ LANE = 0
 
 
 @part
-def _step_length(mem: Any, units: Any) -> Any:
+def step_length(mem: Any, units: Any) -> Any:
     """Length of the next step from the last two orders (Jorba and Zou 2005; Biscani 2021)."""
     terms, size, last, previous = mem.shape[0], 1.0, 1e-300, 1e-300
     first, top, below = mem[0], mem[terms - 1], mem[terms - 2]
@@ -102,7 +102,7 @@ def _has_converged(mem: Any, place: int, step: float) -> Any:
 
 
 @part
-def _shorter(m: Any, k: Any, rows: Any, mem: Any, step: float) -> Any:
+def shorter_step(m: Any, k: Any, rows: Any, mem: Any, step: float) -> Any:
     """Return a step that the friction of no contact makes too long.
 
     Far from where it acts an exponential has coefficients that round to nothing: its argument
@@ -184,12 +184,12 @@ def _reaches(m: Any, instant: int) -> Any:
 @part
 def _take_step(t: Any, m: Any, k: Any, rows: Any, mem: Any, work: Any) -> Any:
     """Choose a step; tell whether something may happen in it."""
-    step = min(_step_length(mem, m.units), m.rows[layout.LONGEST, LANE])
+    step = min(step_length(mem, m.units), m.rows[layout.LONGEST, LANE])
     natural, left = step, -math.inf
     if k.curved:
         left = m.rows[layout.T_END, LANE] - m.rows[layout.CLOCK, LANE]
         left -= m.rows[layout.CORRECTION, LANE]
-        step = _shorter(m, k, rows, mem, min(step, left))
+        step = shorter_step(m, k, rows, mem, min(step, left))
     m.rows[layout.STEP, LANE] = step
     m.rows[layout.NATURAL, LANE] = step if step < left else natural
     plain = _end_states(t, m, mem, step, work)

@@ -1,7 +1,8 @@
 """Matrices and contacts that the loop runs: no names, no units, no structure."""
 
-from dataclasses import dataclass
-from typing import NamedTuple
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
@@ -36,9 +37,14 @@ class ContactMatrices:
         springs, preloads, speeds: (c,) stiffness, N/m, preload, N, and belt speed over that of the
             parameter.
         laws: (c,) friction law, by number.
-        pieces: (pieces, 6) of a table of friction, :data:`PIECE_FIELDS`; one row of zeros without.
+        pieces: of each contact, (pieces, 6) of its table of friction, :data:`PIECE_FIELDS`; one row
+            of zeros without.
         hidden: friction force that round-off hides, N.
         shapes: (outputs, n) further outputs: displacements as combinations of the states.
+        by_speed: of each part of ``stiffness`` or ``damping`` that is proportional to a power of
+            the belt's speed: which of both, the part at the speed ``reference``, (n, n), and its
+            power.
+        speed: belt speed at which ``stiffness`` and ``damping`` hold.
     """
 
     stiffness: np.ndarray
@@ -53,9 +59,35 @@ class ContactMatrices:
     preloads: np.ndarray
     speeds: np.ndarray
     laws: np.ndarray
-    pieces: np.ndarray
+    pieces: Sequence[np.ndarray]
     hidden: float
     shapes: np.ndarray
+    by_speed: Sequence[tuple[str, np.ndarray, int]] = ()
+    reference: float = 1.0
+    speed: float = 1.0
+
+    def at(self, speed: Any) -> Self:
+        """Return the matrices of another belt speed, which may be complex.
+
+        Raises:
+            ValueError: a speed of 0 where a part has a negative power.
+        """
+        if not self.by_speed or speed == self.speed:
+            return self
+        changed: dict[str, Any] = {
+            name: full_matrix(getattr(self, name)) for name in ("stiffness", "damping")
+        }
+        for name, part, power in self.by_speed:
+            if speed == 0 and power < 0:
+                raise ValueError(
+                    f"belt_speed = 0: a speed term of power {power} has no value there; choose "
+                    "another speed"
+                )
+            there, here = (
+                (each / self.reference) ** power for each in (speed, self.speed)
+            )
+            changed[name] = changed[name] + (there - here) * part
+        return replace(self, **changed, speed=speed)
 
     @property
     def n_modes(self) -> int:
@@ -69,8 +101,8 @@ class ContactMatrices:
 
     @property
     def n_pieces(self) -> int:
-        """Number of pieces of the table of friction."""
-        return len(self.pieces)
+        """Largest number of pieces of a table of friction."""
+        return max(map(len, self.pieces))
 
     @property
     def curved(self) -> bool:
@@ -87,3 +119,8 @@ def diagonal_if_it_is(matrix: np.ndarray) -> np.ndarray:
     """Return the diagonal of a matrix that has nothing else, or the matrix."""
     diagonal = np.diag(matrix)
     return diagonal.copy() if (matrix == np.diag(diagonal)).all() else matrix
+
+
+def full_matrix(matrix: np.ndarray) -> np.ndarray:
+    """Return a matrix that may be given by its diagonal."""
+    return np.diag(matrix) if matrix.ndim == 1 else matrix

@@ -27,6 +27,24 @@ IS_CLOSED, DIRECTION, IS_STUCK, FIRST_OF_PIECE = range(4)
 """Constants of a regime; those of a piece of a table follow."""
 
 
+class Condition(NamedTuple):
+    """What decides between the regimes that a switch may enter, ≥ 0 where it holds.
+
+    Attributes:
+        knot: sliding speed beyond which it slips in a piece of friction, over the reference; None:
+            whether friction can hold the contact.
+        direction: sign of this sliding speed; 0: of no condition that changes.
+    """
+
+    knot: float | None
+    direction: float
+
+    @property
+    def varies(self) -> bool:
+        """Whether it depends on the state."""
+        return self.knot is None or self.direction != 0.0
+
+
 class ContactSwitch(NamedTuple):
     """One switch.
 
@@ -38,6 +56,8 @@ class ContactSwitch(NamedTuple):
         leaves: regimes, by number.
         surface: of the contact.
         rises: whether it fires where its surface rises.
+        targets: regimes that it may enter, the first whose condition holds, with the kind of the
+            event; by number.
     """
 
     name: str
@@ -47,6 +67,7 @@ class ContactSwitch(NamedTuple):
     leaves: tuple[int, ...]
     surface: int
     rises: bool
+    targets: tuple[tuple[int, Condition | None, int], ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,101 +77,152 @@ class Numbering:
     Args:
         names: of the contacts.
         n_modes: number of displacements.
-        pieces: (pieces, 6) of a table of friction, or one row.
+        pieces: (pieces, 6) of the table of friction of each contact, or one row.
         shapes: number of further outputs.
     """
 
     names: Sequence[str]
     n_modes: int
-    pieces: np.ndarray
+    pieces: Sequence[np.ndarray]
     n_shapes: int = 0
 
     @cached_property
-    def belt(self) -> BeltContact:
-        """Regimes of one contact."""
-        constants = [dict(zip(PIECE_FIELDS, row, strict=True)) for row in self.pieces]
-        return BeltContact(
-            frictions=constants if len(constants) > 1 else [{}],
-            speed=lambda t, s, p, r: 0.0,
-            unit=lambda p: 1.0,
-        )
+    def belts(self) -> list[BeltContact]:
+        """Regimes of each contact."""
+        return [
+            BeltContact(
+                frictions=[dict(zip(PIECE_FIELDS, row, strict=True)) for row in pieces]
+                if len(pieces) > 1
+                else [{}],
+                speed=lambda t, s, p, r: 0.0,
+                unit=lambda p: 1.0,
+            )
+            for pieces in self.pieces
+        ]
+
+    @property
+    def has_tables(self) -> bool:
+        """Whether the friction of some contact has several pieces."""
+        return max(map(len, self.pieces)) > 1
 
     @cached_property
     def width(self) -> int:
         """Number of constants of a contact's regime."""
-        return FIRST_OF_PIECE + len(PIECE_FIELDS) * (len(self.pieces) > 1)
-
-    @cached_property
-    def regime_names(self) -> tuple[str, ...]:
-        """Regimes of one contact."""
-        return tuple(self.belt.regimes())
-
-    @cached_property
-    def row_of_constants(self) -> np.ndarray:
-        """(regimes of a contact, constants)."""
-        fields = ("contact", "direction", "stick", *PIECE_FIELDS)[: self.width]
-        return np.array(
-            [[row[key] for key in fields] for row in self.belt.regimes().values()]
-        )
+        return FIRST_OF_PIECE + len(PIECE_FIELDS) * self.has_tables
 
     @cached_property
     def regime_constants(self) -> dict[str, dict[str, float]]:
         """Regime → constants, of all contacts."""
-        own = self.belt.regimes()
         return {
-            joined(name, key): row for name in self.names for key, row in own.items()
+            joined(name, key): row
+            for name, belt in zip(self.names, self.belts, strict=True)
+            for key, row in belt.regimes().items()
         }
+
+    @cached_property
+    def constants_of_regimes(self) -> np.ndarray:
+        """(regimes, constants); of a contact without a table those of its pieces are 0."""
+        fields = ("contact", "direction", "stick", *PIECE_FIELDS)[: self.width]
+        rows = self.regime_constants.values()
+        return np.array([[row.get(key, 0.0) for key in fields] for row in rows])
+
+    @cached_property
+    def first_regime(self) -> np.ndarray:
+        """(contacts + 1,) number of the first regime of each."""
+        sizes = [len(belt.regimes()) for belt in self.belts]
+        return np.concatenate([[0], np.cumsum(sizes)])
 
     @cached_property
     def composition(self) -> Composition:
         """Contacts as the components of a system."""
-        each = len(self.regime_names)
         return Composition(
             names=tuple(self.names),
             regimes=dict(self.regime_constants),
-            component_of=np.repeat(np.arange(len(self.names)), each),
+            component_of=np.repeat(
+                np.arange(len(self.names)), np.diff(self.first_regime)
+            ),
             switches=(),
             starts=tuple([] for _ in self.names),
         )
 
     def regime(self, contact: int, name: str) -> int:
         """Number of a contact's regime."""
-        return contact * len(self.regime_names) + self.regime_names.index(name)
+        own = list(self.belts[contact].regimes())
+        return int(self.first_regime[contact]) + own.index(name)
 
     def _own_switches(self, contact: int) -> list[ContactSwitch]:
-        name, belt = self.names[contact], self.belt
+        name, belt = self.names[contact], self.belts[contact]
 
         def number(kind: str, piece: int = 0) -> int:
             return self.regime(contact, belt.name(kind, piece))
 
         def switch(
-            own: str, what: int, leaves: list[int], surface: int, target: int = -1
+            own: str,
+            what: int,
+            leaves: list[int],
+            surface: int,
+            targets: list[tuple[int, Condition | None, int]],
         ) -> ContactSwitch:
             rises = what == CONTACT or surface == BEFORE_END
-            where = tuple(leaves), surface, rises
+            target = targets[0][0] if what == KNOT else -1
+            first = int(self.first_kind[contact])
+            to = tuple((regime, each, first + kind) for regime, each, kind in targets)
+            where = tuple(leaves), surface, rises, to
             return ContactSwitch(joined(name, own), what, contact, target, *where)
 
         apart, stuck = number("separated"), number("stick")
+        slower, faster = (number(kind) for kind in SLIP)
+        # in the order of BeltContact.slips: the pieces of higher speeds first
+        landings: list[tuple[int, Condition | None, int]] = [
+            (
+                number(kind, i),
+                Condition(self.pieces[contact][i, 0] * (i > 0), side),
+                LANDS,
+            )
+            for kind, side in SLIP.items()
+            for i in reversed(range(len(belt.frictions)))
+        ]
+        reverses: list[tuple[int, Condition | None, int]] = [
+            (stuck, Condition(None, 0.0), STICKS),
+            (faster, Condition(0.0, 0.0), REVERSES),
+            (slower, None, REVERSES),
+        ]
         closed = [number(kind, piece) for kind, piece, _ in belt.in_contact()]
         # what falls for the leaving side rises for the side that is entered
         found = [
-            switch("separation", SEPARATION, closed, PRESSING),
-            switch("contact", CONTACT, [apart], PRESSING),
-            switch("reversal", REVERSAL, [number(kind) for kind in SLIP], LAG),
-            switch("slip", SLIPS, [stuck], MARGIN),
-            switch("slip_back", SLIPS_BACK, [stuck], MARGIN_BACK),
+            switch(
+                "separation", SEPARATION, closed, PRESSING, [(apart, None, SEPARATES)]
+            ),
+            switch(
+                "contact",
+                CONTACT,
+                [apart],
+                PRESSING,
+                [*landings[:-1], (landings[-1][0], None, LANDS)],
+            ),
+            switch("reversal", REVERSAL, [slower, faster], LAG, reverses),
+            switch("slip", SLIPS, [stuck], MARGIN, [(slower, None, SLIPS_AWAY)]),
+            switch(
+                "slip_back",
+                SLIPS_BACK,
+                [stuck],
+                MARGIN_BACK,
+                [(faster, None, SLIPS_AWAY)],
+            ),
         ]
         for kind in SLIP:
             for piece in range(len(belt.frictions) - 1):
                 here, there = number(kind, piece), number(kind, piece + 1)
                 names = belt.name(kind, piece), belt.name(kind, piece + 1)
+                ways = (
+                    (names, here, BEFORE_END, there),
+                    (names[::-1], there, AFTER_START, here),
+                )
                 found += [
                     switch(
-                        f"{names[0]} to {names[1]}", KNOT, [here], BEFORE_END, there
-                    ),
-                    switch(
-                        f"{names[1]} to {names[0]}", KNOT, [there], AFTER_START, here
-                    ),
+                        f"{own} to {other}", KNOT, [left], surface, [(to, None, PASSES)]
+                    )
+                    for (own, other), left, surface, to in ways
                 ]
         return sorted(found, key=lambda each: each.name)
 
@@ -163,13 +235,17 @@ class Numbering:
     @cached_property
     def kinds(self) -> tuple[str, ...]:
         """Kinds of events, contact after contact."""
-        own = KINDS if len(self.pieces) > 1 else KINDS[:-1]
-        return tuple(joined(name, kind) for name in self.names for kind in own)
+        return tuple(
+            joined(name, kind)
+            for name, pieces in zip(self.names, self.pieces, strict=True)
+            for kind in (KINDS if len(pieces) > 1 else KINDS[:-1])
+        )
 
-    @property
-    def kinds_of_a_contact(self) -> int:
-        """Number of kinds of one contact."""
-        return len(self.kinds) // max(1, len(self.names))
+    @cached_property
+    def first_kind(self) -> np.ndarray:
+        """(contacts + 1,) number of the first kind of event of each."""
+        sizes = [len(KINDS) - (len(pieces) == 1) for pieces in self.pieces]
+        return np.concatenate([[0], np.cumsum(sizes)])
 
     # in the terms of a traced system, of which what is counted alone matters here
 
@@ -191,7 +267,7 @@ class Numbering:
     @property
     def surfaces_of_a_contact(self) -> int:
         """Number of surfaces of one contact."""
-        return 6 if len(self.pieces) > 1 else 4
+        return 6 if self.has_tables else 4
 
     @property
     def surfaces(self) -> range:
@@ -231,7 +307,9 @@ class Numbering:
     @cached_property
     def regimes(self) -> np.ndarray:
         """(regimes, constants) their values; 0 for those of other contacts."""
-        return np.kron(np.eye(len(self.names)), self.row_of_constants)
+        owners = np.eye(len(self.names))[self.component_of]
+        found = owners[:, :, None] * self.constants_of_regimes[:, None]
+        return np.asarray(found.reshape(len(found), -1))
 
     def columns(self, component: int) -> slice:
         """Places of the constants of a contact."""
@@ -239,8 +317,7 @@ class Numbering:
 
     def constants_in(self, regimes: Sequence[int]) -> np.ndarray:
         """All constants where each contact is in one of these regimes."""
-        own = np.asarray(regimes) % len(self.regime_names)
-        return np.asarray(self.row_of_constants[own].ravel())
+        return np.asarray(self.constants_of_regimes[list(regimes)].ravel())
 
     @cached_property
     def _watched(self) -> np.ndarray:

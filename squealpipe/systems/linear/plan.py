@@ -24,7 +24,7 @@ BASE, SCALE, RATE = range(3)
 ARRAYS = (
     "pull_back", "drag_back", "load", "normals", "tangentials", "push_rows", "drag_rows",
     "tangent_rows", "mobility", "springs", "preloads", "speeds", "laws", "shapes", "table",
-    "switches", "by_contact", "by_mode", "law_series", "held", "factor", "stuck", "counts",
+    "first", "switches", "by_contact", "by_mode", "law_series", "held", "factor", "stuck", "counts",
     "lists", "hidden", "starts", "numbers", "opened", "scratch",
 )  # fmt: skip
 SIZES = (
@@ -41,7 +41,8 @@ class Plan(NamedTuple):
     Attributes:
         pull_back, drag_back: −M⁻¹(K + …)ᵀ and −M⁻¹Cᵀ, (n, n), or the diagonals (1, n).
         push_rows, drag_rows, tangent_rows: (c, n).
-        table: (regimes of a contact, constants); contacts do not differ.
+        table: (regimes, constants), contact after contact.
+        first: (2, c + 1) the first regime of each contact, and its first kind of event.
         switches: (switches, 3) what, contact, target.
         by_contact, by_mode: work.
         law_series: (4, terms, c) orders of the coefficient of friction and of what it is made of.
@@ -77,6 +78,7 @@ class Plan(NamedTuple):
     laws: Any
     shapes: Any
     table: Any
+    first: Any
     switches: Any
     by_contact: Any
     by_mode: Any
@@ -96,7 +98,6 @@ def plan_at(address: int) -> Any:
     n, c = t.n, t.c
     square = n * n if t.full_stiffness else n
     damping = n * n if t.full_damping else n
-    regimes = t.n_regimes // c
     return Plan(
         n=n,
         c=c,
@@ -122,7 +123,8 @@ def plan_at(address: int) -> Any:
         speeds=view(t.speeds, (c,), np.float64),
         laws=view(t.laws, (c,), np.int64),
         shapes=view(t.shapes, (t.n_shapes, n), np.float64),
-        table=view(t.table, (regimes, t.width), np.float64),
+        table=view(t.table, (t.n_regimes, t.width), np.float64),
+        first=view(t.first, (2, c + 1), np.int64),
         switches=view(t.switches, (t.n_switches, 3), np.int64),
         by_contact=view(t.by_contact, (WORK, c), np.float64),
         by_mode=view(t.by_mode, (3, n), np.float64),
@@ -185,7 +187,8 @@ def plan(
         "tangent_rows": np.ascontiguousarray(matrices.tangentials.T),
         "laws": np.ascontiguousarray(matrices.laws, np.int64),
         "shapes": np.ascontiguousarray(matrices.shapes, float),
-        "table": numbering.row_of_constants,
+        "table": numbering.constants_of_regimes,
+        "first": np.array([numbering.first_regime, numbering.first_kind], np.int64),
         "switches": np.array(switches, np.int64),
         "by_contact": np.zeros((WORK, c)),
         "by_mode": np.zeros((3, n)),

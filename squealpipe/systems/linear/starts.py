@@ -38,7 +38,7 @@ FIRST = 1e150
 def _put(k: Any, rows: Any, i: int, regime: int) -> None:
     first = COEFFICIENTS + 3 * k.c + 1 + i * k.width
     for which in range(k.width):
-        rows[first + which, 0] = k.table[regime, which]
+        rows[first + which, 0] = k.table[k.first[0, i] + regime, which]
     settle_stick(k, rows)
 
 
@@ -59,7 +59,7 @@ def _rises(k: Any, i: int, z: Any) -> Any:
 def _first_that_fits(k: Any, rows: Any, z: Any, i: int) -> Any:
     """Return the first regime of a contact that fits the state, the others' being as they are."""
     n, pressing = k.n, k.by_contact[OF_PRESS]
-    last = k.n_regimes // k.c - 1
+    last = k.first[0, i + 1] - k.first[0, i] - 1
     size_q, size_v, reach = abs(rows[PRELOAD, 0]), abs(rows[BELT, 0]), 0.0
     for j in range(n):
         if k.normals[j, i] != 0.0:

@@ -2,9 +2,9 @@
 
 import copy
 import hashlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 import xarray as xr
@@ -12,11 +12,29 @@ import xarray as xr
 from squealpipe.systems.joint import Joint
 from squealpipe.systems.linear.batch import LinearBatch, first_regimes
 from squealpipe.systems.linear.matrices import Caps, ContactMatrices
-from squealpipe.systems.linear.numbering import IS_CLOSED, Numbering
+from squealpipe.systems.linear.numbering import IS_CLOSED, IS_STUCK, LAG, Numbering
 from squealpipe.systems.system import System
+
+if TYPE_CHECKING:
+    from squealpipe.systems.cycles.flow import Flow
 
 WRITTEN = 4096
 """Numbers of a matrix up to which a dataset holds them; of larger ones it holds a digest."""
+
+
+class ContactJoint(Joint):
+    """Regimes of all contacts at once."""
+
+    def __init__(self, numbering: Any) -> None:
+        super().__init__(numbering, ())
+        self.numbering: Numbering = numbering
+
+    def _held(self, number: int) -> np.ndarray:
+        """(surface,) the sliding speeds of contacts that stick."""
+        own = list(self.regimes(number))
+        held = np.zeros((self.numbering.surfaces_of_a_contact, len(own)), dtype=bool)
+        held[LAG] = self.numbering.constants_of_regimes[own, IS_STUCK] > 0.0
+        return held.ravel()
 
 
 class LinearSystem(System):
@@ -32,9 +50,6 @@ class LinearSystem(System):
             :func:`.batch.numbers_of_runs`.
         outputs: name → unit, after those of the contacts.
         time_scale: typical time, s.
-        general: makes the same system of components, for what follows derivatives by symbols:
-            cycles, branches, curves, sensitivities and the horizon of predictability.
-        at_speed: makes the matrices of another ``belt_speed``; None: they do not change with it.
 
     Raises:
         ValueError: a name is taken.
@@ -54,14 +69,11 @@ class LinearSystem(System):
         coefficients: Sequence[tuple[str, str | None, Any]],
         outputs: Mapping[str, str],
         time_scale: float,
-        general: Callable[[], System],
-        at_speed: Callable[[float], ContactMatrices] | None = None,
     ) -> None:
         numbering: Any = Numbering(
             tuple(contacts), matrices.n_modes, matrices.pieces, len(outputs)
         )
-        self.name, self.matrices, self._make_general = name, matrices, general
-        self._at_speed = at_speed
+        self.name, self.matrices = name, matrices
         self.units = {key: unit for key, (unit, _) in states.items()}
         self.typical_sizes = {key: size for key, (_, size) in states.items()}
         self.coefficients = coefficients
@@ -92,7 +104,7 @@ class LinearSystem(System):
         Raises:
             ValueError: several speeds, where the matrices change with it.
         """
-        if self._at_speed is None:
+        if not self.matrices.by_speed:
             return self
         speeds = np.unique(np.asarray(values["belt_speed"], float))
         if len(speeds) > 1:
@@ -103,20 +115,21 @@ class LinearSystem(System):
         if speeds[0] == self.parameters["belt_speed"]:
             return self
         other = copy.copy(self)
-        other.matrices = self._at_speed(float(speeds[0]))
+        other.matrices = self.matrices.at(float(speeds[0]))
         other.parameters = {**self.parameters, "belt_speed": float(speeds[0])}
         other.form = other
         return other
 
     @cached_property
-    def general(self) -> System:
-        """The same system of components, traced; see ``general`` of the class."""
-        return self._make_general()
-
-    @cached_property
     def joint(self) -> Joint:
         """The regimes of all contacts at once."""
-        return Joint(self.traced, self.states)
+        return ContactJoint(self.numbering)
+
+    def flow(self, followed: Sequence[str] = (), scales: Any = None) -> "Flow":
+        """Return the motion along legs, with derivatives; see :class:`.cycles.flow.Flow`."""
+        from squealpipe.systems.cycles.linear_flow import LinearFlow
+
+        return LinearFlow(self, followed, scales)
 
     @cached_property
     def text(self) -> dict[str, str]:
@@ -141,7 +154,8 @@ class LinearSystem(System):
             ),
             *("springs", "preloads", "speeds", "laws", "pieces"),
         ):
-            array = np.asarray(getattr(matrices, name))
+            array = getattr(matrices, name)
+            array = np.vstack(array) if name == "pieces" else np.asarray(array)
             digest = hashlib.sha256(np.ascontiguousarray(array).tobytes()).hexdigest()
             small = array.size <= WRITTEN
             written[name] = str(array.tolist()) if small else f"sha256 {digest}"
@@ -185,37 +199,22 @@ class LinearSystem(System):
         """Return each output at the instants of a run; see :meth:`TracedSystem.outputs_along`."""
         m = self.matrices
         q, v = path[:, : m.n_modes], path[:, m.n_modes :]
-        own = np.maximum(regimes, 0) % len(self.numbering.regime_names)
-        closed = self.numbering.row_of_constants[own, IS_CLOSED]
+        closed = self.numbering.constants_of_regimes[np.maximum(regimes, 0), IS_CLOSED]
         force = closed * (m.preloads * values["preload"] - (q @ m.normals) * m.springs)
         speed = m.speeds * values["belt_speed"] - v @ m.tangentials
         pairs = np.stack([force, speed], 2).reshape(len(path), -1)
         return [*pairs.T, *(q @ m.shapes.T).T]
 
-    def simulate(self, *args: Any, **options: Any) -> xr.Dataset:
-        """One run, every switch located; see :func:`squealpipe.systems.runs.simulate`."""
-        if options.get("sensitivity"):
-            return self.general.simulate(*args, **options)
-        return super().simulate(*args, **options)
-
     def ensemble(self, *args: Any, **options: Any) -> xr.Dataset:
         """Many runs; see :func:`squealpipe.systems.runs.ensemble`."""
-        # lanes of different speeds have one set of matrices each
-        several = self._at_speed and np.ndim(options.get("belt_speed", 0.0))
-        if options.get("horizon") or several:
-            return self.general.ensemble(*args, **options)
-        return super().ensemble(*args, **options)
-
-    def limit_cycle(self, **options: Any) -> xr.Dataset:
-        """Find a periodic motion; see :meth:`squealpipe.System.limit_cycle`."""
-        return self.general.limit_cycle(**options)
-
-    def cycle_branch(self, parameter: str, to: float, **options: Any) -> xr.Dataset:
-        """Follow a branch of cycles; see :meth:`squealpipe.System.cycle_branch`."""
-        return self.general.cycle_branch(parameter, to, **options)
-
-    def cycle_curve(
-        self, label: str, parameters: Sequence[str], **options: Any
-    ) -> xr.Dataset:
-        """Follow a curve in two parameters; see :meth:`squealpipe.System.cycle_curve`."""
-        return self.general.cycle_curve(label, parameters, **options)
+        speeds = options.get("belt_speed", self.parameters["belt_speed"])
+        if not self.matrices.by_speed or np.ndim(speeds) != 1:
+            return super().ensemble(*args, **options)
+        # runs side by side share their matrices: one speed after another
+        found = [
+            super(LinearSystem, self).ensemble(
+                *args, **{**options, "belt_speed": [each]}
+            )
+            for each in np.asarray(speeds, float)
+        ]
+        return xr.concat(found, "belt_speed", data_vars="minimal")

@@ -1,4 +1,4 @@
-"""The loop of linear structures against matrix exponentials, SciPy, and systems of components."""
+"""The loop of linear structures against matrix exponentials, and SciPy."""
 
 import ctypes
 
@@ -8,13 +8,11 @@ import scipy.linalg as la
 from scipy.integrate import solve_ivp
 
 from squealpipe import Contact, Structure
-from squealpipe.structures.motion_system import component_system
 from squealpipe.systems.linear.batch import numbers_of_runs
 from squealpipe.systems.linear.loop import functions
 from squealpipe.systems.linear.plan import plan
-from squealpipe.systems.trace import TIME
 from tests.oracles.many_contacts import SAME, ManyContacts
-from tests.structures.test_many_contacts import instants, random_structure
+from tests.structures.test_many_contacts import instants
 
 
 def many_contacts(contacts, size, seed=0):
@@ -156,28 +154,12 @@ def test_friction_in_stick_is_of_the_least_norm(dependent):
     rows[:22, 0] = numbers_of_runs(
         system.matrices, system.coefficients, values, np.ones(1), address
     )[0]
-    stick = system.numbering.regime_names.index("stick")
-    rows[22:, 0] = np.tile(system.numbering.row_of_constants[stick], 6)
+    stick = [system.numbering.regime(i, "stick") for i in range(6)]
+    rows[22:, 0] = system.numbering.constants_of_regimes[stick].ravel()
     functions()["settle"].ctypes(ctypes.c_ssize_t(rows.ctypes.data))
     truth = np.linalg.pinv(system.matrices.mobility, rcond=1e-12, hermitian=True)
     assert table.arrays["counts"][1] == dependent
     assert table.arrays["held"] == pytest.approx(truth, rel=1e-9, abs=1e-9)
-
-
-def test_runs_start_in_the_regimes_that_components_start_in():
-    for seed in (1,):
-        structure, q, v = random_structure(seed)
-        fast, traced = structure.system(), component_system(structure)
-        rng = np.random.default_rng(seed)
-        states = np.vstack(
-            [np.concatenate([q, v]) * x for x in rng.normal(size=20)]
-            + [np.zeros(2 * structure.size)]
-        )
-        values = {name: states[:, i] for i, name in enumerate(fast.states)}
-        values |= {n: np.full(21, x) for n, x in fast.parameters.items()}
-        values |= {TIME: np.zeros(21)}
-        found = fast.first_regimes(values, 21)
-        assert (found == traced.first_regimes(values, 21)).all()
 
 
 def test_what_is_beyond_the_caps_says_what_it_would_take():
