@@ -20,6 +20,16 @@ class System(TracedSystem):  # noqa: D101 (that of the definition)
 
     simulate, ensemble, basin = simulate, ensemble, basin
 
+    def flow(self, followed: Sequence[str] = (), scales: Any = None) -> Any:
+        """Return the motion along legs, with derivatives by states and the followed parameters.
+
+        Args:
+            scales: in which states, times and parameters are numbers; None: in their own units.
+        """
+        from squealpipe.systems.cycles.flow import TracedFlow
+
+        return TracedFlow(self, followed, scales)
+
     def limit_cycle(
         self,
         *,

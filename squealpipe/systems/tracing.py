@@ -5,7 +5,7 @@ from copy import copy
 from dataclasses import replace
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -24,9 +24,6 @@ from squealpipe.systems.taylor.scalar import (
 from squealpipe.systems.taylor.symbols import Symbol, in_order, only, parameter, symbol
 from squealpipe.systems.text import describe
 from squealpipe.systems.trace import TIME, TIME_UNIT, Names, Traced, Tracer, long_name
-
-if TYPE_CHECKING:
-    from squealpipe.systems.cycles.flow import Flow
 
 _TRIED, _AGREES = 16, 1e-6
 """States and regimes in which units are tried, and the relative difference that is round-off."""
@@ -449,15 +446,9 @@ class TracedSystem(Definition):
         """The regimes of all components at once."""
         return Joint(self.traced, self.states)
 
-    def flow(self, followed: Sequence[str] = (), scales: Any = None) -> "Flow":
-        """Return the motion along legs, with derivatives by states and the followed parameters.
-
-        Args:
-            scales: in which states, times and parameters are numbers; None: in their own units.
-        """
-        from squealpipe.systems.cycles.flow import TracedFlow
-
-        return TracedFlow(self, followed, scales)
+    def flow(self, followed: Sequence[str] = (), scales: Any = None) -> Any:
+        """Return the motion along legs; see :meth:`squealpipe.System.flow`."""
+        raise NotImplementedError
 
     @cached_property
     def starts(self) -> Starts:

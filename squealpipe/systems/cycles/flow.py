@@ -1,7 +1,7 @@
 """Motion along legs of one regime each: a system's switches and fields as functions.
 
 Cycles are solved from a :class:`Flow`, whatever the system is made of: symbols, whose derivatives
-are symbols (:class:`TracedFlow`), or matrices (:mod:`squealpipe.systems.cycles.linear_flow`). The
+are symbols (:class:`TracedFlow`), or matrices (:mod:`squealpipe.systems.linear.flow`). The
 legs' Taylor series are the integrator's.
 """
 
@@ -93,7 +93,8 @@ class Flow(ABC):
 
     def following(self, *followed: str) -> Flow:
         """Return the flow of the same system with other followed parameters."""
-        return self.system.flow(followed, self.scales)
+        flow: Flow = self.system.flow(followed, self.scales)
+        return flow
 
     def scale_of(self, *names: str) -> Vector:
         """Return what 1 is here of states, parameters, outputs or ``time``, in their own units."""

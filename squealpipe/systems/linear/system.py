@@ -4,7 +4,7 @@ import copy
 import hashlib
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 import numpy as np
 import xarray as xr
@@ -14,9 +14,6 @@ from squealpipe.systems.linear.batch import LinearBatch, first_regimes
 from squealpipe.systems.linear.matrices import Caps, ContactMatrices
 from squealpipe.systems.linear.numbering import IS_CLOSED, IS_STUCK, LAG, Numbering
 from squealpipe.systems.system import System
-
-if TYPE_CHECKING:
-    from squealpipe.systems.cycles.flow import Flow
 
 WRITTEN = 4096
 """Numbers of a matrix up to which a dataset holds them; of larger ones it holds a digest."""
@@ -125,9 +122,9 @@ class LinearSystem(System):
         """The regimes of all contacts at once."""
         return ContactJoint(self.numbering)
 
-    def flow(self, followed: Sequence[str] = (), scales: Any = None) -> "Flow":
+    def flow(self, followed: Sequence[str] = (), scales: Any = None) -> Any:
         """Return the motion along legs, with derivatives; see :class:`.cycles.flow.Flow`."""
-        from squealpipe.systems.cycles.linear_flow import LinearFlow
+        from squealpipe.systems.linear.flow import LinearFlow
 
         return LinearFlow(self, followed, scales)
 

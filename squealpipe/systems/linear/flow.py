@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import scipy.linalg as la
@@ -51,9 +51,6 @@ from squealpipe.systems.linear.numbering import (
 from squealpipe.systems.linear.plan import plan
 from squealpipe.systems.scales import Scales
 from squealpipe.systems.taylor.lanes import Workspace, taylor_terms
-
-if TYPE_CHECKING:
-    from squealpipe.systems.linear.system import LinearSystem
 
 TINY = 1e-40
 """Imaginary part by which derivatives are taken: its square is nothing beside any number."""
@@ -249,13 +246,11 @@ class LinearFlow(Flow):
     """Legs and switches of a linear structure."""
 
     def __init__(
-        self,
-        system: LinearSystem,
-        followed: Sequence[str] = (),
-        scales: Scales | None = None,
+        self, system: Any, followed: Sequence[str] = (), scales: Scales | None = None
     ) -> None:
         super().__init__(system, followed, scales)
-        self.linear: LinearSystem = system
+        self.matrices: ContactMatrices = system.matrices
+        self.coefficients = system.coefficients
         self.numbering: Numbering = system.numbering
         self._affine: dict[Any, Affine] = {}
         self._room = 64
@@ -263,11 +258,11 @@ class LinearFlow(Flow):
     @property
     def is_affine(self) -> bool:
         """Whether friction depends on no speed."""
-        return not self.linear.matrices.curved
+        return not self.matrices.curved
 
     def _forces(self, values: Mapping[str, Any], regime: int, state: Any) -> Forces:
-        matrices = self.linear.matrices.at(values["belt_speed"])
-        given = coefficients_of_contacts(matrices, self.linear.coefficients, values)
+        matrices = self.matrices.at(values["belt_speed"])
+        given = coefficients_of_contacts(matrices, self.coefficients, values)
         own = list(self.system.joint.regimes(regime))
         return Forces(
             matrices,
@@ -349,7 +344,7 @@ class LinearFlow(Flow):
     ) -> Vector:
         """Return derivatives of the rates at many states in one regime, (n, n + p, nodes, many)."""
         flat = states.reshape(self.size, -1)
-        here, m = self._forces(values, regime, flat), self.linear.matrices
+        here, m = self._forces(values, regime, flat), self.matrices
         still = self._forces(values, regime, np.zeros(self.size))
         # what slip friction makes of the state, carried on by what sticks
         drags = m.drags + m.drags[:, still.stuck] @ (still.held @ m.drags)
@@ -467,13 +462,13 @@ class LinearFlow(Flow):
         durations: Vector,
     ) -> Path:
         """Run legs from states (legs, n), each in its regime for its duration."""
-        matrices = self.linear.matrices.at(values["belt_speed"])
+        matrices = self.matrices.at(values["belt_speed"])
         numbering, n = self.numbering, self.size
         table, unit = plan(matrices, numbering), self.unit(values)
         runs = {name: np.array([values[name]]) for name in self.system.parameters}
         given = numbers_of_runs(
             matrices,
-            self.linear.coefficients,
+            self.coefficients,
             runs,
             np.array([unit]),
             table.pointer.value or 0,
