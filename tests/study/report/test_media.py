@@ -5,8 +5,9 @@ import re
 
 import pytest
 
+from squealpipe.plotting.sound import SAMPLING_RATE
 from squealpipe.study.report.media import media_of
-from tests.plotting.test_sound import RATE, heard, strongest
+from tests.plotting.test_sound import heard, strongest
 from tests.plotting.test_structure_motion import swaying
 
 __all__ = ["swaying"]
@@ -23,7 +24,7 @@ def test_film_and_sound_are_data_below_200_kb_each(elements):
         assert len(content) < 200_000
     wav = re.search(r'audio/wav;base64,([^"]+)"', elements)[1]
     samples = heard(base64.b64decode(wav))
-    assert strongest(samples, RATE) == pytest.approx(500.0, abs=1.0)
+    assert strongest(samples, SAMPLING_RATE) == pytest.approx(500.0, abs=1.0)
     assert "http" not in elements
 
 
