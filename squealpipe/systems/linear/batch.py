@@ -7,11 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from squealpipe.systems.cycles.sensitivity import growth
 from squealpipe.systems.integrate import Batch, RunOptions, table_of
 from squealpipe.systems.linear.loop import functions, loop
 from squealpipe.systems.linear.matrices import COULOMB, TABLE, ContactMatrices
 from squealpipe.systems.linear.numbering import MARGIN, Numbering
 from squealpipe.systems.linear.plan import plan
+from squealpipe.systems.record import single_run
 
 
 def coefficients_of_contacts(
@@ -87,9 +89,6 @@ class LinearBatch(Batch):
 
     def _growth(self, run: int) -> tuple[float, float]:
         """Return the growth of a perturbation of a run, and its horizon, s."""
-        from squealpipe.systems.cycles.sensitivity import growth
-        from squealpipe.systems.record import single_run
-
         system: Any = self.system
         values = {
             name: float(np.broadcast_to(self.values[name], self.size)[run])

@@ -11,6 +11,7 @@ import xarray as xr
 
 from squealpipe.systems.joint import Joint
 from squealpipe.systems.linear.batch import LinearBatch, first_regimes
+from squealpipe.systems.linear.flow import LinearFlow
 from squealpipe.systems.linear.matrices import Caps, ContactMatrices
 from squealpipe.systems.linear.numbering import IS_CLOSED, IS_STUCK, LAG, Numbering
 from squealpipe.systems.system import System
@@ -124,8 +125,6 @@ class LinearSystem(System):
 
     def flow(self, followed: Sequence[str] = (), scales: Any = None) -> Any:
         """Return the motion along legs, with derivatives; see :class:`.cycles.flow.Flow`."""
-        from squealpipe.systems.linear.flow import LinearFlow
-
         return LinearFlow(self, followed, scales)
 
     @cached_property
