@@ -19,6 +19,7 @@ from squealpipe.laws.springs import fixed_ends, geometry
 from squealpipe.parameters import NUMBERS_OF_A1, Parameters
 from squealpipe.schema import Outcome, blank, build
 from squealpipe.schema.origin import recorded
+from squealpipe.systems.cycles.described import columns
 from squealpipe.systems.cycles.event_map import FREE
 from squealpipe.systems.cycles.find import find_cycle
 from squealpipe.systems.cycles.solution import Cycle
@@ -143,21 +144,15 @@ def numbers(cycle: Cycle) -> dict[str, Any]:
         regime: float(cycle.parts.durations[during == regime].sum()) / cycle.period
         for regime in (Regime.separated, Regime.stick)
     }
-    scales = cycle.map.flow.scale_of(*STATE, "contact_force")
-    low, high = cycle.extremes[:, : len(scales)] * scales
+    known = columns(cycle, cycle.map.flow.system)
+    names = ["period", "x_min", "x_max", "y_min", "y_max"]
+    names += ["stable", "multiplier_real", "multiplier_imag"]
     return {
-        "period": cycle.period * cycle.second,
-        "x_min": low[0],
-        "x_max": high[0],
-        "y_min": low[1],
-        "y_max": high[1],
+        **{name: known[name] for name in names},
         "contact_fraction": 1.0 - share[Regime.separated],
         "stick_fraction": share[Regime.stick],
-        "least_contact_force": max(low[4], 0.0),
+        "least_contact_force": max(known["contact_force_min"], 0.0),
         "residual": cycle.closing_error,
-        "stable": int(cycle.is_stable),
-        "multiplier_real": cycle.multipliers.real,
-        "multiplier_imag": cycle.multipliers.imag,
     }
 
 
