@@ -2,8 +2,8 @@
 
 Idea: the modes at two frictions span those in between to high accuracy, so they are followed in
 that small space; at each friction that is asked for, each is confirmed in the whole by its residual
- and refined. Invariant: what is returned was refined in the
-whole structure. Cost: one factorization of the whole for each group of near modes.
+and refined. Invariant: what is returned was refined in the whole structure. Cost: one factorization
+of the whole for each group of near modes.
 """
 
 from collections.abc import Sequence

@@ -3,7 +3,7 @@
 Idea: q̈ is linear in q, v and the contact forces, so a structure is its matrices and, for each
 contact, a regime: open, slipping either way, or stuck. A stuck contact adds a constraint on the
 acceleration along its direction; contacts that stick together share one small system for their
-friction forces.  The switches are those of the rigid pad of A1.
+friction forces. The switches are those of the rigid pad of A1.
 """
 
 from collections.abc import Mapping, Sequence

@@ -1,7 +1,7 @@
 """Describe a cycle that was solved for: stability, extremes, and states in time.
 
 Idea: the derivative of one turn is the product of the derivatives of the legs and of the saltation
-matrices between them; its eigenvalues are the Floquet multipliers.  Cost: one run of a period with
+matrices between them; its eigenvalues are the Floquet multipliers. Cost: one run of a period with
 derivatives, which is kept.
 """
 

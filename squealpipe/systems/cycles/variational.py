@@ -23,8 +23,6 @@ _TOGETHER, _ALIKE, _FINEST = 20_000, 1_250, 64
 (of a stiff motion the one that needs most needs twice as many as the others), and most pieces of
 one step."""
 
-LONGEST_STEP = 1.0
-"""Longest step of the variational equations times a bound of its rate."""
 
 _NODES, _WEIGHTS, _UP_TO = gauss(6)
 
@@ -38,6 +36,8 @@ def leg_derivatives(flow: Flow, values: Mapping[str, float], path: Path) -> Vect
     found = np.zeros((len(path.regimes), flow.columns, flow.columns))
     found[:] = np.eye(flow.columns)
     steps, first = len(path.steps), 0
+    # of the variational equations, times a bound of its rate
+    longest_step = 1.0
     while first < steps:
         # a step of a stiff motion needs many pieces; that of most motions needs one
         block = slice(first, min(first + _ALIKE, steps))
@@ -45,7 +45,7 @@ def leg_derivatives(flow: Flow, values: Mapping[str, float], path: Path) -> Vect
         rate = _largest_rate(slopes[:, : flow.size])
         with np.errstate(invalid="ignore"):
             needed = (
-                float(np.nanmax(np.abs(lengths) * rate, initial=0.0)) / LONGEST_STEP
+                float(np.nanmax(np.abs(lengths) * rate, initial=0.0)) / longest_step
             )
         pieces = 1
         if math.isfinite(needed):

@@ -30,12 +30,6 @@ Given = ParamSpec("Given")
 Result = TypeVar("Result")
 
 
-UNITS_OF_ARGUMENTS = {
-    **dict.fromkeys(("t_start", "t_end", "t_late", "t_settle", "times", "last"), "s"),
-    **dict.fromkeys(("tol", "smoothed_tol"), "1"),
-}
-"""CF units of the options of all systems, whose values may be texts with a unit."""
-
 Arguments = tuple[list[Any], dict[str, Any]]
 
 
@@ -48,9 +42,16 @@ def options_in_si(
         ValueError: a quantity of another kind; names the argument.
     """
     known = dict(zip(names, args, strict=False)) | dict(kwargs)
+    # CF units of the options of all systems, whose values may be texts with a unit
+    units_of_arguments = {
+        **dict.fromkeys(
+            ("t_start", "t_end", "t_late", "t_settle", "times", "last"), "s"
+        ),
+        **dict.fromkeys(("tol", "smoothed_tol"), "1"),
+    }
     read = {
-        name: numbers_in_si(name, value, UNITS_OF_ARGUMENTS[name])
-        if name in UNITS_OF_ARGUMENTS and value is not None
+        name: numbers_in_si(name, value, units_of_arguments[name])
+        if name in units_of_arguments and value is not None
         else value
         for name, value in known.items()
     }

@@ -27,15 +27,8 @@ from squealpipe.systems.taylor.switching import SLACK, gauge
 
 RATES = 1e-14
 """Round-off of a rate, relative to it."""
-TERMS = 1e-13
-"""Round-off of a surface or output, relative to its terms."""
-TINY = 1e-300
-"""Of a surface or output below this too few digits are left to compare."""
 HELPLESS = 1e5
 """A difference below this many tolerances that a halved step does not halve is round-off."""
-JUMP = 1e-4
-"""A rate jumps in a step across the root of a base (``bases``) if it changes there by so many sizes
-of its state, over the longest step of late."""
 FINEST = 2.0**-52
 """Share of the time reached below which there is no step, and of the whole run below which steps
 that move nothing lead nowhere."""
@@ -146,7 +139,10 @@ def _jumps(t: Any, m: Any, c: Any, lane: int) -> bool:
         if m.steep[variable]:
             change = abs(m.exact[variable, lane] - c[variable, 1, lane])
             most = max(most, change * m.units[variable, lane])
-    return bool(most * reach > JUMP)
+    # a rate jumps in a step across the root of a base (``bases``) if it changes there by so many
+    # sizes of its state, over the longest step of late
+    jump = 1e-4
+    return bool(most * reach > jump)
 
 
 @part
@@ -155,7 +151,11 @@ def _event_gap(t: Any, m: Any, c: Any, lane: int, event: int) -> float:
     index, terms = t.n_variables + event, m.scratch[2, 3 * event + 1]
     exact = m.exact[t.n_states + event, lane]
     size = max(abs(c[index, 0, lane]), abs(exact))
-    limit = max(m.share[0] * size, TERMS * terms, TINY)
+    # of a surface or output, relative to its terms
+    round_off = 1e-13
+    # a surface or output below this has too few digits left to compare
+    tiny = 1e-300
+    limit = max(m.share[0] * size, round_off * terms, tiny)
     if event < t.n_surfaces and m.fresh[event] & (1 << lane):
         limit += max(SLACK, m.share[1]) * terms
     gap = abs(evaluate(c, index, lane, m.rows[layout.STEP, lane]) - exact)

@@ -20,8 +20,6 @@ from squealpipe.systems.taylor.step import reach, step_length
 _numba: Any = numba
 FIRST_PARAMETER = 3
 """The row of the first parameter, after those of the steps that ``shorten`` reads and writes."""
-_SWEEPS = 19
-"""Picard's iterations for a step whose length times the rate is 1: 1/19! is round-off."""
 _TOGETHER = 4096
 """Entries of all states' derivatives at one node that are iterated together: six nodes of rates and
 states fill 400 kB, a processor's second cache. Of twice as many, rates wait for the memory."""
@@ -229,13 +227,15 @@ def transfer(
     rates = np.empty((nodes, n, columns, together))
     states = np.empty((nodes, n, columns, together))
     growth = np.empty((n, columns))
+    # Picard's iterations for a step whose length times the rate is 1: 1/19! is round-off
+    sweeps = 19
     for first in range(0, steps, together):
         size = min(together, steps - first)
         if size < together:
             rates = np.empty((nodes, n, columns, size))
             states = np.empty((nodes, n, columns, size))
         rates[:] = 0.0
-        for _ in range(_SWEEPS):
+        for _ in range(sweeps):
             _integrate(rates, up_to, states)
             _multiply(slopes, lengths, first, states, rates)
         for s in range(size):

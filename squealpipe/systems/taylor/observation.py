@@ -1,4 +1,11 @@
-"""What is noted of a step: extremes, turns, samples and what has added up."""
+"""Note what a step shows: extremes, turns, samples and what has added up.
+
+Idea: the series of a step are at hand, so nothing is integrated again. A sample is a value of its
+polynomial. A quantity leaves the span of its ends within a step by at most h²/8 times its second
+derivative: only where that could be a record are turning points located, as zeros of the rate, by
+Newton's method. Invariant: extremes lie between samples as well, and do not depend on how often a
+run is sampled. Cost: a few operations a step of all lanes; turning points only near records.
+"""
 
 import math
 from typing import Any
@@ -19,10 +26,6 @@ from squealpipe.systems.taylor.simd import (
     store,
 )
 
-REST = 2e-4
-"""Share of a quantity that the higher orders of its second derivative add to a step's span."""
-MOST_TURNS = 60
-"""Newton iterations for an extremum; two do where the step is short beside the oscillation."""
 PIECES = 8
 """Pieces of a step in which turning points are looked for, where there may be several."""
 
@@ -46,12 +49,14 @@ def extremes_inside(c: Any, index: int, lane: int, begin: float, end: float) -> 
         plain = bend * last_bend > 0.0
     pieces = 1 if plain else PIECES
     left, width = begin, step / pieces
+    # Newton iterations for an extremum; two do where the step is short beside the oscillation
+    most_iterations = 60
     for _ in range(pieces):
         right = left + width
         _, after, _ = evaluate_twice(c, index, lane, right)
         if before * after < 0.0:
             a, b, time = left, right, left + width * before / (before - after)
-            for _ in range(MOST_TURNS):
+            for _ in range(most_iterations):
                 value, slope, bend = evaluate_twice(c, index, lane, time)
                 if slope * before > 0.0:
                     a = time
@@ -89,6 +94,8 @@ def observe(t: Any, m: Any, c: Any, first_extreme: int, busy: int) -> None:
     """
     at, terms = t.rows, t.n_terms
     step, zero = load(at + layout.STEP * ROW), splat(0.0)
+    # share of a quantity that the higher orders of its second derivative add to a step's span
+    rest = 2e-4
     for index in range(t.n_tracked):
         variable = m.tracked[index, 0]
         series, r = t.series + variable * terms * ROW, first_extreme + 2 * index
@@ -99,7 +106,7 @@ def observe(t: Any, m: Any, c: Any, first_extreme: int, busy: int) -> None:
             load(series + 4 * ROW)
         )
         bend = step * step * (0.25 * magnitude(load(series + 2 * ROW)) + step * bend)
-        beyond = bend + REST * larger(magnitude(start), magnitude(end))
+        beyond = bend + rest * larger(magnitude(start), magnitude(end))
         row = at + r * ROW
         least, most = smaller(low, load(row)), larger(high, load(row + ROW))
         store(row, least)

@@ -14,12 +14,8 @@ from squealpipe.systems.compiled import part, polynomial
 NO_ROOT, UNDECIDED = -1.0, -2.0
 FINEST = 2.0**-48
 """Share of a step below which round-off hides what an undecided interval holds."""
-ROUND_OFF = 1e-15
-"""Of a polynomial, over the sum of its terms."""
 UNSURE = 1e-6
 """Share of a step: a root that round-off hides by more on both sides is a multiple one."""
-MOST_LOOKS = 20_000
-"""Intervals of one step that are looked at."""
 
 
 class End(NamedTuple):
@@ -89,7 +85,9 @@ def hidden_below(coefficients: Any, variable: int, lane: int, step: float) -> An
     size = 0.0
     for k in range(coefficients.shape[1] - 1, -1, -1):
         size = size * step + abs(coefficients[variable, k, lane])
-    return ROUND_OFF * size
+    # of a polynomial, over the sum of its terms
+    round_off = 1e-15
+    return round_off * size
 
 
 @part
@@ -131,7 +129,8 @@ def first_root(
     floor = hidden_below(coefficients, variable, lane, step)
     left, right, band, band_side = start, step, start, 0.0
     p0, s0, b0 = evaluate_twice(coefficients, variable, lane, left)
-    for _ in range(MOST_LOOKS):
+    most_intervals = 20_000
+    for _ in range(most_intervals):
         p1, s1, b1 = evaluate_twice(coefficients, variable, lane, right)
         ends = End(left, p0, s0, b0), End(right, p1, s1, b1)
         width = right - left

@@ -32,11 +32,6 @@ from squealpipe.systems.taylor.symbols import (
 )
 
 Name = Callable[[Symbol], str]
-SWEEPS = 5
-"""Gauss–Seidel sweeps over the stages of the perturbation; each gains a digit or two."""
-LONGEST = 0.8
-"""Longest step of the perturbation times a bound of its rate: the sweeps leave 1e-7 of it, and few
-steps of a moving state are longer."""
 
 
 def gauss(points: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -60,17 +55,6 @@ PARTNERS: dict[str, Callable[[Symbol], Symbol]] = {
     "asin": lambda node: slope_of_asin(node.arguments[0]),
 }
 """Whose lower orders the recurrence of a function reads in place of its own."""
-HIDDEN = {"exp": 20.0, "tanh": 10.0}
-"""Functions whose coefficients vanish to nothing, and the argument beyond which they begin to."""
-SEARCHES, LEAST = 6, 1e-12
-"""Tries to make such a step long, and the least share of the step that is left."""
-SHARE, CLOSE = 0.3, 2.0
-"""How far such an argument may go in a step: a share of what lies beyond, and at least so far."""
-MOST_DEGREE = 2
-"""Of polynomials that are as good as the states: order K of uⁿ is up to n^K times that of u."""
-TANH = "(splat(1.0) - splat(2.0) / (exp({0} + {0}) + splat(1.0)))"
-TOGETHER = 2
-"""Convolutions in one loop: their sums fill the registers of AVX2."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,8 +86,11 @@ class HybridSystem:
     @property
     def bent(self) -> np.ndarray:
         """(events,) 1 where a surface or an output shows less in its series than the states do."""
+        # polynomials up to this degree are as good as the states: order K of uⁿ is up to n^K
+        # times that of u
+        most_degree = 2
         return np.array(
-            [degree(event) > MOST_DEGREE for event in self.events], np.int64
+            [degree(event) > most_degree for event in self.events], np.int64
         )
 
     def checked(self) -> dict[int, Symbol]:
@@ -407,10 +394,12 @@ class _SeriesWriter:
 
     def shorten(self) -> str:
         """Source of ``shorten(base, parameters, row, terms)``: see :func:`shorten_source`."""
+        # coefficients of these functions vanish to nothing beyond these arguments
+        hidden_beyond = {"exp": 20.0, "tanh": 10.0}
         inner = {
-            id(n.arguments[0]): (n.arguments[0], HIDDEN[n.kind])
+            id(n.arguments[0]): (n.arguments[0], hidden_beyond[n.kind])
             for n in self.moving
-            if n.kind in HIDDEN
+            if n.kind in hidden_beyond
         }
         bases = bases_of(self.moving, [*self.system.rates, *self.system.events])
         if not (inner or bases):
@@ -427,15 +416,23 @@ class _SeriesWriter:
             else:
                 code = constant(self.system, node, self._v)
             lines.append(f"{self._v(node)} = {code}")
+        # tries to make such a step long
+        searches = 6
+        # of the step that is left
+        least_share = 1e-12
+        # such an argument may go in a step over this share of what lies beyond, and at least so
+        # far:
+        share_of_argument = 0.3
+        least_argument = 2.0
         for node, idle in inner.values():
             series = self.place[id(moving_part(node))]
             lines += [
                 f"s = base + {series} * stride",
-                f"m = (abs({self._v(node)}) - splat({idle!r})) * splat({SHARE!r})",
-                f"m = larger(m, splat({CLOSE!r}))",
+                f"m = (abs({self._v(node)}) - splat({idle!r})) * splat({share_of_argument!r})",
+                f"m = larger(m, splat({least_argument!r}))",
                 "x = h",
-                f"low = h * splat({LEAST!r})",
-                f"for i in range({SEARCHES}):",
+                f"low = h * splat({least_share!r})",
+                f"for i in range({searches}):",
                 f" u = abs(load(s + (terms - 1) * {simd.ROW}))",
                 " for k in range(terms - 2, 0, -1):",
                 f"  w = abs(load(s + k * {simd.ROW}))",
@@ -600,7 +597,10 @@ def longest_source(system: HybridSystem) -> str:
             lines.append(f"r{i}_{power} = {' + '.join(terms) or 'splat(0.0)'}")
         sums = [f"r{i}_{power}" for i in range(size)]
     bound = functools.reduce(lambda a, b: f"larger({a}, {b})", sums)
-    lines.append(f"store(row, splat({LONGEST!r}) / root(root({bound})))")
+    # longest step of the perturbation times a bound of its rate: the sweeps leave 1e-7 of it, and
+    # few steps of a moving state are longer
+    longest = 0.8
+    lines.append(f"store(row, splat({longest!r}) / root(root({bound})))")
     head = "def longest(base, parameters, row, terms):"
     return "\n".join([head, *(f" {line}" for line in lines)]) + "\n"
 
@@ -658,10 +658,12 @@ def _collocation(
         return " + ".join(terms) or "splat(0.0)"
 
     yield from (f"w{i}_{stage} = z{i}" for i in range(size) for stage in stages)
-    for sweep in range(SWEEPS + 1):
+    # Gauss–Seidel sweeps over the stages of the perturbation; each gains a digit or two
+    sweeps = 5
+    for sweep in range(sweeps + 1):
         for i in range(size):
             yield from (f"k{i}_{stage} = {rate(i, stage)}" for stage in stages)
-            if sweep < SWEEPS:
+            if sweep < sweeps:
                 for stage in stages:
                     row = zip(stages, GAUSS_MATRIX[stage], strict=True)
                     total = " + ".join(
@@ -685,7 +687,8 @@ def pointwise(node: Symbol, name: Name) -> str:
     if node.kind == "only":
         return f"only({', '.join(map(name, node.arguments))})"
     if node.kind in FUNCTIONS:
-        code = TANH if node.kind == "tanh" else f"{node.kind}({{0}})"
+        tanh = "(splat(1.0) - splat(2.0) / (exp({0} + {0}) + splat(1.0)))"
+        code = tanh if node.kind == "tanh" else f"{node.kind}({{0}})"
         return code.format(name(node.arguments[0]))
     base, exponent = node.arguments
     value = name(base) if exponent > 0.0 else f"(splat(1.0) / {name(base)})"
@@ -729,6 +732,8 @@ def _with_partners(nodes: list[Symbol]) -> list[Symbol]:
 
 
 def _groups(values: list[Any]) -> Iterator[list[Any]]:
+    # the sums of so many convolutions in one loop fill the registers of AVX2
+    together = 2
     return (
-        values[first : first + TOGETHER] for first in range(0, len(values), TOGETHER)
+        values[first : first + together] for first in range(0, len(values), together)
     )

@@ -154,10 +154,6 @@ def _of_libm(name: str) -> Callable[..., Any]:
     return generate
 
 
-_OF_LLVM = ("fma", "exp", "log", "sin", "cos", "pow", "copysign")
-_OF_LIBM = ("tanh", "sinh", "cosh", "atan", "asin")
-
-
 def _bits_below(builder: Any, first: Any, second: Any) -> Any:
     below = builder.fcmp_ordered("<", first, second)
     return builder.zext(
@@ -248,12 +244,14 @@ smaller: Any = _intrinsic(
 
 def written(width: int) -> dict[str, Any]:
     """What generates each function of written code, by its name there."""
+    of_llvm = ("fma", "exp", "log", "sin", "cos", "pow", "copysign")
+    of_libm = ("tanh", "sinh", "cosh", "atan", "asin")
     return {
-        **{name: _called(name) for name in _OF_LLVM},
+        **{name: _called(name) for name in of_llvm},
         "bits_below": _bits_below,
         "root": _called("sqrt"),
         "abs": _called("fabs"),
-        **{name: _of_libm(name) for name in _OF_LIBM},
+        **{name: _of_libm(name) for name in of_libm},
         "min": lambda builder, a, b: _choose_below(builder, b, a, b, a),
         "put": _put,
         "load": partial(_load, width=width),

@@ -1,4 +1,12 @@
-"""How long a Taylor step of all lanes is, and where it ends in a lane that crosses a surface."""
+"""Choose the length of a Taylor step of all lanes, and end it in a lane that crosses a surface.
+
+Idea: the last two orders of the series bound the error, which gives the length of the step (Jorba
+and Zou 2005; Biscani 2021); series of surfaces and outputs have to have converged as well. A
+surface whose ends are further from zero than it bends has no root, which most lanes show at once;
+the others are searched for the first root of their polynomials. Where round-off hides a root the
+step is cut short before it. Invariant: no crossing within a step is passed over that the round-off
+of its terms does not hide. Cost: without crossings, a few operations a surface for all lanes.
+"""
 
 import math
 from typing import Any
@@ -39,19 +47,6 @@ SPARE = 100.0
 """What the last orders of such a series may be more than those of the states."""
 FITS = 4
 """Times that a step is fitted to the size of a series, which depends on the step."""
-SUSPECT = 1e6
-"""A root that this many times the round-off would hide may be hidden by that of its terms."""
-SOON = 1e-2
-"""Share of a step: a surface that returns to zero by then may chatter. Its root is uncertain by no
-more than half of this time."""
-LEAST = 0.1
-"""Share of a step to which it may be shortened where round-off hides a surface at its end."""
-FADING = 0.95
-"""What a step leaves of the longest one of late; near a root of a base steps shrink by half."""
-RESOLVED = 2.0**-50
-"""Share of the time reached below which no step is shortened: the state would not move."""
-NOTHING = 1e-30
-"""Below the round-off of any quantity."""
 
 
 @inline
@@ -83,10 +78,12 @@ def reach(series: int, terms: int) -> Any:
     order may be left out. Of a quantity that is kept at zero all orders are round-off.
     """
     reach, tiny = splat(0.0), splat(1e-300)
+    # below the round-off of any quantity
+    nothing = 1e-30
     for low in (0, 1, 2):
         base, nearer = magnitude(load(series + low * ROW)), splat(np.inf)
         if low == 0:
-            base = splat(NOTHING)
+            base = splat(nothing)
         for high in (terms - 3, terms - 2):
             last = magnitude(load(series + high * ROW))
             power = rough_power(
@@ -220,11 +217,17 @@ def take_step(t: Any, m: Any, parameters: int) -> Any:
         left = left - load(at + layout.CORRECTION * ROW)
         step = shorten_steps(t, m, smaller(step, left))
     if t.shorten:
-        reached = load(at + layout.REACH * ROW) * splat(FADING)
+        # what a step leaves of the longest one of late; near a root of a base steps shrink by
+        # half
+        fading = 0.95
+        reached = load(at + layout.REACH * ROW) * splat(fading)
         store(at + layout.REACH * ROW, larger(reached, step))
         store(at + layout.STEP * ROW, step)
         call(t.shorten, (base, parameters, at + layout.STEP * ROW, terms))
-        resolved = magnitude(load(at + layout.CLOCK * ROW)) * splat(RESOLVED)
+        # of the time reached: a step below it would not move the state, and none is shortened to
+        # that
+        resolved_share = 2.0**-50
+        resolved = magnitude(load(at + layout.CLOCK * ROW)) * splat(resolved_share)
         short, least = load(at + layout.STEP * ROW), smaller(step, resolved)
         across = load(at + layout.ACROSS * ROW)
         across = choose_below(short, least, splat(1.0), across)
@@ -286,10 +289,12 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
         if earlier or which < integers[layout.HIT, lane]:
             first, integers[layout.HIT, lane] = min(root, first), which
             winner = surface
+    # a step may be shortened to this share of it where round-off hides a surface at its end
+    least_share = 0.1
     if winner >= 0:
         at_once = (m.beyond[winner] | m.fresh[winner]) & bit and first == 0.0
         unclear = not at_once and _is_hidden(t, m, c, lane, winner, step, first)
-    elif complete > LEAST * step:  # the rest is looked at from there
+    elif complete > least_share * step:  # the rest is looked at from there
         first = min(first, complete)
         unclear = False
     if unclear:
@@ -310,10 +315,15 @@ def _is_hidden(
     index = t.n_variables + surface
     span = min(m.rows[layout.NATURAL, lane], m.rows[layout.T_END, lane])
     within = step
-    if m.fresh[surface] & (1 << lane) and root <= SOON * span:
+    # share of a step: a surface that returns to zero by then may chatter; its root is uncertain
+    # by no more than half of this time
+    soon = 1e-2
+    if m.fresh[surface] & (1 << lane) and root <= soon * span:
         span, within = max(span, 0.5 * root / UNSURE), min(step, 2.0 * root)
     floor = hidden_below(c, index, lane, within)
-    if not is_hidden(c, index, lane, span, root, SUSPECT * floor):
+    # a root that this many times the round-off would hide may be hidden by that of its terms
+    suspect = 1e6
+    if not is_hidden(c, index, lane, span, root, suspect * floor):
         return False
     for variable in range(t.n_variables):
         value = evaluate(c, variable, lane, root)

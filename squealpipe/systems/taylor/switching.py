@@ -1,4 +1,11 @@
-"""What a switch does: reset, regime entered, count and log, and a perturbation across it."""
+"""Carry out a switch: reset, regime entered, count and log, and a perturbation across it.
+
+Idea: after an event the state is reset, one component changes its regime, and the constants of its
+regime are loaded; then each surface that the new regime watches gets the sign that it starts from.
+What was just crossed starts from exactly zero, whatever round-off has left at its root, or it would
+fire again. A perturbation is carried over by the saltation matrix. Invariant: a surface that the
+state is beyond fires at once, and a clock's tick counts once. Cost: one lane at a time.
+"""
 
 import math
 from typing import Any
@@ -13,10 +20,6 @@ SLACK = 1e-13
 """A surface lies within this of zero where round-off hides its sign, over the terms that cancel."""
 NOISE = 1e-15
 """Round-off of a surface's polynomial and of its rate, likewise."""
-SAME_TICK = 1e-6
-"""A clock that fired less than this share of its unit of time before has not come round again."""
-CHAIN = 64
-"""Switches of a component without progress in time that end a run."""
 
 
 @part
@@ -57,7 +60,10 @@ def _watch_clock(m: Any, lane: int, surface: int, gauged: Any) -> None:
     if abs(height) <= SLACK * terms:
         m.fresh[surface] |= 1 << lane
         now = m.rows[layout.CLOCK, lane]
-        if (now - m.ticked[surface, lane]) * rate <= SAME_TICK * terms:
+        # a clock that fired less than this share of its unit of time before has not come round
+        # again
+        same_tick = 1e-6
+        if (now - m.ticked[surface, lane]) * rate <= same_tick * terms:
             m.ticked[surface, lane] = now
 
 
@@ -255,9 +261,11 @@ def switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
 def _may_end(t: Any, m: Any, lane: int, kind: int, count: int) -> None:
     """End a run at the event that it waits for, or that makes too many."""
     integers, job = m.integers, m.integers[layout.JOB, lane]
+    # so many switches of a component without progress in time end a run
+    longest_chain = 64
     if kind == t.until:
         integers[layout.OUTCOME, lane] = layout.BY_EVENT
-    elif integers[layout.CHAINED, lane] >= CHAIN * t.n_components:
+    elif integers[layout.CHAINED, lane] >= longest_chain * t.n_components:
         integers[layout.OUTCOME, lane] = layout.ACCUMULATION
     elif count >= m.limits[job, 3]:
         integers[layout.OUTCOME, lane] = layout.EVENT_LIMIT
