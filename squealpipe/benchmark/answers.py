@@ -19,8 +19,6 @@ from squealpipe.benchmark.scoring import (
     score,
 )
 
-NEEDED_KEYS = ("problem", "tolerance", "times", "kinds", "state")
-
 
 def problems_as_json() -> str:
     """All problems with their equations, and their references, as one JSON text."""
@@ -81,14 +79,15 @@ def _check(place: str, answer: Any, known: Mapping[str, Any]) -> None:
         raise ValueError(  # noqa: TRY004 (of a file, not of an argument)
             f"{place} is {answer!r}; an object is needed"
         )
-    for key in NEEDED_KEYS:
+    needed_keys = ("problem", "tolerance", "times", "kinds", "state")
+    for key in needed_keys:
         if key not in answer:
             raise ValueError(f"{place} lacks {key!r}")
     # an answer may leave these out; what is left out is not judged
     optional_keys = ("evaluations", "flag", "derivative", "cpu_time")
     for key in answer:
-        if key not in (*NEEDED_KEYS, *optional_keys):
-            allowed = ", ".join((*NEEDED_KEYS, *optional_keys))
+        if key not in (*needed_keys, *optional_keys):
+            allowed = ", ".join((*needed_keys, *optional_keys))
             raise ValueError(f"{place}: {key!r} is unknown; one of {allowed}")
     if not isinstance(answer["problem"], str) or answer["problem"] not in known:
         raise ValueError(

@@ -7,7 +7,7 @@ import numpy as np
 from squealpipe.parameters import Parameters
 from squealpipe.vibration.spectrum import FEWEST
 
-FINE, COARSE = 12.0, 2.5
+COARSE = 2.5
 """Samples per radian of the fastest linear oscillation: of a short run, and the fewest."""
 
 
@@ -29,7 +29,9 @@ def default_times(params: Parameters, t_end: float) -> np.ndarray:
     # a run is sampled finely up to so many samples; a longer one as coarsely as its frequency
     # allows
     plenty = 20_000
-    fine = math.ceil(min(plenty, FINE * params.fastest * t_end))
+    # of the fastest linear oscillation, in a short run
+    samples_per_radian = 12.0
+    fine = math.ceil(min(plenty, samples_per_radian * params.fastest * t_end))
     coarse = sample_times(params, t_end)
     return coarse if coarse.size > fine else np.linspace(0.0, t_end, fine + 1)
 

@@ -16,10 +16,6 @@ EXCEL_ERRORS = (
 )
 """Cells that begin like a comment and are none."""
 _TRAILING = re.compile(r"\s(#|//|;|!).*|\s*\\\\.*")
-_CLEAN = {code + 0xFEE0: code for code in range(0x21, 0x7F)} | dict.fromkeys(
-    (0x200B, 0x200C, 0x200D, 0x2060, 0xFEFF, 0x1A)
-)
-"""Wide signs of East Asia → those of a keyboard; what has no width, and DOS's end, → nothing."""
 _NUMERIC = re.compile(r"[\s|]*[\"']?[-+.,−]?\d")
 
 
@@ -163,7 +159,12 @@ def _without_remark(line: str, separator: str) -> str:
 
 def clean(text: str) -> str:
     """A text without signs that nobody sees, and with those of a keyboard for wide ones."""
-    return text.translate(_CLEAN)
+    # wide signs of East Asia become those of a keyboard; what has no width, and DOS's end,
+    # vanishes
+    cleaned = {code + 0xFEE0: code for code in range(0x21, 0x7F)} | dict.fromkeys(
+        (0x200B, 0x200C, 0x200D, 0x2060, 0xFEFF, 0x1A)
+    )
+    return text.translate(cleaned)
 
 
 def _decoded(path: Path) -> str:

@@ -34,9 +34,6 @@ from squealpipe.text import RAISED, number
 from squealpipe.units import conversion, shown_in
 from squealpipe.vibration.sizes import is_real
 
-READABLE = {"m": "m", "s": "s", "N": "N", "Hz": "Hz", "m/s": "m s-1", "N/m": "N m-1"}
-"""Unit of an axis → CF unit, of those for which a readable one is chosen."""
-
 
 def in_units(figure: Figure, wanted: Sequence[str], dataset: xr.Dataset) -> None:
     """Convert the axes of a figure.
@@ -108,11 +105,20 @@ def _axes_of(axes: Axes) -> tuple[Axis, Axis]:
 
 def _make_readable(axis: Axis, words: str, unit: str) -> None:
     largest = float(np.abs(axis.get_view_interval()).max())
+    # only these units of an axis may be replaced by ones that read better
+    readable = {
+        "m": "m",
+        "s": "s",
+        "N": "N",
+        "Hz": "Hz",
+        "m/s": "m s-1",
+        "N/m": "N m-1",
+    }
     if unit == "rad/s":
         factor, name = shown_in(largest / (2.0 * np.pi), "Hz")
         _convert(axis, words, factor / (2.0 * np.pi), name)
-    elif unit in READABLE:
-        factor, name = shown_in(largest, READABLE[unit])
+    elif unit in readable:
+        factor, name = shown_in(largest, readable[unit])
         if factor != 1.0:
             _convert(axis, words, factor, name)
 

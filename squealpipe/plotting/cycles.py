@@ -13,15 +13,6 @@ from squealpipe.plotting.origin import parameter
 from squealpipe.plotting.quantities import label
 from squealpipe.schema import meanings
 
-SPECIAL_POINT_MARKS = {
-    "fold": ("^", style.RED, "fold"),
-    "period_doubling": ("s", style.PURPLE, "period doubling"),
-    "torus": ("D", style.GREEN, "torus bifurcation"),
-    "grazing": ("o", style.BLACK, "grazing"),
-    "stick_onset": ("v", style.GREEN, "stick just begins or ends"),
-}
-"""Special points of a branch: marker, colour, words."""
-
 
 def draw_backbone(axes: Axes, branch: xr.Dataset) -> None:
     """Peak of y and amplitude of x over the frequency; open marks are unstable."""
@@ -128,10 +119,18 @@ def trace_branch(
         axes.plot(
             parameters[points], sizes[points], dash, color=colour, lw=1.2, label=words
         )
+    # marker, colour and words of each
+    special_point_marks = {
+        "fold": ("^", style.RED, "fold"),
+        "period_doubling": ("s", style.PURPLE, "period doubling"),
+        "torus": ("D", style.GREEN, "torus bifurcation"),
+        "grazing": ("o", style.BLACK, "grazing"),
+        "stick_onset": ("v", style.GREEN, "stick just begins or ends"),
+    }
     for value, name in meanings(branch.label).items():
         points = branch.label.values == value
-        if name in SPECIAL_POINT_MARKS and points.any():
-            marker, colour, words = SPECIAL_POINT_MARKS[name]
+        if name in special_point_marks and points.any():
+            marker, colour, words = special_point_marks[name]
             sites = parameters[points], sizes[points]
             axes.plot(*sites, marker, color=colour, markersize=4, zorder=4, label=words)
 

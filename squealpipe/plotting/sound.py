@@ -86,8 +86,6 @@ LISTENING = Listening()
 
 
 COMPONENTS = ("x", "y")
-WORDS = {"x": "along the belt (x)", "y": "across the belt (y)"}
-"""Component of a pad's velocity → words."""
 
 
 class TooCoarseError(ValueError):
@@ -243,10 +241,11 @@ def _signal(
     if not motion.settled:
         motion = _settled_part(motion)
     step = (motion.time[-1] - motion.time[0]) / (motion.time.size - 1)
+    words_of = {"x": "along the belt (x)", "y": "across the belt (y)"}
     for _ in range(int(math.log2(LISTENING.finest)) // 2 + 1):
         missing = _missing(motion.time, motion.velocity[:, column])
         if missing is None:
-            return motion.time, motion.velocity[:, column], WORDS[name]
+            return motion.time, motion.velocity[:, column], words_of[name]
         if again is None or motion.settled:
             break
         step /= 4.0

@@ -11,9 +11,6 @@ import xarray as xr
 
 from squealpipe.store.whole_files import whole_file
 
-CELLS = {1: "vertex", 2: "line", 3: "triangle", 4: "quad", 6: "triangle6", 8: "quad8"}
-"""Corners of a facet → cell of VTK."""
-
 
 def write_vtu(modes: xr.Dataset, path: Path) -> Path:
     """Write the mesh with each mode's shape as point data.
@@ -65,8 +62,17 @@ def _cells(facets: np.ndarray) -> list[tuple[str, np.ndarray]]:
     """Facets by their number of corners; those that VTK does not know by their first four."""
     corners = (facets >= 0).sum(axis=1)
     cells = []
+    # corners of a facet → cell of VTK
+    cell_of_corners = {
+        1: "vertex",
+        2: "line",
+        3: "triangle",
+        4: "quad",
+        6: "triangle6",
+        8: "quad8",
+    }
     for count in np.unique(corners[corners > 0]).tolist():
         rows = facets[corners == count, :count]
-        known = count if count in CELLS else 4 if count > 4 else 3
-        cells.append((CELLS[known], rows[:, :known]))
+        known = count if count in cell_of_corners else 4 if count > 4 else 3
+        cells.append((cell_of_corners[known], rows[:, :known]))
     return cells

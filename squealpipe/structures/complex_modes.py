@@ -30,7 +30,7 @@ from squealpipe.structures.numbering import Way
 from squealpipe.structures.pencil import DENSE, one_thread
 from squealpipe.structures.schema.structures import name_over
 from squealpipe.structures.sliding import NoSlidingError
-from squealpipe.structures.spectrum import ALL, Solver, Spectrum
+from squealpipe.structures.spectrum import Solver, Spectrum
 from squealpipe.systems.datasets.versions import versions
 from squealpipe.systems.progress import with_progress
 
@@ -204,10 +204,11 @@ def _dataset(structure: ContactStructure, asked: Asked) -> xr.Dataset:
         "complete: right and left eigenvectors, about other points, "
         "have the same eigenvalues"
     )
+    all_of_them = "complete: all eigenvalues by dense algebra"
     attrs = {
         "made_by": "squealpipe.Structure.complex_modes",
         "model": "linear about steady sliding",
-        "method": ALL if structure.size <= DENSE else complete,
+        "method": all_of_them if structure.size <= DENSE else complete,
         "tolerance": "round-off",
         "parameters": json.dumps(structure.as_dict()),
         "arguments": json.dumps(

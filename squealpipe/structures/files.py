@@ -31,20 +31,6 @@ from squealpipe.validation import real_array
 Form = TypeVar("Form", bound=ContactStructure)
 MATRIX_KEYS = ("mass", "stiffness", "damping")
 SCALAR_KEYS = ("mu", "belt_speed", "mu_static", "friction_speed")
-KEYS = (
-    *MATRIX_KEYS,
-    "speed_terms",
-    *SCALAR_KEYS,
-    "contacts",
-    "modal_damping",
-    "friction_law",
-    "load",
-    "units",
-    "triangle",
-    "mesh",
-    "degrees_of_freedom",
-    "rotation",
-)
 CHANGING = ("damping", "stiffness")
 """Matrices that may have parts that change with speed."""
 
@@ -291,10 +277,24 @@ def _file_name(key: str, given: Any) -> str:
 
 def _content(source: Path) -> dict[str, Any]:
     content = read_yaml(source)
+    keys = (
+        *MATRIX_KEYS,
+        "speed_terms",
+        *SCALAR_KEYS,
+        "contacts",
+        "modal_damping",
+        "friction_law",
+        "load",
+        "units",
+        "triangle",
+        "mesh",
+        "degrees_of_freedom",
+        "rotation",
+    )
     for key in content:
-        if key not in KEYS:
+        if key not in keys:
             raise ValueError(
-                f"{source}: {key!r} is unknown; {suggestion(str(key), KEYS)}"
+                f"{source}: {key!r} is unknown; {suggestion(str(key), keys)}"
             )
     for key in ("mass", "stiffness"):
         if key not in content:

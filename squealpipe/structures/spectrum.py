@@ -30,8 +30,6 @@ from squealpipe.structures.stiff import beyond_gap, stiff_degrees
 from squealpipe.structures.varied_friction import VariedFriction
 from squealpipe.systems.inputs.values import brief, is_finite_number
 
-ALL = "complete: all eigenvalues by dense algebra"
-
 
 @dataclass(frozen=True)
 class Spectrum:

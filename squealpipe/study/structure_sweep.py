@@ -10,7 +10,6 @@ from squealpipe.structures.structure import Structure
 from squealpipe.study.chunks import Chunks
 from squealpipe.study.sweep_plan import SweepPlan
 
-TASK = "complex_modes"
 SWEPT_OPTIONS = ("frequency_max", "n_modes")
 
 
@@ -32,9 +31,10 @@ class StructureSweep(SweepPlan):
 
     def __post_init__(self) -> None:
         file, _, task = self.task.rpartition(":")
-        if task != TASK:
+        swept_task = "complex_modes"
+        if task != swept_task:
             raise ValueError(
-                f"{self.task}: a structure has the task {TASK}; write {file}:{TASK}"
+                f"{self.task}: a structure has the task {swept_task}; write {file}:{swept_task}"
             )
         object.__setattr__(self, "structure", Structure.read(file))
         for name in self.vary:

@@ -41,7 +41,7 @@ from squealpipe.study.schema.sweep import (
 )
 from squealpipe.study.structure_sweep import StructureSweep
 from squealpipe.study.sweep_plan import SweepPlan
-from squealpipe.study.swept_tasks import MAPS, NO_DEFAULT, TASKS, options_of
+from squealpipe.study.swept_tasks import MAPS, TASKS, options_of
 from squealpipe.study.system_sweep import SystemSweep, is_system
 from squealpipe.text import suggestion
 from squealpipe.units import holds_units
@@ -101,7 +101,8 @@ class Sweep(PointSweep):
             known = ", ".join(options) or "none"
             raise ValueError(f"{self.task} has no option {name!r}; it has {known}")
         self._with(self.fixed)
-        needed = {*ANGLES, *(name for name in options if options[name] is NO_DEFAULT)}
+        no_default = inspect.Parameter.empty
+        needed = {*ANGLES, *(name for name in options if options[name] is no_default)}
         for name in sorted(needed | (set(self.vary) & set(self.fixed))):
             if (name in self.vary) == (name in self.fixed):
                 raise ValueError(f"{self.task} needs {name} once, fixed or varied")

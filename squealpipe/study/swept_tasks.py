@@ -19,7 +19,6 @@ from squealpipe.brake.linear.maps import (
     stability_map,
 )
 
-NO_DEFAULT = inspect.Parameter.empty
 TASKS_OF_ONE_PAIR = (simulate, periodic_orbit, backbone, smallest_disturbance, assess)
 MAPS = (
     *(validity_map, hammering_map, quasi_static_map, stability_map),
@@ -32,7 +31,7 @@ TASKS: dict[str, Callable[..., xr.Dataset]] = {
 
 
 def options_of(task: str) -> dict[str, Any]:
-    """Option → default, :data:`NO_DEFAULT` if there is none; but not how many processes it uses."""
+    """Return option → default, ``Parameter.empty`` where there is none, without ``processes``."""
     return {
         name: item.default
         for name, item in inspect.signature(TASKS[task]).parameters.items()

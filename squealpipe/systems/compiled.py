@@ -41,7 +41,6 @@ _PART: dict[str, Any] = {
     "no_cfunc_wrapper": True,
     "_nrt": False,
 }
-_MARK = b"from squealpipe.systems.compiled import "
 
 part = _numba.njit(**_PART)
 views = _numba.njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
@@ -89,8 +88,10 @@ def kernel_sources() -> list[Path]:
     """This file and every module of its package that compiles kernels or their parts."""
     here = Path(__file__)
     package = here.parents[__name__.count(".") - 1]
+    # kernels import the decorator by this line
+    mark = b"from squealpipe.systems.compiled import "
     users = [
-        path for path in sorted(package.rglob("*.py")) if _MARK in path.read_bytes()
+        path for path in sorted(package.rglob("*.py")) if mark in path.read_bytes()
     ]
     return [here, *(path for path in users if path != here)]
 

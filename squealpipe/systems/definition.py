@@ -64,24 +64,6 @@ class SizeLimits:
 
 SIZE_LIMITS = SizeLimits()
 
-ARGUMENTS = frozenset(
-    (
-        *("t_end", "t_start", "times", "start", "tol", "sensitivity", "t_late"),
-        *(
-            "horizon",
-            "workers",
-            "max_steps",
-            "guess",
-            "periods",
-            "t_settle",
-            "to",
-            "n_points",
-        ),
-        *("parameter", "parameters", "label", "run", "regime", "self", "system"),
-    )
-)
-"""Names of the methods: no name of a system is one of these."""
-
 
 class Definition:
     """A piecewise-smooth system: regimes, a field, and switches between them.
@@ -265,7 +247,32 @@ class Definition:
             "event": [switch.name for switch in self.switches],
         }
         starts = self.start_names.values()
-        taken = ARGUMENTS | names_in_results(own) | {*starts}
+        # no name of a system is that of an argument of its methods
+        arguments = frozenset(
+            (
+                *("t_end", "t_start", "times", "start", "tol", "sensitivity", "t_late"),
+                *(
+                    "horizon",
+                    "workers",
+                    "max_steps",
+                    "guess",
+                    "periods",
+                    "t_settle",
+                    "to",
+                    "n_points",
+                ),
+                *(
+                    "parameter",
+                    "parameters",
+                    "label",
+                    "run",
+                    "regime",
+                    "self",
+                    "system",
+                ),
+            )
+        )
+        taken = arguments | names_in_results(own) | {*starts}
         self._check_free("state", self.units, taken)
         self._check_free("parameter", self.parameters, {*self.units, *taken})
         self._check_free(

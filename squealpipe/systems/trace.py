@@ -24,7 +24,7 @@ from squealpipe.systems.taylor.symbols import (
 
 TIME, TIME_UNIT = "time", "time unit"
 """Names that no state or parameter can have: of the time, and of the unit that it is run in."""
-DERIVED, SWITCHED = "derived ", f"{REGIME}switched "
+SWITCHED = f"{REGIME}switched "
 """Begin the names of what holds parameters alone, and parameters and regimes' constants alone."""
 
 
@@ -102,9 +102,10 @@ class Traced:
 
     def with_derived(self) -> Self:
         """Return the system as the integrator takes it: what is constant for long stands apart."""
-        once, derived = self.set_apart(REGIME, DERIVED)
+        derived_from_parameters = "derived "
+        once, derived = self.set_apart(REGIME, derived_from_parameters)
         made, switched = once.set_apart(None, SWITCHED)
-        names = [f"{DERIVED}{i}" for i in range(len(derived))]
+        names = [f"{derived_from_parameters}{i}" for i in range(len(derived))]
         return replace(
             made,
             parameters=(*self.parameters[:-1], *names, TIME_UNIT),

@@ -25,9 +25,6 @@ from squealpipe.systems.taylor.symbols import Symbol, in_order, only, parameter,
 from squealpipe.systems.text import describe
 from squealpipe.systems.trace import TIME, TIME_UNIT, Names, Traced, Tracer, long_name
 
-_TRIED, _AGREES = 16, 1e-6
-"""States and regimes in which units are tried, and the relative difference that is round-off."""
-
 
 class TracedSystem(Definition):
     """A definition with what its functions became.
@@ -58,7 +55,9 @@ class TracedSystem(Definition):
         if scales is None:
             return
         sizes = self.sizes_in(parameters)
-        drawn = sizes[:, None] * rng.uniform(-1.0, 1.0, (t.size, _TRIED))
+        # states and regimes in which units are tried
+        tried = 16
+        drawn = sizes[:, None] * rng.uniform(-1.0, 1.0, (t.size, tried))
         values = {**parameters, **dict(zip(self.states, drawn, strict=True))}
         values[TIME] = scales.of("s") * rng.uniform(0.0, 1.0)
         inside = scales.into({**self.units_of_values, TIME: "s"}, values)
@@ -68,13 +67,15 @@ class TracedSystem(Definition):
             each[TIME_UNIT] = scale(known) if callable(scale) else scale
         units = [*self.units.values(), *(unit for unit, _ in self.outputs.values())]
         names = [*self.units, *self.outputs]
-        for regime in range(min(len(self.regimes), _TRIED)):
+        # relative difference of values in two units that is round-off
+        agrees = 1e-6
+        for regime in range(min(len(self.regimes), tried)):
             held = constants_of(t, regime)
             with np.errstate(all="ignore"):
                 rows, others = (
                     np.array(
                         [
-                            np.broadcast_to(value, _TRIED)
+                            np.broadcast_to(value, tried)
                             for value in evaluate(
                                 [*t.rates[: t.size], *t.outputs, *t.surfaces],
                                 each | held,
@@ -90,7 +91,7 @@ class TracedSystem(Definition):
                     for pair in zip(rows[whole:], others[whole:], strict=True)
                 ]
                 off = np.abs(rows - others * np.array(factors)[:, None])
-                wrong = (off > _AGREES * np.abs(rows).max(axis=1)[:, None]).any(axis=1)
+                wrong = (off > agrees * np.abs(rows).max(axis=1)[:, None]).any(axis=1)
             if wrong.any():
                 place = int(np.argmax(wrong))
                 what = repr(names[place]) if place < whole else "a surface"

@@ -22,15 +22,7 @@ from scipy.special import stdtrit
 from squealpipe.codes import Verdict
 from squealpipe.systems.recurrence import repeats_after
 from squealpipe.vibration.parabola import largest
-from squealpipe.vibration.schema import (
-    HARMONICS,
-    LINES,
-    MEAN_SQUARES,
-    MEANS,
-    SAMPLES,
-    WITH_ERROR,
-    error_of,
-)
+from squealpipe.vibration.schema import LINES, MEAN_SQUARES, MEANS, WITH_ERROR, error_of
 from squealpipe.vibration.settled_runs import SettledRun
 from squealpipe.vibration.settling import tapered
 from squealpipe.vibration.spectrum import amplitude_spectrum, highest_peaks
@@ -310,11 +302,12 @@ def _spectrum(blocks: Sequence[Record]) -> dict[str, Any]:
         [[*block.signals[:, contact], block.forces[:, contact]] for block in blocks],
         axis=1,
     )
+    harmonics = 5
     if not np.isfinite(signals).all():
         return {
             "frequency_resolution": np.nan,
             **dict.fromkeys(
-                ("harmonic_frequency", "harmonic_velocity"), np.full(HARMONICS, np.nan)
+                ("harmonic_frequency", "harmonic_velocity"), np.full(harmonics, np.nan)
             ),
             **dict.fromkeys(
                 (
@@ -334,7 +327,7 @@ def _spectrum(blocks: Sequence[Record]) -> dict[str, Any]:
     peaks, _ = highest_peaks(frequency, amplitude[louder], 1)
     strongest = float(peaks[0]) if peaks.size else np.nan
     resolution = 1.0 / float(times[-1])
-    multiples = strongest * np.arange(1, HARMONICS + 1)
+    multiples = strongest * np.arange(1, harmonics + 1)
     near = np.abs(frequency[:, None] - multiples) <= resolution
     heights = np.where(near, amplitude[louder][:, None], 0.0).max(axis=0)
     # lines as far apart as the resolution, or more: peaks keep their heights
@@ -364,8 +357,10 @@ def _path(record: Record, period: float) -> dict[str, Any]:
     contact = int(np.argmax(deviation))
     per_period = period / float(times[1] - times[0])
     first = max(times.size - int(MEASUREMENT.shown * per_period + 1e-6) - 1, 0)
-    at = np.unique(np.linspace(first, times.size - 1, SAMPLES).astype(int))
-    at = np.concatenate([np.full(SAMPLES - at.size, at[0]), at])
+    # instants of the settled motion that a dataset keeps
+    samples = 800
+    at = np.unique(np.linspace(first, times.size - 1, samples).astype(int))
+    at = np.concatenate([np.full(samples - at.size, at[0]), at])
     return {
         "path_time": times[at] - times[at[0]],
         "path_x": record.displacements[at, contact, 0],

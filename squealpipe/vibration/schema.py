@@ -16,15 +16,10 @@ from squealpipe.schema import (
     whether,
 )
 
-SAMPLES = 800
-"""Instants of the settled motion that a dataset keeps."""
 LINES = 3200
 """Lines of its spectrum."""
-HARMONICS = 5
 REGIME_NAMES = {**{int(each): each.name for each in Regime}, -1: "not_reached"}
 """Meaning of regime."""
-DIRECTIONS = ("along", "across")
-"""Directions of velocities at a contact: along the belt, and away from it."""
 
 
 class Mechanism(IntEnum):

@@ -48,8 +48,6 @@ def _start(value: Any) -> Any:
 
 
 Start = Annotated[Any, BeforeValidator(_start)]
-_SAME_VALUE = 1e-11
-"""Two values of a parameter as close as this, relative, are one to a branch."""
 
 
 @recorded(model="A1", method="pseudo-arclength continuation of the return map")
@@ -91,7 +89,9 @@ def cycle_branch(
         special about a point, "end" at the last one, and ``end`` why the branch ended there.
     """
     begin = _value(params, alpha1, alpha2, parameter)
-    if math.isclose(to, begin, rel_tol=_SAME_VALUE):
+    # two values of a parameter as close as this, relative, are one to a branch
+    same_value = 1e-11
+    if math.isclose(to, begin, rel_tol=same_value):
         raise ValueError(
             f"to = {to!r}: a finite value other than {parameter} = {begin!r}, the start, is needed"
         )

@@ -33,9 +33,6 @@ REASONS = dict(
     )
 )
 
-PARAMETER_STEP = (0.0, -1e-9, 1e-9)
-"""Where a cycle is looked for: at the very onset of stick, round-off decides how a run goes on."""
-
 
 @recorded(
     model="A1", method="pseudo-arclength continuation of the legs and one condition"
@@ -76,7 +73,10 @@ def cycle_curve(
     point = point_of(start, label)
     followed = str(start.attrs["parameter"])
     limits = dict(to or {})
-    for beside in PARAMETER_STEP:
+    # a cycle is also looked for next to the value: at the very onset of stick, round-off decides
+    # how a run goes on
+    parameter_steps = (0.0, -1e-9, 1e-9)
+    for beside in parameter_steps:
         at = {followed: float(point[followed]) * (1.0 + beside)}
         if followed in own:
             own |= at

@@ -21,9 +21,6 @@ from squealpipe.validation import (
     Workers,
 )
 
-AMPLITUDES = (0.01, 30.0)
-"""Smallest and largest distance of a start from r = 0, over l_pre."""
-
 
 @recorded(model="A1", method="Taylor series with located events")
 def settled_extremes(
@@ -47,7 +44,9 @@ def settled_extremes(
         seed: of the random starts, which all scenes and frictions share.
     """
     generator = np.random.default_rng(seed)
-    low, high = np.log(AMPLITUDES)
+    # smallest and largest distance of a start from r = 0, over l_pre
+    amplitudes = (0.01, 30.0)
+    low, high = np.log(amplitudes)
     distance = params.preload * np.exp(generator.uniform(low, high, starts))
     direction = generator.uniform(0.0, 2.0 * np.pi, starts)
     distance[0] = 0.0

@@ -15,10 +15,6 @@ from squealpipe.systems.cycles.line import ALONG, BRANCH_STEPS
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.trace import TIME
 
-_SCAN = 201
-_FIRST_AMPLITUDE = 0.02
-"""Of the first cycle, over the distance of the equilibrium from contact loss."""
-
 
 def find_onset(
     design: Design, parameter: str, begin: float, to: float
@@ -39,7 +35,8 @@ def find_onset(
         sliding = sliding_at(value)
         return np.nan if sliding is None else sliding.margin
 
-    grid = np.linspace(begin, to, _SCAN)
+    scanned = 201
+    grid = np.linspace(begin, to, scanned)
     rates = np.array([growth(float(value)) for value in grid])
     crossing = np.flatnonzero((rates[:-1] < 0.0) & (rates[1:] > 0.0))
     if not len(crossing):
@@ -69,7 +66,9 @@ def find_onset(
     rest = sliding.state / units
     room = 1.0 - rest[1]
     size = np.array([1.0, 1.0, omega, omega]) * room
-    state = rest + _FIRST_AMPLITUDE * room * shape
+    # of the first cycle, over the distance of the equilibrium from contact loss
+    first_amplitude = 0.02
+    state = rest + first_amplitude * room * shape
     at_rest = dict(zip(STATE, sliding.state[:, None], strict=True))
     regime = int(
         system.first_regimes({**values, **at_rest, TIME: np.zeros(1)}, 1)[0, 0]

@@ -28,17 +28,6 @@ from squealpipe.vibration import parabola
 
 ASSUMPTION_LEVELS = ("A1", "A1-no-separation", "A2", "A3", "A4")
 
-LIMITS = {
-    "contact is kept": 0.0,
-    "belt is faster": 0.0,
-    "angles are constant": 0.1,
-    "springs are linear": 0.1,
-    "mass stays off the pivots": 0.1,
-}
-"""Assumption → limit of its measure: lowest contact force over the preload, smallest 1 − ẋ/V,
-largest turn of a spring (rad), largest error of the linear spring force relative to the largest
-spring force, smallest length of a spring over its free length."""
-
 
 ASSUMED_BY_LEVEL = {
     "A1": ("mass stays off the pivots",),
@@ -83,7 +72,17 @@ class LevelMotion(NamedTuple):
 def check_assumptions(params: Parameters, scenes: Iterable[Scene] = ()) -> xr.Dataset:
     """Table 1 of the paper, extended: which assumptions held, by level and scene."""
     chosen = tuple(scenes) or tuple(SCENES.values())
-    names = list(LIMITS)
+    # assumption → limit of its measure: lowest contact force over the preload, smallest 1 − ẋ/V,
+    # largest turn of a spring (rad), largest error of the linear spring force relative to the
+    # largest spring force, smallest length of a spring over its free length
+    limit_of = {
+        "contact is kept": 0.0,
+        "belt is faster": 0.0,
+        "angles are constant": 0.1,
+        "springs are linear": 0.1,
+        "mass stays off the pivots": 0.1,
+    }
+    names = list(limit_of)
     measures = np.full((len(ASSUMPTION_LEVELS), len(chosen), len(names)), np.nan)
     outcomes = np.zeros(measures.shape[:2], dtype=int)
     sizes = {
@@ -99,7 +98,7 @@ def check_assumptions(params: Parameters, scenes: Iterable[Scene] = ()) -> xr.Da
             measures[row, column] = _measures(params, scene, motion)
             for name, values in sizes.items():
                 values[row, column] = getattr(motion, name)
-    limits = np.array([LIMITS[name] for name in names])
+    limits = np.array([limit_of[name] for name in names])
     # these hold while their measure is below the limit; the others, above it
     below = np.array(
         [name in ("angles are constant", "springs are linear") for name in names]
@@ -253,7 +252,7 @@ def _steps(params: Parameters, t_end: float) -> tuple[float, int]:
 
 
 def _measures(params: Parameters, scene: Scene, motion: LevelMotion) -> list[float]:
-    """The number that decides about each assumption, in the order of ``LIMITS``."""
+    """The number that decides about each assumption, in the order of the limits."""
     g = springs.geometry(scene.alpha1, scene.alpha2)
     x1, y1, x2, y2 = springs.fixed_ends(params, g)
     exact = np.stack(springs.elastic_force(motion.x, motion.y, params, g))

@@ -15,8 +15,6 @@ from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.systems.processes import cpu_time
 
-LADDER_LEVELS = tuple(Level)
-
 
 def model_ladder(
     params: Parameters,
@@ -52,12 +50,13 @@ def model_ladder(
     answers = {level: answer(level, scenes) for level in Level}
     truth = answers[Level.a1].values
     reached = np.asarray(answers[Level.a1].belt_reached, dtype=bool)
+    ladder_levels = tuple(Level)
     error = np.stack(
-        [_errors(answers[level].values, truth) for level in LADDER_LEVELS], axis=1
+        [_errors(answers[level].values, truth) for level in ladder_levels], axis=1
     )
-    valid = np.stack([answers[level].valid for level in LADDER_LEVELS], axis=1)
+    valid = np.stack([answers[level].valid for level in ladder_levels], axis=1)
     # where the belt is never reached, A1 without stick is A1
-    valid[:, LADDER_LEVELS.index(Level.a1_no_stick)] &= reached
+    valid[:, ladder_levels.index(Level.a1_no_stick)] &= reached
     cheapest = (valid & (error <= tol)).argmax(axis=1)
     asked = params, alpha1, alpha2, "contact_lost"
     started = (
@@ -70,8 +69,8 @@ def model_ladder(
     return build(
         MODEL_LADDER,
         {
-            "error": error.reshape(len(QUESTIONS), len(LADDER_LEVELS), *shape),
-            "cheapest": np.array(LADDER_LEVELS)[cheapest].reshape(-1, *shape),
+            "error": error.reshape(len(QUESTIONS), len(ladder_levels), *shape),
+            "cheapest": np.array(ladder_levels)[cheapest].reshape(-1, *shape),
             "chosen": chosen.level.reshape(shape),
             "chosen_wrong": (chosen.value != truth[0]).reshape(shape),
             "always_cpu_time": always,
@@ -84,7 +83,7 @@ def model_ladder(
             "alpha1": angles,
             "alpha2": angles,
             "question": list(QUESTIONS),
-            "level": [level.name for level in LADDER_LEVELS],
+            "level": [level.name for level in ladder_levels],
         },
     )
 

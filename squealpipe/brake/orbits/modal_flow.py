@@ -28,11 +28,6 @@ STATE_ROW = np.dtype(
     ]
 )
 """One linear state as compiled code reads it."""
-# A bound on the curvature replaces trial and error up to this phase of the fastest mode, rad.
-_LONGEST_LOOK_AHEAD = 1.0
-# Below this part of the longest look-ahead a touch without crossing is passed over.
-_TOUCH = 1e-9
-_MOST_LOOKS = 100_000
 GIVEN_UP = -2.0
 """What :func:`next_crossing` returns after too many look-aheads."""
 
@@ -270,12 +265,18 @@ def next_crossing(row: Any, origin: Any, sign: float, horizon: float) -> float:
     """
     x0, y0, vx0, vy0 = origin[0], origin[1], origin[2], origin[3]
     x, y, vx, vy = x0, y0, vx0, vy0
-    longest = _LONGEST_LOOK_AHEAD / max(
+    # rad of the fastest mode: up to this phase a bound on the curvature replaces trial and error
+    longest_look_ahead = 1.0
+    longest = longest_look_ahead / max(
         np.sqrt(row.omega2 * row.omega2 + row.omega2_imaginary * row.omega2_imaginary),
         1e-300,
     )
     time = 0.0
-    for _ in range(_MOST_LOOKS):
+    # a touch without crossing that is shorter than this part of the longest look-ahead is passed
+    # over
+    touch = 1e-9
+    most_looks = 100_000
+    for _ in range(most_looks):
         if not time < horizon:
             return -1.0
         distance = max(sign * (y - row.threshold), 0.0)
@@ -284,7 +285,7 @@ def next_crossing(row: Any, origin: Any, sign: float, horizon: float) -> float:
         curvature = sign * ay
         step = min(longest, horizon - time)
         falls = False
-        while step > _TOUCH * longest:
+        while step > touch * longest:
             jerk = _jerk_bound(row, ax, ay, vx, vy, step)
             if _stays(distance, slope, curvature, jerk, step):
                 break

@@ -1,6 +1,7 @@
 """Meetings of a branch of symmetric orbits with shorter ones, of half the period to a seventh."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,8 +10,18 @@ from squealpipe.brake.orbits.orbit_shape import sample
 from squealpipe.brake.orbits.orbits import Orbit
 from squealpipe.brake.orbits.piecewise_linear import PiecewiseLinearSystem
 
-_SAME_STATE, _NEARLY_SAME = 1e-8, 1e-3
-"""Distance over 1 + |z| below which two states are one, or one next to where branches meet."""
+
+@dataclass(frozen=True)
+class SameOrbit:
+    """Distances by which an orbit is told to be another one run through several times."""
+
+    same_state: float = 1e-8
+    """Distance over 1 + |z| below which two states are one, or one next to where branches meet."""
+    nearly_same: float = 1e-3
+    """Distance over 1 + |z| below which two states are one, or one next to where branches meet."""
+
+
+SAME_ORBIT = SameOrbit()
 
 
 def _apart(system: PiecewiseLinearSystem, orbit: Orbit) -> NDArray[np.float64]:
@@ -20,7 +31,7 @@ def _apart(system: PiecewiseLinearSystem, orbit: Orbit) -> NDArray[np.float64]:
 
 
 def is_primitive(
-    system: PiecewiseLinearSystem, orbit: Orbit, near: float = _SAME_STATE
+    system: PiecewiseLinearSystem, orbit: Orbit, near: float = SAME_ORBIT.same_state
 ) -> bool:
     """Return whether an orbit is not a shorter one that is run through several times.
 
@@ -39,8 +50,8 @@ def about_to_meet(system: PiecewiseLinearSystem, orbit: Orbit) -> bool:
     # checked for
     if not orbit.stability_index > 0.5:
         return False
-    next_to_it = abs(orbit.stability_index - 2.0) < _NEARLY_SAME
-    near = _NEARLY_SAME if next_to_it else _SAME_STATE
+    next_to_it = abs(orbit.stability_index - 2.0) < SAME_ORBIT.nearly_same
+    near = SAME_ORBIT.nearly_same if next_to_it else SAME_ORBIT.same_state
     return not is_primitive(system, orbit, near)
 
 
@@ -51,7 +62,7 @@ def shorter_orbit_between(
 
     At a shorter orbit the state after T/n is the initial one; its distance turns round there.
     """
-    if not is_primitive(system, last, _NEARLY_SAME):
+    if not is_primitive(system, last, SAME_ORBIT.nearly_same):
         return True
     before, after = _apart(system, first), _apart(system, last)
     size = np.abs(before).sum(axis=1) * np.abs(after).sum(axis=1)

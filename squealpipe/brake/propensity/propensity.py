@@ -226,11 +226,11 @@ def _indices(judged: Sequence[np.ndarray], parts: int) -> dict[str, np.ndarray]:
     found = {key: np.full(shape, np.nan) for key in INDICES}
     widest = np.full((len(judged), parts), np.nan)
     for row, flat in enumerate(judged):
-        whole = flat.reshape(len(flat), sobol.REPLICATES, -1)
+        whole = flat.reshape(len(flat), sobol.SOBOL.replicates, -1)
         for column in range(parts):
             part = whole[..., : whole.shape[-1] >> (parts - 1 - column)]
             count = part[0].sum()
-            if min(count, part[0].size - count) < sobol.LEAST_EVENTS:
+            if min(count, part[0].size - count) < sobol.SOBOL.least_events:
                 continue
             value, half = sobol.sobol_indices(part)
             widest[row, column] = half[1].max()

@@ -5,23 +5,33 @@ resampling them, makes intervals several times too wide. Independent scramblings
 estimates, whose spread is the error (Owen's randomized quasi-Monte Carlo).
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 import scipy
 
 from squealpipe.vibration.shares import CONFIDENCE, wilson_interval
 
-REPLICATES = 8
-"""Independent scramblings: few cost evenness little, and Student's t still has 7 degrees."""
-LEAST_EVENTS = 30
-"""With fewer cases, or fewer non-cases, in the sample no index is given."""
+
+@dataclass(frozen=True)
+class SobolRules:
+    """How shares and indices are estimated."""
+
+    replicates: int = 8
+    """Independent scramblings: few cost evenness little, and Student's t still has 7 degrees."""
+    least_events: int = 30
+    """With fewer cases, or fewer non-cases, in the sample no index is given."""
+
+
+SOBOL = SobolRules()
 
 
 def scrambled(inputs: int, size: int, seed: int) -> np.ndarray:
     """Points in the open unit cube, (size, inputs); equal parts are independent scramblings."""
     points = np.concatenate(
         [
-            scipy.stats.qmc.Sobol(inputs, rng=rng).random(size // REPLICATES)
-            for rng in np.random.default_rng(seed).spawn(REPLICATES)
+            scipy.stats.qmc.Sobol(inputs, rng=rng).random(size // SOBOL.replicates)
+            for rng in np.random.default_rng(seed).spawn(SOBOL.replicates)
         ]
     )
     return np.asarray(np.clip(points, 1e-12, 1.0 - 1e-12))
@@ -34,10 +44,10 @@ def share_interval(happens: np.ndarray) -> tuple[float, float]:
     which gain nothing by evenness, and of nearly certain ones Wilson's.
     """
     count, size = int(happens.sum()), happens.size
-    if min(count, size - count) < LEAST_EVENTS:
+    if min(count, size - count) < SOBOL.least_events:
         return wilson_interval(count, size)
-    shares = happens.reshape(REPLICATES, -1).mean(axis=1)
-    half = max(float(_half_width(shares)), 0.5 * REPLICATES / size)
+    shares = happens.reshape(SOBOL.replicates, -1).mean(axis=1)
+    half = max(float(_half_width(shares)), 0.5 * SOBOL.replicates / size)
     return max(0.0, count / size - half), min(1.0, count / size + half)
 
 

@@ -22,7 +22,7 @@ from squealpipe.laws.dashpots import linear_damping
 from squealpipe.laws.springs import geometry
 from squealpipe.paper.inference.angle_maps import keeping_share, separating_share
 from squealpipe.paper.inference.candidates import Candidates, StatementMargin
-from squealpipe.paper.schema.growth import LEAST_GROWTH_RATIO, RULE, growth_margin
+from squealpipe.paper.schema.growth import GROWTH_RULE, RULE, growth_margin
 from squealpipe.paper.schema.inference import AS_NUMBERS, Holds
 from squealpipe.parameters import SCENES, Scene
 from squealpipe.schema import Outcome
@@ -249,7 +249,8 @@ def _growth_and_size(
 @constrains(
     "F3",
     Stage.growth,
-    f"largest |x|: {RULE}; margin ln(least ratio/{LEAST_GROWTH_RATIO:g}), none where starts 1e-9 "
+    f"largest |x|: {RULE}; margin ln(least ratio/{GROWTH_RULE.least_ratio:g}), "
+    "none where starts 1e-9 "
     "l_pre apart disagree",
 )
 @from_several_starts

@@ -4,24 +4,35 @@ How far |x| gets from one half of a short run to the next is chance where the mo
 a motion that ends in a whirl grows at first too. What tells them apart is the long run.
 """
 
+from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any
 
 import numpy as np
 
-GROWTH_WINDOW = 1000.0
-"""Length of a window, √(m/k1)."""
-WINDOWS = 6
-"""Windows of a run."""
-JUDGED_WINDOWS = 3
-"""The last windows, whose sizes decide."""
-LEAST_GROWTH_RATIO = 1.05
-"""Least ratio of each of these sizes to the one before in growth without bound."""
-GROWTH_HORIZON = WINDOWS * GROWTH_WINDOW
+
+@dataclass(frozen=True)
+class GrowthRule:
+    """Rule by which a long run is told to grow without bound."""
+
+    window: float = 1000.0
+    """Length of a window, √(m/k1)."""
+    n_windows: int = 6
+    """Windows of a run."""
+    n_judged: int = 3
+    """The last windows, whose sizes decide."""
+    least_ratio: float = 1.05
+    """Least ratio of each of these sizes to the one before in growth without bound."""
+
+
+GROWTH_RULE = GrowthRule()
+
+GROWTH_HORIZON = GROWTH_RULE.n_windows * GROWTH_RULE.window
 """Length of a run, √(m/k1)."""
 RULE = (
-    f"of a run to t = {GROWTH_HORIZON:g} √(m/k1), each of the last {JUDGED_WINDOWS} windows of "
-    f"{GROWTH_WINDOW:g} exceeds the one before by {100 * (LEAST_GROWTH_RATIO - 1):.0f} %"
+    f"of a run to t = {GROWTH_HORIZON:g} √(m/k1), each of the last {GROWTH_RULE.n_judged} windows "
+    f"of {GROWTH_RULE.window:g} exceeds the one before "
+    f"by {100 * (GROWTH_RULE.least_ratio - 1):.0f} %"
 )
 
 
@@ -34,38 +45,46 @@ class Growth(IntEnum):
 
 
 def least_growth(sizes: Any) -> np.ndarray:
-    """Smallest ratio of one of the last sizes to that before it; ``sizes``: (…, ``WINDOWS``)."""
+    """Smallest ratio of one of the last sizes to that before it; ``sizes``: (…, ``n_windows``)."""
     sizes = np.asarray(sizes, float)
-    ratios = sizes[..., -JUDGED_WINDOWS:] / sizes[..., -JUDGED_WINDOWS - 1 : -1]
+    ratios = (
+        sizes[..., -GROWTH_RULE.n_judged :] / sizes[..., -GROWTH_RULE.n_judged - 1 : -1]
+    )
     return np.asarray(ratios.min(axis=-1))
 
 
 def judge_growth(sizes: Any) -> np.ndarray:
-    """:class:`Growth` of runs from the largest |x| in each window, (…, ``WINDOWS``)."""
-    last = np.asarray(sizes, float)[..., -JUDGED_WINDOWS:]
+    """:class:`Growth` of runs from the largest |x| in each window, (…, ``n_windows``)."""
+    last = np.asarray(sizes, float)[..., -GROWTH_RULE.n_judged :]
     # a motion whose sizes agree to 2 % has stopped growing
     agree = last.max(axis=-1) <= 1.02 * last.min(axis=-1)
     otherwise = np.where(agree, Growth.saturates, Growth.undecided)
-    return np.where(least_growth(sizes) >= LEAST_GROWTH_RATIO, Growth.grows, otherwise)
+    return np.where(
+        least_growth(sizes) >= GROWTH_RULE.least_ratio, Growth.grows, otherwise
+    )
 
 
 def growth_fails(sizes: Any) -> np.ndarray:
     """Tell whether a window that is known already rules out growth by the rule.
 
     Args:
-        sizes: (…, ``WINDOWS``), NaN of windows that were not run.
+        sizes: (…, ``n_windows``), NaN of windows that were not run.
     """
     sizes = np.asarray(sizes, float)
-    ratios = sizes[..., -JUDGED_WINDOWS:] / sizes[..., -JUDGED_WINDOWS - 1 : -1]
-    return np.asarray((ratios < LEAST_GROWTH_RATIO).any(axis=-1))
+    ratios = (
+        sizes[..., -GROWTH_RULE.n_judged :] / sizes[..., -GROWTH_RULE.n_judged - 1 : -1]
+    )
+    return np.asarray((ratios < GROWTH_RULE.least_ratio).any(axis=-1))
 
 
 def growth_margin(sizes: Any) -> np.ndarray:
-    """ln of the least growth over ``LEAST_GROWTH_RATIO``: positive if it grows, NaN if unknown.
+    """ln of the least growth over its bound: positive if it grows, NaN if unknown.
 
     Args:
-        sizes: (…, ``WINDOWS``), NaN from the window on that follows one in which growth fails.
+        sizes: (…, ``n_windows``), NaN from the window on that follows one in which growth fails.
     """
     sizes = np.asarray(sizes, float)
-    ratios = sizes[..., -JUDGED_WINDOWS:] / sizes[..., -JUDGED_WINDOWS - 1 : -1]
-    return np.asarray(np.log(np.fmin.reduce(ratios, axis=-1) / LEAST_GROWTH_RATIO))
+    ratios = (
+        sizes[..., -GROWTH_RULE.n_judged :] / sizes[..., -GROWTH_RULE.n_judged - 1 : -1]
+    )
+    return np.asarray(np.log(np.fmin.reduce(ratios, axis=-1) / GROWTH_RULE.least_ratio))

@@ -29,7 +29,7 @@ from squealpipe.vibration.boundaries import (
     nearest_boundary,
 )
 from squealpipe.vibration.cures import Boundary, boundaries, by_change, cure_table
-from squealpipe.vibration.schema import ASSESS, DIRECTIONS
+from squealpipe.vibration.schema import ASSESS
 from squealpipe.vibration.settling import FOR_NUMBERS
 
 
@@ -85,6 +85,8 @@ class JudgedStructure:
     ) -> xr.Dataset:
         plant = self.design.plant
         assert plant is not None  # noqa: S101 (without sliding there is no verdict)
+        # velocities at a contact are along the belt, and away from it
+        directions = ("along", "across")
         return build(
             ASSESS,
             {**self.facts, **cure_table(found, units)},
@@ -92,7 +94,7 @@ class JudgedStructure:
                 "cure": np.array(list(found), str),
                 "mode": np.arange(1, len(plant.frequencies) + 1),
                 "contact": plant.contacts,
-                "direction": list(DIRECTIONS),
+                "direction": list(directions),
             },
         )
 

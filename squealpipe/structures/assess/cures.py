@@ -34,14 +34,6 @@ class Ranges:
 
 
 RANGES = Ranges()
-CURE_UNITS = {
-    "mu": "1",
-    "contact_stiffness": "1",
-    "preload": "1",
-    "modal_damping": "1",
-    "belt_speed": "m s-1",
-}
-"""Unit of each cure; stiffness and preload are factors."""
 
 
 def cures_of(
@@ -56,7 +48,15 @@ def cures_of(
         ValueError: a modification that cannot be read, or has the name of another cure.
     """
     whole = design.whole
-    cures, units = _frictions(design), dict(CURE_UNITS)
+    # stiffness and preload are changed by a factor
+    unit_of = {
+        "mu": "1",
+        "contact_stiffness": "1",
+        "preload": "1",
+        "modal_damping": "1",
+        "belt_speed": "m s-1",
+    }
+    cures, units = _frictions(design), dict(unit_of)
     units |= dict.fromkeys(cures, "1")
     if whole.rotation is not None:
         units["belt_speed"] = "rad s-1"

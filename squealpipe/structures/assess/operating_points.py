@@ -44,8 +44,6 @@ VALUES = (
     "friction",
 )
 FLAGS = ("verdict", "unstable_modes", "outcome")
-REFERENCE_VELOCITY = 5e-8
-"""Reference of velocity levels in decibels, m/s."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -220,7 +218,9 @@ class OperatingPoints:
             name: np.reshape(columns[name], self.shape) for name in (*VALUES, *FLAGS)
         }
         with np.errstate(divide="ignore"):
-            level = 20.0 * np.log10(values["velocity_rms"] / REFERENCE_VELOCITY)
+            # of velocity levels in decibels, m/s
+            reference_velocity = 5e-8
+            level = 20.0 * np.log10(values["velocity_rms"] / reference_velocity)
         values["velocity_level"] = np.where(np.isfinite(level), level, np.nan)
         noisy = np.isin(values["verdict"], (Verdict.squeals, Verdict.hammers))
         schema = OVER_TEMPERATURE if "temperature" in self.axes else OPERATING_MAP

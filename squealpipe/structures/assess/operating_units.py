@@ -20,9 +20,6 @@ from squealpipe.systems.inputs.values import brief, is_finite_number
 from squealpipe.text import as_number, suggestion
 from squealpipe.units import UnitError, in_si
 
-ZERO_OF = {"°c": 0.0, "degc": 0.0, "c": 0.0, "k": -273.15, "kelvin": -273.15}
-"""Unit of a temperature → what is added to make it degrees Celsius."""
-
 
 @dataclass(frozen=True)
 class OperatingUnits:
@@ -81,9 +78,17 @@ class OperatingUnits:
 
     def _in_unit_of_map(self, name: str, number: float, unit: str) -> float:
         if name == "temperature":
-            if unit.casefold() not in ZERO_OF:
+            # unit of a temperature → what is added to make it degrees Celsius
+            zero_of = {
+                "°c": 0.0,
+                "degc": 0.0,
+                "c": 0.0,
+                "k": -273.15,
+                "kelvin": -273.15,
+            }
+            if unit.casefold() not in zero_of:
                 raise UnitError("a temperature in °C or K is needed, like 120 °C")
-            return number + ZERO_OF[unit.casefold()]
+            return number + zero_of[unit.casefold()]
         if name != "pressure":
             units = {"speed": self.speed_unit, "frequency": "Hz"}
             return in_si(f"{number!r} {unit}", units.get(name, "1"))

@@ -12,8 +12,6 @@ from squealpipe.structures.units import SI, Scales
 from squealpipe.systems.inputs.values import brief, is_finite_number
 from squealpipe.text import suggestion
 
-FACE_KEYS = tuple(field.name for field in fields(Face))
-
 
 def faces_in(content: Any, folder: Path, scales: Scales) -> dict[str, Face]:
     """Return the faces of the mapping ``contacts``, in SI.
@@ -44,9 +42,10 @@ def _face(entry: Any, folder: Path, scales: Scales) -> Face:
         raise ValueError(  # noqa: TRY004 (of all arguments mistakes are values)
             f"{brief(entry)}: surface, against, stiffness and pressure are needed"
         )
+    face_keys = tuple(field.name for field in fields(Face))
     for key in entry:
-        if key not in FACE_KEYS:
-            raise ValueError(f"{key!r} is unknown; {suggestion(str(key), FACE_KEYS)}")
+        if key not in face_keys:
+            raise ValueError(f"{key!r} is unknown; {suggestion(str(key), face_keys)}")
     if "surface" not in entry:
         raise ValueError("surface is missing; name one of the mesh")
     arguments = dict(entry)

@@ -17,10 +17,6 @@ from squealpipe.vibration.settling import Settling, late_growth, tapered
 from squealpipe.vibration.spectrum import amplitude_spectrum, strongest_lines
 from squealpipe.vibration.windows import Windows
 
-SAMPLES = 2048
-"""Instants of a window."""
-PADDING = 4
-"""Lines of a spectrum beside those of its samples."""
 BLOCKS = 64
 """Parts of a window whose kinetic energy is kept."""
 
@@ -160,15 +156,13 @@ def run_windows(
     """
     count = len(states)
     lengths = np.broadcast_to(np.asarray(lengths, float), (count,))
-    part = np.random.default_rng(how.seed).random(SAMPLES)
-    times = np.append((np.arange(SAMPLES) + part) / SAMPLES, 1.0)
+    # instants of a window
+    samples = 2048
+    part = np.random.default_rng(how.seed).random(samples)
+    times = np.append((np.arange(samples) + part) / samples, 1.0)
     options = {} if regimes is None else {"regime": regimes}
     raw = run(plant, states, lengths[:, None] * times, how, frictions, **options)
     return statistics_of(plant, raw, lengths)
-
-
-OFF = 1e-8
-"""Size of a perturbation, over the motion's; ten times as much is seen beside small motions."""
 
 
 def followed_windows(
@@ -208,7 +202,9 @@ def followed_windows(
     off[drawn] *= spread
     extent = plant.sizes(states - plant.sliding)
     extent = np.maximum(extent, PUSH_OF_A_MODE * np.sqrt(plant.energy))
-    off *= (OFF * extent / plant.sizes(off))[:, None]
+    # size of a perturbation, over the motion's; ten times as much is seen beside small motions
+    distance = 1e-8
+    off *= (distance * extent / plant.sizes(off))[:, None]
     instants = np.arange(1, rules.samples + 1) / rules.samples
     both = np.concatenate([states, states + off])
     spans = np.tile(lengths, 2)
@@ -308,7 +304,9 @@ def _regimes(plant: Plant, word: str) -> list[list[int]]:
 
 def strongest_line(modal: np.ndarray, step: float) -> float:
     """The strongest line of the kinetic energy by modal velocities (instants, n), Hz, or NaN."""
-    omega, amplitude = amplitude_spectrum(modal.T, step, padding=PADDING)
+    # lines of a spectrum for each that its samples resolve
+    padding = 4
+    omega, amplitude = amplitude_spectrum(modal.T, step, padding=padding)
     power = np.sqrt((amplitude**2).sum(axis=0))
     places, _ = strongest_lines(omega, power, 1, 2.0 * np.pi / (step * len(modal)))
     return float(places[0] / (2.0 * np.pi)) if places.size else np.nan

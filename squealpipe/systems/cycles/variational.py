@@ -18,12 +18,6 @@ from squealpipe.systems.cycles.legs import Path, Vector
 from squealpipe.systems.taylor.legs import transfer
 from squealpipe.systems.taylor.series import gauss
 
-_TOGETHER, _ALIKE, _FINEST = 20_000, 1_250, 64
-"""Most pieces of steps that are computed at once, most steps that are cut into equally many pieces
-(of a stiff motion the one that needs most needs twice as many as the others), and most pieces of
-one step."""
-
-
 _NODES, _WEIGHTS, _UP_TO = gauss(6)
 
 
@@ -38,9 +32,16 @@ def leg_derivatives(flow: Flow, values: Mapping[str, float], path: Path) -> Vect
     steps, first = len(path.steps), 0
     # of the variational equations, times a bound of its rate
     longest_step = 1.0
+    # pieces of steps that are computed at once
+    most_together = 20_000
+    # steps up to this number are cut into equally many pieces; of a stiff motion the one that
+    # needs most needs twice as many as the others
+    most_alike = 1_250
+    # of one step
+    most_pieces = 64
     while first < steps:
         # a step of a stiff motion needs many pieces; that of most motions needs one
-        block = slice(first, min(first + _ALIKE, steps))
+        block = slice(first, min(first + most_alike, steps))
         slopes, lengths = _slopes_along(flow, values, path, block, 1)
         rate = _largest_rate(slopes[:, : flow.size])
         with np.errstate(invalid="ignore"):
@@ -49,8 +50,8 @@ def leg_derivatives(flow: Flow, values: Mapping[str, float], path: Path) -> Vect
             )
         pieces = 1
         if math.isfinite(needed):
-            pieces = max(1, min(math.ceil(needed), _FINEST))
-        size = _TOGETHER // pieces
+            pieces = max(1, min(math.ceil(needed), most_pieces))
+        size = most_together // pieces
         for at in range(first, block.stop, size):
             part = slice(at, min(at + size, block.stop))
             if pieces > 1:

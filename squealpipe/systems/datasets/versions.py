@@ -5,13 +5,12 @@ import importlib.metadata
 import json
 from collections.abc import Mapping
 
-LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "numba")
-
 
 @functools.cache
 def versions() -> Mapping[str, str]:
     """Attributes with the version of this package and of the libraries that decide results."""
-    installed = {name: importlib.metadata.version(name) for name in LIBRARIES}
+    computing_libraries = ("numpy", "scipy", "xarray", "netCDF4", "numba")
+    installed = {name: importlib.metadata.version(name) for name in computing_libraries}
     libraries = json.dumps(installed, sort_keys=True, separators=(",", ":"))
     return {
         "package_version": importlib.metadata.version("squealpipe"),

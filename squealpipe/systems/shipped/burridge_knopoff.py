@@ -14,15 +14,6 @@ from squealpipe.systems.inputs.gate import checked
 from squealpipe.systems.shipped.belt_friction import BELT_REGIMES
 from squealpipe.systems.system import System
 
-CHAIN_PARAMETERS = {
-    "mass": 1.0,
-    "stiffness": 1.0,
-    "coupling": 4.0,
-    "belt_speed": 0.1,
-    "limit": 1.0,
-    "fall": 2.0,
-}
-
 
 @cache
 @checked
@@ -51,10 +42,18 @@ def burridge_knopoff(blocks: int = 10) -> System:
             rates[f"v{i}"] = (1.0 - regime.stick) * total / p.mass
         return rates
 
+    chain_parameters = {
+        "mass": 1.0,
+        "stiffness": 1.0,
+        "coupling": 4.0,
+        "belt_speed": 0.1,
+        "limit": 1.0,
+        "fall": 2.0,
+    }
     return System(
         f"Burridge–Knopoff chain of {blocks} blocks",
         states={f"x{i}": "m" for i in numbers} | {f"v{i}": "m/s" for i in numbers},
-        parameters=CHAIN_PARAMETERS,
+        parameters=chain_parameters,
         components={f"block{i}": _block(i, blocks) for i in numbers},
         field=field,
         start={f"x{i}": 0.9 * (7 * i % 11) / 11 for i in numbers}

@@ -17,8 +17,7 @@ from squealpipe.paper.claims.evidence import Finding, finding
 from squealpipe.paper.claims.statement import Check, StatementRows
 from squealpipe.paper.schema.claims import ClaimVerdict
 from squealpipe.paper.schema.growth import (
-    GROWTH_WINDOW,
-    LEAST_GROWTH_RATIO,
+    GROWTH_RULE,
     Growth,
     judge_growth,
     least_growth,
@@ -109,8 +108,9 @@ def unstable_response_grows(run: Evidence) -> Finding:
     undecided = growth is Growth.undecided
     judged = growth.name.replace("undecided", "is undecided")
     return finding(
-        (float(least_growth(sizes)), "≥", LEAST_GROWTH_RATIO),
-        f"In windows of {GROWTH_WINDOW:g} √(m/k1) of a run to {until(run, longer)}, |x| reaches "
+        (float(least_growth(sizes)), "≥", GROWTH_RULE.least_ratio),
+        f"In windows of {GROWTH_RULE.window:g} √(m/k1) of a run to {until(run, longer)}, "
+        "|x| reaches "
         f"{_listed(sizes, digits=5)} l_pre: it {judged}. In the time of the paper's figure it "
         f"reaches {early:.3g} l_pre in the first half of the run to {until(run, shown)} and "
         f"{late:.3g} l_pre in the second.",

@@ -12,7 +12,7 @@ from squealpipe.paper.claims.maps import (
 )
 from squealpipe.paper.claims.statement import StatementRows
 from squealpipe.paper.schema.claims import ClaimVerdict
-from squealpipe.paper.schema.growth import GROWTH_WINDOW, Growth, judge_growth
+from squealpipe.paper.schema.growth import GROWTH_RULE, Growth, judge_growth
 from squealpipe.paper.schema.inference import AS_NUMBERS
 from squealpipe.study.evidence import Evidence
 
@@ -121,7 +121,8 @@ def linearly_stable_but_not(run: Evidence) -> Finding:
     return finding(
         (rate, "≤", smallest_rate),
         f"A3's largest growth rate there is {rate:.1g}; in a long run of A1 |x| reaches "
-        f"{early:.5g} l_pre in the first window of {GROWTH_WINDOW:g} √(m/k1) and {late:.5g} l_pre "
+        f"{early:.5g} l_pre in the first window of {GROWTH_RULE.window:g} √(m/k1) "
+        f"and {late:.5g} l_pre "
         "in the last.",
         also=growth is Growth.grows,
         otherwise=ClaimVerdict.cannot_be_decided if undecided else ClaimVerdict.fails,

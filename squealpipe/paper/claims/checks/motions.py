@@ -6,7 +6,7 @@ import xarray as xr
 
 from squealpipe.brake.schema.dynamics.extremes import extremes, largest_size
 from squealpipe.codes import Event
-from squealpipe.paper.schema.growth import GROWTH_HORIZON, GROWTH_WINDOW, WINDOWS
+from squealpipe.paper.schema.growth import GROWTH_HORIZON, GROWTH_RULE
 from squealpipe.study.evidence import Evidence, MissingDataError
 
 
@@ -42,10 +42,12 @@ def windows(run: Evidence, motion: xr.Dataset) -> np.ndarray:
             f"the long run ends at {end:g} √(m/k1), before {GROWTH_HORIZON:g}"
         )
     size = largest_size(motion, "x") / float(motion.preload)
-    window = (motion.time.values / (GROWTH_WINDOW * run.parameters.time_unit)).astype(
-        int
+    window = (
+        motion.time.values / (GROWTH_RULE.window * run.parameters.time_unit)
+    ).astype(int)
+    return np.array(
+        [size[window == number].max() for number in range(GROWTH_RULE.n_windows)]
     )
-    return np.array([size[window == number].max() for number in range(WINDOWS)])
 
 
 def repetition(motion: xr.Dataset) -> tuple[float, int, int]:

@@ -11,12 +11,6 @@ from squealpipe.plotting import style
 from squealpipe.plotting.origin import parameter
 from squealpipe.study.figures.declared import report_figure
 
-FIG06_TONES = {
-    style.WHITE: "sliding possible",
-    style.LIGHT: "sliding not possible",
-    style.BLACK: "linearly unstable",
-}
-
 
 def caption(stability: xr.Dataset, _: xr.Dataset, __: xr.Dataset) -> str:
     """Explain the tones, and the sign of friction where the belt runs along −x."""
@@ -53,14 +47,17 @@ def draw(
         ),
         ("reaction force positive", quasi_static.possible, None),
     )
+    cell_tones = {
+        style.WHITE: "sliding possible",
+        style.LIGHT: "sliding not possible",
+        style.BLACK: "linearly unstable",
+    }
     for panel, letter, (title, possible, extra) in zip(
         axes[0], "ab", readings, strict=True
     ):
         tones = np.where(possible.values, 0, 1)
         tones[stability.regime_linear.values > 0] = 2
-        style.draw_map(
-            panel, stability, tones, **style.category_colours([*FIG06_TONES])
-        )
+        style.draw_map(panel, stability, tones, **style.category_colours([*cell_tones]))
         curves = [
             BoundaryCurve.flutter,
             BoundaryCurve.divergence,
@@ -72,6 +69,6 @@ def draw(
         mark_scene(panel, "F3")
         style.panel_letter(panel, letter, title)
     lines = axes[0, 0].get_legend_handles_labels()[0]
-    keys = [*style.patches(FIG06_TONES.items()), *lines]
+    keys = [*style.patches(cell_tones.items()), *lines]
     figure.legend(handles=keys, loc="outside lower center", ncols=4)
     return figure
