@@ -31,7 +31,7 @@ TASKS: dict[str, Callable[..., xr.Dataset]] = {
 
 
 def options_of(task: str) -> dict[str, Any]:
-    """Return option → default, ``Parameter.empty`` where there is none, without ``processes``."""
+    """Return option → default, ``Parameter.empty`` where there is none, without ``workers``."""
     return {
         name: item.default
         for name, item in inspect.signature(TASKS[task]).parameters.items()
