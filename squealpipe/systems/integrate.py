@@ -328,7 +328,7 @@ class Batch:
             "n_rounds": lanes.ROUNDS,
             "tangent": int(options.tangent),
             "take_step": code.get("series", 0),
-            **{name: code.get(name, 0) for name in layout.FUNCTIONS},
+            **{name: code.get(name, 0) for name in layout.LOOP_FUNCTIONS},
             "n_series": self.n_series,
             "n_rows": n_rows,
             "n_switches": len(t.switches),
@@ -343,7 +343,7 @@ class Batch:
         active = np.zeros(n_events, np.int64)
         active[[w - len(t.variables) for w, _ in self.watched if w >= t.size]] = -1
         width = max(3 * n_events, len(t.variables), len(t.all_constants)) + 2
-        integers = np.full((layout.REGIMES + t.n_components, LANES), -1, np.int64)
+        integers = np.full((layout.FIRST_REGIME + t.n_components, LANES), -1, np.int64)
         integers[layout.OUTCOME] = 0  # every lane asks for a job
         share = max(layout.SHARE * self.tol, layout.ROUND_OFF)
         return {
@@ -409,10 +409,12 @@ class Batch:
         # a view of nothing has no address
         memory = {
             name: memory[name] if memory[name].size else np.zeros(1, memory[name].dtype)
-            for name in layout.ARRAYS
+            for name in layout.LOOP_ARRAYS
         }
         table = lanes.Workspace(
-            layout.TABLE, memory, {name: counts[name] for name in layout.SIZES}
+            layout.LOOP_TABLE,
+            memory,
+            {name: counts[name] for name in layout.LOOP_SIZES},
         )
         rows, job = memory["rows"], memory["integers"][layout.JOB]
         at = job, rows[layout.CLOCK], rows[layout.T_END], memory["queue"]

@@ -30,10 +30,10 @@ from squealpipe.systems.taylor.lanes import (
     taylor_terms,
 )
 from squealpipe.systems.taylor.legs import (
-    ARRAYS,
     FIRST_PARAMETER,
-    SIZES,
-    TABLE,
+    LEG_ARRAYS,
+    LEG_SIZES,
+    LEG_TABLE,
     run_legs,
 )
 from squealpipe.systems.taylor.scalar import python_function
@@ -481,7 +481,9 @@ class TracedFlow(Flow):
             "lanes": np.zeros(2 * FEW, np.int64),
         }
         self._work = Workspace(
-            TABLE, {k: arrays[k] for k in ARRAYS}, {name: sizes[name] for name in SIZES}
+            LEG_TABLE,
+            {k: arrays[k] for k in LEG_ARRAYS},
+            {name: sizes[name] for name in LEG_SIZES},
         )
 
     def run(

@@ -53,7 +53,7 @@ from squealpipe.systems.taylor.step import FITS, SPARE, cut
 from squealpipe.systems.taylor.switching import parameters_of, switch, watch
 
 _FOLDER = Path(__file__).parent
-_record_at: Any = record_viewer(layout.TABLE, of_pointer=True)
+_record_at: Any = record_viewer(layout.LOOP_TABLE, of_pointer=True)
 LANE = 0
 """The only lane that runs."""
 

@@ -42,10 +42,10 @@ BY_EVENT, BY_TURNS = 98, 99
 
 ``REACH`` and ``ACROSS`` follow ``STEP`` for ``shorten``: the longest step of late, and whether the
 step leads across what may be a jump."""
-JOB, OUTCOME, SAMPLE, EVENTS, LOGGED, CHAINED, HIT, LATE, REGIMES = range(9)
+JOB, OUTCOME, SAMPLE, EVENTS, LOGGED, CHAINED, HIT, LATE, FIRST_REGIME = range(9)
 """Rows of integers of the lanes; the last is the first of the regimes, one a component."""
 
-ARRAYS = (
+LOOP_ARRAYS = (
     "rows",
     "integers",
     "series",
@@ -99,7 +99,7 @@ ARRAYS = (
     "queue",
     "suspects",
 )
-FUNCTIONS = (
+LOOP_FUNCTIONS = (
     "perturb",
     "longest",
     "gauge",
@@ -109,7 +109,7 @@ FUNCTIONS = (
     "verify",
     "shorten",
 )
-SIZES = (
+LOOP_SIZES = (
     "n_terms",
     "n_jobs",
     "n_states",
@@ -133,13 +133,15 @@ SIZES = (
     "late_from",
     "tangent",
     "take_step",
-    *FUNCTIONS,
+    *LOOP_FUNCTIONS,
     "n_series",
     "n_rows",
     "n_switches",
 )
-TABLE = np.dtype([(name, "i8") for name in (*ARRAYS, *SIZES)])
+LOOP_TABLE = np.dtype([(name, "i8") for name in (*LOOP_ARRAYS, *LOOP_SIZES)])
 
-_fields: Any = [(name, Any) for name in ARRAYS if name not in {"series", "inverses"}]
+_fields: Any = [
+    (name, Any) for name in LOOP_ARRAYS if name not in {"series", "inverses"}
+]
 _named_tuple: Any = NamedTuple
 Memory: Any = _named_tuple("Memory", _fields)

@@ -23,7 +23,7 @@ FIRST_PARAMETER = 3
 _TOGETHER = 4096
 """Entries of all states' derivatives at one node that are iterated together: six nodes of rates and
 states fill 400 kB, a processor's second cache. Of twice as many, rates wait for the memory."""
-ARRAYS = (
+LEG_ARRAYS = (
     "rows",
     "series",
     "inverses",
@@ -38,7 +38,7 @@ ARRAYS = (
     "counts",
     "lanes",
 )
-SIZES = (
+LEG_SIZES = (
     "n_terms",
     "n_legs",
     "n_states",
@@ -51,7 +51,7 @@ SIZES = (
     "take_step",
     "shorten",
 )
-TABLE = np.dtype([(name, "i8") for name in (*ARRAYS, *SIZES)])
+LEG_TABLE = np.dtype([(name, "i8") for name in (*LEG_ARRAYS, *LEG_SIZES)])
 
 
 class _Memory(NamedTuple):
@@ -121,7 +121,7 @@ def _longest(m: Any) -> float:
 
 def _advance(table: Any) -> int:
     """Run all legs, four side by side; returns 0. ``counts`` may be beyond the room for steps."""
-    t = _numba.carray(table, (1,), TABLE)[0]
+    t = _numba.carray(table, (1,), LEG_TABLE)[0]
     n, terms = t.n_states, t.n_terms
     m = _Memory(
         rows=view(

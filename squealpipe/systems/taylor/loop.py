@@ -107,7 +107,7 @@ def finish(
             m.extremes[job, index, m.integers[layout.LATE, lane], each] = found
     first_time = first_extreme + 2 * t.n_tracked
     for component in range(t.n_components):
-        last = m.integers[layout.REGIMES + component, lane]
+        last = m.integers[layout.FIRST_REGIME + component, lane]
         since = rows[entered_row(t) + component, lane]
         rows[first_time + last, lane] += rows[layout.CLOCK, lane] - since
     for regime in range(t.n_regimes):
@@ -331,7 +331,7 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
 
 def _advance(table: Any) -> int:
     """Some rounds over all lanes; returns how many are busy. The table: :data:`TABLE`."""
-    t = _numba.carray(table, (1,), layout.TABLE)[0]
+    t = _numba.carray(table, (1,), layout.LOOP_TABLE)[0]
     m = memory_of(t)
     c = view(t.series, (t.n_series, t.n_terms, LANES), np.float64)
     return int(_rounds(t, m, c))

@@ -18,7 +18,9 @@ def memory_of(t: Any) -> Any:
     size = t.n_states
     return layout.Memory(
         rows=view(t.rows, (t.n_rows, LANES), np.float64),
-        integers=view(t.integers, (layout.REGIMES + t.n_components, LANES), np.int64),
+        integers=view(
+            t.integers, (layout.FIRST_REGIME + t.n_components, LANES), np.int64
+        ),
         sizes=view(t.sizes, (t.n_jobs, size), np.float64),
         units=view(t.units, (size, LANES), np.float64),
         tracked=view(t.tracked, (t.n_tracked, 2), np.int64),

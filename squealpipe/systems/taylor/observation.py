@@ -215,7 +215,7 @@ def sample(t: Any, m: Any, c: Any, lane: int, first_time: int) -> None:
         for variable in range(t.n_states):
             m.samples[job, following, variable] = evaluate(c, variable, lane, offset)
         for component in range(t.n_components):
-            regime = m.integers[layout.REGIMES + component, lane]
+            regime = m.integers[layout.FIRST_REGIME + component, lane]
             m.sample_regimes[job, following, component] = regime
         if t.n_sums:
             _sum(
@@ -239,7 +239,7 @@ def _sum(t: Any, m: Any, lane: int, sums: Any, first_time: int, time: float) -> 
         sums[1 + regime] = rows[first_time + regime, lane]
     for component in range(t.n_components):
         since = time - rows[entered_row(t) + component, lane]
-        sums[1 + m.integers[layout.REGIMES + component, lane]] += since
+        sums[1 + m.integers[layout.FIRST_REGIME + component, lane]] += since
     place = 1 + t.n_regimes
     for point in range(t.n_points):
         sums[place + point] = rows[first_time + t.n_regimes + 3 * point + 2, lane]

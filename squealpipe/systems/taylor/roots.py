@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from squealpipe.systems.compiled import part, polynomial
 
 NO_ROOT, UNDECIDED = -1.0, -2.0
-FINEST = 2.0**-48
+FINEST_INTERVAL = 2.0**-48
 """Share of a step below which round-off hides what an undecided interval holds."""
 UNSURE = 1e-6
 """Share of a step: a root that round-off hides by more on both sides is a multiple one."""
@@ -145,7 +145,7 @@ def first_root(
         decided, root = _look(coefficients, variable, lane, ends, before, third)
         bend = max(abs(b0), abs(b1)) + 0.5 * third * width
         hidden = max(abs(p0), abs(p1)) + 0.125 * bend * width * width <= 2.0 * floor
-        if not (decided or hidden or width < FINEST * step):
+        if not (decided or hidden or width < FINEST_INTERVAL * step):
             right = left + 0.5 * width
             continue
         if decided and root >= 0.0:
@@ -274,7 +274,7 @@ def _leaves_zero(
     coefficients: Any, variable: int, lane: int, step: float, noise: float, drift: float
 ) -> Any:
     """When a polynomial that starts from zero first differs from it, and by what; 0 if never."""
-    time = step * FINEST
+    time = step * FINEST_INTERVAL
     while 0.0 < time <= step:
         value, _, _ = evaluate_twice(coefficients, variable, lane, time)
         if abs(value) > noise + drift * time:

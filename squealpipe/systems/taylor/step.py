@@ -257,7 +257,7 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
     first, tie, complete, winner = step, step * 2.0**-44, step, -1
     unclear = False
     for surface in range(t.n_surfaces):
-        regime = integers[layout.REGIMES + m.owner[surface], lane]
+        regime = integers[layout.FIRST_REGIME + m.owner[surface], lane]
         falls, rises = m.falls[regime, surface], m.rises[regime, surface]
         if (falls < 0 and rises < 0) or not m.suspects[surface] & bit:
             continue

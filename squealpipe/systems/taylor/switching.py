@@ -25,7 +25,7 @@ NOISE = 1e-15
 @part
 def put_into(t: Any, m: Any, lane: int, component: int, regime: int) -> None:
     """Put a component of a lane into a regime: its constants."""
-    m.integers[layout.REGIMES + component, lane] = regime
+    m.integers[layout.FIRST_REGIME + component, lane] = regime
     first = t.n_rows - t.n_constants
     for constant in range(m.first_constant[component], m.first_constant[component + 1]):
         m.rows[first + constant, lane] = m.regimes[regime, constant]
@@ -98,7 +98,7 @@ def watch(t: Any, m: Any, c: Any, lane: int, span: float) -> None:
         m.active[surface] &= keep
         m.fresh[surface] &= keep
         m.beyond[surface] &= keep
-        regime = m.integers[layout.REGIMES + m.owner[surface], lane]
+        regime = m.integers[layout.FIRST_REGIME + m.owner[surface], lane]
         falls, rises = m.falls[regime, surface] >= 0, m.rises[regime, surface] >= 0
         if not (falls or rises):
             continue
@@ -138,7 +138,7 @@ def _start_where_crossed(t: Any, m: Any, lane: int, which: int, before: int) -> 
             continue
         for variable in range(t.n_states):
             z[variable] = m.rows[layout.FIXED_ROWS + variable, lane]
-        after = m.integers[layout.REGIMES + component, lane]
+        after = m.integers[layout.FIRST_REGIME + component, lane]
         put_into(t, m, lane, component, before)
         settle(t, lane)
         gauge(t, lane, m.scratch.shape[1])
@@ -155,7 +155,7 @@ def is_beyond(t: Any, m: Any, lane: int, which: int) -> bool:
     """Whether a lane has entered a regime beyond the surface of this switch of the regime."""
     beyond = False
     for surface in range(t.n_surfaces):
-        regime = m.integers[layout.REGIMES + m.owner[surface], lane]
+        regime = m.integers[layout.FIRST_REGIME + m.owner[surface], lane]
         if m.falls[regime, surface] == which or m.rises[regime, surface] == which:
             beyond |= (m.beyond[surface] & (1 << lane)) != 0
     return beyond
@@ -230,11 +230,11 @@ def switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
     for variable in range(t.n_states):
         after[variable] = out[2 + variable]
     for surface in range(t.n_surfaces):
-        now = integers[layout.REGIMES + m.owner[surface], lane]
+        now = integers[layout.FIRST_REGIME + m.owner[surface], lane]
         if m.falls[now, surface] == which or m.rises[now, surface] == which:
             m.ticked[surface, lane] = clock
     component = m.component_of[regime]
-    before = integers[layout.REGIMES + component, lane]
+    before = integers[layout.FIRST_REGIME + component, lane]
     at_once = int(is_beyond(t, m, lane, which))
     _note_constants(t, m, lane)
     put_into(t, m, lane, component, regime)
