@@ -1,4 +1,4 @@
-"""What every dataset holds: names, dimensions, units, meanings, tolerances: stated once.
+"""Schemas of all datasets: names, dimensions, units, meanings and tolerances, each stated once.
 
 Each room of the package holds the tables of what it makes in its ``schema``; a task imports its
 own table and calls :func:`build`. :func:`find` gets a schema by name, for readers of files.

@@ -1,4 +1,4 @@
-"""What made a dataset: parameters, model, method, tolerance and versions, in its attributes.
+"""Record what made a dataset in its attributes: parameters, model, method, tolerance, versions.
 
 Every public task carries :func:`recorded`, so a dataset that is saved from a notebook states its
 parameters as one of the study does. None of these attributes enters the dataset's id.

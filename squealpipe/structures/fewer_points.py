@@ -1,4 +1,4 @@
-"""The same structure with fewer contacts, neighbours of each face merged, and what that changes."""
+"""Merge neighbouring contacts of each face, and measure what fewer contacts change."""
 
 import json
 from collections import Counter

@@ -143,7 +143,7 @@ def _measure_of_whole(
         )
         block = settled(pencil, found.known._replace(right=right, left=left))
         if block is None:
-            raise RuntimeError("the subspace is none of the whole")
+            raise RuntimeError("the subspace does not belong to this structure")
         return _Subspace(pencil_at, {start: block})
     pair = _polished_as(pencil, found.known, basis)
     return _Growth(pencil_at, {start: pair})

@@ -1,4 +1,4 @@
-"""What numba compiles, and where its machine code is kept between runs.
+"""Compile kernels by numba, and keep their machine code between runs.
 
 A function is compiled by who calls it:
 

@@ -249,7 +249,7 @@ class _Laws:
 
     @property
     def form(self) -> tuple[Any, ...]:
-        """What is the same for laws that differ by constants of their regimes alone."""
+        """Return the key of a trace: equal for laws that differ in regime constants alone."""
         friction: Any = self.friction_law
         contact: Any = self.contact_law
         if is_table(friction):

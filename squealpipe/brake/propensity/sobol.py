@@ -15,7 +15,7 @@ from squealpipe.vibration.shares import CONFIDENCE, wilson_interval
 
 @dataclass(frozen=True)
 class SobolRules:
-    """How shares and indices are estimated."""
+    """Numbers of replicates and events behind shares and indices."""
 
     replicates: int = 8
     """Independent scramblings: few cost evenness little, and Student's t still has 7 degrees."""

@@ -1,4 +1,4 @@
-"""Whether A1 keeps contact from rest, over all angles or at those where A3 is unstable."""
+"""Tell whether A1 keeps contact from rest, over all angles or where A3 is unstable."""
 
 from collections.abc import Sequence
 

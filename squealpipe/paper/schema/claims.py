@@ -21,7 +21,7 @@ class ClaimVerdict(IntEnum):
 
 
 class Basis(IntEnum):
-    """Whether a statement can speak for the inferred parameters."""
+    """Kind of evidence by which a statement can speak for the inferred parameters."""
 
     fitted = 0
     predicted = 1

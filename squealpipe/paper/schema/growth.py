@@ -1,4 +1,4 @@
-"""Whether a motion grows without bound, judged by a long run: the one rule for all who ask.
+"""Judge by a long run whether a motion grows without bound: the one rule for all who ask.
 
 How far |x| gets from one half of a short run to the next is chance where the motion is chaotic, and
 a motion that ends in a whirl grows at first too. What tells them apart is the long run.

@@ -29,7 +29,7 @@ BY_READING = ("reading", "statement")
 
 
 class Holds(IntEnum):
-    """Whether a statement holds at a parameter set, as stored."""
+    """Verdict on a statement at one parameter set, as stored."""
 
     no = 0
     yes = 1

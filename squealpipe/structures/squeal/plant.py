@@ -163,7 +163,7 @@ class Plant:
 
     @cached_property
     def traced_system(self) -> System | None:
-        """The same of components, for exact cycles; None if it is larger than these can be."""
+        """Return the system of components, for exact cycles; None if it is too large."""
         try:
             return getattr(self.system, "general", self.system)
         except ValueError:

@@ -115,7 +115,7 @@ class Flow(ABC):
     @property
     @abstractmethod
     def is_affine(self) -> bool:
-        """Whether all rates are affine in the states."""
+        """Tell whether all rates are affine in the states."""
 
     @abstractmethod
     def forcing(self, values: Mapping[str, float]) -> tuple[float, Vector]:

@@ -57,7 +57,7 @@ class Cycle:
 
     @property
     def second(self) -> float:
-        """What 1 is here of a time, s."""
+        """Return the system's unit of time, s."""
         return self.scale_of(TIME)
 
     @property
