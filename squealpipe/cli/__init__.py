@@ -15,14 +15,7 @@ from squealpipe.cli.archives import deposit, find, list_runs
 from squealpipe.cli.arguments import by_name
 from squealpipe.cli.assess import assess
 from squealpipe.cli.claims import claims
-from squealpipe.cli.console import (
-    DONE,
-    INTERRUPTED,
-    NOT_DONE,
-    SESSION,
-    TRACEBACK,
-    session,
-)
+from squealpipe.cli.console import EXIT, SESSION, TRACEBACK, session
 from squealpipe.cli.files import convert, plot, spectrum
 from squealpipe.cli.inputs import read_brake
 from squealpipe.cli.listen import animate, listen
@@ -117,14 +110,14 @@ def run(arguments: Sequence[str]) -> int:
                 finishing()
         except BrokenPipeError:  # the reader, for instance `head`, has enough
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            return DONE
+            return EXIT.done
         except SystemExit as left_by_rich:
             if isinstance(left_by_rich.__context__, BrokenPipeError):
-                return DONE
+                return EXIT.done
             raise
         except KeyboardInterrupt:
             print(f"squealpipe: interrupted; {SESSION.remedy}", file=sys.stderr)
-            return INTERRUPTED
+            return EXIT.interrupted
         except StoppedError as stop:
             print(f"squealpipe: {stop}; {SESSION.remedy}", file=sys.stderr)
             return 128 + stop.number
@@ -133,7 +126,7 @@ def run(arguments: Sequence[str]) -> int:
                 if SESSION.verbose:
                     traceback.print_exc()
                 print(f"squealpipe: {_message(error)}", file=sys.stderr)
-            return NOT_DONE
+            return EXIT.not_done
         return code
 
 

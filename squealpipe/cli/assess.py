@@ -18,7 +18,7 @@ from squealpipe.cli.arguments import (
     Whole,
     modifications_of,
 )
-from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer, working
+from squealpipe.cli.console import EXIT, answer, working
 from squealpipe.cli.output import check_output, check_picture, compute, finish, write
 from squealpipe.cli.signatures import errors_in_options, options_of
 from squealpipe.parameters import Parameters
@@ -113,7 +113,7 @@ def assess(
         with working("assess"):
             judged = judge(brake.params, alpha1_or_file, alpha2, tol=tol)
         verdict = _told_in_turn(judged)
-    return DONE if int(verdict.verdict) == 0 else ANSWER_IS_NO
+    return EXIT.done if int(verdict.verdict) == 0 else EXIT.answer_is_no
 
 
 def _told_in_turn(judged: Any) -> xr.Dataset:
@@ -172,4 +172,4 @@ def _assess_structure(
             from squealpipe.study.report.answer import lines
 
             answer(*lines(verdict))
-    return DONE if int(verdict.verdict) == 0 else ANSWER_IS_NO
+    return EXIT.done if int(verdict.verdict) == 0 else EXIT.answer_is_no

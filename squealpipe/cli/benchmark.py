@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from squealpipe.cli.arguments import Force, Output, Texts, Time, Tolerances
-from squealpipe.cli.console import ANSWER_IS_NO, DONE
+from squealpipe.cli.console import EXIT
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -74,7 +74,7 @@ def _verdict(found: xr.Dataset, output: Path) -> int:
 
     wrong = int((found.verdict == Reliability.silently_wrong).sum())
     print(f"{wrong} of {found.verdict.size} answers silently wrong; wrote {output}")
-    return ANSWER_IS_NO if wrong else DONE
+    return EXIT.answer_is_no if wrong else EXIT.done
 
 
 def problems(*, output: Output = Path("problems.json"), force: Force = False) -> int:
@@ -92,7 +92,7 @@ def problems(*, output: Output = Path("problems.json"), force: Force = False) ->
     with whole_file(output) as temporary:
         temporary.write_text(problems_as_json(), encoding="utf-8")
     print(f"wrote {output}")
-    return DONE
+    return EXIT.done
 
 
 def score(
@@ -142,7 +142,7 @@ def results(
     with whole_file(output) as temporary:
         temporary.write_text(text, encoding="utf-8")
     print(f"wrote {output}")
-    return DONE
+    return EXIT.done
 
 
 def _loaded(path: Path) -> xr.Dataset:
@@ -194,4 +194,4 @@ def compare(one: Path, other: Path, /) -> int:
         left, right = (verdicts(each.sel(problem=problem)) for each in (found, others))
         print(f"{problem}\n  {one.name}: {left}\n  {other.name}: {right}")
         same &= left.partition(": ")[2] == right.partition(": ")[2]
-    return DONE if same else ANSWER_IS_NO
+    return EXIT.done if same else EXIT.answer_is_no

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from squealpipe.cli.arguments import AsJson
-from squealpipe.cli.console import DONE
+from squealpipe.cli.console import EXIT
 
 MADE = Path("results/data/claims.nc")
 
@@ -50,7 +50,7 @@ def claims(
             for row in changed:
                 beside = {key: row[f"corrected_{key}"] for key in ("verdict", "value")}
                 print(_line({**row, **beside}))
-    return code if rows else DONE
+    return code if rows else EXIT.done
 
 
 def _chosen(

@@ -10,12 +10,23 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
-DONE = 0
-ANSWER_IS_NO = 1
-"""Done, with a negative answer: a difference, a changed file, another verdict, no convergence."""
-NOT_DONE = 2
-"""Wrong input, a missing file, nothing to compare."""
-INTERRUPTED = 130
+
+@dataclass(frozen=True)
+class ExitCodes:
+    """Exit codes of all commands, as docs/guide.md lists them."""
+
+    done: int = 0
+    """It did what was asked."""
+    answer_is_no: int = 1
+    """It did, and the answer is negative: different, changed, another verdict, not converged."""
+    not_done: int = 2
+    """It did not: wrong input, a missing file."""
+    interrupted: int = 130
+    """Ctrl-C, as shells have it: 128 and the number of the signal."""
+
+
+EXIT = ExitCodes()
+
 
 TRACEBACK = "SQUEALPIPE_TRACEBACK"
 """Environment variable that asks for tracebacks, as -v does."""

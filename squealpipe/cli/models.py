@@ -22,7 +22,7 @@ from squealpipe.cli.arguments import (
     Workers,
     Written,
 )
-from squealpipe.cli.console import DONE, SESSION, answer, working
+from squealpipe.cli.console import EXIT, SESSION, answer, working
 from squealpipe.cli.output import compute
 from squealpipe.cli.signatures import options_of
 from squealpipe.inputs import parse_number, reader
@@ -65,7 +65,7 @@ def choose(
         f"{question.replace('_', ' ')}: {value}",
         f"by {Level[choice.model].label}: {choice.reason}",
     )
-    return DONE
+    return EXIT.done
 
 
 @options_of("infer_parameters")
@@ -114,7 +114,7 @@ def infer(
         inference.reading.values, inference.feasible_count.values, strict=True
     ):
         answer(f"{name}: {count} of {samples} sets meet every statement")
-    return DONE
+    return EXIT.done
 
 
 @options_of("propensity")
@@ -170,7 +170,7 @@ def propensity(
         answer(
             f"{name.replace('_', ' '):<20} {share:8.2%}  (95 %: {low:.2%} to {high:.2%})"
         )
-    return DONE
+    return EXIT.done
 
 
 def _distribution(text: str) -> tuple[str, dict[str, str | float]]:

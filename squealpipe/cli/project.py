@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from squealpipe.cli.arguments import Configs, Force, Switch, Whole
-from squealpipe.cli.console import DONE, NOT_DONE, SESSION, say
+from squealpipe.cli.console import EXIT, SESSION, say
 from squealpipe.cli.output import check_output
 from squealpipe.parameters import DEFAULTS, TABLE, Row
 from squealpipe.text import duration
@@ -131,7 +131,7 @@ def init(
     say(
         f"wrote {file}; edit it, then: squealpipe run --config {shlex.quote(str(file))}"
     )
-    return DONE
+    return EXIT.done
 
 
 def overlay_text(paper: str, *, file: str, results: str) -> str:
@@ -203,11 +203,11 @@ def run(
             "then run the same command again: what is finished stays",
             file=sys.stderr,
         )
-        return NOT_DONE
+        return EXIT.not_done
     say(
         f"done in {duration(time.perf_counter() - started)}: {study.results}/report/index.html"
     )
-    return DONE
+    return EXIT.done
 
 
 def _found_by_snakemake(folders: Iterable[str]) -> dict[str, str]:

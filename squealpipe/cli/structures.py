@@ -26,7 +26,7 @@ from squealpipe.cli.arguments import (
     Workers,
     pairs_of,
 )
-from squealpipe.cli.console import ANSWER_IS_NO, DONE, SESSION, answer, say, working
+from squealpipe.cli.console import EXIT, SESSION, answer, say, working
 from squealpipe.cli.output import (
     check_output,
     check_picture,
@@ -137,7 +137,7 @@ def modes(
             f"{len(names)} of {dataset.sizes['contact']} contacts are open in steady sliding and "
             f"left out there: {few}"
         )
-    return DONE
+    return EXIT.done
 
 
 def _compute(
@@ -274,7 +274,7 @@ def squeal(
     answer(*map(in_options, lines(dataset)))
     if run is not None:
         _write_run(reductions[0], dataset, run, tol)
-    return DONE if int(dataset.verdict) == 0 else ANSWER_IS_NO
+    return EXIT.done if int(dataset.verdict) == 0 else EXIT.answer_is_no
 
 
 def _write_run(structure: Any, told: xr.Dataset, path: Path, tol: float) -> None:
@@ -334,7 +334,9 @@ def ladder(
     asked |= {"tol": tol, "repeats": repeats}
     dataset = _compute(squeal_ladder, file, asked, output, files)
     answer(*lines(dataset))
-    return DONE if (dataset.verdict == Reliability.right).all() else ANSWER_IS_NO
+    return (
+        EXIT.done if (dataset.verdict == Reliability.right).all() else EXIT.answer_is_no
+    )
 
 
 @options_of("operating_map")
@@ -428,4 +430,4 @@ def operating(
     finish(dataset, output, drawn, files)
     answer(*lines(dataset))
     quiet = bool((dataset.verdict == Verdict.quiet).all())
-    return DONE if quiet else ANSWER_IS_NO
+    return EXIT.done if quiet else EXIT.answer_is_no

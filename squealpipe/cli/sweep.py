@@ -17,7 +17,7 @@ from squealpipe.cli.arguments import (
     Written,
     pairs_of,
 )
-from squealpipe.cli.console import DONE, SESSION, answer, say, working
+from squealpipe.cli.console import EXIT, SESSION, answer, say, working
 from squealpipe.cli.output import check_output, refuse_existing, write
 from squealpipe.ranges import read_fixed, read_values, sweep_config
 
@@ -90,4 +90,4 @@ def sweep(
     kept.remove()
     answer(*outcome_lines(dataset, plan.names))
     say(f"wrote {output}")
-    return DONE
+    return EXIT.done

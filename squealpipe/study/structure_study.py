@@ -9,7 +9,7 @@ import xarray as xr
 from squealpipe.structures.assess.operating_points import OperatingPoints
 from squealpipe.structures.fewer_points import fewer_points
 from squealpipe.structures.pencil import DENSE
-from squealpipe.structures.schema.squealing import MOST_MODES
+from squealpipe.structures.schema.squealing import SQUEAL_LIMITS
 from squealpipe.structures.squeal.plant import in_modes
 from squealpipe.structures.squeal.settled_run import (
     moving_attractors,
@@ -80,7 +80,12 @@ def modes_over_friction(structure: Structure, section: Mapping[str, Any]) -> xr.
     # frictions by the degrees of freedom that are solved for each; odd numbers, so that the
     # structure's own friction is one of them
     points = next(
-        (n for size, n in ((MOST_MODES, 41), (DENSE, 13)) if structure.size <= size), 5
+        (
+            n
+            for size, n in ((SQUEAL_LIMITS.most_modes, 41), (DENSE, 13))
+            if structure.size <= size
+        ),
+        5,
     )
     # up to twice the structure's friction: where modes turn unstable is seen from both sides
     name = _most_pressed(structure) if structure.has_own_mu.all() else None
@@ -118,7 +123,7 @@ def _most_pressed(structure: Structure) -> str:
 
 def _band(structure: Structure, frequency_max: float | None) -> float | None:
     """Return the end of the band, Hz; None for a small structure, which is run as it is."""
-    return None if structure.size <= MOST_MODES else frequency_max
+    return None if structure.size <= SQUEAL_LIMITS.most_modes else frequency_max
 
 
 def squealing(

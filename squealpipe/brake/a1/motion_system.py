@@ -1,9 +1,13 @@
-"""The brake pad of A1 as a system: exact springs and dashpots, contact loss, friction with stick.
+"""Make the brake pad of A1 a system: exact springs and dashpots, contact loss, friction with stick.
+
+Idea: forces are written once, as functions of state, parameters and constants of the regime; slip
+either way, stick and separation differ by these constants alone. Two pads whose laws differ by
+constants share one trace and its machine code. Invariant: within a regime the field is smooth,
+since a table of friction or contact is regimes whose knots are switches.
 
 ``brake(law)`` is the system for one friction law, one contact law and one of A1's variants or A4.
 Its parameters are those of ``Parameters`` and both angles; the laws are those of
-:mod:`squealpipe.laws`. A table of friction or contact is regimes whose knots are switches, so that
-the field is smooth in each.
+:mod:`squealpipe.laws`.
 """
 
 from collections.abc import Iterable, Iterator

@@ -1,4 +1,10 @@
-"""Model A4 at one pair of angles as a scaled piecewise-linear system with its linear modes."""
+"""Scale model A4 at one pair of angles to a piecewise-linear system, with its linear modes.
+
+Idea: in units of l_pre and of 1/√(tr K_contact/2m) every unknown is of order one, so that one
+tolerance serves all brakes, and the contact ends at y = 1. What has no periodic motions about the
+contact state, because it has no equilibrium or no stable mode there, is named by an outcome.
+Invariant: numbers so large or small that products of four of them are no doubles are refused.
+"""
 
 import math
 from dataclasses import dataclass

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import mpmath
@@ -35,11 +36,23 @@ BASE_PARAMETERS = Parameters(
     k3=0.75, mu=0.3, belt_speed=100.0, length1=5.0, length2=5.0
 )
 """Parameters at which the scenes are hard, whatever the study's are."""
-EXACT_ORBIT, CLOSED_FORM_BALANCE = "closed form, exact orbit", "closed-form balance"
-COLD = "cold Newton, sampled"
-ARC = "arc length, unchecked"
-TANH_BALANCE = "tanh balance, sampled"
-HILL, NUMERIC = "Hill's method, sampled", "numpy.linalg"
+
+
+@dataclass(frozen=True)
+class MethodNames:
+    """Names of the methods that are compared."""
+
+    exact_orbit: str = "closed form, exact orbit"
+    closed_form_balance: str = "closed-form balance"
+    cold_newton: str = "cold Newton, sampled"
+    arc_length: str = "arc length, unchecked"
+    tanh_balance: str = "tanh balance, sampled"
+    hill: str = "Hill's method, sampled"
+    numeric: str = "numpy.linalg"
+
+
+METHODS = MethodNames()
+
 CASE_HARMONICS = 16
 NOT_CONVERGED = "Newton did not converge"
 
@@ -115,15 +128,15 @@ def judge_balances() -> xr.Dataset:
     ]
     # the columns of the chart; the first two methods are ours
     frequency_methods = (
-        EXACT_ORBIT,
-        CLOSED_FORM_BALANCE,
-        COLD,
-        ARC,
-        TANH_BALANCE,
+        METHODS.exact_orbit,
+        METHODS.closed_form_balance,
+        METHODS.cold_newton,
+        METHODS.arc_length,
+        METHODS.tanh_balance,
         CORRECTED,
         AS_PRINTED,
-        HILL,
-        NUMERIC,
+        METHODS.hill,
+        METHODS.numeric,
     )
     shape = len(scenes), len(frequency_methods)
     verdict = np.zeros(shape)
@@ -175,16 +188,16 @@ def _branch(case: BranchCase) -> HardScene:
             scene, case, fine, orbit_series(scene, exact, truth_harmonics)
         ).value
     answers: dict[str, Callable[[], Answer]] = {
-        EXACT_ORBIT: lambda: _exact_orbit(case),
-        CLOSED_FORM_BALANCE: lambda: _our_balance(case),
+        METHODS.exact_orbit: lambda: _exact_orbit(case),
+        METHODS.closed_form_balance: lambda: _our_balance(case),
         CORRECTED: lambda: _paper(scene, case, start, exact, as_printed=False),
         AS_PRINTED: lambda: _paper(scene, case, start, exact, as_printed=True),
-        COLD if case.sigma is None else TANH_BALANCE: lambda: _newton(
-            scene, case, balance, start
+        METHODS.cold_newton if case.sigma is None else METHODS.tanh_balance: lambda: (
+            _newton(scene, case, balance, start)
         ),
     }
     if case.sigma is None:
-        answers[ARC] = lambda: _arc_length(scene, case, balance)
+        answers[METHODS.arc_length] = lambda: _arc_length(scene, case, balance)
     # largest error of ω that counts as right, in √(k1/m)
     return HardScene(case.name, truth, 1e-5, answers)
 
@@ -335,7 +348,11 @@ def _period_doubling() -> HardScene:
         "period-doubling window",
         truth,
         0.5,
-        {EXACT_ORBIT: ours, CLOSED_FORM_BALANCE: series, HILL: hill},
+        {
+            METHODS.exact_orbit: ours,
+            METHODS.closed_form_balance: series,
+            METHODS.hill: hill,
+        },
     )
 
 
@@ -363,7 +380,10 @@ def _singular_static_state() -> HardScene:
             return Answer(math.nan, str(error))
 
     return HardScene(
-        "singular static state", math.nan, 1.0, {EXACT_ORBIT: ours, NUMERIC: numeric}
+        "singular static state",
+        math.nan,
+        1.0,
+        {METHODS.exact_orbit: ours, METHODS.numeric: numeric},
     )
 
 
@@ -390,5 +410,8 @@ def _flutter_onset() -> HardScene:
         return Answer(np.sort(np.abs(np.linalg.eigvals(matrix)))[::2])
 
     return HardScene(
-        "flutter onset", truth, 1e-12, {EXACT_ORBIT: ours, NUMERIC: numeric}
+        "flutter onset",
+        truth,
+        1e-12,
+        {METHODS.exact_orbit: ours, METHODS.numeric: numeric},
     )

@@ -1,5 +1,6 @@
 """Schema of the unstable modes of a structure that squeal: modes, attractors, random starts."""
 
+from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any
 
@@ -19,15 +20,25 @@ from squealpipe.schema.meshes import MESH, MESH_COORDINATES
 from squealpipe.systems.datasets.agreement import Listing
 
 NO_ATTRACTOR = -1
-MOST_MODES = 32
-"""Modes up to which a structure is run as it is, and to which others are reduced at most, unless
-their contacts need more."""
-MOST_DAMPING = 0.2
-"""Largest ratio of damping that is tried as a remedy."""
-ABOVE = 1.01
-"""Friction at which motions just above the onset are, over that of the onset."""
-NARROW = 2e-3
-"""Distance of frictions between which a motion is known to die, over that of the onset."""
+
+
+@dataclass(frozen=True)
+class SquealLimits:
+    """Limits within which squeal is searched."""
+
+    most_modes: int = 32
+    """Modes up to which a structure is run as it is, and to which others are reduced at most,
+    unless their contacts need more."""
+    most_damping: float = 0.2
+    """Largest ratio of damping that is tried as a remedy."""
+    above: float = 1.01
+    """Friction at which motions just above the onset are, over that of the onset."""
+    narrow: float = 2e-3
+    """Distance of frictions between which a motion is known to die, over that of the onset."""
+
+
+SQUEAL_LIMITS = SquealLimits()
+
 JUST_ABOVE = -1
 """Track of what a push just above the onset ends in; others are of an attractor."""
 
@@ -296,10 +307,12 @@ SQUEALING = DatasetSchema(
             "critical friction of steady sliding: the smallest of all modes", rtol=1e-8
         ),
         "onset_frequency": _of_onset(
-            f"frequency of the mode that grows at {ABOVE:g} of it", "Hz", rtol=1e-6
+            f"frequency of the mode that grows at {SQUEAL_LIMITS.above:g} of it",
+            "Hz",
+            rtol=1e-6,
         ),
         "onset_kind": flag(
-            f"whether what a small push ends in at {ABOVE:g} of it dies at the onset "
+            f"whether what a small push ends in at {SQUEAL_LIMITS.above:g} of it dies at the onset "
             "(supercritical) or lasts below (subcritical)",
             OnsetKind,
             optional=True,
@@ -318,7 +331,7 @@ SQUEALING = DatasetSchema(
         ),
         "track_attractor": count(
             f"attractor that is followed as friction falls, {JUST_ABOVE}: what a small push "
-            f"ends in at {ABOVE:g} of the critical friction",
+            f"ends in at {SQUEAL_LIMITS.above:g} of the critical friction",
             "track",
             optional=True,
         ),

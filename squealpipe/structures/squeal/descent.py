@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squealpipe.structures.schema.squealing import ABOVE, NARROW
+from squealpipe.structures.schema.squealing import SQUEAL_LIMITS
 from squealpipe.structures.squeal.onset import FirstOnset
 from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
 from squealpipe.structures.squeal.settling import GROWTH, RUN_LENGTHS, start_at
@@ -94,7 +94,7 @@ def followed_down(plant: Plant, start: TrackState, onset: float, how: Running) -
 
 def width_of(track: Track, onset: float) -> float:
     """Return the width to which the end is to be located."""
-    return NARROW * min(onset, track.states[0].mu)
+    return SQUEAL_LIMITS.narrow * min(onset, track.states[0].mu)
 
 
 def _turns(track: Track, onset: float) -> Iterator[np.ndarray]:
@@ -162,7 +162,7 @@ def just_above(onset: FirstOnset, plant: Plant, how: Running) -> TrackState | No
     place = int(above.unstable[0])
     period = 1.0 / above.slowest
     rate = float(above.spectrum.values[place].real)
-    frictions = np.full(1, ABOVE * onset.mu)
+    frictions = np.full(1, SQUEAL_LIMITS.above * onset.mu)
     window = run_windows(
         plant,
         np.tile(above.pushed(place, PUSH_OF_A_MODE), (1, 1)),
@@ -172,7 +172,9 @@ def just_above(onset: FirstOnset, plant: Plant, how: Running) -> TrackState | No
     ).row(0)
     if not window.finished:
         return None
-    begun = TrackState(ABOVE * onset.mu, window.final, window.regimes, 0.0, 0.0)
+    begun = TrackState(
+        SQUEAL_LIMITS.above * onset.mu, window.final, window.regimes, 0.0, 0.0
+    )
     (row,) = _run_on(plant, begun, frictions[:1], how)
     # where nothing switches it still grows
     return state_of(plant, begun.mu, row) if row is not None and row.events else None

@@ -20,7 +20,7 @@ from squealpipe.structures.schema.squeal_ladder import (
     SQUEAL_LADDER,
     PushAnswer,
 )
-from squealpipe.structures.schema.squealing import MOST_MODES
+from squealpipe.structures.schema.squealing import SQUEAL_LIMITS
 from squealpipe.structures.squeal.ends import PushEnd
 from squealpipe.structures.squeal.methods import (
     Horizon,
@@ -124,13 +124,13 @@ def squeal_ladder(
 
 def _sizes(structure: ContactStructure, n_modes: Sequence[int]) -> list[int]:
     fewest = max(len(structure.contacts), 2)
-    sizes = distinct(n_modes, fewest, min(structure.size, MOST_MODES))
-    if structure.size <= MOST_MODES:
+    sizes = distinct(n_modes, fewest, min(structure.size, SQUEAL_LIMITS.most_modes))
+    if structure.size <= SQUEAL_LIMITS.most_modes:
         sizes = distinct([*sizes, structure.size], 1, structure.size)
     if not sizes:
         raise ValueError(
             f"n_modes = {tuple(n_modes)!r}: from {fewest}, as many as the contacts and two at "
-            f"least, to {min(structure.size, MOST_MODES)} are needed"
+            f"least, to {min(structure.size, SQUEAL_LIMITS.most_modes)} are needed"
         )
     return sizes
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from squealpipe.schema import Outcome
 from squealpipe.structures.complex_modes import complex_modes
-from squealpipe.structures.schema.squealing import ABOVE
+from squealpipe.structures.schema.squealing import SQUEAL_LIMITS
 from squealpipe.structures.schema.structures import Onset
 from squealpipe.structures.sliding import NoSlidingError
 from squealpipe.structures.squeal.plant import Plant
@@ -62,7 +62,9 @@ def confirmed_onset(plant: Plant) -> FirstOnset | Outcome:
         ONSET_SEARCH.searched_factor * plant.structure.mu, plant.structure.largest_mu
     )
     if isinstance(found, FirstOnset):
-        agrees = grows(ABOVE * found.mu) and not grows(ONSET_SEARCH.below * found.mu)
+        agrees = grows(SQUEAL_LIMITS.above * found.mu) and not grows(
+            ONSET_SEARCH.below * found.mu
+        )
     elif found is Outcome.already_unstable:
         agrees = grows(0.0)
     else:
@@ -87,10 +89,10 @@ def first_onset(plant: Plant) -> FirstOnset | Outcome:
             return Outcome.not_reached
         modes = complex_modes(structure, mu=frictions)
     mu = float(np.nanmin(modes.critical_mu.values, initial=math.inf))
-    if ABOVE * mu > most or not math.isfinite(mu):
+    if SQUEAL_LIMITS.above * mu > most or not math.isfinite(mu):
         lost = (modes.onset == Onset.not_followed).any()
         return Outcome.unresolved if lost else Outcome.not_reached
-    above = Plant(structure.with_(mu=ABOVE * mu))
+    above = Plant(structure.with_(mu=SQUEAL_LIMITS.above * mu))
     if not above.unstable.size:
         return Outcome.unresolved
     frequency = float(above.frequencies[above.unstable[0]])

@@ -20,7 +20,7 @@ from squealpipe.structures.reduction import (
     modes_that_would_do,
     reduce,
 )
-from squealpipe.structures.schema.squealing import MOST_MODES
+from squealpipe.structures.schema.squealing import SQUEAL_LIMITS
 from squealpipe.structures.spectrum import Limits, Solver, Spectrum
 from squealpipe.systems.linear.matrices import Caps
 from squealpipe.systems.system import System
@@ -43,7 +43,7 @@ def carried(
     """
     if not structure.contacts:
         raise ValueError("the structure has no contacts: nothing rubs")
-    if structure.size <= MOST_MODES:
+    if structure.size <= SQUEAL_LIMITS.most_modes:
         return structure
     if structure.reduced_from is not None and structure.size <= Caps().modes:
         return structure  # reduced by hand
@@ -56,7 +56,9 @@ def carried(
             structure if structure.size <= DENSE else reduce(whole, frequency_max=band)
         )
     # each contact has a static deflection of its own, which takes a few modes
-    return fitted(whole, band, min(max(MOST_MODES, 4 * count), Caps().modes))
+    return fitted(
+        whole, band, min(max(SQUEAL_LIMITS.most_modes, 4 * count), Caps().modes)
+    )
 
 
 def in_modes(

@@ -20,7 +20,7 @@ from squealpipe.structures.agreement import Truth
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.pencil import DENSE
 from squealpipe.structures.reduction import Kept, quick_values
-from squealpipe.structures.schema.squealing import MOST_DAMPING
+from squealpipe.structures.schema.squealing import SQUEAL_LIMITS
 from squealpipe.structures.squeal.plant import Plant
 
 
@@ -58,7 +58,7 @@ def added_damping(plant: Plant) -> tuple[float, Outcome]:
 def _confirmed(grows: Callable[[float], bool], ratio: float) -> bool:
     """Tell whether modes of the whole grow with 1 % less damping, and none with 1 % more."""
     if not math.isfinite(ratio):
-        return grows(MOST_DAMPING)
+        return grows(SQUEAL_LIMITS.most_damping)
     return not grows(1.01 * ratio) and grows(0.99 * ratio)
 
 
@@ -100,7 +100,10 @@ class _Damped:
     def boundary(self) -> float:
         """Return the ratio from which nothing grows, NaN if the largest does not suffice."""
         # ratios of damping between which stability is taken to change once at most
-        tried = [*np.geomspace(1e-4, MOST_DAMPING, 24)[::-1].tolist(), 0.0]
+        tried = [
+            *np.geomspace(1e-4, SQUEAL_LIMITS.most_damping, 24)[::-1].tolist(),
+            0.0,
+        ]
         above = math.nan
         for ratio in tried:
             values = self.values(ratio)

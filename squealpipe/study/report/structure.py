@@ -11,7 +11,7 @@ from squealpipe.codes import Verdict
 from squealpipe.plotting.origin import parameter
 from squealpipe.schema import Outcome, meanings
 from squealpipe.store import load
-from squealpipe.structures.schema.squealing import MOST_DAMPING, NO_ATTRACTOR
+from squealpipe.structures.schema.squealing import NO_ATTRACTOR, SQUEAL_LIMITS
 from squealpipe.structures.schema.structures import Onset
 from squealpipe.study.report import squealing
 from squealpipe.study.report.media import media_of
@@ -178,8 +178,8 @@ def stops(modes: xr.Dataset, answer: xr.Dataset) -> list[str]:
         )
     else:
         damper = (
-            f"Damping: {100 * MOST_DAMPING:.0f} percentage points added to every mode do not "
-            "suffice."
+            f"Damping: {100 * SQUEAL_LIMITS.most_damping:.0f} percentage points added "
+            "to every mode do not suffice."
         )
     return [friction, damper]
 
