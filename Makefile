@@ -43,7 +43,7 @@ cost: dev  ## CPU time of the study that was made here, and of the tests, beside
 # On any x86-64 the C library's fma is software, a hundred times slower: there tests/generic.txt: laws, models,
 # orbits, series, linear maps and at least one test of every other folder.
 test-processors: dev  ## numerics, and the tiny study, as on other processors
-	$(AVX2) $(LOOP) & $(AVX2) $(ORBITS) && wait $$!
+	$(AVX2) $(LOOP) & $(AVX2) $(ORBITS) && $(AVX2) $(STRUCTURES) && wait $$!
 	$(AVX2) $(TESTS) @tests/avx2.txt
 	tests/processors generic $(TESTS) @tests/generic.txt
 	$(if $(SQUEALPIPE_TINY),,$(BIN)/snakemake $(TINY))
@@ -78,12 +78,14 @@ $(STUDY): requirements.lock pyproject.toml
 	$(BIN)/python -m compileall -q squealpipe
 	touch $@
 
-# These compile the event loop (25 s) and the shots of orbits (8 s) into the user's cache, which several
-# first jobs would otherwise do at once; and byte code of what jobs import, for those who may not write it.
+# These compile the event loop (25 s), the shots of orbits (8 s) and the loop of structures (a minute) into the
+# user's cache, which several first jobs or tests would otherwise do at once; and byte code of what jobs import,
+# for those who may not write it.
 LOOP = $(BIN)/python -c "from squealpipe.systems.taylor.loop import loop; loop()"
 ORBITS = $(BIN)/python -c "import matplotlib.pyplot, netCDF4, snakemake.cli, squealpipe.cli, squealpipe as s; s.periodic_orbit(s.Parameters(), 0.9, 2.8, mode=1, y_peak=2)"
+STRUCTURES = $(BIN)/python -c "from squealpipe.systems.linear.loop import functions, loop; loop(); functions()"
 $(KERNELS): $(STUDY)
-	$(LOOP) & $(ORBITS) && wait $$!
+	$(LOOP) & $(ORBITS) && $(STRUCTURES) && wait $$!
 	touch $@
 
 $(DEV): requirements-dev.lock $(STUDY)

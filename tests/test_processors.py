@@ -9,6 +9,7 @@ ON_ONE_PROCESSOR = {
     "tests/workflow": "Snakemake; the tiny study is made anew as with AVX2, and compared",
     "tests/workflow/slurm": "the same",
     "tests/schema": "names and units of datasets",
+    "tests/paper/claims": "long runs, 35 s for one verdict where the C library's fma is software",
     "tests/paper/report": "pages",
     "tests/plotting": "films and sounds of runs that other folders test",
     "tests/store/archives": "files",
