@@ -8,7 +8,8 @@ A function is compiled by who calls it:
 - ``part``: other compiled code calls it, so there are no wrappers to compile, and no counts of
   references to arrays (an eighth of the time), so it makes none and returns none;
 - ``views``: likewise where it makes views of memory that others keep, and returns them;
-- ``inline``: likewise in every step, where passing a dozen arrays costs as much as the work;
+- ``inline``: likewise in every step, where passing a dozen arrays costs as much as the work, and
+  ``inline_views`` where it returns views of which few are used;
 - ``polynomial``: likewise with fused multiply-add, which halves the time of a Horner chain.
 
 Only the first two are stored, each with all that it calls, in the user's cache folder: one store
@@ -45,6 +46,12 @@ _PART: dict[str, Any] = {
 part = _numba.njit(**_PART)
 views = _numba.njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 inline = _numba.njit(forceinline=True, **_PART)
+inline_views = _numba.njit(
+    error_model="numpy",
+    no_cpython_wrapper=True,
+    no_cfunc_wrapper=True,
+    forceinline=True,
+)
 polynomial = _numba.njit(fastmath={"contract"}, **_PART)
 
 

@@ -119,8 +119,11 @@ class LinearBatch(Batch):
         numbering, matrices = system.integrated, system.matrices
         called = functions()
         self.code = {
-            name: called[name].address for name in ("gauge", "change", "settle")
+            name: called[name].address
+            for name in ("series", "gauge", "change", "settle")
         }
+        # in the place of what limits the steps of traced systems
+        self.code["longest"] = called["take"].address
         n, c = matrices.n_modes, matrices.n_contacts
         events = len(numbering.surfaces) + len(numbering.outputs)
         self.n_series = 2 * n + events
@@ -157,7 +160,10 @@ def first_regimes(
     numbers = np.tile(own, (len(states), 1)).astype(np.int64)
     unit = np.ones(len(states))
     given = numbers_of_runs(matrices, coefficients, values, unit, 0)
-    table = plan(matrices, numbering, np.hstack([given, states]), numbers)
+    starts = np.hstack([given, states])
+    settle = functions()["settle"].address
+    table = plan(matrices, numbering, starts, numbers, settle)
     address = table.pointer.value or 0
+    table.arrays["starts"][:, 0] = np.array([address], np.int64).view(float)[0]
     functions()["starts"].ctypes(address)
     return np.asarray(numbers + first)

@@ -42,10 +42,13 @@ from squealpipe.systems.linear.plan import (
     BASE,
     BELT,
     COEFFICIENTS,
+    PLACE,
     PRELOAD,
     RATE,
     SCALE,
+    SPEED,
 )
+from squealpipe.systems.taylor.simd import ROW, fma, load, splat, store
 
 (
     LAGS, RELIEVED, SLIP, STICK, OF_PRESS, OF_LAG, OF_STICK, CLOSED, SIDE, LIMIT, DRAG,
@@ -79,39 +82,56 @@ def _unit(k: Any, rows: Any) -> Any:
 
 
 @part
+def _write_columns(matrix: Any, by: Any, total: Any) -> None:
+    """Write Σ_j matrix[j] by[j], sixteen columns at a time in registers, in a fixed order.
+
+    Args:
+        matrix: (rows, padded columns), aligned as in :mod:`.plan`.
+        total: (padded columns), aligned.
+    """
+    to = total.ctypes.data
+    for place in range(0, 8 * matrix.shape[1], ROW):
+        store(to + place, _sum_of_rows(matrix, by, place))
+
+
+@part
 def _add_columns(matrix: Any, by: Any, total: Any) -> None:
-    """Add Σ_j matrix[j] by[j], four rows at a time in a fixed order."""
-    n, c = matrix.shape
-    j = 0
-    while j + 4 <= n:
-        a, b, d, e = matrix[j], matrix[j + 1], matrix[j + 2], matrix[j + 3]
-        x, y, z, w = by[j], by[j + 1], by[j + 2], by[j + 3]
-        for i in range(c):
-            total[i] += ((a[i] * x + b[i] * y) + d[i] * z) + e[i] * w
-        j += 4
-    while j < n:
-        a, x = matrix[j], by[j]
-        for i in range(c):
-            total[i] += a[i] * x
-        j += 1
+    """Add the same."""
+    to = total.ctypes.data
+    for place in range(0, 8 * matrix.shape[1], ROW):
+        store(to + place, load(to + place) + _sum_of_rows(matrix, by, place))
+
+
+@inline
+def _sum_of_rows(matrix: Any, by: Any, place: int) -> Any:
+    """Return Σ_j matrix[j] by[j] of some columns, by the offset of their first in bytes."""
+    count, width = matrix.shape
+    row, stride = matrix.ctypes.data + place, 8 * width
+    # two sums, so that one addition need not wait for the other
+    even, odd = splat(0.0), splat(0.0)
+    for j in range(0, count - 1, 2):
+        even = fma(load(row), splat(by[j]), even)
+        odd = fma(load(row + stride), splat(by[j + 1]), odd)
+        row += 2 * stride
+    if count % 2:
+        even = fma(load(row), splat(by[count - 1]), even)
+    return even + odd
 
 
 @part
 def _add_listed(matrix: Any, places: Any, count: int, by: Any, total: Any) -> None:
-    """Add Σ_a matrix[places[a]] by[places[a]], four rows at a time in a fixed order."""
-    n, a = total.size, 0
-    while a + 4 <= count:
-        i, j, m, o = places[a], places[a + 1], places[a + 2], places[a + 3]
-        first, second, third, fourth = matrix[i], matrix[j], matrix[m], matrix[o]
-        x, y, z, w = by[i], by[j], by[m], by[o]
-        for p in range(n):
-            total[p] += ((first[p] * x + second[p] * y) + third[p] * z) + fourth[p] * w
-        a += 4
-    while a < count:
-        first, x = matrix[places[a]], by[places[a]]
-        for p in range(n):
-            total[p] += first[p] * x
-        a += 1
+    """Add Σ_a matrix[places[a]] by[places[a]], likewise."""
+    at, to, stride = matrix.ctypes.data, total.ctypes.data, 8 * matrix.shape[1]
+    for place in range(0, stride, ROW):
+        even, odd = load(to + place), splat(0.0)
+        for a in range(0, count - 1, 2):
+            i, j = places[a], places[a + 1]
+            even = fma(load(at + i * stride + place), splat(by[i]), even)
+            odd = fma(load(at + j * stride + place), splat(by[j]), odd)
+        if count % 2:
+            i = places[count - 1]
+            even = fma(load(at + i * stride + place), splat(by[i]), even)
+        store(to + place, even + odd)
 
 
 @part
@@ -142,7 +162,7 @@ def _add_sizes(matrix: Any, by: Any, total: Any) -> None:
 
 @part
 def dot(a: Any, b: Any) -> Any:
-    """Return a scalar product, its four sums in a fixed order."""
+    """Return a scalar product over the length of the first, its four sums in a fixed order."""
     n = a.size
     s0, s1, s2, s3 = 0.0, 0.0, 0.0, 0.0
     j = 0
@@ -165,7 +185,7 @@ def _add_product(matrix: Any, full: int, by: Any, total: Any) -> None:
         _add_columns(matrix, by, total)
     else:
         diagonal = matrix[0]
-        for i in range(total.size):
+        for i in range(by.size):
             total[i] += diagonal[i] * by[i]
 
 
@@ -306,10 +326,8 @@ def state_forces(k: Any, rows: Any, z: Any, pressing: Any) -> None:
     n, c = k.n, k.c
     q, v = z[:n], z[n : 2 * n]
     lags, base, preload = k.by_contact[LAGS], k.by_mode[BASE], rows[PRELOAD, 0]
-    for i in range(c):
-        pressing[i], lags[i] = 0.0, 0.0
-    _add_columns(k.normals, q, pressing)
-    _add_columns(k.tangentials, v, lags)
+    _write_columns(k.normals, q, pressing)
+    _write_columns(k.tangentials, v, lags)
     for j in range(n):
         base[j] = k.load[j] * (preload if k.balanced else 1.0)
     _add_product(k.pull_back, k.full_stiffness, q, base)
@@ -408,7 +426,7 @@ def _sizes_of_products(matrix: Any, full: int, by: Any, total: Any) -> None:
     if full:
         _add_sizes(matrix, by, total)
     else:
-        for i in range(total.size):
+        for i in range(by.size):
             total[i] += abs(matrix[0, i]) * by[i]
 
 
@@ -573,7 +591,7 @@ def change_state(k: Any, rows: Any, which: int, z: Any, out: Any) -> None:
     out[0], out[1] = float(first + regime), float(k.first[1, i] + kind)
 
 
-@part
+@inline
 def _list_forces(k: Any, rows: Any) -> None:
     """Note what the regimes make of each contact, and which contacts push and slip.
 
@@ -599,39 +617,52 @@ def _list_forces(k: Any, rows: Any) -> None:
     k.counts[2], k.counts[3] = opened, slipping
 
 
-@part
-def _contacts_at_order(k: Any, rows: Any, mem: Any, order: int) -> None:
-    """Compute an order of the surfaces, outputs and forces of all contacts, but for stick."""
+@inline
+def _forces_of_lifts(k: Any, preload: float, belt: float) -> None:
+    """Compute forces and speeds of all contacts from lifts and slides, side by side in vectors."""
+    work, width = k.by_contact.ctypes.data, 8 * k.by_contact.shape[1]
+    springs, preloads = k.springs.ctypes.data, k.preloads.ctypes.data
+    for place in range(0, width, ROW):
+        at = work + place
+        shut = load(at + CLOSED * width)
+        force = load(springs + place) * load(at + PRESS * width)
+        pushed = load(preloads + place) * preload
+        pressing = pushed - force
+        store(at + PRESS * width, pressing)
+        store(at + RELIEVED * width, shut * pushed + (1.0 - shut) * force)
+        store(at + SLIP * width, load(at + DRAG * width) * pressing)
+        carried = load(k.speeds.ctypes.data + place) * belt
+        slide = carried - load(at + LAGS * width)
+        store(at + LAGS * width, slide)
+        store(at + OF_LAG * width, load(at + SIDE * width) * slide)
+
+
+@inline
+def _contacts_at_order(k: Any, rows: Any, mem: Any, order: int, q: Any, v: Any) -> None:
+    """Compute an order of the surfaces, outputs and forces of all contacts, but for stick.
+
+    Args:
+        q, v: this order of displacements and velocities.
+    """
     n, c, row = k.n, k.c, mem[order]
     first_output = 2 * n + (6 if k.n_pieces > 1 else 4) * c
-    pressing, lags = row[2 * n : 2 * n + c], row[2 * n + c : 2 * n + 2 * c]
-    margins = row[2 * n + 2 * c : 2 * n + 4 * c]
-    closed, side = k.by_contact[CLOSED], k.by_contact[SIDE]
-    relieved, slip, drag = (
-        k.by_contact[RELIEVED],
-        k.by_contact[SLIP],
-        k.by_contact[DRAG],
+    pressing, slides = k.by_contact[PRESS], k.by_contact[LAGS]
+    lags, closed = k.by_contact[OF_LAG], k.by_contact[CLOSED]
+    _write_columns(k.normals, q, pressing)
+    _write_columns(k.tangentials, v, slides)
+    _forces_of_lifts(
+        k, rows[PRELOAD, 0] if order == 0 else 0.0, rows[BELT, 0] if order == 0 else 0.0
     )
+    at = 2 * n
     for i in range(c):
-        pressing[i], lags[i] = 0.0, 0.0
-        margins[i], margins[c + i] = 0.0, 0.0
-    _add_columns(k.normals, row[:n], pressing)
-    _add_columns(k.tangentials, row[n : 2 * n], lags)
+        row[at + i] = pressing[i]
     for i in range(c):
-        relieved[i] = (1.0 - closed[i]) * (k.springs[i] * pressing[i])
-        pressing[i] = -(k.springs[i] * pressing[i])
-        lags[i] = -lags[i]
-    if order == 0:
-        for i in range(c):
-            preload = k.preloads[i] * rows[PRELOAD, 0]
-            pressing[i] += preload
-            relieved[i] += closed[i] * preload
-            lags[i] += k.speeds[i] * rows[BELT, 0]
+        row[at + c + i] = lags[i]
+    for i in range(2 * c):
+        row[at + 2 * c + i] = 0.0
     for i in range(c):
         at = first_output + 2 * i
-        row[at], row[at + 1] = closed[i] * pressing[i], lags[i]
-        lags[i] *= side[i]
-        slip[i] = drag[i] * pressing[i]
+        row[at], row[at + 1] = closed[i] * pressing[i], slides[i]
     if k.curved:
         _curved_slip_at_order(k, rows, mem, order)
     if k.n_pieces > 1:
@@ -662,7 +693,7 @@ def _knots_at_order(k: Any, rows: Any, row: Any, order: int) -> None:
             row[place] = row[2 * n + LAG * c + i] - (knot if order == 0 else 0.0)
 
 
-@part
+@inline
 def _stick_at_order(k: Any, row: Any) -> None:
     """Compute an order of the friction of the contacts that stick, and what it lacks to slip."""
     n, c = k.n, k.c
@@ -675,7 +706,26 @@ def _stick_at_order(k: Any, row: Any) -> None:
         row[2 * n + MARGIN_BACK * c + i] = limit + k.by_contact[STICK, i]
 
 
-@part
+@inline
+def _linear_rates(k: Any) -> None:
+    """Compute accelerations by stiffness and damping alone."""
+    at, width = k.by_mode.ctypes.data, 8 * k.by_mode.shape[1]
+    pull, drag = k.pull_back.ctypes.data, k.drag_back.ctypes.data
+    for place in range(0, width, ROW):
+        rates = splat(0.0)
+        if not k.full_stiffness:
+            rates = load(pull + place) * load(at + PLACE * width + place)
+        if not k.full_damping:
+            speed = load(at + SPEED * width + place)
+            rates = fma(load(drag + place), speed, rates)
+        store(at + BASE * width + place, rates)
+    if k.full_stiffness:
+        _add_columns(k.pull_back, k.by_mode[PLACE, : k.n], k.by_mode[BASE])
+    if k.full_damping:
+        _add_columns(k.drag_back, k.by_mode[SPEED, : k.n], k.by_mode[BASE])
+
+
+@inline
 def series(k: Any, rows: Any, mem: Any) -> None:
     """Compute the Taylor coefficients of states, surfaces and outputs, order after order.
 
@@ -683,15 +733,16 @@ def series(k: Any, rows: Any, mem: Any) -> None:
         mem: (orders, series): states, whose order 0 is given, surfaces and outputs.
     """
     terms, n, unit, base = mem.shape[0], k.n, _unit(k, rows), k.by_mode[BASE]
+    q, v = k.by_mode[PLACE, :n], k.by_mode[SPEED, :n]
+    at, width = k.by_mode.ctypes.data, 8 * k.by_mode.shape[1]
+    for j in range(n):
+        q[j], v[j] = mem[0, j], mem[0, n + j]
     _list_forces(k, rows)
     for order in range(terms):
-        _contacts_at_order(k, rows, mem, order)
+        _contacts_at_order(k, rows, mem, order, q, v)
         if order == terms - 1 and not k.counts[0]:
             return
-        row = mem[order]
-        q, v = row[:n], row[n : 2 * n]
-        for j in range(n):
-            base[j] = 0.0
+        _linear_rates(k)
         if order == 0:
             _add_row(k.load, rows[PRELOAD, 0] if k.balanced else 1.0, base)
             _add_columns(k.push_rows, k.by_contact[RELIEVED], base)
@@ -699,16 +750,18 @@ def series(k: Any, rows: Any, mem: Any) -> None:
             _add_listed(
                 k.push_rows, k.lists[0], k.counts[2], k.by_contact[RELIEVED], base
             )
-        _add_product(k.pull_back, k.full_stiffness, q, base)
-        _add_product(k.drag_back, k.full_damping, v, base)
         _add_listed(k.drag_rows, k.lists[1], k.counts[3], k.by_contact[SLIP], base)
         if k.counts[0]:
-            _stick_at_order(k, row)
+            _stick_at_order(k, mem[order])
         if order < terms - 1:
             share, later = unit / (order + 1.0), mem[order + 1]
+            for place in range(at, at + width, ROW):
+                store(place + PLACE * width, load(place + SPEED * width) * share)
+                store(place + SPEED * width, load(place + BASE * width) * share)
             for j in range(n):
-                later[j] = share * v[j]
-                later[n + j] = share * base[j]
+                later[j] = q[j]
+            for j in range(n):
+                later[n + j] = v[j]
 
 
 @part

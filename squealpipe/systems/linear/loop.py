@@ -30,11 +30,19 @@ from squealpipe.systems.linear.forces import (
 )
 from squealpipe.systems.linear.matrices import EXPONENTIAL
 from squealpipe.systems.linear.numbering import LAG, MARGIN
-from squealpipe.systems.linear.plan import COEFFICIENTS, numbers_of, plan_at, plan_of
+from squealpipe.systems.linear.plan import (
+    COEFFICIENTS,
+    SPECIAL,
+    numbers_of,
+    plan_at,
+    plan_of,
+)
 from squealpipe.systems.linear.starts import find_starts
 from squealpipe.systems.taylor import layout
 from squealpipe.systems.taylor.checking import FINEST, believe_or_halve, stands_still
 from squealpipe.systems.taylor.lanes import (
+    address_of,
+    call,
     compile_advance,
     compile_called,
     record_viewer,
@@ -48,12 +56,11 @@ from squealpipe.systems.taylor.observation import (
     extremes_inside,
     sample,
 )
-from squealpipe.systems.taylor.roots import evaluate
 from squealpipe.systems.taylor.step import FITS, SPARE, cut
 from squealpipe.systems.taylor.switching import parameters_of, switch, watch
 
 _FOLDER = Path(__file__).parent
-_record_at: Any = record_viewer(layout.LOOP_TABLE, of_pointer=True)
+_record_at: Any = record_viewer(layout.LOOP_TABLE)
 LANE = 0
 """The only lane that runs."""
 
@@ -129,7 +136,7 @@ def shorter_step(m: Any, k: Any, rows: Any, mem: Any, step: float) -> Any:
     return step
 
 
-@part
+@inline
 def _look_at_surfaces(t: Any, m: Any, mem: Any, step: float, work: Any) -> Any:
     """Mark the surfaces that may have a root in the step; tell whether there are any.
 
@@ -157,16 +164,22 @@ def _look_at_surfaces(t: Any, m: Any, mem: Any, step: float, work: Any) -> Any:
 
 
 @part
-def _end_states(t: Any, m: Any, mem: Any, step: float, work: Any) -> Any:
-    """Write the states at the end of a step; tell whether all are finite."""
-    terms, n = mem.shape[0], t.n_variables
-    value = work[0]
+def _write_ends(mem: Any, first: int, step: float, value: Any) -> None:
+    """Write some series, side by side, at the end of a step."""
+    terms, n = mem.shape[0], value.size
     for i in range(n):
-        value[i] = mem[terms - 1, i]
+        value[i] = mem[terms - 1, first + i]
     for order in range(terms - 2, -1, -1):
-        row = mem[order, :n]
+        row = mem[order, first : first + n]
         for i in range(n):
             value[i] = value[i] * step + row[i]
+
+
+@inline
+def _end_states(t: Any, m: Any, mem: Any, step: float, work: Any) -> Any:
+    """Write the states at the end of a step; tell whether all are finite."""
+    n, value = t.n_variables, work[0]
+    _write_ends(mem, 0, step, value[:n])
     lost = 0.0
     for i in range(n):
         m.rows[layout.FIXED_ROWS + i, LANE] = value[i]
@@ -181,7 +194,7 @@ def _reaches(m: Any, instant: int) -> Any:
     return not m.rows[layout.STEP, LANE] < left - m.rows[layout.CORRECTION, LANE]
 
 
-@part
+@inline
 def _take_step(t: Any, m: Any, k: Any, rows: Any, mem: Any, work: Any) -> Any:
     """Choose a step; tell whether something may happen in it."""
     step = min(step_length(mem, m.units), m.rows[layout.LONGEST, LANE])
@@ -214,18 +227,24 @@ def _check(t: Any, m: Any, c: Any, k: Any, rows: Any, work: Any) -> Any:
     return halved
 
 
-@part
-def _observe(t: Any, m: Any, c: Any, first_extreme: int) -> None:
+@inline
+def _observe(t: Any, m: Any, c: Any, mem: Any, first_extreme: int) -> None:
     """Extremes of the tracked quantities over a step.
 
     Inside a step a quantity leaves the span of its ends by at most h²/8 times its second
     derivative, bounded by its first orders and a share for the others: only where that could be a
     record are turning points looked for.
     """
-    step = m.rows[layout.STEP, LANE]
+    step, n = m.rows[layout.STEP, LANE], t.n_variables
+    ends = m.scratch[4]
+    if t.n_tracked:  # states at the end are known
+        _write_ends(mem, n, step, ends[: t.n_surfaces + t.n_outputs])
     for index in range(t.n_tracked):
         place, r = m.tracked[index, 0], first_extreme + 2 * index
-        start, end = c[place, 0, LANE], evaluate(c, place, LANE, step)
+        start = c[place, 0, LANE]
+        end = m.rows[layout.FIXED_ROWS + place, LANE]
+        if place >= n:
+            end = ends[place - n]
         low, high = min(start, end), max(start, end)
         bend = 0.75 * abs(c[place, 3, LANE]) + 1.5 * step * abs(c[place, 4, LANE])
         bend = step * step * (0.25 * abs(c[place, 2, LANE]) + step * bend)
@@ -237,7 +256,7 @@ def _observe(t: Any, m: Any, c: Any, first_extreme: int) -> None:
         m.rows[r, LANE], m.rows[r + 1, LANE] = least, most
 
 
-@part
+@inline
 def _go_on(t: Any, m: Any, mem: Any) -> None:
     """Start the next step where this one ended; the time is compensated."""
     for i in range(t.n_variables):
@@ -283,10 +302,9 @@ def _next_run(t: Any, m: Any, c: Any, k: Any, tangent_row: int) -> Any:
     return True
 
 
-@part
+@inline
 def _step(t: Any, m: Any, c: Any, k: Any, rows: Any, mem: Any, work: Any) -> Any:
-    """Compute the series and choose a step that can be believed; tell whether it is special."""
-    series(k, rows, mem)
+    """Choose a step of the series that can be believed; tell whether it is special."""
     for surface in range(t.n_surfaces):
         if m.fresh[surface] & 1:
             mem[0, t.n_variables + surface] = 0.0
@@ -303,8 +321,13 @@ def _step(t: Any, m: Any, c: Any, k: Any, rows: Any, mem: Any, work: Any) -> Any
 
 
 @inline
-def _rounds(t: Any, m: Any, c: Any, k: Any, rows: Any, mem: Any, work: Any) -> Any:
-    """Steps until no run is left, or there were enough."""
+def _rounds(table: int, t: Any, m: Any, c: Any, k: Any, mem: Any) -> Any:
+    """Steps until no run is left, or there were enough.
+
+    Args:
+        table: address of what ``t`` is.
+    """
+    parameters = parameters_of(t, LANE)
     tangent_row = layout.FIXED_ROWS + t.n_variables
     first_extreme = tangent_row + t.n_states
     first_time = first_extreme + 2 * t.n_tracked
@@ -312,13 +335,15 @@ def _rounds(t: Any, m: Any, c: Any, k: Any, rows: Any, mem: Any, work: Any) -> A
         ended = m.integers[layout.OUTCOME, LANE] != layout.RUNNING
         if ended and not _next_run(t, m, c, k, tangent_row):
             return 0
-        special = _step(t, m, c, k, rows, mem, work)
+        call(t.take_step, (parameters, t.series, t.n_terms))
+        call(t.longest, (table,))
+        special = k.counts[SPECIAL] != 0
         # before the samples, which count on to the next one that is due
         if t.n_between:
             extremes_between(t, m, c, LANE)
         if t.n_samples and _reaches(m, layout.NEXT_SAMPLE):
             sample(t, m, c, LANE, first_time)
-        _observe(t, m, c, first_extreme)
+        _observe(t, m, c, mem, first_extreme)
         _go_on(t, m, mem)
         _switch(t, m, c, tangent_row, special)
         spent = m.rows[layout.STEPS, LANE] >= m.rows[layout.MOST_STEPS, LANE]
@@ -329,14 +354,34 @@ def _rounds(t: Any, m: Any, c: Any, k: Any, rows: Any, mem: Any, work: Any) -> A
 
 def _advance(table: Any) -> int:
     """Some rounds; returns 0 where all runs are finished. The table: that of the engine."""
+    address = address_of(table)
+    t = _record_at(address)
+    m = memory_of(t)
+    mem = view(t.series, (t.n_terms, t.n_series), np.float64)
+    c = view(t.series, (1, t.n_terms, t.n_series), np.float64).T
+    k = plan_at(t.inverses)
+    return int(_rounds(address, t, m, c, k, mem))
+
+
+def _take(table: int) -> None:
+    """Choose a step by the address of a table; the plan gets whether it is special."""
     t = _record_at(table)
     m = memory_of(t)
     mem = view(t.series, (t.n_terms, t.n_series), np.float64)
     c = view(t.series, (1, t.n_terms, t.n_series), np.float64).T
-    work = m.scratch[4:6]
     k = plan_at(t.inverses)
     rows = numbers_of(k, parameters_of(t, LANE))
-    return int(_rounds(t, m, c, k, rows, mem, work))
+    special = _step(t, m, c, k, rows, mem, m.scratch[4:6])
+    k.counts[SPECIAL] = 1 if special else 0
+
+
+def _series(parameters: int, orders: int, terms: int) -> None:
+    """Call :func:`.forces.series` by addresses."""
+    k = plan_of(parameters)
+    # after those of the states, surfaces and outputs come
+    width = 2 * k.n + (6 if k.n_pieces > 1 else 4) * k.c + 2 * k.c + k.n_shapes
+    mem = view(orders, (terms, width), np.float64)
+    series(k, numbers_of(k, parameters), mem)
 
 
 def _gauge(z: int, sizes: int, parameters: int, out: int) -> None:
@@ -371,8 +416,14 @@ def loop() -> Any:
 
 @cache
 def functions() -> dict[str, Any]:
-    """Return what the engine calls by its address, and the search for first regimes."""
+    """Return what is called by its address, and the search for first regimes.
+
+    Each is compiled by itself: of one large function LLVM would optimize every part again in each
+    that holds it, and keep nothing in registers.
+    """
     return {
+        "series": compile_called(_series, 3, _FOLDER),
+        "take": compile_called(_take, 1, _FOLDER),
         "gauge": compile_called(_gauge, 4, _FOLDER),
         "change": compile_called(_change, 4, _FOLDER),
         "settle": compile_called(_settle, 1, _FOLDER),

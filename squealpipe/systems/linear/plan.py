@@ -2,16 +2,24 @@
 
 A plan is a record of addresses and sizes; its own address stands bit for bit in the first parameter
 of each run, so that functions that are called with the address of a run's parameters find it.
+Columns of matrices that products run along, and of the work, are padded with zeros to whole rows of
+vectors, which are aligned.
 """
 
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from squealpipe.systems.compiled import views
+from squealpipe.systems.compiled import inline_views, views
 from squealpipe.systems.linear.matrices import ContactMatrices
 from squealpipe.systems.linear.numbering import Numbering
-from squealpipe.systems.taylor.lanes import MOST_TERMS, Workspace, record_viewer, view
+from squealpipe.systems.taylor.lanes import (
+    MOST_TERMS,
+    Workspace,
+    aligned,
+    record_viewer,
+    view,
+)
 from squealpipe.systems.taylor.simd import LANES
 
 PLAN, BELT, PRELOAD, COEFFICIENTS = range(4)
@@ -19,8 +27,10 @@ PLAN, BELT, PRELOAD, COEFFICIENTS = range(4)
 its static limit and the reference speed of each contact, and last the unit of time."""
 WORK = 12
 """Rows of work by contact."""
-BASE, SCALE, RATE = range(3)
-"""Work by displacement: accelerations without stick, and sizes of terms."""
+BASE, SCALE, RATE, PLACE, SPEED = range(5)
+"""Work by displacement: accelerations without stick, sizes of terms, and an order of the states."""
+SPECIAL = 4
+"""Place among the counts of whether something happens in the last step."""
 ARRAYS = (
     "pull_back", "drag_back", "load", "normals", "tangentials", "push_rows", "drag_rows",
     "tangent_rows", "mobility", "springs", "preloads", "speeds", "laws", "shapes", "table",
@@ -29,7 +39,7 @@ ARRAYS = (
 )  # fmt: skip
 SIZES = (
     "n", "c", "width", "n_pieces", "n_shapes", "n_regimes", "n_switches", "full_stiffness",
-    "full_damping", "balanced", "curved", "n_jobs",
+    "full_damping", "balanced", "curved", "n_jobs", "settle",
 )  # fmt: skip
 TABLE = np.dtype([(name, "i8") for name in (*ARRAYS, *SIZES)])
 record_at: Any = record_viewer(TABLE)
@@ -44,12 +54,12 @@ class Plan(NamedTuple):
         table: (regimes, constants), contact after contact.
         first: (2, c + 1) the first regime of each contact, and its first kind of event.
         switches: (switches, 3) what, contact, target.
-        by_contact, by_mode: work.
+        by_contact, by_mode: work, (WORK, c) and (5, n).
         law_series: (4, terms, c) orders of the coefficient of friction and of what it is made of.
         held: (c, c) (T_SᵀM⁻¹T_S)⁺ of the contacts S that stick, in its first rows and columns.
         stuck: (c,) these contacts.
         counts: how many they are; how many of their directions follow from the others; numbers of
-            contacts in the lists.
+            contacts in the lists; whether something happens in the last step.
         lists: (2, c) contacts that are open, and those that slip.
     """
 
@@ -91,13 +101,13 @@ class Plan(NamedTuple):
     hidden: Any
 
 
-@views
+@inline_views
 def plan_at(address: int) -> Any:
     """Return the plan at an address."""
     t = record_at(address)
     n, c = t.n, t.c
-    square = n * n if t.full_stiffness else n
-    damping = n * n if t.full_damping else n
+    stiffness, damping = n if t.full_stiffness else 1, n if t.full_damping else 1
+    of_modes, of_contacts = -(-n // LANES) * LANES, -(-c // LANES) * LANES
     return Plan(
         n=n,
         c=c,
@@ -109,30 +119,30 @@ def plan_at(address: int) -> Any:
         full_damping=t.full_damping,
         balanced=t.balanced,
         curved=t.curved,
-        pull_back=view(t.pull_back, (square // n, n), np.float64),
-        drag_back=view(t.drag_back, (damping // n, n), np.float64),
+        pull_back=view(t.pull_back, (stiffness, of_modes), np.float64),
+        drag_back=view(t.drag_back, (damping, of_modes), np.float64),
         load=view(t.load, (n,), np.float64),
-        normals=view(t.normals, (n, c), np.float64),
-        tangentials=view(t.tangentials, (n, c), np.float64),
-        push_rows=view(t.push_rows, (c, n), np.float64),
-        drag_rows=view(t.drag_rows, (c, n), np.float64),
+        normals=view(t.normals, (n, of_contacts), np.float64),
+        tangentials=view(t.tangentials, (n, of_contacts), np.float64),
+        push_rows=view(t.push_rows, (c, of_modes), np.float64),
+        drag_rows=view(t.drag_rows, (c, of_modes), np.float64),
         tangent_rows=view(t.tangent_rows, (c, n), np.float64),
         mobility=view(t.mobility, (c, c), np.float64),
-        springs=view(t.springs, (c,), np.float64),
-        preloads=view(t.preloads, (c,), np.float64),
-        speeds=view(t.speeds, (c,), np.float64),
+        springs=view(t.springs, (of_contacts,), np.float64),
+        preloads=view(t.preloads, (of_contacts,), np.float64),
+        speeds=view(t.speeds, (of_contacts,), np.float64),
         laws=view(t.laws, (c,), np.int64),
         shapes=view(t.shapes, (t.n_shapes, n), np.float64),
         table=view(t.table, (t.n_regimes, t.width), np.float64),
         first=view(t.first, (2, c + 1), np.int64),
         switches=view(t.switches, (t.n_switches, 3), np.int64),
-        by_contact=view(t.by_contact, (WORK, c), np.float64),
-        by_mode=view(t.by_mode, (3, n), np.float64),
+        by_contact=view(t.by_contact, (WORK, of_contacts), np.float64),
+        by_mode=view(t.by_mode, (5, of_modes), np.float64),
         law_series=view(t.law_series, (4, MOST_TERMS, c), np.float64),
         held=view(t.held, (c, c), np.float64),
         factor=view(t.factor, (3, c, c), np.float64),
         stuck=view(t.stuck, (c,), np.int64),
-        counts=view(t.counts, (4,), np.int64),
+        counts=view(t.counts, (5,), np.int64),
         lists=view(t.lists, (2, c), np.int64),
         hidden=view(t.hidden, (1,), np.float64),
     )
@@ -144,7 +154,7 @@ def n_parameters(k: Any) -> int:
     return int(COEFFICIENTS + 3 * k.c + 1)
 
 
-@views
+@inline_views
 def plan_of(parameters: int) -> Any:
     """Return the plan of a lane, by the address of its parameters."""
     return plan_at(view(parameters, (1,), np.int64)[0])
@@ -157,46 +167,59 @@ def numbers_of(k: Any, parameters: int) -> Any:
     return view(parameters, (rows, LANES), np.float64)
 
 
+def _padded(matrix: np.ndarray) -> np.ndarray:
+    """Return an aligned matrix, or one row, whose columns are padded with zeros."""
+    given = np.atleast_2d(matrix)
+    rows, columns = given.shape
+    padded = aligned(rows * -(-columns // LANES), LANES).reshape(rows, -1)
+    padded[:, :columns] = given
+    return padded
+
+
 def plan(
     matrices: ContactMatrices,
     numbering: Numbering,
     starts: np.ndarray | None = None,
     numbers: np.ndarray | None = None,
+    settle: int = 0,
 ) -> Workspace:
     """Return the plan of some matrices; it keeps its arrays.
 
     Args:
         starts: (runs, parameters and states) from which to look for first regimes.
         numbers: (runs, contacts) for these, −1 where they are to be found.
+        settle: address of the function that is called where regimes have changed.
     """
     n, c = matrices.n_modes, matrices.n_contacts
     switches = [(each.what, each.contact, each.target) for each in numbering.switches]
     arrays = {
         name: np.ascontiguousarray(getattr(matrices, name), float)
-        for name in ("load", "normals", "tangentials")
+        for name in ("load", "mobility")
     }
     arrays |= {
-        name: np.ascontiguousarray(getattr(matrices, name), float)
-        for name in ("springs", "preloads", "speeds", "mobility")
+        name: _padded(getattr(matrices, name))
+        for name in ("springs", "preloads", "speeds")
     }
     arrays |= {
-        "pull_back": np.ascontiguousarray(-np.asarray(matrices.stiffness, float).T),
-        "drag_back": np.ascontiguousarray(-np.asarray(matrices.damping, float).T),
-        "push_rows": np.ascontiguousarray(matrices.pushes.T),
-        "drag_rows": np.ascontiguousarray(matrices.drags.T),
+        "pull_back": _padded(-matrices.stiffness.T),
+        "drag_back": _padded(-matrices.damping.T),
+        "normals": _padded(matrices.normals),
+        "tangentials": _padded(matrices.tangentials),
+        "push_rows": _padded(matrices.pushes.T),
+        "drag_rows": _padded(matrices.drags.T),
         "tangent_rows": np.ascontiguousarray(matrices.tangentials.T),
         "laws": np.ascontiguousarray(matrices.laws, np.int64),
         "shapes": np.ascontiguousarray(matrices.shapes, float),
         "table": numbering.constants_of_regimes,
         "first": np.array([numbering.first_regime, numbering.first_kind], np.int64),
         "switches": np.array(switches, np.int64),
-        "by_contact": np.zeros((WORK, c)),
-        "by_mode": np.zeros((3, n)),
+        "by_contact": _padded(np.zeros((WORK, c))),
+        "by_mode": _padded(np.zeros((5, n))),
         "law_series": np.zeros((4, MOST_TERMS, c) if matrices.curved else 1),
         "held": np.zeros((c, c)),
         "factor": np.zeros((3, c, c)),
         "stuck": np.zeros(c, np.int64),
-        "counts": np.array([-1, 0, 0, 0], np.int64),
+        "counts": np.array([-1, 0, 0, 0, 0], np.int64),
         "lists": np.zeros((2, c), np.int64),
         "hidden": np.array([matrices.hidden]),
         "opened": np.zeros(c, np.int64),
@@ -217,6 +240,7 @@ def plan(
         "balanced": int(matrices.balanced),
         "curved": int(matrices.curved),
         "n_jobs": 0 if starts is None else len(starts),
+        "settle": settle,
     }
     # a view of nothing has no address
     arrays = {

@@ -11,7 +11,6 @@ from squealpipe.systems.linear.forces import (
     STICK,
     holding,
     holds,
-    settle_stick,
     slip_regime,
     state_forces,
 )
@@ -23,7 +22,7 @@ from squealpipe.systems.linear.plan import (
     plan_at,
     record_at,
 )
-from squealpipe.systems.taylor.lanes import view
+from squealpipe.systems.taylor.lanes import call, view
 from squealpipe.systems.taylor.simd import LANES
 
 EQUAL = 1e-15
@@ -35,11 +34,16 @@ FIRST = 1e150
 
 
 @part
-def _put(k: Any, rows: Any, i: int, regime: int) -> None:
+def _put(settle: Any, k: Any, rows: Any, i: int, regime: int) -> None:
+    """Put a contact into a regime.
+
+    Args:
+        settle: address of :func:`.forces.settle_stick` as a function, and of the parameters.
+    """
     first = COEFFICIENTS + 3 * k.c + 1 + i * k.width
     for which in range(k.width):
         rows[first + which, 0] = k.table[k.first[0, i] + regime, which]
-    settle_stick(k, rows)
+    call(settle[0], (settle[1],))
 
 
 @part
@@ -56,7 +60,7 @@ def _rises(k: Any, i: int, z: Any) -> Any:
 
 
 @part
-def _first_that_fits(k: Any, rows: Any, z: Any, i: int) -> Any:
+def _first_that_fits(settle: Any, k: Any, rows: Any, z: Any, i: int) -> Any:
     """Return the first regime of a contact that fits the state, the others' being as they are."""
     n, pressing = k.n, k.by_contact[OF_PRESS]
     last = k.first[0, i + 1] - k.first[0, i] - 1
@@ -67,7 +71,7 @@ def _first_that_fits(k: Any, rows: Any, z: Any, i: int) -> Any:
         if k.tangentials[j, i] != 0.0:
             size_v += abs(z[n + j])
         reach = max(reach, abs(k.tangentials[j, i]))
-    _put(k, rows, i, last)
+    _put(settle, k, rows, i, last)
     state_forces(k, rows, z, pressing)
     press, speed = pressing[i], k.by_contact[LAGS, i]
     if abs(press) <= EQUAL * size_q and _rises(k, i, z) >= 0.0:
@@ -76,7 +80,7 @@ def _first_that_fits(k: Any, rows: Any, z: Any, i: int) -> Any:
         return last
     if abs(speed) <= reach * EQUAL * size_v:
         for regime in (last - 1, 0, 1):
-            _put(k, rows, i, regime)
+            _put(settle, k, rows, i, regime)
             state_forces(k, rows, z, pressing)
             if regime == last - 1:
                 fits = holds(k, rows, i, pressing[i])
@@ -97,6 +101,7 @@ def find_starts(address: int) -> None:
     numbers = view(t.numbers, (jobs, c), np.int64)
     opened = view(t.opened, (c,), np.int64)
     rows = view(t.scratch, (given + c * k.width, LANES), np.float64)
+    settle = t.settle, t.scratch
     for job in range(jobs):
         for parameter in range(given):
             rows[parameter, 0] = starts[job, parameter]
@@ -106,14 +111,14 @@ def find_starts(address: int) -> None:
             n_opened += opened[i]
             if opened[i]:
                 numbers[job, i] = 1
-            _put(k, rows, i, numbers[job, i])
+            _put(settle, k, rows, i, numbers[job, i])
         for _ in range(SWEEPS * n_opened):
             changed = False
             for i in range(c):
                 if opened[i]:
-                    regime = _first_that_fits(k, rows, z, i)
+                    regime = _first_that_fits(settle, k, rows, z, i)
                     changed = changed or regime != numbers[job, i]
                     numbers[job, i] = regime
-                    _put(k, rows, i, regime)
+                    _put(settle, k, rows, i, regime)
             if not changed or c == 1:
                 break

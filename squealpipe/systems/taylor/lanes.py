@@ -100,6 +100,19 @@ def _to_pointer(typing_context: Any, value: Any) -> Any:
 _address: Any = intrinsic(_to_pointer)
 
 
+def _to_number(typing_context: Any, value: Any) -> Any:
+    """A pointer as an integer."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        word = context.get_value_type(types.intp)
+        return builder.ptrtoint(arguments[0], word)
+
+    return types.intp(types.voidptr), generate
+
+
+address_of: Any = intrinsic(_to_number)
+
+
 def _call(typing_context: Any, function: Any, arguments: Any) -> Any:
     """Call the C function at an address with addresses and sizes."""
 

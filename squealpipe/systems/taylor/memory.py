@@ -4,13 +4,13 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.systems.compiled import views
+from squealpipe.systems.compiled import inline_views
 from squealpipe.systems.taylor import layout
 from squealpipe.systems.taylor.lanes import view
 from squealpipe.systems.taylor.simd import LANES
 
 
-@views
+@inline_views
 def memory_of(t: Any) -> Any:
     """Return the arrays of a table of addresses, but for those of the series."""
     n_events = t.n_surfaces + t.n_outputs

@@ -12,7 +12,7 @@ from typing import Any
 
 from squealpipe.systems.compiled import inline, part
 from squealpipe.systems.taylor import layout
-from squealpipe.systems.taylor.roots import evaluate, evaluate_twice
+from squealpipe.systems.taylor.roots import evaluate, evaluate_all, evaluate_twice
 from squealpipe.systems.taylor.simd import (
     ROW,
     bits_below,
@@ -212,8 +212,7 @@ def sample(t: Any, m: Any, c: Any, lane: int, first_time: int) -> None:
         ]
         if offset > rows[layout.STEP, lane]:
             break
-        for variable in range(t.n_states):
-            m.samples[job, following, variable] = evaluate(c, variable, lane, offset)
+        evaluate_all(c, t.n_states, lane, offset, m.samples[job, following])
         for component in range(t.n_components):
             regime = m.integers[layout.FIRST_REGIME + component, lane]
             m.sample_regimes[job, following, component] = regime

@@ -57,6 +57,24 @@ def evaluate(coefficients: Any, variable: int, lane: int, step: float) -> Any:
 
 
 @polynomial
+def evaluate_all(
+    coefficients: Any, count: int, lane: int, step: float, values: Any
+) -> None:
+    """Write the polynomials of the first variables likewise, side by side: none waits for another.
+
+    Args:
+        values: (count) or more.
+    """
+    order = coefficients.shape[1] - 1
+    for variable in range(count):
+        values[variable] = coefficients[variable, order, lane]
+    for k in range(order - 1, -1, -1):
+        for variable in range(count):
+            value = values[variable] * step + coefficients[variable, k, lane]
+            values[variable] = value
+
+
+@polynomial
 def evaluate_twice(coefficients: Any, variable: int, lane: int, step: float) -> Any:
     """A polynomial and its first and second derivatives."""
     order = coefficients.shape[1] - 1

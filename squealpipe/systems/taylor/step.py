@@ -20,7 +20,7 @@ from squealpipe.systems.taylor.roots import (
     UNDECIDED,
     UNSURE,
     Watch,
-    evaluate,
+    evaluate_all,
     evaluate_twice,
     first_crossing,
     hidden_below,
@@ -325,9 +325,9 @@ def _is_hidden(
     suspect = 1e6
     if not is_hidden(c, index, lane, span, root, suspect * floor):
         return False
+    evaluate_all(c, t.n_variables, lane, root, m.scratch[0])
     for variable in range(t.n_variables):
-        value = evaluate(c, variable, lane, root)
-        m.scratch[0, variable], m.scratch[1, variable] = value, abs(value)
+        m.scratch[1, variable] = abs(m.scratch[0, variable])
     gauge(t, lane, m.scratch.shape[1])
     floor = max(floor, NOISE * m.scratch[2, 3 * surface + 1])
     return bool(is_hidden(c, index, lane, span, root, floor))
@@ -387,7 +387,7 @@ def cut(t: Any, m: Any, c: Any, lane: int) -> None:
 @part
 def set_end(t: Any, m: Any, c: Any, lane: int) -> None:
     """The variables at the end of a lane's step."""
+    values = m.scratch[4]
+    evaluate_all(c, t.n_variables, lane, m.rows[layout.STEP, lane], values)
     for variable in range(t.n_variables):
-        m.rows[layout.FIXED_ROWS + variable, lane] = evaluate(
-            c, variable, lane, m.rows[layout.STEP, lane]
-        )
+        m.rows[layout.FIXED_ROWS + variable, lane] = values[variable]
