@@ -15,7 +15,6 @@ from .brake.dynamics.summary import summarize
 from .brake.ladder.choice import choose_model
 from .brake.linear.critical import critical_friction_map
 from .brake.linear.maps import natural_frequencies, quasi_static_map, stability_map
-from .brake.propensity.propensity import propensity
 from .paper.inference.inference import infer_parameters
 from .parameters import SCENES, Parameters, Scene
 from .plotting import plot
@@ -30,6 +29,7 @@ from .structures.squeal.ladder import squeal_ladder
 from .structures.squeal.squealing_modes import squealing_modes
 from .structures.structure import Structure
 from .study.assess import assess
+from .study.propensity import propensity
 from .study.sweep import Sweep, run_sweep
 from .systems.components import Component, Switch
 from .systems.system import System

@@ -1,7 +1,9 @@
 """``choose``, ``infer`` and ``propensity``: which model, which parameters, and their scatter."""
 
+from __future__ import annotations
+
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
@@ -10,10 +12,13 @@ from squealpipe.cli.arguments import (
     DRAWN,
     WRITTEN_OUTPUT,
     Angle1,
+    Angle1OrFile,
     Angle2,
     Brake,
     Drawn,
+    Frequency,
     Numbers,
+    OptionalAngle2,
     Output,
     Share,
     Time,
@@ -21,12 +26,17 @@ from squealpipe.cli.arguments import (
     Whole,
     Workers,
     Written,
+    pairs_of,
+    parse_share,
 )
 from squealpipe.cli.console import EXIT, SESSION, answer, working
-from squealpipe.cli.output import compute
-from squealpipe.cli.signatures import options_of
+from squealpipe.cli.output import check_output, check_picture, compute, finish, write
+from squealpipe.cli.signatures import errors_in_options, options_of
 from squealpipe.inputs import parse_number, reader
-from squealpipe.parameters import HORIZON
+from squealpipe.parameters import HORIZON, Parameters
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Question = Literal[
     "contact_lost", "frequency", "peak_contact_force", "max_displacement"
@@ -119,33 +129,90 @@ def infer(
 
 @options_of("propensity")
 def propensity(
-    alpha1: Angle1,
-    alpha2: Angle2,
+    alpha1_or_file: Angle1OrFile,
+    alpha2: OptionalAngle2 = None,
     /,
     *,
     distribution: Annotated[
-        list[str], Parameter(metavar="NAME=KIND:LOW:HIGH", negative="")
-    ],
-    samples: Whole = 1024,
+        list[str] | None, Parameter(metavar="NAME=KIND:LOW:HIGH", negative="")
+    ] = None,
+    relative_std: Annotated[
+        list[str] | None, Parameter(metavar="NAME=SHARE", negative="")
+    ] = None,
+    samples: Whole | None = None,
     t_end: Time | None = None,
     spring_correlation: Share,
-    seed: Whole,
+    seed: Whole | None,
+    tol: Tolerance,
+    n_modes: Whole | None = None,
+    frequency_max: Frequency = None,
+    workers: Workers = None,
     output: Output = Path("propensity.nc"),
     brake: Drawn = DRAWN,
 ) -> int:
-    """Shares of flutter, contact loss, irregular hammering and whirl over uncertain parameters.
+    """Shares of verdicts over scattered parameters, and which of these decides.
+
+    Of a pad, given by both angles, it tells how often flutter, contact loss, irregular hammering
+    and whirl occur; of a structure, given by its file, how often it is quiet, squeals or hammers.
 
     Example: `squealpipe propensity 0.07pi 0.305pi --distribution mu=uniform:0.1:0.9
     --distribution k1=normal:1:0.05 -o propensity.nc`
 
     Args:
-        distribution: distribution of a parameter or angle: uniform:low:high, normal:mean:std or
-            lognormal:median:log_std; repeat for more.
-        samples: size of the sample, a power of 2.
-        t_end: end of each run, s; 200 √(mass/k1) by default.
-        spring_correlation: correlation of k1 and k2; with it there are no Sobol indices.
-        seed: seed of the random sample.
+        distribution: distribution of a parameter or angle of a pad: uniform:low:high,
+            normal:mean:std or lognormal:median:log_std; repeat for more.
+        relative_std: of a structure, standard deviation of a parameter over its value: mu=0.1,
+            contact_stiffness_lining=20%; repeat for more. Parameters are mu, contact_stiffness and
+            preload, each also of a face or contact, modal_damping and belt_speed.
+        samples: size of the sample, a power of 2; 1024 for a pad, 256 for a structure.
+        t_end: end of each run of a pad, s; 200 √(mass/k1) by default.
+        spring_correlation: correlation of k1 and k2 of a pad; with it there are no Sobol indices.
+        seed: seed of the random sample; 1 for a pad, 0 for a structure by default.
+        n_modes: modes to reduce a structure to; by default as many as errors below 1 % need,
+            and no reduction up to 32 degrees of freedom.
+        frequency_max: reduce a structure to the modes that the unstable ones up to this frequency
+            need, Hz; needed beyond 1000 degrees of freedom.
     """
+    of_structure = {
+        "--relative-std": relative_std,
+        "--n-modes": n_modes,
+        "--frequency-max": frequency_max,
+    }
+    of_pad = {
+        "--distribution": distribution,
+        "--t-end": t_end,
+        "--spring-correlation": spring_correlation or None,
+    }
+    is_file = isinstance(alpha1_or_file, Path)
+    for name, value in (of_pad if is_file else of_structure).items():
+        if value is not None:
+            whose = "pads" if is_file else "structures"
+            raise ValueError(f"{name}: only {whose} take this; leave it out")
+    common = {"seed": seed, "tol": tol, "workers": workers}
+    if isinstance(alpha1_or_file, Path):
+        if alpha2 is not None:
+            raise ValueError(
+                f"{alpha1_or_file} is the file of a structure, which has no angles; leave "
+                f"{alpha2!r} out"
+            )
+        if relative_std is None:
+            raise ValueError("--relative-std is missing; write for instance mu=0.1")
+        spread = {
+            name: parse_share(value)
+            for name, value in pairs_of("--relative-std", relative_std).items()
+        }
+        return _of_structure(
+            alpha1_or_file,
+            {"n_modes": n_modes, "frequency_max": frequency_max},
+            {"relative_std": spread, "samples": samples, **common},
+            output,
+            brake,
+        )
+    if alpha2 is None or distribution is None:
+        raise ValueError(
+            "a pad needs both angles and --distribution, like `squealpipe propensity 0.07pi "
+            "0.305pi --distribution mu=uniform:0.1:0.9`; a structure is one file"
+        )
     distributions = dict(map(_distribution, distribution))
     if len(distributions) < len(distribution):
         raise ValueError("--distribution: a duplicate name; keep one")
@@ -155,22 +222,68 @@ def propensity(
     shares = compute(
         "propensity",
         brake,
-        alpha1,
+        alpha1_or_file,
         alpha2,
         output=output,
         distributions=distributions,
-        samples=samples,
+        samples=1024 if samples is None else samples,
         t_end=t_end,
         spring_correlation=spring_correlation,
-        seed=seed,
+        **common,
     )
-    for name in shares.quantity.values:
-        one = shares.sel(quantity=name)
-        share, low, high = (float(one[f"share{end}"]) for end in ("", "_low", "_high"))
-        answer(
-            f"{name.replace('_', ' '):<20} {share:8.2%}  (95 %: {low:.2%} to {high:.2%})"
-        )
+    _say_shares(shares, "quantity")
     return EXIT.done
+
+
+def _of_structure(
+    file: Path,
+    modes: dict[str, Any],
+    options: dict[str, Any],
+    output: Path,
+    brake: Drawn,
+) -> int:
+    """Write the shares of the structure in a file, and say them."""
+    if brake.params != Parameters():
+        raise ValueError(
+            "a structure has its numbers in its file; leave --config and parameters out"
+        )
+    check_output(output, force=brake.force)
+    drawn = check_picture(brake.picture, output, force=brake.force)
+
+    import squealpipe
+    from squealpipe.cli.structures import as_asked
+
+    whole = squealpipe.Structure.read(file)
+    asked = {name: value for name, value in options.items() if value is not None}
+    stated = asked | {key: each for key, each in modes.items() if each is not None}
+    stated.pop("workers", None)
+    with errors_in_options():
+        structure = as_asked(whole, modes)
+        with working("propensity"):
+            shares = write(
+                lambda: squealpipe.propensity(structure, **asked),
+                output,
+                config={"parameters": whole.as_dict(), **stated},
+            )
+    finish(shares, output, drawn, brake)
+    _say_shares(shares, "verdict")
+    return EXIT.done
+
+
+def _say_shares(shares: xr.Dataset, dim: str) -> None:
+    """Print each share with its interval, and which parameter has the largest index."""
+    for name in shares[dim].values:
+        one = shares.sel({dim: name})
+        share, low, high = (float(one[f"share{end}"]) for end in ("", "_low", "_high"))
+        total = one.total_order
+        decides = ""
+        if dim == "verdict" and total.notnull().any():
+            place = int(total.fillna(-1.0).argmax())
+            decides = f"; decided most by {total.input.values[place]}"
+        answer(
+            f"{str(name).replace('_', ' '):<20} {share:8.2%}  (95 %: {low:.2%} to {high:.2%})"
+            f"{decides}"
+        )
 
 
 def _distribution(text: str) -> tuple[str, dict[str, str | float]]:

@@ -18,8 +18,11 @@ from squealpipe.plotting.modes import draw_modes
 from squealpipe.plotting.modes import figure as modes_figure
 from squealpipe.plotting.operating_map import draw_points
 from squealpipe.plotting.operating_map import figure as operating_figure
-from squealpipe.plotting.propensity import draw_shares
+from squealpipe.plotting.propensity import draw_shares, draw_verdicts
 from squealpipe.plotting.propensity import figure as propensity_figure
+from squealpipe.plotting.propensity import (
+    figure_of_structure as structure_propensity_figure,
+)
 from squealpipe.plotting.quantities import draw_quantity, mark_changed, shown
 from squealpipe.plotting.run import draw_force, draw_spectrum, draw_spectrum_in_hertz
 from squealpipe.plotting.run import figure as run_figure
@@ -96,6 +99,7 @@ def picture(
         "assess": assess_figure,
         "simulation": run_figure,
         "propensity": propensity_figure,
+        "structure_propensity": structure_propensity_figure,
         "operating_map": operating_figure,
         "squealing_modes": squealing_figure,
         "squeal_ladder": squeal_ladder_figure,
@@ -152,6 +156,7 @@ def _draw(
         "regime_chart": draw_curves,
         "stability_boundaries": draw_curves,
         "propensity": draw_shares,
+        "structure_propensity": draw_verdicts,
         "squealing_modes": draw_poles,
         "structure_run": draw_forces,
         "squeal_ladder": draw_level,

@@ -5,8 +5,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from squealpipe.brake.schema.propensity import WIDEST
 from squealpipe.plotting import style
+from squealpipe.vibration.sobol import SOBOL
 
 COLOURS = (style.BLUE, style.ORANGE, style.RED, style.PURPLE, style.GREEN)
 
@@ -53,7 +53,7 @@ def figure(spread: xr.Dataset) -> Figure:
             base = spread.index_samples.sel(quantity=row.quantity)
             widths.plot(base, row, ".-", color=colour)
     widths.axhline(
-        WIDEST, color=style.GREY, ls="--", lw=0.8, label="widest that is given"
+        SOBOL.widest, color=style.GREY, ls="--", lw=0.8, label="widest that is given"
     )
     widths.legend()
     widths.set(
@@ -71,6 +71,44 @@ def figure(spread: xr.Dataset) -> Figure:
     titles = ("propensity", "convergence of shares")
     style.panel_letters(axes.flat, (*titles, "sensitivity", "convergence of indices"))
     return drawn
+
+
+def figure_of_structure(spread: xr.Dataset) -> Figure:
+    """Shares of the verdicts, and the total Sobol indices of those that have them."""
+    drawn, axes = style.new_figure(style.PAGE, 2.6, ncols=2)
+    bars, indices = axes[0]
+    draw_verdicts(bars, spread)
+    inputs = [name.replace("_", " ") for name in spread.input.values.tolist()]
+    at = np.arange(len(inputs))
+    known = np.flatnonzero(np.isfinite(spread.total_order.values).any(axis=1))
+    height = 0.8 / max(known.size, 1)
+    for position, row in enumerate(known.tolist()):
+        one = spread.isel(verdict=row)
+        total = one.total_order.values
+        limits = np.stack([one.total_order_low.values, one.total_order_high.values])
+        indices.barh(
+            at + (position - 0.5 * (known.size - 1)) * height,
+            total,
+            height,
+            xerr=np.abs(limits - total),
+            color=COLOURS[row],
+            ecolor=style.GREY,
+            label=str(one.verdict.item()),
+        )
+    indices.set_yticks(at, inputs)
+    indices.invert_yaxis()
+    indices.set(xlabel="total Sobol index", xlim=(0, None))
+    if known.size:
+        indices.legend()
+    else:
+        style.say_instead(indices, "too few samples differ,\nor too few were drawn")
+    style.panel_letters(axes[0], ("verdicts", "what decides"))
+    return drawn
+
+
+def draw_verdicts(axes: Axes, spread: xr.Dataset) -> None:
+    """Share of the sample with each verdict on a structure, with its 95 % interval."""
+    draw_shares(axes, spread.rename(verdict="quantity"))
 
 
 def _ends(axes: Axes, numbers: np.ndarray) -> None:

@@ -104,11 +104,10 @@ def _undamped(pencil: Pencil) -> list[Eigenpair]:
         squares, left = squares.astype(complex), right
     else:
         lower = la.cholesky(mass, lower=True)
-        half = la.solve_triangular(lower, stiffness, lower=True)
-        matrix = la.solve_triangular(lower, half.T, lower=True).T
+        matrix = _solved(lower, _solved(lower, stiffness).T).T
         squares, left, right = la.eig(matrix, left=True, right=True)
-        right = la.solve_triangular(lower.T, right)
-        left = la.solve_triangular(lower.T, left)
+        right = _solved(lower, right, transposed=True)
+        left = _solved(lower, left, transposed=True)
     scale = np.abs(squares).max(initial=0.0)
     pairs = []
     for square, v, w in zip(squares, right.T, left.T, strict=True):
@@ -302,6 +301,16 @@ def _damped_slowly(pencil: Pencil) -> list[Eigenpair]:
     ]
 
 
+def _solved(lower: np.ndarray, columns: Any, *, transposed: bool = False) -> Any:
+    """Return L⁻¹ B or L⁻ᵀ B.
+
+    By BLAS itself: LAPACK's solver, which scipy calls, wakes all threads for two unknowns and takes
+    thousands of times as long as the sums.
+    """
+    (solve,) = la.get_blas_funcs(("trsm",), (lower, columns))
+    return solve(1.0, lower, columns, lower=1, trans_a=int(transposed))
+
+
 def _damped(pencil: Pencil) -> list[Eigenpair]:
     """Return the linearization in coordinates x = Lᵀv, M = LLᵀ, with (ω x, s x) as its vector."""
     mass, damping, stiffness = pencil.dense
@@ -309,8 +318,7 @@ def _damped(pencil: Pencil) -> list[Eigenpair]:
     lower = la.cholesky(mass, lower=True)
 
     def scaled(matrix: np.ndarray) -> Any:
-        half = la.solve_triangular(lower, matrix, lower=True)
-        return la.solve_triangular(lower, half.T, lower=True).T
+        return _solved(lower, _solved(lower, matrix).T).T
 
     stiffness, damping = scaled(stiffness), scaled(damping)
     unit = np.sqrt(np.linalg.norm(stiffness, 2)) or np.linalg.norm(damping, 2)
@@ -321,8 +329,8 @@ def _damped(pencil: Pencil) -> list[Eigenpair]:
     values, left, right = la.eig(matrix, left=True, right=True)
     norm = np.linalg.norm(matrix, 2)
     pairs = []
-    shapes = la.solve_triangular(lower.T, right[:size]).T
-    shapes_left = la.solve_triangular(lower.T, left[size:]).T
+    shapes = _solved(lower, right[:size], transposed=True).T
+    shapes_left = _solved(lower, left[size:], transposed=True).T
     for index, (value, x, y) in enumerate(zip(values, right.T, left.T, strict=True)):
         if value.imag < 0:
             continue

@@ -11,7 +11,6 @@ from annotated_types import Ge, MinLen
 
 from squealpipe.brake.assess.settling import pushed, settle, start_at
 from squealpipe.brake.assess.sliding import Design, Sliding
-from squealpipe.brake.propensity import sobol
 from squealpipe.brake.propensity.distributions import check_stick, distribution
 from squealpipe.brake.schema.assess import VERDICT_SHARES
 from squealpipe.codes import Verdict
@@ -19,6 +18,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import build
 from squealpipe.schema.origin import recorded
 from squealpipe.validation import Angle, Seed, Tolerance, Whole
+from squealpipe.vibration import sobol
 from squealpipe.vibration.shares import wilson_interval
 
 

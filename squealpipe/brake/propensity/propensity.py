@@ -8,7 +8,7 @@ Cost: (2 + inputs) runs a sample; flutter needs none, and gets a larger sample.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import partial
 from types import SimpleNamespace
 from typing import Annotated, Any
@@ -24,10 +24,9 @@ from squealpipe.brake.models import a3
 from squealpipe.brake.models.contact_system import contact_system, with_drag
 from squealpipe.brake.models.damped import damped_system, is_undamped, regime
 from squealpipe.brake.models.refusals import refuse_unread
-from squealpipe.brake.propensity import sobol
 from squealpipe.brake.propensity.distributions import check_stick, distribution
 from squealpipe.brake.schema.dynamics.runs import MotionFlag
-from squealpipe.brake.schema.propensity import PROPENSITY, WIDEST
+from squealpipe.brake.schema.propensity import PROPENSITY
 from squealpipe.codes import LinearRegime
 from squealpipe.inputs import ANGLES
 from squealpipe.laws.contact_laws import LINEAR
@@ -44,11 +43,7 @@ from squealpipe.validation import (
     Whole,
     Workers,
 )
-
-INDEX_ORDERS = ("first_order", "total_order")
-INDICES = tuple(
-    f"{order}{end}" for order in INDEX_ORDERS for end in ("", "_low", "_high")
-)
+from squealpipe.vibration import sobol
 
 
 @recorded(model="A1, A3", method="quasi-random sample; Sobol indices from replicates")
@@ -131,16 +126,18 @@ def propensity(
     # base sample of the indices of each quantity, over that of the shares: flutter needs no run
     index_samples = np.array([[4], [1], [1], [1]]) * sizes
     propensities = ("flutter", "contact_loss", "irregular_hammering", "whirl")
-    blank = dict.fromkeys(INDICES, np.full((len(propensities), len(names)), np.nan))
+    blank = dict.fromkeys(
+        sobol.INDICES, np.full((len(propensities), len(names)), np.nan)
+    )
     table = blank | {
         "half_width_by_size": np.full((len(propensities), n_sample_sizes), np.nan)
     }
     if not spring_correlation:
-        linear = _judged_matrices(
+        linear = sobol.judged_matrices(
             partial(judge, runs=False), frozen, index_samples[0, -1], seed + 1
         )
-        by_run = _judged_matrices(judge, frozen, index_samples[1, -1], seed + 1)
-        table |= _indices(
+        by_run = sobol.judged_matrices(judge, frozen, index_samples[1, -1], seed + 1)
+        table |= sobol.supported_indices(
             [linear[:, 0], *np.moveaxis(by_run[:, 1:], 1, 0)], n_sample_sizes
         )
     supported = np.isfinite(table["total_order"]).all(axis=1)
@@ -214,56 +211,3 @@ def _flutters(
     else:
         regimes = regime(damped_system(p, alpha1, alpha2))
     return np.asarray(regimes == LinearRegime.flutter)
-
-
-def _indices(judged: Sequence[np.ndarray], parts: int) -> dict[str, np.ndarray]:
-    """Sobol indices with intervals, and the widest total's half-width by sample size.
-
-    Args:
-        parts: of the sample, each twice the one before; the last is all of it.
-    """
-    shape = (len(judged), len(judged[0]) - 2)
-    found = {key: np.full(shape, np.nan) for key in INDICES}
-    widest = np.full((len(judged), parts), np.nan)
-    for row, flat in enumerate(judged):
-        whole = flat.reshape(len(flat), sobol.SOBOL.replicates, -1)
-        for column in range(parts):
-            part = whole[..., : whole.shape[-1] >> (parts - 1 - column)]
-            count = part[0].sum()
-            if min(count, part[0].size - count) < sobol.SOBOL.least_events:
-                continue
-            value, half = sobol.sobol_indices(part)
-            widest[row, column] = half[1].max()
-            if column < parts - 1:
-                continue
-            # beyond its interval below 0 an estimate is a failure of the sample, not an index
-            failed = (half > WIDEST) | (value + half < 0.0)
-            for order, name in enumerate(INDEX_ORDERS):
-                for end, limit in (
-                    ("", value),
-                    ("_low", value - half),
-                    ("_high", value + half),
-                ):
-                    found[name + end][row] = np.where(
-                        failed[order], np.nan, limit[order]
-                    )
-    return {**found, "half_width_by_size": widest}
-
-
-def _judged_matrices(
-    judge: Any, frozen: Mapping[str, Any], size: int, seed: int
-) -> np.ndarray:
-    """Return the judged quantities at Saltelli's samples, (2 + inputs, quantities, size)."""
-    return np.stack(
-        [
-            judge(
-                np.array(
-                    [
-                        each.ppf(u)
-                        for each, u in zip(frozen.values(), matrix, strict=True)
-                    ]
-                )
-            )
-            for matrix in sobol.saltelli_matrices(len(frozen), size, seed)
-        ]
-    ).astype(float)

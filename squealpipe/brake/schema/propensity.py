@@ -11,9 +11,6 @@ from squealpipe.schema import (
     text,
 )
 
-WIDEST = 0.05
-"""A Sobol index whose 95 % interval is wider than twice this is not given."""
-
 _CELL = ("variant", "statement")
 
 VERDICT_ROBUSTNESS = DatasetSchema(

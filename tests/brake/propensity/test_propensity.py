@@ -8,12 +8,7 @@ from scipy import stats
 
 from squealpipe import critical_friction_map, stability_map
 from squealpipe.brake.propensity.distributions import centred, distribution
-from squealpipe.brake.propensity.propensity import (
-    _indices,
-    _judged_matrices,
-    propensity,
-)
-from squealpipe.brake.propensity.sobol import scrambled
+from squealpipe.brake.propensity.propensity import propensity
 from squealpipe.codes import LinearRegime
 from squealpipe.paper import robustness
 from squealpipe.paper.inference.inference import infer_parameters
@@ -21,6 +16,7 @@ from squealpipe.paper.robustness import _feasible, variants
 from squealpipe.paper.schema.inference import of_study
 from squealpipe.schema import Outcome
 from squealpipe.vibration.shares import wilson_interval
+from squealpipe.vibration.sobol import judged_matrices, scrambled, supported_indices
 from tests.former import FORMER
 
 ANGLES = (0.22, 0.96)
@@ -111,9 +107,9 @@ def test_indices_are_those_of_a_product_and_too_wide_ones_are_not_given():
     def judge(u):
         return ((u[0] < a) & (u[1] < b))[None]
 
-    (row,) = np.moveaxis(_judged_matrices(judge, frozen, 2**14, 5), 1, 0)
-    (small,) = np.moveaxis(_judged_matrices(judge, frozen, 2**7, 5), 1, 0)
-    found = _indices([row, small, np.zeros_like(row)], 3)
+    (row,) = np.moveaxis(judged_matrices(judge, frozen, 2**14, 5), 1, 0)
+    (small,) = np.moveaxis(judged_matrices(judge, frozen, 2**7, 5), 1, 0)
+    found = supported_indices([row, small, np.zeros_like(row)], 3)
     variance = a * b * (1.0 - a * b)
     first = np.array([b * b * a * (1 - a), a * a * b * (1 - b), 0.0]) / variance
     total = np.array([1.0 - first[1], 1.0 - first[0], 0.0])
@@ -131,7 +127,7 @@ def test_indices_are_those_of_a_product_and_too_wide_ones_are_not_given():
     assert np.isnan(widths[2]).all()
 
 
-def test_correlated_springs_have_propensities_but_no_indices():
+def test_correlated_springs_have_propensities_but_nosupported_indices():
     springs = {
         name: {"distribution": "normal", "mean": 1.0, "std": 0.05}
         for name in ("k1", "k2")

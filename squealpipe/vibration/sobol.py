@@ -5,7 +5,9 @@ resampling them, makes intervals several times too wide. Independent scramblings
 estimates, whose spread is the error (Owen's randomized quasi-Monte Carlo).
 """
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy
@@ -21,9 +23,16 @@ class SobolRules:
     """Independent scramblings: few cost evenness little, and Student's t still has 7 degrees."""
     least_events: int = 30
     """With fewer cases, or fewer non-cases, in the sample no index is given."""
+    widest: float = 0.05
+    """Half-width of an index's 95 % interval above which it is not given."""
 
 
 SOBOL = SobolRules()
+INDEX_ORDERS = ("first_order", "total_order")
+INDICES = tuple(
+    f"{order}{end}" for order in INDEX_ORDERS for end in ("", "_low", "_high")
+)
+"""Variables of the indices and of their 95 % intervals."""
 
 
 def scrambled(inputs: int, size: int, seed: int) -> np.ndarray:
@@ -92,3 +101,62 @@ def sobol_indices(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     # an index is a ratio of means: its error to first order is that of this mean
     off = (parts - indices[..., None] * variance) / variance.mean()
     return indices, _half_width(off)
+
+
+def supported_indices(
+    judged: Sequence[np.ndarray], parts: int, widest: float = SOBOL.widest
+) -> dict[str, np.ndarray]:
+    """Sobol indices with intervals, and the widest total's half-width by sample size.
+
+    Args:
+        parts: of the sample, each twice the one before; the last is all of it.
+        widest: largest half-width of an index that is given.
+    """
+    shape = (len(judged), len(judged[0]) - 2)
+    found = {key: np.full(shape, np.nan) for key in INDICES}
+    half_widths = np.full((len(judged), parts), np.nan)
+    for row, flat in enumerate(judged):
+        whole = flat.reshape(len(flat), SOBOL.replicates, -1)
+        for column in range(parts):
+            part = whole[..., : whole.shape[-1] >> (parts - 1 - column)]
+            count = part[0].sum()
+            if min(count, part[0].size - count) < SOBOL.least_events:
+                continue
+            value, half = sobol_indices(part)
+            half_widths[row, column] = half[1].max()
+            if column < parts - 1:
+                continue
+            # beyond its interval below 0 an estimate is a failure of the sample, not an index
+            failed = (half > widest) | (value + half < 0.0)
+            for order, name in enumerate(INDEX_ORDERS):
+                for end, limit in (
+                    ("", value),
+                    ("_low", value - half),
+                    ("_high", value + half),
+                ):
+                    found[name + end][row] = np.where(
+                        failed[order], np.nan, limit[order]
+                    )
+    return {**found, "half_width_by_size": half_widths}
+
+
+def judged_matrices(
+    judge: Callable[[np.ndarray], np.ndarray],
+    frozen: Mapping[str, Any],
+    size: int,
+    seed: int,
+) -> np.ndarray:
+    """Return the judged quantities at Saltelli's samples, (2 + inputs, quantities, size)."""
+    return np.stack(
+        [
+            judge(
+                np.array(
+                    [
+                        each.ppf(u)
+                        for each, u in zip(frozen.values(), matrix, strict=True)
+                    ]
+                )
+            )
+            for matrix in saltelli_matrices(len(frozen), size, seed)
+        ]
+    ).astype(float)

@@ -5,14 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from squealpipe.brake.propensity.sobol import (
+from squealpipe.vibration.shares import wilson_interval
+from squealpipe.vibration.sobol import (
     SOBOL,
     saltelli_matrices,
     scrambled,
     share_interval,
     sobol_indices,
 )
-from squealpipe.vibration.shares import wilson_interval
 
 
 def ishigami(u):
