@@ -30,8 +30,8 @@ def results_as_json(datasets: Iterable[xr.Dataset]) -> str:
     """
     datasets = list(datasets)
     said = {
-        (each.attrs["benchmark_version"], tuple(each.tol.values.tolist()))
-        for each in datasets
+        (dataset.attrs["benchmark_version"], tuple(dataset.tol.values.tolist()))
+        for dataset in datasets
     }
     if len(said) != 1:
         raise ValueError(

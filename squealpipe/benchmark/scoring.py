@@ -289,7 +289,7 @@ def benchmark(
             _ask(worker, data, tolerances[0])  # compiles before any stopwatch runs
             scores = [_ask(worker, data, tol) for tol in tolerances]
             cells[-1].append(
-                [each._replace(cpu_ratio=each.cpu_time / unit) for each in scores]
+                [score._replace(cpu_ratio=score.cpu_time / unit) for score in scores]
             )
             done(data["name"], name, cells[-1][-1])
         cells[-1] += [each.scores[data["name"]] for each in stored.values()]

@@ -78,7 +78,7 @@ def _tell_costs(*, json_: bool) -> int:
     from rich.console import Console
     from rich.table import Table
 
-    total = [sum(each[part] or 0.0 for each in costs.values()) for part in range(3)]
+    total = [sum(cost[part] or 0.0 for cost in costs.values()) for part in range(3)]
     grid = Table(title="seconds of the last runs", title_justify="left")
     grid.add_column("rule")
     for name in ("CPU", "of which compiling", "clock"):

@@ -134,7 +134,7 @@ class ContactStructure:
         for contact in self.contacts:
             if not isinstance(contact, Contact):
                 raise ValueError(f"contacts: {brief(contact)} is no Contact")  # noqa: TRY004
-        self.contacts = tuple(by_rows(each, self.names) for each in self.contacts)
+        self.contacts = tuple(by_rows(contact, self.names) for contact in self.contacts)
         self.normals, self.tangentials = directions(self.contacts, self.size)
         self.transversals = transversals(self.contacts, self.normals, self.tangentials)
         self.friction = Friction(
@@ -148,7 +148,7 @@ class ContactStructure:
             friction_speed=finite_number("friction_speed", friction_speed, "m s-1"),
         )
         self.frictions = tuple(
-            friction_of(each, self.friction) for each in self.contacts
+            friction_of(contact, self.friction) for contact in self.contacts
         )
         """Friction of each contact: its own law and coefficients, or the structure's."""
         self.given_load = numbers_in_si("load", load, "N")

@@ -174,7 +174,7 @@ def _of_block(
             for each in (first.right, first.left)
         )
     roots = [complex(-(each.value**2)) for each in (first, second)]
-    roots = roots if roots[0].imag else [complex(each.real) for each in roots]
+    roots = roots if roots[0].imag else [complex(root.real) for root in roots]
     block = Block(right, left, roots, 0.0)
     try:
         for _ in range(3):
@@ -200,7 +200,7 @@ def _of_block(
     roots = [1j * np.sqrt(complex(mean + sign * distance)) for sign in (1, -1)]
     if mean <= 0 or not np.isfinite(error):
         return None
-    roots = [-each if each.imag < 0 else each for each in roots]
+    roots = [-root if root.imag < 0 else root for root in roots]
     pairs = []
     for root in roots:
         y = _null(matrix + root**2 * np.eye(2))

@@ -39,9 +39,9 @@ def with_points(structure: Any, points: int) -> Any:
             "contacts of a reduced structure act on its modes; merge those of the whole"
         )
     faces: dict[str, list[Contact]] = {}
-    for each in structure.contacts:
-        name = each.name if each.origin is None else face_of(each.name)
-        faces.setdefault(name or each.name, []).append(each)
+    for contact in structure.contacts:
+        name = contact.name if contact.origin is None else face_of(contact.name)
+        faces.setdefault(name or contact.name, []).append(contact)
     contacts: list[Contact] = []
     for name, members in faces.items():
         if len(members) <= points:

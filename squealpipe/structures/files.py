@@ -213,7 +213,7 @@ def from_mesh(
     if rotation is not None and not isinstance(rotation, Rotation):
         raise ValueError(f"rotation = {brief(rotation)}: a Rotation is needed")
     scales = SI if units is None else scales_of(units)
-    entries = {key: each for key, each in matrices.items() if each is not None}
+    entries = {key: matrix for key, matrix in matrices.items() if matrix is not None}
     in_si, labels = read_matrices(entries, Path(), scales)
     names = labels if degrees_of_freedom is None else names_of(degrees_of_freedom)
     with_pressures = {

@@ -298,7 +298,7 @@ def one_thread() -> Iterator[None]:
     """
     library = ctypes.CDLL(_superlu.__file__)
     names = "scipy_openblas_{}_num_threads", "openblas_{}_num_threads"
-    name = next((each for each in names if hasattr(library, each.format("set"))), None)
+    name = next((name for name in names if hasattr(library, name.format("set"))), None)
     if name is None:  # another BLAS keeps its number of threads
         yield
         return

@@ -121,7 +121,7 @@ def brake_mesh() -> BrakeMesh:
 
     def brick(body: str, grid: np.ndarray, k: int, j: int, i: int) -> int:
         """Add an element between layers k and k + 1, and return its number."""
-        number = 10000 * [each.name for each in BODIES].index(body)
+        number = 10000 * [body.name for body in BODIES].index(body)
         number += len(elements[body]) + 1
         after = (j + 1) % grid.shape[1]
         ring = ((j, i), (j, i + 1), (after, i + 1), (after, i))
@@ -171,7 +171,7 @@ def disc_brake(
     """
     mesh = brake_mesh()
     mass, springs, names = brake_matrices(mesh)
-    to_metres = {n: tuple(1e-3 * x for x in place) for n, place in mesh.nodes.items()}
+    to_metres = {n: tuple(1e-3 * x for x in node) for n, node in mesh.nodes.items()}
     faces = {name: mesh.facets(name) for name in mesh.faces} | {"SKIN": mesh.skin()}
     return Structure.from_mesh(
         mass * 1e3,  # t

@@ -62,7 +62,7 @@ class OperatingSweep(PointSweep):
             known = [*QUANTITIES, *OPTIONS]
             if name not in known:
                 raise ValueError(f"{name}: {suggestion(name, known)}")
-        asked = {name: each for name, each in options.items() if each is not None}
+        asked = {name: option for name, option in options.items() if option is not None}
         asked |= self.vary
         modes = {name: asked.pop(name, None) for name in REDUCTION}
         operating = OperatingPoints.of(structure, **asked).reduced(**modes)

@@ -101,7 +101,7 @@ class Joint:
         def at(roots: Any, constants: dict[str, Any]) -> np.ndarray:
             with np.errstate(all="ignore"):
                 numbers = evaluate([symbol(root) for root in roots], values | constants)
-            return np.array([np.broadcast_to(each, 16) for each in numbers])
+            return np.array([np.broadcast_to(number, 16) for number in numbers])
 
         rates = at(t.rates, here)
         for index, surface in enumerate(t.surfaces):

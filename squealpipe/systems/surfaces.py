@@ -22,7 +22,7 @@ def simplest(surface: Symbol) -> Symbol:
     factors = list(_factors(surface))
     times = Counter(map(id, factors))
     sign, product = 1.0, symbol(1.0)
-    for factor in {id(each): each for each in factors}.values():
+    for factor in {id(factor): factor for factor in factors}.values():
         if factor.kind == "number":
             sign *= math.copysign(1.0, factor.arguments[0]) ** times[id(factor)]
         elif not factor.varies:

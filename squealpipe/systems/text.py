@@ -53,7 +53,10 @@ def _written(
     roots: dict[str, Symbol], margins: dict[str, Symbol | None]
 ) -> dict[str, str]:
     """Expressions, and conditions that are to be at least zero."""
-    every = [*roots.values(), *(each for each in margins.values() if each is not None)]
+    every = [
+        *roots.values(),
+        *(margin for margin in margins.values() if margin is not None),
+    ]
     nodes = in_order(every)
     lengths: dict[int, int] = {}
     uses = dict.fromkeys(map(id, nodes), 0)

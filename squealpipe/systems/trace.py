@@ -213,7 +213,7 @@ class Tracer:
             self.regimes[i]: self.composition.regimes[self.regimes[i]]
             for i in self.composition.regimes_of(component)
         }
-        names = {name for each in regimes.values() for name in each}
+        names = {name for regime in regimes.values() for name in regime}
         for regime, each in regimes.items():
             if missing := names - set(each):
                 raise ValueError(

@@ -153,9 +153,11 @@ class TracedSystem(Definition):
                 raise ValueError(
                     "starts_in has no last resort: end it with a regime alone"
                 )
-        every = [*rates, *stops, *outputs, *(each.surface for each in switches)]
-        every += [value for each in switches for value in each.after]
-        every += [c for each in switches for _, c, _ in each.targets if c is not None]
+        every = [*rates, *stops, *outputs, *(switch.surface for switch in switches)]
+        every += [value for switch in switches for value in switch.after]
+        every += [
+            c for switch in switches for _, c, _ in switch.targets if c is not None
+        ]
         timed = any(node is tracer.time for node in in_order(every))
         unit = parameter(TIME_UNIT)
         if callable(self.time_scale) or self.time_scale != 1.0:

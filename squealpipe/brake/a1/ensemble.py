@@ -312,7 +312,7 @@ def _run(
     **options: Any,
 ) -> dict[str, np.ndarray]:
     """Raw results of the runs of one system, one row each."""
-    values = {name: each[rows] for name, each in jobs.values.items()}
+    values = {name: value[rows] for name, value in jobs.values.items()}
     t_end, t_late = jobs.t_end[rows], jobs.t_late[rows]
     is_apart = np.array([name in {"separated", "released"} for name in system.regimes])
     first = None

@@ -112,9 +112,9 @@ def regime_chart(
         loops = {
             which: [
                 square.values(loop.outline)
-                for loop in loops_of(each, positive=True, flat=3e-7)
+                for loop in loops_of(line, positive=True, flat=3e-7)
             ]
-            for which, each in lines.items()
+            for which, line in lines.items()
         } | {which: [] for which in asked}
         for which, line, curve in cycles:
             loops[which].append(_smooth(line, square.width, curve.label.values))
@@ -124,9 +124,9 @@ def regime_chart(
         ]
         data = {"design": places, "distance": far}
     chains = [
-        (which, square.values(each.place[chain]), each.residual[chain])
-        for which, each in lines.items()
-        for chain in chains_of(each.chords)
+        (which, square.values(line.place[chain]), line.residual[chain])
+        for which, line in lines.items()
+        for chain in chains_of(line.chords)
     ] + [(which, line, curve.residual.values) for which, line, curve in cycles]
     places = np.concatenate([np.empty((0, 2)), *(line for _, line, _ in chains)])
     lengths = [len(line) for _, line, _ in chains]
@@ -150,8 +150,8 @@ def regime_chart(
             "t_end": t_end,
             "runs": square.runs,
             "outcome": [
-                Outcome.unresolved if each.unresolved else Outcome.converged
-                for each in lines.values()
+                Outcome.unresolved if line.unresolved else Outcome.converged
+                for line in lines.values()
             ]
             + [Outcome.converged] * len(asked),
         },
@@ -165,13 +165,13 @@ def regime_chart(
 
 def _over(square: Square, name: str, curve: xr.Dataset) -> Vector:
     """A curve of cycles in the chart's parameters, (points, 2)."""
-    names = ["k3" if each == "kappa" else each for each in square.names]
+    names = ["k3" if name == "kappa" else name for name in square.names]
     if set(names) != set(curve.get("parameter", xr.DataArray([])).values):
         raise ValueError(
             f"{name}: a dataset of cycle_curve in {' and '.join(names)} is needed"
         )
     units = np.where(np.array(square.names) == "kappa", square.params.k1, 1.0)
-    return np.stack([curve[each].values for each in names], axis=1) / units
+    return np.stack([curve[name].values for name in names], axis=1) / units
 
 
 def _smooth(line: Vector, width: Vector, label: Vector) -> Vector:

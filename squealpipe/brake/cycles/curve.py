@@ -76,8 +76,8 @@ def cycle_curve(
     # a cycle is also looked for next to the value: at the very onset of stick, round-off decides
     # how a run goes on
     parameter_steps = (0.0, -1e-9, 1e-9)
-    for beside in parameter_steps:
-        at = {followed: float(point[followed]) * (1.0 + beside)}
+    for parameter_step in parameter_steps:
+        at = {followed: float(point[followed]) * (1.0 + parameter_step)}
         if followed in own:
             own |= at
         else:
@@ -104,21 +104,21 @@ def cycle_curve(
         cycle,
         Label[label],
         [IN_SYSTEM[name] for name in parameters],
-        {IN_SYSTEM[name]: ends for name, ends in limits.items()},
+        {IN_SYSTEM[name]: limit for name, limit in limits.items()},
         n_points,
     )
     values = {
-        name: [each.cycle.parameters[IN_SYSTEM[name]] for each in points]
+        name: [point.cycle.parameters[IN_SYSTEM[name]] for point in points]
         for name in {*parameters, "alpha1", "alpha2"}
     }
     return build(
         A1_CYCLE_CURVE,
         {
             **values,
-            "period": [each.cycle.period * each.cycle.second for each in points],
-            "residual": [each.residual for each in points],
-            "label": [each.label for each in points],
-            "events": [n_events(each.cycle) for each in points],
+            "period": [point.cycle.period * point.cycle.second for point in points],
+            "residual": [point.residual for point in points],
+            "label": [point.label for point in points],
+            "events": [n_events(point.cycle) for point in points],
             "outcome": [REASONS.get(end, Outcome.order_changes) for end in ends],
             "change": ["" if end in REASONS else end for end in ends],
         },

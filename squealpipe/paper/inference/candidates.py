@@ -74,7 +74,7 @@ class Candidates:
         state = np.asarray(self.initial_state, float)
         return replace(
             self,
-            fields={name: each[rows] for name, each in self.fields.items()},
+            fields={name: field[rows] for name, field in self.fields.items()},
             initial_state=state[rows] if state.ndim == 2 else state,
         )
 

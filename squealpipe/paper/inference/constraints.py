@@ -318,7 +318,7 @@ def _unstable_only_without_sliding(candidates: Candidates) -> StatementMargin:
         np.concatenate([*(cells[i] for cells in unstable), []]) for i in (0, 1)
     )
     p = SimpleNamespace(
-        **{name: each[owner] for name, each in candidates.fields.items()},
+        **{name: field[owner] for name, field in candidates.fields.items()},
         drag=candidates.drag[owner],
     )
     springs = contact_system(p, alpha1, alpha2).stiffness

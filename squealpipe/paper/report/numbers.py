@@ -251,7 +251,7 @@ def _silent(benchmark: xr.Dataset) -> dict[str, Any]:
     parts = {"substitute": stand_ins, "integrator": integrators}
     counts = {key: silent_by_class(benchmark, names) for key, names in parts.items()}
     return {
-        **{f"{key}_silent": sum(each.values()) for key, each in counts.items()},
+        **{f"{key}_silent": sum(count.values()) for key, count in counts.items()},
         **{
             f"{key}_classes": ", ".join(
                 f"{name} ({count})" for name, count in each.items() if count

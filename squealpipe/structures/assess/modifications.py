@@ -136,8 +136,8 @@ class MatrixChange:
         before = structure.arguments
         return structure.with_(
             **{
-                name: before[name] + amount * each
-                for name, each in self.changes.items()
+                name: before[name] + amount * change
+                for name, change in self.changes.items()
             }
         )
 

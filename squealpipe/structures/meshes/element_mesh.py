@@ -73,7 +73,7 @@ class ElementMesh:
         Raises:
             ValueError: there is none of that name, or it has no facet.
         """
-        names = {each.upper(): each for each in self.surfaces}
+        names = {surface.upper(): surface for surface in self.surfaces}
         own = names.get(name.upper())
         if own is None:
             raise ValueError(

@@ -80,8 +80,10 @@ class FacetedSurface:
             np.concatenate([facet.ravel() for facet in facets.values()])
         )
         positions = {size: nodes[rows] for size, rows in facets.items()}
-        self.areas = {size: normal_integrals(each) for size, each in positions.items()}
-        self.sizes = {size: sizes(each) for size, each in positions.items()}
+        self.areas = {
+            size: normal_integrals(position) for size, position in positions.items()
+        }
+        self.sizes = {size: sizes(position) for size, position in positions.items()}
         total = np.zeros_like(nodes)
         largest = np.zeros(len(nodes))
         self.gross = np.zeros(len(nodes))
@@ -136,7 +138,7 @@ class FacetedSurface:
         if not chosen.size:
             return found
         # the nearest point of a facet is within its size of one of its nodes
-        largest = max(float(each.max()) for each in self.sizes.values())
+        largest = max(float(size.max()) for size in self.sizes.values())
         near = self._tree.query_ball_point(points[chosen], distances[chosen] + largest)
         count = len(self.members)
         lengths = [len(each) for each in near]

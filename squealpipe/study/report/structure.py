@@ -385,7 +385,9 @@ def structure(modes: xr.Dataset, answer: xr.Dataset) -> dict[str, Any]:
 
 def _frictions(numbers: dict[str, Any]) -> str:
     """Return the coefficient of the contacts, or the range of those of their own."""
-    values = [each.get("mu", numbers["mu"]) for each in numbers["contacts"].values()]
+    values = [
+        contact.get("mu", numbers["mu"]) for contact in numbers["contacts"].values()
+    ]
     low, high = min(values), max(values)
     return number(low) if low == high else f"{number(low)} to {number(high)}"
 

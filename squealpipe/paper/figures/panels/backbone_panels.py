@@ -16,7 +16,7 @@ STABLE_TO_ROUND_OFF = 2.0 + 1e-6
 
 def key(branches: Mapping[str, xr.Dataset]) -> str:
     """Return the sentence of a caption that explains the marks that are drawn."""
-    exact = [each for name, each in branches.items() if not name.endswith("_hbm")]
+    exact = [branch for name, branch in branches.items() if not name.endswith("_hbm")]
     looks = []
     if any((_unstable(each) & ~_overtakes(each)).any() for each in exact):
         looks.append("dotted where unstable")
