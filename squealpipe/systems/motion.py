@@ -58,8 +58,8 @@ def has_settled(earlier: Any, later: Any, tolerance: float) -> Any:
     """Tell which motions that nearly repeat are cycles, by their drift in the last two quarters.
 
     A cycle that attracts is approached by ever smaller steps: what is still to come, the rest of
-    the geometric series, is within ``REPEATED``. Slow decay and growth go on at their pace. Drift
-    below the tolerance counts as none.
+    the geometric series, is within 1e-6 of its range. Slow decay and growth go on at their pace.
+    Drift below the tolerance counts as none.
 
     Args:
         earlier, later: largest change of a state over the third and the fourth quarter of the

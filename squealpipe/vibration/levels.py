@@ -351,7 +351,7 @@ def _spectrum(blocks: Sequence[Record]) -> dict[str, Any]:
 
 
 def _path(record: Record, period: float) -> dict[str, Any]:
-    """Return the last periods of the contact that moves most, at :data:`SAMPLES` instants."""
+    """Return the last periods of the contact that moves most, at evenly spaced instants."""
     times = record.times
     deviation = np.nan_to_num(record.signals.var(axis=-1)).sum(axis=0)
     contact = int(np.argmax(deviation))

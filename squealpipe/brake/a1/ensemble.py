@@ -28,7 +28,7 @@ NEAR_PIVOT = 1e-3
 """Distance from a pivot, in free lengths, from which an overflow is its doing."""
 LARGEST_REACH, LARGEST_CONTACT_FORCE = f"{LARGEST}reach", f"{LARGEST}contact_force"
 TRACKED = ("x", "vx", "contact_force", LARGEST_REACH)
-"""Quantities of the system whose extremes an :class:`Ensemble` may hold, or ``PEAK`` of them."""
+"""Quantities of the system whose extremes an :class:`Ensemble` may hold."""
 
 
 def _count(kind: Event, counts: str = "counts") -> Any:

@@ -36,7 +36,7 @@ Arguments = tuple[list[Any], dict[str, Any]]
 def options_in_si(
     names: Sequence[str], args: Sequence[Any], kwargs: Mapping[str, Any]
 ) -> Arguments:
-    """Return arguments with texts and quantities of :data:`UNITS_OF_ARGUMENTS` as numbers in SI.
+    """Return arguments, with texts and quantities of options that have a unit as numbers in SI.
 
     Raises:
         ValueError: a quantity of another kind; names the argument.
