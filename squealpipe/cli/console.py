@@ -2,7 +2,9 @@
 
 import os
 import re
+import signal
 import sys
+import threading
 import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
@@ -130,7 +132,9 @@ def working(what: str) -> Iterator[None]:
 
     console = Console(stderr=True)
     if not console.is_terminal:
-        with shown(None if SESSION.quiet else _lines_of_a_log(what)):
+        log = _Log(what)
+        takers = (None,) if SESSION.quiet else (log.tell, log.say, log.name)
+        with shown(*takers):
             yield
         return
     columns: tuple[Any, ...] = (
@@ -156,30 +160,84 @@ def working(what: str) -> Iterator[None]:
             show(task, completed=share, total=1.0)
             begun = True
 
-        with shown(tell, say_above):
+        def name(stage: str) -> None:
+            nonlocal begun
+            begun = False
+            progress.update(task, description=f"{what}: {stage}" if stage else what)
+
+        with shown(tell, say_above, name):
             yield
 
 
-def _lines_of_a_log(what: str) -> Callable[[float], None]:
-    """Return a function that writes progress and remaining time into a log, twice a minute."""
-    from squealpipe.text import duration
+@contextmanager
+def keeping_on_interrupt() -> Iterator[Callable[[], bool]]:
+    """Have a first interruption end the work with what is known; give whether there was one."""
+    from squealpipe.systems.progress import ask_to_stop, stop_is_asked
 
-    started = told = time.monotonic()
-    first: float | None = None
-
-    def tell(share: float) -> None:
-        nonlocal told, started, first
-        now = time.monotonic()
-        if first is None:  # what was there from before took no time
-            first, started = share, now
-        if now - told < LOG_EVERY or share <= first:
-            return
-        told = now
-        left = (now - started) * (1 - share) / (share - first)
+    def stop(*_: object) -> None:
+        if stop_is_asked():
+            raise KeyboardInterrupt
+        ask_to_stop()
         print(
-            f"{what}: {share:.0%} done, about {duration(left)} left",
+            "squealpipe: stopping soon, and keeping what is known by then; once more to stop at "
+            "once",
             file=sys.stderr,
-            flush=True,
         )
 
-    return tell
+    if (
+        threading.current_thread() is not threading.main_thread()
+    ):  # no signals elsewhere
+        yield lambda: False
+        return
+    before = signal.signal(signal.SIGINT, stop)
+    try:
+        yield stop_is_asked
+    finally:
+        signal.signal(signal.SIGINT, before)
+        ask_to_stop(stops=False)
+
+
+class _Log:
+    """Lines in a log: stages that last, progress with remaining time, and partial answers.
+
+    Args:
+        what: is computed, which begins each line.
+    """
+
+    def __init__(self, what: str) -> None:
+        self.what = what
+        self.started = self.told = time.monotonic()
+        self.first: float | None = None
+        self.later: threading.Timer | None = None
+
+    def _print(self, line: str) -> None:
+        self.told = time.monotonic()
+        print(f"{self.what}: {line}", file=sys.stderr, flush=True)
+
+    def name(self, stage: str) -> None:
+        """Print the name of a stage that lasts for some seconds."""
+        if self.later is not None:
+            self.later.cancel()
+        self.later, self.first = None, None
+        if stage:
+            seconds = 5.0
+            self.later = threading.Timer(seconds, self._print, (f"{stage} …",))
+            self.later.daemon = True
+            self.later.start()
+
+    def tell(self, share: float) -> None:
+        """Print progress and remaining time, twice a minute."""
+        from squealpipe.text import duration
+
+        now = time.monotonic()
+        if self.first is None:  # what was there from before took no time
+            self.first, self.started = share, now
+        if now - self.told < LOG_EVERY or share <= self.first:
+            return
+        left = (now - self.started) * (1 - share) / (share - self.first)
+        self._print(f"{share:.0%} done, about {duration(left)} left")
+
+    def say(self, line: str) -> None:
+        """Print a partial answer, if nothing was printed for a while."""
+        if time.monotonic() - self.told >= LOG_EVERY:
+            self._print(line)

@@ -26,7 +26,14 @@ from squealpipe.cli.arguments import (
     Workers,
     pairs_of,
 )
-from squealpipe.cli.console import EXIT, SESSION, answer, say, working
+from squealpipe.cli.console import (
+    EXIT,
+    SESSION,
+    answer,
+    keeping_on_interrupt,
+    say,
+    working,
+)
 from squealpipe.cli.output import (
     check_output,
     check_picture,
@@ -152,11 +159,13 @@ def _compute(
     drawn = check_picture(files.picture, output, force=files.force)
 
     from squealpipe import Structure
+    from squealpipe.systems.progress import stage
 
-    structure = Structure.read(file)
     given = {name: value for name, value in options.items() if value is not None}
-    config = {"parameters": structure.as_dict(), **given}
     with working(task.__name__.replace("_", " ")), errors_in_options():
+        with stage(f"reading {file}"):
+            structure = Structure.read(file)
+        config = {"parameters": structure.as_dict(), **given}
         dataset = write(lambda: task(structure, **given), output, config=config)
     finish(dataset, output, drawn, files)
     return dataset
@@ -270,8 +279,15 @@ def squeal(
     reductions: list[Any] = []
     asked = {"n_modes": n_modes, "frequency_max": frequency_max}
     asked |= {"samples": samples, "seed": seed, "tol": tol, "t_end": t_end}
-    dataset = _compute(squeal, file, asked | {"onset": onset or None}, output, files)
+    with keeping_on_interrupt() as interrupted:
+        dataset = _compute(
+            squeal, file, asked | {"onset": onset or None}, output, files
+        )
+        stopped = interrupted()
     answer(*map(in_options, lines(dataset)))
+    if stopped:
+        say("interrupted: starts that had not settled by then count as not settled")
+        return EXIT.interrupted
     if run is not None:
         _write_run(reductions[0], dataset, run, tol)
     return EXIT.done if int(dataset.verdict) == 0 else EXIT.answer_is_no

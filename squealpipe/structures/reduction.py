@@ -32,7 +32,7 @@ from squealpipe.structures.sliding import (
 from squealpipe.structures.spectrum import Limits, Solver, check_frequency
 from squealpipe.structures.subspace import in_coordinates
 from squealpipe.systems.inputs.values import brief, is_finite_number, is_whole_number
-from squealpipe.systems.progress import report
+from squealpipe.systems.progress import report, stage, stop_is_asked
 
 
 @dataclass(frozen=True)
@@ -226,6 +226,8 @@ class Search:
         """
         number, most = fewest, self.whole.size if most is None else most
         while number <= most:
+            if stop_is_asked():  # there is nothing yet that could be kept
+                raise KeyboardInterrupt
             with one_thread():  # with small matrices threads cost more than they save
                 meets = self._meets_with_larger(number, tol)
             if meets:
@@ -364,6 +366,9 @@ def fitted(
     """
     if structure.size > DENSE and frequency_max is None:
         return reduce(structure)  # raises: a band is needed
-    search = Search(structure, Truth.of(structure, frequency_max), frequency_max)
-    number = search.smallest(fewest_modes(structure), most=most)
+    with stage(f"modes of the whole structure of {structure.size} degrees of freedom"):
+        truth = Truth.of(structure, frequency_max)
+    search = Search(structure, truth, frequency_max)
+    with stage("the fewest modes that agree with the whole"):
+        number = search.smallest(fewest_modes(structure), most=most)
     return search.structure(most if number is None else number)

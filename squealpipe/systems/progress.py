@@ -13,6 +13,8 @@ class _Progress:
     low, size = 0.0, 1.0
     show: Callable[[float], None] | None = None
     say: Callable[[str], None] | None = None
+    name: Callable[[str], None] | None = None
+    stops = False
 
 
 _NOW = _Progress()
@@ -28,6 +30,30 @@ def partial_answer(line: Callable[[], str]) -> None:
     """Show what is known already; ``line`` is called only where it is shown."""
     if _NOW.say is not None:
         _NOW.say(line())
+
+
+@contextmanager
+def stage(name: str) -> Iterator[None]:
+    """Name what is computed meanwhile: it has a share of its own, from nothing to all."""
+    with shown(_NOW.show, _NOW.say, _NOW.name):
+        _NOW.low, _NOW.size = 0.0, 1.0
+        if _NOW.name is not None:
+            _NOW.name(name)
+        try:
+            yield
+        finally:
+            if _NOW.name is not None:
+                _NOW.name("")
+
+
+def ask_to_stop(*, stops: bool = True) -> None:
+    """Have long work end soon, which keeps what is known by then; or take that back."""
+    _NOW.stops = stops
+
+
+def stop_is_asked() -> bool:
+    """Tell whether the work is to end soon."""
+    return _NOW.stops
 
 
 @contextmanager
@@ -53,22 +79,28 @@ def with_progress(items: Sequence[Item]) -> Iterator[Item]:
 def alone() -> Iterator[Callable[[float], None]]:
     """Take over: what is computed meanwhile shows nothing, and its caller shows its own share."""
     show = _NOW.show
-    with shown(None, _NOW.say):
+    with shown(None, _NOW.say, _NOW.name):
         yield lambda share: None if show is None else show(_NOW.low + _NOW.size * share)
 
 
 @contextmanager
 def shown(
-    show: Callable[[float], None] | None, say: Callable[[str], None] | None = None
+    show: Callable[[float], None] | None,
+    say: Callable[[str], None] | None = None,
+    name: Callable[[str], None] | None = None,
 ) -> Iterator[None]:
     """Give the share of the whole that is done to ``show`` meanwhile; None shows nothing.
 
     Args:
         say: takes lines of partial answers.
+        name: takes the name of each stage as it begins, and an empty one at its end.
     """
-    before = _NOW.show, _NOW.say
-    _NOW.show, _NOW.say = show, say
+    before = dict(vars(_NOW))
+    before.pop("stops", None)
+    _NOW.show, _NOW.say, _NOW.name = show, say, name
     try:
         yield
     finally:
-        _NOW.show, _NOW.say = before
+        stops = _NOW.stops
+        vars(_NOW).clear()
+        vars(_NOW).update(before, stops=stops)

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from squealpipe.codes import Verdict
-from squealpipe.systems.progress import alone
+from squealpipe.systems.progress import alone, stop_is_asked
 from squealpipe.vibration.settling import Agreement, Settling, agreement, difference
 from squealpipe.vibration.verdicts import heard
 from squealpipe.vibration.windows import Windows
@@ -169,6 +169,9 @@ def settle(
     turn = 0
     with alone() as show:
         while rows := [row for row in range(count) if row not in settled]:
+            if stop_is_asked():
+                settled |= _stopped(rows, windows, elapsed)
+                break
             share = float((elapsed[rows] / horizon.most[rows]).mean())
             if told is not None:  # the share of one of many searches would tell nothing
                 show(1.0 - len(rows) / count * (1.0 - share))
@@ -203,6 +206,28 @@ def settle(
             if told is not None:
                 told(settled, elapsed)
     return [settled[row] for row in range(count)]
+
+
+def _stopped(
+    rows: list[int], windows: list[list[Windows]], elapsed: np.ndarray
+) -> dict[int, SettledRun]:
+    """Return runs that are stopped before they have settled.
+
+    Raises:
+        KeyboardInterrupt: there is no window yet.
+    """
+    if not all(windows[row] for row in rows):
+        raise KeyboardInterrupt
+    return {
+        row: SettledRun(
+            Verdict.undetermined,
+            windows[row][-1],
+            float(elapsed[row]),
+            change=np.inf,
+            windows=windows[row],
+        )
+        for row in rows
+    }
 
 
 End = tuple[Verdict, bool, float]

@@ -26,6 +26,7 @@ from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
 from squealpipe.structures.squeal.remedies import added_damping
 from squealpipe.structures.squeal.settling import arrival, settle, settle_on
 from squealpipe.structures.squeal.windows import Running, StructureWindows, still
+from squealpipe.systems.progress import stage, stop_is_asked
 from squealpipe.validation import Natural, Positive, Seed, Tolerance, Workers, checked
 from squealpipe.vibration.settled_runs import SettledRun
 from squealpipe.vibration.shares import wilson_interval
@@ -126,8 +127,12 @@ def squealing_of(
     drawn = plant.random_states(samples, seed)
     how = Running(tol, seed, workers)
     starts = np.concatenate([pushes, drawn])
-    settled = [] if plant.obstacle else settle(plant, starts, t_end, how)
-    settled, numbers, modes = _attractors(plant, settled, len(pushes), t_end, how)
+    settled = []
+    if not plant.obstacle:
+        with stage(f"runs of {len(starts)} starts in {plant.size} modes"):
+            settled = settle(plant, starts, t_end, how)
+    with stage("kinds of the motions that have settled"):
+        settled, numbers, modes = _attractors(plant, settled, len(pushes), t_end, how)
     if plant.obstacle:
         numbers = np.full(len(starts), NO_ATTRACTOR)
     members = _members(settled, numbers) if settled else []
@@ -135,12 +140,16 @@ def squealing_of(
     of_attractor = _of_attractors(plant, members, modes)
     shares = _shares(numbers[len(pushes) :], len(members))
     below = {}
-    if onset and not plant.obstacle:
-        below = hysteresis(plant, [runs[0] for runs in members], how)
+    if onset and not plant.obstacle and not stop_is_asked():
+        with stage("the friction at which the squeal dies"):
+            below = hysteresis(plant, [runs[0] for runs in members], how)
     verdict = _verdict(plant, int(numbers[0]), modes, of_attractor["motion"])
     loud = [index for index, mode in enumerate(modes) if not members[index][0].quiet]
     drawn_in = set(numbers[len(pushes) :].tolist())
-    damping, damping_outcome = added_damping(plant)
+    with stage("the damping that stops it"):
+        damping, damping_outcome = added_damping(plant)
+    with stage("the number of modes that would do"):
+        of_whole = _of_whole(plant)
     of_mesh, mesh_coordinates = mesh_variables(plant.structure)
     return build(
         SQUEALING,
@@ -161,7 +170,7 @@ def squealing_of(
             "pole_growth_rate": plant.spectrum.values.real,
             "added_damping": damping,
             "added_damping_outcome": damping_outcome,
-            **_of_whole(plant),
+            **of_whole,
             **of_mesh,
         },
         {
@@ -172,7 +181,8 @@ def squealing_of(
             "pole": plant.numbers,
             **mesh_coordinates,
         },
-        {"not_run": plant.obstacle or ""},
+        {"not_run": plant.obstacle or ""}
+        | ({"interrupted": "yes"} if stop_is_asked() else {}),
     )
 
 
