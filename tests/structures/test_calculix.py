@@ -11,6 +11,7 @@ import subprocess
 
 import numpy as np
 import pytest
+import scipy.linalg as la
 
 from squealpipe import Structure
 from squealpipe.structures import elastic_pad
@@ -133,3 +134,68 @@ def test_complex_modes_of_matrices_that_calculix_writes_are_the_pads(tmp_path):
         assert theirs.growth_rate.values[unstable] == pytest.approx(
             ours.growth_rate.values[unstable], rel=1e-6
         )
+
+
+def block_deck():
+    """A block of 4 × 3 × 3 C3D8 elements on springs: 240 degrees of freedom."""
+    nodes = [(i, j, k) for k in range(4) for j in range(4) for i in range(5)]
+    number_of = {node: place for place, node in enumerate(nodes, 1)}
+    lines = ["*NODE"]
+    lines += [
+        f"{number_of[i, j, k]}, {0.02 * i:.9f}, {0.05 * j / 3:.9f}, {0.005 * k:.9f}"
+        for i, j, k in nodes
+    ]
+    lines.append("*ELEMENT, TYPE=C3D8, ELSET=PAD")
+    cells = [(i, j, k) for k in range(3) for j in range(3) for i in range(4)]
+    for element, (i, j, k) in enumerate(cells, 1):
+        corners = [
+            number_of[i + right, j + ahead, k + up]
+            for up in (0, 1)
+            for right, ahead in ((0, 0), (1, 0), (1, 1), (0, 1))
+        ]
+        lines.append(", ".join(map(str, [element, *corners])))
+    lines += ["*MATERIAL, NAME=LINING", "*ELASTIC", "8e9, 0.25", "*DENSITY", "2500."]
+    lines.append("*SOLID SECTION, ELSET=PAD, MATERIAL=LINING")
+    back, element = [number_of[node] for node in nodes if node[2] == 3], len(cells)
+    for direction, stiffness in ((1, 3e7), (2, 3e7), (3, 5e7)):
+        lines.append(f"*ELEMENT, TYPE=SPRING1, ELSET=S{direction}")
+        lines += [f"{element + n}, {node}" for n, node in enumerate(back, 1)]
+        lines += [f"*SPRING, ELSET=S{direction}", str(direction)]
+        lines.append(f"{stiffness / len(back):.12e}")
+        element += len(back)
+    lines += ["*STEP", "*FREQUENCY, SOLVER=MATRIXSTORAGE", "*END STEP", ""]
+    feet = [number_of[i, j, 0] for j in (0, 3) for i in (0, 4)]
+    return "\n".join(lines), feet
+
+
+@pytest.mark.release
+def test_a_pad_that_squeals_is_not_quiet_in_24_modes(tmp_path):
+    """24 modes have no growing mode, the whole has 14: quiet was told, exit code 0."""
+    text, feet = block_deck()
+    calculix(tmp_path, "pad", text)
+    (tmp_path / "contacts.csv").write_text(
+        "name,normal,tangential,stiffness,preload\n"
+        + "".join(f"p{n},{n}.3:-1,{n}.1:1,2e8,200\n" for n in feet)
+    )
+    (tmp_path / "pad.yaml").write_text(
+        "mass: pad.mas\nstiffness: pad.sti\ncontacts: contacts.csv\nmu: 0.8\n"
+        "modal_damping: 0.003\n"
+    )
+    pad = Structure.read(tmp_path / "pad.yaml")
+    assert pad.size == 240
+    # all contacts stay closed: own eigenvalues with the damping of each mode at rest
+    mass = pad.mass.toarray()
+    springs = pad.stiffness.toarray() + (pad.normals * pad.stiffnesses) @ pad.normals.T
+    squares, modes = la.eigh(springs, mass)
+    damping = np.diag(2 * 0.003 * np.sqrt(squares))
+    friction = 0.8 * (pad.tangentials * pad.stiffnesses) @ pad.normals.T
+    sliding = np.diag(squares) + modes.T @ friction @ modes
+    values = la.eigvals(
+        np.block([[np.zeros_like(damping), np.eye(240)], [-sliding, -damping]])
+    )
+    grows = values[(values.imag > 0) & (values.real > 1.0)]
+    for number in (8, 24, 32):
+        record = pad.reduce(n_modes=number).record
+        assert record["unstable"] == len(grows) > 0
+        assert not record["agrees"]
+        assert len(record["missing"])
