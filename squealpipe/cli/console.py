@@ -211,7 +211,6 @@ class _Log:
         self.later: threading.Timer | None = None
 
     def _print(self, line: str) -> None:
-        self.told = time.monotonic()
         print(f"{self.what}: {line}", file=sys.stderr, flush=True)
 
     def name(self, stage: str) -> None:
@@ -234,10 +233,13 @@ class _Log:
             self.first, self.started = share, now
         if now - self.told < LOG_EVERY or share <= self.first:
             return
+        self.told = now
         left = (now - self.started) * (1 - share) / (share - self.first)
         self._print(f"{share:.0%} done, about {duration(left)} left")
 
     def say(self, line: str) -> None:
         """Print a partial answer, if nothing was printed for a while."""
-        if time.monotonic() - self.told >= LOG_EVERY:
+        now = time.monotonic()
+        if now - self.told >= LOG_EVERY:
+            self.told = now
             self._print(line)

@@ -245,7 +245,7 @@ def squeal(
 
     The structure is run from small pushes along its unstable modes and from random starts until the
     motions have settled; every loss of contact is located. Exit code 0: quiet; 1: not quiet, or
-    undetermined.
+    undetermined; 130: Ctrl-C, after which what had settled is kept.
 
     Example: `squealpipe squeal pad.yaml -o squeal.nc`
 

@@ -13,7 +13,7 @@ from squealpipe.cli import run
 from squealpipe.cli.console import SESSION, working
 from squealpipe.store.mistakes import ConfigError
 from squealpipe.study.configuration.settings import read_study
-from squealpipe.systems.progress import alone
+from squealpipe.systems.progress import alone, stage
 
 SHORT = ["simulate", "5pi/6", "5pi/6", "--t-end", "5"]
 
@@ -114,3 +114,26 @@ def test_labels_are_words():
         ValueError, match="array = 'growth_rate': a variable with flag_meanings"
     ):
         labels(found.growth_rate)
+
+
+def test_a_stage_that_lasts_is_named_in_a_log(capsys, monkeypatch):
+    """A search of ten minutes printed nothing."""
+    waits = []
+
+    class Timer:
+        def __init__(self, seconds, call, arguments):
+            waits.append(seconds)
+            self.pass_by = lambda: call(*arguments)
+
+        def start(self):
+            self.pass_by()
+
+        def cancel(self):
+            waits.append("ended")
+
+    monkeypatch.setattr("squealpipe.cli.console.threading.Timer", Timer)
+    monkeypatch.setattr(SESSION, "quiet", False)
+    with working("squeal"), stage("the fewest modes that agree"):
+        pass
+    assert waits == [5.0, "ended"]
+    assert capsys.readouterr().err == "squeal: the fewest modes that agree …\n"

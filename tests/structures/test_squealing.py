@@ -17,7 +17,6 @@ from squealpipe.structures import elastic_pad
 from squealpipe.structures.schema.squealing import Kind
 from squealpipe.structures.squeal.plant import Plant
 from squealpipe.study.report.squealing import headline, level, lines
-from squealpipe.systems.progress import ask_to_stop, shown
 from tests.oracles.exponentials import Exponentials
 
 UNITS = 1e4
@@ -97,22 +96,6 @@ def test_without_damping_small_motions_neither_grow_nor_die_out():
     still = squealing_modes(two_modes(0.1, 0.0), samples=1, workers=1, t_end=0.2)
     assert Verdict(int(still.verdict)) is Verdict.undetermined
     assert "neither grow nor die out" in lines(still)[0]
-
-
-def test_what_has_settled_is_kept_when_a_stop_is_asked_for():
-    names = []
-    try:
-        # asked for when the first windows have ended
-        with shown(None, lambda _: ask_to_stop(), names.append):
-            answer = squealing_modes(two_modes(0.45), samples=3)
-        assert answer.attrs["interrupted"] == "yes"
-        assert float(answer.share_undetermined) == 1.0
-        assert Verdict(int(answer.verdict)) is Verdict.undetermined
-        assert names[0].startswith("runs of ")
-        with pytest.raises(KeyboardInterrupt):  # nothing was run yet
-            squealing_modes(two_modes(0.45), samples=3)
-    finally:
-        ask_to_stop(stops=False)
 
 
 def test_where_no_start_settles_in_time_nothing_is_told():
