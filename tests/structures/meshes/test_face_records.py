@@ -28,7 +28,7 @@ def test_numbers_of_a_face_have_units():
         ({"pressure": 0.0}, "nothing presses"),
         ({"stiffness": -1.0}, "greater than 0"),
         ({"pressure": "5 N"}, "Pa|pressure"),
-        ({"direction": [0, 0, 0]}, "three numbers"),
+        ({"direction": [0, 0, 0]}, "points nowhere"),
         ({"direction": [1, 0]}, "three numbers"),
         ({"points": 0}, "whole number from 1"),
         ({"points": 2.5}, "whole number from 1"),
