@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from squealpipe.plotting import style
+from squealpipe.plotting.origin import parameter
 from squealpipe.plotting.quantities import label
 from squealpipe.units import shown_in
 
@@ -71,6 +72,38 @@ def _draw_spectrum(axes: Axes, modes: xr.Dataset) -> None:
     axes.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
     axes.set(xlabel=f"frequency ({unit})", ylabel=GROWTH_LABEL)
     axes.legend()
+
+
+def own_friction(modes: xr.Dataset) -> int:
+    """Return the place of the structure's own friction among those of a study."""
+    if "mu_of" in modes.attrs:  # half of the largest of the face that was varied
+        return modes.sizes["mu"] // 2
+    return int(np.abs(modes.mu.values - parameter(modes, "mu")).argmin())
+
+
+def figure_of_damping(modes: xr.Dataset) -> Figure:
+    """One panel of damping ratio over frequency, at the structure's own friction."""
+    made, axes = style.new_figure(style.COLUMN, 2.6)
+    panel = axes[0, 0]
+    now = modes.isel(mu=own_friction(modes))
+    known = np.isfinite(now.damping_ratio.values) & (now.frequency.values > 0)
+    if not known.any():
+        style.say_instead(panel, "no mode that oscillates within the limits")
+        return made
+    now = now.isel(mode=known)
+    factor, unit = frequency_unit(now.frequency.values)
+    frequency, ratio = now.frequency.values * factor, 100.0 * now.damping_ratio.values
+    unstable = now.unstable.values
+    panel.axhline(0.0, color=style.GREY, linewidth=0.6)
+    panel.plot(
+        frequency[~unstable], ratio[~unstable], ".", color=style.BLUE, label="stable"
+    )
+    panel.plot(
+        frequency[unstable], ratio[unstable], "o", color=style.RED, label="unstable"
+    )
+    panel.set(xlabel=f"frequency ({unit})", ylabel="damping ratio (%)")
+    panel.legend()
+    return made
 
 
 def _draw_along(axes: Axes, modes: xr.Dataset, name: str, dim: str) -> None:

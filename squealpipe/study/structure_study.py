@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from squealpipe.structures.assess.assess import small_motions_alone
 from squealpipe.structures.assess.operating_points import OperatingPoints
 from squealpipe.structures.fewer_points import fewer_points
 from squealpipe.structures.pencil import DENSE
@@ -19,6 +20,7 @@ from squealpipe.structures.squeal.settled_run import (
 from squealpipe.structures.squeal.squealing_modes import squealing_modes
 from squealpipe.structures.structure import Structure
 from squealpipe.structures.varied_friction import VariedFriction, face_of
+from squealpipe.study.assess import assess
 from squealpipe.study.operating_sweep import TASK as OPERATING_MAP
 from squealpipe.study.operating_sweep import OperatingSweep
 
@@ -134,6 +136,25 @@ def squealing(
         reduced_structure(structure, section),
         **{name: section[name] for name in ("samples", "seed", "t_end")},
         onset=not structure.has_own_mu.all(),
+        workers=workers,
+    )
+
+
+def answered(
+    structure: Structure, section: Mapping[str, Any], squeal: xr.Dataset, workers: int
+) -> xr.Dataset:
+    """Return verdict, level and what stops the noise; what eigenvalues tell if nothing is run.
+
+    Args:
+        squeal: which modes squeal.
+    """
+    reduced = reduced_structure(structure, section)
+    if squeal.attrs.get("not_run"):
+        return small_motions_alone(reduced)
+    return assess(
+        reduced,
+        samples=min(section["samples"], 16),  # each value that is tried has as many
+        seed=section["seed"],
         workers=workers,
     )
 

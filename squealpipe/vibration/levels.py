@@ -38,6 +38,10 @@ class Measurement:
     """Samples in each period. Half as many: peaks of displacement are off by 1 %."""
     shown: float = 12.0
     """Periods that the picture shows."""
+    shown_instants: int = 800
+    """Instants of the picture. Half as many: corners of impacts are cut off."""
+    harmonics: int = 5
+    """Multiples of the strongest line that are told."""
     padding: int = 4
     """Resolution over the step of the grid in which peaks are sought. 2: frequencies are off by a
     hundredth of the resolution."""
@@ -172,6 +176,18 @@ def still() -> dict[str, Any]:
     }
 
 
+def unknown() -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the same of a motion that was not run: everything is NaN."""
+    names = [*still(), "peak_contact_force", "peak_contact_force_over_preload"]
+    scalars: dict[str, Any] = dict.fromkeys([*names, "settled_by"], np.nan)
+    scalars |= {"verdict": Verdict.undetermined, "periodic": False}
+    path = [f"path_{name}" for name in ("time", "x", "y", "force")]
+    nothing = dict.fromkeys(path, np.full(MEASUREMENT.shown_instants, np.nan))
+    return scalars, _no_spectrum() | nothing | {
+        "path_regime": np.full(MEASUREMENT.shown_instants, -1)
+    }
+
+
 def _blocks(settled: SettledRun, period: float, periodic: bool) -> int:
     """Return how many records measure a motion.
 
@@ -302,23 +318,8 @@ def _spectrum(blocks: Sequence[Record]) -> dict[str, Any]:
         [[*block.signals[:, contact], block.forces[:, contact]] for block in blocks],
         axis=1,
     )
-    harmonics = 5
     if not np.isfinite(signals).all():
-        return {
-            "frequency_resolution": np.nan,
-            **dict.fromkeys(
-                ("harmonic_frequency", "harmonic_velocity"), np.full(harmonics, np.nan)
-            ),
-            **dict.fromkeys(
-                (
-                    "line_frequency",
-                    "velocity_spectrum_along",
-                    "velocity_spectrum_across",
-                    "force_spectrum",
-                ),
-                np.full(LINES, np.nan),
-            ),
-        }
+        return _no_spectrum()
     padding = MEASUREMENT.padding
     frequency, amplitude = amplitude_spectrum(signals, step, padding=padding)
     amplitude = np.sqrt((amplitude**2).mean(axis=1))
@@ -327,7 +328,7 @@ def _spectrum(blocks: Sequence[Record]) -> dict[str, Any]:
     peaks, _ = highest_peaks(frequency, amplitude[louder], 1)
     strongest = float(peaks[0]) if peaks.size else np.nan
     resolution = 1.0 / float(times[-1])
-    multiples = strongest * np.arange(1, harmonics + 1)
+    multiples = strongest * np.arange(1, MEASUREMENT.harmonics + 1)
     near = np.abs(frequency[:, None] - multiples) <= resolution
     heights = np.where(near, amplitude[louder][:, None], 0.0).max(axis=0)
     # lines as far apart as the resolution, or more: peaks keep their heights
@@ -350,6 +351,25 @@ def _spectrum(blocks: Sequence[Record]) -> dict[str, Any]:
     }
 
 
+def _no_spectrum() -> dict[str, Any]:
+    return {
+        "frequency_resolution": np.nan,
+        **dict.fromkeys(
+            ("harmonic_frequency", "harmonic_velocity"),
+            np.full(MEASUREMENT.harmonics, np.nan),
+        ),
+        **dict.fromkeys(
+            (
+                "line_frequency",
+                "velocity_spectrum_along",
+                "velocity_spectrum_across",
+                "force_spectrum",
+            ),
+            np.full(LINES, np.nan),
+        ),
+    }
+
+
 def _path(record: Record, period: float) -> dict[str, Any]:
     """Return the last periods of the contact that moves most, at evenly spaced instants."""
     times = record.times
@@ -358,7 +378,7 @@ def _path(record: Record, period: float) -> dict[str, Any]:
     per_period = period / float(times[1] - times[0])
     first = max(times.size - int(MEASUREMENT.shown * per_period + 1e-6) - 1, 0)
     # instants of the settled motion that a dataset keeps
-    samples = 800
+    samples = MEASUREMENT.shown_instants
     at = np.unique(np.linspace(first, times.size - 1, samples).astype(int))
     at = np.concatenate([np.full(samples - at.size, at[0]), at])
     return {

@@ -1,4 +1,4 @@
-"""A study of a structure (``structure:``): its complex modes, and which of them squeal."""
+"""A study of a structure (``structure:``): its complex modes, which squeal, and what stops it."""
 
 from squealpipe.store.rerun.key import files_named_in
 from squealpipe.store.yaml_files import read_yaml
@@ -23,6 +23,7 @@ rule analyse_structure:
     output:
         modes=data("structure/modes"),
         squeal=data("structure/squeal"),
+        answer=data("structure/assess"),
         run=data("structure/run"),
         contacts=f"{RESULTS}/report/contacts.csv",
     params:

@@ -19,6 +19,7 @@ from squealpipe.structures.assess.designs import Design, Structures, pushed, sta
 from squealpipe.structures.assess.records import levels
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.quiet_intervals import linear_intervals
+from squealpipe.structures.squeal.plant import Plant
 from squealpipe.structures.squeal.windows import Running
 from squealpipe.systems.progress import partial_answer, with_progress
 from squealpipe.validation import Natural, Seed, Tolerance, Workers
@@ -29,6 +30,7 @@ from squealpipe.vibration.boundaries import (
     nearest_boundary,
 )
 from squealpipe.vibration.cures import Boundary, boundaries, by_change, cure_table
+from squealpipe.vibration.levels import unknown
 from squealpipe.vibration.schema import ASSESS
 from squealpipe.vibration.settling import FOR_NUMBERS
 
@@ -172,26 +174,54 @@ def judge_structure(
     sudden_scalars, _ = levels(design, of_sudden, how=how)
     lasting = [run for run in (of_push, of_sudden, *others) if not run.quiet]
     verdict = of_push.verdict
-    growth = plant.spectrum.values.real
-    outcome = (
-        Outcome.unresolved if verdict is Verdict.undetermined else Outcome.converged
-    )
     facts = {
         **scalars,
         **{f"sudden_{name}": value for name, value in sudden_scalars.items()},
         **pictured,
+        **_of_small_motions(design, plant),
+        "quiet_unless_struck": verdict is Verdict.quiet and bool(lasting),
+        "random_starts": len(others),
+        "random_starts_noisy": sum(run.lasts for run in others),
+        "outcome": Outcome.unresolved
+        if verdict is Verdict.undetermined
+        else Outcome.converged,
+    }
+    motions = [design.to_whole(run.last.final) for run in lasting[:2]]
+    searched = replace(family, tol=max(tol, SEARCH.tol))
+    return JudgedStructure(design, verdict, motions, facts, searched, named)
+
+
+def _of_small_motions(design: Design, plant: Plant) -> dict[str, Any]:
+    """Return the variables of the dataset that need no run."""
+    growth = plant.spectrum.values.real
+    return {
         "mechanism": design.mechanism,
         "sliding_growth_rate": float(growth.max()),
         "mode_frequency": plant.frequencies,
         "leading_frequency": float(plant.frequencies[growth.argmax()]),
         "contact_sliding_force": plant.spectrum.state.force,
-        "quiet_unless_struck": verdict is Verdict.quiet and bool(lasting),
-        "random_starts": len(others),
-        "random_starts_noisy": sum(run.lasts for run in others),
         "degrees_of_freedom": design.given.size,
         "n_modes": plant.size,
-        "outcome": outcome,
     }
-    motions = [design.to_whole(run.last.final) for run in lasting[:2]]
-    searched = replace(family, tol=max(tol, SEARCH.tol))
-    return JudgedStructure(design, verdict, motions, facts, searched, named)
+
+
+@recorded(model="small motions of a structure", method="complex eigenvalues")
+def small_motions_alone(structure: Any) -> xr.Dataset:
+    """Return the answer for a structure that is too large to be run: undetermined, with a cause."""
+    design = Design.of(structure)
+    plant = design.plant
+    assert plant is not None  # noqa: S101 (Design.of has raised)
+    scalars, pictured = unknown()
+    facts = {
+        **scalars,
+        **{f"sudden_{name}": value for name, value in scalars.items()},
+        **pictured,
+        **_of_small_motions(design, plant),
+        "quiet_unless_struck": False,
+        "random_starts": 0,
+        "random_starts_noisy": 0,
+        "outcome": Outcome.unresolved,
+    }
+    family = Structures(SEARCH.tol, 0, 0)
+    judged = JudgedStructure(design, Verdict.undetermined, [], facts, family, {})
+    return judged.without_cures()

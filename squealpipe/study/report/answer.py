@@ -40,6 +40,7 @@ class CureWords(NamedTuple):
     change: str
     any_start: str
     change_any_start: str
+    intervals: str
     tried: str
 
 
@@ -306,20 +307,20 @@ def cure_line(cure: CureWords, answer: xr.Dataset) -> str:
 
 def _more_intervals(name: str, answer: xr.Dataset) -> str:
     """Return the quiet intervals beyond the nearest one in words; none if there are none."""
-    if "quiet_low" not in answer:
-        return ""  # of a version that did not list them
-    row = answer.sel(cure=name)
-    unit = str(row.unit.item())
-    ends = [
-        (float(low), float(high))
-        for low, high in zip(row.quiet_low.values, row.quiet_high.values, strict=True)
+    told = _intervals(answer.sel(cure=name))[1:]
+    return f"; a push also dies out at {' and '.join(told)}" if told else ""
+
+
+def _intervals(cure: xr.Dataset) -> list[str]:
+    """Return all quiet intervals of a cure in words, the nearest first."""
+    if "quiet_low" not in cure:
+        return []  # of a version that did not list them
+    name, unit = str(cure.cure.item()), str(cure.unit.item())
+    return [
+        f"{_value(name, float(low), unit)} to {_value(name, float(high), unit)}"
+        for low, high in zip(cure.quiet_low.values, cure.quiet_high.values, strict=True)
         if math.isfinite(low)
     ]
-    told = [
-        f"{_value(name, low, unit)} to {_value(name, high, unit)}"
-        for low, high in ends[1:]
-    ]
-    return f"; a push also dies out at {' and '.join(told)}" if told else ""
 
 
 def lines(answer: xr.Dataset) -> Iterator[str]:
@@ -412,6 +413,7 @@ def _words(answer: xr.Dataset, name: str) -> CureWords:
         _change(name, float(cure.change), float(cure.value)),
         _value(name, float(cure.quiet_from_any_start), unit),
         _change(name, float(cure.change_any_start), float(cure.value)),
+        "; ".join(_intervals(cure)) or NOT_FOUND,
         _range(cure),
     )
 

@@ -15,6 +15,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.store import load
 from squealpipe.study.evidence import Evidence
 from squealpipe.study.report import answer
+from squealpipe.study.report.answer_content import answer_content
 from squealpipe.study.report.media import media_of
 from squealpipe.study.report.parts import Made, changed_rows, parameter_table, pictures
 from squealpipe.study.report.sections import OWN
@@ -80,30 +81,12 @@ def scene(name: str, told: xr.Dataset, started: xr.Dataset) -> dict[str, Any]:
         told: its dataset ``assess``.
         started: its run from its own start.
     """
-    quiet = answer.verdict_of(told) is Verdict.quiet
-    cures = answer.cures(told)
     return {
         "name": name,
         "angles": [number(float(np.degrees(told[f"alpha{i}"]))) for i in (1, 2)],
-        "verdict": answer.verdict_of(told).name,
-        "quiet": quiet,
-        "struck": bool(told.quiet_unless_struck),
-        "headline": answer.headline(told),
-        "cause": answer.cause(told),
-        "level": answer.level(told),
-        "sudden": answer.sudden(told),
-        "stops": answer.stops(told),
-        "cheapest": [
-            answer.cure_line(cure, told)
-            for cure in answer.of_a_push(told)[: answer.CHEAPEST]
-        ],
-        "cures": [cure._asdict() for cure in cures],
-        "not_cures": [
-            {"words": words, "tried": tried} for words, tried in answer.not_cures(told)
-        ],
+        **answer_content(told),
         "snaps": answer.snap_throughs(told),
         "nearest": _nearest(told),
-        "numbers": _numbers(told),
         "start": _from_start(started),
     }
 
@@ -129,44 +112,6 @@ def _strikes(parameters: Parameters) -> str:
     speeds = [parameters.preload * rate * math.hypot(*kick) for kick in KICKS]
     least, most = (engineering(end(speeds), "m s-1", 2) for end in (min, max))
     return f"{least} to {most}"
-
-
-def _numbers(told: xr.Dataset) -> list[dict[str, str]]:
-    """Quantity, value from steady sliding and value from a sudden start."""
-    rows = []
-    for name, unit, words in (
-        ("frequency", "Hz", "Strongest line of the velocity"),
-        ("velocity_rms_along", "m s-1", "Velocity along the belt, rms"),
-        ("velocity_rms_across", "m s-1", "Velocity across the belt, rms"),
-        ("displacement_peak", "m", "Largest distance from the mean position"),
-        ("peak_contact_force", "N", "Largest contact force"),
-        ("peak_contact_force_over_preload", "1", "The same over the preload force"),
-        ("separated_fraction", "%", "Time without contact"),
-        ("stick_fraction", "%", "Time sticking to the belt"),
-        ("impact_rate", "s-1", "Rate of impacts"),
-        ("impact_speed", "m s-1", "Fastest impact"),
-        ("settled_by", "s", "Had settled after"),
-    ):
-        values = [float(told[f"{prefix}{name}"]) for prefix in ("", "sudden_")]
-        rows.append(
-            {
-                "words": words,
-                "pushed": _written(values[0], unit),
-                "sudden": _written(values[1], unit),
-            }
-        )
-    for column, prefix in (("pushed", ""), ("sudden", "sudden_")):
-        if answer.verdict_of(told, prefix) is Verdict.undetermined:
-            rows[-1][column] = "not settled"
-    return rows
-
-
-def _written(value: float, unit: str) -> str:
-    if not math.isfinite(value):
-        return "–"
-    if unit == "%":
-        return percent(value, 3)
-    return engineering(value, unit)
 
 
 def _from_start(run: xr.Dataset) -> dict[str, str]:

@@ -8,12 +8,13 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.codes import Verdict
-from squealpipe.plotting.origin import parameter
+from squealpipe.plotting.modes import own_friction
 from squealpipe.schema import Outcome, meanings
 from squealpipe.store import load
-from squealpipe.structures.schema.squealing import NO_ATTRACTOR, SQUEAL_LIMITS
+from squealpipe.structures.schema.squealing import NO_ATTRACTOR
 from squealpipe.structures.schema.structures import Onset
 from squealpipe.study.report import squealing
+from squealpipe.study.report.answer_content import answer_content
 from squealpipe.study.report.media import media_of
 from squealpipe.study.report.operating import lines
 from squealpipe.study.report.parts import Made, pictures
@@ -28,23 +29,26 @@ def gather_structure(
     """Content of ``templates/structure.typ``."""
     run = {name: load(made.path) for name, made in datasets.items()}
     modes, answer = run["structure/modes"], run["structure/squeal"]
-    verdict = Verdict(int(answer.verdict))
+    told = answer_content(run["structure/assess"])
     numbers = json.loads(modes.attrs["parameters"])
-    told = (
+    was_run = not answer.attrs.get("not_run")
+    is_known = was_run and squealing.agrees(answer)
+    said = (
         cause(modes, answer),
-        squealing.level(answer),
+        told["level"] if is_known else squealing.level(answer),
+        told["sudden"] if is_known else None,
         squealing.beside(answer),
         *squealing.onset(answer, _critical(modes)),
     )
     return {
+        **told,
         "title": "Which mode squeals? Report of a structure",
         "set": f"mu = {_frictions(numbers)}, {_speed_words(numbers)}",
-        "verdict": verdict.name,
-        "headline": squealing.headline(answer),
-        "lines": [line for line in told if line],
-        "quiet": verdict is Verdict.quiet,
+        "headline": told["headline"] if is_known else squealing.headline(answer),
+        "lines": [line for line in said if line],
+        "run": was_run,
+        "random": int(run["structure/assess"].random_starts),
         "moves": bool(run["structure/run"].sizes["time"]),
-        "stops": stops(modes, answer),
         "fates": [*squealing.modes(answer), *squealing.missing(answer)],
         "ends": list(squealing.attractors(answer)),
         "operating": operating(run.get("structure/operating")),
@@ -70,21 +74,10 @@ def media_of_structure(datasets: Mapping[str, Made]) -> dict[str, str]:
 
 def _unstable(modes: xr.Dataset) -> list[xr.Dataset]:
     """Modes over friction that grow at the structure's own, the fastest first."""
-    place = _own_friction(modes)
+    place = own_friction(modes)
     at = modes.isel(mu=place)
     order = np.argsort(-at.growth_rate.values, kind="stable")
     return [modes.isel(mode=int(i)) for i in order if bool(at.unstable[i])]
-
-
-def _own_friction(modes: xr.Dataset) -> int:
-    # half of the largest: that of the structure, or of the face that was varied
-    return (
-        modes.sizes["mu"] // 2 if "mu_of" in modes.attrs else _nearest_friction(modes)
-    )
-
-
-def _nearest_friction(modes: xr.Dataset) -> int:
-    return int(np.abs(modes.mu.values - parameter(modes, "mu")).argmin())
 
 
 def _critical(modes: xr.Dataset) -> float:
@@ -116,7 +109,7 @@ def _beyond(answer: xr.Dataset) -> str:
 
 def _origin(modes: xr.Dataset, mode: xr.Dataset) -> str:
     """Name the source of a mode's growth."""
-    frequency = float(mode.frequency[_own_friction(modes)])
+    frequency = float(mode.frequency[own_friction(modes)])
     if not frequency > 0:
         return "a mode that does not oscillate grows (divergence)"
     if int(mode.onset) == Onset.unstable_throughout:
@@ -144,72 +137,9 @@ def _origin(modes: xr.Dataset, mode: xr.Dataset) -> str:
     )
 
 
-def stops(modes: xr.Dataset, answer: xr.Dataset) -> list[str]:
-    """Return sentences on what stops the squeal, or how far it is."""
-    own = float(modes.mu[_own_friction(modes)])
-    critical, damping = _critical(modes), float(answer.added_damping)
-    if not _unstable(modes) and (beyond := _beyond(answer)):
-        return [
-            f"What stops the mode at {beyond} was not examined: give a larger frequency_max."
-        ]
-    if not _unstable(modes):
-        if np.isfinite(critical):
-            upto = f"mu = {number(critical)} ({_change(critical, own)})"
-            return [f"Friction: small motions die out up to {upto}."]
-        most = number(float(modes.mu[-1]))
-        return [f"Friction: no mode grows up to mu = {most}."]
-    if critical > 0:
-        friction = (
-            f"Less friction: below mu = {number(critical)} ({_change(critical, own)}) no mode "
-            "grows."
-        )
-        if "onset_kind" in answer and bool(answer.squeals_below_critical):
-            friction += f" {squeal_below(answer, own)}"
-    elif np.isnan(critical):
-        friction = "Friction: where growth begins was not located."
-    else:
-        friction = "Friction: at no friction are all modes stable."
-    if _unresolved(answer):
-        damper = "Damping: the modes that were run do not tell how much more stops it."
-    elif np.isfinite(damping):
-        damper = (
-            f"More damping: with {number(100 * damping, 2)} percentage points of damping ratio "
-            "added to every mode none grows."
-        )
-    else:
-        damper = (
-            f"Damping: {100 * SQUEAL_LIMITS.most_damping:.0f} percentage points added "
-            "to every mode do not suffice."
-        )
-    return [friction, damper]
-
-
-def _unresolved(answer: xr.Dataset) -> bool:
-    """Tell whether the added damping is not known."""
-    outcome = answer.get("added_damping_outcome", Outcome.converged)
-    return Outcome(int(outcome)) is Outcome.unresolved
-
-
-def squeal_below(answer: xr.Dataset, own: float) -> str:
-    """Tell how far below the critical friction squeal lasts, and where the own friction lies."""
-    dies = float(answer.onset_mu - answer.hysteresis)
-    lasts = float(np.nanmin(answer.track_mu.values))
-    if dies <= lasts:
-        return f"Squeal that has begun lasts down to mu = {number(dies)} ({_change(dies, own)})."
-    # the end of what lasts longest was not reached
-    return f"Squeal that has begun still lasts at mu = {number(lasts)} ({_change(lasts, own)})."
-
-
-def _change(value: float, now: float) -> str:
-    if not now:
-        return "now 0"
-    change = 100.0 * (value / now - 1.0)
-    return f"{'+' if change > 0 else '−'}{number(abs(change), 2)} %"
-
-
 def onsets(modes: xr.Dataset) -> list[dict[str, str]]:
     """A row for each mode that is unstable anywhere in the range, by onset."""
-    place = _own_friction(modes)
+    place = own_friction(modes)
     rows = []
     ever = modes.unstable.any("mu").values
     places = np.flatnonzero(ever).tolist()
@@ -408,18 +338,10 @@ def _few(nodes: list[int]) -> str:
 def not_examined(answer: xr.Dataset) -> list[str]:
     """Return what the answer does not cover, in sentences."""
     errors = [float(answer.frequency_error), float(answer.growth_rate_error)]
-    judged_by_small_motions = (
-        "less friction and more damping are"
-        if "onset_kind" not in answer
-        else "more damping is"
-    )
     rest = [
         "Wear, heat, the sound that is radiated, and parameters that scatter.",
         "Starts of more energy than the preload stores in the contacts.",
-        (
-            "Whether a vibration that lasts also dies out where small motions do: "
-            f"{judged_by_small_motions} judged by small motions alone."
-        ),
+        "What several changes do together, and values beyond the ranges that were searched.",
     ]
     if max(errors) > 0:
         rest.insert(
