@@ -14,7 +14,7 @@ import numpy as np
 from squealpipe.codes import Verdict
 from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
 from squealpipe.structures.squeal.windows import BLOCKS, Running, run_windows
-from squealpipe.systems.progress import partial_answer, stop_is_asked
+from squealpipe.systems.progress import partial_answer
 from squealpipe.units import engineering
 from squealpipe.vibration.settled_runs import Horizon, SettledRun, Start
 from squealpipe.vibration.settled_runs import settle as settle_runs
@@ -111,7 +111,7 @@ def settle_on(
     length = 2.0 * max(float(run.last.length) for run in settled)
     left = most - max(run.elapsed for run in settled)
     if (
-        stop_is_asked() or left < RUN_LENGTHS.fewest_periods * length
+        left < RUN_LENGTHS.fewest_periods * length
     ):  # without statistics, and two windows
         return [replace(run, verdict=Verdict.undetermined) for run in settled]
     starts = [start_at(plant, run.last.final) for run in settled]

@@ -261,7 +261,8 @@ def _attractors(
         numbers = grouped(settled, pushes)
         members = _members(settled, numbers)
         modes = [of(runs[0]) for runs in members]
-        if turn == most_continuations or not any(mode.leaves for mode in modes):
+        done = turn == most_continuations or stop_is_asked()
+        if done or not any(mode.leaves for mode in modes):
             break
         for runs, mode in zip(members, modes, strict=True):
             if not mode.leaves:
