@@ -5,7 +5,7 @@ import yaml
 
 from squealpipe import load
 from squealpipe.cli import run
-from squealpipe.study.report import squealing
+from squealpipe.study.report import answer, squealing
 from tests.conftest import ROOT, run_snakemake, text_of_page
 
 pytestmark = pytest.mark.timeout(1800)
@@ -24,7 +24,9 @@ def test_the_report_says_its_onsets_and_its_headline(tmp_path, monkeypatch):
     text = text_of_page(results / "report/index.html")
     told = load(results / "data/structure/squeal.nc")
     assert told.sizes["sample"] == 4
-    for sentence in (*squealing.lines(told), squealing.level(told)):
+    verdict = load(results / "data/structure/assess.nc")
+    said = [answer.headline(verdict), answer.level(verdict), answer.sudden(verdict)]
+    for sentence in (*squealing.lines(told)[1:], *said):
         assert sentence in text
     for onset in ("mu = 0.29 on", "0.2901", "mu = 0.408 on", "0.4077"):
         assert onset in text
