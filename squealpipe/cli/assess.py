@@ -57,7 +57,7 @@ def assess(
             1, "strut=spring 12,40 1e6" a spring between two, and dashpot likewise. In a structure
             with a mesh 5005.3 is a node and its direction; "shim=patch BACK 0.2 0.05" is a shim of
             up to 0.2 kg and damping ratio 0.05 on a node set, a face or nodes like 5005,5006, and
-            "edge=chamfer lining 0.2" takes up to a fifth of a face's points off its leading end.
+            "edge=chamfer lining 0.2" removes up to a fifth of a face's points at its leading end.
         samples: number of random starts of a structure.
         seed: seed of the random starts.
         n_modes: modes to reduce a structure to; by default as many as errors below 1 % need, and

@@ -18,13 +18,13 @@ class ExitCodes:
     """Exit codes of all commands, as docs/guide.md lists them."""
 
     done: int = 0
-    """It did what was asked."""
+    """The command did what was asked."""
     answer_is_no: int = 1
-    """It did, and the answer is negative: different, changed, another verdict, not converged."""
+    """Done, with a negative answer: different, changed, another verdict, not converged."""
     not_done: int = 2
-    """It did not: wrong input, a missing file."""
+    """The command could not do it: wrong input, a missing file."""
     interrupted: int = 130
-    """Ctrl-C, as shells have it: 128 and the number of the signal."""
+    """Stopped by Ctrl-C; shells use the same code, 128 plus the number of the signal."""
 
 
 EXIT = ExitCodes()

@@ -150,7 +150,7 @@ def propensity(
     output: Output = Path("propensity.nc"),
     brake: Drawn = DRAWN,
 ) -> int:
-    """Shares of verdicts over scattered parameters, and which of these decides.
+    """Compute shares of verdicts over scattered parameters, and which parameter decides most.
 
     Of a pad, given by both angles, it tells how often flutter, contact loss, irregular hammering
     and whirl occur; of a structure, given by its file, how often it is quiet, squeals or hammers.
@@ -279,7 +279,7 @@ def _say_shares(shares: xr.Dataset, dim: str) -> None:
         decides = ""
         if dim == "verdict" and total.notnull().any():
             place = int(total.fillna(-1.0).argmax())
-            decides = f"; decided most by {total.input.values[place]}"
+            decides = f"; most influential: {total.input.values[place]}"
         answer(
             f"{str(name).replace('_', ' '):<20} {share:8.2%}  (95 %: {low:.2%} to {high:.2%})"
             f"{decides}"

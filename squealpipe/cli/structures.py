@@ -75,11 +75,11 @@ def modes(
         belt_speed: likewise, m/s, or rad/s (also 200 rpm) where the file has a rotation. Over
             several speeds, those at which a mode turns unstable or stable are located too.
         frequency_max: highest frequency of the modes, Hz. Where neither limit is given it is 20
-            kHz up to 1000 degrees of freedom; beyond, one of both is needed.
-        n_modes: number of modes, by frequency.
-        critical: locate where modes turn unstable; --no-critical leaves that out, which is most of
-            the work for a structure of many degrees of freedom. Beyond 300 they are sought in a
-            reduced structure and confirmed in the whole.
+            kHz up to 1000 degrees of freedom; beyond, one of the two is needed.
+        n_modes: number of modes, those of lowest frequency.
+        critical: locate where modes turn unstable, which is most of the work for a structure of
+            many degrees of freedom; --no-critical leaves it out. Beyond 300 degrees of freedom
+            critical frictions are sought in a reduced structure and confirmed in the whole.
         vary: a further factor with its value or values; repeat for more. preload=0.5:2:7 and
             contact_stiffness=0.5,1,2 multiply those of all contacts, p1_preload and p1_stiffness
             those of a contact p1, mass, damping and stiffness the matrices; modal_damping,
@@ -391,8 +391,9 @@ def operating(
             "5 bar:20 bar:4", the mean pressure of the faces.
         speed: speeds likewise, m/s, or rad/s (also 200 rpm) where the file has a rotation; that of
             the file by default.
-        mu: friction likewise, of the contacts that have none of their own; with --mu-of factors.
-        temperature: degrees Celsius, likewise, where friction is a table over it.
+        mu: friction likewise, of the contacts that have none of their own; with --mu-of a factor
+            of the tables.
+        temperature: temperatures likewise, °C; needs --mu-of temperature=….
         mu_of: table of friction over temperature, pressure or speed: temperature=mu.csv, with the
             columns "temperature [°C]" and mu, or "temperature=20:0.45 300:0.35"; repeat for more,
             which are multiplied.
@@ -433,8 +434,7 @@ def operating(
     kept = beside(output, rule_key(settings, sources(Path(inspect.getfile(planned)))))
     count, done = math.prod(map(len, plan.vary.values())), plan.finished(kept)
     say(
-        f"{count} operating points"
-        + (f"; {done} are there from before" if done else "")
+        f"{count} operating points" + (f"; {done} are already computed" if done else "")
     )
     # points that are finished are kept
     SESSION.remedy = "run the same command again"

@@ -45,7 +45,7 @@ def sweep(
         task: simulate, validity_map, hammering_map, quasi_static_map, stability_map,
             critical_friction_map, natural_frequencies, periodic_orbit, backbone,
             smallest_disturbance or assess; a system of your own as FILE.py:NAME; or the modes of
-            a structure as FILE.yaml:complex_modes, and its noise over pressure, speed, mu and
+            a structure as FILE.yaml:complex_modes, or its noise over pressure, speed, mu or
             temperature as FILE.yaml:operating_map.
         vary: a parameter, angle or option, or a start of a system (x0), with its values:
             mu=0:0.6:13, alpha1=0:pi:31, belt_speed=0.1:100:7:log or k3=0.5,0.75; repeat for
@@ -80,7 +80,7 @@ def sweep(
     say(f"{runs} runs of {task} over {', '.join(plan.names)}")
     kept = beside(output, rule_key(settings, sources(Path(inspect.getfile(planned)))))
     if done := plan.finished(kept):
-        say(f"{done} of them are there from before")
+        say(f"{done} of them are already computed")
     again = "run the same command again"
     SESSION.remedy = again  # runs that are finished are kept
     with working(f"sweep of {task}"):

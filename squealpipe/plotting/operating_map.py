@@ -33,7 +33,7 @@ def draw_points(axes: Axes, dataset: xr.Dataset) -> None:
 
 
 def figure(dataset: xr.Dataset) -> Figure:
-    """Points over speed and pressure, one panel a friction or temperature; bars of occurrence."""
+    """Draw points over speed and pressure, a panel for each friction or temperature, and bars."""
     last = _last(dataset)
     # maps side by side; of more values of friction or temperature some are shown
     most = 4
@@ -196,7 +196,7 @@ def _draw_occurrence(axes: Axes, dataset: xr.Dataset) -> None:
 
 
 def _percent(share: float) -> str:
-    """A share above a bar; nothing where there is no bar."""
+    """Return a share as the text above its bar, "" if there is no bar."""
     return f"{100.0 * share:.3g}" if share else ""
 
 

@@ -360,7 +360,7 @@ def _matrix(key: str, entry: Any, folder: Path, triangle: str | None) -> Labelle
     meant = {".mas": "mass", ".sti": "stiffness"}.get(plain_name(path).suffix.lower())
     if {key, meant} == {"mass", "stiffness"}:
         raise ValueError(
-            f"{key}: {path} is the {meant} that CalculiX writes; exchange both names"
+            f"{key}: {path} is the {meant} that CalculiX writes; exchange the two names"
         )
     one = read_matrix(path, key, variable)
     whole = _completed(real_square(f"{key}: {path}", one.matrix), path, one, triangle)

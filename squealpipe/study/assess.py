@@ -50,10 +50,11 @@ def assess(
             structure with a mesh ``"5005"`` is a node in all directions and ``"5005.3"`` one of
             them. The largest amount is that of the first entry, others go along in proportion.
             ``{"patch": {"nodes": "BACK", "mass": 0.2, "damping_ratio": 0.05}}`` is a shim on a node
-            set, a face or a list of node numbers, one of mass and damping or both: its mass is
-            shared equally, and it damps deformation of its nodes, with this ratio at the frequency
-            of the mode that grows fastest. ``{"chamfer": {"face": "lining", "share": 0.2}}`` takes
-            up to that share of a face's points off the end that meets the belt first; the others
+            set, a face or a list of node numbers, with a mass, a damping ratio or both: its mass is
+            shared equally, and it damps the deformation of its nodes, with this ratio at the
+            frequency of the mode that grows fastest. ``{"chamfer": {"face": "lining", "share":
+            0.2}}`` removes
+            up to that share of a face's points from the end that meets the belt first; the others
             carry the whole force.
         samples: random starts of a structure, for other motions beside steady sliding.
         seed: seed of the random starts.

@@ -21,7 +21,7 @@ TASK = operating_map.__name__
 REDUCTION = ("n_modes", "frequency_max")
 OPTIONS = ("mu_of", "measured", "frequency_band", "band_edges", "tol", *REDUCTION)
 TABLE = "mu_of_"
-"""What begins the name of an option that is a table of friction, like ``mu_of_temperature``."""
+"""Prefix of an option that is a table of friction, like ``mu_of_temperature``."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,7 +33,7 @@ class OperatingSweep(PointSweep):
         vary: pressure, speed, mu or temperature → values.
         fixed: those that are one value, and options of ``operating_map``, ``n_modes`` and
             ``frequency_max``.
-        operating: what is asked, of the whole map.
+        operating: the operating points of the whole map.
 
     Raises:
         FileNotFoundError: no such file.
@@ -73,11 +73,11 @@ class OperatingSweep(PointSweep):
 
     @property
     def points(self) -> Sequence[Sequence[float]]:
-        """Places of all points in the map."""
+        """The index of each point in the map, as a tuple of one."""
         return [(place,) for place in range(self.operating.count)]
 
     def scattered(self, item: str) -> Self:
-        """One part of a scattered sweep, ``i-of-n`` along its longest dimension."""
+        """Return one part of a scattered sweep, ``i-of-n`` along its longest dimension."""
         axes = {
             name: np.asarray(values)
             for name, values in scattered_values(self.vary, item).items()
@@ -94,7 +94,7 @@ class OperatingSweep(PointSweep):
         return other
 
     def arrays(self, point: Sequence[float], workers: int | None) -> Run:  # noqa: ARG002 (of other sweeps)
-        """Return what is known of one point."""
+        """Return the results at one point."""
         return {
             name: np.asarray(value)
             for name, value in self.operating.run(int(point[0])).items()
@@ -115,7 +115,7 @@ class OperatingSweep(PointSweep):
         return dataset
 
     def joined(self, parts: Sequence[xr.Dataset]) -> xr.Dataset:
-        """Return the whole map of a scattered one's parts, in order."""
+        """Join the parts of a scattered map, in order."""
         along = max(self.vary, key=lambda name: len(self.vary[name]))
         names = (*VALUES, *FLAGS)
         whole = xr.concat([part[[*names]] for part in parts], along)

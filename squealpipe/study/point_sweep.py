@@ -1,4 +1,4 @@
-"""A sweep whose points are run one by one, shared by processes, and kept until all are there."""
+"""A sweep whose points are run one by one by several processes, and kept until all are done."""
 
 import time
 from abc import abstractmethod
@@ -20,7 +20,7 @@ MOST_HELD = 2000
 
 
 class PointSweep(SweepPlan):
-    """A sweep of runs that do not know one another."""
+    """A sweep of independent runs."""
 
     @property
     @abstractmethod
@@ -29,7 +29,7 @@ class PointSweep(SweepPlan):
 
     @abstractmethod
     def arrays(self, point: Sequence[float], workers: int | None) -> Run:
-        """Return the results at one point, made in so many processes where it can use several."""
+        """Return the results at one point; ``workers`` is for a run that uses several processes."""
 
     @abstractmethod
     def merged(self, runs: Callable[[], Iterator[Run]]) -> xr.Dataset:

@@ -133,7 +133,7 @@ def cure_table(
 def pushes_die_out(
     cures: Sequence[Cure], values: Sequence[float], *, subjects: Subjects
 ) -> list[bool]:
-    """Tell whether pushed steady sliding ends quiet; where there is none it does not."""
+    """Tell whether pushed steady sliding ends quiet; False if there is no steady sliding."""
     rows, starts = [], []
     for row, (cure, value) in enumerate(zip(cures, values, strict=True)):
         subject = cure.apply(value)

@@ -350,7 +350,7 @@ def test_runs_of_other_settings_or_other_code_are_not_gone_on_with(
         monkeypatch.setattr("squealpipe.store.rerun.key.sources", lambda *_: others)
     capsys.readouterr()
     assert command(words) == 0
-    resumed = "3 of them are there from before" in capsys.readouterr().out
+    resumed = "3 of them are already computed" in capsys.readouterr().out
     assert resumed is (changed == "nothing")
     assert command([*words, "--force"]) == 0  # the whole of it
     assert not list(tmp_path.glob(".*"))
@@ -424,7 +424,7 @@ def test_a_killed_command_goes_on_where_it_was(tmp_path):
     again = subprocess.run(
         [*words, "a.nc"], cwd=tmp_path, check=True, capture_output=True
     )
-    assert killed is (b"of them are there from before" in again.stdout)
+    assert killed is (b"of them are already computed" in again.stdout)
     subprocess.run([*words, "b.nc"], cwd=tmp_path, check=True, capture_output=True)
     assert load(tmp_path / "a.nc").dataset_id == load(tmp_path / "b.nc").dataset_id
     assert not list(tmp_path.glob(".*"))

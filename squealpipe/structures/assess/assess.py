@@ -102,7 +102,7 @@ class JudgedStructure:
 
 
 def _in_short(name: str, boundary: Boundary) -> str:
-    """Return in words what one cure reaches."""
+    """Return a line that says at which value one cure changes the verdict, if any."""
     safe = boundary.quiet_from_any_start
     nearest = boundary.quiet_from if math.isnan(safe) else safe
     if math.isnan(nearest):

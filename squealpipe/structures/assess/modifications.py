@@ -5,9 +5,9 @@ patch deforms and not where it moves as a rigid body: C += (2 ζ/ω) Q K Q with 
 patch's degrees of freedom, Q taking rigid motions out and ω of the mode that grows fastest, so that
 a motion that the patch carries alone has the damping ratio ζ at that frequency.
 
-A chamfer takes points off a face at the end that meets the belt first. The points that are next
-lose their stiffness and preload in proportion to the share, so that everything changes
-continuously; the others carry the whole force, which comes from the piston.
+A chamfer removes points of a face at the end that meets the belt first. The points that are next to
+go lose stiffness and preload in proportion to the share, so that everything changes continuously;
+the remaining ones carry the whole force, which comes from the piston.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Modification(Protocol):
         """CF unit of the amount."""
 
     def of(self, structure: ContactStructure, amount: float) -> ContactStructure:
-        """Return the structure with so much of it."""
+        """Return the structure changed by this amount."""
 
 
 def read_modification(
@@ -131,7 +131,7 @@ class MatrixChange:
     unit: str
 
     def of(self, structure: ContactStructure, amount: float) -> ContactStructure:
-        """Return the structure with so much of it."""
+        """Return the structure changed by this amount."""
         # not the matrices at the present speed, to which speed terms are added again
         before = structure.arguments
         return structure.with_(
@@ -247,7 +247,7 @@ def _strain_stiffness(structure: ContactStructure, rows: np.ndarray) -> np.ndarr
 
 @dataclass(frozen=True, eq=False)
 class Chamfer:
-    """Points of a face that are taken off at the end that meets the belt first.
+    """Removal of points of a face at the end that meets the belt first.
 
     Attributes:
         order: the shares between which each contact of the structure is lost, (contacts, 2); NaN
@@ -282,8 +282,8 @@ class Chamfer:
             )
         if not share <= 1.0 - 1.0 / len(chosen):
             raise ValueError(
-                f"{title}: share = {share:g}: of the {len(chosen)} points of {face} one has to "
-                f"stay; a share of at most {1.0 - 1.0 / len(chosen):.4g} is needed"
+                f"{title}: share = {share:g}: one of the {len(chosen)} points of {face} must "
+                f"remain; a share of at most {1.0 - 1.0 / len(chosen):.4g} is needed"
             )
         along = _along_belt(f"{title}: face = {face!r}", structure, chosen)
         # points side by side across the belt are lost together
@@ -296,7 +296,7 @@ class Chamfer:
         return cls(order, share)
 
     def of(self, structure: ContactStructure, amount: float) -> ContactStructure:
-        """Return the structure whose face has lost this share of its points."""
+        """Return the structure without this share of the face's points."""
         first, last = self.order.T
         kept = np.clip((last - amount) / (last - first), 0.0, 1.0)
         kept[np.isnan(kept)] = 1.0
@@ -320,12 +320,11 @@ class Chamfer:
 def _along_belt(
     title: str, structure: ContactStructure, chosen: list[int]
 ) -> np.ndarray:
-    """Return how far each contact of a face lies in the direction in which the belt moves, m."""
+    """Return the position of each contact of a face along the direction of the belt, m."""
     mesh = structure.mesh
     if mesh is None:
         raise ValueError(
-            f"{title}: the structure has no mesh, so that nobody knows which of its points meets "
-            "the belt first"
+            f"{title}: the structure has no mesh, so that the positions of its points are unknown"
         )
     positions, ways = [], []
     for place in chosen:
@@ -344,8 +343,8 @@ def _along_belt(
     # the belt runs all round a ring
     if not (np.linalg.norm(mean) > 0.1 and np.isfinite(along).all() and np.ptp(along)):
         raise ValueError(
-            f"{title}: it has no leading end: its points are not one behind the other in one "
-            "direction of the belt"
+            f"{title}: the face has no leading end: the belt does not pass its points one after "
+            "the other in one direction"
         )
     return np.asarray(along)
 

@@ -50,12 +50,12 @@ def operating_map(
         speed: belt speeds, m/s, or of a structure that turns, rad/s, or texts like ``"30 km/h"``;
             that of the structure by default.
         mu: coefficients of friction of the contacts without one of their own; that of the
-            structure by default. With ``mu_of`` a factor, 1 by default.
-        temperature: °C, where friction is a table over it.
+            structure by default. With ``mu_of`` a factor of the tables, 1 by default.
+        temperature: temperatures, °C; needs a table of friction over temperature.
         mu_of: tables of friction, like ``{"temperature": {20: 0.45, 300: 0.35}}``, over
             temperature, pressure (factors, or knots like ``"10 bar"``) or speed; also a text
             ``"20:0.45 300:0.35"`` or a file with the columns ``temperature [°C]`` and ``mu``.
-            Linear between knots, refused beyond them; several are multiplied, also by ``mu``.
+            Interpolated linearly, refused outside; several are multiplied, also by ``mu``.
         measured: name of a list of measured noises (text or Excel) with columns like ``pressure``
             (or ``pressure [bar]``), ``speed [km/h]``, ``temperature [°C]``, ``mu``, ``frequency
             [Hz]``, ``level [dB]``; an empty frequency is a quiet point. Each is compared with the

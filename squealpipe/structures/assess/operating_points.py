@@ -1,11 +1,11 @@
-"""Operating points of a structure: what is asked, one point after the other, and the whole map.
+"""Operating points of a structure: check what is asked, run each point, and make the map.
 
 Idea: nothing but preload, speed and friction changes from point to point, so that the structure is
 reduced once, to the modes that its largest friction needs. Where small motions die out and no
 contact opens or sticks in a first window, forces are linear and the point is quiet; only the others
 are run until they have settled.
 
-Invariant: points do not know one another; in any order and in any number of processes, or in parts
+Invariant: points are independent; in any order and in any number of processes, or in parts
 on several machines, the map is the same. Cost: 0.05 s of CPU where a point is quiet, and that of a
 settled run, up to a second for 12 modes and 4 contacts, where it is not.
 """
@@ -51,11 +51,11 @@ class OperatingPoints:
     """Operating points of a structure.
 
     Attributes:
-        structure: at its own preload; of points that are run, in the modes in which it is run.
+        structure: at its own preload; once :meth:`reduced`, in the modes in which it is run.
         axes: values of each dimension of the map.
-        tables: of friction, each over one quantity.
-        factor: of friction, ``mu`` where that is no dimension.
-        units: of pressures and speeds.
+        tables: tables of friction, each over one quantity.
+        factor: factor of friction, the value of ``mu`` if that is no dimension.
+        units: units of pressures and speeds.
         noises: file of measured noises, or None.
         frequency_band: largest difference of frequencies of one noise, over the measured one.
         band_edges: edges of the bands of occurrence, Hz; None: third octaves.
@@ -101,10 +101,10 @@ class OperatingPoints:
         varies = mu is not None or bool(tables)
         if varies and whole.contacts and whole.has_own_mu.all():
             raise ValueError(
-                f"{'mu' if mu is not None else 'mu_of'}: every contact has a mu of its own, so "
-                "that none has the structure's; take those out of the contacts"
+                f"{'mu' if mu is not None else 'mu_of'}: every contact has a mu of its own, "
+                "which this would not change; remove those from the contacts"
             )
-        # with tables the structure's own coefficient would count twice
+        # with tables, which are coefficients, the factor is 1 by default
         common = 1.0 if tables else whole.mu
         axes = {
             "pressure": _axis("pressure", pressure, units),
@@ -122,7 +122,7 @@ class OperatingPoints:
             if axes["mu"].size > 1:
                 raise ValueError(
                     f"mu = {brief(mu)}: friction is a table over temperature; give one mu, a "
-                    "factor of it, or none"
+                    "factor of the table, or none"
                 )
             factor = float(axes.pop("mu")[0])
             axes["temperature"] = _axis("temperature", temperature, units)
@@ -133,7 +133,7 @@ class OperatingPoints:
                     "friction is looked up"
                 )
             table.at(axes[table.quantity])  # values beyond the table
-        # a list that cannot be read is told before anything is computed
+        # an unreadable list raises before anything is computed
         if measured is not None:
             read_noises(measured, units)
         edges = None if band_edges is None else _edges(band_edges)
@@ -158,12 +158,12 @@ class OperatingPoints:
     def reduced(
         self, n_modes: int | None = None, frequency_max: float | None = None
     ) -> Self:
-        """Return the points of the structure in the modes in which it is run.
+        """Return the same points of the structure reduced to the modes in which it is run.
 
-        Those that its largest friction needs: modes that grow there are the ones that count.
+        These are the modes needed at the largest friction, at which most modes grow.
 
         Args:
-            n_modes, frequency_max: of the reduction; None: as many modes as give the answer.
+            n_modes, frequency_max: limits of the reduction; None: as many modes as are needed.
 
         Raises:
             ValueError: no contacts; a structure that is too large.
@@ -188,7 +188,7 @@ class OperatingPoints:
 
     @property
     def frictions(self) -> np.ndarray:
-        """Friction of the contacts without their own at all points, (pressures, speeds, …)."""
+        """Friction at all points of the contacts without a coefficient of their own, (axes…)."""
         grids = dict(
             zip(self.axes, np.meshgrid(*self.axes.values(), indexing="ij"), strict=True)
         )
@@ -198,7 +198,7 @@ class OperatingPoints:
         return np.asarray(friction)
 
     def run(self, place: int) -> dict[str, Any]:
-        """Return what is known of one point; places count in the order of the dimensions.
+        """Return the results at one point; ``place`` counts points in the order of the dimensions.
 
         Each value is a number, or the code of a flag.
         """
@@ -213,12 +213,12 @@ class OperatingPoints:
         return _of_point(design, Structures(self.tol, 0, 0, 1)) | {"friction": friction}
 
     def dataset(self, columns: Mapping[str, np.ndarray]) -> xr.Dataset:
-        """Return the map by the values of all points, in order."""
+        """Build the dataset from the results at all points, in order."""
         values = {
             name: np.reshape(columns[name], self.shape) for name in (*VALUES, *FLAGS)
         }
         with np.errstate(divide="ignore"):
-            # of velocity levels in decibels, m/s
+            # reference of velocity levels in decibels, m/s
             reference_velocity = 5e-8
             level = 20.0 * np.log10(values["velocity_rms"] / reference_velocity)
         values["velocity_level"] = np.where(np.isfinite(level), level, np.nan)
@@ -343,7 +343,7 @@ def _edges(written: Any) -> np.ndarray:
 
 
 def _of_point(design: Design, family: Structures) -> dict[str, Any]:
-    """Return what is known of one operating point."""
+    """Return the results at one operating point."""
     nothing = dict.fromkeys(VALUES, np.nan)
     start = pushed(design)
     plant = design.plant

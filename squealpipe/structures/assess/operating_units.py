@@ -23,9 +23,9 @@ from squealpipe.units import UnitError, in_si
 
 @dataclass(frozen=True)
 class OperatingUnits:
-    """Units of what an operating point is made of.
+    """Units of the quantities of an operating point.
 
-    A pressure is a factor of all preloads, or where it has a unit the mean pressure of all faces; a
+    A plain pressure is a factor of all preloads, one with a unit the mean pressure of all faces; a
     speed is in the structure's unit, a temperature in °C.
 
     Attributes:
@@ -95,8 +95,8 @@ class OperatingUnits:
         pressure = in_si(f"{number!r} {unit}", "Pa")
         if math.isnan(self.mean_pressure):
             raise UnitError(
-                "no contact has an area, so that a pressure cannot be turned into preloads; give "
-                "factors of the preloads, which are plain numbers"
+                "no contact has an area by which a pressure would become a preload; give plain "
+                "numbers, which are factors of all preloads"
             )
         return pressure / self.mean_pressure
 
@@ -113,7 +113,7 @@ def column_of(source: Path, cell: str, names: Sequence[str]) -> tuple[str, str]:
 def read_rows(
     source: Path, names: Sequence[str], key: str, units: OperatingUnits
 ) -> dict[str, dict[str, float]]:
-    """Return the rows of a table by the lines that they stand in: column → number, NaN where empty.
+    """Return the rows of a table, each under its file and line: column → number, NaN if empty.
 
     Args:
         source: a text file or an Excel sheet, whose first row names the columns.
@@ -133,7 +133,7 @@ def read_rows(
     columns = [column_of(source, cell, names) for cell in table.rows[0].cells]
     listed = [name for name, _ in columns]
     if twice := next((name for name in listed if listed.count(name) > 1), None):
-        raise ValueError(f"{source}: column {twice!r} is there twice; rename one")
+        raise ValueError(f"{source}: column {twice!r} occurs twice; rename one")
     texts = list(_cells(source, table, columns))
     sign = decimal_sign(
         ((where, text) for where, _, _, text in texts if text), table.separator
@@ -208,7 +208,7 @@ class FrictionTable:
         return cls(quantity, tuple(knots.tolist()), tuple(values.tolist()))
 
     def at(self, value: Any) -> Any:
-        """Return friction at values of the quantity; of a speed its size counts.
+        """Return friction at values of the quantity; of a speed, at its absolute value.
 
         Raises:
             ValueError: a value that the table does not reach.
@@ -220,7 +220,7 @@ class FrictionTable:
             if not low - slack <= each <= high + slack:
                 raise ValueError(
                     f"{self.quantity} = {each:g}: the table of mu_of ends at {low:g} and "
-                    f"{high:g}; extend it, for nothing is extrapolated"
+                    f"{high:g}; extend it, since nothing is extrapolated"
                 )
         return np.interp(size, self.knots, self.values)
 

@@ -136,7 +136,7 @@ def _refuse_units(mass: Any, rows: np.ndarray, mesh: ElementMesh) -> None:
         raise ValueError(
             f"{mesh.source} and the mass do not have the same units: {engineering(total, 'kg')} in "
             f"{mesh.volume:.3g} m³ are {density:.3g} kg/m³; state the units of both, like "
-            "`units: mm-t-s`, and name mass and stiffness each in its place"
+            "`units: mm-t-s`, and check that the files of mass and stiffness are not exchanged"
         )
 
 
@@ -156,8 +156,8 @@ def _refuse_massless(mass: Any, rows: np.ndarray, mesh: ElementMesh) -> None:
         raise ValueError(
             f"{added.size} rows of the matrices are of nodes {nodes.min()} to {nodes.max()}, which "
             f"{mesh.source} does not list, and some of their motions have no mass; CalculiX adds "
-            "such rows for the incompatible modes of C3D8I: make the matrices anew with C3D8, "
-            "C3D20 or C3D10 in its place"
+            "such rows for the incompatible modes of C3D8I: create the matrices again with C3D8, "
+            "C3D20 or C3D10 instead"
         ) from None
 
 

@@ -1,4 +1,4 @@
-"""Noise of a structure over operating points: pressure, speed and friction or temperature."""
+"""Schemas of the noise of a structure over pressure, speed and friction or temperature."""
 
 from enum import IntEnum
 
@@ -15,7 +15,7 @@ from squealpipe.schema import (
 )
 
 QUANTITIES = ("pressure", "speed", "mu", "temperature")
-"""What an operating point may be made of."""
+"""Quantities that an operating point may have."""
 
 
 class Match(IntEnum):

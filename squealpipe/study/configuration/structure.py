@@ -70,7 +70,7 @@ def file_in(content: Mapping[str, Any]) -> str | None:
 
 
 def place_files(config: Path, content: dict[str, Any]) -> Iterator[str]:
-    """Name files from where one is instead of from the configuration's folder; faults."""
+    """Rewrite file names of the configuration for the working directory; yield faults."""
     file = file_in(content)
     named: list[tuple[dict[str, Any], str, str, str]] = []
     if file is not None:

@@ -16,14 +16,14 @@ def lines(dataset: xr.Dataset) -> Iterator[str]:
     verdicts = dataset.verdict.values
     noisy = np.isin(verdicts, (Verdict.squeals, Verdict.hammers))
     total = verdicts.size
-    if not noisy.any():
-        yield f"Quiet at all {total} operating points that were settled."
-    else:
+    unknown = int((verdicts == Verdict.undetermined).sum())
+    if not noisy.any() and unknown < total:
+        yield f"Quiet at {total - unknown} of {total} operating points, noisy at none."
+    elif noisy.any():
         hammers = int((verdicts == Verdict.hammers).sum())
         yield (
             f"Noisy at {int(noisy.sum())} of {total} operating points "
-            f"({percent(float(noisy.mean()))}); at {hammers} of them contact is lost again and "
-            "again."
+            f"({percent(float(noisy.mean()))}); at {hammers} of them contact is lost repeatedly."
         )
         level = np.where(noisy, dataset.velocity_rms.values, -np.inf)
         place = np.unravel_index(int(level.argmax()), level.shape)
@@ -42,17 +42,20 @@ def lines(dataset: xr.Dataset) -> Iterator[str]:
         yield (
             f"Measured: {int(dataset.hits)} of {int(dataset.hits) + int(dataset.misses)} noises "
             f"are predicted within {percent(float(dataset.frequency_band))} of their frequency; "
-            f"of the points that were quiet {int(dataset.quiet_agreed)} are predicted quiet and "
+            f"of the points measured quiet, {int(dataset.quiet_agreed)} are predicted quiet and "
             f"{int(dataset.false_alarms)} noisy (false alarms)."
         )
         outside = int((dataset.match == Match.outside).sum())
         if outside:
-            yield f"  {outside} lines of the list lie beyond the map."
+            yield f"  Lines of the list outside the range of the map: {outside}."
         if "not_compared" in dataset.attrs:
-            yield f"  Not compared, for the map has none: {dataset.attrs['not_compared']}."
-    unknown = int((verdicts == Verdict.undetermined).sum())
+            names = dataset.attrs["not_compared"]
+            yield f"  Not compared, since the map does not vary it: {names}."
     if unknown:
-        yield f"Undetermined at {unknown} points: not settled in time, or no steady sliding."
+        yield (
+            f"Undetermined at {unknown} of {total} operating points: not settled in time, or no "
+            "steady sliding."
+        )
 
 
 def _place(point: xr.Dataset) -> str:

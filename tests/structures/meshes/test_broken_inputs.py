@@ -162,7 +162,7 @@ BROKEN = [
     ),
     (
         swapped,
-        "mass: .*M.sti is the stiffness that CalculiX writes; exchange both names",
+        "mass: .*M.sti is the stiffness that CalculiX writes; exchange the two names",
     ),
     (
         node_set_against("1, 2, 3"),
