@@ -179,8 +179,8 @@ def keeping_on_interrupt() -> Iterator[Callable[[], bool]]:
             raise KeyboardInterrupt
         ask_to_stop()
         print(
-            "squealpipe: stopping soon, and keeping what is known by then; once more to stop at "
-            "once",
+            "squealpipe: stopping soon and keeping the results so far; press Ctrl-C again to stop "
+            "at once",
             file=sys.stderr,
         )
 

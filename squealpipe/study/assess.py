@@ -53,9 +53,8 @@ def assess(
             set, a face or a list of node numbers, with a mass, a damping ratio or both: its mass is
             shared equally, and it damps the deformation of its nodes, with this ratio at the
             frequency of the mode that grows fastest. ``{"chamfer": {"face": "lining", "share":
-            0.2}}`` removes
-            up to that share of a face's points from the end that meets the belt first; the others
-            carry the whole force.
+            0.2}}`` removes up to that share of a face's points from the end that meets the belt
+            first; the others carry the whole force.
         samples: random starts of a structure, for other motions beside steady sliding.
         seed: seed of the random starts.
         tol: tolerance of the Taylor integrator.

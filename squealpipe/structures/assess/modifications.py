@@ -280,6 +280,11 @@ class Chamfer:
             raise ValueError(
                 f"{title}: face = {brief(face)}: {suggestion(str(face), [*dict.fromkeys(names)])}"
             )
+        if len(chosen) == 1:
+            raise ValueError(
+                f"{title}: face = {brief(face)} is a single contact, which must remain; name a "
+                "face of several points"
+            )
         if not share <= 1.0 - 1.0 / len(chosen):
             raise ValueError(
                 f"{title}: share = {share:g}: one of the {len(chosen)} points of {face} must "

@@ -109,7 +109,10 @@ def test_what_stops_it_is_quiet_there_and_not_beside(tmp_path):
         ({"patch": {"nodes": "BACK", "mass": 0.1}}, "no mesh"),
         ({"patch": {"nodes": "BACK"}}, "mass or damping_ratio"),
         ({"patch": {"nodes": "BACK", "mas": 0.1}}, "did you mean 'mass'"),
-        ({"chamfer": {"face": "pad", "share": 0.2}}, "must remain"),
+        (
+            {"chamfer": {"face": "pad", "share": 0.2}},
+            "single contact, which must remain",
+        ),
         ({"chamfer": {"face": "lining", "share": 0.2}}, "'lining'"),
         ({"chamfer": {"face": "pad"}}, "face and share"),
     ],
