@@ -171,7 +171,7 @@ def working(what: str) -> Iterator[None]:
 
 @contextmanager
 def keeping_on_interrupt() -> Iterator[Callable[[], bool]]:
-    """Have a first interruption end the work with what is known; give whether there was one."""
+    """Let a first Ctrl-C end the work with its results so far; yield a test whether it came."""
     from squealpipe.systems.progress import ask_to_stop, stop_is_asked
 
     def stop(*_: object) -> None:

@@ -113,7 +113,7 @@ def _speed_unit(points: xr.Dataset) -> str:
 
 
 def _legend(axes: Axes, dataset: xr.Dataset, drawn: Figure | None = None) -> None:
-    """Name the marks of the verdicts that there are; for a figure below its maps."""
+    """Draw the legend of the verdicts that occur, above the map or, for a figure, above all."""
     handles = [
         mpl.lines.Line2D(
             [], [], marker=mark, color=style.GREY, linestyle="none", label=words

@@ -34,7 +34,7 @@ def partial_answer(line: Callable[[], str]) -> None:
 
 @contextmanager
 def stage(name: str) -> Iterator[None]:
-    """Name what is computed meanwhile: it has a share of its own, from nothing to all."""
+    """Name the stage that runs within the block; its progress counts from 0 to 1."""
     with shown(_NOW.show, _NOW.say, _NOW.name):
         _NOW.low, _NOW.size = 0.0, 1.0
         if _NOW.name is not None:
@@ -47,7 +47,7 @@ def stage(name: str) -> Iterator[None]:
 
 
 def ask_to_stop(*, stops: bool = True) -> None:
-    """Have long work end soon, which keeps what is known by then; or take that back."""
+    """Ask long work to end soon and keep its results so far, or withdraw that request."""
     _NOW.stops = stops
 
 

@@ -41,7 +41,7 @@ class Measurement:
     shown_instants: int = 800
     """Instants of the picture. Half as many: corners of impacts are cut off."""
     harmonics: int = 5
-    """Multiples of the strongest line that are told."""
+    """Multiples of the strongest line that are reported."""
     padding: int = 4
     """Resolution over the step of the grid in which peaks are sought. 2: frequencies are off by a
     hundredth of the resolution."""
@@ -177,7 +177,7 @@ def still() -> dict[str, Any]:
 
 
 def unknown() -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the same of a motion that was not run: everything is NaN."""
+    """Return the same variables of a motion that was not run, all NaN."""
     names = [*still(), "peak_contact_force", "peak_contact_force_over_preload"]
     scalars: dict[str, Any] = dict.fromkeys([*names, "settled_by"], np.nan)
     scalars |= {"verdict": Verdict.undetermined, "periodic": False}

@@ -13,7 +13,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class GrowthRule:
-    """Rule by which a long run is told to grow without bound."""
+    """Rule that decides whether a long run grows without bound."""
 
     window: float = 1000.0
     """Length of a window, √(m/k1)."""

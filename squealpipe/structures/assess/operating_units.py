@@ -246,7 +246,10 @@ def _pairs(
             "of a file is needed"
         )
     names = quantity, "mu"
-    rows = read_rows(Path(written).expanduser(), names, quantity, units)
+    try:
+        rows = read_rows(Path(written).expanduser(), names, quantity, units)
+    except FileNotFoundError as error:
+        raise FileNotFoundError(f"{title}: {error}") from None
     for where, row in rows.items():
         for name in names:
             if math.isnan(row.get(name, math.nan)):

@@ -30,7 +30,7 @@ from squealpipe.vibration.spectrum import amplitude_spectrum
 
 @dataclass(frozen=True)
 class KindRules:
-    """Thresholds by which the kind of a settled motion is told."""
+    """Thresholds that decide the kind of a settled motion."""
 
     neighbours: int = 7
     """Runs beside the motion whose distances from it are followed."""
@@ -52,7 +52,7 @@ class KindRules:
     repeated_intervals: float = 1e-5
     """Largest difference of intervals between events, over their mean, of a motion that repeats."""
     nearly_repeated: float = 1e-3
-    """The same of a motion whose cycle is worth a search."""
+    """Largest such difference of a motion whose cycle is worth a search."""
 
 
 KIND_RULES = KindRules()
