@@ -110,5 +110,9 @@ class Joint:
                 [derivative(surface, z) for z in t.variables],
                 dict(zip(t.constants, seen, strict=True)),
             )
-            held[index] = np.abs((slopes * rates).sum(axis=0)).max() < 1e-14
+            # relative to its terms: in SI their round-off alone may be far above any fixed number
+            terms = slopes * rates
+            held[index] = (
+                np.abs(terms.sum(axis=0)) <= 1e-13 * np.abs(terms).sum(axis=0) + 1e-14
+            ).all()
         return held
