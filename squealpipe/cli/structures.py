@@ -101,12 +101,8 @@ def modes(
     refuse_existing(output, force=files.force)
 
     from squealpipe.structures import complex_modes as library
-    from squealpipe.structures.modes import highest_frequency
 
     shown = "modes"
-
-    # Hz: without a limit only modes that are heard are shown; a mesh has many beyond
-    audible = 20e3
 
     def complex_modes(structure: Any, **options: Any) -> xr.Dataset:
         nonlocal shown
@@ -119,14 +115,10 @@ def modes(
         if told is not None:
             say(told)
         if not {"frequency_max", "n_modes"} & options.keys():
-            highest = highest_frequency(structure)
-            if highest is not None and highest > audible:
+            audible = _audible(structure)
+            if audible is not None:
                 options["frequency_max"] = audible
                 shown = f"modes up to {audible / 1e3:g} kHz"
-                say(
-                    f"{shown}; the highest is at {highest / 1e3:.4g} kHz. Whether modes above "
-                    "grow is not examined: --frequency-max shows them"
-                )
         return library.complex_modes(structure, **options)
 
     dataset = _compute(complex_modes, file, asked, output, files)
@@ -169,6 +161,24 @@ def _compute(
         dataset = write(lambda: task(structure, **given), output, config=config)
     finish(dataset, output, drawn, files)
     return dataset
+
+
+def _audible(structure: Any) -> float | None:
+    """Return the highest frequency that is heard, Hz, and say so; None if no mode is beyond.
+
+    A mesh has many modes beyond.
+    """
+    from squealpipe.structures.modes import highest_frequency
+
+    audible = 20e3
+    highest = highest_frequency(structure)
+    if highest is None or highest <= audible:
+        return None
+    say(
+        f"modes up to {audible / 1e3:g} kHz; the highest is at {highest / 1e3:.4g} kHz. Whether "
+        "modes above grow is not examined: --frequency-max shows them"
+    )
+    return audible
 
 
 def _one_or_more(values: list[float] | None) -> Any:
@@ -258,7 +268,8 @@ def squeal(
         n_modes: modes to reduce the structure to; by default as many as errors below 1 % need,
             and no reduction up to 32 degrees of freedom. At most 512.
         frequency_max: reduce to the modes that the unstable ones up to this frequency need, Hz;
-            needed beyond 1000 degrees of freedom.
+            needed beyond 1000 degrees of freedom. Where neither is given and the structure is
+            reduced it is 20 kHz.
         onset: also lower the friction until the squeal dies, to see whether it lasts below the
             critical friction, and how far; costs about as much as the rest.
         run: also write, over time, the motion that a small push ends in (.nc), for `squealpipe
@@ -269,9 +280,13 @@ def squeal(
         check_output(run, force=files.force, kinds=(".nc",), option="--run")
 
     from squealpipe import squealing_modes
+    from squealpipe.structures.schema.squealing import SQUEAL_LIMITS
     from squealpipe.study.report.squealing import lines
 
     def squeal(structure: Any, **options: Any) -> xr.Dataset:
+        is_run_whole = structure.size <= SQUEAL_LIMITS.most_modes
+        if not is_run_whole and not {"n_modes", "frequency_max"} & options.keys():
+            options["frequency_max"] = _audible(structure)
         reduced = as_asked(structure, options)
         reductions.append(reduced)
         return squealing_modes(reduced, **options)

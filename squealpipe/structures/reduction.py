@@ -346,13 +346,19 @@ def agreement_of(truth: Truth, spectrum: Any, modes: np.ndarray) -> Agreement:
     return compared(truth, spectrum.values, grows, refined(truth, spectrum, modes))
 
 
-def modes_that_would_do(structure: ContactStructure, truth: Truth) -> int | None:
-    """Return a larger number of modes that agrees with the whole within 1 %, None if none does."""
+def modes_that_would_do(
+    structure: ContactStructure, truth: Truth, most: int
+) -> int | None:
+    """Return a larger number of modes that agrees with the whole within 1 %, None if none does.
+
+    Args:
+        most: number of modes that may be kept.
+    """
     origin = structure.reduced_from
     if origin is None:
         return None
     search = Search(origin.whole, truth, origin.frequency_max)
-    return search.smallest(structure.size + 1)
+    return search.smallest(structure.size + 1, most=min(most, origin.whole.size))
 
 
 def fitted(

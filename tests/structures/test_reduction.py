@@ -1,5 +1,6 @@
 """A reduced structure against eigenvalues of the whole, assembled here and solved by SciPy."""
 
+import math
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -8,7 +9,7 @@ import pytest
 import scipy.linalg as la
 import xarray as xr
 
-from squealpipe import Contact, Structure, labels, plot, squealing_modes
+from squealpipe import Contact, Structure, assess, labels, plot, squealing_modes
 from squealpipe.cli.signatures import in_options
 from squealpipe.codes import Verdict
 from squealpipe.structures import elastic_pad
@@ -145,6 +146,15 @@ def test_a_missing_mode_makes_the_verdict_undetermined_and_is_named():
         "Undetermined: 1 unstable mode of the whole structure (45.18 kHz"
     )
     assert f"{enough} modes would do: n_modes={enough}." in said[0]
+    # no motion of these modes could decide: nothing is run
+    assert not answer.sizes["attractor"]
+    assert "missing in the 4 modes kept, so nothing was run." in said[0]
+    # both remedies work
+    band = math.floor(np.abs(lost.imag).min() / (2.0 * np.pi))
+    assert said[0].endswith(f"the same modes grow: frequency_max={band}.")
+    assert pad.reduce(n_modes=4, frequency_max=band).record["agrees"]
+    with pytest.raises(ValueError, match=rf"lack 1 unstable mode .*n_modes={enough} "):
+        assess(pad.reduce(n_modes=4))
     # the error of what is shown is that from the whole structure's
     for growth, error in zip(
         answer.growth_rate.values, answer.mode_growth_rate_error.values, strict=True
@@ -152,6 +162,21 @@ def test_a_missing_mode_makes_the_verdict_undetermined_and_is_named():
         assert np.abs(np.abs(truth.real - growth) - error).min() < 1e-6 * growth
     assert "±" in said[1]
     assert plot(answer).has_data()
+
+
+def test_where_no_number_of_modes_agrees_nothing_is_run_to_be_undetermined():
+    """A pad of 49 contacts was run in 196 modes for more than 10 minutes, all for nothing."""
+    pad, ratio = random_structure(17)
+    answer = squealing_modes(pad, samples=1)
+    assert answer.n_modes < pad.size
+    assert answer.attrs["not_run"].endswith(f"(n_modes={pad.size} would do)")
+    assert Verdict(int(answer.verdict)) is Verdict.undetermined
+    truth = growing(pad, ratio)
+    known = len(truth) - answer.sizes["missing"]
+    assert 0 < known < len(truth)
+    assert np.sort(answer.missing_growth_rate) == pytest.approx(
+        np.sort(truth.real[truth.imag > 2 * np.pi * 170e3]), rel=1e-6
+    )
 
 
 def test_modes_beyond_the_band_decide_nothing_about_it():

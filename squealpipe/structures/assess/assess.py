@@ -158,8 +158,8 @@ def judge_structure(
     design = Design.of(structure)
     plant = design.plant
     assert plant is not None  # noqa: S101 (Design.of has raised)
-    if plant.obstacle:
-        raise ValueError(f"the structure cannot be run: {plant.obstacle}")
+    if design.obstacle:
+        raise ValueError(f"the structure cannot be run: {design.obstacle}")
     named = dict(modifications or {})
     cures_of(design, named)  # mistakes are told before the runs
     family = Structures(tol, samples, seed, workers)

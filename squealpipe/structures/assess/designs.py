@@ -40,6 +40,7 @@ class Design:
         origin: large structure of all degrees of freedom; None where that is ``whole``.
         coordinates: (n of the origin, n of the whole), amplitudes → displacements.
         running: the structure that is run, where it is known.
+        obstacle: reason why runs would tell nothing about the structure; None if there is none.
     """
 
     whole: ContactStructure
@@ -47,6 +48,7 @@ class Design:
     origin: ContactStructure | None = None
     coordinates: np.ndarray | None = None
     running: ContactStructure | None = None
+    obstacle: str | None = None
 
     @classmethod
     def of(cls, structure: ContactStructure) -> Self:
@@ -56,13 +58,20 @@ class Design:
             NoSlidingError: there is no steady sliding.
             ValueError: it has no contacts, or is too large.
         """
-        running = Plant(structure).structure
+        plant = Plant(structure)
+        running = plant.structure
         if running.reduced_from is None:
-            return cls(running)
+            return cls(running, obstacle=plant.obstacle)
         origin = running.reduced_from.whole
         number = min(2 * running.size, origin.size)
         coordinates = subspace(origin, [], number)
-        return cls(_projected(origin, coordinates), running.size, origin, coordinates)
+        return cls(
+            _projected(origin, coordinates),
+            running.size,
+            origin,
+            coordinates,
+            obstacle=plant.obstacle,
+        )
 
     @property
     def given(self) -> ContactStructure:

@@ -62,8 +62,8 @@ def structure_propensity(
     factors = {
         name: _factor(f"relative_std: {name}", relative_std[name]) for name in changes
     }
-    if design.plant is not None and design.plant.obstacle:
-        raise ValueError(f"the structure cannot be run: {design.plant.obstacle}")
+    if design.obstacle:
+        raise ValueError(f"the structure cannot be run: {design.obstacle}")
     judge = partial(_judged, design, list(changes.values()), tol, workers)
     judged = sobol.judged_matrices(judge, factors, samples, seed)
     happens = judged[0] > 0.5

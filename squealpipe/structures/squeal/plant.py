@@ -120,7 +120,26 @@ class Plant:
                 f"{self.size} modes are more than the {caps.modes} that runs can have "
                 f"(reduce it with n_modes={caps.modes} or fewer)"
             )
+        if not self.agreement.holds:
+            # any motion of these modes would leave the verdict on the whole structure undetermined
+            return self._disagreement()
         return None
+
+    def _disagreement(self) -> str:
+        """Say in which modes these and the whole structure differ, with a remedy."""
+        lost, kept = self.agreement.missing, f"the {self.size} modes kept"
+        remedy = (
+            "look at a narrower band with a smaller frequency_max"
+            if self.enough is None
+            else f"n_modes={self.enough} would do"
+        )
+        if not lost.size:
+            return f"the errors leave open which modes of {kept} grow ({remedy})"
+        lowest = lost.imag.min() / (2.0 * np.pi)
+        return (
+            f"{kept} lack {lost.size} unstable mode{'s' * (lost.size > 1)} of the whole "
+            f"structure, the lowest at {lowest:.4g} Hz ({remedy})"
+        )
 
     @cached_property
     def agreement(self) -> Agreement:
@@ -142,7 +161,7 @@ class Plant:
         """Number of modes that would agree with the whole where these do not; None if not known."""
         if self.truth is None or self.agreement.holds:
             return None
-        return modes_that_would_do(self.structure, self.truth)
+        return modes_that_would_do(self.structure, self.truth, Caps().modes)
 
     def truth_at(self, mu: float) -> Truth:
         """Modes of the whole, or of the structure itself, at another friction."""

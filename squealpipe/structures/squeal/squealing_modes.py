@@ -77,8 +77,8 @@ def squealing_modes(
         that the reduced one lacks; over ``attractor`` kind, frequency, level, and by contact the
         shares of time separated and in stick; ``share`` of the random starts with its interval;
         ``verdict``. It is undetermined where an unstable mode is missing or the sign of a growth
-        rate is within its error (``modes_that_would_do`` would decide), and where nothing could be
-        run: the attribute ``not_run`` says why. With
+        rate is within its error (``modes_that_would_do`` would decide; nothing is run), and where
+        nothing could be run: the attribute ``not_run`` says why. With
         ``onset`` also ``onset_kind`` (supercritical, or subcritical: squeal lasts below the
         critical friction), ``mu_dies`` of each motion that was followed, over ``track``,
         ``squeals_below_critical`` and ``hysteresis``.

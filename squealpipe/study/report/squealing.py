@@ -36,10 +36,12 @@ def lines(answer: xr.Dataset) -> list[str]:
 def headline(answer: xr.Dataset) -> str:
     """The verdict in one sentence."""
     verdict = Verdict(int(answer.verdict))
-    if answer.attrs.get("not_run"):
-        return f"Undetermined: nothing was run, because {answer.attrs['not_run']}."
+    not_run = answer.attrs.get("not_run")
     if not agrees(answer):
-        return f"Undetermined: {_disagreement(answer)}. {_what_would_do(answer)}"
+        so = ", so nothing was run" if not_run else ""
+        return f"Undetermined: {_disagreement(answer)}{so}. {_what_would_do(answer)}"
+    if not_run:
+        return f"Undetermined: nothing was run, because {not_run}."
     if verdict is Verdict.quiet:
         if bool(answer.quiet_unless_struck):
             lasting = answer.share.values[answer.motion.values != Verdict.quiet].sum()
@@ -179,11 +181,22 @@ def _named(mode: xr.Dataset, prefix: str = "") -> str:
 def _what_would_do(answer: xr.Dataset) -> str:
     """Say how to get a verdict."""
     enough, size = int(answer.modes_that_would_do), int(answer.degrees_of_freedom)
-    band = "look at a narrower band with a smaller frequency_max"
+    # what is beyond a band decides nothing about it
+    within = answer.frequency.values <= frequency_max(answer)
+    apart = [
+        *answer.missing_frequency.values,
+        *answer.frequency.values[~answer.mode_is_sure.values & within],
+    ]
+    below = math.floor(min(apart))
+    band = ""
+    if below > 0:
+        told = engineering(below, "Hz", 5)
+        band = f" Up to {told} the same modes grow: frequency_max={below}."
     if not enough:
-        return f"No number of modes was found that would do; {band}."
+        other = band or " Look at a narrower band with a smaller frequency_max."
+        return f"No number of modes that can be run would do.{other}"
     whole = " (all there are)" if enough == size else ""
-    return f"{enough} modes{whole} would do: n_modes={enough}."
+    return f"{enough} modes{whole} would do: n_modes={enough}.{band}"
 
 
 def missing(answer: xr.Dataset) -> Iterator[str]:
@@ -285,8 +298,6 @@ def attractors(answer: xr.Dataset) -> Iterator[str]:
     if answer.attrs.get("not_run"):
         return
     size = answer.sizes["sample"]
-    if not agrees(answer):
-        yield f"The rest describes the {int(answer.n_modes)} modes kept, not the structure:"
     for place in range(min(answer.sizes["attractor"], LISTED)):
         one = answer.isel(attractor=place)
         share = (
