@@ -24,6 +24,7 @@ from squealpipe.structures.meshes.from_mesh import names_of, of_mesh
 from squealpipe.structures.packed import plain_name
 from squealpipe.structures.readers import Labelled, read_matrix
 from squealpipe.structures.units import SI, Scales, scales_of
+from squealpipe.systems.inputs.units import holds_units
 from squealpipe.systems.inputs.values import brief, is_finite_number
 from squealpipe.text import suggestion
 from squealpipe.validation import real_array
@@ -254,6 +255,11 @@ def _rotation(content: Mapping[str, Any], scales: Scales) -> Rotation | None:
     if is_finite_number(arguments["speed"]):
         arguments["speed"] *= scales.rate
     if "through" in arguments:
+        if holds_units(arguments["through"]):
+            raise ValueError(
+                f"rotation: through = {brief(arguments['through'])}: plain numbers are needed, in "
+                f"the length of the file's units (1 is {scales.length:g} m)"
+            )
         through = real_array("rotation: through", arguments["through"])
         arguments["through"] = through * scales.length
     return Rotation(**arguments)

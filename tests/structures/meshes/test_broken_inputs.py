@@ -157,6 +157,10 @@ BROKEN = [
     (yaml("speed: 20 rad/s", "speed: 0"), "speed = 0: nothing slides"),
     (yaml("speed: 20 rad/s", "speed: 2 m/s"), "rotation: speed = '2 m/s'"),
     (
+        yaml("through: [0, 0, 0]", "through: [3 mm, 0, 0]"),
+        r"rotation: through = .*: plain numbers .*\(1 is 1 m\)",
+    ),
+    (
         yaml("axis: [0, 0, 1]", "axis: [0, 0, 0]"),
         r"axis = \[0, 0, 0\] points nowhere: a direction",
     ),
