@@ -411,7 +411,7 @@ CALLS: dict[str, tuple[float, Callable[..., Any], dict[str, Kind]]] = {
         {
             **SCENE,
             "t_end": HORIZON,
-            "seed": SEED,
+            "seed": Kind(SEED.good, [bad for bad in SEED.bad if bad is not None]),
             "tol": TOL,
             "workers": ONE,
             "samples": Kind(lambda _: 64, [*NO_NUMBER, 0, -64, 65, 64.0]),
@@ -690,6 +690,9 @@ def fault_of(name, given, wrong, params):
             argument in str(error) for argument in ("param", "x = ", *given, *TABLE)
         )
         return "" if named or name == "parse_range" else f"names no argument: {error}"
+    except TypeError as error:  # None is what pads leave out, too
+        missing = "missing required argument" in str(error)
+        return "" if missing else f"raw TypeError: {error}"
     except Exception as error:  # noqa: BLE001  whatever it is, it is the finding
         return f"raw {type(error).__name__}: {error}"
     if wrong:

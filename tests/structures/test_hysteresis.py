@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-import xarray as xr
 
 from squealpipe import Contact, Structure, load, plot, save, squealing_modes
 from squealpipe.codes import Verdict
@@ -10,7 +9,6 @@ from squealpipe.plotting import picture
 from squealpipe.schema import Outcome
 from squealpipe.structures.schema.squealing import JUST_ABOVE, SQUEAL_LIMITS, OnsetKind
 from squealpipe.study.report.squealing import lines
-from squealpipe.study.report.structure import squeal_below
 from tests.oracles.exponentials import FASTER, Exponentials
 
 UNITS = 1e4
@@ -141,17 +139,3 @@ def test_words_and_picture_show_the_fold(answer, tmp_path):
     first, *_, last = lines(below)
     assert first.startswith("Quiet from rest: ")
     assert last == "At mu = 0.36, too, squeal that has begun lasts."
-
-
-@pytest.mark.parametrize(
-    ("hysteresis", "words"),
-    [
-        (0.1, "lasts down to mu = 0.4 (−20 %)"),
-        (0.05, "still lasts at mu = 0.42 (−16 %)"),
-        (np.nan, "still lasts at mu = 0.42 (−16 %)"),
-    ],
-)
-def test_squeal_whose_end_was_not_reached_is_said_to_last(hysteresis, words):
-    tracks = ("track", "step"), [[0.45, 0.42, np.nan]]
-    answer = xr.Dataset({"onset_mu": 0.5, "hysteresis": hysteresis, "track_mu": tracks})
-    assert words in squeal_below(answer, 0.5)

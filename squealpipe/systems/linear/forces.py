@@ -396,7 +396,10 @@ def holding(k: Any, i: int) -> Any:
 def holds(k: Any, rows: Any, i: int, pressing: float) -> Any:
     """Tell whether friction can keep a contact on the belt."""
     _, static, _ = _coefficients(k, rows, i)
-    return (static * pressing) ** 2 + k.hidden[0] ** 2 - holding(k, i) ** 2 >= 0.0
+    # where another contact has just slipped, the friction that is needed may be the limit itself:
+    # without a share for round-off such a contact would turn back for ever in one instant
+    limit = (1.0 + 1e-13) * static * pressing
+    return limit**2 + k.hidden[0] ** 2 - holding(k, i) ** 2 >= 0.0
 
 
 @part
