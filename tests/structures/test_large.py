@@ -156,17 +156,24 @@ def test_what_is_no_switch_is_refused(value):
 
 
 @pytest.mark.release
-def test_nineteen_thousand_degrees_of_freedom_take_a_minute_and_little_memory(tmp_path):
-    """In a process of its own: memory that other tests have taken would count."""
+def test_nineteen_thousand_degrees_of_freedom_take_few_factorizations_and_little_memory(
+    tmp_path,
+):
+    """In a process of its own: memory that other tests have taken would count.
+
+    Seconds depend on what else a machine does; factorizations, of 2 s each, are what takes them.
+    """
     code = f"""
-import re, time
+import re
 from pathlib import Path
 from squealpipe import save
+from squealpipe.structures import pencil
 from tests.oracles.elastic_block import elastic_block
+factorize, factorized = pencil.splu, []
+pencil.splu = lambda *given, **how: factorized.append(1) or factorize(*given, **how)
 block = elastic_block((70, 17, 4), contacts=126, mu=0.5)
-started = time.process_time()
 modes = block.complex_modes(n_modes=40, critical=False)
-assert time.process_time() - started < 60.0
+assert 0 < len(factorized) < 30, len(factorized)
 peak = re.search(r"VmHWM:\\s+(\\d+)", Path("/proc/self/status").read_text())
 assert int(peak[1]) < 1.5e6, peak[0]  # kB
 save(modes, {str(tmp_path / "modes.nc")!r})
