@@ -161,7 +161,8 @@ def test_nineteen_thousand_degrees_of_freedom_take_few_factorizations_and_little
 ):
     """In a process of its own: memory that other tests have taken would count.
 
-    Seconds depend on what else a machine does; factorizations, of 2 s each, are what takes them.
+    Seconds depend on what else a machine does: factorizations of complex pencils are counted, of
+    which there must not be one for each contact or mode.
     """
     code = f"""
 import re
@@ -173,7 +174,7 @@ factorize, factorized = pencil.splu, []
 pencil.splu = lambda *given, **how: factorized.append(1) or factorize(*given, **how)
 block = elastic_block((70, 17, 4), contacts=126, mu=0.5)
 modes = block.complex_modes(n_modes=40, critical=False)
-assert 0 < len(factorized) < 30, len(factorized)
+assert 0 < len(factorized) <= 8, len(factorized)
 peak = re.search(r"VmHWM:\\s+(\\d+)", Path("/proc/self/status").read_text())
 assert int(peak[1]) < 1.5e6, peak[0]  # kB
 save(modes, {str(tmp_path / "modes.nc")!r})
