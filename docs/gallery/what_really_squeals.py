@@ -3,8 +3,9 @@
 # Complex eigenvalues name two unstable modes of this elastic pad, and the lower one grows twice as
 # fast. Only runs in time tell which of them squeals: from small pushes along both modes and from
 # random starts, with every loss of contact located, until the motions have settled. With a pad in
-# files, as on the page on complex eigenvalues: `squealpipe squeal pad.yaml --n-modes 12 -o squeal.nc`;
-# `--onset` follows squeal down in friction too, to where it dies: it may last below the critical one.
+# files, as on the page on complex eigenvalues:
+# `squealpipe squeal pad.yaml --n-modes 12 --frequency-max 60kHz -o squeal.nc`; `--onset` follows
+# squeal down in friction too, to where it dies: it may last below the critical one.
 
 # %%
 from squealpipe import plot, squealing_modes

@@ -63,7 +63,8 @@ def assess(
         n_modes: modes to reduce a structure to; by default as many as errors below 1 % need, and
             no reduction up to 32 degrees of freedom.
         frequency_max: reduce a structure to the modes that the unstable ones up to this frequency
-            need, Hz; needed beyond 1000 degrees of freedom.
+            need, Hz; by default 20 kHz where modes lie beyond it, but needed beyond 1000 degrees of
+            freedom.
         output: also write the dataset (.nc or .csv), and a picture of the settled motion beside it.
     """
     if isinstance(alpha1_or_file, Path):

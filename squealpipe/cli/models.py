@@ -171,7 +171,8 @@ def propensity(
         n_modes: modes to reduce a structure to; by default as many as errors below 1 % need,
             and no reduction up to 32 degrees of freedom.
         frequency_max: reduce a structure to the modes that the unstable ones up to this frequency
-            need, Hz; needed beyond 1000 degrees of freedom.
+            need, Hz; by default 20 kHz where modes lie beyond it, but needed beyond 1000 degrees of
+            freedom.
     """
     of_structure = {
         "--relative-std": relative_std,

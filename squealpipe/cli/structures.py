@@ -101,6 +101,7 @@ def modes(
     refuse_existing(output, force=files.force)
 
     from squealpipe.structures import complex_modes as library
+    from squealpipe.structures.modes import audible_band
 
     shown = "modes"
 
@@ -115,7 +116,8 @@ def modes(
         if told is not None:
             say(told)
         if not {"frequency_max", "n_modes"} & options.keys():
-            audible = _audible(structure)
+            audible = audible_band(structure)
+            _say_band(audible)
             if audible is not None:
                 options["frequency_max"] = audible
                 shown = f"modes up to {audible / 1e3:g} kHz"
@@ -163,22 +165,13 @@ def _compute(
     return dataset
 
 
-def _audible(structure: Any) -> float | None:
-    """Return the highest frequency that is heard, Hz, and say so; None if no mode is beyond.
-
-    A mesh has many modes beyond.
-    """
-    from squealpipe.structures.modes import highest_frequency
-
-    audible = 20e3
-    highest = highest_frequency(structure)
-    if highest is None or highest <= audible:
-        return None
-    say(
-        f"modes up to {audible / 1e3:g} kHz; the highest is at {highest / 1e3:.4g} kHz. Whether "
-        "modes above grow is not examined: --frequency-max shows them"
-    )
-    return audible
+def _say_band(limit: float | None) -> None:
+    """Say that modes beyond the band that nobody asked for are left out."""
+    if limit is not None:
+        say(
+            f"modes up to {limit / 1e3:g} kHz. Whether modes above grow is not examined: "
+            "--frequency-max shows them"
+        )
 
 
 def _one_or_more(values: list[float] | None) -> Any:
@@ -229,9 +222,12 @@ def as_asked(structure: Any, options: dict[str, Any]) -> Any:
     Args:
         options: of a command; both are taken out of it.
     """
-    from squealpipe.structures.squeal.plant import in_modes
+    from squealpipe.structures.squeal.plant import band_of, in_modes
 
     number, limit = (options.pop(name, None) for name in ("n_modes", "frequency_max"))
+    if limit is None:
+        limit = band_of(structure, None)
+        _say_band(limit)
     return in_modes(structure, number, limit)
 
 
@@ -268,8 +264,7 @@ def squeal(
         n_modes: modes to reduce the structure to; by default as many as errors below 1 % need,
             and no reduction up to 32 degrees of freedom. At most 512.
         frequency_max: reduce to the modes that the unstable ones up to this frequency need, Hz;
-            needed beyond 1000 degrees of freedom. Where neither is given and the structure is
-            reduced it is 20 kHz.
+            by default 20 kHz where modes lie beyond it, but needed beyond 1000 degrees of freedom.
         onset: also lower the friction until the squeal dies, to see whether it lasts below the
             critical friction, and how far; costs about as much as the rest.
         run: also write, over time, the motion that a small push ends in (.nc), for `squealpipe
@@ -280,13 +275,9 @@ def squeal(
         check_output(run, force=files.force, kinds=(".nc",), option="--run")
 
     from squealpipe import squealing_modes
-    from squealpipe.structures.schema.squealing import SQUEAL_LIMITS
     from squealpipe.study.report.squealing import lines
 
     def squeal(structure: Any, **options: Any) -> xr.Dataset:
-        is_run_whole = structure.size <= SQUEAL_LIMITS.most_modes
-        if not is_run_whole and not {"n_modes", "frequency_max"} & options.keys():
-            options["frequency_max"] = _audible(structure)
         reduced = as_asked(structure, options)
         reductions.append(reduced)
         return squealing_modes(reduced, **options)
@@ -422,7 +413,7 @@ def operating(
         n_modes: modes to reduce the structure to; by default as many as errors below 1 % need,
             and no reduction up to 32 degrees of freedom.
         frequency_max: reduce to the modes that the unstable ones up to this frequency need, Hz;
-            needed beyond 1000 degrees of freedom.
+            by default 20 kHz where modes lie beyond it, but needed beyond 1000 degrees of freedom.
     """
     refuse_existing(output, force=files.force)
     check_output(output, force=files.force)
@@ -447,6 +438,8 @@ def operating(
     with errors_in_options():
         plan = planned(settings)
     kept = beside(output, rule_key(settings, sources(Path(inspect.getfile(planned)))))
+    if frequency_max is None:
+        _say_band(plan.facts.get("frequency_max"))
     count, done = math.prod(map(len, plan.vary.values())), plan.finished(kept)
     say(
         f"{count} operating points" + (f"; {done} are already computed" if done else "")

@@ -45,6 +45,17 @@ def highest_frequency(structure: ContactStructure) -> float | None:
     return float(omega[kept - 1] / (2 * np.pi))
 
 
+def audible_band(structure: ContactStructure) -> float | None:
+    """Return the end of hearing, Hz, where modes lie beyond it, as a mesh has many; else None.
+
+    Commands and studies look at modes up to there where no band is asked for; None: all modes, or
+    beyond 1000 degrees of freedom not known.
+    """
+    end_of_hearing = 20e3
+    highest = highest_frequency(structure)
+    return None if highest is None or highest <= end_of_hearing else end_of_hearing
+
+
 def modal_damping_of(
     structure: ContactStructure,
     number: int | None = None,

@@ -11,6 +11,7 @@ from squealpipe.schema.origin import origin
 from squealpipe.structures.assess.operating_map import operating_map
 from squealpipe.structures.assess.operating_points import FLAGS, VALUES, OperatingPoints
 from squealpipe.structures.schema.operating_map import QUANTITIES
+from squealpipe.structures.squeal.plant import band_of
 from squealpipe.structures.structure import Structure
 from squealpipe.study.chunks import Run
 from squealpipe.study.point_sweep import PointSweep
@@ -64,10 +65,14 @@ class OperatingSweep(PointSweep):
                 raise ValueError(f"{name}: {suggestion(name, known)}")
         asked = {name: option for name, option in options.items() if option is not None}
         asked |= self.vary
-        modes = {name: asked.pop(name, None) for name in REDUCTION}
-        operating = OperatingPoints.of(structure, **asked).reduced(**modes)
+        n_modes = asked.pop("n_modes", None)
+        band = band_of(structure, asked.pop("frequency_max", None))
+        operating = OperatingPoints.of(structure, **asked).reduced(n_modes, band)
         object.__setattr__(self, "operating", operating)
-        object.__setattr__(self, "facts", {"structure": structure.as_dict(), **asked})
+        facts = {"structure": structure.as_dict(), **asked}
+        if band is not None:
+            facts["frequency_max"] = band
+        object.__setattr__(self, "facts", facts)
         axes = {name: values.tolist() for name, values in operating.axes.items()}
         object.__setattr__(self, "vary", axes)
 

@@ -11,7 +11,7 @@ from squealpipe.structures.assess.operating_points import OperatingPoints
 from squealpipe.structures.fewer_points import fewer_points
 from squealpipe.structures.pencil import DENSE
 from squealpipe.structures.schema.squealing import SQUEAL_LIMITS
-from squealpipe.structures.squeal.plant import in_modes
+from squealpipe.structures.squeal.plant import band_of, in_modes
 from squealpipe.structures.squeal.settled_run import (
     moving_attractors,
     resting_run,
@@ -60,7 +60,7 @@ def operating_options(
         OperatingPoints.of(structure, **asked)
     except ValueError as error:
         raise ValueError(f"operating: {error}") from error
-    band = _band(structure, section["frequency_max"])
+    band = band_of(structure, section["frequency_max"])
     return asked | {"n_modes": section["n_modes"], "frequency_max": band}
 
 
@@ -98,7 +98,7 @@ def modes_over_friction(structure: Structure, section: Mapping[str, Any]) -> xr.
     allowed = frictions[frictions <= structure.largest_mu]
     return structure.complex_modes(
         mu=allowed if name is None else {name: frictions},
-        frequency_max=_band(structure, section["frequency_max"]),
+        frequency_max=band_of(structure, section["frequency_max"]),
     )
 
 
@@ -107,7 +107,7 @@ def modes_with_fewer_points(
 ) -> xr.Dataset:
     """Return the unstable modes of the whole structure by the number of points of each face."""
     return fewer_points(
-        structure, frequency_max=_band(structure, section["frequency_max"])
+        structure, frequency_max=band_of(structure, section["frequency_max"])
     )
 
 
@@ -121,11 +121,6 @@ def _most_pressed(structure: Structure) -> str:
             frictions.setdefault(name, set()).add(float(mu))
     same = [name for name, values in frictions.items() if len(values) == 1]
     return max(same, key=lambda name: preloads[name])
-
-
-def _band(structure: Structure, frequency_max: float | None) -> float | None:
-    """Return the end of the band, Hz; None for a small structure, which is run as it is."""
-    return None if structure.size <= SQUEAL_LIMITS.most_modes else frequency_max
 
 
 def squealing(
@@ -162,7 +157,7 @@ def answered(
 def reduced_structure(structure: Structure, section: Mapping[str, Any]) -> Any:
     """Return the structure in the modes in which it is run."""
     return in_modes(
-        structure, section["n_modes"], _band(structure, section["frequency_max"])
+        structure, section["n_modes"], band_of(structure, section["frequency_max"])
     )
 
 

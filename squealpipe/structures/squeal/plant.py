@@ -11,7 +11,7 @@ from squealpipe.laws.friction_laws import COULOMB
 from squealpipe.structures.agreement import Agreement, Truth, exact
 from squealpipe.structures.complex_modes import complex_modes
 from squealpipe.structures.definition import ContactStructure, ReducedFrom
-from squealpipe.structures.modes import modes_at_rest
+from squealpipe.structures.modes import audible_band, modes_at_rest
 from squealpipe.structures.motion_system import system
 from squealpipe.structures.pencil import DENSE
 from squealpipe.structures.reduction import (
@@ -59,6 +59,20 @@ def carried(
     return fitted(
         whole, band, min(max(SQUEAL_LIMITS.most_modes, 4 * count), Caps().modes)
     )
+
+
+def band_of(structure: ContactStructure, frequency_max: float | None) -> float | None:
+    """Return the end of the band in which modes of a structure in a file count, Hz; None: all.
+
+    Args:
+        frequency_max: as it is asked for; None: the end of hearing, where modes lie beyond it.
+
+    Returns:
+        None for a structure that is run whole.
+    """
+    if structure.size <= SQUEAL_LIMITS.most_modes:
+        return None
+    return audible_band(structure) if frequency_max is None else frequency_max
 
 
 def in_modes(
