@@ -145,11 +145,12 @@ def _assess_structure(
         raise ValueError("--picture is drawn beside a dataset; name that by --output")
 
     import squealpipe
-    from squealpipe.cli.structures import as_asked
+    from squealpipe.cli.structures import as_asked, say_doubts
     from squealpipe.structures.assess.assess import judge_structure
     from squealpipe.structures.assess.modifications import read_modification
 
     whole = squealpipe.Structure.read(file)
+    say_doubts(whole)
     named = modifications_of(modify or [])
     for name, content in named.items():  # a mistake is told before modes are computed
         read_modification(name, content, whole, 1.0)

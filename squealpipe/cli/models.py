@@ -252,9 +252,10 @@ def _of_structure(
     drawn = check_picture(brake.picture, output, force=brake.force)
 
     import squealpipe
-    from squealpipe.cli.structures import as_asked
+    from squealpipe.cli.structures import as_asked, say_doubts
 
     whole = squealpipe.Structure.read(file)
+    say_doubts(whole)
     asked = {name: value for name, value in options.items() if value is not None}
     stated = asked | {key: each for key, each in modes.items() if each is not None}
     stated.pop("workers", None)

@@ -101,12 +101,14 @@ def modes(
     refuse_existing(output, force=files.force)
 
     from squealpipe.structures import complex_modes as library
+    from squealpipe.structures.meshes.gaps import gaps_of
     from squealpipe.structures.modes import audible_band
 
-    shown = "modes"
+    shown, contacts = "modes", []
 
     def complex_modes(structure: Any, **options: Any) -> xr.Dataset:
-        nonlocal shown
+        nonlocal shown, contacts
+        contacts = structure.contacts
         if text := options.pop("belt_speed", None):
             read = partial(parse_number, units=structure.speed_unit)
             options["belt_speed"] = _one_or_more(parse_range(text, one=read))
@@ -131,6 +133,8 @@ def modes(
     # more unstable modes than twenty are a table for a file, not for a terminal
     for number in dataset.mode.values[ever.values][:20]:
         answer(_line(dataset.sel(mode=number)))
+    for gaps in gaps_of(contacts):
+        answer(str(gaps))
     if (opened := dataset.attrs["open_contacts"]) != "none":
         names = opened.split(", ")
         few = ", ".join(names[:8]) + (", …" if len(names) > 8 else "")
@@ -159,10 +163,20 @@ def _compute(
     with working(task.__name__.replace("_", " ")), errors_in_options():
         with stage(f"reading {file}"):
             structure = Structure.read(file)
+        say_doubts(structure)
         config = {"parameters": structure.as_dict(), **given}
         dataset = write(lambda: task(structure, **given), output, config=config)
     finish(dataset, output, drawn, files)
     return dataset
+
+
+def say_doubts(structure: Any) -> None:
+    """Say where faces of a mesh are further apart than their facets explain."""
+    from squealpipe.structures.meshes.gaps import gaps_of
+
+    for gaps in gaps_of(structure.contacts):
+        if gaps.is_doubtful:
+            say(f"warning: {gaps.doubt()}")
 
 
 def _say_band(limit: float | None) -> None:
@@ -436,8 +450,9 @@ def operating(
         "fixed": {name: each for name, each in asked.items() if each is not None},
     }
     with errors_in_options():
-        plan = planned(settings)
+        plan: Any = planned(settings)
     kept = beside(output, rule_key(settings, sources(Path(inspect.getfile(planned)))))
+    say_doubts(plan.operating.structure)
     if frequency_max is None:
         _say_band(plan.facts.get("frequency_max"))
     count, done = math.prod(map(len, plan.vary.values())), plan.finished(kept)

@@ -28,6 +28,12 @@ MESH = {
         ("contact", "axis"),
         optional=True,
     ),
+    "contact_gap": or_nan(
+        "gap between the faces at the contact, negative where they overlap; NaN: of no mesh",
+        "m",
+        ("contact",),
+        optional=True,
+    ),
 }
 """Data variables."""
 MESH_COORDINATES = {

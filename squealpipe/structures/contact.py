@@ -21,6 +21,7 @@ class PointOrigin(NamedTuple):
         area: m².
         gap: distance along the normal, m, the largest of its nodes; negative where bodies overlap.
         position: of the middle of its forces, m.
+        facet: longest edge of the facets that it meets where the gap is, m; NaN: not known.
     """
 
     nodes: tuple[int, ...]
@@ -28,6 +29,7 @@ class PointOrigin(NamedTuple):
     area: float
     gap: float
     position: tuple[float, float, float]
+    facet: float = float("nan")
 
     def as_dict(self) -> dict[str, Any]:
         """Return what a report says of it, as JSON takes it."""

@@ -4,6 +4,7 @@ Text in any encoding, with commas, semicolons or tabs between its cells, or an E
 """
 
 import csv
+import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -22,7 +23,7 @@ from squealpipe.systems.inputs.values import brief
 from squealpipe.text import suggestion
 
 CONTACT_COLUMNS = ("name", "normal", "tangential", "stiffness", "preload")
-ORIGIN_COLUMNS = ("nodes", "against", "area", "gap", "x", "y", "z")
+ORIGIN_COLUMNS = ("nodes", "against", "area", "gap", "facet", "x", "y", "z")
 """Columns that say where a contact of a mesh comes from."""
 KNOWN = (*CONTACT_COLUMNS, "speed", "mu", "mu_static", "across", *ORIGIN_COLUMNS)
 
@@ -126,7 +127,7 @@ class _Line(NamedTuple):
             "stiffness": scales.stiffness,
             "preload": scales.force,
             "area": scales.length**2,
-            **dict.fromkeys(("gap", "x", "y", "z"), scales.length),
+            **dict.fromkeys(("gap", "facet", "x", "y", "z"), scales.length),
         }
         units = dict(CONTACT_UNITS)
         if self.turning:
@@ -152,6 +153,7 @@ class _Line(NamedTuple):
             values["area"],
             values.get("gap", 0.0),
             (values["x"], values["y"], values["z"]),
+            values.get("facet", math.nan),
         )
 
 
@@ -162,7 +164,7 @@ CONTACT_UNITS = {
     "mu": "1",
     "mu_static": "1",
     "area": "m2",
-    **dict.fromkeys(("gap", "x", "y", "z"), "m"),
+    **dict.fromkeys(("gap", "facet", "x", "y", "z"), "m"),
 }
 """Columns of numbers → CF unit."""
 
@@ -236,6 +238,7 @@ def write_contacts(
                 "against": " ".join(map(str, origin.against)),
                 "area": f"{origin.area!r} m^2",
                 "gap": f"{origin.gap!r} m",
+                "facet": "" if math.isnan(origin.facet) else f"{origin.facet!r} m",
                 **{
                     axis: f"{value!r} m"
                     for axis, value in zip("xyz", origin.position, strict=True)

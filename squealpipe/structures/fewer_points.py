@@ -145,6 +145,7 @@ def _joined(name: str, members: list[Contact], size: int) -> Contact:
     acting = forces if forces.sum() > 0 else stiffnesses
     weights = acting / acting.sum()
     origins = [_origin(member) for member in members]
+    widest = max(origins, key=lambda origin: abs(origin.gap))
     directions = {
         which: weights @ [member.direction(which, size) for member in members]
         for which in ("normal", "tangential")
@@ -161,7 +162,8 @@ def _joined(name: str, members: list[Contact], size: int) -> Contact:
             tuple(node for origin in origins for node in origin.nodes),
             tuple(sorted({node for origin in origins for node in origin.against})),
             sum(origin.area for origin in origins),
-            max((origin.gap for origin in origins), key=abs),
+            widest.gap,
             tuple((weights @ [origin.position for origin in origins]).tolist()),
+            widest.facet,
         ),
     )

@@ -234,24 +234,22 @@ def _origin(
 ) -> PointOrigin:
     """Return how the contact of these points came about."""
     numbers = mesh.numbers
-    partners = [
-        (point, point.partner.nodes, point.partner.position)
-        for point in points
-        if point.partner is not None
-    ]
+    partners = [(point, point.partner) for point in points if point.partner is not None]
     gaps = [
-        float((mesh.nodes[each.node] - position) @ each.normal)
-        for each, _, position in partners
+        (float((mesh.nodes[each.node] - met.position) @ each.normal), met.size)
+        for each, met in partners
     ]
+    gap, facet = max(gaps, key=lambda each: abs(each[0]), default=(0.0, np.nan))
     position = weights @ mesh.nodes[[point.node for point in points]]
     return PointOrigin(
         tuple(int(numbers[point.node]) for point in points),
         tuple(
-            sorted({int(numbers[node]) for _, nodes, _ in partners for node in nodes})
+            sorted({int(numbers[node]) for _, met in partners for node in met.nodes})
         ),
         float(shared.sum()),
-        max(gaps, key=abs, default=0.0),
+        gap,
         tuple(position.tolist()),
+        facet,
     )
 
 

@@ -35,6 +35,12 @@ def mesh_variables(structure: Any) -> tuple[dict[str, Any], dict[str, Any]]:
                 )
             ]
         )
+        data["contact_gap"] = np.array(
+            [
+                np.nan if contact.origin is None else contact.origin.gap
+                for contact in structure.contacts
+            ]
+        )
     return data, {"node": mesh.numbers, "axis": list(AXES)}
 
 

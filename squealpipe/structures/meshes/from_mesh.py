@@ -1,5 +1,6 @@
 """Contacts of faces and names of degrees of freedom, from matrices and a mesh."""
 
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from os import PathLike, fspath
@@ -15,6 +16,7 @@ from squealpipe.structures.meshes.contact_points import Freedoms, contacts_of
 from squealpipe.structures.meshes.element_mesh import ElementMesh
 from squealpipe.structures.meshes.faces import Face, Rotation
 from squealpipe.structures.meshes.finite_elements import ELEMENTS
+from squealpipe.structures.meshes.gaps import gaps_of
 from squealpipe.structures.meshes.sources import mesh_of_source
 from squealpipe.structures.meshes.structure_mesh import NO_NODE, StructureMesh
 from squealpipe.structures.readers import read_names
@@ -64,6 +66,9 @@ def of_mesh(
             contacts += contacts_of(name, face, source, freedoms, rotation)
         except ValueError as error:
             raise ValueError(f"contacts: {name}: {error}") from error
+    for gaps in gaps_of(contacts):
+        if gaps.is_doubtful:
+            warnings.warn(gaps.doubt(), stacklevel=3)
     return OfMesh(contacts, _picture(source, rows))
 
 
