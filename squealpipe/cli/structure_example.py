@@ -20,7 +20,7 @@ structure:
   seed: 0 # that they follow from
   # t_end: 1 s # longest time of a run; by default 8000 periods of the slowest unstable mode
   # n_modes: 12 # to reduce it to; by default as many as errors below 1 % need
-  # frequency_max: 10 kHz # highest mode of interest; by default 20 kHz up to 1000 degrees of freedom
+  # frequency_max: 10 kHz # highest mode of interest; default: 20 kHz up to 1000 degrees of freedom
 
 # operating: # where it is noisy, at which frequency, as a dynamometer tests it
 #   pressure: 0.5:2:4 # factors of all preloads

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import json
 import math
 from functools import partial
 from pathlib import Path
@@ -47,6 +48,8 @@ from squealpipe.inputs import parse_number
 from squealpipe.ranges import parse_range
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import xarray as xr
 
 
@@ -101,10 +104,9 @@ def modes(
     refuse_existing(output, force=files.force)
 
     from squealpipe.structures import complex_modes as library
-    from squealpipe.structures.meshes.gaps import gaps_of
     from squealpipe.structures.modes import audible_band
 
-    shown, contacts = "modes", []
+    shown, contacts = "modes", ()
 
     def complex_modes(structure: Any, **options: Any) -> xr.Dataset:
         nonlocal shown, contacts
@@ -126,10 +128,24 @@ def modes(
         return library.complex_modes(structure, **options)
 
     dataset = _compute(complex_modes, file, asked, output, files)
+    _tell_modes(dataset, shown, contacts)
+    return EXIT.done
+
+
+def _tell_modes(dataset: xr.Dataset, shown: str, contacts: Sequence[Any]) -> None:
+    """Print which modes are unstable, the gaps of faces, and contacts that are open.
+
+    Args:
+        shown: what was examined, in words.
+    """
+    from squealpipe.structures.meshes.gaps import gaps_of
+
     unstable = dataset.unstable
-    ever = unstable.any([dim for dim in unstable.dims if dim != "mode"])
+    varied = [dim for dim in unstable.dims if dim != "mode"]
+    ever = unstable.any(varied)
+    somewhere = " somewhere" if varied else ""
     beyond = "" if shown == "modes" else "; those above were not examined"
-    answer(f"{int(ever.sum())} of {ever.size} {shown} are unstable somewhere{beyond}")
+    answer(f"{int(ever.sum())} of {ever.size} {shown} are unstable{somewhere}{beyond}")
     # more unstable modes than twenty are a table for a file, not for a terminal
     for number in dataset.mode.values[ever.values][:20]:
         answer(_line(dataset.sel(mode=number)))
@@ -142,7 +158,6 @@ def modes(
             f"{len(names)} of {dataset.sizes['contact']} contacts are open in steady sliding and "
             f"left out there: {few}"
         )
-    return EXIT.done
 
 
 def _compute(
@@ -220,14 +235,23 @@ def _line(mode: Any) -> str:
         words += " at " + ", ".join(
             f"{name if dim == 'mu' else dim} = {at[dim].item():g}" for dim in shown
         )
+    scale = at.get("critical_scale")  # every contact has its own friction
+    of_scale = ", from {:.6g} times every mu on"
+    own = {each["mu"] for each in _contacts_of(mode) if "mu" in each}
+    if scale is not None and len(own) == 1:
+        scale, of_scale = scale * own.pop(), ", from mu = {:.6g} on"
     onsets = [
         (at.critical_mu, f", from {name} = {{:.6g}} on"),
-        # every contact has its own friction
-        (at.get("critical_scale"), ", from {:.6g} times every mu on"),
+        (scale, of_scale),
         (at.get("critical_speed"), ", stability changes at belt_speed = {:.6g}"),
     ]
     located = [(each.item(), text) for each, text in onsets if each is not None]
     return words + "".join(text.format(x) for x, text in located if x == x)
+
+
+def _contacts_of(dataset: Any) -> list[dict[str, Any]]:
+    """Return the numbers of each contact that a dataset records."""
+    return list(json.loads(dataset.attrs["parameters"])["contacts"].values())
 
 
 def as_asked(structure: Any, options: dict[str, Any]) -> Any:

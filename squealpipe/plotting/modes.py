@@ -11,6 +11,7 @@ from matplotlib.ticker import MaxNLocator
 from squealpipe.plotting import style
 from squealpipe.plotting.origin import parameter
 from squealpipe.plotting.quantities import label
+from squealpipe.text import number
 from squealpipe.units import shown_in
 
 GROWTH_LABEL = "growth rate (1/s)"
@@ -68,7 +69,15 @@ def _draw_spectrum(axes: Axes, modes: xr.Dataset) -> None:
     axes.plot(
         frequency[unstable], growth[unstable], "o", color=style.RED, label="unstable"
     )
-    show_what_grows(axes, growth)
+    if (lowest := show_what_grows(axes, growth)) is not None:
+        below = growth < lowest
+        axes.plot(
+            frequency[below],
+            np.full(below.sum(), 0.97 * lowest),
+            "v",
+            color=style.BLUE,
+            label=f"stable, below {number(lowest, 2)} 1/s",
+        )
     axes.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
     axes.set(xlabel=f"frequency ({unit})", ylabel=GROWTH_LABEL)
     axes.legend()
@@ -150,10 +159,16 @@ def frequency_unit(frequencies: np.ndarray) -> tuple[float, str]:
     return shown_in(float(finite.max(initial=0.0)), "Hz")
 
 
-def show_what_grows(axes: Axes, growth: np.ndarray) -> None:
-    """Cut off decay that is much faster than the growth, which would not be seen beside it."""
+def show_what_grows(axes: Axes, growth: np.ndarray) -> float | None:
+    """Cut off decay that is much faster than the growth, which would not be seen beside it.
+
+    Returns:
+        The lowest growth rate that is shown, 1/s; None: all are.
+    """
     largest, fastest = float(np.nanmax(growth)), -float(np.nanmin(growth))
     # decay deeper than this, over the fastest growth, would flatten the curves of growth
     deepest = 1.5
     if 0 < deepest * largest < fastest:
         axes.set_ylim(-deepest * largest, 1.15 * largest)
+        return -deepest * largest
+    return None

@@ -138,6 +138,22 @@ def test_titles_say_which_friction_and_a_bar_what_the_colours_mean(of_lining):
     assert title_of(over, int(over.mode[0])).endswith("at mu of p2 = 0.6")
 
 
+def test_modes_that_decay_fast_stay_in_the_picture_of_one_friction(modes):
+    """Stable modes below the axis were cut off without a word."""
+    one = modes.isel(mu=1)
+    growth = np.linspace(-1e4, 100.0, one.sizes["mode"])
+    one = one.assign(
+        growth_rate=("mode", growth), unstable=("mode", growth > 0.0), mu=0.6
+    )
+    axes = picture.figure(one).axes[0]
+    lowest, _ = axes.get_ylim()
+    assert lowest > -1e3
+    drawn = [line for line in axes.lines if line.get_marker() != "None"]
+    heights = np.concatenate([line.get_ydata() for line in drawn])
+    assert (heights >= lowest).sum() == one.sizes["mode"]
+    assert drawn[-1].get_label().startswith("stable, below")
+
+
 def test_growth_over_friction_is_zero_at_the_mark_of_its_onset(pad, of_lining):
     frequency, _ = picture.figure(of_lining[0]).axes
     assert frequency.get_xlabel() == "coefficient of friction of p2"

@@ -1,11 +1,14 @@
 """Contacts with a friction of their own, against matrices put together here."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import scipy.linalg as la
 from scipy.integrate import solve_ivp
 
-from squealpipe import Contact, Structure, squealing_modes
+from squealpipe import Contact, Structure, load, squealing_modes
+from squealpipe.cli import run
 from squealpipe.structures.files import read
 from squealpipe.structures.schema.structures import Onset
 
@@ -130,6 +133,34 @@ def test_all_are_scaled_where_each_has_its_own():
     assert np.isnan(modes.critical_mu).all()
     assert "mu" not in modes.coords
     assert np.allclose(modes.normal_force, growth(case, SIGNS * mu)[1])
+
+
+def test_one_friction_of_all_contacts_is_told_as_such(tmp_path, monkeypatch, capsys):
+    """A single face at one friction was unstable "somewhere, from 0.9 times every mu on"."""
+    monkeypatch.chdir(tmp_path)
+    mass, damping, stiffness, normal, tangential, springs, preload = random_case(4)
+    for name, matrix in (("M", mass), ("C", damping), ("K", stiffness)):
+        np.save(f"{name}.npy", matrix)
+    rows = ["name,normal,tangential,stiffness,preload,speed,mu"]
+    for name, n, t, k, p, speed in zip(
+        "abc", normal.T, tangential.T, springs, preload, (1.0, -1.0, 2.0), strict=True
+    ):
+        ways = [
+            " ".join(f"{at}:{each!r}" for at, each in enumerate(way.tolist(), 1))
+            for way in (n, t)
+        ]
+        rows.append(f"{name},{ways[0]},{ways[1]},{k},{p},{speed},0.7")
+    Path("contacts.csv").write_text("\n".join(rows))
+    Path("pad.yaml").write_text(
+        "mass: M.npy\nstiffness: K.npy\ndamping: C.npy\ncontacts: contacts.csv\n"
+    )
+    assert run(["modes", "pad.yaml", "-o", "modes.nc"]) == 0
+    told = capsys.readouterr().out
+    modes = load("modes.nc")
+    scale = float(modes.critical_scale.min())
+    assert np.isfinite(scale)
+    assert f"from mu = {0.7 * scale:.6g} on" in told
+    assert "are unstable\n" in told
 
 
 def test_what_nothing_has_cannot_be_varied():

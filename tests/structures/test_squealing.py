@@ -304,7 +304,8 @@ def test_commands_and_studies_run_modes_up_to_20_khz_and_say_so(
         assert run(command) == 0, command
         assert told in capsys.readouterr().out
     squeal = load("squeal.nc")
-    assert int(squeal.n_modes) == 2 and float(squeal.frequency_max) == 20e3
+    assert int(squeal.n_modes) == 2
+    assert float(squeal.frequency_max) == 20e3
     section = {"file": "pad.yaml", "samples": 1, "seed": 0, "t_end": None}
     section |= {"n_modes": None, "frequency_max": None}
     whole = read_structure(section)

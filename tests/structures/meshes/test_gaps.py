@@ -33,7 +33,8 @@ def read(folder, gap):
 def test_a_gap_that_no_facet_explains_is_doubted(tmp_path, gap, words):
     """A pad 3 mm above a disc of 10 mm facets was computed without a word."""
     structure, told = read(tmp_path, gap)
-    assert len(told) == 1 and words in told[0]
+    assert len(told) == 1
+    assert words in told[0]
     assert "move the bodies of the mesh together" in told[0]
     (face,) = gaps_of(structure.contacts)
     assert (face.largest, face.mean) == pytest.approx((gap, abs(gap)), rel=1e-9)
