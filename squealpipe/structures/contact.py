@@ -1,5 +1,6 @@
 """A contact of a structure with the belt: where it acts, how stiff it is and what presses it on."""
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
@@ -10,6 +11,12 @@ from squealpipe.parameters import TABLE, finite_number
 from squealpipe.systems.inputs.values import brief, is_finite_number, is_whole_number
 from squealpipe.units import refuse_units
 from squealpipe.validation import real_array
+
+
+def face_of(contact: str) -> str | None:
+    """Return the face of a contact, ``lining`` of ``lining_12``; None if it has none."""
+    match = re.fullmatch(r"(.+)_\d+", contact)
+    return match[1] if match else None
 
 
 class PointOrigin(NamedTuple):

@@ -9,11 +9,10 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.schema import Outcome, build
-from squealpipe.structures.contact import Contact, PointOrigin
+from squealpipe.structures.contact import Contact, PointOrigin, face_of
 from squealpipe.structures.meshes.merging import merged
 from squealpipe.structures.schema.fewer_points import FEWER_POINTS
 from squealpipe.structures.sliding import NoSlidingError
-from squealpipe.structures.varied_friction import face_of
 from squealpipe.systems.datasets.versions import versions
 from squealpipe.systems.inputs.values import brief, is_whole_number
 

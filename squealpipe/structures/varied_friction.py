@@ -1,12 +1,12 @@
 """Coefficients of friction that one number stands for: the structure's, a face's, or a factor."""
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Self
 
 import numpy as np
 
+from squealpipe.structures.contact import face_of
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.systems.inputs.values import brief, numbers_in_si
 from squealpipe.text import suggestion
@@ -76,12 +76,6 @@ class VariedFriction:
                 f"{values[-1]:g}; give mu={{{self.name!r}: …}} a number or an array"
             )
         return float(values[0])
-
-
-def face_of(contact: str) -> str | None:
-    """Return the face of a contact, ``lining`` of ``lining_12``; None if it has none."""
-    match = re.fullmatch(r"(.+)_\d+", contact)
-    return match[1] if match else None
 
 
 def varied_by(structure: ContactStructure, mu: Any) -> tuple[VariedFriction, Any]:

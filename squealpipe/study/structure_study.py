@@ -8,6 +8,7 @@ import xarray as xr
 
 from squealpipe.structures.assess.assess import small_motions_alone
 from squealpipe.structures.assess.operating_points import OperatingPoints
+from squealpipe.structures.contact import face_of
 from squealpipe.structures.fewer_points import fewer_points
 from squealpipe.structures.pencil import DENSE
 from squealpipe.structures.schema.squealing import SQUEAL_LIMITS
@@ -19,7 +20,7 @@ from squealpipe.structures.squeal.settled_run import (
 )
 from squealpipe.structures.squeal.squealing_modes import squealing_modes
 from squealpipe.structures.structure import Structure
-from squealpipe.structures.varied_friction import VariedFriction, face_of
+from squealpipe.structures.varied_friction import VariedFriction
 from squealpipe.study.assess import assess
 from squealpipe.study.operating_sweep import TASK as OPERATING_MAP
 from squealpipe.study.operating_sweep import OperatingSweep

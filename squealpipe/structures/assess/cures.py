@@ -11,8 +11,9 @@ import numpy as np
 
 from squealpipe.structures.assess.designs import Design
 from squealpipe.structures.assess.modifications import Modification, read_modification
+from squealpipe.structures.contact import face_of
 from squealpipe.structures.definition import ContactStructure
-from squealpipe.structures.varied_friction import VariedFriction, face_of
+from squealpipe.structures.varied_friction import VariedFriction
 from squealpipe.vibration.boundaries import Cure
 
 

@@ -20,8 +20,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from squealpipe.parameters import finite_number
+from squealpipe.structures.contact import face_of
 from squealpipe.structures.definition import ContactStructure
-from squealpipe.structures.varied_friction import face_of
 from squealpipe.systems.inputs.values import brief, is_whole_number
 from squealpipe.text import suggestion
 

@@ -23,9 +23,9 @@ from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
 from squealpipe.structures.assess.cures import with_preload
 from squealpipe.structures.assess.designs import Design, Structures, pushed
+from squealpipe.structures.contact import face_of
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.schema.propensity import STRUCTURE_PROPENSITY
-from squealpipe.structures.varied_friction import face_of
 from squealpipe.systems.inputs.values import brief
 from squealpipe.systems.processes import available_cores, run_shared
 from squealpipe.systems.progress import with_progress

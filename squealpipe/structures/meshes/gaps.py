@@ -9,9 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squealpipe.structures.contact import Contact
+from squealpipe.structures.contact import Contact, face_of
 from squealpipe.structures.meshes.pairing import PAIRING
-from squealpipe.structures.varied_friction import face_of
 from squealpipe.text import number
 from squealpipe.units import engineering
 
