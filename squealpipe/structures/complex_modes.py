@@ -12,7 +12,6 @@ import inspect
 import json
 import warnings
 from collections.abc import Callable
-from contextlib import nullcontext
 from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
@@ -27,7 +26,7 @@ from squealpipe.structures.factors import Asked, asked_of, with_factors
 from squealpipe.structures.meshes.datasets import mesh_variables
 from squealpipe.structures.mode_shapes import shape_variables
 from squealpipe.structures.numbering import Way
-from squealpipe.structures.pencil import DENSE, one_thread
+from squealpipe.structures.pencil import DENSE
 from squealpipe.structures.schema.structures import name_over
 from squealpipe.structures.sliding import NoSlidingError
 from squealpipe.structures.spectrum import Solver, Spectrum
@@ -120,8 +119,7 @@ def complex_modes(
     points *= int(np.prod([values.size for values in asked.varied.values()]))
     if told := cost_beforehand(structure, points, n_modes):
         warnings.warn(told, stacklevel=3)
-    with nullcontext() if structure.size <= DENSE else one_thread():
-        return _dataset(structure, asked)
+    return _dataset(structure, asked)
 
 
 def cost_beforehand(structure: Any, points: int, n_modes: int | None) -> str | None:

@@ -6,10 +6,7 @@ single modes, M Φ diag(2 ζ ω) Φᵀ M, is no sparse matrix; it is carried as 
 
 from __future__ import annotations
 
-import ctypes
 import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -18,7 +15,6 @@ import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
-from scipy.sparse.linalg._dsolve import _superlu
 
 DENSE = 1000
 """Degrees of freedom up to which all eigenvalues are computed by dense algebra."""
@@ -287,24 +283,3 @@ class Factors:
         parts = factors.solve(columns, trans=trans)
         half = parts.shape[1] // 2
         return (parts[:, :half] + 1j * parts[:, half:]).reshape(right.shape)
-
-
-@contextmanager
-def one_thread() -> Iterator[None]:
-    """Have sparse factors computed by one thread, where SciPy's BLAS can be told so.
-
-    SuperLU hands panels of few columns to BLAS, which wakes all its threads for each: on two busy
-    cores complex factors took 30 times as long as with one thread, and all of it CPU time.
-    """
-    library = ctypes.CDLL(_superlu.__file__)
-    names = "scipy_openblas_{}_num_threads", "openblas_{}_num_threads"
-    name = next((name for name in names if hasattr(library, name.format("set"))), None)
-    if name is None:  # another BLAS keeps its number of threads
-        yield
-        return
-    before = getattr(library, name.format("get"))()
-    getattr(library, name.format("set"))(1)
-    try:
-        yield
-    finally:
-        getattr(library, name.format("set"))(before)

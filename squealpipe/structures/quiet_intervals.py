@@ -30,7 +30,6 @@ from scipy.optimize import linear_sum_assignment
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.linearized import pencil_about
 from squealpipe.structures.modes import modal_damping_of
-from squealpipe.structures.pencil import one_thread
 from squealpipe.structures.sliding import NoSlidingError, steady_sliding
 from squealpipe.systems.inputs.values import brief
 from squealpipe.vibration.boundaries import QuietInterval
@@ -155,12 +154,11 @@ def linear_intervals(
     """
     search = _Search(structure_at, values)
     low, high = values[0], values[-1]
-    with one_thread():  # with small matrices threads cost more than they save
-        intervals = [
-            QuietInterval(begin, end, low_open=begin == low, high_open=end == high)
-            for begin, end in pairwise(search.boundaries())
-            if not search.grows(0.5 * (begin + end))
-        ]
+    intervals = [
+        QuietInterval(begin, end, low_open=begin == low, high_open=end == high)
+        for begin, end in pairwise(search.boundaries())
+        if not search.grows(0.5 * (begin + end))
+    ]
     return sorted(intervals, key=lambda one: one.distance(now))
 
 

@@ -22,7 +22,7 @@ from squealpipe.structures.definition import ContactStructure, ReducedFrom
 from squealpipe.structures.dense import all_modes
 from squealpipe.structures.linearized import pencil_about
 from squealpipe.structures.modes import modes_at_rest
-from squealpipe.structures.pencil import DENSE, one_thread
+from squealpipe.structures.pencil import DENSE
 from squealpipe.structures.sliding import (
     NoSlidingError,
     acting_directions,
@@ -32,6 +32,7 @@ from squealpipe.structures.sliding import (
 from squealpipe.structures.spectrum import Limits, Solver, check_frequency
 from squealpipe.structures.subspace import in_coordinates
 from squealpipe.systems.inputs.values import brief, is_finite_number, is_whole_number
+from squealpipe.systems.one_thread import one_thread
 from squealpipe.systems.progress import report, stage, stop_is_asked
 
 

@@ -1,6 +1,5 @@
 """Modes of structures beyond a thousand degrees of freedom, against SciPy's own eigensolver."""
 
-import ctypes
 import re
 import subprocess
 import sys
@@ -12,11 +11,9 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 from scipy.sparse.linalg import eigs, splu
-from scipy.sparse.linalg._dsolve import _superlu
 
 from squealpipe import Contact, Structure, load
 from squealpipe.structures.complex_modes import cost_beforehand
-from squealpipe.structures.pencil import one_thread
 from squealpipe.structures.schema.structures import Onset
 from squealpipe.structures.sliding import steady_sliding
 from tests.oracles.elastic_block import elastic_block
@@ -113,21 +110,6 @@ def test_steady_sliding_by_one_factorization_is_that_of_a_new_one_for_each_state
         expected = splu(sp.csc_array(matrix)).solve(force)
         assert state.displacement == pytest.approx(expected, rel=1e-9, abs=1e-16)
         assert not state.closed.all()
-
-
-def test_factors_are_computed_by_one_thread_and_later_ones_by_as_many_as_before():
-    library = ctypes.CDLL(_superlu.__file__)
-    if not hasattr(library, "scipy_openblas_set_num_threads"):
-        pytest.skip("SciPy has another BLAS here")
-    count = library.scipy_openblas_get_num_threads
-    library.scipy_openblas_set_num_threads(2)
-    try:
-        before = count()
-        with one_thread():
-            assert count() == 1
-        assert count() == before
-    finally:
-        library.scipy_openblas_set_num_threads(1)
 
 
 def test_the_cost_of_a_large_structure_is_told_beforehand():

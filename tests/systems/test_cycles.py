@@ -128,6 +128,43 @@ def test_the_cycle_of_the_relief_valve_shrinks_to_rest_at_its_hopf_point():
     assert float(branch.q[-1]) == pytest.approx(8.491117635183, abs=1e-11)
 
 
+@pytest.fixture(scope="module")
+def ring():
+    """Circles of radius 1 + e at level = scale (e³ − depth² e): folds at e = ∓depth/√3."""
+
+    def field(t, s, p, r):
+        radius = (s.x**2 + s.v**2) ** 0.5
+        e = radius - 1.0
+        growth = p.level - p.scale * (e**3 - p.depth**2 * e)
+        return {"x": s.v + growth * s.x, "v": -s.x + growth * s.v}
+
+    return System(
+        "ring",
+        states={"x": "1", "v": "1"},
+        parameters={"level": 0.02, "scale": 0.1, "depth": 0.1},
+        regimes={"all": {}},
+        field=field,
+        start={"x": 1.5, "v": 0.0},
+    )
+
+
+@pytest.mark.parametrize("depth", [0.1, 0.02, 0.005])
+def test_two_folds_within_one_step_are_not_passed(ring, depth):
+    """Between them multipliers and tangents change by less than anything else is watched for."""
+    at = {"level": 0.02, "depth": depth}
+    start = ring.limit_cycle(guess={"x": 1.585, "v": 0.0}, **at)
+    branch = ring.cycle_branch("level", -0.02, start=start)
+    fold = 0.1 * 2.0 / 27.0**0.5 * depth**3
+    assert special(branch, Label.fold) == pytest.approx([-fold, fold], abs=1e-13)
+
+
+def test_the_search_for_rest_leaves_where_a_field_has_no_slope(ring):
+    """Newton's method goes to the centre, where the radius has none."""
+    cycle = ring.limit_cycle(guess={"x": 1.55, "v": 0.0}, depth=0.1)
+    assert cycle.outcome == Outcome.converged
+    assert float(cycle.period) == pytest.approx(2.0 * np.pi, rel=1e-12)
+
+
 def test_a_system_without_switches_has_branches_with_tori():
     """A forced van der Pol oscillator loses its lock: a complex pair is on the unit circle."""
     van_der_pol = System(

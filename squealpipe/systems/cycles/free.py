@@ -128,6 +128,8 @@ class Stretch:
             for _ in range(20):
                 slopes = flow.jacobian(values, regime, place)[:, : flow.size] * scale
                 rate = flow.field(values, regime, place, 0.0)
+                if not (np.isfinite(slopes).all() and np.isfinite(rate).all()):
+                    return False  # Newton's method has left where the field is smooth
                 place = place - np.linalg.lstsq(slopes, rate, rcond=None)[0] * scale
         far = np.abs(place - middle) > second + 1e-9 * scale
         if not np.isfinite(place).all() or far.any():

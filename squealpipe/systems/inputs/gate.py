@@ -25,6 +25,7 @@ from xarray import Dataset
 from squealpipe.systems.inputs.units import refuse_units
 from squealpipe.systems.inputs.values import brief, is_whole_number, numbers_in_si
 from squealpipe.systems.inputs.words import in_words, suggestion
+from squealpipe.systems.one_thread import one_thread
 
 Given = ParamSpec("Given")
 Result = TypeVar("Result")
@@ -83,7 +84,9 @@ def checked(
     def run(*args: Given.args, **kwargs: Given.kwargs) -> Result:
         positional, named = read(names, args, kwargs)
         try:
-            return call(*positional, **named)
+            # our matrices are small or sparse: more threads only wait for one another
+            with one_thread():
+                return call(*positional, **named)
         except ValidationError as error:
             if error.title not in (function.__name__, function.__qualname__):
                 raise
