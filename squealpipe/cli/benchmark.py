@@ -11,6 +11,8 @@ from squealpipe.cli.arguments import Force, Output, Texts, Time, Tolerances
 from squealpipe.cli.console import EXIT
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import xarray as xr
 
     from squealpipe.benchmark.scoring import Score
@@ -82,15 +84,19 @@ def problems(*, output: Output = Path("problems.json"), force: Force = False) ->
 
     Example: `squealpipe benchmark problems -o problems.json`
     """
-    from squealpipe.cli.output import check_output
-
-    check_output(output, force=force, kinds=(".json",))
-
     from squealpipe.benchmark.answers import problems_as_json
+
+    return _write_json(problems_as_json, output, force=force)
+
+
+def _write_json(text: Callable[[], str], output: Path, *, force: bool) -> int:
+    from squealpipe.cli.output import check_output
     from squealpipe.store.whole_files import whole_file
 
+    check_output(output, force=force, kinds=(".json",))
+    content = text()
     with whole_file(output) as temporary:
-        temporary.write_text(problems_as_json(), encoding="utf-8")
+        temporary.write_text(content, encoding="utf-8")
     print(f"wrote {output}")
     return EXIT.done
 
@@ -131,18 +137,11 @@ def results(
     Args:
         files: datasets of `squealpipe benchmark`, each of other solvers.
     """
-    from squealpipe.cli.output import check_output
-
-    check_output(output, force=force, kinds=(".json",))
-
     from squealpipe.benchmark.results import results_as_json
-    from squealpipe.store.whole_files import whole_file
 
-    text = results_as_json(map(_dataset, files))
-    with whole_file(output) as temporary:
-        temporary.write_text(text, encoding="utf-8")
-    print(f"wrote {output}")
-    return EXIT.done
+    return _write_json(
+        lambda: results_as_json(map(_dataset, files)), output, force=force
+    )
 
 
 def _loaded(path: Path) -> xr.Dataset:

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from squealpipe.brake.schema.propensity import VERDICT_ROBUSTNESS
 from squealpipe.paper.inference.candidates import Candidates
 from squealpipe.paper.inference.consequences import CONSEQUENCES, judge_consequences
 from squealpipe.paper.inference.constraints import CONSTRAINTS, Stage, measure
 from squealpipe.paper.schema.inference import of_study
+from squealpipe.paper.schema.robustness import VERDICT_ROBUSTNESS
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded

@@ -135,6 +135,30 @@ _OF_STRUCTURES = {
 }
 """Variables of structures alone."""
 
+
+_ENDS = {
+    "low": "lower end of its 95 % interval",
+    "high": "upper end of its 95 % interval",
+}
+
+
+def share_variables(long_name: str, dim: str) -> dict[str, Variable]:
+    """Return a share of a sample, and both ends of its interval."""
+    return {"share": Variable(long_name, dims=(dim,))} | {
+        f"share_{end}": Variable(words, dims=(dim,)) for end, words in _ENDS.items()
+    }
+
+
+def sobol_variables(*dims: str) -> dict[str, Variable]:
+    """Return the Sobol indices of first order and the total ones, with their intervals."""
+    ends = {"": ""} | {f"_{end}": f", {words}" for end, words in _ENDS.items()}
+    return {
+        f"{order}{end}": or_nan(f"Sobol index, {name}{words}", dims=dims, rtol=1e-6)
+        for order, name in (("first_order", "first order"), ("total_order", "total"))
+        for end, words in ends.items()
+    }
+
+
 ASSESS = DatasetSchema(
     name="assess",
     title="Whether it squeals or hammers, why, how loud, and what stops it",

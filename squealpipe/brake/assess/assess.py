@@ -31,30 +31,7 @@ from squealpipe.vibration.settling import FOR_NUMBERS
 def assess(
     params: Parameters, alpha1: Angle, alpha2: Angle, *, tol: Tolerance = 1e-12
 ) -> xr.Dataset:
-    """Return whether a brake squeals or hammers, at which frequency, how loud, why, and what stops
-    it.
-
-    Two starts are told: steady sliding, pushed by 1 % of the static compression in the direction
-    in which small motions grow fastest, and (prefix ``sudden_``) rest under the whole preload at
-    once. Each is run until its motion has settled, at most 20,000 periods 2π √(2m/(k1 + k2)). The
-    ``verdict`` is that of the first: quiet (dies out; an undamped brake: stays below ten times the
-    push), squeals (lasts, contact kept), hammers (lasts, contact lost again and again), or
-    undetermined. Without steady sliding it is that of the sudden start.
-
-    Args:
-        alpha1: angle of spring 1, counted from +x, the direction of the belt, rad.
-        alpha2: angle of spring 2, counted from −x, rad.
-        tol: tolerance of the Taylor integrator, relative to l_pre.
-
-    Returns:
-        Dataset ``assess``: scalars of both starts, spectrum and path of the settled motion of the
-        verdict, and over ``cure``, by ascending change: the nearest value from which the brake is
-        quiet (of a quiet one, up to which it is), from steady sliding and from any start that was
-        tried: both above, three strikes, and the motions of this brake, followed. NaN: none between
-        ``lowest_tried`` and ``highest_tried``; ``quiet_low`` and ``quiet_high`` over ``interval``:
-        all intervals that are quiet after a push. Outcomes: converged, unresolved (undetermined),
-        no_sliding_state.
-    """
+    """Return verdict, cause, frequency, level and cures: see :func:`squealpipe.assess`."""
     return judge(params, alpha1, alpha2, tol=tol).with_cures()
 
 

@@ -60,27 +60,7 @@ def propensity(
     tol: Tolerance = 1e-9,
     workers: Workers = None,
 ) -> xr.Dataset:
-    """Estimate how often flutter, contact loss, irregular hammering and whirl occur, and why.
-
-    Args:
-        params: the parameters that are not distributed.
-        alpha1, alpha2: angles, rad; they may be distributed too.
-        distributions: name → {"distribution": "uniform", "low", "high"}, {"normal", "mean",
-            "std"} (cut off at 4 std) or {"lognormal", "median", "log_std"}.
-        samples: size of the sample, a power of 2; the indices take samples·(inputs + 2) runs, and
-            4 times as many points for flutter, which needs none.
-        t_end: end of each run, s.
-        spring_correlation: of k1 and k2 (Gaussian copula). Sobol indices assume independent
-            inputs and are not given with it.
-        seed: of the scrambled Sobol sequence.
-
-    Returns:
-        Dataset over quantity and input: shares, first-order and total Sobol indices with 95 %
-        intervals (Student's t over 8 replicates; of rare cases Wilson's), the share of growing
-        parts of the sample, and the half-width of the widest total by the size of the base sample.
-        An index is NaN, with outcome ``unresolved``, where its half-width is above 0.05 or fewer
-        than 30 samples differ.
-    """
+    """Estimate how often each event occurs, and why: see :func:`squealpipe.propensity`."""
     if samples & (samples - 1):
         raise ValueError(
             f"samples = {samples!r}: a power of 2 of at least 64 is needed"

@@ -1,4 +1,4 @@
-"""Datasets on how far verdicts carry and how parameters spread into results."""
+"""Shares of the events of a pad of scattered parameters, and what they depend on."""
 
 from squealpipe.brake.schema.linear import ONE_PAIR
 from squealpipe.schema import (
@@ -10,65 +10,22 @@ from squealpipe.schema import (
     outcome,
     text,
 )
-
-_CELL = ("variant", "statement")
-
-VERDICT_ROBUSTNESS = DatasetSchema(
-    name="verdict_robustness",
-    title="Statements of the paper in settings that it leaves out",
-    coordinates={
-        "variant": text("setting", "variant"),
-        "statement": text("statement, by its id", "statement"),
-    },
-    variables={
-        "share": or_nan(
-            "share of the runs in which the statement holds; 1 or 0 for a single one",
-            dims=_CELL,
-        ),
-        "share_low": or_nan("lower end of its 95 % interval", dims=_CELL),
-        "share_high": or_nan("upper end of its 95 % interval", dims=_CELL),
-        "judged": count("number of runs judged", *_CELL),
-        "outcome": outcome(
-            *_CELL, among=(Outcome.converged, Outcome.unresolved, Outcome.not_computed)
-        ),
-    },
-)
-
-_BY_QUANTITY, _INPUT = ("quantity",), ("quantity", "input")
+from squealpipe.vibration.schema import share_variables, sobol_variables
 
 PROPENSITY = DatasetSchema(
     name="propensity",
     title="Propensity for instability, and what it depends on, over a spread of parameters",
     coordinates={
-        "quantity": text("what happens", *_BY_QUANTITY),
+        "quantity": text("what happens", "quantity"),
         "input": text("uncertain parameter", "input"),
         "size": count("size of a part of the sample", "size"),
     },
     variables={
-        "share": Variable(
-            dims=_BY_QUANTITY, long_name="share of the sample in which it happens"
-        ),
-        "share_low": Variable(
-            dims=_BY_QUANTITY, long_name="lower end of its 95 % interval"
-        ),
-        "share_high": Variable(
-            dims=_BY_QUANTITY, long_name="upper end of its 95 % interval"
-        ),
+        **share_variables("share of the sample in which it happens", "quantity"),
         "share_by_size": Variable(
             "the same share from a part of the sample", dims=("quantity", "size")
         ),
-        **{
-            f"{order}{end}": or_nan(f"Sobol index, {words}{of}", dims=_INPUT, rtol=1e-6)
-            for order, words in (
-                ("first_order", "first order"),
-                ("total_order", "total"),
-            )
-            for end, of in (
-                ("", ""),
-                ("_low", ", lower end of its 95 % interval"),
-                ("_high", ", upper end of its 95 % interval"),
-            )
-        },
+        **sobol_variables("quantity", "input"),
         "half_width_by_size": or_nan(
             "half-width of the widest total index",
             dims=("quantity", "size"),
@@ -79,9 +36,7 @@ PROPENSITY = DatasetSchema(
             "base sample of the indices", "quantity", "size", optional=True
         ),
         "judged": count("number of parameter sets"),
-        "outcome": outcome(
-            *_BY_QUANTITY, among=(Outcome.converged, Outcome.unresolved)
-        ),
+        "outcome": outcome("quantity", among=(Outcome.converged, Outcome.unresolved)),
         **ONE_PAIR,
         "t_end": Variable(units="s", long_name="end of each run"),
     },

@@ -44,13 +44,15 @@ class Growth(IntEnum):
     undecided = 2
 
 
+def _ratios(sizes: Any) -> np.ndarray:
+    """Return the ratio of each of the last sizes to the one before; ``sizes``: (…, windows)."""
+    last = np.asarray(sizes, float)[..., -GROWTH_RULE.n_judged - 1 :]
+    return np.asarray(last[..., 1:] / last[..., :-1])
+
+
 def least_growth(sizes: Any) -> np.ndarray:
     """Smallest ratio of one of the last sizes to that before it; ``sizes``: (…, ``n_windows``)."""
-    sizes = np.asarray(sizes, float)
-    ratios = (
-        sizes[..., -GROWTH_RULE.n_judged :] / sizes[..., -GROWTH_RULE.n_judged - 1 : -1]
-    )
-    return np.asarray(ratios.min(axis=-1))
+    return np.asarray(_ratios(sizes).min(axis=-1))
 
 
 def judge_growth(sizes: Any) -> np.ndarray:
@@ -70,11 +72,7 @@ def growth_fails(sizes: Any) -> np.ndarray:
     Args:
         sizes: (…, ``n_windows``), NaN of windows that were not run.
     """
-    sizes = np.asarray(sizes, float)
-    ratios = (
-        sizes[..., -GROWTH_RULE.n_judged :] / sizes[..., -GROWTH_RULE.n_judged - 1 : -1]
-    )
-    return np.asarray((ratios < GROWTH_RULE.least_ratio).any(axis=-1))
+    return np.asarray((_ratios(sizes) < GROWTH_RULE.least_ratio).any(axis=-1))
 
 
 def growth_margin(sizes: Any) -> np.ndarray:
@@ -83,8 +81,5 @@ def growth_margin(sizes: Any) -> np.ndarray:
     Args:
         sizes: (…, ``n_windows``), NaN from the window on that follows one in which growth fails.
     """
-    sizes = np.asarray(sizes, float)
-    ratios = (
-        sizes[..., -GROWTH_RULE.n_judged :] / sizes[..., -GROWTH_RULE.n_judged - 1 : -1]
-    )
-    return np.asarray(np.log(np.fmin.reduce(ratios, axis=-1) / GROWTH_RULE.least_ratio))
+    least = np.fmin.reduce(_ratios(sizes), axis=-1)
+    return np.asarray(np.log(least / GROWTH_RULE.least_ratio))

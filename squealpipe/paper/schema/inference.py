@@ -98,11 +98,6 @@ DAMPED_GRID = 181
 """Angles per axis at which instability is looked for where it has no closed form."""
 
 
-def _limit(side: str, of: str, dims: tuple[str, ...]) -> Variable:
-    name = f"{side} end of the {CONFIDENCE:.0%} Wilson interval of {of}"
-    return or_nan(name, dims=dims)
-
-
 PARAMETER_INFERENCE = DatasetSchema(
     name="parameter_inference",
     title="Which parameters agree with the paper's statements, in which reading of its friction",
@@ -140,8 +135,13 @@ PARAMETER_INFERENCE = DatasetSchema(
         ),
         "feasible_count": count("number of feasible samples", *READING),
         "share": Variable("share of the samples that are feasible", dims=READING),
-        "share_low": _limit("lower", "share", READING),
-        "share_high": _limit("upper", "share", READING),
+        **{
+            f"share_{end}": or_nan(
+                f"{words} end of the {CONFIDENCE:.0%} Wilson interval of share",
+                dims=READING,
+            )
+            for end, words in (("low", "lower"), ("high", "upper"))
+        },
         "share_cut_alone": Variable(
             "share of the samples that this statement alone excludes, among the first sixteenth; "
             "for growth, which is judged last, among all",

@@ -1,16 +1,7 @@
 """Shares of the verdicts on a structure of scattered parameters, and what they depend on."""
 
-from squealpipe.schema import (
-    DatasetSchema,
-    Outcome,
-    Variable,
-    count,
-    or_nan,
-    outcome,
-    text,
-)
-
-_PAIR = ("verdict", "input")
+from squealpipe.schema import DatasetSchema, Outcome, Variable, count, outcome, text
+from squealpipe.vibration.schema import share_variables, sobol_variables
 
 STRUCTURE_PROPENSITY = DatasetSchema(
     name="structure_propensity",
@@ -20,21 +11,8 @@ STRUCTURE_PROPENSITY = DatasetSchema(
         "input": text("scattered parameter", "input"),
     },
     variables={
-        "share": Variable("share of the sample with this verdict", dims=("verdict",)),
-        "share_low": Variable("lower end of its 95 % interval", dims=("verdict",)),
-        "share_high": Variable("upper end of its 95 % interval", dims=("verdict",)),
-        **{
-            f"{order}{end}": or_nan(f"Sobol index, {words}{of}", dims=_PAIR, rtol=1e-6)
-            for order, words in (
-                ("first_order", "first order"),
-                ("total_order", "total"),
-            )
-            for end, of in (
-                ("", ""),
-                ("_low", ", lower end of its 95 % interval"),
-                ("_high", ", upper end of its 95 % interval"),
-            )
-        },
+        **share_variables("share of the sample with this verdict", "verdict"),
+        **sobol_variables("verdict", "input"),
         "relative_std": Variable(
             "standard deviation of the parameter over its value", dims=("input",)
         ),

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogLocator, MaxNLocator
 
-from squealpipe.paper.figures.linear.linear_overlay import mark_scene
+from squealpipe.paper.figures.linear.linear_overlay import mark_figure_3
 from squealpipe.plotting import plot, style
 from squealpipe.study.figures.declared import report_figure
 from squealpipe.text import number
@@ -53,5 +53,5 @@ def draw(hammering: xr.Dataset) -> Figure:
         style.panel_letter(panel, letter, title)
     halo = [withStroke(linewidth=3.2, foreground="white")]
     for panel in axes.flat:
-        mark_scene(panel, "F3", style.BLACK, path_effects=halo)
+        mark_figure_3(panel, style.BLACK, path_effects=halo)
     return figure

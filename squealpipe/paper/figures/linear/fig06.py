@@ -5,7 +5,10 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from squealpipe.brake.schema.linear import BoundaryCurve
-from squealpipe.paper.figures.linear.linear_overlay import draw_boundaries, mark_scene
+from squealpipe.paper.figures.linear.linear_overlay import (
+    draw_boundaries,
+    mark_figure_3,
+)
 from squealpipe.parameters import direction_of
 from squealpipe.plotting import style
 from squealpipe.plotting.origin import parameter
@@ -66,7 +69,7 @@ def draw(
         draw_boundaries(
             panel, boundaries, curves if extra is None else [*curves, extra]
         )
-        mark_scene(panel, "F3")
+        mark_figure_3(panel)
         style.panel_letter(panel, letter, title)
     lines = axes[0, 0].get_legend_handles_labels()[0]
     keys = [*style.patches(cell_tones.items()), *lines]

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from squealpipe.brake.schema.dynamics.runs import GROWTH_THRESHOLD
-from squealpipe.paper.figures.linear.linear_overlay import mark_scene
+from squealpipe.paper.figures.linear.linear_overlay import mark_figure_3
 from squealpipe.plotting import style
 from squealpipe.study.figures.declared import report_figure
 
@@ -131,7 +131,7 @@ def draw(found: Mapping[str, xr.Dataset]) -> Figure:
         kinds = draw_kinds(
             panel, maps[name], found.get(f"{_kind(name)}validity_boundary")
         )
-        mark_scene(panel, "F3")
+        mark_figure_3(panel)
         counts.append(np.bincount(kinds.ravel(), minlength=len(CELL_KINDS)))
         words = TITLES[_kind(name)].removesuffix(" in all models")
         title = f"{words}: " if len(names) > 1 else ""

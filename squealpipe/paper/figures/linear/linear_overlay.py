@@ -45,7 +45,7 @@ def draw_boundaries(
                     label = ""
 
 
-def mark_scene(axes: Axes, name: str, colour: str = RED, **look: Any) -> None:
-    """The × of the paper at a named scene."""
-    look = {"ms": 7, "mew": 1.8, "label": scene_title(name), "clip_on": False, **look}
-    axes.plot(SCENES[name].alpha1, SCENES[name].alpha2, "x", color=colour, **look)
+def mark_figure_3(axes: Axes, colour: str = RED, **look: Any) -> None:
+    """Mark the angles of the paper's Fig. 3 with its ×."""
+    look = {"ms": 7, "mew": 1.8, "label": scene_title("F3"), "clip_on": False, **look}
+    axes.plot(SCENES["F3"].alpha1, SCENES["F3"].alpha2, "x", color=colour, **look)
