@@ -12,9 +12,9 @@ from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
 from squealpipe.plotting.film import FRAMES_PER_SECOND, Film
-from squealpipe.plotting.mesh_scene import Body, StructureScene
+from squealpipe.plotting.mesh_scene import Body, structure_scene
 from squealpipe.plotting.pad_motion import PadMotion
-from squealpipe.plotting.pad_scene import Geometry, Mechanism, PadScene
+from squealpipe.plotting.pad_scene import Geometry, Mechanism, pad_scene
 from squealpipe.plotting.structure_motion import SCHEMA as STRUCTURE_RUN
 from squealpipe.plotting.structure_motion import StructureMotion
 from squealpipe.units import engineering
@@ -54,15 +54,8 @@ def film_of(
         return _film_of_structure(run, seconds, periods, begin, dpi)
     motion = PadMotion.read(run)
     period = period_of(motion)
-    first, last = float(motion.time[0]), float(motion.time[-1])
-    span = min(periods * period, last - first)
-    start = last - span if begin is None else begin
-    if not first <= start < last:
-        raise ValueError(
-            f"begin = {start!r} s: the run is from {first:.6g} to {last:.6g} s"
-        )
-    span = min(span, last - start)
-    seconds *= span / (periods * period)  # the pace stays what was asked for
+    start, span, seconds = _part(motion.time, periods * period, begin, seconds)
+    last = float(motion.time[-1])
     part = motion.from_(start - period)
     # between so many samples cubics with the right velocities miss nothing that is seen
     samples_per_period = 16
@@ -73,13 +66,13 @@ def film_of(
             )
         count = math.ceil(4 * samples_per_period * (last - part.time[0]) / period)
         motion = PadMotion.read(
-            again(np.linspace(max(start - period, first), last, count + 1))
+            again(np.linspace(max(start - period, motion.time[0]), last, count + 1))
         )
     count = max(round(seconds * FRAMES_PER_SECOND), 2)
     shown = motion.at(start + span * np.arange(count) / count)
     around = motion.from_(start - 1e-9 * span)
     around = around if around.time.size > 3 else motion
-    return Film(PadScene(around, shown, seconds / span), count, dpi)
+    return Film(pad_scene(around, shown, seconds / span), count, dpi)
 
 
 def _film_of_structure(
@@ -87,19 +80,31 @@ def _film_of_structure(
 ) -> Film:
     """Make a film of a structure of the stored instants that are nearest to its frames."""
     motion = StructureMotion.read(run)
-    period, first, last = 1.0 / motion.frequency, motion.time[0], motion.time[-1]
-    span = min(periods * period, last - first)
+    start, span, seconds = _part(
+        motion.time, periods / motion.frequency, begin, seconds
+    )
+    count = max(round(seconds * FRAMES_PER_SECOND), 2)
+    frames = motion.nearest(start + span * np.arange(count) / count)
+    return Film(structure_scene(motion, frames, seconds / span), count, dpi)
+
+
+def _part(
+    time: np.ndarray, length: float, begin: float | None, seconds: float
+) -> tuple[float, float, float]:
+    """Return begin and length of the part of a run that is shown, and the time that it takes, s.
+
+    Args:
+        length: that is asked for, s; the pace stays what was asked for where the run is shorter.
+    """
+    first, last = float(time[0]), float(time[-1])
+    span = min(length, last - first)
     start = last - span if begin is None else begin
     if not first <= start < last:
         raise ValueError(
             f"begin = {start!r} s: the run is from {first:.6g} to {last:.6g} s"
         )
     span = min(span, last - start)
-    seconds *= span / (periods * period)
-    count = max(round(seconds * FRAMES_PER_SECOND), 2)
-    instants = start + span * np.arange(count) / count
-    frames = np.searchsorted(0.5 * (motion.time[1:] + motion.time[:-1]), instants)
-    return Film(StructureScene(motion, frames, seconds / span), count, dpi)
+    return start, span, seconds * span / length
 
 
 def period_of(motion: PadMotion) -> float:
@@ -123,17 +128,18 @@ def period_of(motion: PadMotion) -> float:
     return float(motion.time[-1] - motion.time[0]) / 12.0
 
 
-def phases(run: xr.Dataset, count: int = 8) -> Figure:
-    """Draw the last period of a motion as a strip of phases, for paper.
+def phases(run: xr.Dataset) -> Figure:
+    """Draw the last period of a motion as a strip of eight phases, for paper.
 
     Args:
         run: dataset ``simulation``, ``assess`` or ``structure_run``.
-        count: of phases, in rows of four.
     """
-    if run.attrs.get("schema") == STRUCTURE_RUN:
-        return _phases_of_structure(run, count)
-    figure, panels = _strip(count)
-    figure.suptitle(draw_phases(panels, run), fontsize=8)
+    of_structure = run.attrs.get("schema") == STRUCTURE_RUN
+    figure, axes = style.new_figure(
+        style.PAGE, 2.5 if of_structure else 3.5, nrows=2, ncols=4
+    )
+    draw = _draw_phases_of_structure if of_structure else draw_phases
+    figure.suptitle(draw(list(axes.flat), run), fontsize=8)
     return figure
 
 
@@ -155,25 +161,12 @@ def draw_phases(panels: list[Axes], run: xr.Dataset) -> str:
     return f"one period of {engineering(period, 's')}; motion drawn {geometry.told}"
 
 
-def _phases_of_structure(run: xr.Dataset, count: int) -> Figure:
+def _draw_phases_of_structure(panels: list[Axes], run: xr.Dataset) -> str:
     motion = StructureMotion.read(run)
-    period, last = 1.0 / motion.frequency, float(motion.time[-1])
-    instants = last - period * (1.0 - np.arange(count) / count)
-    frames = np.searchsorted(0.5 * (motion.time[1:] + motion.time[:-1]), instants)
-    figure, panels = _strip(count, 1.25)
+    period, last, count = 1.0 / motion.frequency, float(motion.time[-1]), len(panels)
+    frames = motion.nearest(last - period * (1.0 - np.arange(count) / count))
     for index, panel in enumerate(panels):
         body = Body(panel, motion, frames, small=True)
         body.show(index)
         panel.set_title(engineering(period * index / count, "s"), fontsize=7)
-    words = f"one period of {engineering(period, 's')}; vibration drawn {body.told}"
-    figure.suptitle(words, fontsize=8)
-    return figure
-
-
-def _strip(count: int, height: float = 1.75) -> tuple[Figure, list[Axes]]:
-    """Panels in rows of four."""
-    rows = -(-count // 4)
-    figure, axes = style.new_figure(style.PAGE, height * rows, nrows=rows, ncols=4)
-    for panel in axes.flat[count:]:
-        panel.set_axis_off()
-    return figure, list(axes.flat[:count])
+    return f"one period of {engineering(period, 's')}; vibration drawn {body.told}"

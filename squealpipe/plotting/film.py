@@ -16,15 +16,15 @@ from importlib.resources import files
 from importlib.util import find_spec
 from pathlib import Path
 from string import Template
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
-from matplotlib.figure import Figure
 from PIL import Image
 
 from squealpipe.plotting import style
+from squealpipe.plotting.motion_panels import Scene
 from squealpipe.store.whole_files import whole_file
 
 FRAMES_PER_SECOND = 25
@@ -33,25 +33,6 @@ NO_FFMPEG = (
     "films as .mp4 need ffmpeg; install it with `pip install imageio-ffmpeg`, or write .gif or "
     ".html, which do without it"
 )
-
-
-class Scene(Protocol):
-    """A figure of which some artists move.
-
-    Attributes:
-        figure: all of it.
-        moving: artists that :meth:`show` changes, in the order in which they are drawn.
-        caption: words for what is seen, with the scale of time and of motion.
-        alt: words for those who do not see it.
-    """
-
-    figure: Figure
-    moving: list[Any]
-    caption: str
-    alt: str
-
-    def show(self, frame: int) -> None:
-        """Move the artists to where they are in a frame."""
 
 
 @dataclass(frozen=True)

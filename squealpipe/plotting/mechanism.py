@@ -33,6 +33,19 @@ def coil(
     return points
 
 
+def draw_belt_motion(
+    axes: Axes, middle: tuple[float, float], size: float, belt_speed: float, head: float
+) -> None:
+    """Draw the direction of a belt that moves, from the middle of a picture of a size."""
+    if not belt_speed:
+        return
+    ahead = np.copysign(size, belt_speed)
+    x, y = middle
+    arrow(axes, (x - 0.1 * ahead, y), (x + 0.1 * ahead, y), head, "black")
+    side = "left" if ahead > 0 else "right"
+    axes.text(x + 0.13 * ahead, y, "belt", fontsize=8, va="center", ha=side)
+
+
 def draw_mechanism(
     axes: Axes,
     alpha1: float,

@@ -9,24 +9,23 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.text import Text
 
 from squealpipe.codes import Regime
 from squealpipe.plotting import style
-from squealpipe.plotting.mechanism import arrow
+from squealpipe.plotting.mechanism import draw_belt_motion
 from squealpipe.plotting.motion_panels import (
     COLOURS_IN_WORDS,
     CONTACT_LOOKS,
-    Panels,
+    Scene,
     Traces,
-    contact_legend,
+    film_axes,
+    length_in_words,
     round_down,
-    speed_in_words,
 )
 from squealpipe.plotting.structure_motion import StructureMotion
 from squealpipe.structures.meshes.structure_mesh import NO_NODE, StructureMesh
 from squealpipe.text import number
-from squealpipe.units import engineering, shown_in
+from squealpipe.units import shown_in
 
 
 def projection(nodes: np.ndarray) -> np.ndarray:
@@ -100,7 +99,6 @@ class Body:
         motion: StructureMotion,
         frames: np.ndarray,
         *,
-        scale: float | None = None,
         small: bool = False,
     ) -> None:
         self.motion, self.frames = motion, frames
@@ -123,7 +121,7 @@ class Body:
             largest = 0.25 / max(count - 1, 1)
         self.extent = float(np.ptp(self.nodes, axis=0).max()) or 1.0
         moved = max(float(np.abs(self.moved).max()), 1e-300)
-        self.scale = scale or round_down(largest * self.extent / moved)
+        self.scale = round_down(largest * self.extent / moved)
         view = projection(self.nodes)
         self.view = view
         self.facets = None
@@ -196,21 +194,9 @@ class Body:
             top - deep, top, facecolor="#E8E8E8", edgecolor="black", lw=0.5, zorder=0
         )
         axes.plot([self.nodes[0, 0]], [top - 1.4 * deep], alpha=0.0)
-        if not small and self.motion.belt_speed:
-            ahead = math.copysign(1.0, self.motion.belt_speed)
-            middle, height = float(self.nodes[:, 0].mean()), top - 0.5 * deep
-            start, tip = (
-                (middle + ahead * at * self.extent, height) for at in (-0.1, 0.1)
-            )
-            arrow(axes, start, tip, 9, "black")
-            axes.text(
-                middle + 0.13 * ahead * self.extent,
-                height,
-                "belt",
-                fontsize=8,
-                va="center",
-                ha="left" if ahead > 0 else "right",
-            )
+        if not small:
+            middle = (float(self.nodes[:, 0].mean()), top - 0.5 * deep)
+            draw_belt_motion(axes, middle, self.extent, self.motion.belt_speed, 9)
 
     @property
     def told(self) -> str:
@@ -233,57 +219,43 @@ def draw_forces(axes: Axes, run: xr.Dataset) -> None:
     axes.legend(ncols=3)
 
 
-class StructureScene:
-    """The film of a structure: its mesh at the left, force and path of one contact at the right.
+def structure_scene(
+    motion: StructureMotion, frames: np.ndarray, slower: float
+) -> Scene:
+    """Draw the film of a structure, with the force and path of the contact that opens most.
 
     Args:
         frames: indices of the instants of the motion that are shown.
         slower: how many times slower than in reality the film is.
     """
-
-    def __init__(
-        self, motion: StructureMotion, frames: np.ndarray, slower: float
-    ) -> None:
-        self.figure, axes = style.new_figure(
-            8.0, 4.5, ncols=2, width_ratios=[1.35, 1.0]
-        )
-        left = axes[0, 0]
-        self.body = Body(left, motion, frames)
-        contact_legend(left)
-        chosen = motion.opens_most
-        name = motion.contacts[chosen]
-        left.set_title(f"vibration drawn {self.body.told}", fontsize=8)
-        self.clock: Text = left.text(
-            0.0, 0.98, "", transform=left.transAxes, va="top", fontsize=10
-        )
-        window = slice(int(frames[0]), int(frames[-1]) + 1)
-        all_of_it, shown = (
+    figure, axes = film_axes()
+    body = Body(axes[0], motion, frames)
+    chosen = motion.opens_most
+    name = motion.contacts[chosen]
+    open_ = 100 * np.mean(motion.regimes[:, chosen] == Regime.separated)
+    return Scene(
+        figure,
+        axes,
+        body,
+        *(
             Traces(
                 motion.time[part],
                 motion.force[part, chosen],
                 motion.contact_place[part, chosen],
                 motion.regimes[part, chosen],
             )
-            for part in (window, frames)
-        )
-        label = f"force of {name} over preload"
-        self.panels = Panels(self.figure, axes[0, 1], all_of_it, shown, label)
-        self.moving = [*self.body.moving, self.clock, *self.panels.moving]
-        length = float(motion.time[frames[-1]] - motion.time[frames[0]])
-        self.caption = (
-            f"{engineering(length, 's', 3)} of the motion, played {speed_in_words(slower)}; the "
-            f"vibration is drawn {self.body.told}, without the static deformation. "
+            for part in (slice(int(frames[0]), int(frames[-1]) + 1), frames)
+        ),
+        title=f"vibration drawn {body.told}",
+        force_label=f"force of {name} over preload",
+        caption=(
+            f"{length_in_words(motion.time[frames], slower)}; the "
+            f"vibration is drawn {body.told}, without the static deformation. "
             f"{COLOURS_IN_WORDS} Force and path are those of contact {name}."
-        )
-        open_ = 100 * np.mean(motion.regimes[:, chosen] == Regime.separated)
-        self.alt = (
+        ),
+        alt=(
             f"Film of the vibrating structure with {len(motion.contacts)} contacts on a belt; "
             f"contact {name} is open {open_:.0f} % of the time. Beside it the normal force of "
             f"{name} over time and its path."
-        )
-
-    def show(self, frame: int) -> None:
-        """Move all to an instant of the film."""
-        self.body.show(frame)
-        self.panels.show(frame)
-        self.clock.set_text(self.panels.told(frame))
+        ),
+    )

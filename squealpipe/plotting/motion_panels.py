@@ -1,20 +1,22 @@
-"""Panels beside a film: contact force over time and path of the contact, drawn along."""
+"""Draw the frames of a film: what moves, and beside it force and path of a contact."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.text import Text
 
 from squealpipe.codes import Regime
 from squealpipe.plotting import style
 from squealpipe.plotting.cycles import joined
 from squealpipe.text import number
-from squealpipe.units import shown_in
+from squealpipe.units import engineering, shown_in
 
 CONTACT_LOOKS = {
     Regime.slip_slower: ("slip", style.BLUE),
@@ -61,7 +63,7 @@ class Panels:
         column: Axes,
         motion: Traces,
         shown: Traces,
-        force_label: str = "contact force over preload",
+        force_label: str,
     ) -> None:
         spec = column.get_subplotspec()
         assert spec is not None  # noqa: S101 (axes of a grid have one)
@@ -135,23 +137,82 @@ class Panels:
             mark.set_color(CONTACT_LOOKS[Regime(int(shown.regimes[frame]))][1])
 
 
-def contact_legend(axes: Axes) -> None:
-    """Name the colours of contacts below axes."""
-    words = dict(CONTACT_LOOKS.values())
-    axes.legend(
-        handles=[Patch(color=colour, label=word) for word, colour in words.items()],
-        loc="lower center",
-        bbox_to_anchor=(0.5, -0.02),
-        ncols=3,
-        title="contact",
+class Artists(Protocol):
+    """Artists that move from frame to frame."""
+
+    moving: list[Any]
+
+    def show(self, frame: int) -> None:
+        """Move them to where they are in a frame."""
+
+
+class Scene:
+    """A film: what moves and a clock at the left, force and path of one contact at the right.
+
+    Args:
+        axes: of the left and of the right, of :func:`film_axes`.
+        drawn: what moves at the left.
+        motion: all that the path shows.
+        shown: instants of the frames.
+
+    Attributes:
+        moving: artists that :meth:`show` changes, in the order in which they are drawn.
+        caption: words for what is seen, with the scale of time and of motion.
+        alt: words for those who do not see it.
+    """
+
+    def __init__(
+        self,
+        figure: Figure,
+        axes: np.ndarray,
+        drawn: Artists,
+        motion: Traces,
+        shown: Traces,
+        *,
+        title: str,
+        caption: str,
+        alt: str,
+        force_label: str = "contact force over preload",
+    ) -> None:
+        self.figure, self.caption, self.alt = figure, caption, alt
+        self.drawn, self.shown = drawn, shown
+        left, right = axes
+        words = dict(CONTACT_LOOKS.values())
+        left.legend(
+            handles=[Patch(color=colour, label=word) for word, colour in words.items()],
+            loc="lower center",
+            bbox_to_anchor=(0.5, -0.02),
+            ncols=3,
+            title="contact",
+        )
+        left.set_title(title, fontsize=8)
+        self.clock: Text = left.text(
+            0.0, 0.98, "", transform=left.transAxes, va="top", fontsize=10
+        )
+        self.panels = Panels(figure, right, motion, shown, force_label)
+        self.moving = [*drawn.moving, self.clock, *self.panels.moving]
+
+    def show(self, frame: int) -> None:
+        """Move all to an instant of the film."""
+        self.drawn.show(frame)
+        self.panels.show(frame)
+        self.clock.set_text(self.panels.told(frame))
+
+
+def film_axes() -> tuple[Figure, np.ndarray]:
+    """Return a figure for a film, and its two axes."""
+    figure, axes = style.new_figure(8.0, 4.5, ncols=2, width_ratios=[1.35, 1.0])
+    return figure, axes[0]
+
+
+def length_in_words(time: np.ndarray, slower: float) -> str:
+    """Return how much of a motion a film shows, and how many times slower or faster than it is."""
+    pace = "slower" if slower >= 1.0 else "faster"
+    factor = number(max(slower, 1.0 / slower), 2)
+    return (
+        f"{engineering(float(time[-1] - time[0]), 's', 3)} of the motion, played "
+        f"{factor} times {pace} than in reality"
     )
-
-
-def speed_in_words(slower: float) -> str:
-    """Return how many times slower or faster than in reality a film is."""
-    if slower >= 1.0:
-        return f"{number(slower, 2)} times slower than in reality"
-    return f"{number(1.0 / slower, 2)} times faster than in reality"
 
 
 def round_down(value: float) -> float:

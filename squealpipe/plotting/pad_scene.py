@@ -13,19 +13,18 @@ from matplotlib.text import Text
 
 from squealpipe.codes import Regime
 from squealpipe.plotting import style
-from squealpipe.plotting.mechanism import arrow, coil, displaced_springs
+from squealpipe.plotting.mechanism import coil, displaced_springs, draw_belt_motion
 from squealpipe.plotting.motion_panels import (
     COLOURS_IN_WORDS,
     CONTACT_LOOKS,
-    Panels,
+    Scene,
     Traces,
-    contact_legend,
+    film_axes,
+    length_in_words,
     round_down,
-    speed_in_words,
 )
 from squealpipe.plotting.pad_motion import PadMotion
 from squealpipe.text import number
-from squealpipe.units import engineering
 
 
 class Geometry:
@@ -127,23 +126,9 @@ class Mechanism:
         )
         for end in geometry.ends:
             axes.plot(*end, "s", color="black", markersize=3 if small else 6, zorder=3)
-        if not small and motion.belt_speed:
-            ahead = math.copysign(1.0, motion.belt_speed)
-            middle = 0.5 * (low[0] + high[0])
-            height = geometry.belt - 0.5 * deep
-            span = geometry.size
-            start, tip = (
-                (middle + ahead * share * span, height) for share in (-0.1, 0.1)
-            )
-            arrow(axes, start, tip, 11, "black")
-            axes.text(
-                middle + ahead * 0.13 * span,
-                height,
-                "belt",
-                va="center",
-                fontsize=8,
-                ha="left" if ahead > 0 else "right",
-            )
+        if not small:
+            middle = (0.5 * (low[0] + high[0]), geometry.belt - 0.5 * deep)
+            draw_belt_motion(axes, middle, geometry.size, motion.belt_speed, 11)
         # colours tell what the contact does, so the springs have none
         look: dict[str, Any] = {"color": style.GREY, "lw": width}
         self.springs = [
@@ -200,54 +185,37 @@ class Mechanism:
         self.state.set_color(colour)
 
 
-class PadScene:
-    """The film of a pad: mechanism at the left, force over time and path at the right.
+def pad_scene(motion: PadMotion, shown: PadMotion, slower: float) -> Scene:
+    """Draw the film of a pad.
 
     Args:
         motion: all of it that the panels show.
         shown: instants of the frames.
         slower: how many times slower than in reality the film is.
     """
-
-    def __init__(self, motion: PadMotion, shown: PadMotion, slower: float) -> None:
-        self.shown = shown
-        self.figure, axes = style.new_figure(
-            8.0, 4.5, ncols=2, width_ratios=[1.35, 1.0]
-        )
-        left = axes[0, 0]
-        geometry = Geometry(motion)
-        self.mechanism = Mechanism(left, geometry, shown)
-        contact_legend(left)
-        first, second = (f"{number(math.degrees(angle))}°" for angle in shown.angles)
-        left.set_title(
-            f"α₁ = {first}, α₂ = {second}; motion drawn {geometry.told}", fontsize=8
-        )
-        self.clock: Text = left.text(
-            0.0, 0.98, "", transform=left.transAxes, va="top", fontsize=10
-        )
-        all_of_it, frames = (
+    figure, axes = film_axes()
+    geometry = Geometry(motion)
+    first, second = (f"{number(math.degrees(angle))}°" for angle in shown.angles)
+    open_, stuck = (
+        f"{100 * np.mean(shown.regimes == each):.0f} %"
+        for each in (Regime.separated, Regime.stick)
+    )
+    return Scene(
+        figure,
+        axes,
+        Mechanism(axes[0], geometry, shown),
+        *(
             Traces(each.time, each.force, each.place, each.regimes, each.preload)
             for each in (motion, shown)
-        )
-        self.panels = Panels(self.figure, axes[0, 1], all_of_it, frames)
-        self.moving = [*self.mechanism.moving, self.clock, *self.panels.moving]
-        self.caption = (
-            f"{engineering(float(shown.time[-1] - shown.time[0]), 's', 3)} of the motion, played "
-            f"{speed_in_words(slower)}; displacements are drawn {geometry.told} "
+        ),
+        title=f"α₁ = {first}, α₂ = {second}; motion drawn {geometry.told}",
+        caption=(
+            f"{length_in_words(shown.time, slower)}; displacements are drawn {geometry.told} "
             f"beside the springs. {COLOURS_IN_WORDS}"
-        )
-        open_, stuck = (
-            f"{100 * np.mean(shown.regimes == each):.0f} %"
-            for each in (Regime.separated, Regime.stick)
-        )
-        self.alt = (
+        ),
+        alt=(
             f"Film of a mass on two springs at {first} and {second} above a moving belt; its "
             f"contact is open {open_} and sticks {stuck} of the time. Beside it the contact force "
             "over time and the path of the mass."
-        )
-
-    def show(self, frame: int) -> None:
-        """Move all to an instant of the film."""
-        self.mechanism.show(frame)
-        self.panels.show(frame)
-        self.clock.set_text(self.panels.told(frame))
+        ),
+    )

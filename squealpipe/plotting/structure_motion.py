@@ -80,6 +80,10 @@ class StructureMotion:
             frequency=float(run.dominant_frequency),
         )
 
+    def nearest(self, instants: np.ndarray) -> np.ndarray:
+        """Return the indices of the samples that are nearest to instants, s."""
+        return np.searchsorted(0.5 * (self.time[1:] + self.time[:-1]), instants)
+
     @property
     def opens_most(self) -> int:
         """Place of the contact that is open for the largest share of the time."""

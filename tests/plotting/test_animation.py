@@ -62,8 +62,8 @@ def test_the_drawn_mass_is_where_the_dataset_says(belt_speed, degrees, tmp_path)
     seen = np.array([mass_in(frames[k]) for k in (3, 20, 41, 66)])
     moved = truth[[3, 20, 41, 66]]
     # one scale for both directions: displacements times so many, in pixels
-    scale = made.scene.mechanism.geometry.scale
-    axes = made.scene.mechanism.axes
+    scale = made.scene.drawn.geometry.scale
+    axes = made.scene.drawn.axes
     per_metre = axes.bbox.width / np.diff(axes.get_xlim())[0]
     expected = scale * per_metre * (moved - moved.mean(axis=0))
     assert np.abs(expected).max() > 15.0
@@ -87,9 +87,9 @@ def test_what_the_contact_does_is_told_by_colour_and_word(pad):
     words = {}
     for frame, regime in enumerate(scene.shown.regimes):
         scene.show(frame)
-        state = scene.mechanism.state
+        state = scene.drawn.state
         words.setdefault(state.get_text(), set()).add(state.get_color())
-        lifted = scene.mechanism.foot.get_ydata()[0] > scene.mechanism.geometry.belt
+        lifted = scene.drawn.foot.get_ydata()[0] > scene.drawn.geometry.belt
         y = scene.shown.place[frame, 1]
         assert (state.get_text() == "open") == (regime == 3)
         assert lifted == (regime == 3 and y > float(pad.preload))
@@ -164,8 +164,8 @@ def test_what_has_died_out_is_drawn_still():
     """Round-off would fill the picture if it were enlarged as a motion is."""
     quiet = simulate(PAD.with_(mu=0.0, mu_static=0.0), *ANGLES, t_end=1.0)
     made = film_of(quiet, seconds=0.2)
-    middles = made.scene.mechanism.middles
-    assert np.ptp(middles, axis=0).max() < 1e-3 * made.scene.mechanism.geometry.size
+    middles = made.scene.drawn.middles
+    assert np.ptp(middles, axis=0).max() < 1e-3 * made.scene.drawn.geometry.size
 
 
 def test_a_strip_has_eight_phases(pad):

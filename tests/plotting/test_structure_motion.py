@@ -73,7 +73,7 @@ def test_the_mesh_is_drawn_where_the_dataset_says(swaying):
     made = film_of(swaying, seconds=1.0, dpi=200)
     frames = list(made.frames())
     assert len(frames) == 25
-    body = made.scene.body
+    body = made.scene.drawn
     axes = body.marks.axes
     per_metre = axes.bbox.width / np.diff(axes.get_xlim())[0]
     chosen = [0, 6, 13]
@@ -104,7 +104,7 @@ def test_a_node_or_a_contact_is_heard(swaying):
 
 
 def test_open_contacts_are_hollow(swaying):
-    body = film_of(swaying, seconds=1.0).scene.body
+    body = film_of(swaying, seconds=1.0).scene.drawn
     for place in range(25):
         body.show(place)
         hollow = (body.marks.get_facecolor()[:, :3] == 1.0).all(axis=1)
