@@ -158,6 +158,7 @@ class Motion(ManyContacts):
                     for i in np.flatnonzero(low[:, place])
                 ]
                 end, hit = min(roots), True
+            seen_states = states[:, times <= end]
             if step is not None:
                 at = []
                 while taken * step < time + end:
@@ -167,12 +168,12 @@ class Motion(ManyContacts):
                     exponentials = np.exp(values[:, None] * np.array(at))
                     between = (vectors @ (part[:, None] * exponentials)).real
                     samples.append(between[:-1].T)
+                    seen_states = np.hstack([seen_states, between])
             sides = np.array(self.side)
             seen["open"] += end * (sides == OPEN)
             seen["stick"] += end * (sides == 0)
-            before = times <= end
             forces = self.preload[:, None] - self.k[:, None] * (
-                self.n.T @ states[: len(self.mass), before]
+                self.n.T @ seen_states[: len(self.mass)]
             )
             forces[sides == OPEN] = 0.0
             seen["peak"] = np.maximum(seen["peak"], forces.max(axis=1))

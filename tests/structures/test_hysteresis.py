@@ -9,7 +9,7 @@ from squealpipe.plotting import picture
 from squealpipe.schema import Outcome
 from squealpipe.structures.schema.squealing import JUST_ABOVE, SQUEAL_LIMITS, OnsetKind
 from squealpipe.study.report.squealing import lines
-from tests.oracles.exponentials import FASTER, Exponentials
+from tests.oracles.structure_answers import Motion
 
 UNITS = 1e4
 """rad/s of a mode."""
@@ -75,13 +75,15 @@ def squealing(answer, mu, start, end):
     at_rest = at_sliding(mu)
     squeal = np.concatenate([answer.displacement[0], answer.velocity[0]])
     state = at_rest + start * (squeal - at_sliding(0.45))
-    return Exponentials(structure).run(state, end, 0.9 * end, 5e-6)[2] > 0
+    motion = Motion(structure, state)
+    motion.run(0.9 * end)
+    return motion.run(0.1 * end)["events"] > 0
 
 
 def at_sliding(mu):
     """Steady sliding, from the equations of a leg alone; the belt runs backwards."""
-    a, b, *_ = Exponentials(soft(mu)).affine(np.array([FASTER]))
-    return np.linalg.solve(a, -b)
+    leg = Motion(soft(mu)).flow([-1])[0]
+    return np.linalg.solve(leg[:-1, :-1], -leg[:-1, -1])
 
 
 @pytest.mark.release
@@ -104,8 +106,7 @@ def test_squeal_lasts_below_the_critical_friction_down_to_the_fold(answer):
 def test_the_unstable_cycle_ends_where_the_contact_is_just_touched(answer):
     """At the critical friction small motions keep their size until contact is lost."""
     critical = float(answer.onset_mu)
-    a, *_ = Exponentials(soft(critical)).affine(np.array([FASTER]))
-    values, vectors = np.linalg.eig(a)
+    values, vectors = np.linalg.eig(Motion(soft(critical)).flow([-1])[0][:-1, :-1])
     place = int(np.argmax(values.real + 1e-3 * values.imag))
     shape = vectors[:, place]
     assert abs(values[place].real) < 1e-6 * abs(values[place])

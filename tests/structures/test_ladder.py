@@ -16,7 +16,7 @@ from squealpipe.structures.spectrum import Limits, Solver
 from squealpipe.structures.squeal.plant import Plant
 from squealpipe.structures.squeal.smoothed import Smoothed
 from squealpipe.study.report.squeal_ladder import lines
-from tests.oracles.exponentials import Exponentials
+from tests.oracles.structure_answers import Motion
 from tests.structures.test_squealing import two_modes
 
 GALLERY = Path(__file__).parents[2] / "docs/gallery"
@@ -46,15 +46,21 @@ def test_the_finest_run_is_that_of_an_integrator_apart(ladder):
     start = plant.pushed(plant.unstable[0], 0.01)
     end = float(ladder.t_end)
     # the last window is a quarter of it
-    apart = Exponentials(structure)
-    shares, peaks, _, velocities = apart.run(start, end, 0.75 * end, 1e-6)
+    apart = Motion(structure, start)
+    apart.run(0.75 * end)
+    late = apart.run(0.25 * end, 1e-6)
     finest = row(ladder, "exact events")
     assert int(finest.role) == Role.our_setting
     allowed = 2.0 * float(ladder.separation_uncertainty) + 1e-3
-    assert finest.separated_fraction.values == pytest.approx(shares[0], abs=allowed)
-    assert finest.stick_fraction.values == pytest.approx(shares[1], abs=1e-3)
-    assert finest.peak_force.values == pytest.approx(peaks / 2e3, rel=2e-3)
+    assert finest.separated_fraction.values == pytest.approx(
+        late["open"] / (0.25 * end), abs=allowed
+    )
+    assert finest.stick_fraction.values == pytest.approx(
+        late["stick"] / (0.25 * end), abs=1e-3
+    )
+    assert finest.peak_force.values == pytest.approx(late["peak"] / 2e3, rel=2e-3)
     contact = structure.contacts[0]
+    velocities = late["samples"][:, 2:]
     along = np.hypot(velocities[:, 0] * contact.tangential[0], velocities[:, 1])
     assert float(finest.velocity_rms) == pytest.approx(
         np.sqrt((along**2).mean()), rel=0.03
@@ -107,11 +113,12 @@ def test_complex_modes_name_the_mode_but_neither_level_nor_contact_loss(ladder):
 def test_between_its_corners_the_smoothed_structure_is_the_exact_one():
     """Sliding fast in contact, tanh is 1 and rates are A x + b of the integrator apart."""
     structure = two_modes(1.0)
-    plant, apart = Plant(structure), Exponentials(structure)
+    plant = Plant(structure)
     model = Smoothed(plant, 0.01, np.zeros(1))
     state = plant.pushed(plant.unstable[0], 0.01)
-    a, b, *_ = apart.affine(apart.start(state))
-    assert model.rates(0.0, state) == pytest.approx(a @ state + b, rel=1e-12)
+    apart = Motion(structure, state)
+    rates = apart.flow(apart.side)[0] @ np.append(state, 1.0)
+    assert model.rates(0.0, state) == pytest.approx(rates[:-1], rel=1e-12)
     # open: no force at all, and of a rounded corner s²/(4 |p|) far from it
     rounded = Smoothed(plant, 0.01, np.array([2.0]))
     assert model.forces(np.array([-50.0])) == 0.0

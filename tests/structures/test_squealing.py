@@ -23,7 +23,7 @@ from squealpipe.study.structure_study import (
     read_structure,
     squealing,
 )
-from tests.oracles.exponentials import Exponentials
+from tests.oracles.structure_answers import Motion
 
 UNITS = 1e4
 """rad/s of a mode of the small structure."""
@@ -51,20 +51,25 @@ def answer():
 @pytest.mark.release
 def test_the_settled_motion_is_that_of_an_integrator_apart(answer):
     structure = two_modes(1.0)
-    apart = Exponentials(structure)
     plant = Plant(structure)
     start = plant.pushed(plant.unstable[0], 0.01)
     end = 4.0 * float(answer.settled_by.max())
-    shares, peaks, events, velocities = apart.run(start, end, 0.5 * end, 1e-6)
+    apart = Motion(structure, start)
+    apart.run(0.5 * end)
+    late = apart.run(0.5 * end, 1e-6)
     one = answer.isel(attractor=int(answer.ends_in[0]))
-    assert one.separated_fraction.values == pytest.approx(shares[0], abs=2e-3)
-    assert one.stick_fraction.values == pytest.approx(shares[1], abs=2e-3)
-    assert one.peak_force.values == pytest.approx(peaks / 2e3, rel=2e-3)
-    kinetic = 0.5 * (velocities**2).sum(axis=1).mean()
+    assert one.separated_fraction.values == pytest.approx(
+        late["open"] / (0.5 * end), abs=2e-3
+    )
+    assert one.stick_fraction.values == pytest.approx(
+        late["stick"] / (0.5 * end), abs=2e-3
+    )
+    assert one.peak_force.values == pytest.approx(late["peak"] / 2e3, rel=2e-3)
+    kinetic = 0.5 * (late["samples"][:, 2:] ** 2).sum(axis=1).mean()
     assert float(one.kinetic_energy) == pytest.approx(kinetic, rel=0.05)
     assert int(one.kind) == Kind.cycle
     assert int(one.events_per_period) / float(one.period) == pytest.approx(
-        events, rel=5e-3
+        late["events"] / (0.5 * end), rel=5e-3
     )
     assert float(one.largest_multiplier) < 1
     assert float(one.dominant_frequency) * float(one.period) == pytest.approx(
@@ -182,7 +187,9 @@ def test_nothing_of_a_transient_is_left_in_the_largest_force_of_a_cycle():
     assert list(loud.kind.values) == [Kind.cycle]
     at_end = loud.isel(attractor=0)
     start = np.concatenate([at_end.displacement, at_end.velocity])
-    _, peaks, *_ = Exponentials(pad).run(start, 0.3, 0.27, 1e-5)
+    apart = Motion(pad, start)
+    apart.run(0.27)
+    peaks = apart.run(0.03, 1e-5)["peak"]
     force = 7e6 * 5.714e-4
     assert float(at_end.peak_force[0]) == pytest.approx(peaks[0] / force, rel=2e-4)
 
