@@ -327,7 +327,10 @@ def pairs_of(flag: str, texts: Sequence[str]) -> dict[str, str]:
 
 
 def modifications_of(texts: Sequence[str]) -> dict[str, Any]:
-    """Return modifications of a structure by name; degrees of freedom counted from 1 become 0's."""
+    """Return modifications of a structure by name, as :func:`squealpipe.assess` takes them."""
+    # the command starts without matrices
+    from squealpipe.structures.assess.modifications import counted_from_zero
+
     found: dict[str, Any] = {}
     for name, content in pairs_of("--modify", texts).items():
         kind, *words = content.split()
@@ -350,10 +353,8 @@ def modifications_of(texts: Sequence[str]) -> dict[str, Any]:
                 kind: {"nodes": _nodes(place)} | {k: v for k, v in both if v}
             }
         else:
-            ends = [_freedom(each) for each in place.split(",")]
-            key = ends[0] if len(ends) == 1 else tuple(ends)
-            found[name] = {kind: {key: values[0]}}
-    return found
+            found[name] = {kind: {place: values[0]}}
+    return counted_from_zero(found)
 
 
 def _nodes(text: str) -> str | list[int]:
@@ -362,10 +363,3 @@ def _nodes(text: str) -> str | list[int]:
     return (
         [int(number) for number in numbers] if all(map(str.isdigit, numbers)) else text
     )
-
-
-def _freedom(text: str) -> int | str:
-    """Read a degree of freedom counted from 1, or a node and its direction like 5005.3."""
-    if text.isdigit() and int(text) > 0:
-        return int(text) - 1
-    return text

@@ -27,6 +27,12 @@ structure:
 #   speed: 1:4:4 # m/s
 #   mu: [0.3, 0.5] # or temperature: 20:300:3 with mu_of: {{temperature: {{20: 0.5, 300: 0.3}}}}
 #   measured: noises.csv # with columns pressure, speed [km/h], mu, frequency [Hz], level [dB]
+
+# modifications: # tried as cures beside friction, preload, damping and the like
+#   weight: {{added_mass: {{2: 0.1 kg}}}} # up to 0.1 kg at degree of freedom 2, counted from 1
+#   strut:
+#     spring: # and dashpot likewise; of a structure with a mesh 5005.3 is a node and its direction
+#       1,3: 1e6 N/m
 """
 EXAMPLE_FILES = {
     "structure.yaml": """\
@@ -88,6 +94,11 @@ structure:
 #   speed: 5:40:4 # rad/s
 #   mu: [0.4, 0.6] # or temperature: 20:300:3 with mu_of: {{temperature: {{20: 0.6, 300: 0.4}}}}
 #   measured: noises.csv # with columns pressure [bar], speed [rpm], frequency [Hz], level [dB]
+
+# modifications: # tried as cures beside friction, preload, damping and the like
+#   weight: {{patch: {{nodes: [5080], mass: 0.1 kg}}}} # up to 0.1 kg at a node
+#   shim: {{patch: {{nodes: BACK, mass: 50 g, damping_ratio: 0.05}}}} # a node set, a face or a list
+#   edge: {{chamfer: {{face: lining, share: 0.2}}}} # lost at its leading end
 """
 DISC = """\
 # A disc, a lining and a back plate. `ccx brake` writes the matrices and the order of their rows

@@ -230,6 +230,9 @@ def deck(mesh: BrakeMesh) -> str:
     for name, sides in mesh.faces.items():
         lines.append(f"*SURFACE, NAME={name}, TYPE=ELEMENT")
         lines += [f"{n}, S{side + 1}" for n, side in sides]
+    top = max(z for *_, z in mesh.nodes.values())
+    lines.append("*NSET, NSET=BACK")  # of the plate, where a shim lies
+    lines += [f"{n}" for n, (*_, z) in mesh.nodes.items() if z == top]
     for body in BODIES:
         lines += [
             f"*MATERIAL, NAME={body.material}",

@@ -7,6 +7,10 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.structures.assess.assess import small_motions_alone
+from squealpipe.structures.assess.modifications import (
+    counted_from_zero,
+    read_modification,
+)
 from squealpipe.structures.assess.operating_points import OperatingPoints
 from squealpipe.structures.contact import face_of
 from squealpipe.structures.fewer_points import fewer_points
@@ -45,6 +49,18 @@ def read_structure(section: Mapping[str, Any]) -> Structure:
             f"structure.file: {section['file']} names no contacts: nothing rubs"
         )
     return structure
+
+
+def modifications(structure: Structure, section: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the modifications of a section, which are tried as cures.
+
+    Raises:
+        ValueError: one that the structure cannot have.
+    """
+    named = counted_from_zero(section)
+    for name, content in named.items():
+        read_modification(name, content, structure, 1.0)  # any frequency tells mistakes
+    return named
 
 
 def operating_options(
@@ -137,18 +153,24 @@ def squealing(
 
 
 def answered(
-    structure: Structure, section: Mapping[str, Any], squeal: xr.Dataset, workers: int
+    structure: Structure,
+    section: Mapping[str, Any],
+    squeal: xr.Dataset,
+    changes: Mapping[str, Any],
+    workers: int,
 ) -> xr.Dataset:
     """Return verdict, level and what stops the noise; what eigenvalues tell if nothing is run.
 
     Args:
         squeal: which modes squeal.
+        changes: section ``modifications``.
     """
     reduced = reduced_structure(structure, section)
     if squeal.attrs.get("not_run"):
         return small_motions_alone(reduced)
     return assess(
         reduced,
+        modifications=modifications(structure, changes),
         samples=min(section["samples"], 16),  # each value that is tried has as many
         seed=section["seed"],
         workers=workers,

@@ -85,5 +85,5 @@ def test_what_cannot_be_read_is_told_with_its_key(config, old, new, message):
 def test_operating_points_need_a_structure(tmp_path):
     path = tmp_path / "none.yaml"
     path.write_text("operating: {speed: 2}\n")
-    with pytest.raises(ConfigError, match="operating points are those of a structure"):
+    with pytest.raises(ConfigError, match="operating: a study of a structure alone"):
         read_study(PAPER, path)

@@ -22,7 +22,7 @@ from squealpipe.study.configuration.settings import Study
 ROOT = Path(__file__).resolve().parents[2]
 STATED = Path(__file__).with_name("direct_readers.yaml")
 FIX = "SQUEALPIPE_FIX=1 python -m pytest -m release tests/workflow/test_reruns.py"
-OF_OTHERS = {"results", "paper", "structure", "operating"}
+OF_OTHERS = {"results", "paper", "structure", "modifications", "operating"}
 KEYS = sorted(set(flat(Study().model_dump(mode="json"))) - OF_OTHERS)
 
 

@@ -7,10 +7,11 @@ STRUCTURE = settings("structure")
 
 if workflow.is_main_process:  # jobs need not check again: the import takes a second
     from squealpipe.store.mistakes import ConfigError
-    from squealpipe.study.structure_study import operating_options, read_structure
+    from squealpipe.study.structure_study import modifications, operating_options, read_structure
 
     try:
         of_study = read_structure(STRUCTURE["structure"])
+        modifications(of_study, STUDY.slice("modifications")["modifications"])
         if STUDY.operating is not None:
             operating_options(of_study, STRUCTURE["structure"], STUDY.slice("operating")["operating"])
     except (ValueError, FileNotFoundError) as fault:
@@ -23,14 +24,26 @@ rule analyse_structure:
     output:
         modes=data("structure/modes"),
         squeal=data("structure/squeal"),
-        answer=data("structure/assess"),
-        run=data("structure/run"),
         contacts=f"{RESULTS}/report/contacts.csv",
     params:
         settings=STRUCTURE,
     threads: workflow.cores
     script:
         "../scripts/structure/analyse_structure.py"
+
+
+rule assess_structure:
+    input:
+        files=sorted(set(files_named_in(STRUCTURE))),
+        squeal=data("structure/squeal"),
+    output:
+        answer=data("structure/assess"),
+        run=data("structure/run"),
+    params:
+        settings=settings("structure", "modifications"),
+    threads: workflow.cores
+    script:
+        "../scripts/structure/assess_structure.py"
 
 
 if STUDY.operating is not None:

@@ -101,6 +101,33 @@ def read_modification(
     return MatrixChange({matrix: sp.csr_array(change)}, most, unit)
 
 
+def counted_from_zero(modifications: Mapping[str, Any]) -> dict[str, Any]:
+    """Return modifications that a file or command has, as :func:`squealpipe.assess` takes them.
+
+    Args:
+        modifications: name → content, whose places are texts: ``"12"`` is a degree of freedom,
+            counted from 1, ``"12,40"`` two of them, ``"5005.3"`` a node and its direction.
+    """
+    return {
+        name: {
+            kind: {_place(each): amount for each, amount in entries.items()}
+            if kind in MATRICES and isinstance(entries, Mapping)
+            else entries
+            for kind, entries in content.items()
+        }
+        for name, content in modifications.items()
+    }
+
+
+def _place(text: str) -> Any:
+    """Read degrees of freedom counted from 1, or a node and its direction like 5005.3."""
+    ends = [
+        int(end) - 1 if end.isdigit() and int(end) > 0 else end
+        for end in map(str.strip, text.split(","))
+    ]
+    return ends[0] if len(ends) == 1 else tuple(ends)
+
+
 def _positive(title: str, value: Any, unit: str) -> float:
     number = finite_number(title, value, unit)
     if not number > 0.0:

@@ -26,6 +26,7 @@ from squealpipe.study.configuration.own import Name, OwnScene, SweepSection
 from squealpipe.study.configuration.quantities import scales
 from squealpipe.study.configuration.sections import Section
 from squealpipe.study.configuration.structure import (
+    Modifications,
     OperatingSection,
     StructureSection,
     place_files,
@@ -54,6 +55,7 @@ class Study(Section):
     robustness: sections.RobustnessSection = sections.RobustnessSection()
     contact_points: sections.ContactPointsSection = sections.ContactPointsSection()
     explorer: sections.ExplorerSection = sections.ExplorerSection()
+    modifications: Modifications = Field(default={})
     operating: OperatingSection | None = None
     sweeps: dict[Name, SweepSection] = Field(default={})
 
@@ -77,9 +79,10 @@ class Study(Section):
                     "structure: it has a study of its own; write paper: false, and scenes into "
                     "another configuration"
                 )
-        elif self.operating is not None:
+        elif self.operating is not None or self.modifications:
+            section = "modifications" if self.modifications else "operating"
             raise ValueError(
-                "operating: operating points are those of a structure; write structure: {file: "
+                f"{section}: a study of a structure alone has them; write structure: {{file: "
                 "pad.yaml} beside it"
             )
         elif not self.paper and not self.scenes:

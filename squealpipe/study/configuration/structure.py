@@ -1,4 +1,4 @@
-"""Sections ``structure`` and ``operating`` of a study: a structure in a file, and how it is run."""
+"""Sections of a study of a structure: its file, how it is run, modifications, operating points."""
 
 import os
 from collections.abc import Iterator, Mapping
@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, WithJsonSchema
 
+from squealpipe.study.configuration.own import Name
 from squealpipe.study.configuration.quantities import In
 from squealpipe.study.configuration.sections import WHOLE, Positive, Section
 
@@ -21,6 +22,10 @@ class StructureSection(Section):
     n_modes: Annotated[int, Field(ge=1), WHOLE] | None = None
     frequency_max: Annotated[Positive, In("Hz")] | None = None
 
+
+Modifications = dict[Name, dict[str, dict[str, float | int | str | tuple[int, ...]]]]
+"""Name → kind → place or property → largest amount, as ``assess`` takes them; degrees of freedom
+are counted from 1, like ``weight: {added_mass: {12: 0.1 kg}}``."""
 
 Axis = Annotated[
     str | float | int | tuple[str | float | int, ...],
