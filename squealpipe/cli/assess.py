@@ -62,9 +62,9 @@ def assess(
         seed: seed of the random starts.
         n_modes: modes to reduce a structure to; by default as many as errors below 1 % need, and
             no reduction up to 32 degrees of freedom.
-        frequency_max: reduce a structure to the modes that the unstable ones up to this frequency
-            need, Hz; by default 20 kHz where modes lie beyond it, but needed beyond 1000 degrees of
-            freedom.
+        frequency_max: end of the band whose unstable modes count, Hz: they are compared with those
+            of the whole structure and decide how many modes are run. Runs also have modes beyond.
+            By default 20 kHz where modes lie beyond it, but needed beyond 1000 degrees of freedom.
         output: also write the dataset (.nc or .csv), and a picture of the settled motion beside it.
     """
     if isinstance(alpha1_or_file, Path):
@@ -174,4 +174,10 @@ def _assess_structure(
             from squealpipe.study.report.answer import lines
 
             answer(*lines(verdict))
+    origin = structure.reduced_from
+    limit = None if origin is None else origin.frequency_max
+    if limit is not None and float(verdict.frequency) > limit:
+        from squealpipe.study.report.squealing import beyond_band
+
+        answer(f"Its frequency is {beyond_band(limit)}.")
     return EXIT.done if int(verdict.verdict) == 0 else EXIT.answer_is_no

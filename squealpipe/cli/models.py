@@ -170,9 +170,9 @@ def propensity(
         seed: seed of the random sample; 1 for a pad, 0 for a structure by default.
         n_modes: modes to reduce a structure to; by default as many as errors below 1 % need,
             and no reduction up to 32 degrees of freedom.
-        frequency_max: reduce a structure to the modes that the unstable ones up to this frequency
-            need, Hz; by default 20 kHz where modes lie beyond it, but needed beyond 1000 degrees of
-            freedom.
+        frequency_max: end of the band whose unstable modes count, Hz: they are compared with those
+            of the whole structure and decide how many modes are run. Runs also have modes beyond.
+            By default 20 kHz where modes lie beyond it, but needed beyond 1000 degrees of freedom.
     """
     of_structure = {
         "--relative-std": relative_std,

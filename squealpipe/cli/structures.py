@@ -301,8 +301,10 @@ def squeal(
             after the time in which it grows.
         n_modes: modes to reduce the structure to; by default as many as errors below 1 % need,
             and no reduction up to 32 degrees of freedom. At most 512.
-        frequency_max: reduce to the modes that the unstable ones up to this frequency need, Hz;
-            by default 20 kHz where modes lie beyond it, but needed beyond 1000 degrees of freedom.
+        frequency_max: end of the band whose unstable modes count, Hz: they are compared with those
+            of the whole structure and decide how many modes are run. Runs also have modes beyond; a
+            motion that ends there is marked. By default 20 kHz where modes lie beyond it, but
+            needed beyond 1000 degrees of freedom.
         onset: also lower the friction until the squeal dies, to see whether it lasts below the
             critical friction, and how far; costs about as much as the rest.
         run: also write, over time, the motion that a small push ends in (.nc), for `squealpipe
@@ -450,8 +452,10 @@ def operating(
             default.
         n_modes: modes to reduce the structure to; by default as many as errors below 1 % need,
             and no reduction up to 32 degrees of freedom.
-        frequency_max: reduce to the modes that the unstable ones up to this frequency need, Hz;
-            by default 20 kHz where modes lie beyond it, but needed beyond 1000 degrees of freedom.
+        frequency_max: end of the band whose unstable modes count, Hz: they are compared with those
+            of the whole structure and decide how many modes are run. Runs also have modes beyond; a
+            motion that ends there is marked. By default 20 kHz where modes lie beyond it, but
+            needed beyond 1000 degrees of freedom.
     """
     refuse_existing(output, force=files.force)
     check_output(output, force=files.force)

@@ -82,6 +82,16 @@ def _poles(axes: Axes, answer: xr.Dataset) -> None:
     frequency, growth = frequencies * factor, answer.pole_growth_rate
     unstable = np.isin(answer.pole.values, answer.mode.values)
     _errors(axes, answer, factor)
+    limit = float(answer.get("frequency_max", np.nan))
+    if frequencies.max(initial=0.0) > limit:
+        axes.axvspan(
+            limit * factor,
+            1.05 * frequencies.max() * factor,
+            color=style.GREY,
+            alpha=0.2,
+            linewidth=0,
+            label="beyond the band",
+        )
     axes.axhline(0.0, color=style.GREY, linewidth=0.6)
     for index, ring in enumerate(answer.dominant_frequency.values * factor):
         if np.isfinite(ring):

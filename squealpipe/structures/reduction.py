@@ -34,6 +34,7 @@ from squealpipe.structures.subspace import in_coordinates
 from squealpipe.systems.inputs.values import brief, is_finite_number, is_whole_number
 from squealpipe.systems.one_thread import one_thread
 from squealpipe.systems.progress import report, stage, stop_is_asked
+from squealpipe.units import engineering
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,24 @@ class ReductionSearch:
 
 
 REDUCTION_SEARCH = ReductionSearch()
+
+
+def band_needed(structure: ContactStructure, n_modes: int | None) -> str:
+    """Ask for the band of a structure that is too large for all its modes, in words.
+
+    Args:
+        n_modes: number of modes to be kept, if one was asked for.
+    """
+    asked = "frequency_max (Hz) is needed, up to which unstable modes count"
+    if n_modes is None:
+        return f"{asked}, like 10 kHz; all are computed up to {DENSE}"
+    highest = float(modes_at_rest(structure, n_modes)[0][-1] / (2.0 * np.pi))
+    # modes up to a frequency describe those up to half of it well
+    half = float(f"{0.5 * highest:.1e}")
+    return (
+        f"beside n_modes = {n_modes}, whose highest is at {engineering(highest, 'Hz')}, {asked}, "
+        f"for instance frequency_max = {half:g}"
+    )
 
 
 @takes_units
@@ -94,8 +113,7 @@ def reduce(
     check_frequency(frequency_max)
     if structure.size > DENSE and frequency_max is None:
         raise ValueError(
-            f"{structure.size} degrees of freedom: give frequency_max (Hz), up to which unstable "
-            f"modes are to be kept; all are computed up to {DENSE}"
+            f"{structure.size} degrees of freedom: {band_needed(structure, n_modes)}"
         )
     search = Search(structure, Truth.of(structure, frequency_max), frequency_max)
     if n_modes is not None:

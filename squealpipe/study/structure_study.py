@@ -15,6 +15,7 @@ from squealpipe.structures.assess.operating_points import OperatingPoints
 from squealpipe.structures.contact import face_of
 from squealpipe.structures.fewer_points import fewer_points
 from squealpipe.structures.pencil import DENSE
+from squealpipe.structures.reduction import band_needed
 from squealpipe.structures.schema.squealing import SQUEAL_LIMITS
 from squealpipe.structures.squeal.plant import band_of, in_modes
 from squealpipe.structures.squeal.settled_run import (
@@ -41,8 +42,8 @@ def read_structure(section: Mapping[str, Any]) -> Structure:
     structure = Structure.read(section["file"]).with_common_mu()
     if structure.size > DENSE and section["frequency_max"] is None:
         raise ValueError(
-            f"structure.frequency_max: {structure.size} degrees of freedom need it; write up to "
-            "which frequency modes count, for instance 10 kHz"
+            f"structure: {structure.size} degrees of freedom: "
+            f"{band_needed(structure, section['n_modes'])}"
         )
     if not structure.contacts:
         raise ValueError(

@@ -19,8 +19,10 @@ from squealpipe.structures.schema.squealing import Kind
 from squealpipe.structures.squeal import plant
 from squealpipe.structures.squeal.attractors import grouped
 from squealpipe.structures.squeal.squealing_modes import _verdict
-from squealpipe.study.report.squealing import headline, lines
+from squealpipe.study.report.squealing import headline, lines, outside
+from squealpipe.study.report.squealing import modes as lines_of_modes
 from squealpipe.systems.linear.matrices import Caps
+from tests.oracles.elastic_block import elastic_block
 
 
 def chain(links, *, mu=0.5, offset=0.0):
@@ -215,8 +217,39 @@ def test_a_push_that_ends_beyond_the_band_names_the_band_that_includes_it():
     )
     assert in_options(headline(told)) == (
         "Undetermined: a small push ends at 63 kHz, beyond the band, and the errors leave open "
-        "whether mode 17 there grows: --frequency-max 69553 includes it."
+        "whether the mode at 63.23 kHz grows: --frequency-max 69553 includes it."
     )
+
+
+def test_a_motion_beyond_the_band_is_marked_and_modes_are_named_by_frequency():
+    """A band up to 1 kHz answered "Squeals at 8.5 kHz", and modes had other numbers elsewhere."""
+    at = {
+        "verdict": int(Verdict.squeals),
+        "same_modes_grow": True,
+        "whole_decays": False,
+        "frequency_max": 1e3,
+        "frequency": ("mode", [810.0, 8.9e3]),
+        "growth_rate": ("mode", [3.0, 2.0]),
+        "mode_is_sure": ("mode", [True, True]),
+        "squeals": ("mode", [False, True]),
+        "time_to_squeal": ("mode", [0.1, 0.1]),
+        "ends_in": ("mode", [0, 0]),
+        "dominant_frequency": ("attractor", [8.5e3]),
+    }
+    told = xr.Dataset(at, {"mode": [2, 17]})
+    beyond = "beyond the band (modes up to 1 kHz were compared)"
+    assert headline(told) == (
+        f"Squeals at 8.5 kHz, {beyond}, nearest to the unstable mode at 8.9 kHz; contact is kept."
+    )
+    assert [*lines_of_modes(told)] == [
+        (
+            "The mode at 810 Hz, growth rate 3 1/s, does not squeal: the motion ends after 100 ms "
+            f"at 8.5 kHz, {beyond}."
+        ),
+        f"The mode at 8.9 kHz, growth rate 2 1/s, {beyond}, squeals after 100 ms.",
+    ]
+    assert outside(told) == f"Its frequency is {beyond}."
+    assert outside(told.assign(frequency_max=9e3)) is None
 
 
 def test_too_many_contacts_are_told_with_the_modes(monkeypatch):
@@ -359,3 +392,18 @@ def test_a_reduced_structure_can_be_reduced_again_and_has_modes():
         once.complex_modes(mu=0.0).frequency[:4],
         rtol=1e-3,
     )
+
+
+def test_a_number_of_modes_alone_is_refused_of_a_large_structure_with_a_band_that_works():
+    """The refusal asked for a band, and left open which one these modes can answer for."""
+    block = elastic_block((12, 5, 4), contacts=4, modal_damping=0.01)
+    assert block.size == 1170
+    with pytest.raises(ValueError, match=r"beside n_modes = 20, whose highest") as told:
+        block.reduce(n_modes=20)
+    band = float(str(told.value).rsplit("frequency_max = ", 1)[1])
+    reduced = block.reduce(n_modes=20, frequency_max=band)
+    assert reduced.record["agrees"]
+    kept = reduced.complex_modes(critical=False).frequency.values
+    whole = block.complex_modes(frequency_max=band, critical=False).frequency.values
+    assert kept[: len(whole)] == pytest.approx(whole, rel=0.02)
+    assert band < kept.max()

@@ -270,7 +270,7 @@ def test_the_command_says_it_in_words_and_writes_a_picture(
     look = ["--figure-size", "7in x 3in", "--dpi", "100", "--unit", "mm/s"]
     assert run(["squeal", "pad.yaml", "--samples", "12", "-o", "squeal.nc", *look]) == 1
     said = capsys.readouterr().out
-    assert "Hammers at 2.08 kHz, nearest to unstable mode 1" in said
+    assert "Hammers at 2.08 kHz, nearest to the unstable mode at " in said
     assert "contact c is open 38 % of the time" in said
     assert "12 of 12 random starts (76 % to 100 % of all) end in a cycle" in said
     assert load("squeal.nc").attrs["schema"] == "squealing_modes"

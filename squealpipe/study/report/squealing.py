@@ -74,7 +74,7 @@ def headline(answer: xr.Dataset) -> str:
             "not clear."
         )
     first = answer.isel(attractor=_end(answer))
-    at = engineering(float(first.dominant_frequency), "Hz") + _near(answer, first)
+    at = _frequency_of(answer, first) + _near(answer, first)
     if verdict is Verdict.squeals:
         return f"Squeals at {at}; contact is kept."
     worst = int(first.separated_fraction.values.argmax())
@@ -98,8 +98,7 @@ def _ends_beyond(answer: xr.Dataset) -> str | None:
     reach = math.ceil(1.1 * float(mode.frequency))
     return (
         f"Undetermined: a small push ends at {engineering(at, 'Hz')}, beyond the band, and the "
-        f"errors leave open whether mode {int(mode.mode)} there grows: frequency_max={reach} "
-        "includes it."
+        f"errors leave open whether {_mode_at(mode)} grows: frequency_max={reach} includes it."
     )
 
 
@@ -137,6 +136,41 @@ def _within(answer: xr.Dataset) -> str:
     return f" Modes above {engineering(limit, 'Hz')} were not examined."
 
 
+def _beyond(answer: xr.Dataset, frequency: float) -> str:
+    """Mark a frequency, Hz, that is beyond the band in which modes were compared."""
+    limit = frequency_max(answer)
+    return f", {beyond_band(limit)}" if frequency > limit else ""
+
+
+def beyond_band(limit: float) -> str:
+    """Say of a frequency that it is beyond the band that ends at a limit, Hz."""
+    return f"beyond the band (modes up to {engineering(limit, 'Hz')} were compared)"
+
+
+def outside(answer: xr.Dataset) -> str | None:
+    """Say that the motion after a small push is beyond the band, if it is."""
+    end, limit = _end(answer), frequency_max(answer)
+    if end == NO_ATTRACTOR or not float(answer.dominant_frequency[end]) > limit:
+        return None
+    return f"Its frequency is {beyond_band(limit)}."
+
+
+def _frequency_of(answer: xr.Dataset, motion: xr.Dataset) -> str:
+    """Return the frequency of a motion, marked if it is beyond the band."""
+    frequency = float(motion.dominant_frequency)
+    return engineering(frequency, "Hz") + _beyond(answer, frequency)
+
+
+def _mode_at(mode: xr.Dataset) -> str:
+    """Name a mode by its frequency: numbers count other modes in each dataset."""
+    return f"the mode at {engineering(float(mode.frequency), 'Hz', 4)}"
+
+
+def _nearest_mode(motion: xr.Dataset) -> float:
+    """Return the frequency of the mode that is nearest to a motion, Hz."""
+    return float(motion.dominant_frequency) - float(motion.frequency_shift)
+
+
 def _disagreement(answer: xr.Dataset) -> str:
     """Name the modes in which what was run and the whole structure disagree."""
     kept = f"the {int(answer.n_modes)} modes kept"
@@ -152,7 +186,10 @@ def _disagreement(answer: xr.Dataset) -> str:
     within = answer.frequency.values <= frequency_max(answer)
     unsure = answer.isel(mode=~answer.mode_is_sure.values & within)
     if unsure.sizes["mode"]:
-        names = ", ".join(f"mode {int(value)}" for value in unsure.mode.values[:LISTED])
+        several = [
+            unsure.isel(mode=i) for i in range(min(unsure.sizes["mode"], LISTED))
+        ]
+        names = ", ".join(map(_mode_at, several))
         parts.append(f"the errors leave open whether {names} of {kept} grows")
     return "; and ".join(parts)
 
@@ -223,8 +260,9 @@ def _near(answer: xr.Dataset, motion: xr.Dataset) -> str:
         return ""
     away = np.abs(answer.frequency.values - float(motion.dominant_frequency))
     mode = answer.isel(mode=int(away.argmin()))
-    at = engineering(float(mode.frequency), "Hz")
-    return f", nearest to unstable mode {int(mode.mode)} ({at})"
+    return (
+        f", nearest to the unstable mode at {engineering(float(mode.frequency), 'Hz')}"
+    )
 
 
 def level(answer: xr.Dataset) -> str:
@@ -272,9 +310,9 @@ def modes(answer: xr.Dataset) -> Iterator[str]:
         yield f"No mode of steady sliding is unstable{kept}."
     for place in range(min(answer.sizes["mode"], LISTED)):
         mode = answer.isel(mode=place)
-        named = f"Mode {int(mode.mode)} ({_named(mode)})"
+        named = f"The mode at {_named(mode)}{_beyond(answer, float(mode.frequency))},"
         if not bool(mode.get("mode_is_sure", True)):
-            named += ", whose sign of growth is not known,"
+            named += " whose sign of growth is not known,"
         if answer.attrs.get("not_run"):
             yield f"{named} is unstable."
             continue
@@ -287,8 +325,8 @@ def modes(answer: xr.Dataset) -> Iterator[str]:
         if bool(mode.squeals):
             yield f"{named} squeals{after}."
         elif bool(np.isfinite(answer.dominant_frequency[end])):
-            at = engineering(float(answer.dominant_frequency[end]), "Hz")
-            yield f"{named} does not squeal: the motion ends at {at}{after}."
+            at = _frequency_of(answer, answer.isel(attractor=end))
+            yield f"{named} does not squeal: the motion ends{after} at {at}."
         else:
             yield f"{named} dies out in the end."
 
@@ -316,8 +354,8 @@ def attractors(answer: xr.Dataset) -> Iterator[str]:
         shift = engineering(abs(float(one.frequency_shift)), "Hz")
         side = "above" if float(one.frequency_shift) > 0 else "below"
         yield (
-            f"{share} {words} at {engineering(float(one.dominant_frequency), 'Hz')}, {shift} "
-            f"{side} mode {int(one.nearest_mode)}: rms speed "
+            f"{share} {words} at {_frequency_of(answer, one)}, {shift} {side} the mode at "
+            f"{engineering(_nearest_mode(one), 'Hz')}: rms speed "
             f"{engineering(float(one.velocity_rms), 'm s-1')}, peak "
             f"{engineering(float(one.velocity_peak), 'm s-1')}; open {_of_contacts(one)}."
         )

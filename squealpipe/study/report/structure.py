@@ -34,6 +34,7 @@ def gather_structure(
     was_run = not answer.attrs.get("not_run")
     is_known = was_run and squealing.agrees(answer)
     said = (
+        squealing.outside(answer) if is_known else None,
         cause(modes, answer),
         told["level"] if is_known else squealing.level(answer),
         told["sudden"] if is_known else None,
@@ -190,8 +191,9 @@ def points(fewer: xr.Dataset | None) -> dict[str, Any]:
 def _needed_points(fewer: xr.Dataset) -> str:
     """Tell from which number of points on as many modes grow as with all."""
     most = int(fewer.points[-1])
+    each = "" if int(fewer.contacts[-1]) == most else " for each face"
     if int(fewer.outcome[-1]) != Outcome.converged:
-        return f"With all {most} points for each face: {_reason(fewer.outcome[-1])}."
+        return f"With all {most} points{each}: {_reason(fewer.outcome[-1])}."
     number_of_all = int(fewer.unstable_modes[-1])
     same = (fewer.outcome == Outcome.converged) & (
         fewer.unstable_modes == number_of_all
@@ -206,16 +208,16 @@ def _needed_points(fewer: xr.Dataset) -> str:
             if int(one.outcome) == Outcome.converged
             else _reason(one.outcome)
         )
-        return f"With {int(one.points)} points for each face instead of {most}: {told}."
+        return f"With {int(one.points)} points{each} instead of {most}: {told}."
     one = fewer.isel(points=first)
     count = int(one.points)
     several = f"{count} point{'s' if count > 1 else ''}"
     if not number_of_all:
-        return f"From {several} for each face on no mode grows, as with all {most}."
+        return f"From {several}{each} on no mode grows, as with all {most}."
     growths = (number(float(one.growth_rate)), number(float(fewer.growth_rate[-1])))
     return (
-        f"From {several} for each face on as many modes grow as with all. With {several} instead "
-        f"of {most} the largest growth rate is {growths[0]} instead of {growths[1]} 1/s."
+        f"From {several}{each} on as many modes grow as with all. With {several} instead of "
+        f"{most} the largest growth rate is {growths[0]} instead of {growths[1]} 1/s."
     )
 
 

@@ -97,7 +97,7 @@ def test_both_onsets_and_the_added_damping_are_those_of_eigenvalues_from_numpy(
     assert float(answer.added_damping) == pytest.approx(damping, rel=1e-6)
 
 
-def fewer_points_of(growths):
+def fewer_points_of(growths, faces=1):
     """A dataset of the fastest growth rate and the number of modes by points; None: no sliding."""
     counts = [0 if each is None else len(each) for each in growths.values()]
     fastest = [max(each) if each else np.nan for each in growths.values()]
@@ -106,7 +106,7 @@ def fewer_points_of(growths):
         for each in growths.values()
     ]
     values = {
-        "contacts": [*growths],
+        "contacts": [faces * each for each in growths],
         "unstable_modes": counts,
         "growth_rate": fastest,
         "frequency": [2851.94 if count else np.nan for count in counts],
@@ -122,7 +122,7 @@ def fewer_points_of(growths):
         (
             {1: [], 2: [8.84, 91.6], 4: [], 8: [55.48], 16: [41.68], 20: [24.94]},
             (
-                "From 8 points for each face on as many modes grow as with all. "
+                "From 8 points on as many modes grow as with all. "
                 "With 8 points instead of 20 the largest growth rate is 55.5 instead of 24.9 1/s."
             ),
         ),
@@ -130,22 +130,13 @@ def fewer_points_of(growths):
         (
             {1: [3.0], 2: [], 4: [2.0, 1.0], 5: [7.0]},
             (
-                "With 4 points for each face instead of 5: "
+                "With 4 points instead of 5: "
                 "the number of unstable modes is 2 instead of 1."
             ),
         ),
-        (
-            {1: [], 2: [], 3: []},
-            "From 1 point for each face on no mode grows, as with all 3.",
-        ),
-        (
-            {1: [2.0], 2: None, 3: []},
-            "With 2 points for each face instead of 3: no sliding state.",
-        ),
-        (
-            {1: [2.0], 2: [1.0], 3: None},
-            "With all 3 points for each face: no sliding state.",
-        ),
+        ({1: [], 2: [], 3: []}, "From 1 point on no mode grows, as with all 3."),
+        ({1: [2.0], 2: None, 3: []}, "With 2 points instead of 3: no sliding state."),
+        ({1: [2.0], 2: [1.0], 3: None}, "With all 3 points: no sliding state."),
     ],
 )
 def test_the_report_says_from_which_number_of_points_on_the_answer_stays(
@@ -154,6 +145,12 @@ def test_the_report_says_from_which_number_of_points_on_the_answer_stays(
     told = report.points(fewer_points_of(growths))
     assert told["sentence"] == sentence
     assert [row["points"] for row in told["rows"]] == [*map(str, growths)]
+
+
+def test_points_are_those_of_each_face_where_there_are_several():
+    told = report.points(fewer_points_of({1: [], 2: [], 3: []}, faces=2))
+    of_each = "From 1 point for each face on no mode grows, as with all 3."
+    assert told["sentence"] == of_each
 
 
 def test_without_faces_or_with_two_points_there_is_no_table_of_points():
