@@ -10,14 +10,19 @@ from textwrap import indent
 
 import pytest
 
+from squealpipe import load
 from squealpipe.store.rerun.key import PLAN_VARIABLE
 from tests.conftest import ROOT
 
 ROW, LAW, LAW_NAME, RECORD, FIGURE, FIGURE_NAME, SYSTEM, READER = range(8)
+SCHEMA, TASK, SCRIPT, RULE = range(8, 12)
 FILES = {
     LAW: "squealpipe/laws/friction_laws/rising.py",
     FIGURE: "squealpipe/paper/figures/dynamics/impacts.py",
     SYSTEM: "squealpipe/systems/shipped/pendulum.py",
+    SCHEMA: "squealpipe/brake/schema/impact_rate.py",
+    TASK: "squealpipe/brake/dynamics/impact_rate.py",
+    SCRIPT: "workflow/scripts/dynamics/rate_impacts.py",
 }
 LINES = {
     ROW: (
@@ -41,6 +46,9 @@ def write_down(folder):
         assert name in recipes
         assert not (folder / name).exists()
         (folder / name).write_text(blocks[number])
+    rules = folder / "workflow/rules/dynamics.smk"
+    assert "workflow/rules/dynamics.smk" in recipes
+    rules.write_text(f"{rules.read_text()}\n\n{blocks[RULE]}")
     changed = {}
     for number in (ROW, RECORD, FIGURE_NAME):  # these stand in a class or a table
         blocks[number] = indent(blocks[number], "    ")
@@ -210,6 +218,19 @@ read = read_matrix(pathlib.Path("mass.triplets"), "mass").matrix.toarray()
 np.testing.assert_array_equal(read, [[2.0, 0.0], [-0.5, 3.0]])
 """
 
+IMPACT_RATE = """
+# each speed as in a run of its own
+import numpy as np
+from squealpipe import Parameters, simulate
+from squealpipe.brake.dynamics.impact_rate import impact_rate
+speeds = np.array([-3.0, 0.5, 8.0])
+found = impact_rate(Parameters(), 2.6, 1.2, belt_speed=speeds, t_end=200.0)
+for speed, rate in zip(speeds, found.impact_rate.values):
+    run = simulate(Parameters(belt_speed=speed), 2.6, 1.2, t_end=200.0)
+    assert rate == (run.event_kind == 1).sum() / 200.0
+assert len(set(found.impact_rate.values)) == 3
+"""
+
 LADDER = """
 import numpy as np
 from squealpipe import Parameters
@@ -233,7 +254,8 @@ declared.draw("impacts", datasets).savefig("impacts.png")
 
 
 @pytest.mark.parametrize(
-    "script", [PARAMETER_AND_LAW, ENGINE, PENDULUM, TRIPLETS, LADDER, PICTURE]
+    "script",
+    [PARAMETER_AND_LAW, ENGINE, PENDULUM, TRIPLETS, IMPACT_RATE, LADDER, PICTURE],
 )
 def test_what_was_added_is_right(extended, script):
     python(extended[0], script)
@@ -268,19 +290,25 @@ def test_the_gates_find_nothing_once_written_files_are_renewed(extended):
         assert run.returncode == 0, run.stdout[-4000:] + run.stderr[-1000:]
 
 
-def test_workflow_plans_the_new_figure_and_watches_the_new_law(
+def test_workflow_plans_the_new_figure_and_task_and_watches_the_new_law(
     extended, snakemake, tmp_path, monkeypatch
 ):
     folder, _ = extended
     monkeypatch.setenv(PLAN_VARIABLE, str(tmp_path / "plan.json"))
     figure, ladder = "results/figures/impacts.png", "results/data/model_ladder.nc"
-    run = snakemake(folder, "--dry-run", figure, ladder)
+    rates = "results/data/impact_rate.nc"
+    run = snakemake(folder, "--dry-run", figure, ladder, rates)
     assert run.returncode == 0, run.stderr[-3000:]
     plan = json.loads((tmp_path / "plan.json").read_text())
     for name, paths in {
         figure: ("hammering_map.nc", "simulate/F2b.nc", "figures/dynamics/impacts.py"),
         ladder: ("friction_laws/rising.py",),
+        rates: ("dynamics/impact_rate.py", "schema/impact_rate.py", "rate_impacts.py"),
     }.items():
         read = " ".join(plan[name]["inputs"] + plan[name]["sources"])
         for path in paths:
             assert path in read
+    monkeypatch.delenv(PLAN_VARIABLE)
+    run = snakemake(folder, rates)
+    assert run.returncode == 0, run.stderr[-3000:]
+    assert load(folder / rates).sizes == {"belt_speed": 13}

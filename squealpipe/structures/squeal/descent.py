@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from squealpipe.structures.schema.squealing import SQUEAL_LIMITS
-from squealpipe.structures.squeal.onset import FirstOnset
+from squealpipe.structures.squeal.first_onset import FirstOnset
 from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
 from squealpipe.structures.squeal.settling import GROWTH, RUN_LENGTHS, start_at
 from squealpipe.structures.squeal.windows import Running, StructureWindows, run_windows

@@ -371,7 +371,7 @@ def onset(answer: xr.Dataset, of_whole: float | None = None) -> Iterator[str]:
 
     Args:
         of_whole: critical friction of the whole structure, where it is known: it is told, and the
-            one of the modes kept is within 1 % of it (see ``squeal/onset.py``).
+            one of the modes kept is within 1 % of it (see ``squeal/first_onset.py``).
     """
     if "onset_kind" not in answer or not agrees(answer):
         return

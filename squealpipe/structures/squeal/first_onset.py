@@ -14,7 +14,7 @@ from squealpipe.structures.squeal.plant import Plant
 
 
 @dataclass(frozen=True)
-class OnsetSearch:
+class FirstOnsetSearch:
     """Range in which the onset of squeal is sought."""
 
     searched_factor: float = 2.0
@@ -23,7 +23,7 @@ class OnsetSearch:
     """Friction over that of the onset at which small motions have to die out."""
 
 
-ONSET_SEARCH = OnsetSearch()
+ONSET_SEARCH = FirstOnsetSearch()
 
 
 @dataclass(frozen=True)
