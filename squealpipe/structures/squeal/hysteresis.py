@@ -15,8 +15,8 @@ from squealpipe.structures.squeal.descent import (
     state_of,
     width_of,
 )
-from squealpipe.structures.squeal.fold import add_fold
 from squealpipe.structures.squeal.first_onset import FirstOnset, confirmed_onset
+from squealpipe.structures.squeal.fold import add_fold
 from squealpipe.structures.squeal.plant import Plant
 from squealpipe.structures.squeal.windows import Running
 from squealpipe.vibration.settled_runs import SettledRun
