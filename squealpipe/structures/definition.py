@@ -27,11 +27,14 @@ class ReducedFrom(NamedTuple):
         whole: the structure of all degrees of freedom.
         frequency_max: end of the band in which the modes of both are compared, Hz; None: all.
         truth: modes of the whole (:class:`.agreement.Truth`), where they are known already.
+        directions: static responses of each contact among the coordinates: 0 none, 1 the normal
+            one, 2 both.
     """
 
     whole: "ContactStructure"
     frequency_max: float | None
     truth: Any = None
+    directions: int = 0
 
 
 class ContactStructure:
@@ -316,8 +319,8 @@ class ContactStructure:
         if self.reduced_from is not None and set(changes) <= of_sliding:
             origin = self.reduced_from
             other.modes, other.mesh = self.modes, self.mesh
-            other.reduced_from = ReducedFrom(
-                origin.whole.with_(**changes), origin.frequency_max
+            other.reduced_from = origin._replace(
+                whole=origin.whole.with_(**changes), truth=None
             )
         return other
 

@@ -1,11 +1,12 @@
-"""Reduce a structure to the fewest modes that its unstable complex modes need.
+"""Reduce a structure to the coordinates in which its unstable complex modes are cheapest to run.
 
-Idea: the lowest modes at rest are computed once, and for each number of them the small dense
-structure is compared with the whole: the same modes have to grow, at the same rate and frequency
-within a tolerance, and contacts that can stick together have to be able to in these modes.
-Convergence is not monotonic, so the next larger numbers have to do as well. Invariant: the mass
-matrix in modal coordinates is 1. Cost: the modes of the whole, and a small eigenvalue problem for
-each number that is tried.
+Idea: for each number of coordinates the small dense structure is compared with the whole: the same
+modes have to grow, at the same rate and frequency within a tolerance, and contacts that can stick
+together have to be able to. Three sets are tried, modes at rest alone, with static responses of the
+normal contact forces, and with those of all contact forces (:mod:`.coordinates`). Responses have
+high frequencies, so the cost of a run decides: steps grow with the highest frequency, products with
+the square of the number. Convergence is not monotonic, so the next larger numbers have to do as
+well. Cost: the modes of the whole, and a small eigenvalue problem for each set that is tried.
 """
 
 from dataclasses import dataclass
@@ -17,22 +18,14 @@ import scipy.linalg as la
 
 from squealpipe.inputs import takes_units
 from squealpipe.structures.agreement import Agreement, Truth, compared, refined, summary
-from squealpipe.structures.contact import are_parallel, dependent_contacts
+from squealpipe.structures.contact import dependent_contacts
+from squealpipe.structures.coordinates import Coordinates, StaticSpace
 from squealpipe.structures.definition import ContactStructure, ReducedFrom
-from squealpipe.structures.dense import all_modes
-from squealpipe.structures.linearized import pencil_about
 from squealpipe.structures.modes import modes_at_rest
 from squealpipe.structures.pencil import DENSE
-from squealpipe.structures.sliding import (
-    NoSlidingError,
-    acting_directions,
-    contact_stiffness,
-    steady_sliding,
-)
+from squealpipe.structures.sliding import NoSlidingError
 from squealpipe.structures.spectrum import Limits, Solver, check_frequency
-from squealpipe.structures.subspace import in_coordinates
 from squealpipe.systems.inputs.values import brief, is_finite_number, is_whole_number
-from squealpipe.systems.one_thread import one_thread
 from squealpipe.systems.progress import report, stage, stop_is_asked
 from squealpipe.units import engineering
 
@@ -76,23 +69,28 @@ def reduce(
     frequency_max: float | None = None,
     tol: float = 1e-2,
 ) -> ContactStructure:
-    """The structure in coordinates of its lowest modes at rest.
+    """The structure in coordinates of its lowest modes at rest and static responses at contacts.
 
-    The modes Φ are those of (M, K + Σ kᵢ nᵢnᵢᵀ) without friction, with ΦᵀMΦ = 1. Their number is
-    the smallest (beyond 64 at most an eighth above it), and no smaller than that of contacts, for
-    which the same modes grow as in the whole structure and every unstable one is right within
-    ``tol``, by frequency and by growth rate, with this and the next three numbers, at the
-    structure's ``mu`` and ``belt_speed``. Contacts whose sliding directions are independent stay
-    so.
+    The modes are those of (M, K + Σ kᵢ nᵢnᵢᵀ) without friction. Static responses of normal contact
+    forces, or of all, are kept beside them where this makes a run cheaper (attachment modes, which
+    are no natural modes; :mod:`squealpipe.structures.coordinates`). All together are Φ, with
+    ΦᵀMΦ = 1 and a diagonal stiffness at rest; modal damping is a ratio of each one's own frequency.
+    Their number is the smallest (beyond 64 at most an eighth above it), and no smaller than that of
+    contacts, for which the same modes grow as in the whole structure and every unstable one is
+    right within ``tol``, by frequency and by growth rate, with this and the next three numbers, at
+    the structure's ``mu`` and ``belt_speed``. Contacts whose sliding directions are independent
+    stay so.
 
     Args:
-        n_modes: keep so many instead.
+        n_modes: keep so many instead: modes at rest alone, unless the same modes grow only with
+            static responses in place of the highest.
         frequency_max: unstable modes up to there count, Hz; needed beyond 1000 degrees of freedom.
         tol: of |Δω|/ω, and of |Δσ|/max(|σ|, 0.01 ω).
 
     Returns:
         A structure with ``modes`` (n, m), amplitudes → displacements, and ``record``: ``n_modes``,
-        ``frequency_error``, ``growth_rate_error``, ``unstable`` (how many modes were judged),
+        ``static_responses`` (how many of them are), ``frequency_error``, ``growth_rate_error``,
+        ``unstable`` (how many modes were judged),
         ``missing`` (frequency and growth rate of unstable modes of the whole that it lacks) and
         ``agrees`` (whether the same modes grow).
 
@@ -118,13 +116,13 @@ def reduce(
     search = Search(structure, Truth.of(structure, frequency_max), frequency_max)
     if n_modes is not None:
         return search.structure(int(n_modes))
-    number = search.smallest(fewest, tol)
-    if number is None:
+    found = search.smallest(fewest, tol)
+    if found is None:
         raise RuntimeError(
             f"all {structure.size} modes miss tol = {tol:g}: an unstable mode is next to a double "
             "eigenvalue, whose growth rate has no more digits; raise tol or change mu a little"
         )
-    return search.structure(number)
+    return search.structure(*found)
 
 
 def fewest_modes(structure: ContactStructure) -> int:
@@ -137,93 +135,8 @@ def fewest_modes(structure: ContactStructure) -> int:
     )
 
 
-class Kept:
-    """The lowest modes, and what becomes of matrices and contacts in their coordinates."""
-
-    def __init__(self, structure: ContactStructure, number: int) -> None:
-        self.whole, self.number = structure, number
-        self.omega, self.modes = modes_at_rest(structure, number)
-        modes = self.modes
-        at_rest = modes.T @ (structure.stiffness_at_rest @ modes)
-        # round-off of the modes would couple them
-        self.stiffness = modes.T @ (structure.given_stiffness @ modes)
-        self.stiffness += np.diag(self.omega**2) - at_rest
-        self.damping = modes.T @ (structure.given_damping @ modes)
-        self.speed_terms = structure.speed_terms.mapped(
-            lambda each: modes.T @ (each @ modes)
-        )
-        ratios = np.zeros(number)
-        asked = (
-            np.broadcast_to(structure.modal_damping, number)
-            if (structure.modal_damping.ndim == 0)
-            else structure.modal_damping[:number]
-        )
-        ratios[: len(asked)] = asked
-        self.damping += np.diag(2.0 * ratios * self.omega)
-        self.normals = modes.T @ structure.normals
-        self.tangentials = modes.T @ structure.tangentials
-        self.transversals = modes.T @ structure.transversals
-        self.load = modes.T @ structure.load
-        self.balanced = structure.given_load is None
-
-    def parallel_contact(self, number: int) -> str | None:
-        """Name the first contact whose two directions are one in the lowest of these modes."""
-        for index, contact in enumerate(self.whole.contacts):
-            normal, along = (
-                self.normals[:number, index],
-                self.tangentials[:number, index],
-            )
-            if not normal.any() or not along.any() or are_parallel(normal, along):
-                return contact.name
-        return None
-
-    def dependent(self, number: int) -> list[str]:
-        """Name the contacts whose sliding directions are dependent in the lowest of these modes."""
-        names = [contact.name for contact in self.whole.contacts]
-        return dependent_contacts(names, self.tangentials[:number])
-
-    def reduced(self, number: int) -> ContactStructure:
-        """The structure of the lowest of these modes."""
-        return in_coordinates(
-            self.whole,
-            self.stiffness[:number, :number],
-            self.damping[:number, :number],
-            (
-                self.normals[:number],
-                self.tangentials[:number],
-                self.transversals[:number],
-            ),
-            None if self.balanced else self.load[:number],
-            self.speed_terms.mapped(lambda each: each[:number, :number]),
-        )
-
-    def values(self, number: int) -> np.ndarray:
-        """Eigenvalues of the structure of so many modes about its own steady sliding."""
-        reduced = self.reduced(number)
-        state = steady_sliding(reduced, reduced.mu, reduced.belt_speed)
-        pairs = all_modes(pencil_about(reduced, state, None))
-        return np.array([pair.value for pair in pairs])
-
-    def small_motions(self, number: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return stiffness and damping about steady sliding, (number, number); the mass is 1.
-
-        Raises:
-            NoSlidingError: there is no steady sliding in so many modes.
-        """
-        reduced = self.reduced(number)
-        state = steady_sliding(reduced, reduced.mu, reduced.belt_speed)
-        acting = acting_directions(reduced, state.closed, state.drag)
-        springs = contact_stiffness(reduced, state.closed, acting)
-        stiffness = (reduced.stiffness + springs).toarray()
-        along = self.tangentials[:number]
-        damping = (
-            reduced.damping.toarray() + along * (state.force * state.slope) @ along.T
-        )
-        return stiffness, damping
-
-
 class Search:
-    """Search for a number of modes by the unstable modes of the whole structure.
+    """Search for coordinates by the unstable modes of the whole structure.
 
     Args:
         frequency_max: the end of the band, Hz, or None.
@@ -233,24 +146,39 @@ class Search:
         self, structure: ContactStructure, truth: Truth, frequency_max: float | None
     ) -> None:
         self.whole, self.truth, self.frequency_max = structure, truth, frequency_max
-        self.kept = Kept(structure, min(REDUCTION_SEARCH.first_modes, structure.size))
+        self.space = StaticSpace(
+            structure, min(REDUCTION_SEARCH.first_modes, structure.size)
+        )
+        self._agreements: dict[tuple[int, int], Agreement | None] = {}
 
     def smallest(
         self, fewest: int, tol: float = 1e-2, most: int | None = None
-    ) -> int | None:
-        """Return the smallest number that meets the tolerance, as do the next three; None if none.
+    ) -> tuple[int, int] | None:
+        """Return the coordinates that meet the tolerance, as do the next three numbers.
+
+        Of those with and without static responses they are the cheapest to run, by the square of
+        their number times the highest frequency.
 
         Args:
             most: numbers up to there are tried; None: all.
+
+        Returns:
+            Their number and the directions of static responses; None if none do.
         """
         number, most = fewest, self.whole.size if most is None else most
+        best, lowest_cost = None, np.inf
         while number <= most:
             if stop_is_asked():  # there is nothing yet that could be kept
                 raise KeyboardInterrupt
-            with one_thread():  # with small matrices threads cost more than they save
-                meets = self._meets_with_larger(number, tol)
-            if meets:
-                return number
+            # no other coordinates have a lower highest frequency
+            if self._cost(number, 0) >= lowest_cost:
+                break
+            for directions in range(1 if number == self.whole.size else 3):
+                cost = self._cost(number, directions)
+                if cost < lowest_cost and self._meets_with_larger(
+                    number, directions, tol
+                ):
+                    best, lowest_cost = (number, directions), cost
             report(lambda number=number, most=most: number / most)  # type: ignore[misc]
             # beyond, by an eighth at a time: trying every number takes minutes
             number += (
@@ -258,78 +186,141 @@ class Search:
                 if number < REDUCTION_SEARCH.first_modes
                 else max(1, min(number // 8, most - number))
             )
-        return None
+        return best
 
-    def _meets_with_larger(self, number: int, tol: float) -> bool:
+    def _cost(self, number: int, directions: int) -> float:
+        """Return the cost of a run: steps by the highest frequency, products by the number."""
+        return float(number**2 * self._coordinates(number, directions).omega[-1])
+
+    def _meets_with_larger(self, number: int, directions: int, tol: float) -> bool:
         largest = min(number + REDUCTION_SEARCH.and_larger, self.whole.size)
-        return all(self._meets(each, tol) for each in range(number, largest + 1))
+        for each in range(number, largest + 1):
+            agreement = self._agreement(each, directions)
+            if agreement is None or not agreement.holds:
+                return False
+            if max(agreement.errors) > tol:
+                return False
+        return True
 
-    def _meets(self, number: int, tol: float) -> bool:
-        kept = self._at_least(number)
-        if not self._reaches(number):
-            return False
-        if kept.parallel_contact(number) or self._loses_stick(number):
-            return False
+    def _agreement(self, number: int, directions: int) -> Agreement | None:
+        """Return how coordinates agree with the whole; None if they cannot be taken."""
+        if (number, directions) not in self._agreements:
+            found = self._compared(self._coordinates(number, directions))
+            self._agreements[number, directions] = found
+        return self._agreements[number, directions]
+
+    def _compared(self, coordinates: Coordinates) -> Agreement | None:
+        if not self._reaches(coordinates):
+            return None
+        if coordinates.parallel_contact() or self._loses_stick(coordinates):
+            return None
         try:
-            values = quick_values(*kept.small_motions(number))
-        except NoSlidingError:  # in these modes, not in the whole
-            return False
+            values = quick_values(*coordinates.small_motions())
+        except NoSlidingError:  # in these coordinates, not in the whole
+            return None
         # growth below this share of the eigenvalue's modulus is round-off
         grows = values.real > 1e-9 * np.abs(values)
-        agreement = compared(self.truth, values, grows)
-        return agreement.holds and max(agreement.errors) <= tol
+        return compared(self.truth, values, grows)
 
-    def _reaches(self, number: int) -> bool:
-        """Tell whether the modes kept reach half the highest unstable frequency of the whole."""
-        if number == self.whole.size:
+    def _reaches(self, coordinates: Coordinates) -> bool:
+        """Tell whether coordinates reach half the highest unstable frequency of the whole."""
+        if coordinates.number == self.whole.size:
             return True
         highest = np.abs(self.truth.unstable.imag).max(initial=0.0)
-        return bool(self.kept.omega[number - 1] >= 0.5 * highest)
+        return bool(coordinates.omega[-1] >= 0.5 * highest)
 
-    def _loses_stick(self, number: int) -> bool:
+    def _loses_stick(self, coordinates: Coordinates) -> bool:
         """Tell whether directions of sliding, independent in the whole, are dependent here."""
-        return self._all_can_stick and bool(self._at_least(number).dependent(number))
+        return self._all_can_stick and bool(coordinates.dependent())
 
     @cached_property
     def _all_can_stick(self) -> bool:
         return not dependent_of(self.whole)
 
-    def _at_least(self, number: int) -> Kept:
-        if number > self.kept.number:
-            larger = max(number + REDUCTION_SEARCH.and_larger, 2 * self.kept.number)
-            self.kept = Kept(self.whole, min(larger, self.whole.size))
-        return self.kept
+    def _coordinates(self, number: int, directions: int) -> Coordinates:
+        if number > self.space.n_modes:
+            larger = max(number + REDUCTION_SEARCH.and_larger, 2 * self.space.n_modes)
+            self.space = StaticSpace(self.whole, min(larger, self.whole.size))
+        return Coordinates(self.space, number, directions)
 
-    def structure(self, number: int) -> ContactStructure:
-        """Return the structure of so many modes with its record.
+    def _chosen(self, number: int) -> Coordinates:
+        """Return so many coordinates: the first in which the same modes grow as in the whole.
+
+        Modes at rest alone come first, then those with normal and with all static responses.
+
+        Raises:
+            ValueError: a contact has no two directions in any; says how many suffice.
+        """
+        usable = []
+        for directions in range(3):
+            coordinates = self._coordinates(number, directions)
+            agreement = self._agreement(number, directions)
+            if agreement is not None and agreement.holds:
+                return coordinates
+            if not coordinates.parallel_contact():
+                usable.append(coordinates)
+        if usable:
+            return usable[0]
+        name = coordinates.parallel_contact()
+        enough = next(
+            each
+            for each in range(number, self.whole.size + 1)
+            if not self._coordinates(each, 0).parallel_contact()
+        )
+        raise ValueError(
+            f"n_modes = {number}: contact {name} has no two directions in the {number} modes "
+            f"kept; keep more (n_modes={enough} suffices)"
+        )
+
+    def structure(self, number: int, directions: int | None = None) -> ContactStructure:
+        """Return the structure in so many coordinates with its record.
+
+        Args:
+            directions: of static responses; None: the first in which the same modes grow.
 
         Raises:
             ValueError: a contact has no two directions in these modes; says how many suffice.
         """
-        kept = self._at_least(number)
-        if name := kept.parallel_contact(number):
-            enough = next(
-                each
-                for each in range(number, self.whole.size + 1)
-                if not self._at_least(each).parallel_contact(each)
-            )
-            raise ValueError(
-                f"n_modes = {number}: contact {name} has no two directions in the {number} modes "
-                f"kept; keep more (n_modes={enough} suffices)"
-            )
-        reduced = kept.reduced(number)
-        reduced.modes = kept.modes[:, :number]
+        coordinates = (
+            self._chosen(number)
+            if directions is None
+            else self._coordinates(number, directions)
+        )
+        reduced = coordinates.reduced()
+        reduced.modes = coordinates.modes
         # modes of a reduced structure lead to its amplitudes, which no mesh shows
         reduced.mesh = self.whole.mesh if self.whole.modes is None else None
-        reduced.reduced_from = ReducedFrom(self.whole, self.frequency_max, self.truth)
+        reduced.reduced_from = ReducedFrom(
+            self.whole, self.frequency_max, self.truth, coordinates.directions
+        )
         spectrum = Solver(reduced, Limits(), reduced.belt_speed).at(reduced.mu)
         agreement = agreement_of(self.truth, spectrum, reduced.modes)
         reduced.record = {
             "n_modes": number,
+            "static_responses": number - coordinates.n_modes,
             **summary(agreement),
             "unstable": len(self.truth.unstable),
         }
         return reduced
+
+
+def reduced_again(
+    structure: ContactStructure,
+    number: int,
+    static_responses: int,
+    frequency_max: float | None,
+) -> ContactStructure:
+    """Return a structure in the coordinates of a record.
+
+    Args:
+        number, static_responses: as in the record.
+        frequency_max: end of the band, Hz, or None.
+    """
+    search = Search(structure, Truth.of(structure, frequency_max), frequency_max)
+    found = (search.structure(number, directions) for directions in range(3))
+    return next(
+        each for each in found if each.record["static_responses"] == static_responses
+    )
 
 
 def quick_values(stiffness: np.ndarray, damping: np.ndarray) -> np.ndarray:
@@ -377,7 +368,9 @@ def modes_that_would_do(
     if origin is None:
         return None
     search = Search(origin.whole, truth, origin.frequency_max)
-    return search.smallest(structure.size + 1, most=min(most, origin.whole.size))
+    most = min(most, origin.whole.size)
+    found = search.smallest(structure.size + 1, most=most)
+    return None if found is None else found[0]
 
 
 def fitted(
@@ -395,5 +388,5 @@ def fitted(
         truth = Truth.of(structure, frequency_max)
     search = Search(structure, truth, frequency_max)
     with stage("the fewest modes that agree with the whole"):
-        number = search.smallest(fewest_modes(structure), most=most)
-    return search.structure(most if number is None else number)
+        found = search.smallest(fewest_modes(structure), most=most)
+    return search.structure(*(found or (most,)))

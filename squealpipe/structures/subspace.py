@@ -81,7 +81,7 @@ def subspace(
     ]
     groups = [np.array(of_modes).reshape(-1, whole.size).T, static_answers(whole)]
     for group in groups:
-        basis = np.hstack([basis, _added(whole, basis, group)])
+        basis = np.hstack([basis, added(whole, basis, group)])
     at_rest = basis.T @ (whole.stiffness_at_rest @ basis)
     return np.asarray(basis @ la.eigh(0.5 * (at_rest + at_rest.T))[1])
 
@@ -90,10 +90,10 @@ def with_answers(
     whole: ContactStructure, basis: np.ndarray, forces: np.ndarray
 ) -> np.ndarray:
     """Return a basis with what forces (n, k) do statically added to it, with VᵀMV = 1."""
-    return np.hstack([basis, _added(whole, basis, static_answers(whole, forces))])
+    return np.hstack([basis, added(whole, basis, static_answers(whole, forces))])
 
 
-def _added(
+def added(
     whole: ContactStructure, basis: np.ndarray, vectors: np.ndarray
 ) -> np.ndarray:
     """Return the part of vectors beyond a basis, orthonormal by mass to it and among themselves."""

@@ -10,8 +10,8 @@ from typing import Any, Self
 import numpy as np
 
 from squealpipe.laws.friction_laws import COULOMB
+from squealpipe.structures.coordinates import Coordinates, StaticSpace
 from squealpipe.structures.definition import ContactStructure
-from squealpipe.structures.reduction import Kept
 from squealpipe.structures.sliding import NoSlidingError
 from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
 from squealpipe.structures.squeal.windows import Running, followed_windows, run_windows
@@ -37,6 +37,7 @@ class Design:
     Attributes:
         whole: the structure, of a large one in these coordinates.
         n_modes: modes in which it is run; None: as it is.
+        directions: static responses of each contact among these: 0 none, 1 the normal one, 2 both.
         origin: large structure of all degrees of freedom; None where that is ``whole``.
         coordinates: (n of the origin, n of the whole), amplitudes → displacements.
         running: the structure that is run, where it is known.
@@ -49,6 +50,7 @@ class Design:
     coordinates: np.ndarray | None = None
     running: ContactStructure | None = None
     obstacle: str | None = None
+    directions: int = 0
 
     @classmethod
     def of(cls, structure: ContactStructure) -> Self:
@@ -71,6 +73,7 @@ class Design:
             origin,
             coordinates,
             obstacle=plant.obstacle,
+            directions=running.reduced_from.directions,
         )
 
     @property
@@ -93,8 +96,9 @@ class Design:
             return self.running
         if self.n_modes is None:
             return self.whole
-        kept = Kept(self.whole, self.n_modes)
-        reduced = kept.reduced(self.n_modes)
+        space = StaticSpace(self.whole, self.n_modes)
+        kept = Coordinates(space, self.n_modes, self.directions)
+        reduced = kept.reduced()
         reduced.modes = kept.modes
         return reduced
 

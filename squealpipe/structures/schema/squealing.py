@@ -145,6 +145,11 @@ SQUEALING = DatasetSchema(
             "0: not needed, or not known",
             optional=True,
         ),
+        "static_responses": count(
+            "of the modes in which it was run, how many are static responses of contact forces "
+            "(attachment modes)",
+            optional=True,
+        ),
         "degrees_of_freedom": count("of the whole structure", optional=True),
         **MESH,
         "frequency_max": _of_whole("end of the band that was compared, NaN: all", "Hz"),

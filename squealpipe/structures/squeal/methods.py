@@ -14,8 +14,8 @@ import numpy as np
 
 from squealpipe.benchmark.schema import Role
 from squealpipe.schema import Outcome
+from squealpipe.structures.coordinates import Coordinates, StaticSpace
 from squealpipe.structures.definition import ContactStructure
-from squealpipe.structures.reduction import Kept
 from squealpipe.structures.spectrum import Limits, Solver
 from squealpipe.structures.squeal.ends import (
     END_SEARCH,
@@ -79,7 +79,7 @@ def complex_modes_told(
 
     def ask() -> np.ndarray:
         if number is not None:
-            return Kept(structure, number).values(number)
+            return Coordinates(StaticSpace(structure, number), number, 0).values()
         solver = Solver(structure, Limits(frequency_max), structure.belt_speed)
         return solver.at(structure.mu).values
 

@@ -17,9 +17,10 @@ from scipy.optimize import brentq
 
 from squealpipe.schema import Outcome
 from squealpipe.structures.agreement import Truth
+from squealpipe.structures.coordinates import Coordinates, StaticSpace
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.pencil import DENSE
-from squealpipe.structures.reduction import Kept, quick_values
+from squealpipe.structures.reduction import quick_values
 from squealpipe.structures.schema.squealing import SQUEAL_LIMITS
 from squealpipe.structures.squeal.plant import Plant
 
@@ -83,8 +84,8 @@ class _Damped:
     """Small motions of a structure in coordinates of its modes at rest, with damping added."""
 
     def __init__(self, structure: ContactStructure) -> None:
-        kept = Kept(structure, structure.size)
-        self.stiffness, self.damping = kept.small_motions(structure.size)
+        kept = Coordinates(StaticSpace(structure, structure.size), structure.size, 0)
+        self.stiffness, self.damping = kept.small_motions()
         self.rates = 2.0 * kept.omega
         """∂C/∂ζ, a diagonal."""
 

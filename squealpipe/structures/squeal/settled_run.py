@@ -12,6 +12,7 @@ from squealpipe.codes import Regime
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
 from squealpipe.structures.meshes.datasets import mesh_variables
+from squealpipe.structures.reduction import reduced_again
 from squealpipe.structures.schema.squealing import NO_ATTRACTOR, Kind
 from squealpipe.structures.schema.structure_run import STRUCTURE_RUN
 from squealpipe.validation import Natural, Tolerance
@@ -174,8 +175,11 @@ def _as_it_was_run(structure: Any, answer: xr.Dataset) -> Any:
     if structure.size == number:
         return structure
     limit = float(answer.frequency_max)
-    return structure.reduce(
-        n_modes=number, frequency_max=limit if math.isfinite(limit) else None
+    return reduced_again(
+        structure,
+        number,
+        int(answer.get("static_responses", 0)),
+        limit if math.isfinite(limit) else None,
     )
 
 

@@ -229,6 +229,7 @@ def _of_whole(plant: Plant) -> dict[str, Any]:
         if origin is None or origin.frequency_max is None
         else origin.frequency_max,
         "n_modes": plant.size,
+        "static_responses": plant.structure.record.get("static_responses", 0),
         "frequency_error": agreement.errors.frequency,
         "growth_rate_error": agreement.errors.growth,
         "sliding_force": plant.spectrum.state.force,

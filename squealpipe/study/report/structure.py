@@ -268,6 +268,13 @@ def _number_or_dash(value: xr.DataArray) -> str:
     return number(float(value)) if np.isfinite(value) else "–"
 
 
+def _modes_words(answer: xr.Dataset) -> str:
+    """Return the number of modes, and how many of them are no natural modes."""
+    static = int(answer.get("static_responses", 0))
+    total = int(answer.n_modes)
+    return f"{total}, of which {static} static responses" if static else str(total)
+
+
 def structure(modes: xr.Dataset, answer: xr.Dataset) -> dict[str, Any]:
     """Return the size, friction and contacts of the structure that was run."""
     whole = json.loads(modes.attrs["parameters"])
@@ -276,7 +283,7 @@ def structure(modes: xr.Dataset, answer: xr.Dataset) -> dict[str, Any]:
     ratios = {float(ratio) for ratio in damping}
     rows = [
         ("Degrees of freedom", str(whole["degrees_of_freedom"])),
-        ("Modes in which it was run", str(int(answer.n_modes))),
+        ("Modes in which it was run", _modes_words(answer)),
         ("Friction mu", _frictions(whole)),
         ("Friction law", str(whole["friction_law"]).partition(" ")[0]),
         ("Speed", _speed_words(whole)),
