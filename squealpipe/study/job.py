@@ -1,5 +1,7 @@
 """Contents of a workflow rule as its script sees them: slice of the study, parameters, files."""
 
+import atexit
+import gc
 import time
 from collections.abc import Callable, Iterable
 from functools import cached_property
@@ -26,6 +28,8 @@ class Job:
 
     def __init__(self, snakemake: Any) -> None:
         """Wrap the object ``snakemake`` of a script."""
+        # as Python ends it would look for cyclic garbage among all that is loaded, for 0.5 s
+        atexit.register(gc.freeze)
         self.settings, self.out = snakemake.params.get("settings", {}), snakemake.output
         self.key = snakemake.params.key
         self.item = snakemake.wildcards.get("scatteritem", "1-of-1")

@@ -83,6 +83,13 @@ STUDIES = {
     "Python, scaled units": {**PYTHON_LAW, **SCALED},
 }
 """Options in pairs, for a whole study takes half a minute."""
+LONG = {
+    "Coulomb, belt at rest",
+    "exponential, contact dashpot",
+    "hyperbolic, undamped, scaled units",
+    "cubic table, contact dashpot, undamped, the other way",
+}
+"""Studies of the long tier; the others have a table or a function of one's own in each place."""
 
 
 def options_of(study):
@@ -132,7 +139,10 @@ def test_each_option_has_a_study():
 
 
 @pytest.mark.timeout(1800)
-@pytest.mark.parametrize("name", STUDIES)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=[pytest.mark.long] * (name in LONG)) for name in STUDIES],
+)
 def test_the_report_has_the_answer(name, tmp_path):
     (tmp_path / "friction.csv").write_text(TABLE)
     (tmp_path / "contact.csv").write_text(CONTACT)

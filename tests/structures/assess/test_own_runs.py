@@ -95,7 +95,9 @@ def test_level_and_frequency_of_a_structure_that_hammers():
 
 
 @pytest.mark.release
-@pytest.mark.parametrize("seed", [0, 10, 11, 15])
+@pytest.mark.parametrize(
+    "seed", [10, 15, *(pytest.param(seed, marks=pytest.mark.long) for seed in (0, 11))]
+)
 def test_all_quiet_intervals_on_both_sides_at_one_per_cent(seed):
     scaled, plain, (time, force, length) = drawn(seed)
     most = 2.0 * scaled.mass[0, 0]
