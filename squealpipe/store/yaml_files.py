@@ -60,6 +60,12 @@ def read_yaml(path: Path) -> dict[str, Any]:
         )
     try:
         content = yaml.load(path.read_text(encoding="utf-8"), _Loader)  # noqa: S506 (a safe one)
+    except UnicodeDecodeError as error:
+        raise ConfigError(
+            [
+                f"{path}: byte {error.start + 1} is not UTF-8; save the file in that encoding"
+            ]
+        ) from error
     except yaml.MarkedYAMLError as error:
         line = (
             ""

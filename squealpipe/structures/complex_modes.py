@@ -350,7 +350,15 @@ def _numbers(ways: list[Way], frictions: list[float]) -> list[int]:
         ):
             # a mode that only comes into the band later stands behind those of the first
             first.setdefault(int(number), (index, value.imag, -value.real))
-    return sorted(first, key=first.__getitem__)
+    # undamped modes that have met differ by round-off alone: the one that grows is the first
+    rank, before, ranks = 0, (-1, 0.0), {}
+    for number in sorted(first, key=first.__getitem__):
+        index, frequency, _ = first[number]
+        if index != before[0] or frequency - before[1] > 1e-8 * frequency:
+            rank += 1
+        before = index, frequency
+        ranks[number] = rank, first[number][2]
+    return sorted(ranks, key=ranks.__getitem__)
 
 
 def _of_modes(spectrum: Spectrum) -> dict[str, np.ndarray]:

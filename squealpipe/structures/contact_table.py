@@ -326,7 +326,14 @@ def _direction(
                     f"{place}: the matrices have no labels; count rows from 1"
                 )
             if place not in labels:
-                raise ValueError(f"{place}: no such node and direction in the matrices")
+                node = place.partition(".")[0]
+                own = [each for each in labels if each.partition(".")[0] == node]
+                known = (
+                    f"node {node} has {', '.join(own)}" if own else f"like {labels[0]}"
+                )
+                raise ValueError(
+                    f"{place}: no such node and direction in the matrices ({known})"
+                )
             number = labels.index(place)
         else:
             number = int(place) - 1 if re.fullmatch(r"\d{1,9}", place, re.ASCII) else -1

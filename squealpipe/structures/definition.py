@@ -111,6 +111,10 @@ class ContactStructure:
         self._refuse_other_sizes()
         self.given_stiffness = real_square("stiffness", stiffness, self.size)
         """K without speed terms."""
+        if (self.given_stiffness.diagonal() < 0).all():
+            raise ValueError(
+                f"stiffness is negative at all {self.size} degrees of freedom: change its sign"
+            )
         nothing = sp.csr_array((self.size, self.size))
         self.given_damping = (
             nothing if damping is None else real_square("damping", damping, self.size)
@@ -413,6 +417,11 @@ def _ratios(given: Any, size: int) -> np.ndarray:
         ratios = np.array([finite_number("modal_damping", one, "1") for one in several])
     else:
         ratios = np.array(finite_number("modal_damping", several, "1"))
+    if (ratios > 1).any():
+        raise ValueError(
+            f"modal_damping = {brief(given)}: ratios above 1 leave no mode that oscillates; 1 % is "
+            "0.01"
+        )
     if ratios.size > size or not (ratios >= 0).all():
         raise ValueError(
             f"modal_damping = {brief(given)}: a ratio of 0 or greater is needed, or at most {size} "

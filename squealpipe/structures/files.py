@@ -246,9 +246,10 @@ def _rotation(content: Mapping[str, Any], scales: Scales) -> Rotation | None:
         )
     for key in given:
         if key not in keys:
-            raise ValueError(
-                f"rotation: {key!r} is unknown; {suggestion(str(key), keys)}"
-            )
+            remedy = suggestion(str(key), keys)
+            if str(key)[:1].isdigit():  # {speed: 100,5 rpm} is two entries
+                remedy = "a comma begins another key; write a decimal point"
+            raise ValueError(f"rotation: {key!r} is unknown; {remedy}")
     if "speed" not in given:
         raise ValueError("rotation: speed is missing; give it, like `speed: 20 rad/s`")
     arguments = dict(given)
@@ -434,7 +435,10 @@ def _in_order(key: str, given: Labelled, labels: list[str] | None) -> Any:
     if given.labels is None or given.labels == labels:
         size = given.matrix.shape[0]
         if size != len(labels):
-            raise ValueError(f"{key} has {size} rows, but {len(labels)} are labelled")
+            raise ValueError(
+                f"{key} has {size} rows, but {len(labels)} have names (node.direction); give "
+                "matrices and names that were written together"
+            )
         return given.matrix
     place_of = {label: index for index, label in enumerate(labels)}
     if unknown := [label for label in given.labels if label not in place_of]:

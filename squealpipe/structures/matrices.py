@@ -95,6 +95,11 @@ def checked_mass(
             f"mass is negative at degree of freedom {names[negative[0]]}{counted}: change its sign"
         )
     bare = np.flatnonzero(mass.diagonal() == 0)
+    if bare.size == mass.shape[0]:
+        raise ValueError(
+            f"mass is 0 at all {bare.size} degrees of freedom; give another file, or write it with "
+            "its decimals if these were cut off, as in whole numbers"
+        )
     if bare.size:
         few = ", ".join(names[place] for place in bare[:5])
         few += ", …" if bare.size > 5 else ""

@@ -350,6 +350,14 @@ def _balance(
     except RuntimeError:  # the factor is exactly singular
         is_unbalanced = unsettled = True
     if unsettled or is_unbalanced:
+        hardest = float(structure.stiffnesses.max(initial=0.0))
+        bodies = float(np.abs(structure.stiffness.diagonal()).max())
+        if hardest > 1e-3 / np.finfo(float).eps * bodies:
+            raise NoSlidingError(
+                f"contacts are as stiff as {hardest:.2g} N/m, where the structure has at most "
+                f"{bodies:.2g} N/m on its diagonal: sums of both keep no digit; a contact is rigid "
+                f"from {100.0 * bodies:.2g} N/m on"
+            )
         raise NoSlidingError(
             "nothing holds the structure against its load: the stiffness is singular with "
             f"{'all' if closed.all() else 'some'} contacts closed; add supports"

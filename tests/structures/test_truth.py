@@ -4,6 +4,7 @@ import json
 import os
 from fractions import Fraction
 from pathlib import Path
+from types import SimpleNamespace
 
 import mpmath
 import numpy as np
@@ -17,6 +18,7 @@ from squealpipe import Contact, Structure
 from squealpipe.brake.linear.maps import stability_map
 from squealpipe.parameters import Parameters
 from squealpipe.structures import elastic_pad
+from squealpipe.structures.complex_modes import _numbers
 from squealpipe.structures.modes import modal_damping_of
 from squealpipe.structures.pencil import Pencil
 from squealpipe.structures.schema.structures import Onset
@@ -593,3 +595,14 @@ def test_a_factor_that_cannot_be_is_refused(factors, words):
     pad = elastic_pad(elements=(4, 2)).with_(friction_law="exponential")
     with pytest.raises(ValueError, match=words):
         pad.complex_modes(**factors)
+
+
+@pytest.mark.parametrize("rounding", [0.0, 1e-12, -1e-12])
+def test_of_modes_that_have_met_the_one_that_grows_is_first(rounding):
+    """Round-off decided: the same flutter was mode 1 here and mode 2 there."""
+    values = np.array([33 + 3e3j, -33 + 3e3j * (1 + rounding), 2e3j, 5e3j])
+    spectrum = SimpleNamespace(values=values)
+    step = SimpleNamespace(numbers=np.arange(4), spectrum=spectrum)
+    solver = SimpleNamespace(selected=lambda _: np.ones(4, bool))
+    way = SimpleNamespace(steps={0.5: step}, solver=solver)
+    assert _numbers([way], [0.5]) == [2, 0, 1, 3]

@@ -66,8 +66,9 @@ def blocks_of(path: Path, within: tuple[Path, ...] = ()) -> Iterator[Block]:
                 yield from _with_included(block, within)
             block = _block(text, path, number)
         elif block is None:
+            shown = text[:40] if text.isprintable() else "no text"
             raise ValueError(
-                f"{path}, line {number}: {text[:40]!r} stands before the first keyword; a deck of "
+                f"{path}, line {number}: {shown!r} stands before the first keyword; a deck of "
                 "Abaqus or CalculiX is needed"
             )
         else:

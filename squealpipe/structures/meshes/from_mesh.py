@@ -92,7 +92,15 @@ def _named_rows(
     rows = np.array([_pair(name) for name in names], int).reshape(-1, 2)
     if len(rows) != size:
         raise ValueError(
-            f"degrees_of_freedom names {len(rows)} rows, but the matrices have {size}"
+            f"degrees_of_freedom names {len(rows)} rows, but the matrices have {size}; give the "
+            "file that was written with these matrices"
+        )
+    beyond = rows[(rows[:, 1] < 1) | (rows[:, 1] > 6)]
+    if beyond.size:
+        node, direction = beyond[0]
+        raise ValueError(
+            f"degrees_of_freedom: {node}.{direction} has no direction {direction} ({len(beyond)} "
+            "rows); 1 to 3 are displacements along x, y, z, and 4 to 6 rotations about them"
         )
     unique, counts = np.unique(rows, axis=0, return_counts=True)
     if (counts > 1).any():

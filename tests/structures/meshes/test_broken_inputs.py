@@ -1,6 +1,7 @@
 """Broken inputs of meshes and faces: each ends in one sentence with numbers and a remedy."""
 
 import gzip
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -142,7 +143,41 @@ def pressures(text):
     return spoil
 
 
+def scaled(file, factor):
+    """Multiply the values of a matrix."""
+
+    def spoil(folder):
+        rows = [line.split() for line in (folder / file).read_text().splitlines()]
+        (folder / file).write_text(
+            "".join(f"{i} {j} {factor * float(v)!r}\n" for i, j, v in rows)
+        )
+
+    return spoil
+
+
 BROKEN = [
+    (
+        replaced("M.dof", "5003.3", "5003.7"),
+        r"5003.7 has no direction 7 \(1 rows\); 1 to 3 are displacements along",
+    ),
+    (scaled("M.mas", 0.0), "mass is 0 at all 198 degrees of freedom.*whole numbers"),
+    (scaled("M.sti", -1.0), "stiffness is negative at all 198 .*: change its sign"),
+    (
+        yaml("mass: M.mas", "modal_damping: 2\nmass: M.mas"),
+        "modal_damping = 2: ratios above 1 .*; 1 % is 0.01",
+    ),
+    (
+        yaml("speed: 20 rad/s", "speed: 20,5 rad/s"),
+        "'5 rad/s' is unknown; a comma begins another key; write a decimal point",
+    ),
+    (
+        lambda folder: (folder / "brake.inp").write_bytes(b"\x81\x00" * 99),
+        "'no text' stands before the first keyword",
+    ),
+    (
+        lambda folder: (folder / "brake.yaml").write_text(YAML, "utf-16"),
+        "byte 1 is not UTF-8; save the file in that encoding",
+    ),
     (yaml("PAD", "LINING"), r"no surface or node set 'LINING'; .*(DISC|PAD)"),
     (yaml("against: DISC", "against: DSC"), r"no surface or node set 'DSC'.*DISC"),
     (yaml("body: DISC", "body: WHEEL"), "no surface or node set 'WHEEL'"),
@@ -203,7 +238,7 @@ BROKEN = [
     ),
     (
         lambda folder: (folder / "M.dof").write_text("\n".join(NAMES[:-1])),
-        "rows, but|labelled",
+        "mass has 198 rows, but 197 have names .*written together",
     ),
     (replaced("M.dof", "5003.2", "5003.1"), "5003.1 .*twice"),
     (
@@ -322,7 +357,7 @@ def test_broken_input_ends_in_one_sentence(whole, tmp_path, spoil, words):
     spoil(tmp_path)
     with pytest.raises((ValueError, FileNotFoundError), match=words) as caught:
         Structure.read(tmp_path / "brake.yaml")
-    text = str(caught.value)
+    text = str(caught.value).removeprefix("the configuration has mistakes:\n")
     assert "\n" not in text
     assert "Traceback" not in text
 
@@ -379,3 +414,21 @@ def test_wrong_arguments_of_python_are_named(changes, words):
     }
     with pytest.raises(ValueError, match=words):
         Structure.from_mesh(**given)
+
+
+def test_a_contact_far_stiffer_than_the_bodies_is_refused_with_a_stiffness_that_works(
+    whole, tmp_path
+):
+    """The remedy was to add supports."""
+    for file in whole.iterdir():
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    yaml("2 kN/mm", "1e30 kN/mm")(tmp_path)
+    structure = Structure.read(tmp_path / "brake.yaml")
+    with pytest.raises(
+        ValueError, match=r"contacts are as stiff as .*no digit"
+    ) as told:
+        structure.complex_modes(mu=0.3)
+    rigid = float(str(told.value).rsplit("rigid from ", 1)[1].split()[0])
+    firm = [replace(each, stiffness=rigid) for each in structure.contacts]
+    modes = structure.with_(contacts=firm).complex_modes(mu=0.3, critical=False)
+    assert (modes.normal_force > 0).any()
