@@ -176,9 +176,9 @@ def unstable_modes(modes: xr.Dataset, most: int) -> list[int]:
     return [int(modes.mode[place]) for place in (grows or order)[:most]]
 
 
-def figure_of_modes(modes: xr.Dataset, most: int = 4) -> Figure:
-    """Draw the shapes of the modes that grow fastest, two in a row."""
-    numbers = unstable_modes(modes, most)
+def figure_of_modes(modes: xr.Dataset) -> Figure:
+    """Draw the shapes of the four modes that grow fastest, two in a row."""
+    numbers = unstable_modes(modes, 4)
     rows = max(-(-len(numbers) // 2), 1)
     made, axes = style.new_figure(style.PAGE, 0.2 + 1.9 * rows, nrows=rows, ncols=2)
     for panel in axes.flat[max(len(numbers), 1) :]:

@@ -62,13 +62,7 @@ def _draw_spectrum(axes: Axes, modes: xr.Dataset) -> None:
         return
     factor, unit = frequency_unit(frequency)
     frequency = frequency * factor
-    axes.axhline(0.0, color=style.GREY, linewidth=0.6)
-    axes.plot(
-        frequency[~unstable], growth[~unstable], ".", color=style.BLUE, label="stable"
-    )
-    axes.plot(
-        frequency[unstable], growth[unstable], "o", color=style.RED, label="unstable"
-    )
+    draw_stability(axes, frequency, growth, unstable)
     if (lowest := show_what_grows(axes, growth)) is not None:
         below = growth < lowest
         axes.plot(
@@ -81,6 +75,21 @@ def _draw_spectrum(axes: Axes, modes: xr.Dataset) -> None:
     axes.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
     axes.set(xlabel=f"frequency ({unit})", ylabel=GROWTH_LABEL)
     axes.legend()
+
+
+def draw_stability(
+    axes: Axes, frequency: np.ndarray, height: np.ndarray, unstable: np.ndarray
+) -> None:
+    """Draw modes over frequency, stable and unstable ones, as far as there are any."""
+    axes.axhline(0.0, color=style.GREY, linewidth=0.6)
+    for which, mark, colour, words in (
+        (~unstable, ".", style.BLUE, "stable"),
+        (unstable, "o", style.RED, "unstable"),
+    ):
+        if which.any():
+            axes.plot(
+                frequency[which], height[which], mark, ms=4, color=colour, label=words
+            )
 
 
 def own_friction(modes: xr.Dataset) -> int:
@@ -103,13 +112,7 @@ def figure_of_damping(modes: xr.Dataset) -> Figure:
     factor, unit = frequency_unit(now.frequency.values)
     frequency, ratio = now.frequency.values * factor, 100.0 * now.damping_ratio.values
     unstable = now.unstable.values
-    panel.axhline(0.0, color=style.GREY, linewidth=0.6)
-    panel.plot(
-        frequency[~unstable], ratio[~unstable], ".", color=style.BLUE, label="stable"
-    )
-    panel.plot(
-        frequency[unstable], ratio[unstable], "o", color=style.RED, label="unstable"
-    )
+    draw_stability(panel, frequency, ratio, unstable)
     panel.set(xlabel=f"frequency ({unit})", ylabel="damping ratio (%)")
     panel.legend()
     return made

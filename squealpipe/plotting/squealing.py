@@ -10,7 +10,12 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from squealpipe.plotting import style
 from squealpipe.plotting.hysteresis import draw_hysteresis, has_tracks
-from squealpipe.plotting.modes import GROWTH_LABEL, frequency_unit, show_what_grows
+from squealpipe.plotting.modes import (
+    GROWTH_LABEL,
+    draw_stability,
+    frequency_unit,
+    show_what_grows,
+)
 from squealpipe.schema import meanings
 from squealpipe.text import number
 from squealpipe.units import engineering
@@ -92,21 +97,13 @@ def _poles(axes: Axes, answer: xr.Dataset) -> None:
             linewidth=0,
             label="beyond the band",
         )
-    axes.axhline(0.0, color=style.GREY, linewidth=0.6)
     for index, ring in enumerate(answer.dominant_frequency.values * factor):
         if np.isfinite(ring):
             label = None if index else "strongest line"
             axes.axvline(
                 ring, color=style.BLACK, linewidth=0.8, linestyle="--", label=label
             )
-    for which, mark, colour, label in (
-        (~unstable, ".", style.BLUE, "stable"),
-        (unstable, "o", style.RED, "unstable"),
-    ):
-        if which.any():
-            axes.plot(
-                frequency[which], growth[which], mark, ms=4, color=colour, label=label
-            )
+    draw_stability(axes, frequency, growth.values, unstable)
     shown = growth.values
     if answer.sizes.get("missing", 0):
         lost = answer.missing_growth_rate.values

@@ -194,11 +194,6 @@ class ContactStructure:
         """Coefficient of each contact, its own or the structure's, (contacts,)."""
         return np.array([friction.mu for friction in self.frictions])
 
-    @property
-    def mu_static_of_contacts(self) -> np.ndarray:
-        """Largest friction over normal force in stick, of each contact, (contacts,)."""
-        return np.array([friction.static_mu for friction in self.frictions])
-
     def with_common_mu(self) -> Self:
         """Return the structure with the ``mu`` of its contacts as its own, where all have one.
 

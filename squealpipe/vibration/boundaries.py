@@ -184,11 +184,11 @@ def _zero(at: Callable[[float], float], stable: float, unstable: float) -> float
     return value
 
 
-def thinned(values: np.ndarray, count: int = SEARCH.rungs) -> list[float]:
+def thinned(values: np.ndarray) -> list[float]:
     """Return some of the values, dense at first, the last among them."""
     if not values.size:
         return []
-    places = np.geomspace(1, values.size, min(count, values.size)).astype(int)
+    places = np.geomspace(1, values.size, min(SEARCH.rungs, values.size)).astype(int)
     return [float(value) for value in values[np.unique(places) - 1]]
 
 
@@ -204,7 +204,7 @@ class _Stretch:
     interval: QuietInterval
     tried: dict[float, bool] = field(default_factory=dict)
 
-    def plan(self, *, quiet: bool, located: float) -> list[float]:
+    def plan(self, *, quiet: bool) -> list[float]:
         """Return the values to run."""
         interval, cure = self.interval, self.cure
         now, grid = cure.value, cure.grid
@@ -223,7 +223,7 @@ class _Stretch:
                 if not quiet or is_open:
                     chosen += thinned(side)
         low, high = (
-            self._beside(end, other, is_open, located)
+            self._beside(end, other, is_open)
             for end, other, is_open in (
                 (interval.low, interval.high, interval.low_open),
                 (interval.high, interval.low, interval.high_open),
@@ -232,11 +232,11 @@ class _Stretch:
         chosen = [value for value in chosen if low < value < high]
         return [v for v in dict.fromkeys([*chosen, low, high]) if v not in self.tried]
 
-    def _beside(self, end: float, other: float, is_open: bool, located: float) -> float:
+    def _beside(self, end: float, other: float, is_open: bool) -> float:
         """Return the value that tells whether an end of the stretch is quiet."""
         if is_open:
             return end
-        step = min(self.cure.scale(located, end), 0.5 * abs(other - end))
+        step = min(self.cure.scale(SEARCH.located, end), 0.5 * abs(other - end))
         return end + math.copysign(step, other - end)
 
     def brackets(self) -> list[list[float]]:
@@ -255,7 +255,6 @@ def quiet_intervals(
     test: Test,
     *,
     quiet: bool,
-    located: float = SEARCH.located,
 ) -> dict[str, list[QuietInterval]]:
     """Return all quiet intervals of each parameter, the nearest first.
 
@@ -269,13 +268,9 @@ def quiet_intervals(
         for name, cure in cures.items()
     }
     every = [each for those in stretches.values() for each in those]
-    asked = [
-        (each, value)
-        for each in every
-        for value in each.plan(quiet=quiet, located=located)
-    ]
+    asked = [(each, value) for each in every for value in each.plan(quiet=quiet)]
     _run(asked, test)
-    _bisect(every, test, located)
+    _bisect(every, test)
     answers = {}
     for name, those in stretches.items():
         now = cures[name].value
@@ -293,7 +288,7 @@ def _run(asked: Sequence[tuple[_Stretch, float]], test: Test) -> None:
         each.tried[value] = bool(answer)
 
 
-def _bisect(stretches: Sequence[_Stretch], test: Test, located: float) -> None:
+def _bisect(stretches: Sequence[_Stretch], test: Test) -> None:
     """Halve brackets until each is as narrow as a boundary is located."""
     while True:
         asked = []
@@ -301,7 +296,9 @@ def _bisect(stretches: Sequence[_Stretch], test: Test, located: float) -> None:
             for one, other in stretch.brackets():
                 # next to a boundary of growth the bracket is as narrow as it can be
                 near = min(one, other, key=abs)
-                if abs(one - other) > stretch.cure.scale(located, near) * (1.0 + 1e-9):
+                if abs(one - other) > stretch.cure.scale(SEARCH.located, near) * (
+                    1.0 + 1e-9
+                ):
                     asked.append((stretch, 0.5 * (one + other)))
         if not asked:
             return

@@ -4,6 +4,7 @@ import ast
 import inspect
 import json
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -142,28 +143,10 @@ def test_propensity_writes_shares_and_a_picture(capsys):
 def test_assess_answers_in_ten_lines_and_says_by_its_exit_code_whether_it_is_quiet(
     capsys, tmp_path
 ):
-    pad = [
-        "--mass",
-        "0.45",
-        "--k1",
-        "1e7",
-        "--k2",
-        "1e7",
-        "--k3",
-        "7e6",
-        "--preload",
-        "5.714e-4",
-        "--belt-speed",
-        "2",
-        "--length1",
-        "0.1",
-        "--length2",
-        "0.1",
-        "--damping1",
-        "42.4",
-        "--damping2",
-        "42.4",
-    ]
+    pad = shlex.split(
+        "--mass 0.45 --k1 1e7 --k2 1e7 --k3 7e6 --preload 5.714e-4 --belt-speed "
+        "2 --length1 0.1 --length2 0.1 --damping1 42.4 --damping2 42.4"
+    )
     assert run(["assess", "22deg", "46deg", *pad, "--mu", "0.4", "-o", "a.nc"]) == 1
     lines = capsys.readouterr().out.splitlines()
     assert (
@@ -232,20 +215,10 @@ def test_backbone_follows_the_linear_mode_first(capsys):
 def test_sweep_writes_one_dataset(capsys):
     assert (
         run(
-            [
-                "sweep",
-                "stability_map",
-                "--vary",
-                "mu=0:0.6:3",
-                "--vary",
-                "alpha1=0:pi:5",
-                "--alpha2",
-                "72deg",
-                "--workers",
-                "1",
-                "-o",
-                "s.nc",
-            ]
+            shlex.split(
+                "sweep stability_map --vary mu=0:0.6:3 --vary alpha1=0:pi:5 --alpha2 "
+                "72deg --workers 1 -o s.nc"
+            )
         )
         == 0
     )

@@ -5,6 +5,7 @@ import json
 import math
 import os
 import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -161,16 +162,7 @@ def test_csv_of_a_run_has_its_events_beside_it(tmp_path):
 
 
 def test_csv_of_a_sweep_has_the_longest_table_first(tmp_path, capsys):
-    swept = [
-        "sweep",
-        "simulate",
-        "--vary",
-        "mu=0.1,0.3",
-        "--alpha1",
-        "2",
-        "--alpha2",
-        "2.5",
-    ]
+    swept = shlex.split("sweep simulate --vary mu=0.1,0.3 --alpha1 2 --alpha2 2.5")
     assert run([*swept, "--option", "t_end=2", "--workers", "1", "-o", "s.csv"]) == 0
     table = read("s.csv")
     assert list(table.columns[:3]) == ["mu", "time", "x"]
@@ -183,20 +175,10 @@ def test_parameters_come_from_a_study_unless_they_are_typed(tmp_path):
     (tmp_path / "soft.yaml").write_text("parameters: {k1: 2.0, k3: 0.6, mu: 0.1}\n")
     assert (
         run(
-            [
-                "map",
-                "frequencies",
-                "-c",
-                "soft.yaml",
-                "--k3",
-                "3",
-                "--alpha1",
-                "1,2",
-                "--alpha2",
-                "0.5,0.7",
-                "-o",
-                "f.nc",
-            ]
+            shlex.split(
+                "map frequencies -c soft.yaml --k3 3 --alpha1 1,2 --alpha2 0.5,0.7 -o "
+                "f.nc"
+            )
         )
         == 0
     )
@@ -214,24 +196,10 @@ def test_parameters_come_from_a_study_unless_they_are_typed(tmp_path):
 def test_sweep_states_outcomes_and_their_remedies(capsys):
     assert (
         run(
-            [
-                "sweep",
-                "periodic_orbit",
-                "--vary",
-                "y_peak=1.1:3:4",
-                "--vary",
-                "mu=0.1,0.3",
-                "--option",
-                "mode=1",
-                "--alpha1",
-                "0.3pi",
-                "--alpha2",
-                "0.9pi",
-                "--k3",
-                "0.75",
-                "--workers",
-                "1",
-            ]
+            shlex.split(
+                "sweep periodic_orbit --vary y_peak=1.1:3:4 --vary mu=0.1,0.3 --option "
+                "mode=1 --alpha1 0.3pi --alpha2 0.9pi --k3 0.75 --workers 1"
+            )
         )
         == 0
     )

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shlex
 import signal
 import socket
 import subprocess
@@ -17,43 +18,14 @@ from squealpipe.study.supervised import end_group, remove_stale_lock
 
 LONG = {
     "simulate": ["simulate", "0.4pi", "0.6pi", "--t-end", "1e6"],
-    "map": [
-        "map",
-        "hammering",
-        "--t-end",
-        "1e6",
-        "--alpha1",
-        "0:pi:41",
-        "--alpha2",
-        "0:pi:41",
-    ],
-    "backbone": [
-        "backbone",
-        "0.3pi",
-        "0.9pi",
-        "--method",
-        "hbm",
-        "--n-harmonics",
-        "512",
-        "--y-peak-max",
-        "10000",
-    ],
-    "sweep": [
-        "sweep",
-        "simulate",
-        "--vary",
-        "mu=0.1:0.6:60",
-        "--alpha1",
-        "5pi/6",
-        "--alpha2",
-        "5pi/6",
-        "--option",
-        "t_end=1e6",
-        "--option",
-        "times=0:1e6:11",
-        "--workers",
-        "2",
-    ],
+    "map": shlex.split("map hammering --t-end 1e6 --alpha1 0:pi:41 --alpha2 0:pi:41"),
+    "backbone": shlex.split(
+        "backbone 0.3pi 0.9pi --method hbm --n-harmonics 512 --y-peak-max 10000"
+    ),
+    "sweep": shlex.split(
+        "sweep simulate --vary mu=0.1:0.6:60 --alpha1 5pi/6 --alpha2 5pi/6 "
+        "--option t_end=1e6 --option times=0:1e6:11 --workers 2"
+    ),
 }
 
 

@@ -1,6 +1,7 @@
 """What reaches a terminal: always the answer, in its own letters."""
 
 import os
+import shlex
 import subprocess
 import sys
 from types import SimpleNamespace
@@ -33,16 +34,7 @@ def test_simulate_works_where_the_terminal_is_ascii():
 
 def test_a_log_has_the_time_that_is_left(capsys, monkeypatch):
     monkeypatch.setattr("squealpipe.cli.console.LOG_EVERY", 0.0)
-    words = [
-        "sweep",
-        "stability_map",
-        "--vary",
-        "mu=0:1:5",
-        "--alpha1",
-        "1",
-        "--alpha2",
-        "2",
-    ]
+    words = shlex.split("sweep stability_map --vary mu=0:1:5 --alpha1 1 --alpha2 2")
     assert run([*words, "--workers", "1", "-o", "s.nc"]) == 0
     told = capsys.readouterr().err.splitlines()
     assert told[1].startswith("sweep of stability_map: 40% done, about ")
@@ -82,16 +74,7 @@ def test_symbols_of_the_paper_are_understood_or_name_their_key(tmp_path, capsys)
     found = load("m.nc").attrs["parameters"]
     for part in ('"belt_speed": -3.0', '"length1": 7.0', '"mass": 2.0'):
         assert part in found
-    swept = [
-        "sweep",
-        "stability_map",
-        "--vary",
-        "L1=3,4",
-        "--alpha1",
-        "1",
-        "--alpha2",
-        "2",
-    ]
+    swept = shlex.split("sweep stability_map --vary L1=3,4 --alpha1 1 --alpha2 2")
     assert run([*swept, "--workers", "1", "-o", "s.nc"]) == 0
     assert load("s.nc").length1.values.tolist() == [3.0, 4.0]
     (tmp_path / "mine.yaml").write_text("parameters: {V: 3}\n")

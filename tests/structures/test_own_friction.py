@@ -81,7 +81,8 @@ def test_each_contact_has_its_own_law(seed, belt_speed):
     fastest, force = growth(case, drag, slope)
     assert np.allclose(modes.normal_force, force, rtol=1e-10)
     assert abs(modes.growth_rate.max() - fastest) < 1e-9
-    assert np.allclose(structure.mu_static_of_contacts, [0.15, 0.2, 0.3])
+    limits = [friction.static_mu for friction in structure.frictions]
+    assert np.allclose(limits, [0.15, 0.2, 0.3])
 
 
 def critical_by_hand(case, drag_at, high):
@@ -303,4 +304,4 @@ def test_a_table_of_contacts_has_a_column_of_friction(tmp_path):
     )
     structure = read(tmp_path / "s.yaml", Structure)
     assert structure.mu_of_contacts.tolist() == [0.2, 0.3]
-    assert structure.mu_static_of_contacts.tolist() == [0.2, 0.35]
+    assert [friction.static_mu for friction in structure.frictions] == [0.2, 0.35]

@@ -1,5 +1,7 @@
 """Sweeps of the study: in parts or whole the same bits, and an edit touches its own sweep alone."""
 
+import shlex
+
 from squealpipe.cli import run
 from squealpipe.store import load
 from squealpipe.study.explain import explain
@@ -35,20 +37,10 @@ def test_parts_equal_the_whole_and_the_command_line(checkout, snakemake, monkeyp
     monkeypatch.chdir(checkout)
     assert (
         run(
-            [
-                "sweep",
-                "simulate",
-                "--vary",
-                "mu=0.2,0.4",
-                "--vary",
-                "alpha1=1.6,2,5pi/6,2.7",
-                "--alpha2",
-                "5pi/6",
-                "--option",
-                "t_end=20",
-                "-o",
-                "runs.nc",
-            ]
+            shlex.split(
+                "sweep simulate --vary mu=0.2,0.4 --vary alpha1=1.6,2,5pi/6,2.7 "
+                "--alpha2 5pi/6 --option t_end=20 -o runs.nc"
+            )
         )
         == 0
     )

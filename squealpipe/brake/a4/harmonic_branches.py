@@ -64,7 +64,7 @@ def harmonic_branch(
         sigma: scaled regularizing factor, or None for the sharp law.
         cross_poles: go on beyond ω = ω_x/n where K12 = 0.
     """
-    balance = CosineBalance(scene.system, contact_of(n_harmonics, 1.0, n_time, sigma))
+    balance = CosineBalance(scene.system, contact_of(n_harmonics, n_time, sigma))
     orbits, outcomes, end = linear_part(scene, mode, y_max, x_max)
     series = [linear_series(scene, mode, n_harmonics, orbit.point) for orbit in orbits]
     points = [

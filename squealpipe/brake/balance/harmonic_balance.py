@@ -22,21 +22,21 @@ Vector = NDArray[np.float64]
 
 
 def contact_of(
-    n_harmonics: int, threshold: float, n_time: int | None, sigma: float | None
+    n_harmonics: int, n_time: int | None, sigma: float | None
 ) -> ClosedFormContact | SampledContact:
-    """Contact integrals for the given samples and smoothing, both scaled.
+    """Contact integrals for the given samples and smoothing; scaled, contact ends at y = 1.
 
     Without ``n_time`` the sharp law is integrated in closed form, and a smoothed one with
     enough samples to resolve it.
     """
     if n_time is None and sigma is None:
-        return ClosedFormContact(n_harmonics, threshold)
+        return ClosedFormContact(n_harmonics, 1.0)
     if n_time is None and sigma is not None:
         # sixteen samples for each harmonic
         # eight over the width of the smoothed contact
-        wanted = max(16 * n_harmonics, 8 * sigma * threshold, 256)
+        wanted = max(16 * n_harmonics, 8 * sigma, 256)
         n_time = 2 ** math.ceil(math.log2(min(wanted, 2**14)))
-    return SampledContact(n_harmonics, threshold, int(n_time or 0), sigma)
+    return SampledContact(n_harmonics, 1.0, int(n_time or 0), sigma)
 
 
 @dataclass(frozen=True)

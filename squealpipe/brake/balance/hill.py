@@ -14,13 +14,11 @@ import scipy.linalg
 from squealpipe.brake.orbits.piecewise_linear import PiecewiseLinearSystem
 
 
-def sampled_share_above(
-    cosine: np.ndarray, threshold: float, n_time: int
-) -> np.ndarray:
-    """Cosine means, 0 … 2 H, of the part of the period in which a cosine series lies above."""
-    n_harmonics = len(cosine) - 1
+def sampled_share_above(cosine: np.ndarray) -> np.ndarray:
+    """Cosine means, 0 … 2 H, of the part of the period in which a cosine series lies above 1."""
+    n_harmonics, n_time = len(cosine) - 1, 80
     theta = 2.0 * math.pi * np.arange(n_time) / n_time
-    above = np.cos(np.outer(theta, np.arange(n_harmonics + 1))) @ cosine > threshold
+    above = np.cos(np.outer(theta, np.arange(n_harmonics + 1))) @ cosine > 1.0
     return (
         np.asarray(above @ np.cos(np.outer(theta, np.arange(2 * n_harmonics + 1))))
         / n_time

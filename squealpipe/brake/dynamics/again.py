@@ -40,14 +40,14 @@ def simulated_again(run: xr.Dataset, times: np.ndarray) -> xr.Dataset:
     )
 
 
-def settled_run(answer: xr.Dataset, *, periods: float = 300.0) -> xr.Dataset:
-    """Run on along the settled motion of an answer, long enough to be heard.
+def settled_run(answer: xr.Dataset) -> xr.Dataset:
+    """Run on along the settled motion of an answer for 300 periods, long enough to be heard.
 
-    An answer keeps twelve periods, which are too few of a motion that does not repeat.
+    An answer keeps twelve periods, which are too few of a motion that does not repeat. They are
+    those of its strongest line; where there is none, of √(mass/k1).
 
     Args:
         answer: dataset ``assess``.
-        periods: of the strongest line; where there is none, of √(mass/k1).
 
     Returns:
         Dataset ``simulation`` from where the path of the answer ends; from rest where it has none.
@@ -67,7 +67,7 @@ def settled_run(answer: xr.Dataset, *, periods: float = 300.0) -> xr.Dataset:
         params,
         float(answer.alpha1),
         float(answer.alpha2),
-        t_end=periods * period,
+        t_end=300.0 * period,
         tol=float(answer.attrs["tolerance"]),
         initial_state=start.tolist(),
     )

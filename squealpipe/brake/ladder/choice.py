@@ -192,7 +192,7 @@ def run_a1(
     t_end: float,
     *,
     tol: float = 1e-12,
-    workers: int | None = None,
+    workers: int | None,
 ) -> None:
     """A1 where nothing cheaper has answered; to the first loss of contact where that is asked."""
     open_ = np.isnan(value)

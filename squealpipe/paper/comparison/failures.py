@@ -169,7 +169,7 @@ def _branch(case: BranchCase) -> HardScene:
     scene = scaled_system(BASE_PARAMETERS, *case.angles)
     exact, _ = find_orbit(scene, case.mode, case.y_peak)
     balance = CosineBalance(
-        scene.system, contact_of(CASE_HARMONICS, 1.0, case.n_time, case.sigma)
+        scene.system, contact_of(CASE_HARMONICS, case.n_time, case.sigma)
     )
     start = linear_series(
         scene,
@@ -183,7 +183,7 @@ def _branch(case: BranchCase) -> HardScene:
     if exact:
         # ω is then good to 1e-9, ten thousand times better than the tolerance of the verdict
         truth_harmonics = 128
-        fine = CosineBalance(scene.system, contact_of(truth_harmonics, 1.0, None, None))
+        fine = CosineBalance(scene.system, contact_of(truth_harmonics, None, None))
         truth = _newton(
             scene, case, fine, orbit_series(scene, exact, truth_harmonics)
         ).value
@@ -319,7 +319,7 @@ def _period_doubling() -> HardScene:
     scene = scaled_system(BASE_PARAMETERS, *angles)
     exact, _ = find_orbit(scene, mode, y_peak)
     hill_harmonics = 16
-    balance = CosineBalance(scene.system, contact_of(hill_harmonics, 1.0, None, None))
+    balance = CosineBalance(scene.system, contact_of(hill_harmonics, None, None))
 
     def ours() -> Answer:
         found = periodic_orbit(BASE_PARAMETERS, *angles, mode=mode, y_peak=y_peak)
@@ -339,7 +339,7 @@ def _period_doubling() -> HardScene:
         if solution is None:
             return Answer(math.nan, NOT_CONVERGED)
         _, y, omega = balance.split(solution[0])
-        share = sampled_share_above(y, 1.0, 80)
+        share = sampled_share_above(y)
         multipliers = hill_multipliers(scene.system, share, omega)
         return Answer(float(np.abs(multipliers).max() > 1.0 + 1e-3))
 

@@ -123,7 +123,7 @@ def _cosines(
     orbit: Orbit,
     start: Orbit,
 ) -> Any:
-    balance = CosineBalance(scene.system, contact_of(count, 1.0, samples, sigma))
+    balance = CosineBalance(scene.system, contact_of(count, samples, sigma))
     guess, peak = orbit_series(scene, start, count), float(orbit.point[1])
 
     def error_of(found: Any) -> float:

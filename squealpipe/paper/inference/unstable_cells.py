@@ -52,7 +52,7 @@ def unstable_cells(params: Parameters, *, inside: float = INSIDE) -> Unstable:
 
 
 def unstable_along_edges(
-    fields: Mapping[str, np.ndarray], *, inside: float = INSIDE
+    fields: Mapping[str, np.ndarray], *, inside: float
 ) -> list[Unstable]:
     """Find unstable cells of many sets without dashpots, whose friction does not depend on speed.
 

@@ -31,7 +31,7 @@ def _exact(peak, mode=1):
 @pytest.mark.parametrize(("n_time", "sigma"), [(None, None), (400, 30.0)])
 def test_jacobian_agrees_with_differences(n_time, sigma):
     scene, orbit, x, y = _exact(2.0)
-    balance = CosineBalance(scene.system, contact_of(6, 1.0, n_time, sigma))
+    balance = CosineBalance(scene.system, contact_of(6, n_time, sigma))
     z = np.concatenate([x[:7], y[:7], [orbit.omega]]) + 0.01
     assert_jacobian(balance.evaluate, z, atol=1e-7)
 
@@ -45,7 +45,7 @@ def test_omega_converges_with_the_fourth_power_and_keeps_the_goals():
     for count in (8, 16, 32, 64):
         errors = []
         for peak, (scene, orbit, x, y) in zip(peaks, exact, strict=True):
-            balance = CosineBalance(scene.system, contact_of(count, 1.0, None, None))
+            balance = CosineBalance(scene.system, contact_of(count, None, None))
             guess = np.concatenate([x[: count + 1], y[: count + 1], [orbit.omega]])
             same_peak = balance.solve(guess, balance.peak_row, peak)
             first_harmonic = np.eye(2 * count + 3)[count + 2]
@@ -68,7 +68,7 @@ def test_smoothing_shifts_omega_by_a_power_of_sigma(peak, rate):
     guess = np.concatenate([x[:33], y[:33], [orbit.omega]])
     omegas = []
     for sigma in (None, 100.0, 1000.0):
-        balance = CosineBalance(scene.system, contact_of(32, 1.0, None, sigma))
+        balance = CosineBalance(scene.system, contact_of(32, None, sigma))
         omegas.append(balance.solve(guess, balance.peak_row, peak)[0][-1])
     sharp, first, second = omegas
     assert math.log10(abs(first - sharp) / abs(second - sharp)) == pytest.approx(
@@ -78,7 +78,7 @@ def test_smoothing_shifts_omega_by_a_power_of_sigma(peak, rate):
 
 def test_a_motion_described_from_its_other_end_solves_the_equations_too():
     scene, orbit, x, y = _exact(2.0)
-    balance = CosineBalance(scene.system, contact_of(12, 1.0, None, None))
+    balance = CosineBalance(scene.system, contact_of(12, None, None))
     guess = np.concatenate([x[:13], y[:13], [orbit.omega]])
     solution, _ = balance.solve(guess, balance.peak_row, 2.0)
     values, _ = balance.evaluate(balance.shift_signs * solution)
@@ -87,7 +87,7 @@ def test_a_motion_described_from_its_other_end_solves_the_equations_too():
 
 def test_linear_motion_in_contact_is_exact_with_one_harmonic():
     scene = scaled_system(FORMER, *ANGLES)
-    balance = CosineBalance(scene.system, contact_of(1, 1.0, None, None))
+    balance = CosineBalance(scene.system, contact_of(1, None, None))
     amplitude = 0.5 * (1.0 - scene.rest[1])
     x, y = (scene.rest[0], scene.slope(1) * amplitude), (scene.rest[1], amplitude)
     assert np.abs(balance.evaluate(np.array([*x, *y, scene.omega(1)]))[0]).max() < 1e-15

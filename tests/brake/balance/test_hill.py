@@ -37,7 +37,7 @@ def share_above(contact_angles, n_harmonics):
 def solved(y_peak, n_harmonics):
     orbit, _ = find_orbit(SCENE, 1, y_peak)
     assert orbit is not None
-    balance = CosineBalance(SCENE.system, contact_of(n_harmonics, 1.0, None, None))
+    balance = CosineBalance(SCENE.system, contact_of(n_harmonics, None, None))
     found = balance.solve(
         orbit_series(SCENE, orbit, n_harmonics), balance.peak_row, y_peak
     )
