@@ -43,9 +43,10 @@ cost: dev  ## CPU time of the study that was made here, and of the tests, beside
 # On any x86-64 the C library's fma is software, a hundred times slower: there tests/generic.txt: laws, models,
 # orbits, series, linear maps and at least one test of every other folder.
 test-processors: dev  ## numerics, and the tiny study, as on other processors
-	$(AVX2) $(LOOP) & $(AVX2) $(ORBITS) && $(AVX2) $(STRUCTURES) && wait $$!
+	# what the tests with AVX2 need is compiled beside the others
+	{ $(AVX2) $(LOOP) & $(AVX2) $(ORBITS) && $(AVX2) $(STRUCTURES) && wait $$!; } & \
+	  tests/processors generic $(TESTS) @tests/generic.txt && wait $$!
 	$(AVX2) $(TESTS) @tests/avx2.txt
-	tests/processors generic $(TESTS) @tests/generic.txt
 	$(if $(SQUEALPIPE_TINY),,$(BIN)/snakemake $(TINY))
 	$(AVX2) $(BIN)/snakemake $$(cd $(HERE) && find data -name '*.nc' | sed 's|^|results/avx2/|') \
 	  $(TINY) --config results=results/avx2

@@ -54,7 +54,7 @@ def test_make_gives_snakemake_a_cache_where_there_is_no_home(tmp_path):
     assert shown.startswith(f"cache={tmp_path}")
 
 
-@pytest.mark.release
+@pytest.mark.long
 def test_every_lower_bound_of_the_dependencies_works(tmp_path):
     """Installs the oldest versions that pyproject.toml allows, then runs commands with them."""
     uv, place = str(Path(sys.executable).with_name("uv")), tmp_path / "oldest"
