@@ -12,9 +12,9 @@ from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
 from squealpipe.plotting.film import FRAMES_PER_SECOND, Film
-from squealpipe.plotting.mesh_scene import Body, structure_scene
+from squealpipe.plotting.mesh_scene import StructureDrawing, structure_scene
 from squealpipe.plotting.pad_motion import PadMotion
-from squealpipe.plotting.pad_scene import Geometry, Mechanism, pad_scene
+from squealpipe.plotting.pad_scene import PadDrawing, PadLayout, pad_scene
 from squealpipe.plotting.structure_motion import SCHEMA as STRUCTURE_RUN
 from squealpipe.plotting.structure_motion import StructureMotion
 from squealpipe.units import engineering
@@ -154,9 +154,9 @@ def draw_phases(panels: list[Axes], run: xr.Dataset) -> str:
     count = len(panels)
     shown = motion.at(last - period * (1.0 - np.arange(count) / count))
     around = motion.from_(last - period)
-    geometry = Geometry(around if around.time.size > 3 else motion)
+    geometry = PadLayout(around if around.time.size > 3 else motion)
     for index, panel in enumerate(panels):
-        Mechanism(panel, geometry, shown, small=True).show(index)
+        PadDrawing(panel, geometry, shown, small=True).show(index)
         panel.set_title(engineering(period * index / count, "s"), fontsize=7)
     return f"one period of {engineering(period, 's')}; motion drawn {geometry.told}"
 
@@ -166,7 +166,7 @@ def _draw_phases_of_structure(panels: list[Axes], run: xr.Dataset) -> str:
     period, last, count = 1.0 / motion.frequency, float(motion.time[-1]), len(panels)
     frames = motion.nearest(last - period * (1.0 - np.arange(count) / count))
     for index, panel in enumerate(panels):
-        body = Body(panel, motion, frames, small=True)
+        body = StructureDrawing(panel, motion, frames, small=True)
         body.show(index)
         panel.set_title(engineering(period * index / count, "s"), fontsize=7)
     return f"one period of {engineering(period, 's')}; vibration drawn {body.told}"

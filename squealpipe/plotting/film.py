@@ -24,7 +24,7 @@ from matplotlib.colors import to_rgb
 from PIL import Image
 
 from squealpipe.plotting import style
-from squealpipe.plotting.motion_panels import Scene
+from squealpipe.plotting.motion_panels import FilmScene
 from squealpipe.store.whole_files import whole_file
 
 FRAMES_PER_SECOND = 25
@@ -44,7 +44,7 @@ class Film:
         dpi: dots per inch of the figure.
     """
 
-    scene: Scene
+    scene: FilmScene
     count: int
     dpi: int = 120
 

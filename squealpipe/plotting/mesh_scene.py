@@ -16,7 +16,7 @@ from squealpipe.plotting.mechanism import draw_belt_motion
 from squealpipe.plotting.motion_panels import (
     COLOURS_IN_WORDS,
     CONTACT_LOOKS,
-    Scene,
+    FilmScene,
     Traces,
     film_axes,
     length_in_words,
@@ -83,7 +83,7 @@ class Facets:
             self.drawn.set_verts(polygons)
 
 
-class Body:
+class StructureDrawing:
     """A structure on axes: facets, and contacts coloured by what they do.
 
     Without a mesh the contact points stand side by side.
@@ -221,7 +221,7 @@ def draw_forces(axes: Axes, run: xr.Dataset) -> None:
 
 def structure_scene(
     motion: StructureMotion, frames: np.ndarray, slower: float
-) -> Scene:
+) -> FilmScene:
     """Draw the film of a structure, with the force and path of the contact that opens most.
 
     Args:
@@ -229,11 +229,11 @@ def structure_scene(
         slower: how many times slower than in reality the film is.
     """
     figure, axes = film_axes()
-    body = Body(axes[0], motion, frames)
+    body = StructureDrawing(axes[0], motion, frames)
     chosen = motion.opens_most
     name = motion.contacts[chosen]
     open_ = 100 * np.mean(motion.regimes[:, chosen] == Regime.separated)
-    return Scene(
+    return FilmScene(
         figure,
         axes,
         body,

@@ -146,7 +146,7 @@ class Artists(Protocol):
         """Move them to where they are in a frame."""
 
 
-class Scene:
+class FilmScene:
     """A film: what moves and a clock at the left, force and path of one contact at the right.
 
     Args:

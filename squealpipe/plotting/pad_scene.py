@@ -17,7 +17,7 @@ from squealpipe.plotting.mechanism import coil, displaced_springs, draw_belt_mot
 from squealpipe.plotting.motion_panels import (
     COLOURS_IN_WORDS,
     CONTACT_LOOKS,
-    Scene,
+    FilmScene,
     Traces,
     film_axes,
     length_in_words,
@@ -27,7 +27,7 @@ from squealpipe.plotting.pad_motion import PadMotion
 from squealpipe.text import number
 
 
-class Geometry:
+class PadLayout:
     """Places of the drawn mechanism for displacements of the mass.
 
     Displacements about their mean are drawn `scale` times larger, the springs at their true angles,
@@ -95,7 +95,7 @@ class Geometry:
         )
 
 
-class Mechanism:
+class PadDrawing:
     """Mass, springs, contact and belt on axes.
 
     Args:
@@ -105,7 +105,7 @@ class Mechanism:
     """
 
     def __init__(
-        self, axes: Axes, geometry: Geometry, motion: PadMotion, *, small: bool = False
+        self, axes: Axes, geometry: PadLayout, motion: PadMotion, *, small: bool = False
     ) -> None:
         self.geometry, self.motion, self.axes = geometry, motion, axes
         self.middles = geometry.drawn(motion.place)
@@ -185,7 +185,7 @@ class Mechanism:
         self.state.set_color(colour)
 
 
-def pad_scene(motion: PadMotion, shown: PadMotion, slower: float) -> Scene:
+def pad_scene(motion: PadMotion, shown: PadMotion, slower: float) -> FilmScene:
     """Draw the film of a pad.
 
     Args:
@@ -194,16 +194,16 @@ def pad_scene(motion: PadMotion, shown: PadMotion, slower: float) -> Scene:
         slower: how many times slower than in reality the film is.
     """
     figure, axes = film_axes()
-    geometry = Geometry(motion)
+    geometry = PadLayout(motion)
     first, second = (f"{number(math.degrees(angle))}°" for angle in shown.angles)
     open_, stuck = (
         f"{100 * np.mean(shown.regimes == each):.0f} %"
         for each in (Regime.separated, Regime.stick)
     )
-    return Scene(
+    return FilmScene(
         figure,
         axes,
-        Mechanism(axes[0], geometry, shown),
+        PadDrawing(axes[0], geometry, shown),
         *(
             Traces(each.time, each.force, each.place, each.regimes, each.preload)
             for each in (motion, shown)

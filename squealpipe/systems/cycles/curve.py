@@ -1,11 +1,6 @@
 """Curves of special cycles in two parameters: folds, period doublings, tori, grazings, stick.
 
-The equations of the cycle's legs and one more, by pseudo-arclength. At a fold their derivative by
-the unknowns is singular, at a period doubling that of a disturbance that returns with the other
-sign, at a torus that of one that returns turned by an angle, which is one more unknown; a bordered
-system gives the equation (Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria,
-2000, ch. 3). It is exact; its derivative, which only steers Newton's method, is a difference of
-exact Jacobians along the null vector.
+:mod:`squealpipe.systems.cycles.curve_equations` has their equations.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Curves of special cycles in two parameters: folds, period doublings, tori, grazings, stick.
+"""Equations of curves of special cycles: folds, period doublings, tori, grazings, stick.
 
 The equations of the cycle's legs and one more, by pseudo-arclength. At a fold their derivative by
 the unknowns is singular, at a period doubling that of a disturbance that returns with the other
