@@ -120,6 +120,21 @@ class ManyContacts:
             now, elapsed = end, elapsed + h
         return None
 
+    def run(self, t_end, step):
+        """Go on for a time; instants of events from here and the sides after each."""
+        time, events = 0.0, [(0.0, tuple(self.side))]
+        while True:
+            before = self.state.copy(), list(self.side)
+            wait = self.next_event(step, t_end - time)
+            if wait is None or time + wait > t_end:
+                self.state, self.side = before
+                whole, _ = self.flow(self.side)
+                end = expm(whole * (t_end - time)) @ np.append(self.state, 1.0)
+                self.state = end[:-1]
+                return events
+            time += wait
+            events.append((time, tuple(self.side)))
+
     def change(self, i, what):
         """Carry out one event."""
         speed = self.speed(self.state)[i]
@@ -169,9 +184,9 @@ def _crossing(whole, rows, start, end, h, *, begins):
         if low is None:
             if not slope(left) < 0.0:
                 continue
-            bottom = brentq(slope, left, h, xtol=1e-15)
+            bottom = brentq(slope, left, h, xtol=1e-17 * h)
             low = bottom if height(bottom) < -NOTHING else None
         if low is not None:
-            root = brentq(height, left, low, xtol=1e-15)
+            root = brentq(height, left, low, xtol=1e-17 * h)
             earliest = root if earliest is None else min(root, earliest)
     return earliest
