@@ -153,12 +153,15 @@ def settle(
     *,
     regimes: np.ndarray | None = None,
     told: Told | None = None,
+    second: Callable[[int, Any], float] | None = None,
 ) -> list[SettledRun]:
     """Run starts side by side until each has settled by the rules, or the time has passed.
 
     Args:
         regimes: those in which they start, (runs, components); None: what fits.
         told: takes what has settled so far and the times run, after each window.
+        second: length of a start's second window by its number and its first window, s; None:
+            that of the horizon.
     """
     count = len(starts)
     settled: dict[int, SettledRun] = {}
@@ -182,13 +185,19 @@ def settle(
             elapsed[rows] += length[rows]
             for index, row in enumerate(rows):
                 now = ran.row(index)
-                compared = len(windows[row]) > (1 if horizon.grows_first else 0)
-                before = windows[row][-1] if compared else None
+                if stop_is_asked() and now.length < (1.0 - 1e-9) * length[row]:
+                    windows[row].append(now)  # cut short: shown, not judged
+                    elapsed[row] += float(now.length) - length[row]
+                    continue
+                run = _judged(
+                    starts[row],
+                    windows[row],
+                    now,
+                    rules,
+                    grows_first=horizon.grows_first,
+                    late=bool(elapsed[row] >= (1.0 - 1e-9) * horizon.most[row]),
+                )
                 windows[row].append(now)
-                late = elapsed[row] >= (1.0 - 1e-9) * horizon.most[row]
-                run = _settled(starts[row], before, now, rules)
-                if run is None and (late or not now.finished):
-                    run = _unsettled(starts[row], before, now)
                 if run is not None:
                     verdict, irregular, change = run
                     settled[row] = SettledRun(
@@ -200,12 +209,25 @@ def settle(
                         windows[row],
                     )
                 states[row], regimes[row] = now.final, now.regimes
-            length = horizon.second.astype(float) if turn == 0 else 2.0 * length
+            length = 2.0 * length
+            if turn == 0:
+                length = _second_lengths(windows, horizon, second)
             length = np.minimum(length, horizon.most - elapsed)
             turn += 1
             if told is not None:
                 told(settled, elapsed)
     return [settled[row] for row in range(count)]
+
+
+def _second_lengths(
+    windows: list[list[Any]],
+    horizon: Horizon,
+    second: Callable[[int, Any], float] | None,
+) -> np.ndarray:
+    """Return the lengths of the second windows, by the first ones where a rule is given."""
+    if second is None:
+        return horizon.second.astype(float)
+    return np.array([second(row, firsts[0]) for row, firsts in enumerate(windows)])
 
 
 def _stopped(
@@ -232,6 +254,28 @@ def _stopped(
 
 End = tuple[Verdict, bool, float]
 """Verdict, whether the motion is irregular, and its largest change."""
+
+
+def _judged(
+    start: Start,
+    earlier: list[Windows],
+    now: Windows,
+    rules: Settling,
+    *,
+    grows_first: bool,
+    late: bool,
+) -> End | None:
+    """Return what a start has settled to by its latest window; None if it runs on.
+
+    Args:
+        grows_first: whether the first window is compared with nothing.
+        late: whether its time has passed.
+    """
+    before = earlier[-1] if len(earlier) > int(grows_first) else None
+    run = _settled(start, before, now, rules)
+    if run is None and (late or not now.finished):
+        run = _unsettled(start, before, now)
+    return run
 
 
 def _settled(

@@ -6,7 +6,7 @@ closes it to a cycle, whose multipliers decide. What neither repeats nor runs aw
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from squealpipe.structures.squeal.windows import (
 )
 from squealpipe.systems.cycles.find import find_cycle
 from squealpipe.systems.cycles.solution import Cycle
+from squealpipe.systems.progress import stop_is_asked
 from squealpipe.systems.recurrence import repeats_after
 from squealpipe.vibration.settled_runs import SettledRun
 from squealpipe.vibration.settling import FOR_NUMBERS, late_growth
@@ -43,6 +44,9 @@ class KindRules:
     """Samples in a period of the fastest mode."""
     most_samples: int = 2**16
     """Most samples of the run; a longer one is cut off there."""
+    early: int = 8
+    """Neighbours of an irregular motion that are lost within this part of the run are followed no
+    longer. Twice as many: more of them are followed for all of it, at eight times the cost."""
     exponential_growth: float = 1e3
     """Growth of the distance from which it is exponential and the motion irregular."""
     saturation: float = 1e-2
@@ -117,27 +121,40 @@ def described(
     states = np.concatenate([base[None], base + directions])
     # all start in the regimes of the motion, but for a contact that is just at a switch
     regimes = np.tile(settled.last.regimes, (len(states), 1))
-    room = int(2.0 * length * settled.last.events / settled.last.length) + 64
-    raw = run(plant, states, times, how, regime=regimes, log_events=room)
-    samples = raw["samples"]
-    modal = plant.modal_velocities(samples)
-    omega, amplitude = amplitude_spectrum(np.moveaxis(modal, -1, 1), step)
-    power = np.sqrt((amplitude**2).sum(axis=1).mean(axis=0))
-    frequency = strongest_line(modal[0], step)
-    grown, exponent, late = _apart(plant, samples, times, extent)
-    kind, cycle = Kind.undetermined, None
-    rules = FOR_NUMBERS
-    leaves = late > rules.still_grows and late > rules.proportional * before
-    if grown >= KIND_RULES.exponential_growth:
-        kind = Kind.irregular
-        leaves = exponent * float(settled.last.length) < rules.irregular
+    few = np.arange(len(times) // KIND_RULES.early)
+    stopped, lost, apart = stop_is_asked(), False, _Apart()
+    if stopped:  # a kind takes longer than somebody waits who has asked for an end
+        times = times[few]
     else:
+        beside = run(plant, states[:4], times[few], how, regime=regimes[:4])["samples"]
+        apart = _apart(plant, beside, times[few], extent)
+        lost = apart.saturates and apart.grown >= KIND_RULES.exponential_growth
+    length = float(times[-1])
+    room = int(2.0 * length * settled.last.events / settled.last.length) + 64
+    alone = {"regime": regimes[:1], "log_events": 0 if lost else room}
+    raw = run(plant, states[:1], times, how, **alone)
+    if not lost and not stopped:
+        others = run(plant, states[1:], times, how, regime=regimes[1:])["samples"]
+        beside = np.concatenate([raw["samples"], others])
+        apart = _apart(plant, beside, times, extent)
+        lost = apart.grown >= KIND_RULES.exponential_growth
+    modal = plant.modal_velocities(raw["samples"][0])
+    omega, amplitude = amplitude_spectrum(modal.T, step)
+    power = np.sqrt((amplitude**2).sum(axis=0))
+    frequency = strongest_line(modal, step)
+    kind, cycle = Kind.undetermined, None
+    rules, late = FOR_NUMBERS, apart.late_growth
+    leaves = late > rules.still_grows and late > rules.proportional * before
+    if lost:
+        kind = Kind.irregular
+        leaves = apart.exponent * float(settled.last.length) < rules.irregular
+    elif not stopped:
         # on a torus near returns are many, and closing each takes minutes
         if _repeats(raw, length, KIND_RULES.nearly_repeated):
             cycle = _closed(plant, settled, raw, frequency)
         if cycle is not None:
             kind, leaves = Kind.cycle, False
-        elif grown <= KIND_RULES.linear_growth and not _repeats(
+        elif apart.grown <= KIND_RULES.linear_growth and not _repeats(
             raw, length, KIND_RULES.repeated_intervals
         ):
             kind = Kind.torus
@@ -147,14 +164,34 @@ def described(
         kind = Kind.undetermined
     resolution = 1.0 / length
     return Described(
-        kind, frequency, resolution, exponent, cycle, lines, power, late, leaves, window
+        kind,
+        frequency,
+        resolution,
+        apart.exponent,
+        cycle,
+        lines,
+        power,
+        late,
+        leaves,
+        window,
     )
+
+
+class _Apart(NamedTuple):
+    """Distance of neighbours: its largest growth, growth rate (1/s), the late growth of the area
+    that they span (ln), and whether they have separated as far as they can.
+    """
+
+    grown: float = np.nan
+    exponent: float = np.nan
+    late_growth: float = 0.0
+    saturates: bool = False
 
 
 def _apart(
     plant: Plant, samples: np.ndarray, times: np.ndarray, extent: float
-) -> tuple[float, float, float]:
-    """Return how far neighbours have run away, how fast, and the late growth of their area.
+) -> _Apart:
+    """Return how far neighbours have run away from the first run, and how fast.
 
     The distance is the median over all neighbours. Its part along the motion keeps its size, which
     hides what grows slowly beside it; an area spanned with that direction shows it at once.
@@ -175,7 +212,8 @@ def _apart(
     far = np.flatnonzero(spread > KIND_RULES.saturation)
     grows = slice(max(int(far[0]), 3) + 1 if far.size else None)
     rate = np.polyfit(middles[grows], np.log(spread[grows] + 1e-300), 1)[0]
-    return grown, float(rate), float(late_growth(np.log(areas + 1e-300)))
+    late = float(late_growth(np.log(areas + 1e-300)))
+    return _Apart(grown, float(rate), late, bool(far.size))
 
 
 def _repeats(raw: dict[str, np.ndarray], length: float, within: float) -> bool:

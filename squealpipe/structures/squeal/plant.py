@@ -218,6 +218,13 @@ class Plant:
         beyond = self.spectrum.values.imag[places] > limit
         return places[np.lexsort((-growth[places], beyond))]
 
+    @property
+    def asked(self) -> np.ndarray:
+        """Places of the unstable modes that are pushed: within the band, or the fastest beyond."""
+        limit = np.inf if self.truth is None else self.truth.limit
+        within = self.spectrum.values.imag[self.unstable] <= limit
+        return self.unstable[: max(int(within.sum()), 1)]
+
     @cached_property
     def decays(self) -> bool:
         """True if small motions about steady sliding die out."""

@@ -1,11 +1,17 @@
 """Starts of a structure, and what they settle to.
 
-The first window is as long as the slowest unstable mode needs to grow from a small push to the
-nonlinear, so that none of it enters a number.
+Idea: a push gets as long as its own mode needs to grow from small to nonlinear, and a random start
+as long as the mode that grows fastest. Windows of statistics follow: so many periods of the motion,
+and long enough to see the slowest mode grow.
+
+Invariant: another mode that takes over later is seen, at the latest by what starts beside the
+settled motion (:mod:`squealpipe.structures.squeal.kinds`), and such runs go on
+(:func:`settle_on`). Cost: that of the runs, which is measured before they begin.
 """
 
+import time
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -13,10 +19,17 @@ import numpy as np
 
 from squealpipe.codes import Verdict
 from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
-from squealpipe.structures.squeal.windows import BLOCKS, Running, run_windows
-from squealpipe.systems.progress import partial_answer
+from squealpipe.structures.squeal.windows import (
+    BLOCKS,
+    Running,
+    StructureWindows,
+    run,
+    run_windows,
+)
+from squealpipe.systems.processes import available_cores
+from squealpipe.systems.progress import partial_answer, stop_is_asked, with_progress
 from squealpipe.units import engineering
-from squealpipe.vibration.settled_runs import Horizon, SettledRun, Start
+from squealpipe.vibration.settled_runs import QUIETNESS, Horizon, SettledRun, Start
 from squealpipe.vibration.settled_runs import settle as settle_runs
 from squealpipe.vibration.settling import FOR_VERDICTS
 
@@ -30,13 +43,21 @@ class RunLengths:
     """Lengths of the runs that settle."""
 
     first_window: float = 100.0
-    """Length of the first window of statistics, in periods of the slowest unstable mode."""
+    """Longest first window of statistics, in periods of the slowest unstable mode; and its length
+    in periods of the motion. Half as long: beats pass for two motions that agree."""
+    fewest_in_window: float = 25.0
+    """Fewest periods of the slowest unstable mode in it."""
     longest_growth: float = 4_000.0
     """Longest time that small motions get to grow, in periods of the slowest mode that grows."""
     most_periods: float = 8_000.0
     """Most periods in which a push may grow, and of a run, if no other end is given."""
     fewest_periods: float = 4.0
     """Fewest periods of a run: the first windows are a quarter of it."""
+    long: float = 10.0
+    """CPU time of all runs, s, from which they are long: they use all cores, starts settle a few at
+    a time, so that the first answers are seen early, and an interrupt is heard within a window."""
+    side_by_side: int = 16
+    """Starts that settle side by side then."""
 
 
 RUN_LENGTHS = RunLengths()
@@ -88,12 +109,86 @@ def start_at(plant: Plant, state: np.ndarray) -> Start:
     )
 
 
+def times_of(
+    plant: Plant, rates: np.ndarray, t_end: float | None
+) -> tuple[np.ndarray, float, float, float]:
+    """Return times for growth (runs,), the shortest and longest first window, and the end, s.
+
+    Args:
+        rates: growth rate of what grows first in each start, 1/s; 0 where nothing does.
+    """
+    slowest_growing, first, most = horizon(plant, t_end)
+    if not plant.unstable.size:
+        return np.full(len(rates), slowest_growing), first, first, most
+    period = 1.0 / plant.slowest
+    slowest = plant.spectrum.values.real[plant.asked].min()
+    shortest = max(QUIETNESS.shown / slowest, RUN_LENGTHS.fewest_in_window * period)
+    shortest = min(shortest, first)
+    longest = min(RUN_LENGTHS.longest_growth * period, 0.25 * most)
+    return np.clip(GROWTH / rates, first, longest), shortest, first, most
+
+
+def settings_of(
+    plant: Plant,
+    state: np.ndarray,
+    rates: np.ndarray,
+    t_end: float | None,
+    how: Running,
+) -> tuple[Running, float]:
+    """Return the settings of long runs, and the CPU time that they will take, s, by some steps.
+
+    Args:
+        state: a start, from which these steps are run.
+        rates: see :func:`times_of`.
+    """
+    growing, shortest, longest, _ = times_of(plant, rates, t_end)
+    # two windows that agree, the second of twice the length
+    span = growing.sum() + 3.0 * len(rates) * np.sqrt(shortest * longest)
+    alone = replace(how, workers=1)
+    few_steps = 100
+    run(plant, state[None], span * np.ones(1), alone, most_steps=1)  # is compiled
+    began = time.process_time()
+    raw = run(plant, state[None], span * np.ones(1), alone, most_steps=few_steps)
+    cost = (time.process_time() - began) / float(raw["reached"][0])
+    seconds = cost * span
+    if seconds < RUN_LENGTHS.long:
+        return how, seconds
+    return replace(how, workers=how.workers or available_cores(), cost=cost), seconds
+
+
 def settle(
-    plant: Plant, states: np.ndarray, t_end: float | None, how: Running
+    plant: Plant,
+    states: np.ndarray,
+    rates: np.ndarray,
+    t_end: float | None,
+    how: Running,
 ) -> list[SettledRun]:
-    """Run all starts until each has settled, or the time has passed."""
+    """Run all starts until each has settled, or the time has passed.
+
+    Args:
+        rates: see :func:`times_of`.
+    """
     starts = [start_at(plant, state) for state in states]
-    return _settle(starts, horizon(plant, t_end), how)
+    growing, shortest, longest, most = times_of(plant, rates, t_end)
+
+    def second(_: int, window: StructureWindows) -> float:
+        frequency = plant.rest[0][window.velocities.argmax()] / (2.0 * np.pi)
+        wanted = max(RUN_LENGTHS.first_window / max(frequency, plant.slowest), shortest)
+        # by halves: windows of all starts then have the same lengths in the end
+        return float(longest * 2.0 ** min(np.ceil(np.log2(wanted / longest)), 0.0))
+
+    settled: list[SettledRun] = []
+    count = RUN_LENGTHS.side_by_side if how.cost else len(starts)
+    for first in with_progress(range(0, len(starts), count)):
+        if stop_is_asked() and settled:
+            break
+        batch = slice(first, first + count)
+        times = growing[batch], longest, most
+        settled += _settle(
+            starts[batch], times, how.turn(1000 * first), second=second, before=settled
+        )
+    never_run = SettledRun(Verdict.undetermined, None, 0.0, change=np.inf)
+    return settled + [never_run] * (len(starts) - len(settled))
 
 
 def settle_on(
@@ -128,14 +223,19 @@ def settle_on(
 
 def _settle(
     starts: Sequence[Start],
-    times: tuple[float, float, float],
+    times: tuple[np.ndarray | float, float, float],
     how: Running,
     regimes: np.ndarray | None = None,
+    *,
+    second: Callable[[int, StructureWindows], float] | None = None,
+    before: Sequence[SettledRun] = (),
 ) -> list[SettledRun]:
     """Run starts of one structure until each has settled.
 
     Args:
         times: lengths of the run without statistics, of the first window, and of all, s.
+        second: see :func:`squealpipe.vibration.settled_runs.settle`.
+        before: runs that have settled already, for partial answers.
     """
     plant: Plant = starts[0].subject
 
@@ -148,26 +248,31 @@ def _settle(
     ) -> object:
         return run_windows(plant, states, seconds, how.turn(turn), begun)
 
-    growing, first, most = (np.full(len(starts), time) for time in times)
+    growing, first, most = (np.zeros(len(starts)) + time for time in times)
     lengths = Horizon(growing, first, most, grows_first=True)
 
     def told(settled: dict[int, SettledRun], elapsed: np.ndarray) -> None:
-        partial_answer(
-            partial(_so_far, plant, settled, len(starts), float(elapsed.max()))
-        )
+        done, count = [*before, *settled.values()], len(before) + len(starts)
+        partial_answer(partial(so_far, plant, done, count, float(elapsed.max())))
 
     return settle_runs(
-        starts, advance, lengths, FOR_VERDICTS, regimes=regimes, told=told
+        starts,
+        advance,
+        lengths,
+        FOR_VERDICTS,
+        regimes=regimes,
+        told=told,
+        second=second,
     )
 
 
-def _so_far(
-    plant: Plant, settled: dict[int, SettledRun], count: int, elapsed: float
+def so_far(
+    plant: Plant, settled: Sequence[SettledRun], count: int, elapsed: float
 ) -> str:
     """Say in a line what starts have settled to so far."""
     omega = plant.rest[0]
     ends: Counter[str] = Counter()
-    for motion in settled.values():
+    for motion in settled:
         if not motion.agrees:
             ends["not settled"] += 1
         elif motion.quiet:
@@ -176,7 +281,7 @@ def _so_far(
             mode = int(motion.last.velocities.argmax())
             ends[f"near {engineering(omega[mode] / (2 * np.pi), 'Hz')}"] += 1
     told = ", ".join(f"{number} {where}" for where, number in ends.most_common())
-    done = sum(motion.agrees for motion in settled.values())
+    done = sum(motion.agrees for motion in settled)
     return (
         f"after {engineering(elapsed, 's')}: {done} of {count} starts have settled"
         + (f" ({told})" if told else "")

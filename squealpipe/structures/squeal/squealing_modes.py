@@ -24,9 +24,17 @@ from squealpipe.structures.squeal.hysteresis import hysteresis
 from squealpipe.structures.squeal.kinds import Described, described
 from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
 from squealpipe.structures.squeal.remedies import added_damping
-from squealpipe.structures.squeal.settling import arrival, settle, settle_on
+from squealpipe.structures.squeal.settling import (
+    arrival,
+    settings_of,
+    settle,
+    settle_on,
+    so_far,
+)
 from squealpipe.structures.squeal.windows import Running, StructureWindows, still
-from squealpipe.systems.progress import stage, stop_is_asked
+from squealpipe.systems.inputs.words import duration
+from squealpipe.systems.progress import partial_answer, stage, stop_is_asked
+from squealpipe.units import engineering
 from squealpipe.validation import Natural, Positive, Seed, Tolerance, Workers, checked
 from squealpipe.vibration.settled_runs import SettledRun
 from squealpipe.vibration.shares import wilson_interval
@@ -119,24 +127,27 @@ def squealing_of(
 
     Tracing its system and writing its code takes seconds with eight contacts.
     """
-    pushes = [plant.pushed(place, PUSH_OF_A_MODE) for place in plant.unstable]
-    if not pushes:  # nothing grows: a push along the mode that decays slowest
-        pushes = [
-            plant.pushed(int(plant.spectrum.values.real.argmax()), PUSH_OF_A_MODE)
-        ]
+    growth = plant.spectrum.values.real
+    places = plant.asked
+    if not places.size:  # nothing grows: a push along the mode that decays slowest
+        places = np.array([growth.argmax()])
+    pushes = [plant.pushed(int(place), PUSH_OF_A_MODE) for place in places]
     drawn = plant.random_states(samples, seed)
     how = Running(tol, seed, workers)
     starts = np.concatenate([pushes, drawn])
+    # a random start is loud from its begin: what grows fastest in it decides
+    rates = np.concatenate([growth[places], np.full(samples, growth.max())])
     settled = []
     if not plant.obstacle:
-        with stage(f"runs of {len(starts)} starts in {plant.size} modes"):
-            settled = settle(plant, starts, t_end, how)
+        how, seconds = settings_of(plant, starts[-1], rates, t_end, how)
+        with stage(_told_before(plant, len(starts), seconds, how)):
+            settled = settle(plant, starts, rates, t_end, how)
     with stage("kinds of the motions that have settled"):
         settled, numbers, modes = _attractors(plant, settled, len(pushes), t_end, how)
     if plant.obstacle:
         numbers = np.full(len(starts), NO_ATTRACTOR)
     members = _members(settled, numbers) if settled else []
-    of_mode = _of_modes(plant, settled, numbers, modes)
+    of_mode = _of_modes(plant, settled[: len(pushes)], numbers, modes)
     of_attractor = _of_attractors(plant, members, modes)
     shares = _shares(numbers[len(pushes) :], len(members))
     below = {}
@@ -182,8 +193,42 @@ def squealing_of(
             **mesh_coordinates,
         },
         {"not_run": plant.obstacle or ""}
-        | ({"interrupted": "yes"} if stop_is_asked() else {}),
+        | ({"interrupted": _interrupted(plant, settled)} if stop_is_asked() else {}),
     )
+
+
+def _told_before(plant: Plant, count: int, seconds: float, how: Running) -> str:
+    """Return the name of the stage of runs: with its time, if it is long, and what shortens it."""
+    told = f"runs of {count} starts in {plant.size} modes"
+    if not how.cost:
+        return told
+    workers = how.workers or 1
+    processes = f" on {workers} processes" if workers > 1 else ""
+    told += f": about {duration(seconds / workers)}{processes}"
+    of_face = any(contact.origin is not None for contact in plant.structure.contacts)
+    fewer = "fewer samples" + (
+        ", or fewer contacts of a face (points: 6 in its YAML, points=6 in Python)"
+        if of_face
+        else ""
+    )
+    partial_answer(lambda: f"{told}; shorter with {fewer}")
+    return told
+
+
+def _interrupted(plant: Plant, settled: list[SettledRun]) -> str:
+    """Say what starts have settled to when the work was stopped."""
+    if not settled:
+        return "yes"
+    elapsed = max(run.elapsed for run in settled)
+    told = so_far(plant, settled, len(settled), elapsed)
+    moving = [run.last for run in settled if not run.agrees and run.last is not None]
+    if moving:
+        places = [int(window.velocities.argmax()) for window in moving]
+        at = sorted({plant.rest[0][place] / (2.0 * np.pi) for place in places})
+        near = engineering(at[0], "Hz")
+        near += f" to {engineering(at[-1], 'Hz')}" if len(at) > 1 else ""
+        told += f"; {len(moving)} that had not moved near {near}"
+    return told
 
 
 def _verdict(
@@ -294,26 +339,33 @@ def _members(settled: list[SettledRun], numbers: np.ndarray) -> list[list[Settle
 def _of_modes(
     plant: Plant, settled: list[SettledRun], numbers: np.ndarray, found: list[Described]
 ) -> dict[str, Any]:
-    """Return, for each unstable mode, the attractor that a small push along it settles on."""
-    count = len(plant.unstable)
-    ends = numbers[:count]
+    """Return, for each unstable mode, the attractor that a small push along it settles on.
+
+    Args:
+        settled: runs of the pushes, in the order of the modes.
+    """
     frequency = plant.frequencies[plant.unstable]
+    count = len(frequency)
+    # the unstable ones are sorted: those beyond the band, which are not pushed, are last
+    pushed = min(count, len(settled))
+    ends = np.full(count, NO_ATTRACTOR)
+    ends[:pushed] = numbers[:pushed]
     squeals = np.zeros(count, bool)
     for index, number in enumerate(ends):
         if number != NO_ATTRACTOR and np.isfinite(found[number].frequency):
             away = np.abs(found[number].frequency - frequency)
             squeals[index] = away.argmin() == index
-    times = [
-        arrival(run) if run.agrees and not run.quiet else np.nan
-        for run in settled[:count]
-    ] or [np.nan] * count
+    times = np.full(count, np.nan)
+    for index, run in enumerate(settled[:pushed]):
+        if run.agrees and not run.quiet:
+            times[index] = arrival(run)
     return {
         "growth_rate": plant.spectrum.values.real[plant.unstable],
         "frequency": frequency,
         "critical_mu": plant.critical_mu[plant.unstable],
         "ends_in": ends,
         "squeals": squeals,
-        "time_to_squeal": np.array(times, float),
+        "time_to_squeal": times,
     }
 
 

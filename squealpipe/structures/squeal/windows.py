@@ -13,6 +13,7 @@ import numpy as np
 from squealpipe.schema import Outcome
 from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
 from squealpipe.systems.integrate import LARGEST, RunOptions, integrate
+from squealpipe.systems.progress import stop_is_asked
 from squealpipe.vibration.settling import Settling, late_growth, tapered
 from squealpipe.vibration.spectrum import amplitude_spectrum, strongest_lines
 from squealpipe.vibration.windows import Windows
@@ -28,12 +29,15 @@ class Running:
     Attributes:
         tol: tolerance of the Taylor integrator.
         seed: that the instants at which a motion is looked at follow from.
-        workers: processes; None takes all cores.
+        workers: processes; None takes all cores where there are many runs.
+        cost: CPU time of one second of motion, s, by which long calls are cut into pieces; 0: it is
+            not known, and none is cut.
     """
 
     tol: float
     seed: int = 0
     workers: int | None = None
+    cost: float = 0.0
 
     def turn(self, number: int) -> Self:
         """Likewise, with instants of their own."""
@@ -160,9 +164,67 @@ def run_windows(
     samples = 2048
     part = np.random.default_rng(how.seed).random(samples)
     times = np.append((np.arange(samples) + part) / samples, 1.0)
-    options = {} if regimes is None else {"regime": regimes}
-    raw = run(plant, states, lengths[:, None] * times, how, frictions, **options)
-    return statistics_of(plant, raw, lengths)
+    pieces = _pieces(count * samples * 2 * plant.size, how.cost * lengths.sum(), how)
+    parts: list[StructureWindows] = []
+    for number, instants in enumerate(np.split(times[:-1], pieces)):
+        inside = np.append(instants - number / pieces, 1.0 / pieces)
+        options = {} if regimes is None else {"regime": regimes}
+        raw = run(plant, states, lengths[:, None] * inside, how, frictions, **options)
+        parts.append(
+            statistics_of(plant, raw, lengths / pieces, blocks=BLOCKS // pieces)
+        )
+        states, regimes = parts[-1].final, parts[-1].regimes
+        if stop_is_asked():
+            break
+    return in_succession(parts)
+
+
+def _pieces(numbers: int, seconds: float, how: Running) -> int:
+    """Return into how many pieces, a power of two, a call is cut.
+
+    Args:
+        numbers: how many it would store.
+        seconds: CPU time that it takes.
+    """
+    most_numbers = 2**26  # half a gigabyte
+    # an interrupt is heard, and progress shown, after so many seconds
+    longest = 5.0
+    needed = max(numbers / most_numbers, seconds / (how.workers or 1) / longest, 1.0)
+    return int(min(2 ** np.ceil(np.log2(needed)), BLOCKS))
+
+
+def in_succession(parts: Sequence[StructureWindows]) -> StructureWindows:
+    """Return windows whose equal parts follow one another."""
+    if len(parts) == 1:
+        return parts[0]
+    last = parts[-1]
+    values = {
+        name: np.stack([getattr(part, name) for part in parts]) for name in vars(last)
+    }
+    ways: dict[str, Any] = {
+        "velocities": _root_mean_square,
+        "speed": _root_mean_square,
+        "separated": np.mean,
+        "stuck": np.mean,
+        "switched": np.any,
+        "finished": np.all,
+        **dict.fromkeys(
+            ("separations", "landings", "events", "steps", "length"), np.sum
+        ),
+        **dict.fromkeys(("forces", "peak_speed", "largest_velocity"), np.max),
+    }
+    joined = {name: way(values[name], axis=0) for name, way in ways.items()}
+    begins = np.cumsum(values["length"], axis=0) - values["length"]
+    return replace(
+        last,
+        kinetic=np.concatenate(values["kinetic"], axis=-1),
+        block_ends=np.concatenate(values["block_ends"] + begins[..., None], axis=-1),
+        **joined,
+    )
+
+
+def _root_mean_square(values: np.ndarray, axis: int) -> np.ndarray:
+    return np.asarray(np.sqrt((values**2).mean(axis=axis)))
 
 
 def followed_windows(
@@ -236,7 +298,10 @@ def followed_windows(
 
 
 def statistics_of(
-    plant: Plant, raw: dict[str, np.ndarray], lengths: np.ndarray | float
+    plant: Plant,
+    raw: dict[str, np.ndarray],
+    lengths: np.ndarray | float,
+    blocks: int = BLOCKS,
 ) -> StructureWindows:
     """Statistics of windows by the raw results of their runs, whose last sample is their end."""
     size = len(raw["final"])
@@ -276,10 +341,10 @@ def statistics_of(
             events=events,
             steps=raw["steps"],
             kinetic=np.stack(
-                [0.5 * part.mean(1) for part in np.array_split(square, BLOCKS, axis=1)],
+                [0.5 * part.mean(1) for part in np.array_split(square, blocks, axis=1)],
                 axis=1,
             ),
-            block_ends=lengths[:, None] * np.arange(1, BLOCKS + 1) / BLOCKS,
+            block_ends=lengths[:, None] * np.arange(1, blocks + 1) / blocks,
             finished=raw["outcome"] == Outcome.converged,
             length=lengths,
             growth=np.full(size, np.nan),
