@@ -131,8 +131,8 @@ def described(
         lost = apart.saturates and apart.grown >= KIND_RULES.exponential_growth
     length = float(times[-1])
     room = int(2.0 * length * settled.last.events / settled.last.length) + 64
-    alone = {"regime": regimes[:1], "log_events": 0 if lost else room}
-    raw = run(plant, states[:1], times, how, **alone)
+    logged = 0 if lost else room
+    raw = run(plant, states[:1], times, how, regime=regimes[:1], log_events=logged)
     if not lost and not stopped:
         others = run(plant, states[1:], times, how, regime=regimes[1:])["samples"]
         beside = np.concatenate([raw["samples"], others])

@@ -51,7 +51,7 @@ def added_damping(plant: Plant) -> tuple[float, Outcome]:
         else:
             damped = _Damped(origin.whole)
             if ratio == 0.0 or not _confirmed(damped.grows, ratio):
-                ratio = damped.boundary()
+                ratio = damped.boundary(near=ratio)
     known = math.isfinite(ratio)
     return ratio, Outcome.converged if known else Outcome.not_reached
 
@@ -98,13 +98,19 @@ class _Damped:
         values = self.values(ratio)
         return bool((values.real > 1e-9 * np.abs(values)).any())
 
-    def boundary(self) -> float:
-        """Return the ratio from which nothing grows, NaN if the largest does not suffice."""
+    def boundary(self, near: float = 0.0) -> float:
+        """Return the ratio from which nothing grows, NaN if the largest does not suffice.
+
+        Args:
+            near: the ratio of a reduction, in which all larger ones were tried; 0: none.
+        """
         # ratios of damping between which stability is taken to change once at most
         tried = [
             *np.geomspace(1e-4, SQUEAL_LIMITS.most_damping, 24)[::-1].tolist(),
             0.0,
         ]
+        if near > 0.0 and not self.grows(1.25 * near):
+            tried = [1.25 * near, *(ratio for ratio in tried if ratio < 0.8 * near)]
         above = math.nan
         for ratio in tried:
             values = self.values(ratio)

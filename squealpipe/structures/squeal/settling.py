@@ -185,7 +185,12 @@ def settle(
         batch = slice(first, first + count)
         times = growing[batch], longest, most
         settled += _settle(
-            starts[batch], times, how.turn(1000 * first), second=second, before=settled
+            starts[batch],
+            times,
+            how.turn(1000 * first),
+            second=second,
+            before=settled,
+            count=len(starts),
         )
     never_run = SettledRun(Verdict.undetermined, None, 0.0, change=np.inf)
     return settled + [never_run] * (len(starts) - len(settled))
@@ -229,6 +234,7 @@ def _settle(
     *,
     second: Callable[[int, StructureWindows], float] | None = None,
     before: Sequence[SettledRun] = (),
+    count: int | None = None,
 ) -> list[SettledRun]:
     """Run starts of one structure until each has settled.
 
@@ -236,6 +242,7 @@ def _settle(
         times: lengths of the run without statistics, of the first window, and of all, s.
         second: see :func:`squealpipe.vibration.settled_runs.settle`.
         before: runs that have settled already, for partial answers.
+        count: number of all starts; None: of these.
     """
     plant: Plant = starts[0].subject
 
@@ -252,8 +259,8 @@ def _settle(
     lengths = Horizon(growing, first, most, grows_first=True)
 
     def told(settled: dict[int, SettledRun], elapsed: np.ndarray) -> None:
-        done, count = [*before, *settled.values()], len(before) + len(starts)
-        partial_answer(partial(so_far, plant, done, count, float(elapsed.max())))
+        done, number = [*before, *settled.values()], count or len(starts)
+        partial_answer(partial(so_far, plant, done, number, float(elapsed.max())))
 
     return settle_runs(
         starts,
@@ -270,16 +277,16 @@ def so_far(
     plant: Plant, settled: Sequence[SettledRun], count: int, elapsed: float
 ) -> str:
     """Say in a line what starts have settled to so far."""
-    omega = plant.rest[0]
     ends: Counter[str] = Counter()
     for motion in settled:
-        if not motion.agrees:
-            ends["not settled"] += 1
+        if motion.last is None:
+            ends["not begun"] += 1
         elif motion.quiet:
             ends["steady sliding"] += 1
         else:
-            mode = int(motion.last.velocities.argmax())
-            ends[f"near {engineering(omega[mode] / (2 * np.pi), 'Hz')}"] += 1
+            omega = plant.rest[0][motion.last.velocities.argmax()]
+            near = f"near {engineering(omega / (2 * np.pi), 'Hz')}"
+            ends[near if motion.agrees else f"not settled, {near}"] += 1
     told = ", ".join(f"{number} {where}" for where, number in ends.most_common())
     done = sum(motion.agrees for motion in settled)
     return (

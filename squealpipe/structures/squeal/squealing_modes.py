@@ -34,7 +34,6 @@ from squealpipe.structures.squeal.settling import (
 from squealpipe.structures.squeal.windows import Running, StructureWindows, still
 from squealpipe.systems.inputs.words import duration
 from squealpipe.systems.progress import partial_answer, stage, stop_is_asked
-from squealpipe.units import engineering
 from squealpipe.validation import Natural, Positive, Seed, Tolerance, Workers, checked
 from squealpipe.vibration.settled_runs import SettledRun
 from squealpipe.vibration.shares import wilson_interval
@@ -216,19 +215,11 @@ def _told_before(plant: Plant, count: int, seconds: float, how: Running) -> str:
 
 
 def _interrupted(plant: Plant, settled: list[SettledRun]) -> str:
-    """Say what starts have settled to when the work was stopped."""
+    """Say what the runs had come to when their end was asked for."""
     if not settled:
         return "yes"
     elapsed = max(run.elapsed for run in settled)
-    told = so_far(plant, settled, len(settled), elapsed)
-    moving = [run.last for run in settled if not run.agrees and run.last is not None]
-    if moving:
-        places = [int(window.velocities.argmax()) for window in moving]
-        at = sorted({plant.rest[0][place] / (2.0 * np.pi) for place in places})
-        near = engineering(at[0], "Hz")
-        near += f" to {engineering(at[-1], 'Hz')}" if len(at) > 1 else ""
-        told += f"; {len(moving)} that had not moved near {near}"
-    return told
+    return so_far(plant, settled, len(settled), elapsed)
 
 
 def _verdict(

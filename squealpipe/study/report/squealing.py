@@ -318,7 +318,11 @@ def modes(answer: xr.Dataset) -> Iterator[str]:
             continue
         end = int(mode.ends_in)
         if end == NO_ATTRACTOR:
-            yield f"{named} ends in a motion that is undetermined."
+            # only the fastest of them is pushed, and only where no mode within the band grows
+            if place and float(mode.frequency) > frequency_max(answer):
+                yield f"{named} is unstable; it was not pushed."
+            else:
+                yield f"{named} ends in a motion that is undetermined."
             continue
         time = float(mode.time_to_squeal)
         after = f" after {engineering(time, 's')}" if np.isfinite(time) else ""
