@@ -13,8 +13,10 @@ from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from squealpipe.laws.headers import COLUMN_UNITS
 from squealpipe.laws.one_file import without_neighbours
 from squealpipe.laws.table_files import ENDINGS, read_pairs
+from squealpipe.systems.inputs.values import numbers_in_si
 from squealpipe.text import as_number
 
 BETWEEN = ("linear", "cubic")
@@ -167,12 +169,38 @@ def pieces_of(text: str, *, goes_on: bool = False) -> Pieces:
     return Pieces(knots, coefficients)
 
 
+def _listed(given: Mapping[str, Any], columns: tuple[str, str]) -> str:
+    """The text of a table from lists of its knots and values."""
+    if not set(columns) <= set(given) <= {*columns, "between"}:
+        raise ValueError(
+            f"write both lists, {columns[0]} and {columns[1]}, and if wanted `between: cubic`"
+        )
+    lists = []
+    for column in columns:
+        values = given[column]
+        if isinstance(values, str) or not hasattr(values, "__len__"):
+            raise ValueError(f"{column} = {values!r}: a list of numbers is needed")
+        numbers = numbers_in_si(column, list(values), COLUMN_UNITS[column])
+        lists.append([float(number) for number in numbers])
+    if len({len(values) for values in lists}) > 1:
+        sizes = " and ".join(str(len(values)) for values in lists)
+        raise ValueError(
+            f"{columns[0]} and {columns[1]} have {sizes} values: as many are needed"
+        )
+    between = given.get("between", "linear")
+    if between not in BETWEEN:
+        raise ValueError(f"between = {between!r}: choose from {', '.join(BETWEEN)}")
+    pairs = zip(*lists, strict=True)
+    return str(between) + "".join(f" {knot!r}:{value!r}" for knot, value in pairs)
+
+
 def named(given: Any, columns: tuple[str, str], folder: Path = Path()) -> Any:
     """The name of a law from what a user writes: a file becomes its content.
 
     Args:
         given: a name; the path of a table or Python file; or ``{"table": path, "between":
-            "cubic", "speed_column": name, "value_column": name}`` or ``{"python": path}``.
+            "cubic", "speed_column": name, "value_column": name}``, ``{"python": path}``, or both
+            columns as lists, of numbers in SI or texts with units.
     """
     if isinstance(given, PathLike) or (
         isinstance(given, str) and given.lower().endswith((*ENDINGS, ".py"))
@@ -180,6 +208,8 @@ def named(given: Any, columns: tuple[str, str], folder: Path = Path()) -> Any:
         given = {"python" if fspath(given).endswith(".py") else "table": fspath(given)}
     if not isinstance(given, Mapping):
         return given
+    if set(given) & set(columns):
+        return _listed(given, columns)
     for key in {"table", "python"} & set(given):
         if not isinstance(given[key], str | PathLike):
             raise ValueError(  # noqa: TRY004 (of a file, where all mistakes are values)
@@ -190,7 +220,8 @@ def named(given: Any, columns: tuple[str, str], folder: Path = Path()) -> Any:
     options = (f"{columns[0]}_column", "value_column")
     if not {"table"} <= set(given) <= {"table", "between", *options}:
         raise ValueError(
-            "write {table: FILE.csv}, if wanted with `between: cubic`, "
+            f"write {{table: FILE.csv}} or {{{columns[0]}: […], {columns[1]}: […]}}, "
+            "if wanted with `between: cubic`, "
             f"`{options[0]}:` and `{options[1]}:`, or {{python: FILE.py}}"
         )
     first, second = (given.get(option) for option in options)

@@ -3,10 +3,13 @@
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from functools import cached_property
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
+from squealpipe.laws.contact_laws import LINEAR, lines_of
+from squealpipe.laws.tables import is_table, scaled
 from squealpipe.parameters import TABLE, finite_number
 from squealpipe.systems.inputs.values import brief, is_finite_number, is_whole_number
 from squealpipe.units import refuse_units
@@ -48,6 +51,29 @@ class PointOrigin(NamedTuple):
         }
 
 
+def table_of_contact(law: Any) -> str | None:
+    """Return the text of a table of contact as it is stored; None where the law is linear.
+
+    Raises:
+        ValueError: another law, or a table that contacts of structures cannot have.
+    """
+    if law is None:
+        return None
+    law = TABLE["contact_law"].check("law", law)
+    if is_table(law):
+        try:
+            lines_of(law)
+        except ValueError as error:
+            raise ValueError(f"law: {error}") from None
+        return scaled(law, 1.0, 1.0)  # in one way, however it is written
+    if law == LINEAR:
+        return None
+    raise ValueError(
+        f"law = {law!r}: contacts of structures are linear or have a table (FILE.csv); a dashpot "
+        "beside a contact is a part of damping"
+    )
+
+
 @dataclass(frozen=True, eq=False)
 class Contact:
     """A point, or any combination of degrees of freedom, that is pressed on the belt.
@@ -60,7 +86,7 @@ class Contact:
         normal: n, {degree of freedom: coefficient}, counted from 0, or by its name ``"12.1"`` where
             the structure has names, or an array of all.
         tangential: t, likewise.
-        stiffness: N/m, or a text like ``7 kN/mm``; greater than 0.
+        stiffness: N/m, or a text like ``7 kN/mm``; greater than 0; None with a ``law``.
         preload: normal force where nᵀq = 0, N, or a text like ``0.2 kN``.
         speed: the belt's speed here over ``belt_speed``, as a radius; negative where the belt
             moves against t.
@@ -74,6 +100,12 @@ class Contact:
             velocity, which damps small motions across it by μN/|V|. Runs in time, which have
             friction along t alone, refuse it.
         origin: where it comes from, of contacts of a mesh.
+        law: a measured normal force over the compression δ, in place of ``stiffness``: a table,
+            as ``contact_law`` of a pad, that is ``"FILE.csv"`` with the columns compression (m) and
+            force (N), ``{"compression": [0, 1e-5, …], "force": [0, 90, …]}``, whose numbers may be
+            texts with units, or ``"linear 0:0 1e-5:90 …"``. It begins with 0, 0 and rises; the
+            slope of the last two points goes on. Where nᵀq = 0 the compression is that at which the
+            force is the preload.
 
     Raises:
         ValueError: names the contact and the argument.
@@ -82,8 +114,8 @@ class Contact:
     name: str
     normal: Any
     tangential: Any
-    stiffness: float
-    preload: float
+    stiffness: float | None = None
+    preload: float = None  # type: ignore[assignment] # needed, but stiffness before it may be None
     speed: float = 1.0
     across: Any = None
     transverse_damping: bool = False
@@ -91,16 +123,15 @@ class Contact:
     friction_law: Any = None
     mu_static: float | None = None
     origin: PointOrigin | None = None
+    law: Any = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not self.name.isidentifier():
             raise ValueError(
                 f"contact {brief(self.name)}: letters, digits and _ are needed for a name"
             )
-        for key, units in (("stiffness", "N m-1"), ("preload", "N"), ("speed", "1")):
-            name = f"contact {self.name}: {key}"
-            value = finite_number(name, getattr(self, key), units)
-            object.__setattr__(self, key, value)
+        self._check_law()
+        self._check_numbers()
         self._check_friction_and_origin()
         for key in ("normal", "tangential", "across"):
             direction = getattr(self, key)
@@ -113,13 +144,6 @@ class Contact:
                 refuse_units(each)
             except ValueError as error:
                 raise self._refusal(key, direction, str(error)) from None
-        if not self.stiffness > 0:
-            raise self._refusal("stiffness", self.stiffness, "must be greater than 0")
-        if self.speed == 0:
-            raise self._refusal(
-                "speed", self.speed, "the belt must move here; leave the contact out"
-            )
-
         if not isinstance(self.transverse_damping, bool):
             raise self._refusal(
                 "transverse_damping", self.transverse_damping, "True or False is needed"
@@ -130,6 +154,95 @@ class Contact:
                 None,
                 "transverse_damping needs the direction across, like across={2: 1.0}",
             )
+
+    def _check_numbers(self) -> None:
+        for key, units in (("stiffness", "N m-1"), ("preload", "N"), ("speed", "1")):
+            if key == "stiffness" and self.law is not None:
+                continue
+            name = f"contact {self.name}: {key}"
+            if getattr(self, key) is None:
+                instead = ", or a law (a table)" if key == "stiffness" else ""
+                raise ValueError(f"{name} is missing; give it{instead}")
+            value = finite_number(name, getattr(self, key), units)
+            object.__setattr__(self, key, value)
+        if self.stiffness is not None and not self.stiffness > 0:
+            raise self._refusal("stiffness", self.stiffness, "must be greater than 0")
+        if self.speed == 0:
+            raise self._refusal(
+                "speed", self.speed, "the belt must move here; leave the contact out"
+            )
+
+    def _check_law(self) -> None:
+        """Store the law as the text of a table, None where it is linear."""
+        try:
+            law = table_of_contact(self.law)
+        except ValueError as error:
+            raise ValueError(f"contact {self.name}: {error}") from None
+        if law is not None and self.stiffness is not None:
+            raise self._refusal(
+                "stiffness", self.stiffness, "the law has one already; leave it out"
+            )
+        object.__setattr__(self, "law", law)
+
+    @cached_property
+    def lines(self) -> np.ndarray:
+        """Pieces of the law: start and end, m, force at the start, N, and stiffness, (pieces, 4).
+
+        Without a table it is one, from compression 0 on.
+        """
+        if self.law is None:
+            return np.array([[0.0, 0.0, 0.0, self.stiffness]])
+        return np.array(lines_of(self.law))
+
+    @property
+    def stiffness_at_preload(self) -> float:
+        """Stiffness at the preload, N/m; of a table that of larger compressions at a point."""
+        return float(self.lines[self._piece_of(self.preload), 3])
+
+    @property
+    def compression(self) -> float:
+        """Compression at the preload, m; negative where the contact is open by that much."""
+        force = self.preload
+        start, _, low, stiffness = self.lines[self._piece_of(force)]
+        return float(start + (force - low) / stiffness)
+
+    def _piece_of(self, force: float) -> int:
+        after = np.searchsorted(self.lines[:, 2], force, side="right")
+        return max(int(after) - 1, 0)
+
+    def force(self, nearing: Any) -> Any:
+        """Return the normal force as if the contact could pull, N, at nᵀq = −nearing, m."""
+        starts, _, forces, stiffnesses = self.lines.T
+        compression = self.compression + nearing
+        after = np.searchsorted(starts, compression, side="right")
+        piece = np.maximum(after - 1, 0)
+        return forces[piece] + stiffnesses[piece] * (compression - starts[piece])
+
+    @property
+    def energy_at_preload(self) -> float:
+        """Energy that the preload stores in the contact, J."""
+        force = self.preload
+        if len(self.lines) == 1:
+            return force**2 / (2.0 * float(self.lines[0, 3]))
+        energy = 0.0
+        for (start, _, low, stiffness), end in zip(
+            self.lines, [*self.lines[1:, 0], np.inf], strict=True
+        ):
+            reached = min(end, self.compression) - start
+            if reached > 0:
+                energy += reached * (low + 0.5 * stiffness * reached)
+        return float(energy)
+
+    def scaled(self, *, stiffness: float = 1.0, preload: float = 1.0) -> Self:
+        """Return the contact with its stiffness, or the forces of its table, and its preload times
+        factors.
+        """
+        changes: dict[str, Any] = {"preload": preload * self.preload}
+        if self.law is None:
+            changes["stiffness"] = stiffness * float(self.stiffness or 0.0)
+        elif stiffness != 1.0:
+            changes["law"] = scaled(self.law, 1.0, 1.0 / stiffness)
+        return replace(self, **changes)
 
     def _check_friction_and_origin(self) -> None:
         if self.origin is not None and not isinstance(self.origin, PointOrigin):

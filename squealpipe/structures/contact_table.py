@@ -1,4 +1,4 @@
-"""A table of contacts: name, normal, tangential, stiffness, preload, speed and mu by column.
+"""A table of contacts: name, normal, tangential, stiffness, preload, law, speed and mu by column.
 
 Text in any encoding, with commas, semicolons or tabs between its cells, or an Excel sheet.
 """
@@ -12,9 +12,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from squealpipe.laws.contact_laws import COLUMNS, TABLE_UNITS
 from squealpipe.laws.numerals import Numeral, decimal_sign, numeral, plain
 from squealpipe.laws.rows import FileRows, text_rows
 from squealpipe.laws.sheets import IS_TIME, sheet
+from squealpipe.laws.table_files import ENDINGS
+from squealpipe.laws.tables import knots_of, read_table
 from squealpipe.parameters import finite_number
 from squealpipe.store.whole_files import whole_file
 from squealpipe.structures.contact import Contact, PointOrigin
@@ -25,7 +28,11 @@ from squealpipe.text import suggestion
 CONTACT_COLUMNS = ("name", "normal", "tangential", "stiffness", "preload")
 ORIGIN_COLUMNS = ("nodes", "against", "area", "gap", "facet", "x", "y", "z")
 """Columns that say where a contact of a mesh comes from."""
-KNOWN = (*CONTACT_COLUMNS, "speed", "mu", "mu_static", "across", *ORIGIN_COLUMNS)
+KNOWN = (
+    *CONTACT_COLUMNS,
+    *("law", "speed", "mu", "mu_static", "across"),
+    *ORIGIN_COLUMNS,
+)
 
 
 def read_contacts(
@@ -59,7 +66,7 @@ def read_contacts(
                 f"{where} has {len(cells)} cells, but the header {len(header)} columns"
             )
         for name in CONTACT_COLUMNS:
-            if not row.get(name):
+            if not row.get(name) and not (name == "stiffness" and row.get("law")):
                 raise ValueError(f"{where}: {name} is missing")
         for name in row.keys() - {"name"}:
             table.refuse_doubtful(path, line, row[name])
@@ -70,6 +77,7 @@ def read_contacts(
                 _terms(where, row),
                 _numerals(where, row),
                 _nodes(where, row),
+                _law(where, row, path.parent, is_sheet=path.suffix.lower() == ".xlsx"),
                 turning,
             )
         )
@@ -94,6 +102,7 @@ class _Line(NamedTuple):
     directions: dict[str, list[_Term]]
     numerals: dict[str, Numeral]
     nodes: dict[str, tuple[int, ...]]
+    law: str | list[tuple[Numeral, Numeral]] | None
     turning: bool
 
     def written(self) -> Iterator[tuple[str, str]]:
@@ -103,6 +112,9 @@ class _Line(NamedTuple):
                 yield f"{self.where}: {key}", term.coefficient.text
         for key, each in self.numerals.items():
             yield f"{self.where}: {key}", each.text
+        if isinstance(self.law, list):
+            for number in (number for pair in self.law for number in pair):
+                yield f"{self.where}: law", number.text
 
     def contact(
         self, sign: str, labels: list[str] | None, size: int, scales: Scales
@@ -118,6 +130,7 @@ class _Line(NamedTuple):
             values = self._values(sign, scales)
             arguments |= {k: v for k, v in values.items() if k not in ORIGIN_COLUMNS}
             arguments["origin"] = self._origin(values)
+            arguments["law"] = self._law(sign, scales)
             return Contact(self.name, **arguments, transverse_damping=transverse)
         except ValueError as error:
             raise ValueError(f"{self.where}: {error}") from error
@@ -134,14 +147,25 @@ class _Line(NamedTuple):
             factors["speed"], units["speed"] = scales.length, "m"
         values = {}
         for key, each in self.numerals.items():
-            text = plain(each.text, sign)
-            # a cell has a unit of its own, or is a number in the units of the file
-            values[key] = (
-                finite_number(key, f"{text} {each.unit}", units[key])
-                if each.unit
-                else finite_number(key, float(text), units[key]) * factors.get(key, 1.0)
-            )
+            values[key] = _in_si(key, each, sign, units[key], factors.get(key, 1.0))
         return values
+
+    def _law(self, sign: str, scales: Scales) -> Any:
+        """Return the law as a contact takes it; plain numbers are in the units of the file."""
+        if not isinstance(self.law, list):
+            return self.law
+        columns = {}
+        for key, numbers, unit, factor in zip(
+            COLUMNS,
+            zip(*self.law, strict=True),
+            TABLE_UNITS,
+            (scales.length, scales.force),
+            strict=True,
+        ):
+            columns[key] = [
+                _in_si(f"law: {key}", number, sign, unit, factor) for number in numbers
+            ]
+        return columns
 
     def _origin(self, values: Mapping[str, float]) -> PointOrigin | None:
         """Return where the contact comes from, if the row says all of it."""
@@ -167,6 +191,44 @@ CONTACT_UNITS = {
     **dict.fromkeys(("gap", "facet", "x", "y", "z"), "m"),
 }
 """Columns of numbers → CF unit."""
+
+
+def _in_si(name: str, number: Numeral, sign: str, unit: str, factor: float) -> float:
+    """Return a number that has a unit of its own, or else is in the units of the file."""
+    text = plain(number.text, sign)
+    if number.unit:
+        return finite_number(name, f"{text} {number.unit}", unit)
+    return finite_number(name, float(text), unit) * factor
+
+
+def _law(
+    where: str, row: Mapping[str, str], folder: Path, *, is_sheet: bool
+) -> str | list[tuple[Numeral, Numeral]] | None:
+    """Return the law of a row: the text of the table that it names, or pairs of numbers."""
+    text = row.get("law", "").strip()
+    if not text:
+        return None
+    if text.lower().endswith(ENDINGS):
+        if is_sheet:
+            raise ValueError(
+                f"{where}: law = {text}: a sheet of Excel cannot name a file, which an archive "
+                "would not find; write compressions and forces, like 0:0 0.01mm:90N, or save the "
+                "contacts as .csv"
+            )
+        try:
+            return read_table(folder / text, COLUMNS)
+        except (ValueError, OSError) as error:
+            raise ValueError(f"{where}: law: {error}") from error
+    pairs = []
+    for pair in text.removeprefix("linear ").split():
+        numbers = [numeral(part) for part in pair.split(":")]
+        if len(numbers) != 2 or None in numbers:
+            raise ValueError(
+                f"{where}: law = {brief(text)}: the name of a table is needed, or compressions and "
+                "forces, like 0:0 0.01mm:90N 0.02mm:240N"
+            )
+        pairs.append((numbers[0], numbers[1]))
+    return pairs  # type: ignore[return-value]
 
 
 def _numerals(where: str, row: Mapping[str, str]) -> dict[str, Numeral]:
@@ -225,7 +287,7 @@ def write_contacts(
                     for place in np.flatnonzero(vector).tolist()
                 )
         row |= {
-            "stiffness": f"{contact.stiffness!r} N/m",
+            **_force_cells(contact),
             "preload": f"{contact.preload!r} N",
             "speed": f"{contact.speed!r} m" if turning else repr(contact.speed),
         }
@@ -255,6 +317,14 @@ def write_contacts(
         writer.writerows(rows)
 
 
+def _force_cells(contact: Contact) -> dict[str, str]:
+    """The cell of the stiffness, or of the law, with units."""
+    if contact.law is None:
+        return {"stiffness": f"{contact.stiffness!r} N/m"}
+    pairs = zip(*knots_of(contact.law), strict=True)
+    return {"law": " ".join(f"{knot!r}m:{force!r}N" for knot, force in pairs)}
+
+
 def _rows(path: Path) -> tuple[list[str], FileRows]:
     """The names of the columns, and the rows below."""
     if not path.is_file():
@@ -277,7 +347,7 @@ def _rows(path: Path) -> tuple[list[str], FileRows]:
             )
         raise ValueError(f"{path}: column {name!r}: {suggestion(name, KNOWN)}")
     for name in CONTACT_COLUMNS:
-        if name not in header:
+        if name not in header and not (name == "stiffness" and "law" in header):
             raise ValueError(
                 f"{path} has no column {name!r}; it has {', '.join(header)}"
             )

@@ -4,6 +4,7 @@ import copy
 import dataclasses
 import hashlib
 from collections.abc import Sequence
+from functools import cached_property
 from typing import Any, NamedTuple, Self
 
 import numpy as np
@@ -232,15 +233,31 @@ class ContactStructure:
         ]
         return min((each.largest_mu for each in [self.friction, *free]), default=np.inf)
 
-    @property
+    @cached_property
     def preloads(self) -> np.ndarray:
         """Preload of each contact, N."""
-        return np.array([contact.preload for contact in self.contacts])
+        return _fixed([contact.preload for contact in self.contacts])
 
-    @property
+    @cached_property
     def stiffnesses(self) -> np.ndarray:
-        """Stiffness of each contact, N/m."""
-        return np.array([contact.stiffness for contact in self.contacts])
+        """Stiffness of each contact at its preload, N/m."""
+        return _fixed([contact.stiffness_at_preload for contact in self.contacts])
+
+    @cached_property
+    def with_tables(self) -> list[int]:
+        """Numbers of the contacts whose force is a table of several pieces."""
+        return [i for i, each in enumerate(self.contacts) if len(each.lines) > 1]
+
+    def pressing(self, nearing: np.ndarray) -> np.ndarray:
+        """Return the normal force of each contact as if it could pull, N.
+
+        Args:
+            nearing: nᵀq, (…, contacts), m.
+        """
+        force = self.preloads - self.stiffnesses * nearing
+        for i in self.with_tables:
+            force[..., i] = self.contacts[i].force(-nearing[..., i])
+        return np.asarray(force)
 
     @property
     def speeds(self) -> np.ndarray:
@@ -362,7 +379,7 @@ class ContactStructure:
             | ({} if contact.origin is None else contact.origin.as_dict())
             | {
                 key: getattr(contact, key)
-                for key in ("mu", "friction_law", "mu_static")
+                for key in ("mu", "friction_law", "mu_static", "law")
                 if getattr(contact, key) is not None
             }
             for contact in self.contacts
@@ -380,6 +397,13 @@ class ContactStructure:
             **({} if self.rotation is None else {"rotation": self.rotation.as_dict()}),
             **({"speed_terms": self.speed_terms.as_list()} if self.speed_terms else {}),
         }
+
+
+def _fixed(values: Sequence[Any]) -> np.ndarray:
+    """Return an array that cannot be changed."""
+    array = np.array(values, float)
+    array.setflags(write=False)
+    return array
 
 
 def _fitting_mesh(mesh: StructureMesh | None) -> StructureMesh | None:

@@ -1,7 +1,7 @@
 """Quantities besides friction and belt speed over which modes are computed, and their structure."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -154,12 +154,10 @@ def with_factors(
     return structure.with_(
         **changes,
         contacts=[
-            replace(
-                contact,
-                preload=contact.preload
-                * factors.get("preload", 1.0)
+            contact.scaled(
+                preload=factors.get("preload", 1.0)
                 * factors.get(f"{contact.name}_preload", 1.0),
-                stiffness=contact.stiffness * _stiffness(contact.name, factors),
+                stiffness=_stiffness(contact.name, factors),
             )
             for contact in structure.contacts
         ],

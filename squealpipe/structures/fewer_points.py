@@ -140,7 +140,8 @@ def _origin(contact: Contact) -> PointOrigin:
 def _joined(name: str, members: list[Contact], size: int) -> Contact:
     """Return one contact in place of several."""
     forces = np.array([member.preload for member in members])
-    stiffnesses = np.array([member.stiffness for member in members])
+    stiffnesses = np.array([member.stiffness_at_preload for member in members])
+    law = _joined_law(members)
     acting = forces if forces.sum() > 0 else stiffnesses
     weights = acting / acting.sum()
     origins = [_origin(member) for member in members]
@@ -154,7 +155,8 @@ def _joined(name: str, members: list[Contact], size: int) -> Contact:
         name=name,
         normal=directions["normal"],
         tangential=directions["tangential"],
-        stiffness=float(stiffnesses.sum()),
+        stiffness=float(stiffnesses.sum()) if law is None else None,
+        law=law,
         preload=float(forces.sum()),
         speed=float(weights @ [member.speed for member in members]),
         origin=PointOrigin(
@@ -166,3 +168,24 @@ def _joined(name: str, members: list[Contact], size: int) -> Contact:
             widest.facet,
         ),
     )
+
+
+def _joined_law(members: list[Contact]) -> str | None:
+    """Return the law of several contacts that move together; None if all are linear."""
+    if all(member.law is None for member in members):
+        return None
+    # compressions of all, from that at which the first touches
+    free = max(member.compression for member in members)
+    starts = np.concatenate(
+        [member.lines[:, 0] + free - member.compression for member in members]
+    )
+    knots = np.unique(starts)
+    kept = np.diff(knots, prepend=-np.inf) > 1e-12 * max(knots[-1], free)
+    # the last slope goes on from a point beyond all others
+    knots = np.append(knots[kept], knots[-1] + (max(knots[-1], free) or 1.0))
+    forces = [
+        sum(max(float(member.force(at - free)), 0.0) for member in members)
+        for at in knots
+    ]
+    pairs = zip(knots.tolist(), forces, strict=True)
+    return "linear" + "".join(f" {knot!r}:{force!r}" for knot, force in pairs)

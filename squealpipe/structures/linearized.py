@@ -1,7 +1,7 @@
 """Small motions about steady sliding.
 
 Their pencil is M s² + (C + Σ Nᵢ μᵢ′ tᵢtᵢᵀ) s + K + Σ kᵢ (nᵢ + σᵢ μᵢ tᵢ) nᵢᵀ, both sums over closed
-contacts, with Nᵢ, σᵢ and μᵢ of the state (:mod:`.sliding`). Those with transverse damping add
+contacts, with Nᵢ, kᵢ, σᵢ and μᵢ of the state (:mod:`.sliding`). Those with transverse damping add
 Σ (Nᵢ μᵢ/|wᵢ|) aᵢaᵢᵀ s, aᵢ across the sliding.
 """
 
@@ -36,7 +36,8 @@ def pencil_about(
         turning = state.force * np.abs(state.drag) / speeds
         across = sp.csr_array(structure.transversals)
         damping = damping + across * turning @ across.T
-    stiffness = structure.stiffness + contact_stiffness(structure, state.closed, acting)
+    springs = contact_stiffness(structure, state.stiffness, acting)
+    stiffness = structure.stiffness + springs
     return Pencil(
         _tidy(structure.mass),
         _tidy(damping),
@@ -55,7 +56,7 @@ def _uncertain(structure: ContactStructure, state: SteadySliding) -> Uncertain |
     along, across = structure.tangentials[:, closed], structure.normals[:, closed]
     force = state.force_error + rounding * state.force
     damping = (force * np.abs(state.slope))[closed]
-    stiffness = (rounding * structure.stiffnesses * np.abs(state.drag))[closed]
+    stiffness = (rounding * state.stiffness * np.abs(state.drag))[closed]
     return Uncertain(
         sp.csc_array(np.hstack([along, along])),
         sp.csc_array(np.hstack([along, across])),

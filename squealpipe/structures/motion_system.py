@@ -53,8 +53,8 @@ def system(
     balances them) and what the friction law reads; ``<contact>_mu`` and ``<contact>_mu_static`` are
     those of a contact of its own. Each contact is a component with the regimes
     ``slip_slower``, ``slip_faster`` (than the belt), ``stick`` and ``separated``, in pieces where
-    friction is a table; its outputs are ``<contact>_normal_force``, N, and ``<contact>_speed``,
-    the speed of sliding, m/s.
+    friction or the normal force is a table; its outputs are ``<contact>_normal_force``, N, and
+    ``<contact>_speed``, the speed of sliding, m/s.
 
     One compiled loop runs all structures (:mod:`squealpipe.systems.linear`). Where sticking
     contacts have dependent sliding directions their motion is unique, and of their friction forces
@@ -182,6 +182,7 @@ def matrices_of(
         speeds=structure.speeds,
         laws=np.array([LAW_NUMBERS.get(law, TABLE) for law in laws], np.int64),
         pieces=[_pieces(law) for law in laws],
+        presses=[contact.lines for contact in structure.contacts],
         hidden=STICK_ROUND_OFF * scale.force,
         shapes=np.array(shapes).reshape(len(shapes), structure.size),
         by_speed=numbers.by_speed,

@@ -186,7 +186,7 @@ class _Search:
         except NoSlidingError:
             return None
         pencil = pencil_about(structure, state, modal_damping_of(structure))
-        return _Linear(np.array(pencil.dense), state.closed.tobytes(), structure.modes)
+        return _Linear(np.array(pencil.dense), state.piece.tobytes(), structure.modes)
 
     def _node(self, at: float) -> _Node | None:
         linear = self.linear(at)

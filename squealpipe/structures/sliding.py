@@ -3,13 +3,18 @@
 With σᵢ = sgn(speedᵢ V) and μᵢ = μ(|speedᵢ V|) the state is that of
 K q = f + Σ (nᵢ + σᵢ μᵢ tᵢ) Nᵢ, Nᵢ = max(preloadᵢ − kᵢ nᵢᵀq, 0).
 
-Idea: for given closed contacts this is linear, so it is computed for contacts that are all closed,
-and the first contact that pulls, or overlaps, is changed until none does. Such pivoting ends or
-comes back; where it comes back, all combinations of up to 16 contacts are tried. One factorization
-of the structure with all contacts closed serves every set and every friction, since each differs
-from it by as many columns as there are contacts (Woodbury's identity). The last correction is
-computed with a residual that is rounded once. Invariant: an answer fits its own inequalities. Cost:
-a factorization, and a small dense system for each set.
+A contact whose law is a table is closed in one of its pieces, Nᵢ = Nᵢⱼ − kᵢⱼ nᵢᵀq.
+
+Idea: for given closed contacts and pieces this is linear, so it is computed for contacts that are
+all closed, in the pieces of their preloads, and the first contact that pulls, overlaps or is beyond
+its piece is changed until none is. Such pivoting ends or comes back; where it comes back, all
+combinations of up to 16 contacts are tried. With tables several states may fit: of up to 4096
+combinations all are tried, of more it starts again from the first and the last pieces, and where a
+second state is found there is no answer. One factorization of the structure with all contacts
+closed serves every set and every friction, since each differs from it by as many columns as there
+are contacts (Woodbury's identity). The last correction is computed with a residual that is rounded
+once. Invariant: an answer fits its own inequalities. Cost: a factorization, and a small dense
+system for each set.
 """
 
 from collections.abc import Callable
@@ -44,6 +49,12 @@ class SlidingBalance:
     """Contacts that open or close between two frictions, at most."""
     most_sought: int = 16
     """Contacts up to which all combinations of open and closed ones are tried."""
+    most_compared: int = 4096
+    """Combinations of pieces of tables up to which all are tried, to see that one alone fits."""
+    at_knot: float = 1e-12
+    """Share of the force at a knot of a table by which a contact may be beyond its piece."""
+    one_state: float = 1e-9
+    """Share of the largest force up to which two combinations are one state, at a knot."""
 
 
 BALANCE = SlidingBalance()
@@ -60,7 +71,8 @@ class SteadySliding:
     Attributes:
         displacement: q, (n,), m.
         force: N of each contact, N; 0 where it is open.
-        closed: which contacts are closed.
+        piece: of the law of each, by number; −1 where it is open.
+        stiffness: of each in its piece, N/m; 0 where it is open.
         drag: σ μ of each.
         slope: μ′ of each, s/m.
         belt_speed: V, m/s.
@@ -69,11 +81,92 @@ class SteadySliding:
 
     displacement: np.ndarray
     force: np.ndarray
-    closed: np.ndarray
+    piece: np.ndarray
+    stiffness: np.ndarray
     drag: np.ndarray
     slope: np.ndarray
     force_error: np.ndarray
     belt_speed: float
+
+    @property
+    def closed(self) -> np.ndarray:
+        """Mask of the contacts that are closed."""
+        return np.asarray(self.piece >= 0)
+
+
+@dataclass(frozen=True)
+class _Line:
+    """Forces of contacts, each in one piece: N = at_rest − stiffness · nᵀq where closed.
+
+    Attributes:
+        stiffness: N/m, (contacts,); of an open one that of its first piece.
+        at_rest: force where nᵀq = 0, N.
+        closed: mask.
+    """
+
+    stiffness: np.ndarray
+    at_rest: np.ndarray
+    closed: np.ndarray
+
+    @property
+    def springs(self) -> np.ndarray:
+        """Stiffness, 0 where open, N/m."""
+        return np.asarray(self.stiffness * self.closed)
+
+
+class _Laws:
+    """Pieces of the laws of all contacts side by side, (contacts, pieces); unused ones are NaN.
+
+    Attributes:
+        counts: (contacts,) numbers of pieces.
+        start: (contacts,) the pieces in which the forces are the preloads.
+    """
+
+    def __init__(self, structure: ContactStructure) -> None:
+        contacts = structure.contacts
+        self.counts = np.array([len(each.lines) for each in contacts], int)
+        shape = len(contacts), int(self.counts.max(initial=1))
+        self.stiffness, self.at_rest, self.low, self.high = np.full((4, *shape), np.nan)
+        self.stiffness[:, 0], self.at_rest[:, 0] = (
+            structure.stiffnesses,
+            structure.preloads,
+        )
+        self.low[:, 0], self.high[:, 0] = 0.0, np.inf
+        self.start = np.zeros(len(contacts), int)
+        for i in structure.with_tables:
+            contact, count = contacts[i], self.counts[i]
+            starts, _, low, stiffness = contact.lines.T
+            self.stiffness[i, :count], self.low[i, :count] = stiffness, low
+            self.at_rest[i, :count] = low + stiffness * (contact.compression - starts)
+            self.high[i, :count] = [*low[1:], np.inf]
+            self.start[i] = np.searchsorted(low, structure.preloads[i], "right") - 1
+        self.start = np.maximum(self.start, 0)
+        self.has_tables = bool(structure.with_tables)
+
+    @property
+    def combinations(self) -> float:
+        """Number of combinations of pieces, and open contacts."""
+        return float(np.prod(self.counts + 1.0))
+
+    def line(self, piece: np.ndarray) -> _Line:
+        """Return the forces of contacts in pieces (…, contacts), −1 of open ones."""
+        contact, used = np.arange(len(self.counts)), np.maximum(piece, 0)
+        stiffness, at_rest = self.stiffness[contact, used], self.at_rest[contact, used]
+        return _Line(stiffness, at_rest, piece >= 0)
+
+    def next(self, piece: np.ndarray, reach: np.ndarray) -> np.ndarray:
+        """Return the piece that follows where a force is beyond its own.
+
+        Args:
+            reach: force of each contact in its piece, of open ones in the first, N.
+        """
+        contact, used = np.arange(len(self.counts)), np.maximum(piece, 0)
+        low, high = self.low[contact, used], self.high[contact, used]
+        # at a knot round-off would turn back for ever
+        below = np.where(used > 0, reach < low * (1.0 - BALANCE.at_knot), ~(reach > 0))
+        above = reach > high * (1.0 + BALANCE.at_knot)
+        changed = piece + above * 1 - below * 1
+        return np.where(piece < 0, np.where(reach > 0, 0, -1), changed)
 
 
 def steady_sliding(
@@ -107,80 +200,147 @@ def steady_sliding(
     slope = np.array(
         [float(law.slope(size)) for law, size in zip(laws, sizes, strict=True)]
     )
-    closed: Any = np.ones(len(speeds), bool)
-    seen: set[bytes] = set()
-    # contacts change one at a time, the first in order: such pivoting ends or comes back
-    while closed is not None and closed.tobytes() not in seen:
-        seen.add(closed.tobytes())
-        displacement, force_error = _balance(structure, closed, drag)
-        reach = structure.preloads - structure.stiffnesses * (
-            structure.normals.T @ displacement
-        )
-        wrong = np.flatnonzero(closed != (reach > 0))
-        if not wrong.size:
-            force = np.where(closed, reach, 0.0)
-            return SteadySliding(
-                displacement, force, closed, drag, slope, force_error, belt_speed
-            )
-        closed[wrong[0]] = ~closed[wrong[0]]
-        # with much friction pivoting may pass the state by
-        if closed.tobytes() in seen:
-            closed = _sought(structure, drag)
+    pivoting = _Pivoting(structure, _Laws(structure), drag)
+    state = pivoting.state(pivoting.laws.start)
     names = [contact.name for contact in structure.contacts]
-    reason = (
-        f"the contacts {', '.join(names)} can be neither open nor closed together"
-        if len(names) <= BALANCE.most_sought
-        else "a search among the states of the contacts did not end"
+    where = f"at mu = {_range(mu)}, belt_speed = {belt_speed:g}"
+    if state is None:
+        reason = (
+            f"the contacts {', '.join(names)} can be neither open nor closed together"
+            if pivoting.laws.combinations <= 2**BALANCE.most_sought
+            else "a search among the states of the contacts did not end"
+        )
+        raise NoSlidingError(
+            f"no steady sliding {where}: {reason}; check preloads and load"
+        )
+    piece, displacement, force, force_error = state
+    if pivoting.laws.has_tables and (other := pivoting.another(force)) is not None:
+        raise NoSlidingError(
+            f"steady sliding {where} is not unique: the contacts {', '.join(names)} can have the "
+            f"forces {_listed(force)} N, or {_listed(other)} N; such friction jams. Choose a "
+            "smaller mu, or a law that is less stiff"
+        )
+    return SteadySliding(
+        displacement,
+        force,
+        piece,
+        pivoting.laws.line(piece).springs,
+        drag,
+        slope,
+        force_error,
+        belt_speed,
     )
-    raise NoSlidingError(
-        f"no steady sliding at mu = {_range(mu)}, belt_speed = {belt_speed:g}: {reason}; check "
-        "preloads and load"
-    )
+
+
+def _listed(forces: np.ndarray) -> str:
+    shown = [f"{force:g}" for force in forces[:4]]
+    return ", ".join([*shown, "…"] if len(forces) > 4 else shown)
+
+
+class _Pivoting:
+    """Search for the pieces that fit the forces in them.
+
+    Args:
+        drag: σ μ of each contact.
+    """
+
+    def __init__(
+        self, structure: ContactStructure, laws: _Laws, drag: np.ndarray
+    ) -> None:
+        self.structure, self.laws, self.drag = structure, laws, drag
+
+    def state(
+        self, start: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray] | None:
+        """Return the pieces that are found from others, displacements, forces and their errors."""
+        structure, laws = self.structure, self.laws
+        piece: Any = start.copy()
+        seen: set[bytes] = set()
+        # contacts change one at a time, the first in order: such pivoting ends or comes back
+        while piece is not None and piece.tobytes() not in seen:
+            seen.add(piece.tobytes())
+            line = laws.line(piece)
+            displacement, force_error = _balance(structure, line, self.drag)
+            reach = line.at_rest - line.stiffness * (structure.normals.T @ displacement)
+            following = laws.next(piece, reach)
+            wrong = np.flatnonzero(piece != following)
+            if not wrong.size:
+                force = np.where(line.closed, reach, 0.0)
+                return piece, displacement, force, force_error
+            piece[wrong[0]] = following[wrong[0]]
+            # with much friction pivoting may pass the state by
+            if piece.tobytes() in seen:
+                fitting = self._sought(2**BALANCE.most_sought, first=True)
+                piece = fitting[0][0] if fitting else None
+        return None
+
+    def another(self, force: np.ndarray) -> np.ndarray | None:
+        """Return the forces of another state, if one is found."""
+        laws, same = self.laws, BALANCE.one_state * float(force.max(initial=0.0))
+        if laws.combinations <= BALANCE.most_compared:
+            fitting = [each for _, each in self._sought(BALANCE.most_compared)]
+        else:
+            states = (self.state(each) for each in (0 * laws.counts, laws.counts - 1))
+            fitting = [state[2] for state in states if state is not None]
+        others = (each for each in fitting if abs(each - force).max() > same)
+        return next(others, None)
+
+    def _sought(
+        self, most: int, *, first: bool = False
+    ) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Return pieces that fit, and forces in them, of all combinations; none of too many.
+
+        With springs kᵢ at all contacts the nearing uᵢ = nᵢᵀq is linear in u itself and in the
+        forces of the closed contacts, so that each combination is a small system.
+
+        Args:
+            first: whether one is enough.
+        """
+        structure, laws, number = self.structure, self.laws, len(self.drag)
+        if laws.combinations > most:
+            return []
+        normals, stiffnesses = structure.normals, structure.stiffnesses
+        held = structure.stiffness + contact_stiffness(structure, stiffnesses, normals)
+        try:
+            factors = splu(sp.csc_array(held))
+        except RuntimeError:  # exactly singular
+            return []
+        acting = acting_directions(structure, np.ones(number, bool), self.drag)
+        by_load = normals.T @ factors.solve(structure.load)
+        by_force = normals.T @ factors.solve(acting)
+        by_springs = np.eye(number) - normals.T @ factors.solve(normals * stiffnesses)
+        radix = np.concatenate([[1], np.cumprod(laws.counts + 1)]).astype(int)
+        pieces = np.arange(radix[-1])[:, None] // radix[:-1] % (laws.counts + 1) - 1
+        # most of them closed first
+        order = np.argsort(-(pieces >= 0).sum(axis=1), kind="stable")
+        found: list[tuple[np.ndarray, np.ndarray]] = []
+        for chunk in np.array_split(pieces[order], max(len(order) // 4096, 1)):
+            line = laws.line(chunk)
+            matrices = by_springs + by_force * line.springs[:, None, :]
+            right = by_load + (line.closed * line.at_rest) @ by_force.T
+            regular = np.linalg.det(matrices) != 0
+            nearing = np.linalg.solve(matrices[regular], right[regular][:, :, None])
+            reach = line.at_rest[regular] - line.stiffness[regular] * nearing[:, :, 0]
+            tried = chunk[regular]
+            fits = (tried == laws.next(tried, reach)).all(axis=1)
+            forces = np.where(tried >= 0, reach, 0.0)
+            found += zip(tried[fits], forces[fits], strict=True)
+            if found and first:
+                break
+        return found
 
 
 def _range(values: Any) -> str:
+    if not np.size(values):
+        return "none"
     low, high = np.min(values), np.max(values)
     return f"{low:g}" if low == high else f"{low:g} to {high:g}"
-
-
-def _sought(structure: ContactStructure, drag: np.ndarray) -> np.ndarray | None:
-    """Return the closed contacts of a state that fits, of all combinations; None if none does.
-
-    With springs kᵢ at all contacts the nearing uᵢ = nᵢᵀq is linear in u itself and in the forces
-    of the closed contacts, so that each combination is a small system.
-    """
-    number = len(drag)
-    if number > BALANCE.most_sought:
-        return None
-    normals, stiffnesses = structure.normals, structure.stiffnesses
-    all_closed = np.ones(number, bool)
-    held = structure.stiffness + contact_stiffness(structure, all_closed, normals)
-    try:
-        factors = splu(sp.csc_array(held))
-    except RuntimeError:  # exactly singular
-        return None
-    by_load = normals.T @ factors.solve(structure.load)
-    by_force = normals.T @ factors.solve(acting_directions(structure, all_closed, drag))
-    by_springs = np.eye(number) - normals.T @ factors.solve(normals * stiffnesses)
-    combinations = (np.arange(2**number)[:, None] >> np.arange(number)) % 2 == 1
-    # most of them closed first
-    order = np.argsort(-combinations.sum(axis=1), kind="stable")
-    for chunk in np.array_split(combinations[order], max(len(order) // 4096, 1)):
-        matrices = by_springs + by_force * (chunk * stiffnesses)[:, None, :]
-        right = by_load + (chunk * structure.preloads) @ by_force.T
-        regular = np.linalg.det(matrices) != 0
-        nearing = np.linalg.solve(matrices[regular], right[regular][:, :, None])
-        reach = structure.preloads - stiffnesses * nearing[:, :, 0]
-        fits = (chunk[regular] == (reach > 0)).all(axis=1)
-        if fits.any():
-            return np.array(chunk[regular][fits][0])
-    return None
 
 
 def changes(
     sliding: Callable[[float], SteadySliding], low: float, high: float
 ) -> list[tuple[float, float]]:
-    """Return where contacts open or close on the way from one friction to another.
+    """Return where contacts open, close or change their piece from one friction to another.
 
     Args:
         sliding: steady sliding at a friction.
@@ -194,7 +354,7 @@ def changes(
     """
 
     def closed_at(mu: float) -> np.ndarray:
-        return sliding(mu).closed
+        return sliding(mu).piece
 
     passed: list[tuple[float, float]] = []
     closed, last = closed_at(low), closed_at(high)
@@ -220,9 +380,8 @@ class _Held:
 
     def __init__(self, structure: ContactStructure) -> None:
         self.structure = structure
-        closed = np.ones(len(structure.contacts), bool)
         held = structure.stiffness + contact_stiffness(
-            structure, closed, structure.normals
+            structure, structure.stiffnesses, structure.normals
         )
         self.factors = splu(
             sp.csc_array(held),
@@ -234,7 +393,7 @@ class _Held:
         self.of_tangentials = self.factors.solve(structure.tangentials)
 
     def solver(
-        self, closed: np.ndarray, drag: np.ndarray
+        self, line: _Line, drag: np.ndarray
     ) -> Callable[[np.ndarray], np.ndarray]:
         """x of (K + Σ k (n + σ μ t) nᵀ over closed contacts) x = b as a function of b.
 
@@ -243,8 +402,10 @@ class _Held:
         """
         structure = self.structure
         springs, normals = structure.stiffnesses, structure.normals
-        # the matrix is the held one plus Σ k a nᵀ, with a = σ μ t closed and −n open
-        change = self.of_tangentials * (drag * closed) - self.of_normals * ~closed
+        # the matrix is the held one plus Σ k a nᵀ, with a = σ μ t closed and −n open; in a piece
+        # of another stiffness s both by its share s / k
+        share = line.springs / springs
+        change = self.of_tangentials * (drag * share) + self.of_normals * (share - 1.0)
         small = np.eye(len(springs)) + springs[:, None] * (normals.T @ change)
         try:
             inverse = np.linalg.inv(small)
@@ -292,7 +453,7 @@ def _held(structure: ContactStructure) -> _Held:
 
 
 def _solver(
-    structure: ContactStructure, closed: np.ndarray, drag: np.ndarray
+    structure: ContactStructure, line: _Line, drag: np.ndarray
 ) -> Callable[[np.ndarray], np.ndarray]:
     """Solutions with the stiffness of these contacts.
 
@@ -300,9 +461,9 @@ def _solver(
         RuntimeError: it is singular.
     """
     if structure.size > DENSE and structure.contacts:
-        return _held(structure).solver(closed, drag)
-    acting = acting_directions(structure, closed, drag)
-    matrix = structure.stiffness + contact_stiffness(structure, closed, acting)
+        return _held(structure).solver(line, drag)
+    acting = acting_directions(structure, line.closed, drag)
+    matrix = structure.stiffness + contact_stiffness(structure, line.springs, acting)
     return splu(sp.csc_array(matrix)).solve  # type: ignore[no-any-return]
 
 
@@ -311,24 +472,25 @@ _HELD: WeakKeyDictionary[ContactStructure, _Held] = WeakKeyDictionary()
 
 
 def _balance(
-    structure: ContactStructure, closed: np.ndarray, drag: np.ndarray
+    structure: ContactStructure, line: _Line, drag: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """q of K q + Σ k (n + σ μ t) nᵀ q = f + Σ (n + σ μ t) preload over closed contacts.
 
     Returns:
         q, and by how much rounding can have changed the force of each contact.
     """
+    closed, springs = line.closed, line.stiffness
     acting = acting_directions(structure, closed, drag)
-    matrix = structure.stiffness + contact_stiffness(structure, closed, acting)
-    force = structure.load + acting @ (structure.preloads * closed)
+    matrix = structure.stiffness + contact_stiffness(structure, line.springs, acting)
+    force = structure.load + acting @ (line.at_rest * closed)
     if not force.any():
         return np.zeros(structure.size), np.zeros(len(closed))
     try:
-        solve = _solver(structure, closed, drag)
+        solve = _solver(structure, line, drag)
         solution = solve(force)
         # a structure that its contacts alone hold, and barely, loses digits, which residuals in
         # extended precision bring back
-        unbalanced = _unbalanced(structure, closed, drag)
+        unbalanced = _unbalanced(structure, line, drag)
         change = solution
         for _ in range(BALANCE.refinements):
             change = solve(unbalanced(solution))
@@ -337,11 +499,9 @@ def _balance(
         # each row has its own scale, since a penalty or a rigid link makes single rows larger by
         # any factor; load and preloads may cancel each other but for round-off
         carried = abs(matrix) @ np.abs(solution) + np.abs(structure.load)
-        carried += np.abs(acting) @ np.abs(structure.preloads * closed)
+        carried += np.abs(acting) @ np.abs(line.at_rest * closed)
         forces, changes_of_forces = (
-            np.abs(structure.stiffnesses * (structure.normals.T @ each)).max(
-                initial=0.0
-            )
+            np.abs(springs * (structure.normals.T @ each)).max(initial=0.0)
             for each in (solution, change)
         )
         pressed = max(forces, np.abs(structure.preloads).max(initial=0.0))
@@ -363,19 +523,18 @@ def _balance(
             f"{'all' if closed.all() else 'some'} contacts closed; add supports"
         )
     rounding = np.finfo(float).eps
-    springs = structure.stiffnesses
     carried = springs * (np.abs(structure.normals).T @ np.abs(solution))
     left_over = springs * np.abs(structure.normals.T @ change)
     # friction that is rounded moves the state
     drawn = solve(structure.tangentials * closed)
-    reach = np.abs(structure.preloads) + carried
+    reach = np.abs(line.at_rest) + carried
     by_drag = springs[:, None] * np.abs(structure.normals.T @ drawn)
     pulled = BALANCE.rounding_of_friction * rounding * np.abs(drag) * reach
     return solution, rounding * reach + left_over + by_drag @ pulled
 
 
 def _unbalanced(
-    structure: ContactStructure, closed: np.ndarray, drag: np.ndarray
+    structure: ContactStructure, line: _Line, drag: np.ndarray
 ) -> Callable[[np.ndarray], np.ndarray]:
     """f + Σ (n + σ μ t) N − K q over closed contacts as a function of q, rounded once."""
     stiffness, nearing = (
@@ -383,14 +542,15 @@ def _unbalanced(
     )
     load, preloads, stiffnesses, drags = (
         each.astype(np.longdouble)
-        for each in (structure.load, structure.preloads, structure.stiffnesses, drag)
+        for each in (structure.load, line.at_rest, line.stiffness, drag)
     )
     pressing, pulling = (
         Extended(each) for each in (structure.normals, structure.tangentials)
     )
 
     def unbalanced(displacement: np.ndarray) -> np.ndarray:
-        forces = (preloads - stiffnesses * nearing.product(displacement)) * closed
+        forces = preloads - stiffnesses * nearing.product(displacement)
+        forces = forces * line.closed
         rest = load + pressing.product(forces) + pulling.product(drags * forces)
         rest = rest - stiffness.product(displacement)
         return rest.astype(float)  # type: ignore[no-any-return]
@@ -406,8 +566,8 @@ def acting_directions(
 
 
 def contact_stiffness(
-    structure: ContactStructure, closed: np.ndarray, acting: np.ndarray
+    structure: ContactStructure, springs: np.ndarray, acting: np.ndarray
 ) -> Any:
-    """Σ k (n + σ μ t) nᵀ, sparse."""
-    normals = sp.csr_array(structure.normals * (structure.stiffnesses * closed))
+    """Σ k (n + σ μ t) nᵀ, sparse, with the stiffness of each contact, 0 of open ones."""
+    normals = sp.csr_array(structure.normals * springs)
     return sp.csr_array(acting) @ normals.T

@@ -90,10 +90,10 @@ class Structure(ContactStructure):  # noqa: D101 (that of the definition)
     def write_contacts(self, path: str | PathLike[str]) -> None:
         """Write the contacts as a table (.csv) that the key ``contacts`` of a file takes.
 
-        Beside directions, stiffness, preload and speed the columns say how each contact of a mesh
-        came about: its nodes and those that it meets, area, gap and position. Numbers have units,
-        so that the table is right in a file of any units. A friction law of a contact's own is
-        refused.
+        Beside directions, stiffness or law, preload and speed the columns say how each contact of a
+        mesh came about: its nodes and those that it meets, area, gap and position. Numbers have
+        units, so that the table is right in a file of any units. A friction law of a contact's own
+        is refused.
 
         Raises:
             ValueError: a reduced structure, whose contacts act on modes; or such a law.

@@ -3,7 +3,7 @@
 Coulomb friction with one coefficient makes a motion linear between events. After an event what is
 violated changes, the first contact first and from the first again after each change, until nothing
 is. Without a static limit of its own one combination alone violates nothing, for independent
-directions.
+directions. A table of normal force over compression is a straight line from knot to knot.
 """
 
 import numpy as np
@@ -26,11 +26,23 @@ class ManyContacts:
         self.stiffness = np.asarray(structure.stiffness.todense())
         self.damping = np.asarray(structure.damping.todense())
         self.n, self.t = structure.normals, structure.tangentials
-        self.k, self.preload = structure.stiffnesses, structure.preloads
+        self.tables = [table(each) for each in structure.contacts]
+        self.preload = np.array([each.preload for each in structure.contacts])
+        self.pressed = [
+            compression(*each, force)
+            for each, force in zip(self.tables, self.preload, strict=True)
+        ]
         self.belt = structure.speeds * structure.belt_speed
         self.mu, self.load = structure.mu, structure.load
         self.mu_static = structure.friction.static_mu
         self.state = np.array([*q, *v])
+        lifts = self.n.T @ self.state[: len(self.mass)]
+        self.piece = [
+            max(int(np.searchsorted(knots, pressed - lift, side="right")) - 1, 0)
+            for (knots, *_), pressed, lift in zip(
+                self.tables, self.pressed, lifts, strict=True
+            )
+        ]
         self.side = [
             OPEN if force <= 0 else int(np.sign(speed))
             for force, speed in zip(
@@ -38,8 +50,17 @@ class ManyContacts:
             )
         ]
 
+    def row(self, i):
+        """(row of z and 1) that gives the normal force of a contact in its piece."""
+        knots, forces, slopes = self.tables[i]
+        j, size = self.piece[i], len(self.mass)
+        row = np.zeros(2 * size + 1)
+        row[:size] = -slopes[j] * self.n[:, i]
+        row[-1] = forces[j] + slopes[j] * (self.pressed[i] - knots[j])
+        return row
+
     def normal(self, z):
-        return self.preload - self.k * (self.n.T @ z[: len(self.mass)])
+        return [self.row(i) @ np.append(z, 1.0) for i in range(len(self.tables))]
 
     def speed(self, z):
         return self.belt - self.t.T @ z[len(self.mass) :]
@@ -53,9 +74,8 @@ class ManyContacts:
         for i, side in enumerate(sides):
             if side == OPEN:
                 continue
-            row = np.zeros(2 * size + 1)
-            row[:size], row[-1] = -self.k[i] * self.n[:, i], self.preload[i]
-            force += np.outer(self.n[:, i] + side * self.mu * self.t[:, i], row)
+            push = self.n[:, i] + side * self.mu * self.t[:, i]
+            force += np.outer(push, self.row(i))
         stuck = [i for i, side in enumerate(sides) if side == 0]
         held = np.zeros((len(sides), 2 * size + 1))
         if stuck:
@@ -74,13 +94,21 @@ class ManyContacts:
         """(contact, what, row of z and 1): events where the row's product falls through 0."""
         size = len(self.mass)
         for i, side in enumerate(self.side):
-            normal, speed = np.zeros((2, 2 * size + 1))
-            normal[:size], normal[-1] = -self.k[i] * self.n[:, i], self.preload[i]
+            normal, speed = self.row(i), np.zeros(2 * size + 1)
             speed[size : 2 * size], speed[-1] = -self.t[:, i], self.belt[i]
             if side == OPEN:
                 yield i, "lands", -normal
                 continue
-            yield i, "lifts", normal
+            knots, forces, _ = self.tables[i]
+            beyond = np.zeros(2 * size + 1)
+            if self.piece[i]:
+                beyond[-1] = forces[self.piece[i]]
+                yield i, "softer", normal - beyond
+            else:
+                yield i, "lifts", normal
+            if self.piece[i] + 1 < len(knots):
+                beyond[-1] = forces[self.piece[i] + 1]
+                yield i, "stiffer", beyond - normal
             if side:
                 yield i, "belt", side * speed
             else:
@@ -138,7 +166,9 @@ class ManyContacts:
     def change(self, i, what):
         """Carry out one event."""
         speed = self.speed(self.state)[i]
-        if what == "lifts":
+        if what in {"stiffer", "softer"}:
+            self.piece[i] += 1 if what == "stiffer" else -1
+        elif what == "lifts":
             self.side[i] = OPEN
         elif what == "lands":
             self.side[i] = int(np.sign(speed))
@@ -156,6 +186,22 @@ class ManyContacts:
                 > self.mu_static * self.normal(self.state)[i]
             ):
                 self.side[i] = -before
+
+
+def table(contact):
+    """Knots of compression, forces there, and the slope from each knot on."""
+    if contact.law is None:
+        return [0.0], [0.0], [contact.stiffness]
+    pairs = [each.split(":") for each in contact.law.split()[1:]]
+    knots, forces = np.array(pairs, float).T
+    slopes = np.diff(forces) / np.diff(knots)
+    return knots[:-1], forces[:-1], slopes
+
+
+def compression(knots, forces, slopes, force):
+    """The compression at which a table has a force."""
+    j = max(int(np.searchsorted(forces, force, side="right")) - 1, 0)
+    return knots[j] + (force - forces[j]) / slopes[j]
 
 
 def _crossing(whole, rows, start, end, h, *, begins):

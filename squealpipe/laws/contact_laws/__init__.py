@@ -95,6 +95,42 @@ def relative(name: str, preload: float) -> str:
     return scaled(name, preload, load)
 
 
+@lru_cache(maxsize=64)
+def lines_of(name: str) -> tuple[tuple[float, float, float, float], ...]:
+    """Return the pieces of a table: start and end, m, force at the start, N, and stiffness, N/m.
+
+    The last goes on; neighbours of one slope are one piece.
+
+    Raises:
+        ValueError: it is joined by cubics, does not begin with force 0 at compression 0, or does
+            not rise.
+    """
+    knots, forces = knots_of(name)
+    if name.startswith("cubic"):
+        raise ValueError(
+            "contacts of structures have tables that are joined by lines: write between: linear, "
+            "with more rows where the curve bends"
+        )
+    if (knots[0], forces[0]) != (0.0, 0.0) or len(knots) < 2:
+        raise ValueError("a table of contact begins with compression 0 and force 0")
+    rows: list[tuple[float, float, float, float]] = []
+    for start, end, low, high in zip(
+        knots, knots[1:], forces, forces[1:], strict=False
+    ):
+        if not high > low:
+            raise ValueError(
+                f"the force of a contact must rise with its compression: {high:g} N at {end:g} m "
+                f"is not above {low:g} N at {start:g} m; leave rows out in which it does not"
+            )
+        slope = (high - low) / (end - start)
+        if rows and abs(slope - rows[-1][3]) <= 1e-12 * slope:
+            first, _, force, _ = rows[-1]
+            rows[-1] = first, end, force, (high - force) / (end - first)
+        else:
+            rows.append((start, end, low, slope))
+    return tuple(rows)
+
+
 def preload_force(name: str, preload: float) -> float:
     """N of a table at the compression l_pre, N."""
     return float(pieces_of(name, goes_on=True).value(preload))

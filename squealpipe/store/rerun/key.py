@@ -180,7 +180,7 @@ def key_behind(path: str | Path) -> str | None:
 
 
 def _beside(file: Path, within: tuple[Path, ...] = ()) -> Iterator[str]:
-    """Yield files that belong to one of a finite-element program: labels, and what a deck reads.
+    """Yield files that belong to one of a structure: labels, what a deck reads, laws of contacts.
 
     Args:
         within: decks that include this one.
@@ -192,6 +192,16 @@ def _beside(file: Path, within: tuple[Path, ...] = ()) -> Iterator[str]:
         for each in (plain.with_suffix(ending), plain.with_suffix(f"{ending}.gz")):
             if each.is_file():
                 yield each.as_posix()
+    tables = (".csv", ".txt", ".tsv", ".dat", ".xlsx")
+    if (
+        plain.suffix.lower() in tables[:-1]
+    ):  # a table of contacts may name tables of force
+        cells = re.split(rb"[,;\t\r\n]", file.read_bytes())
+        for cell in cells:
+            name = cell.decode(errors="replace").strip("\"' ")
+            named = Path(os.path.normpath(file.parent / name))
+            if name.lower().endswith(tables) and named.is_file() and named != file:
+                yield named.as_posix()
     if plain.suffix.lower() == ".inp":
         content = file.read_bytes()
         text = gzip.decompress(content) if content[:2] == b"\x1f\x8b" else content

@@ -138,19 +138,13 @@ def _factor(design: Design, change: Change) -> Cure:
 
 
 def _with_stiffness(structure: ContactStructure, factor: float) -> ContactStructure:
-    contacts = [
-        replace(contact, stiffness=factor * contact.stiffness)
-        for contact in structure.contacts
-    ]
+    contacts = [contact.scaled(stiffness=factor) for contact in structure.contacts]
     return structure.with_(contacts=contacts)
 
 
 def with_preload(structure: ContactStructure, factor: float) -> ContactStructure:
     """Everything that presses, times a factor: preloads, and a load that is given."""
-    contacts = [
-        replace(contact, preload=factor * contact.preload)
-        for contact in structure.contacts
-    ]
+    contacts = [contact.scaled(preload=factor) for contact in structure.contacts]
     load = structure.given_load
     scaled = None if load is None else factor * np.asarray(load, float)
     return structure.with_(contacts=contacts, load=scaled)

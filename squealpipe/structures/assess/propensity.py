@@ -201,7 +201,11 @@ def _with_contacts(
 ) -> ContactStructure:
     """Multiply a number of all contacts, or of some of them."""
     contacts = [
-        replace(each, **{key: factor * getattr(each, key)})
+        (
+            replace(each, mu=factor * structure.frictions[place].mu)
+            if key == "mu"
+            else each.scaled(**{key: factor})
+        )
         if chosen is None or chosen[place]
         else each
         for place, each in enumerate(structure.contacts)

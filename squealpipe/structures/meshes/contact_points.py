@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from squealpipe.laws.tables import scaled
 from squealpipe.structures.contact import Contact, PointOrigin
 from squealpipe.structures.meshes.element_mesh import ElementMesh, turned
 from squealpipe.structures.meshes.faces import THE_BELT, Face, Rotation
@@ -134,11 +135,12 @@ def contacts_of(
                 label,
                 normal,
                 tangential,
-                per_area * float(shared.sum()),
+                None if face.law else per_area * float(shared.sum()),
                 float(forces.sum()),
                 float(weights @ [member.speed for member in members]),
                 mu=face.mu,
                 origin=_origin(members, shared, weights, mesh),
+                law=face.law and scaled(face.law, 1.0, area / float(shared.sum())),
             )
         )
     return contacts

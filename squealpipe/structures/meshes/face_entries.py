@@ -5,8 +5,10 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
+from squealpipe.laws.contact_laws import COLUMNS
 from squealpipe.laws.numerals import decimal_sign, numeral, plain
 from squealpipe.laws.rows import text_rows
+from squealpipe.laws.tables import named
 from squealpipe.structures.meshes.faces import Face
 from squealpipe.structures.units import SI, Scales
 from squealpipe.systems.inputs.values import brief, is_finite_number
@@ -55,7 +57,25 @@ def _face(entry: Any, folder: Path, scales: Scales) -> Face:
     if isinstance(arguments.get("pressures"), str):
         path = folder / arguments["pressures"]
         arguments["pressures"] = read_pressures(path, scales)
+    if "law" in arguments:
+        arguments["law"] = _law(arguments["law"], folder, scales)
     return Face(**arguments)
+
+
+def _law(given: Any, folder: Path, scales: Scales) -> Any:
+    """Return a law whose file is found and whose plain numbers are in SI."""
+    if isinstance(given, Mapping):
+        given = dict(given)
+        for column, factor in zip(COLUMNS, (scales.length, scales.force), strict=True):
+            if isinstance(given.get(column), list):
+                given[column] = [
+                    float(each) * factor if is_finite_number(each) else each
+                    for each in given[column]
+                ]
+    try:
+        return named(given, COLUMNS, folder)
+    except (ValueError, OSError) as error:
+        raise ValueError(f"law: {error}") from error
 
 
 def read_pressures(path: Path, scales: Scales = SI) -> dict[int, float]:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from squealpipe.parameters import TABLE, finite_number
+from squealpipe.structures.contact import table_of_contact
 from squealpipe.systems.inputs.values import brief, is_whole_number
 from squealpipe.validation import real_array
 
@@ -24,6 +25,8 @@ class Face:
         against: name of the other surface; ``"belt"``: a rigid one.
         stiffness: of the whole face, N/m, shared among the nodes by their areas.
         stiffness_per_area: N/m³, in place of ``stiffness``.
+        law: a table of the force of the whole face over its compression, in place of
+            ``stiffness``, as of :class:`Contact`; its forces are shared by area.
         pressure: Pa.
         force: of the whole face, N, shared among the nodes by their areas; in place of
             ``pressure``.
@@ -47,6 +50,7 @@ class Face:
     mu: float | None = None
     direction: Sequence[float] | None = None
     points: int | None = None
+    law: Any = None
 
     def __post_init__(self) -> None:
         for key in ("surface", "against"):
@@ -81,7 +85,8 @@ class Face:
                 f"pressures = {brief(self.pressures)}: {{node: pressure}} or the name of a file is "
                 "needed"
             )
-        self._one_of("stiffness", "stiffness_per_area")
+        object.__setattr__(self, "law", table_of_contact(self.law))
+        self._one_of("stiffness", "stiffness_per_area", "law")
         self._one_of("pressure", "force", "pressures")
 
     def _one_of(self, *keys: str) -> None:

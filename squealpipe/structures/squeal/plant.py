@@ -1,5 +1,6 @@
 """A structure as it is run: its system, its steady sliding, its modes, and a measure of states."""
 
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -259,10 +260,14 @@ class Plant:
     @cached_property
     def energy(self) -> float:
         """Return the energy that the preloads store in the contact springs, J."""
-        force = self.structure.preloads
-        if not force.any():
-            force = self.spectrum.state.force
-        return float((force**2 / (2.0 * self.structure.stiffnesses)).sum())
+        contacts = self.structure.contacts
+        if not self.structure.preloads.any():
+            forces = self.spectrum.state.force
+            contacts = tuple(
+                replace(contact, preload=float(force))
+                for contact, force in zip(contacts, forces, strict=True)
+            )
+        return sum(contact.energy_at_preload for contact in contacts)
 
     @cached_property
     def _roots(self) -> tuple[np.ndarray, np.ndarray]:
@@ -303,7 +308,7 @@ class Plant:
     def normal_forces(self, states: np.ndarray) -> Any:
         """Forces of the contacts where they are closed, (…, contacts), N."""
         nearing = states[..., : self.size] @ self.structure.normals
-        return self.structure.preloads - self.structure.stiffnesses * nearing
+        return self.structure.pressing(nearing)
 
     @cached_property
     def modes(self) -> Any:

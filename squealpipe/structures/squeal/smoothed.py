@@ -50,14 +50,14 @@ class Smoothed:
         structure = plant.structure
         self.numbers = Numbers.of(structure)
         self.size, self.frictions = plant.size, structure.frictions
-        self.stiffnesses, self.preloads = structure.stiffnesses, structure.preloads
+        self.stiffnesses = structure.stiffnesses
         self.belt = structure.speeds * structure.belt_speed
         self.friction_width = friction_width
         self.contact_width = contact_width
 
     def pressing(self, q: np.ndarray) -> np.ndarray:
         """p of displacements (…, n), N."""
-        return np.asarray(self.preloads - self.stiffnesses * (q @ self.numbers.normals))
+        return self.plant.structure.pressing(q @ self.numbers.normals)
 
     def sliding(self, v: np.ndarray) -> np.ndarray:
         """w of velocities (…, n), m/s."""
@@ -82,7 +82,7 @@ class Smoothed:
         )
         drag = coefficient * normal * np.tanh(speed / self.friction_width)
         # the springs of closed contacts are part of the stiffness
-        lifted = normal + self.preloads - pressing
+        lifted = normal + self.stiffnesses * (q @ numbers.normals)
         rate = numbers.load + numbers.pushes @ lifted + numbers.drags @ drag
         return np.concatenate([v, rate - numbers.stiffness @ q - numbers.damping @ v])
 

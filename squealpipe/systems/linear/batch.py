@@ -20,14 +20,15 @@ def coefficients_of_contacts(
     matrices: ContactMatrices,
     coefficients: Sequence[tuple[str, str | None, Any]],
     values: Mapping[str, Any],
-) -> Iterator[tuple[Any, Any, Any]]:
-    """Yield μ, its static limit and the reference speed of each contact.
+) -> Iterator[tuple[Any, Any, Any, Any]]:
+    """Yield the numbers of each contact: see :data:`.numbering.OF_CONTACT`.
 
     Args:
         coefficients: see :func:`numbers_of_runs`.
     """
-    for law, pieces, (mu, static, speed) in zip(
-        matrices.laws, matrices.pieces, coefficients, strict=True
+    compressions = matrices.compressions(values["preload"])
+    for law, pieces, compression, (mu, static, speed) in zip(
+        matrices.laws, matrices.pieces, compressions, coefficients, strict=True
     ):
         # of a table μ is a factor
         at_rest = pieces[0, 2] if law == TABLE else 1.0
@@ -35,6 +36,7 @@ def coefficients_of_contacts(
             values[mu],
             values[mu] * at_rest if static is None else values[static],
             values[speed] if isinstance(speed, str) else speed,
+            compression,
         )
 
 

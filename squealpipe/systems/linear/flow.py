@@ -26,11 +26,16 @@ from squealpipe.systems.cycles.crossing import Crossing
 from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.legs import LegEnd, Path, Vector
 from squealpipe.systems.linear.batch import coefficients_of_contacts, numbers_of_runs
-from squealpipe.systems.linear.forces import DEPENDENT
+from squealpipe.systems.linear.forces import DEPENDENT, limit_left
 from squealpipe.systems.linear.legs import SIZES, TABLE, run_legs
 from squealpipe.systems.linear.matrices import (
+    DIRECTION,
     EXPONENTIAL,
+    FIRST_OF_PIECE,
+    FIRST_OF_PRESS,
     HYPERBOLIC,
+    IS_CLOSED,
+    IS_STUCK,
     ContactMatrices,
     full_matrix,
 )
@@ -38,12 +43,10 @@ from squealpipe.systems.linear.matrices import TABLE as FRICTION_TABLE
 from squealpipe.systems.linear.numbering import (
     AFTER_START,
     BEFORE_END,
-    DIRECTION,
-    FIRST_OF_PIECE,
-    IS_CLOSED,
-    IS_STUCK,
     LAG,
     MARGIN,
+    PRESS_END,
+    PRESS_START,
     PRESSING,
     REVERSAL,
     Numbering,
@@ -83,7 +86,7 @@ class Forces:
 
         Args:
             matrices: of the belt's speed.
-            coefficients: μ, static limit and reference speed, (3, c).
+            coefficients: μ, static limit, reference speed and compression at rest, (4, c).
             constants: of the contacts' regimes, (c, constants).
             belt_speed, preload: m/s; a factor of all preloads.
             state: (2 n,), or (2 n, many).
@@ -95,17 +98,17 @@ class Forces:
         def along(values: Vector) -> Vector:
             return values.reshape(-1, *(1,) * (state.ndim - 1))
 
-        self.mu, self.static, self.reference = map(along, coefficients)
+        self.mu, self.static, self.reference = map(along, coefficients[:3])
         self.closed = along(constants[:, IS_CLOSED])
         self.side = along(constants[:, DIRECTION])
-        springs, pressed = along(m.springs), along(m.preloads) * preload
+        self.springs, pressed = map(along, m.lines(constants, preload))
         q, v = np.split(state, 2)
         lift = m.normals.T @ q
-        self.press = pressed - springs * lift
+        self.press = pressed - self.springs * lift
         self.speed = along(m.speeds) * belt_speed - m.tangentials.T @ v
         self.coefficient, self.falls_by = self._friction_law()
         self.slip = self.side * self.press * self.coefficient
-        relieved = self.closed * pressed + (1.0 - self.closed) * springs * lift
+        relieved = self.closed * pressed + self._beyond_stiffness * lift
         self.base = (
             along(m.load) * (preload if m.balanced else 1.0)
             - full_matrix(m.stiffness) @ q
@@ -116,6 +119,14 @@ class Forces:
         self.stick = np.zeros_like(self.slip)
         self.stick[self.stuck] = self.held @ self.base
         self.rates = np.concatenate([v, self.base + m.drags @ self.stick])
+
+    @property
+    def _beyond_stiffness(self) -> Vector:
+        """Stiffness that the matrix of stiffness has, and a contact has not in its regime."""
+        return np.asarray(
+            self.matrices.springs.reshape(self.springs.shape)
+            - self.closed * self.springs
+        )
 
     def _friction_law(self) -> tuple[Vector, Vector]:
         """Return μ at the sliding speeds of contacts that slip, and dμ/d|w|."""
@@ -131,7 +142,7 @@ class Forces:
         slope[at] = -fall[at] / reference[at] / (1.0 + u[at]) ** 2
         at = laws == FRICTION_TABLE
         if at.any():
-            fields = self.constants[at, FIRST_OF_PIECE:].T
+            fields = self.constants[at, FIRST_OF_PIECE:FIRST_OF_PRESS].T
             start, _, *c = (each.reshape(mu[at].shape) for each in fields)
             x = u[at] - start
             value[at] = mu[at] * (c[0] + x * (c[1] + x * (c[2] + x * c[3])))
@@ -160,7 +171,8 @@ class Forces:
     def press_by(self) -> Vector:
         """Derivative of ``press`` by the state, (c, 2 n)."""
         m = self.matrices
-        return self._by_states(-m.springs[:, None] * m.normals.T, 0.0 * m.normals.T)
+        springs = self.springs.reshape(-1, 1)
+        return self._by_states(-springs * m.normals.T, 0.0 * m.normals.T)
 
     @cached_property
     def speed_by(self) -> Vector:
@@ -188,7 +200,7 @@ class Forces:
     def base_by(self) -> Vector:
         """Derivative of accelerations without those of stick, (n, 2 n)."""
         m = self.matrices
-        opened = ((1.0 - self.closed) * m.springs)[:, None] * m.normals.T
+        opened = self._beyond_stiffness[:, None] * m.normals.T
         pull = m.pushes @ opened - full_matrix(m.stiffness)
         drag = -full_matrix(m.damping)
         return self._by_states(pull, drag) + m.drags @ self.slip_by
@@ -217,6 +229,10 @@ class Forces:
         if kind in {BEFORE_END, AFTER_START}:
             knot = self.constants[i, FIRST_OF_PIECE + (kind == BEFORE_END)]
             return lag - self.reference[i] * knot, lag_by
+        if kind in {PRESS_END, PRESS_START}:
+            start, end, c0, c1 = self.constants[i, FIRST_OF_PRESS:]
+            knot = c0 + c1 * (end - start) * (kind == PRESS_END)
+            return self.press[i] - knot, self.press_by[i]
         sign = 1.0 if kind == MARGIN else -1.0
         return (
             self.static[i] * self.press[i] - sign * self.stick[i],
@@ -239,7 +255,7 @@ class Forces:
         if knot is not None:
             return direction * self.speed[i] - knot * self.reference[i]
         limit, hidden = self.static[i] * self.press[i], self.matrices.hidden
-        return limit**2 + hidden**2 - self.holding(i) ** 2
+        return limit_left.py_func(limit, self.holding(i), hidden)
 
 
 class LinearFlow(Flow):

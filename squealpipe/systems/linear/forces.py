@@ -15,20 +15,27 @@ import math
 from typing import Any
 
 from squealpipe.systems.compiled import inline, part
-from squealpipe.systems.linear.matrices import EXPONENTIAL, HYPERBOLIC, TABLE
+from squealpipe.systems.linear.matrices import (
+    DIRECTION,
+    EXPONENTIAL,
+    FIRST_OF_PIECE,
+    FIRST_OF_PRESS,
+    HYPERBOLIC,
+    IS_CLOSED,
+    IS_STUCK,
+    TABLE,
+)
 from squealpipe.systems.linear.numbering import (
     BEFORE_END,
     CONTACT,
-    DIRECTION,
-    FIRST_OF_PIECE,
-    IS_CLOSED,
-    IS_STUCK,
     KNOT,
     LAG,
     LANDS,
     MARGIN,
     MARGIN_BACK,
+    OF_CONTACT,
     PASSES,
+    PRESS_END,
     PRESSING,
     REVERSAL,
     REVERSES,
@@ -65,20 +72,80 @@ Below it round-off decides; doubling it merges directions 1.4 times as far apart
 @inline
 def _constant(k: Any, rows: Any, contact: int, which: int) -> Any:
     """Return a constant of a contact's regime."""
-    return rows[COEFFICIENTS + 3 * k.c + 1 + contact * k.width + which, 0]
+    return rows[COEFFICIENTS + OF_CONTACT * k.c + 1 + contact * k.width + which, 0]
 
 
 @part
 def _coefficients(k: Any, rows: Any, i: int) -> Any:
     """Return μ, the coefficient of static friction and the reference speed of a contact."""
-    at = COEFFICIENTS + 3 * i
+    at = COEFFICIENTS + OF_CONTACT * i
     return rows[at, 0], rows[at + 1, 0], rows[at + 2, 0]
 
 
 @inline
 def _unit(k: Any, rows: Any) -> Any:
     """Return the unit of time."""
-    return rows[COEFFICIENTS + 3 * k.c, 0]
+    return rows[COEFFICIENTS + OF_CONTACT * k.c, 0]
+
+
+@part
+def _line(k: Any, rows: Any, i: int) -> Any:
+    """Return the stiffness of a contact's piece of a table, and the piece's force where nᵀq = 0."""
+    start, c0 = (
+        _constant(k, rows, i, FIRST_OF_PRESS),
+        _constant(k, rows, i, FIRST_OF_PRESS + 2),
+    )
+    stiffness = _constant(k, rows, i, FIRST_OF_PRESS + 3)
+    at_rest = rows[COEFFICIENTS + OF_CONTACT * i + 3, 0]
+    return stiffness, c0 + stiffness * (at_rest - start)
+
+
+@part
+def _press_knot(k: Any, rows: Any, i: int, which: int) -> Any:
+    """Return the force at the end (0) or the start (1) of a contact's piece of a table."""
+    start, end = (
+        _constant(k, rows, i, FIRST_OF_PRESS),
+        _constant(k, rows, i, FIRST_OF_PRESS + 1),
+    )
+    c0 = _constant(k, rows, i, FIRST_OF_PRESS + 2)
+    if which:
+        return c0
+    return c0 + _constant(k, rows, i, FIRST_OF_PRESS + 3) * (end - start)
+
+
+@part
+def regimes_of_press(k: Any, i: int) -> Any:
+    """Return the number of regimes of a contact in one piece of its table of contact."""
+    return (k.first[0, i + 1] - k.first[0, i] - 1) // k.press_counts[i]
+
+
+@part
+def press_of_force(k: Any, i: int, force: float) -> Any:
+    """Return the piece of a table of contact, by the force that its first piece would have."""
+    count, piece = k.press_counts[i], 0
+    if count == 1:
+        return 0
+    first, step = k.first[0, i], regimes_of_press(k, i)
+    compression = force / k.table[first, FIRST_OF_PRESS + 3]
+    while (
+        piece + 1 < count
+        and k.table[first + (piece + 1) * step, FIRST_OF_PRESS] <= compression
+    ):
+        piece += 1
+    return piece
+
+
+@part
+def _press_of_regime(k: Any, rows: Any, i: int) -> Any:
+    """Return the piece of a table of contact in which a contact is."""
+    count, piece = k.press_counts[i], 0
+    if count == 1:
+        return 0
+    first, step = k.first[0, i], regimes_of_press(k, i)
+    start = _constant(k, rows, i, FIRST_OF_PRESS)
+    while piece + 1 < count and k.table[first + piece * step, FIRST_OF_PRESS] != start:
+        piece += 1
+    return piece
 
 
 @part
@@ -339,6 +406,11 @@ def state_forces(k: Any, rows: Any, z: Any, pressing: Any) -> None:
         lags[i] = k.speeds[i] * rows[BELT, 0] - lags[i]
         closed = _constant(k, rows, i, IS_CLOSED) > 0.0
         relieved[i] = k.preloads[i] * preload if closed else k.springs[i] * lift
+        if k.n_tables and k.press_counts[i] > 1:
+            stiffness, at_rest = _line(k, rows, i)
+            pressing[i] = at_rest - stiffness * lift
+            if closed:
+                relieved[i] = at_rest + (k.springs[i] - stiffness) * lift
         direction, slip[i] = _constant(k, rows, i, DIRECTION), 0.0
         if closed and direction != 0.0:
             slip[i] = direction * pressing[i] * coefficient(k, rows, i, lags[i])
@@ -396,10 +468,19 @@ def holding(k: Any, i: int) -> Any:
 def holds(k: Any, rows: Any, i: int, pressing: float) -> Any:
     """Tell whether friction can keep a contact on the belt."""
     _, static, _ = _coefficients(k, rows, i)
+    return limit_left(static * pressing, holding(k, i), k.hidden[0]) >= 0.0
+
+
+@inline
+def limit_left(limit: Any, friction: Any, hidden: Any) -> Any:
+    """Return the square that the limit of friction leaves above what holds a contact, N².
+
+    Args:
+        hidden: friction force that round-off hides, N.
+    """
     # where another contact has just slipped, the friction that is needed may be the limit itself:
     # without a share for round-off such a contact would turn back for ever in one instant
-    limit = (1.0 + 1e-13) * static * pressing
-    return limit**2 + k.hidden[0] ** 2 - holding(k, i) ** 2 >= 0.0
+    return ((1.0 + 1e-13) * limit) ** 2 + hidden**2 - friction**2
 
 
 @part
@@ -419,7 +500,14 @@ def _sizes_of_contacts(
     _add_sizes(k.tangentials, of_v, lag)
     preload, belt = constant * abs(rows[PRELOAD, 0]), constant * abs(rows[BELT, 0])
     for i in range(k.c):
-        press[i] = abs(k.preloads[i]) * preload + k.springs[i] * press[i]
+        if k.n_tables and k.press_counts[i] > 1:
+            stiffness, _ = _line(k, rows, i)
+            at_rest = abs(rows[COEFFICIENTS + OF_CONTACT * i + 3, 0])
+            at_rest += abs(_constant(k, rows, i, FIRST_OF_PRESS))
+            fixed = abs(_constant(k, rows, i, FIRST_OF_PRESS + 2)) + stiffness * at_rest
+            press[i] = constant * fixed + stiffness * press[i]
+        else:
+            press[i] = abs(k.preloads[i]) * preload + k.springs[i] * press[i]
         lag[i] += abs(k.speeds[i]) * belt
 
 
@@ -451,6 +539,9 @@ def _sizes_of_rates(
     for i in range(k.c):
         closed = _constant(k, rows, i, IS_CLOSED) > 0.0
         force[i] = abs(k.preloads[i]) * preload if closed else press[i]
+        if k.n_tables and k.press_counts[i] > 1:
+            stiffness, _ = _line(k, rows, i)
+            force[i] = press[i] * (1.0 + k.springs[i] / stiffness)
     _add_sizes(k.push_rows, force, scale)
     for i in range(k.c):
         mu, static, _ = _coefficients(k, rows, i)
@@ -490,10 +581,14 @@ def _values(k: Any, rows: Any, z: Any, out: Any) -> None:
             at, sign = 3 * ((MARGIN + which) * c + i), 1.0 - 2.0 * which
             out[at] = static * pressing - sign * k.by_contact[STICK, i]
             out[at + 1] = abs(static) * of_press + k.by_contact[OF_STICK, i]
-            if k.n_pieces > 1:
+            if k.n_sorts > BEFORE_END:
                 knot = reference * _constant(k, rows, i, FIRST_OF_PIECE + 1 - which)
                 at = 3 * ((BEFORE_END + which) * c + i)
                 out[at], out[at + 1] = lag - knot, of_lag + abs(knot)
+            if k.n_sorts > PRESS_END:
+                knot = _press_knot(k, rows, i, which)
+                at = 3 * ((PRESS_END + which) * c + i)
+                out[at], out[at + 1] = pressing - knot, of_press + abs(knot)
 
 
 @part
@@ -518,7 +613,7 @@ def _output_values(k: Any, rows: Any, z: Any, sizes: Any, out: Any) -> None:
 def gauge_state(k: Any, rows: Any, z: Any, sizes: Any, out: Any) -> None:
     """Write value, size of terms, and that of the rate's terms of each surface, then of outputs."""
     n, c, unit = k.n, k.c, _unit(k, rows)
-    n_surfaces = (6 if k.n_pieces > 1 else 4) * c
+    n_surfaces = k.n_sorts * c
     of_q, of_v = sizes[:n], sizes[n : 2 * n]
     _sizes_of_contacts(k, rows, of_q, of_v, 1.0)
     _sizes_of_rates(k, rows, of_q, of_v, 1.0, k.by_mode[SCALE])
@@ -541,23 +636,29 @@ def gauge_state(k: Any, rows: Any, z: Any, sizes: Any, out: Any) -> None:
         for which in range(2):
             of_margin = abs(static) * of_press + k.by_contact[OF_STICK, i]
             out[3 * ((MARGIN + which) * c + i) + 2] = of_margin
-            if k.n_pieces > 1:
+            if k.n_sorts > BEFORE_END:
                 out[3 * ((BEFORE_END + which) * c + i) + 2] = of_lag
+            if k.n_sorts > PRESS_END:
+                out[3 * ((PRESS_END + which) * c + i) + 2] = of_press
 
 
 @part
-def slip_regime(k: Any, rows: Any, i: int, speed: float) -> Any:
-    """Return the regime of slip, among those of a contact, by the sliding speed."""
+def slip_regime(k: Any, rows: Any, i: int, speed: float, press: int) -> Any:
+    """Return the regime of slip, among those of a contact, by the sliding speed.
+
+    Args:
+        press: piece of its table of contact.
+    """
     _, _, reference = _coefficients(k, rows, i)
-    side = 0 if speed >= 0.0 else 1
-    first = k.first[0, i]
-    piece = (k.first[0, i + 1] - first) // 2 - 2
+    side, count = 0 if speed >= 0.0 else 1, regimes_of_press(k, i)
+    first = k.first[0, i] + press * count
+    piece = count // 2 - 1
     while (
         piece > 0
         and abs(speed) - reference * k.table[first + 2 * piece, FIRST_OF_PIECE] < 0.0
     ):
         piece -= 1
-    return 2 * piece + side
+    return press * count + 2 * piece + side
 
 
 @part
@@ -565,32 +666,33 @@ def change_state(k: Any, rows: Any, which: int, z: Any, out: Any) -> None:
     """Write the regime that a switch enters, the kind of the event, and the state after it."""
     what, i, target = k.switches[which, 0], k.switches[which, 1], k.switches[which, 2]
     n, first = k.n, k.first[0, i]
-    regimes = k.first[0, i + 1] - first
+    count = regimes_of_press(k, i)
+    block = count * _press_of_regime(k, rows, i)
     after = out[2 : 2 + 2 * n]
     for j in range(2 * n):
         after[j] = z[j]
     regime, kind = 0, LANDS
     if what == SEPARATION:
-        regime, kind = regimes - 1, SEPARATES
+        regime, kind = k.first[0, i + 1] - first - 1, SEPARATES
     elif what == KNOT:
         regime, kind = target - first, PASSES
     elif what == SLIPS or (what != CONTACT and what != REVERSAL):
-        regime, kind = (0 if what == SLIPS else 1), SLIPS_AWAY
+        regime, kind = block + (0 if what == SLIPS else 1), SLIPS_AWAY
     else:
         # values go where nothing is read any more
         pressing = k.by_contact[OF_PRESS]
         state_forces(k, rows, z, pressing)
         speed = k.by_contact[LAGS, i]
         if what == CONTACT:
-            regime = slip_regime(k, rows, i, speed)
+            regime = slip_regime(k, rows, i, speed, 0)
         else:
             for j in range(n):
                 after[n + j] += k.drag_rows[i, j] / k.mobility[i, i] * speed
-            kind = REVERSES
+            regime, kind = block, REVERSES
             if holds(k, rows, i, pressing[i]):
-                regime, kind = regimes - 2, STICKS
+                regime, kind = block + count - 1, STICKS
             elif _constant(k, rows, i, DIRECTION) >= 0.0:
-                regime = 1
+                regime = block + 1
     out[0], out[1] = float(first + regime), float(k.first[1, i] + kind)
 
 
@@ -598,7 +700,8 @@ def change_state(k: Any, rows: Any, which: int, z: Any, out: Any) -> None:
 def _list_forces(k: Any, rows: Any) -> None:
     """Note what the regimes make of each contact, and which contacts push and slip.
 
-    A closed contact's spring is in the stiffness: it pushes at order 0 alone, by its preload.
+    A closed contact's spring is in the stiffness: it pushes at order 0 alone, by its preload, but
+    for a piece of a table that is not as stiff.
     """
     opened, slipping = 0, 0
     for i in range(k.c):
@@ -614,9 +717,13 @@ def _list_forces(k: Any, rows: Any) -> None:
         if not closed:
             k.lists[0, opened] = i
             opened += 1
-        elif direction != 0.0:
-            k.lists[1, slipping] = i
-            slipping += 1
+        else:
+            if k.n_tables and k.press_counts[i] > 1:
+                k.lists[0, opened] = i
+                opened += 1
+            if direction != 0.0:
+                k.lists[1, slipping] = i
+                slipping += 1
     k.counts[2], k.counts[3] = opened, slipping
 
 
@@ -648,14 +755,19 @@ def _contacts_at_order(k: Any, rows: Any, mem: Any, order: int, q: Any, v: Any) 
         q, v: this order of displacements and velocities.
     """
     n, c, row = k.n, k.c, mem[order]
-    first_output = 2 * n + (6 if k.n_pieces > 1 else 4) * c
+    first_output = 2 * n + k.n_sorts * c
     pressing, slides = k.by_contact[PRESS], k.by_contact[LAGS]
     lags, closed = k.by_contact[OF_LAG], k.by_contact[CLOSED]
     _write_columns(k.normals, q, pressing)
     _write_columns(k.tangentials, v, slides)
+    for a in range(k.n_tables):
+        # a row of work that no series uses keeps what the next line overwrites
+        k.by_contact[OF_PRESS, k.with_tables[a]] = pressing[k.with_tables[a]]
     _forces_of_lifts(
         k, rows[PRELOAD, 0] if order == 0 else 0.0, rows[BELT, 0] if order == 0 else 0.0
     )
+    if k.n_tables:
+        _tables_at_order(k, rows, order)
     at = 2 * n
     for i in range(c):
         row[at + i] = pressing[i]
@@ -668,10 +780,27 @@ def _contacts_at_order(k: Any, rows: Any, mem: Any, order: int, q: Any, v: Any) 
         row[at], row[at + 1] = closed[i] * pressing[i], slides[i]
     if k.curved:
         _curved_slip_at_order(k, rows, mem, order)
-    if k.n_pieces > 1:
+    if k.n_sorts > BEFORE_END:
         _knots_at_order(k, rows, row, order)
     for shape in range(k.n_shapes):
         row[first_output + 2 * c + shape] = dot(k.shapes[shape], row[:n])
+
+
+@part
+def _tables_at_order(k: Any, rows: Any, order: int) -> None:
+    """Compute an order of the forces of contacts with tables, by their pieces."""
+    for a in range(k.n_tables):
+        i = k.with_tables[a]
+        lift = k.by_contact[OF_PRESS, i]
+        stiffness, at_rest = _line(k, rows, i)
+        if order:
+            at_rest = 0.0
+        force = at_rest - stiffness * lift
+        k.by_contact[PRESS, i] = force
+        k.by_contact[SLIP, i] = k.by_contact[DRAG, i] * force
+        if k.by_contact[CLOSED, i] > 0.0:
+            pushed = at_rest + (k.springs[i] - stiffness) * lift
+            k.by_contact[RELIEVED, i] = pushed
 
 
 @part
@@ -686,7 +815,7 @@ def _curved_slip_at_order(k: Any, rows: Any, mem: Any, order: int) -> None:
 
 @part
 def _knots_at_order(k: Any, rows: Any, row: Any, order: int) -> None:
-    """Compute an order of how far each sliding speed is from the ends of its piece."""
+    """Compute an order of how far speeds and forces are from the ends of their pieces."""
     n, c = k.n, k.c
     for i in range(c):
         _, _, reference = _coefficients(k, rows, i)
@@ -694,6 +823,11 @@ def _knots_at_order(k: Any, rows: Any, row: Any, order: int) -> None:
             knot = reference * _constant(k, rows, i, FIRST_OF_PIECE + 1 - which)
             place = 2 * n + (BEFORE_END + which) * c + i
             row[place] = row[2 * n + LAG * c + i] - (knot if order == 0 else 0.0)
+            if k.n_sorts > PRESS_END:
+                place = 2 * n + (PRESS_END + which) * c + i
+                row[place] = row[2 * n + PRESSING * c + i]
+                if order == 0:
+                    row[place] -= _press_knot(k, rows, i, which)
 
 
 @inline

@@ -29,7 +29,7 @@ from squealpipe.systems.linear.forces import (
     settle_stick,
 )
 from squealpipe.systems.linear.matrices import EXPONENTIAL
-from squealpipe.systems.linear.numbering import LAG, MARGIN
+from squealpipe.systems.linear.numbering import LAG, MARGIN, OF_CONTACT
 from squealpipe.systems.linear.plan import (
     COEFFICIENTS,
     SPECIAL,
@@ -122,7 +122,7 @@ def shorter_step(m: Any, k: Any, rows: Any, mem: Any, step: float) -> Any:
     for i in range(c):
         if k.laws[i] != EXPONENTIAL or k.by_contact[SIDE, i] == 0.0:
             continue
-        reference = rows[COEFFICIENTS + 3 * i + 2, 0]
+        reference = rows[COEFFICIENTS + OF_CONTACT * i + 2, 0]
         place = 2 * n + LAG * c + i
         most = max(0.3 * (abs(mem[0, place]) / reference - 20.0), 2.0) * reference
         low, x = step * 1e-12, step
@@ -379,7 +379,7 @@ def _series(parameters: int, orders: int, terms: int) -> None:
     """Call :func:`.forces.series` by addresses."""
     k = plan_of(parameters)
     # after those of the states, surfaces and outputs come
-    width = 2 * k.n + (6 if k.n_pieces > 1 else 4) * k.c + 2 * k.c + k.n_shapes
+    width = 2 * k.n + k.n_sorts * k.c + 2 * k.c + k.n_shapes
     mem = view(orders, (terms, width), np.float64)
     series(k, numbers_of(k, parameters), mem)
 
@@ -388,7 +388,7 @@ def _gauge(z: int, sizes: int, parameters: int, out: int) -> None:
     """Call :func:`.forces.gauge_state` by addresses."""
     k = plan_of(parameters)
     n, c = k.n, k.c
-    count = 3 * ((6 if k.n_pieces > 1 else 4) * c + 2 * c + k.n_shapes)
+    count = 3 * (k.n_sorts * c + 2 * c + k.n_shapes)
     state, of_state = view(z, (2 * n,), np.float64), view(sizes, (2 * n,), np.float64)
     found = view(out, (count,), np.float64)
     gauge_state(k, numbers_of(k, parameters), state, of_state, found)

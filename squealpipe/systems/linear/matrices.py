@@ -10,12 +10,20 @@ COULOMB, EXPONENTIAL, HYPERBOLIC, TABLE = range(4)
 """Friction laws by number."""
 PIECE_FIELDS = ("mu_start", "mu_end", "mu_c0", "mu_c1", "mu_c2", "mu_c3")
 """Constants of one piece of a table of friction."""
+PRESS_FIELDS = ("press_start", "press_end", "press_c0", "press_c1")
+"""Constants of one piece of a table of contact: compressions, m, force at the first, N, and N/m."""
+
+
+IS_CLOSED, DIRECTION, IS_STUCK, FIRST_OF_PIECE = range(4)
+"""Constants of a regime; those of a piece of a table follow."""
+FIRST_OF_PRESS = FIRST_OF_PIECE + len(PIECE_FIELDS)
+"""Place of the constants of a piece of a table of contact, where some contact has one."""
 
 
 class Caps(NamedTuple):
     """Sizes up to which structures are run.
 
-    A run of the largest takes about 0.3 GB and some milliseconds a step; beyond, modes of a
+    A run of the largest takes about 0.3 GB and some 15 ms a step; beyond, modes of a
     reduction should be left out or contacts merged.
     """
 
@@ -35,10 +43,12 @@ class ContactMatrices:
         normals, tangentials: (n, c).
         pushes, drags: M⁻¹ n and M⁻¹ t, (n, c).
         springs, preloads, speeds: (c,) stiffness, N/m, preload, N, and belt speed over that of the
-            parameter.
+            parameter. Of a table ``springs`` is the stiffness that ``stiffness`` has of it.
         laws: (c,) friction law, by number.
         pieces: of each contact, (pieces, 6) of its table of friction, :data:`PIECE_FIELDS`; one row
             of zeros without.
+        presses: of each contact, (pieces, 4) of its table of contact, :data:`PRESS_FIELDS`, whose
+            forces rise; one row without: the force is preload − stiffness · nᵀq.
         hidden: friction force that round-off hides, N.
         shapes: (outputs, n) further outputs: displacements as combinations of the states.
         by_speed: of each part of ``stiffness`` or ``damping`` that is proportional to a power of
@@ -60,6 +70,7 @@ class ContactMatrices:
     speeds: np.ndarray
     laws: np.ndarray
     pieces: Sequence[np.ndarray]
+    presses: Sequence[np.ndarray]
     hidden: float
     shapes: np.ndarray
     by_speed: Sequence[tuple[str, np.ndarray, int]] = ()
@@ -100,9 +111,40 @@ class ContactMatrices:
         return len(self.springs)
 
     @property
-    def n_pieces(self) -> int:
-        """Largest number of pieces of a table of friction."""
-        return max(map(len, self.pieces))
+    def with_tables(self) -> np.ndarray:
+        """Numbers of the contacts whose force is a table of the compression."""
+        return np.flatnonzero([len(rows) > 1 for rows in self.presses])
+
+    def compressions(self, preload: Any) -> list[Any]:
+        """Return the compression of each contact where nᵀq = 0, m; 0 where its force is no table.
+
+        Args:
+            preload: factor of all preloads, which may be an array or complex.
+        """
+        found: list[Any] = [0.0 * preload] * self.n_contacts
+        for i in self.with_tables:
+            starts, _, forces, slopes = self.presses[i].T
+            force = self.preloads[i] * preload
+            after = np.searchsorted(forces, np.real(force), side="right")
+            piece = np.maximum(after - 1, 0)
+            found[i] = starts[piece] + (force - forces[piece]) / slopes[piece]
+        return found
+
+    def lines(self, constants: np.ndarray, preload: Any) -> tuple[Any, Any]:
+        """Return the stiffness of each contact in its regime, and its force where nᵀq = 0.
+
+        Args:
+            constants: of the regimes, (…, c, constants).
+            preload: factor of all preloads, which may be complex.
+        """
+        shape = constants.shape[:-1]
+        stiffness = np.broadcast_to(self.springs, shape).copy()
+        force = np.broadcast_to(self.preloads * preload, shape).copy()
+        at_rest = self.compressions(preload)
+        for i in self.with_tables:
+            start, _, c0, c1 = np.moveaxis(constants[..., i, FIRST_OF_PRESS:], -1, 0)
+            stiffness[..., i], force[..., i] = c1, c0 + c1 * (at_rest[i] - start)
+        return stiffness, force
 
     @property
     def curved(self) -> bool:

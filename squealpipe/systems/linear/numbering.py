@@ -4,7 +4,7 @@ They are those that the same contacts have as components of a traced system: reg
 contact, switches within a contact by name, kinds in the order in which switches name them.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -13,18 +13,26 @@ import numpy as np
 
 from squealpipe.systems.belt_contact import SLIP, BeltContact
 from squealpipe.systems.components import Composition, joined
-from squealpipe.systems.linear.matrices import PIECE_FIELDS
+from squealpipe.systems.linear.matrices import (
+    FIRST_OF_PIECE,
+    FIRST_OF_PRESS,
+    PIECE_FIELDS,
+    PRESS_FIELDS,
+)
 
 CONTACT, REVERSAL, SEPARATION, SLIPS, SLIPS_BACK, KNOT = range(6)
 """Switches of a contact."""
-PRESSING, LAG, MARGIN, MARGIN_BACK, BEFORE_END, AFTER_START = range(6)
+(
+    PRESSING, LAG, MARGIN, MARGIN_BACK, BEFORE_END, AFTER_START, PRESS_END, PRESS_START,
+) = range(8)  # fmt: skip
 """Surfaces of a contact: normal force, |sliding speed|, what friction lacks to its limits, and how
-far the speed is from the end and the start of its piece of a table."""
+far the speed, and the normal force, are from the end and the start of their piece of a table."""
+OF_CONTACT = 4
+"""Numbers of each contact among the parameters of a run: μ, its static limit, the reference speed,
+and the compression where nᵀq = 0, of a table of contact."""
 LANDS, STICKS, REVERSES, SEPARATES, SLIPS_AWAY, PASSES = range(6)
 """Kinds of events of a contact."""
 KINDS = ("contact", "stick", "reversal", "separation", "slip", "knot")
-IS_CLOSED, DIRECTION, IS_STUCK, FIRST_OF_PIECE = range(4)
-"""Constants of a regime; those of a piece of a table follow."""
 
 
 class Condition(NamedTuple):
@@ -78,26 +86,35 @@ class Numbering:
         names: of the contacts.
         n_modes: number of displacements.
         pieces: (pieces, 6) of the table of friction of each contact, or one row.
+        presses: (pieces, 4) of its table of contact, or one row.
         shapes: number of further outputs.
     """
 
     names: Sequence[str]
     n_modes: int
     pieces: Sequence[np.ndarray]
+    presses: Sequence[np.ndarray]
     n_shapes: int = 0
 
     @cached_property
     def belts(self) -> list[BeltContact]:
         """Regimes of each contact."""
+
+        def named(
+            fields: Sequence[str], rows: np.ndarray
+        ) -> Sequence[dict[str, float]]:
+            if len(rows) == 1:
+                return [{}]
+            return [dict(zip(fields, row, strict=True)) for row in rows]
+
         return [
             BeltContact(
-                frictions=[dict(zip(PIECE_FIELDS, row, strict=True)) for row in pieces]
-                if len(pieces) > 1
-                else [{}],
+                frictions=named(PIECE_FIELDS, pieces),
+                presses=named(PRESS_FIELDS, presses),
                 speed=lambda t, s, p, r: 0.0,
                 unit=lambda p: 1.0,
             )
-            for pieces in self.pieces
+            for pieces, presses in zip(self.pieces, self.presses, strict=True)
         ]
 
     @property
@@ -105,9 +122,16 @@ class Numbering:
         """Whether the friction of some contact has several pieces."""
         return max(map(len, self.pieces)) > 1
 
+    @property
+    def has_presses(self) -> bool:
+        """Whether the force of some contact is a table of the compression."""
+        return max(map(len, self.presses)) > 1
+
     @cached_property
     def width(self) -> int:
         """Number of constants of a contact's regime."""
+        if self.has_presses:
+            return FIRST_OF_PRESS + len(PRESS_FIELDS)
         return FIRST_OF_PIECE + len(PIECE_FIELDS) * self.has_tables
 
     @cached_property
@@ -122,7 +146,8 @@ class Numbering:
     @cached_property
     def constants_of_regimes(self) -> np.ndarray:
         """(regimes, constants); of a contact without a table those of its pieces are 0."""
-        fields = ("contact", "direction", "stick", *PIECE_FIELDS)[: self.width]
+        every = ("contact", "direction", "stick", *PIECE_FIELDS, *PRESS_FIELDS)
+        fields = every[: self.width]
         rows = self.regime_constants.values()
         return np.array([[row.get(key, 0.0) for key in fields] for row in rows])
 
@@ -153,8 +178,8 @@ class Numbering:
     def _own_switches(self, contact: int) -> list[ContactSwitch]:
         name, belt = self.names[contact], self.belts[contact]
 
-        def number(kind: str, piece: int = 0) -> int:
-            return self.regime(contact, belt.name(kind, piece))
+        def number(kind: str, piece: int = 0, press: int = 0) -> int:
+            return self.regime(contact, belt.name(kind, piece, press))
 
         def switch(
             own: str,
@@ -163,15 +188,15 @@ class Numbering:
             surface: int,
             targets: list[tuple[int, Condition | None, int]],
         ) -> ContactSwitch:
-            rises = what == CONTACT or surface == BEFORE_END
+            rises = what == CONTACT or surface in {BEFORE_END, PRESS_END}
             target = targets[0][0] if what == KNOT else -1
             first = int(self.first_kind[contact])
             to = tuple((regime, each, first + kind) for regime, each, kind in targets)
             where = tuple(leaves), surface, rises, to
             return ContactSwitch(joined(name, own), what, contact, target, *where)
 
-        apart, stuck = number("separated"), number("stick")
-        slower, faster = (number(kind) for kind in SLIP)
+        apart = self.regime(contact, "separated")
+        several = len(belt.presses) > 1
         # in the order of BeltContact.slips: the pieces of higher speeds first
         landings: list[tuple[int, Condition | None, int]] = [
             (
@@ -182,12 +207,7 @@ class Numbering:
             for kind, side in SLIP.items()
             for i in reversed(range(len(belt.frictions)))
         ]
-        reverses: list[tuple[int, Condition | None, int]] = [
-            (stuck, Condition(None, 0.0), STICKS),
-            (faster, Condition(0.0, 0.0), REVERSES),
-            (slower, None, REVERSES),
-        ]
-        closed = [number(kind, piece) for kind, piece, _ in belt.in_contact()]
+        closed = [number(*each) for each in belt.in_contact() if each[2] == 0]
         # what falls for the leaving side rises for the side that is entered
         found = [
             switch(
@@ -200,31 +220,50 @@ class Numbering:
                 PRESSING,
                 [*landings[:-1], (landings[-1][0], None, LANDS)],
             ),
-            switch("reversal", REVERSAL, [slower, faster], LAG, reverses),
-            switch("slip", SLIPS, [stuck], MARGIN, [(slower, None, SLIPS_AWAY)]),
-            switch(
-                "slip_back",
-                SLIPS_BACK,
-                [stuck],
-                MARGIN_BACK,
-                [(faster, None, SLIPS_AWAY)],
-            ),
         ]
-        for kind in SLIP:
-            for piece in range(len(belt.frictions) - 1):
-                here, there = number(kind, piece), number(kind, piece + 1)
-                names = belt.name(kind, piece), belt.name(kind, piece + 1)
-                ways = (
-                    (names, here, BEFORE_END, there),
-                    (names[::-1], there, AFTER_START, here),
+        for press in range(len(belt.presses)):
+            tail = f"_{press + 1}" * several
+            stuck = number("stick", 0, press)
+            slower, faster = (number(kind, 0, press) for kind in SLIP)
+            reverses: list[tuple[int, Condition | None, int]] = [
+                (stuck, Condition(None, 0.0), STICKS),
+                (faster, Condition(0.0, 0.0), REVERSES),
+                (slower, None, REVERSES),
+            ]
+            away = [(slower, None, SLIPS_AWAY)], [(faster, None, SLIPS_AWAY)]
+            found += [
+                switch(f"reversal{tail}", REVERSAL, [slower, faster], LAG, reverses),
+                switch(f"slip{tail}", SLIPS, [stuck], MARGIN, [*away[0]]),
+                switch(
+                    f"slip_back{tail}", SLIPS_BACK, [stuck], MARGIN_BACK, [*away[1]]
+                ),
+            ]
+        for one, other, ends in self._neighbours(belt):
+            ways = (one, other, ends[0]), (other, one, ends[1])
+            found += [
+                switch(
+                    f"{belt.name(*left)} to {belt.name(*to)}",
+                    KNOT,
+                    [number(*left)],
+                    surface,
+                    [(number(*to), None, PASSES)],
                 )
-                found += [
-                    switch(
-                        f"{own} to {other}", KNOT, [left], surface, [(to, None, PASSES)]
-                    )
-                    for (own, other), left, surface, to in ways
-                ]
+                for left, to, surface in ways
+            ]
         return sorted(found, key=lambda each: each.name)
+
+    @staticmethod
+    def _neighbours(
+        belt: BeltContact,
+    ) -> Iterator[tuple[tuple[str, int, int], tuple[str, int, int], tuple[int, int]]]:
+        """Yield regimes in neighbouring pieces of a table, and the surfaces at their knot."""
+        for kind, piece, press in belt.in_contact():
+            if kind in SLIP and piece + 1 < len(belt.frictions):
+                other = kind, piece + 1, press
+                yield (kind, piece, press), other, (BEFORE_END, AFTER_START)
+            if press + 1 < len(belt.presses):
+                other = kind, piece, press + 1
+                yield (kind, piece, press), other, (PRESS_END, PRESS_START)
 
     @cached_property
     def switches(self) -> tuple[ContactSwitch, ...]:
@@ -237,14 +276,19 @@ class Numbering:
         """Kinds of events, contact after contact."""
         return tuple(
             joined(name, kind)
-            for name, pieces in zip(self.names, self.pieces, strict=True)
-            for kind in (KINDS if len(pieces) > 1 else KINDS[:-1])
+            for name, belt in zip(self.names, self.belts, strict=True)
+            for kind in KINDS[: self._n_kinds(belt)]
         )
+
+    @staticmethod
+    def _n_kinds(belt: BeltContact) -> int:
+        has_knots = len(belt.frictions) > 1 or len(belt.presses) > 1
+        return len(KINDS) - (not has_knots)
 
     @cached_property
     def first_kind(self) -> np.ndarray:
         """(contacts + 1,) number of the first kind of event of each."""
-        sizes = [len(KINDS) - (len(pieces) == 1) for pieces in self.pieces]
+        sizes = [self._n_kinds(belt) for belt in self.belts]
         return np.concatenate([[0], np.cumsum(sizes)])
 
     # in the terms of a traced system, of which what is counted alone matters here
@@ -257,7 +301,7 @@ class Numbering:
     @property
     def parameters(self) -> range:
         """Rows of numbers that a lane has before the constants of its regimes: see :mod:`.plan`."""
-        return range(4 + 3 * len(self.names))
+        return range(4 + OF_CONTACT * len(self.names))
 
     @property
     def variables(self) -> range:
@@ -267,6 +311,8 @@ class Numbering:
     @property
     def surfaces_of_a_contact(self) -> int:
         """Number of surfaces of one contact."""
+        if self.has_presses:
+            return 8
         return 6 if self.has_tables else 4
 
     @property

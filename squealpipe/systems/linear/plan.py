@@ -12,7 +12,7 @@ import numpy as np
 
 from squealpipe.systems.compiled import inline_views, views
 from squealpipe.systems.linear.matrices import ContactMatrices
-from squealpipe.systems.linear.numbering import Numbering
+from squealpipe.systems.linear.numbering import OF_CONTACT, Numbering
 from squealpipe.systems.taylor.lanes import (
     MOST_TERMS,
     Workspace,
@@ -23,8 +23,8 @@ from squealpipe.systems.taylor.lanes import (
 from squealpipe.systems.taylor.simd import LANES
 
 PLAN, BELT, PRELOAD, COEFFICIENTS = range(4)
-"""Rows of the parameters of a run: the address of the plan, belt speed, factor of preload; then μ,
-its static limit and the reference speed of each contact, and last the unit of time."""
+"""Rows of the parameters of a run: the address of the plan, belt speed, factor of preload; then the
+numbers of each contact, and last the unit of time."""
 WORK = 12
 """Rows of work by contact."""
 BASE, SCALE, RATE, PLACE, SPEED = range(5)
@@ -35,11 +35,11 @@ ARRAYS = (
     "pull_back", "drag_back", "load", "normals", "tangentials", "push_rows", "drag_rows",
     "tangent_rows", "mobility", "springs", "preloads", "speeds", "laws", "shapes", "table",
     "first", "switches", "by_contact", "by_mode", "law_series", "held", "factor", "stuck", "counts",
-    "lists", "hidden", "starts", "numbers", "opened", "scratch",
+    "lists", "hidden", "starts", "numbers", "opened", "scratch", "press_counts", "with_tables",
 )  # fmt: skip
 SIZES = (
-    "n", "c", "width", "n_pieces", "n_shapes", "n_regimes", "n_switches", "full_stiffness",
-    "full_damping", "balanced", "curved", "n_jobs", "settle",
+    "n", "c", "width", "n_sorts", "n_tables", "n_shapes", "n_regimes", "n_switches",
+    "full_stiffness", "full_damping", "balanced", "curved", "n_jobs", "settle",
 )  # fmt: skip
 TABLE = np.dtype([(name, "i8") for name in (*ARRAYS, *SIZES)])
 record_at: Any = record_viewer(TABLE)
@@ -51,6 +51,8 @@ class Plan(NamedTuple):
     Attributes:
         pull_back, drag_back: −M⁻¹(K + …)ᵀ and −M⁻¹Cᵀ, (n, n), or the diagonals (1, n).
         push_rows, drag_rows, tangent_rows: (c, n).
+        n_sorts: number of surfaces of a contact.
+        n_tables: number of contacts whose force is a table.
         table: (regimes, constants), contact after contact.
         first: (2, c + 1) the first regime of each contact, and its first kind of event.
         switches: (switches, 3) what, contact, target.
@@ -60,13 +62,16 @@ class Plan(NamedTuple):
         stuck: (c,) these contacts.
         counts: how many they are; how many of their directions follow from the others; numbers of
             contacts in the lists; whether something happens in the last step.
-        lists: (2, c) contacts that are open, and those that slip.
+        lists: (2, c) contacts that push by what the stiffness does not hold, and those that slip.
+        press_counts: (c,) number of pieces of each contact's table of contact, or 1.
+        with_tables: (n_tables,) contacts whose force is a table.
     """
 
     n: Any
     c: Any
     width: Any
-    n_pieces: Any
+    n_sorts: Any
+    n_tables: Any
     n_shapes: Any
     n_regimes: Any
     full_stiffness: Any
@@ -99,6 +104,8 @@ class Plan(NamedTuple):
     counts: Any
     lists: Any
     hidden: Any
+    press_counts: Any
+    with_tables: Any
 
 
 @inline_views
@@ -112,7 +119,8 @@ def plan_at(address: int) -> Any:
         n=n,
         c=c,
         width=t.width,
-        n_pieces=t.n_pieces,
+        n_sorts=t.n_sorts,
+        n_tables=t.n_tables,
         n_shapes=t.n_shapes,
         n_regimes=t.n_regimes,
         full_stiffness=t.full_stiffness,
@@ -145,13 +153,15 @@ def plan_at(address: int) -> Any:
         counts=view(t.counts, (5,), np.int64),
         lists=view(t.lists, (2, c), np.int64),
         hidden=view(t.hidden, (1,), np.float64),
+        press_counts=view(t.press_counts, (c,), np.int64),
+        with_tables=view(t.with_tables, (t.n_tables,), np.int64),
     )
 
 
 @views
 def n_parameters(k: Any) -> int:
     """Return the number of parameters, which the constants of the regimes follow."""
-    return int(COEFFICIENTS + 3 * k.c + 1)
+    return int(COEFFICIENTS + OF_CONTACT * k.c + 1)
 
 
 @inline_views
@@ -223,6 +233,8 @@ def plan(
         "lists": np.zeros((2, c), np.int64),
         "hidden": np.array([matrices.hidden]),
         "opened": np.zeros(c, np.int64),
+        "press_counts": np.array([len(rows) for rows in matrices.presses], np.int64),
+        "with_tables": matrices.with_tables,
         "scratch": np.zeros((len(numbering.parameters) + c * numbering.width, LANES)),
         "starts": np.zeros(1) if starts is None else np.ascontiguousarray(starts),
         "numbers": np.zeros(1, np.int64) if numbers is None else numbers,
@@ -231,7 +243,8 @@ def plan(
         "n": n,
         "c": c,
         "width": numbering.width,
-        "n_pieces": matrices.n_pieces,
+        "n_sorts": numbering.surfaces_of_a_contact,
+        "n_tables": len(matrices.with_tables),
         "n_shapes": len(matrices.shapes),
         "n_regimes": len(numbering.component_of),
         "n_switches": len(switches),

@@ -11,9 +11,12 @@ from squealpipe.systems.linear.forces import (
     STICK,
     holding,
     holds,
+    press_of_force,
+    regimes_of_press,
     slip_regime,
     state_forces,
 )
+from squealpipe.systems.linear.numbering import OF_CONTACT
 from squealpipe.systems.linear.plan import (
     BASE,
     BELT,
@@ -40,7 +43,7 @@ def _put(settle: Any, k: Any, rows: Any, i: int, regime: int) -> None:
     Args:
         settle: address of :func:`.forces.settle_stick` as a function, and of the parameters.
     """
-    first = COEFFICIENTS + 3 * k.c + 1 + i * k.width
+    first = COEFFICIENTS + OF_CONTACT * k.c + 1 + i * k.width
     for which in range(k.width):
         rows[first + which, 0] = k.table[k.first[0, i] + regime, which]
     call(settle[0], (settle[1],))
@@ -78,17 +81,20 @@ def _first_that_fits(settle: Any, k: Any, rows: Any, z: Any, i: int) -> Any:
         return last
     if -FIRST * press - 1e14 * k.hidden[0] >= 0.0:
         return last
+    piece = press_of_force(k, i, press)
     if abs(speed) <= reach * EQUAL * size_v:
-        for regime in (last - 1, 0, 1):
+        count = regimes_of_press(k, i)
+        for kind in (count - 1, 0, 1):
+            regime = piece * count + kind
             _put(settle, k, rows, i, regime)
             state_forces(k, rows, z, pressing)
-            if regime == last - 1:
+            if kind == count - 1:
                 fits = holds(k, rows, i, pressing[i])
             else:
-                fits = (1.0 - 2.0 * regime) * holding(k, i) >= 0.0
+                fits = (1.0 - 2.0 * kind) * holding(k, i) >= 0.0
             if fits:
                 return regime
-    return slip_regime(k, rows, i, speed)
+    return slip_regime(k, rows, i, speed, piece)
 
 
 def find_starts(address: int) -> None:
@@ -96,7 +102,7 @@ def find_starts(address: int) -> None:
     k = plan_at(address)
     t = record_at(address)
     n, c, jobs = k.n, k.c, t.n_jobs
-    given = COEFFICIENTS + 3 * c + 1
+    given = COEFFICIENTS + OF_CONTACT * c + 1
     starts = view(t.starts, (jobs, given + 2 * n), np.float64)
     numbers = view(t.numbers, (jobs, c), np.int64)
     opened = view(t.opened, (c,), np.int64)

@@ -12,8 +12,13 @@ import xarray as xr
 from squealpipe.systems.joint import Joint
 from squealpipe.systems.linear.batch import LinearBatch, first_regimes
 from squealpipe.systems.linear.flow import LinearFlow
-from squealpipe.systems.linear.matrices import Caps, ContactMatrices
-from squealpipe.systems.linear.numbering import IS_CLOSED, IS_STUCK, LAG, Numbering
+from squealpipe.systems.linear.matrices import (
+    IS_CLOSED,
+    IS_STUCK,
+    Caps,
+    ContactMatrices,
+)
+from squealpipe.systems.linear.numbering import LAG, Numbering
 from squealpipe.systems.system import System
 
 WRITTEN = 4096
@@ -69,7 +74,11 @@ class LinearSystem(System):
         time_scale: float,
     ) -> None:
         numbering: Any = Numbering(
-            tuple(contacts), matrices.n_modes, matrices.pieces, len(outputs)
+            tuple(contacts),
+            matrices.n_modes,
+            matrices.pieces,
+            matrices.presses,
+            len(outputs),
         )
         self.name, self.matrices = name, matrices
         self.units = {key: unit for key, (unit, _) in states.items()}
@@ -138,6 +147,12 @@ class LinearSystem(System):
             "contact while N > 0; w = speed_i belt_speed - tangential_i.v; T = mu(|w|) N sgn w in "
             "slip, |T| <= mu_static N in stick, where w = 0"
         }
+        if self.numbering.has_presses:
+            written["equations"] += (
+                "; where presses has several rows (start, end, force, slope), N = force + slope "
+                "(d - start) of the row in which the compression d = d_i - normal_i.q is, with "
+                "d_i where N = preload_i preload, P = N + spring_i normal_i.q"
+            )
         for name in (
             *(
                 "stiffness",
@@ -149,9 +164,11 @@ class LinearSystem(System):
                 "drags",
             ),
             *("springs", "preloads", "speeds", "laws", "pieces"),
+            *["presses"] * self.numbering.has_presses,
         ):
             array = getattr(matrices, name)
-            array = np.vstack(array) if name == "pieces" else np.asarray(array)
+            of_pieces = name in {"pieces", "presses"}
+            array = np.vstack(array) if of_pieces else np.asarray(array)
             digest = hashlib.sha256(np.ascontiguousarray(array).tobytes()).hexdigest()
             small = array.size <= WRITTEN
             written[name] = str(array.tolist()) if small else f"sha256 {digest}"
@@ -195,8 +212,9 @@ class LinearSystem(System):
         """Return each output at the instants of a run; see :meth:`TracedSystem.outputs_along`."""
         m = self.matrices
         q, v = path[:, : m.n_modes], path[:, m.n_modes :]
-        closed = self.numbering.constants_of_regimes[np.maximum(regimes, 0), IS_CLOSED]
-        force = closed * (m.preloads * values["preload"] - (q @ m.normals) * m.springs)
+        constants = self.numbering.constants_of_regimes[np.maximum(regimes, 0)]
+        stiffness, at_rest = m.lines(constants, values["preload"])
+        force = constants[..., IS_CLOSED] * (at_rest - (q @ m.normals) * stiffness)
         speed = m.speeds * values["belt_speed"] - v @ m.tangentials
         pairs = np.stack([force, speed], 2).reshape(len(path), -1)
         return [*pairs.T, *(q @ m.shapes.T).T]
