@@ -31,6 +31,7 @@ from squealpipe.structures.schema.structures import name_over
 from squealpipe.structures.sliding import NoSlidingError
 from squealpipe.structures.spectrum import Solver, Spectrum
 from squealpipe.systems.datasets.versions import versions
+from squealpipe.systems.one_thread import one_thread
 from squealpipe.systems.progress import with_progress
 
 Given = ParamSpec("Given")
@@ -54,6 +55,7 @@ def _in_units_of_structure(
 
 
 @_in_units_of_structure
+@one_thread()
 def complex_modes(
     structure: ContactStructure,
     *,
@@ -118,7 +120,7 @@ def complex_modes(
     points = asked.mu.size * asked.belt_speed.size
     points *= int(np.prod([values.size for values in asked.varied.values()]))
     if told := cost_beforehand(structure, points, n_modes):
-        warnings.warn(told, stacklevel=3)
+        warnings.warn(told, stacklevel=4)
     return _dataset(structure, asked)
 
 

@@ -26,6 +26,7 @@ from squealpipe.structures.pencil import DENSE
 from squealpipe.structures.sliding import NoSlidingError
 from squealpipe.structures.spectrum import Limits, Solver, check_frequency
 from squealpipe.systems.inputs.values import brief, is_finite_number, is_whole_number
+from squealpipe.systems.one_thread import one_thread
 from squealpipe.systems.progress import report, stage, stop_is_asked
 from squealpipe.units import engineering
 
@@ -62,6 +63,7 @@ def band_needed(structure: ContactStructure, n_modes: int | None) -> str:
 
 
 @takes_units
+@one_thread()
 def reduce(
     structure: ContactStructure,
     *,

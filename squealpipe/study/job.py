@@ -14,6 +14,7 @@ from squealpipe.reading import for_linear, reading_of
 from squealpipe.store import produce
 from squealpipe.store.rerun.key import state_key
 from squealpipe.study.durations import record_cost
+from squealpipe.systems.one_thread import one_thread
 
 
 class Job:
@@ -72,14 +73,15 @@ class Job:
             further: what it is given beside the slice.
         """
         config, target = {**self.settings, **further}, output or self.out[0]
-        produce(
-            task,
-            config=config,
-            output=target,
-            inputs=inputs,
-            key=self.key,
-            started=self._since,
-        )
+        with one_thread():
+            produce(
+                task,
+                config=config,
+                output=target,
+                inputs=inputs,
+                key=self.key,
+                started=self._since,
+            )
         self._since = time.perf_counter()
         record_cost(self.rule, self.item)
 

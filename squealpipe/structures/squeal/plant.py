@@ -24,6 +24,7 @@ from squealpipe.structures.reduction import (
 from squealpipe.structures.schema.squealing import SQUEAL_LIMITS
 from squealpipe.structures.spectrum import Limits, Solver, Spectrum
 from squealpipe.systems.linear.matrices import Caps
+from squealpipe.systems.one_thread import one_thread
 from squealpipe.systems.system import System
 from squealpipe.systems.trace import TIME
 
@@ -76,6 +77,7 @@ def band_of(structure: ContactStructure, frequency_max: float | None) -> float |
     return audible_band(structure) if frequency_max is None else frequency_max
 
 
+@one_thread()
 def in_modes(
     structure: ContactStructure, n_modes: int | None, frequency_max: float | None
 ) -> ContactStructure:
