@@ -13,8 +13,6 @@ from squealpipe.schema import (
 )
 from squealpipe.systems.datasets.agreement import ComparedAs, Listing, RoundOff
 
-RUN_DIM = ("run",)
-
 
 class Role(IntEnum):
     """Origin of a method: ours, or a public one."""
@@ -24,18 +22,18 @@ class Role(IntEnum):
     our_setting = 2
 
 
-WORK_PRECISION = DatasetSchema(
+work_precision_schema = DatasetSchema(
     name="work_precision",
     title="Error of a method against its cost, one run a row",
     lists={"run": Listing(kinds=("method", "setting"))},
-    coordinates={"run": count("one method at one setting", *RUN_DIM)},
+    coordinates={"run": count("one method at one setting", "run")},
     variables={
-        "method": text("method", *RUN_DIM),
-        "setting": text("its setting", *RUN_DIM),
-        "role": flag("public method, ours, or our default", Role, *RUN_DIM),
+        "method": text("method", "run"),
+        "setting": text("its setting", "run"),
+        "role": flag("public method, ours, or our default", Role, "run"),
         "error": Variable(
             "relative error of ω against the exact orbit, median over peaks",
-            dims=RUN_DIM,
+            dims=("run",),
             nan_allowed=True,
             rtol=1e-3,
             round_off=RoundOff(
@@ -46,9 +44,9 @@ WORK_PRECISION = DatasetSchema(
             ),
         ),
         "wall_time": Variable(
-            "median wall time of one solution", "s", RUN_DIM, volatile=True
+            "median wall time of one solution", "s", ("run",), volatile=True
         ),
-        "outcome": outcome(*RUN_DIM, among=(Outcome.converged, Outcome.no_convergence)),
+        "outcome": outcome("run", among=(Outcome.converged, Outcome.no_convergence)),
     },
 )
 
@@ -62,9 +60,7 @@ class Reliability(IntEnum):
     silently_wrong = 3
 
 
-SCENE_SOLVER = ("scene", "solver")
-
-FAILURE_ATLAS = DatasetSchema(
+failure_atlas_schema = DatasetSchema(
     name="failure_atlas",
     title="Methods for frequencies and stability on hard scenes, judged by their errors",
     coordinates={
@@ -72,10 +68,10 @@ FAILURE_ATLAS = DatasetSchema(
         "solver": text("method (the name xarray keeps for itself)", "solver"),
     },
     variables={
-        "verdict": flag("verdict on the answer", Reliability, *SCENE_SOLVER),
+        "verdict": flag("verdict on the answer", Reliability, "scene", "solver"),
         "error": Variable(
             "largest error of the answer; infinite where there is none",
-            dims=SCENE_SOLVER,
+            dims=("scene", "solver"),
             nan_allowed=True,
             rtol=1e-2,
             round_off=RoundOff(
@@ -84,19 +80,18 @@ FAILURE_ATLAS = DatasetSchema(
                 floor=1e-9,
             ),
         ),
-        "message": text("what the method said", *SCENE_SOLVER),
+        "message": text("what the method said", "scene", "solver"),
         "tolerance": Variable("largest error that counts as right", dims=("scene",)),
         "role": flag("whose method it is", Role, "solver"),
     },
 )
 
-_CELL_DIMS = ("problem", "solver", "tol")
 _STEPS = RoundOff(
     ComparedAs.magnitude, "errors of adaptive steps follow round-off", floor=1e-9
 )
 _COUNT = "; -1 where no events are reported or judged"
 
-BENCHMARK = DatasetSchema(
+benchmark_schema = DatasetSchema(
     name="benchmark",
     title="Integrators with events: every solver on every problem at every tolerance",
     judged={"solver": ("role", int(Role.ours))},
@@ -135,41 +130,54 @@ BENCHMARK = DatasetSchema(
             "right; flagged: wrong or without an answer, and said so; silently wrong: another list "
             "of events, or an error over growth above 100 tolerances",
             Reliability,
-            *_CELL_DIMS,
+            "problem",
+            "solver",
+            "tol",
         ),
-        "missed": count(f"events missed{_COUNT}", *_CELL_DIMS),
-        "spurious": count(f"events too many{_COUNT}", *_CELL_DIMS),
+        "missed": count(f"events missed{_COUNT}", "problem", "solver", "tol"),
+        "spurious": count(f"events too many{_COUNT}", "problem", "solver", "tol"),
         "out_of_order": count(
-            f"events found before one that they follow{_COUNT}", *_CELL_DIMS
+            f"events found before one that they follow{_COUNT}",
+            "problem",
+            "solver",
+            "tol",
         ),
         "time_error": Variable(
             "largest error of an event's time",
-            dims=_CELL_DIMS,
+            dims=("problem", "solver", "tol"),
             nan_allowed=True,
             round_off=_STEPS,
         ),
         "error": Variable(
             "largest error of final state and event times over the growth of a perturbation",
-            dims=_CELL_DIMS,
+            dims=("problem", "solver", "tol"),
             nan_allowed=True,
             round_off=_STEPS,
         ),
         "evaluations": count(
             "calls of the field, counted by the harness; a solver that makes its own functions "
             "tells them, a Taylor step of order p as p + 1",
-            *_CELL_DIMS,
+            "problem",
+            "solver",
+            "tol",
             dtype="i8",
             rtol=0.5,
         ),
         "cpu_time": Variable(
-            "CPU time", "s", _CELL_DIMS, nan_allowed=True, volatile=True
-        ),
-        "cpu_ratio": Variable(
-            "CPU time over that of scipy's DOP853 at 1e-8 in the same process",
-            dims=_CELL_DIMS,
+            "CPU time",
+            "s",
+            ("problem", "solver", "tol"),
             nan_allowed=True,
             volatile=True,
         ),
-        "message": Variable("what the solver said", dims=_CELL_DIMS, dtype="U64"),
+        "cpu_ratio": Variable(
+            "CPU time over that of scipy's DOP853 at 1e-8 in the same process",
+            dims=("problem", "solver", "tol"),
+            nan_allowed=True,
+            volatile=True,
+        ),
+        "message": Variable(
+            "what the solver said", dims=("problem", "solver", "tol"), dtype="U64"
+        ),
     },
 )

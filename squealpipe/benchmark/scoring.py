@@ -14,7 +14,7 @@ import xarray as xr
 from squealpipe.benchmark.adapters.scipy import solve as reference_solver
 from squealpipe.benchmark.machine import processor, versions
 from squealpipe.benchmark.problems import Problem, all_data, references
-from squealpipe.benchmark.schema import BENCHMARK, Reliability, Role
+from squealpipe.benchmark.schema import Reliability, Role, benchmark_schema
 from squealpipe.benchmark.worker import Worker
 from squealpipe.parameters import finite_number
 from squealpipe.schema import build
@@ -342,7 +342,7 @@ def dataset_of(
         "shipped": [bool(each) for each in elsewhere],
     }
     attributes = {"benchmark_version": BENCHMARK_VERSION, "processor": machine}
-    return build(BENCHMARK, columns, coordinates, attributes)
+    return build(benchmark_schema, columns, coordinates, attributes)
 
 
 def verdicts(row: xr.Dataset) -> str:

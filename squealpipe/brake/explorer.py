@@ -12,7 +12,7 @@ from squealpipe.brake.a4.exact_branches import exact_branch
 from squealpipe.brake.a4.system import ScaledSystem, scaled_system
 from squealpipe.brake.backbones.backbone import exact_variables
 from squealpipe.brake.models.refusals import extensions
-from squealpipe.brake.schema.dynamics.explorer import EXPLORER, HISTORIES, ORBITS
+from squealpipe.brake.schema.dynamics.explorer import HISTORIES, ORBITS, explorer_schema
 from squealpipe.codes import Regime
 from squealpipe.laws.contact import normal_force
 from squealpipe.laws.springs import springs_are_equal
@@ -99,7 +99,7 @@ def explorer_data(
     }
     fixed = ("preload", "length1", "length2", "belt_speed")
     return build(
-        EXPLORER,
+        explorer_schema,
         {**maps, **{name: getattr(params, name) for name in fixed}},
         {
             "alpha1": angles,

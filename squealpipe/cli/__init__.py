@@ -17,7 +17,7 @@ from squealpipe.cli.archives import deposit, find, list_runs
 from squealpipe.cli.arguments import by_name
 from squealpipe.cli.assess import assess
 from squealpipe.cli.claims import claims
-from squealpipe.cli.console import EXIT, SESSION, TRACEBACK, session
+from squealpipe.cli.console import TRACEBACK, ExitCodes, current_session, session
 from squealpipe.cli.files import convert, plot, spectrum
 from squealpipe.cli.inputs import read_brake
 from squealpipe.cli.listen import animate, listen
@@ -108,27 +108,27 @@ def run(arguments: Sequence[str]) -> int:
         try:
             code = int(application()(list(map(by_name, left))))
             sys.stdout.flush()
-            for finishing in SESSION.closing:
+            for finishing in current_session.closing:
                 finishing()
         except BrokenPipeError:  # the reader, for instance `head`, has enough
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            return EXIT.done
+            return ExitCodes.done
         except SystemExit as left_by_rich:
             if isinstance(left_by_rich.__context__, BrokenPipeError):
-                return EXIT.done
+                return ExitCodes.done
             raise
         except KeyboardInterrupt:
-            print(f"squealpipe: interrupted; {SESSION.remedy}", file=sys.stderr)
-            return EXIT.interrupted
+            print(f"squealpipe: interrupted; {current_session.remedy}", file=sys.stderr)
+            return ExitCodes.interrupted
         except StoppedError as stop:
-            print(f"squealpipe: {stop}; {SESSION.remedy}", file=sys.stderr)
+            print(f"squealpipe: {stop}; {current_session.remedy}", file=sys.stderr)
             return 128 + stop.number
         except Exception as error:  # noqa: BLE001 (one line, not a trace)
             with contextlib.suppress(BrokenPipeError):  # nobody reads it
-                if SESSION.verbose:
+                if current_session.verbose:
                     traceback.print_exc()
                 print(f"squealpipe: {_message(error)}", file=sys.stderr)
-            return EXIT.not_done
+            return ExitCodes.not_done
         return code
 
 

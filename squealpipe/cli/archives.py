@@ -8,7 +8,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from squealpipe.cli.arguments import AsJson, OutputElsewhere
-from squealpipe.cli.console import EXIT, working
+from squealpipe.cli.console import ExitCodes, working
 
 if TYPE_CHECKING:
     from squealpipe.study.catalogue import StoredRun
@@ -32,12 +32,12 @@ def list_runs(*, json_: AsJson = False) -> int:
                 indent=1,
             )
         )
-        return EXIT.done
+        return ExitCodes.done
     if not listed:
         print(
             "no archives and no results yet; run snakemake, then squealpipe archive NAME"
         )
-        return EXIT.done
+        return ExitCodes.done
     rows = [
         (
             "name",
@@ -64,7 +64,7 @@ def list_runs(*, json_: AsJson = False) -> int:
         cells = [cell.ljust(width) for cell, width in zip(row, widths, strict=False)]
         print("  ".join([*cells, row[-1]]).rstrip())
     _warn(listed)
-    return EXIT.done
+    return ExitCodes.done
 
 
 def find(expression: str, /, *, json_: AsJson = False) -> int:
@@ -83,7 +83,7 @@ def find(expression: str, /, *, json_: AsJson = False) -> int:
     names = matching(expression, found)
     _warn(found)
     print(json.dumps(names) if json_ else "\n".join(names) or "no run fulfils it")
-    return EXIT.done if names else EXIT.answer_is_no
+    return ExitCodes.done if names else ExitCodes.answer_is_no
 
 
 def deposit(name: str, /, *, output: OutputElsewhere = None) -> int:
@@ -100,7 +100,7 @@ def deposit(name: str, /, *, output: OutputElsewhere = None) -> int:
     with working("deposit"):
         path = bundle(name, output=output)
     print(f"wrote {path} ({path.stat().st_size / 1e6:.1f} MB)")
-    return EXIT.done
+    return ExitCodes.done
 
 
 def _warn(found: list[StoredRun]) -> None:

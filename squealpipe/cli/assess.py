@@ -18,7 +18,7 @@ from squealpipe.cli.arguments import (
     Whole,
     modifications_of,
 )
-from squealpipe.cli.console import EXIT, answer, working
+from squealpipe.cli.console import ExitCodes, answer, working
 from squealpipe.cli.output import check_output, check_picture, compute, finish, write
 from squealpipe.cli.signatures import errors_in_options, options_of
 from squealpipe.parameters import Parameters
@@ -114,7 +114,7 @@ def assess(
         with working("assess"):
             judged = judge(brake.params, alpha1_or_file, alpha2, tol=tol)
         verdict = _told_in_turn(judged)
-    return EXIT.done if int(verdict.verdict) == 0 else EXIT.answer_is_no
+    return ExitCodes.done if int(verdict.verdict) == 0 else ExitCodes.answer_is_no
 
 
 def _told_in_turn(judged: Any) -> xr.Dataset:
@@ -180,4 +180,4 @@ def _assess_structure(
         from squealpipe.study.report.squealing import beyond_band
 
         answer(f"Its frequency is {beyond_band(limit)}.")
-    return EXIT.done if int(verdict.verdict) == 0 else EXIT.answer_is_no
+    return ExitCodes.done if int(verdict.verdict) == 0 else ExitCodes.answer_is_no

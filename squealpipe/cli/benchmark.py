@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from squealpipe.cli.arguments import Force, Output, Texts, Time, Tolerances
-from squealpipe.cli.console import EXIT
+from squealpipe.cli.console import ExitCodes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -76,7 +76,7 @@ def _verdict(found: xr.Dataset, output: Path) -> int:
 
     wrong = int((found.verdict == Reliability.silently_wrong).sum())
     print(f"{wrong} of {found.verdict.size} answers silently wrong; wrote {output}")
-    return EXIT.answer_is_no if wrong else EXIT.done
+    return ExitCodes.answer_is_no if wrong else ExitCodes.done
 
 
 def problems(*, output: Output = Path("problems.json"), force: Force = False) -> int:
@@ -98,7 +98,7 @@ def _write_json(text: Callable[[], str], output: Path, *, force: bool) -> int:
     with whole_file(output) as temporary:
         temporary.write_text(content, encoding="utf-8")
     print(f"wrote {output}")
-    return EXIT.done
+    return ExitCodes.done
 
 
 def score(
@@ -193,4 +193,4 @@ def compare(one: Path, other: Path, /) -> int:
         left, right = (verdicts(each.sel(problem=problem)) for each in (found, others))
         print(f"{problem}\n  {one.name}: {left}\n  {other.name}: {right}")
         same &= left.partition(": ")[2] == right.partition(": ")[2]
-    return EXIT.done if same else EXIT.answer_is_no
+    return ExitCodes.done if same else ExitCodes.answer_is_no

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from squealpipe.cli.arguments import AsJson
-from squealpipe.cli.console import EXIT
+from squealpipe.cli.console import ExitCodes
 
 MADE = Path("results/data/claims.nc")
 
@@ -50,7 +50,7 @@ def claims(
             for row in changed:
                 beside = {key: row[f"corrected_{key}"] for key in ("verdict", "value")}
                 print(_line({**row, **beside}))
-    return code if rows else EXIT.done
+    return code if rows else ExitCodes.done
 
 
 def _chosen(

@@ -27,9 +27,6 @@ class ExitCodes:
     """Stopped by Ctrl-C; shells use the same code, 128 plus the number of the signal."""
 
 
-EXIT = ExitCodes()
-
-
 TRACEBACK = "SQUEALPIPE_TRACEBACK"
 """Environment variable that asks for tracebacks, as -v does."""
 LOG_EVERY = 30.0
@@ -60,7 +57,7 @@ class _Session:
     closing: list[Callable[[], None]] = field(default_factory=list)
 
 
-SESSION = _Session()
+current_session = _Session()
 
 
 @contextmanager
@@ -78,14 +75,17 @@ def session(arguments: Sequence[str]) -> Iterator[list[str]]:
         meanings[argument] for argument in arguments[:end] if argument in meanings
     }
     kept = [argument for argument in arguments[:end] if argument not in meanings]
-    SESSION.quiet = "quiet" in switches
-    SESSION.verbose = "verbose" in switches or os.environ.get(TRACEBACK, "0") not in {
-        "",
-        "0",
-    }
-    SESSION.typed, SESSION.remedy, SESSION.closing = set(), NOTHING_KEPT, []
-    with warnings.catch_warnings(), ExitStack() as SESSION.held:
-        if not SESSION.verbose and not sys.warnoptions:
+    current_session.quiet = "quiet" in switches
+    current_session.verbose = "verbose" in switches or os.environ.get(
+        TRACEBACK, "0"
+    ) not in {"", "0"}
+    current_session.typed, current_session.remedy, current_session.closing = (
+        set(),
+        NOTHING_KEPT,
+        [],
+    )
+    with warnings.catch_warnings(), ExitStack() as current_session.held:
+        if not current_session.verbose and not sys.warnoptions:
             warnings.simplefilter("ignore")
         yield [*map(_from_home, kept), *arguments[end:]]
 
@@ -113,7 +113,7 @@ def _from_home(argument: str) -> str:
 
 def say(line: str) -> None:
     """Print what a user may want to know while a command works; nothing under -q."""
-    if not SESSION.quiet:
+    if not current_session.quiet:
         print(line)
 
 
@@ -133,7 +133,7 @@ def working(what: str) -> Iterator[None]:
     console = Console(stderr=True)
     if not console.is_terminal:
         log = _Log(what)
-        takers = (None,) if SESSION.quiet else (log.tell, log.say, log.name)
+        takers = (None,) if current_session.quiet else (log.tell, log.say, log.name)
         with shown(*takers):
             yield
         return
@@ -144,13 +144,13 @@ def working(what: str) -> Iterator[None]:
         TimeElapsedColumn(),
     )
     with Progress(
-        *columns, console=console, transient=True, disable=SESSION.quiet
+        *columns, console=console, transient=True, disable=current_session.quiet
     ) as progress:
         task = progress.add_task(what, total=None)
         begun = False
 
         def say_above(line: str) -> None:
-            if not SESSION.quiet:
+            if not current_session.quiet:
                 progress.console.print(line, highlight=False, markup=False)
 
         def tell(share: float) -> None:

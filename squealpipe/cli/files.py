@@ -14,7 +14,7 @@ from squealpipe.cli.arguments import (
     Time,
     Whole,
 )
-from squealpipe.cli.console import EXIT, answer, say
+from squealpipe.cli.console import ExitCodes, answer, say
 from squealpipe.cli.output import PICTURES, check_output, draw, finish, write
 from squealpipe.units import engineering
 
@@ -47,7 +47,7 @@ def plot(
 
     draw(load_any(file), target, look, variable=variable, mode=mode)
     say(f"wrote {target}")
-    return EXIT.done
+    return ExitCodes.done
 
 
 def spectrum(
@@ -88,7 +88,7 @@ def spectrum(
     lines = made.peak_frequency.values
     told = ", ".join(engineering(float(line), "Hz", 4) for line in lines[:3])
     answer(f"strongest lines of the contact force: {told or 'none'}")
-    return EXIT.done
+    return ExitCodes.done
 
 
 def convert(
@@ -116,4 +116,4 @@ def convert(
     from squealpipe.store.tables import convert as task
 
     say(f"wrote {' and '.join(map(str, task(load_any(file), output)))}")
-    return EXIT.done
+    return ExitCodes.done

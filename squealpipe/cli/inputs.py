@@ -5,7 +5,7 @@ from typing import Any
 
 from cyclopts import App, ArgumentCollection, Token
 
-from squealpipe.cli.console import SESSION, say
+from squealpipe.cli.console import current_session, say
 from squealpipe.parameters import DEFAULTS, TABLE, UNITS_OF_INPUTS, read_substitutes
 from squealpipe.substitutes import (
     SUBSTITUTES,
@@ -41,7 +41,9 @@ def read_brake(_: App, __: tuple[str, ...], arguments: ArgumentCollection) -> No
     }
     typed = {name: _number(name, text) for name, text in texts.items()}
     check_together(list(typed))
-    SESSION.typed = {part for name in typed for part in (stands_for(name) or (name,))}
+    current_session.typed = {
+        part for name in typed for part in (stands_for(name) or (name,))
+    }
     if not physical:
         return
     paths = [token.value for token in options["--config"].tokens]

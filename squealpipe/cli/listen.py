@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from squealpipe.cli.arguments import Dpi, Force, OutputElsewhere, Share, Time
-from squealpipe.cli.console import EXIT, answer, say, working
+from squealpipe.cli.console import ExitCodes, answer, say, working
 from squealpipe.cli.output import check_output
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ def listen(
     write_wav(heard, target, seconds)
     answer(heard.told())
     say(f"wrote {target}")
-    return EXIT.done
+    return ExitCodes.done
 
 
 def animate(
@@ -132,4 +132,4 @@ def animate(
         write_film(made, target, str(run.attrs.get("title", file.name)))
     answer(made.scene.caption)
     say(f"wrote {target}")
-    return EXIT.done
+    return ExitCodes.done

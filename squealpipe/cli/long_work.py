@@ -14,9 +14,6 @@ from squealpipe.text import duration
 if TYPE_CHECKING:
     from squealpipe.parameters import Parameters
 
-MANY = 250_000
-"""Cells of a map from which on it is said what they take."""
-
 
 def say_what_it_takes(
     function: str, params: Parameters, angles: Sequence[Any], options: Mapping[str, Any]
@@ -30,7 +27,9 @@ def say_what_it_takes(
         return
     sizes = [len(angle) for angle in angles]
     cells = prod(sizes)
-    if cells < MANY:
+    # Cells of a map from which on it is said what they take.
+    many = 250_000
+    if cells < many:
         return
     memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     # arrays of the size of the result that are in memory at once, about

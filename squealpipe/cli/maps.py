@@ -21,7 +21,7 @@ from squealpipe.cli.arguments import (
     Whole,
     Workers,
 )
-from squealpipe.cli.console import EXIT, answer
+from squealpipe.cli.console import ExitCodes, answer
 from squealpipe.cli.motions import Model
 from squealpipe.cli.output import compute, ending
 from squealpipe.cli.signatures import options_of
@@ -114,7 +114,7 @@ def refine(
         f"contact is lost in {int(validity.separates.sum())} of {validity.separates.size} cells",
         f"{run} cells were run{wrong if run < validity.computed.size else ''}",
     )
-    return EXIT.done
+    return ExitCodes.done
 
 
 @options_of("basin_map")
@@ -172,7 +172,7 @@ def _counted(found: xr.Dataset) -> int:
     from squealpipe.plotting.quantities import counts
 
     answer(*counts(found))
-    return EXIT.done
+    return ExitCodes.done
 
 
 @options_of("smallest_disturbance")
@@ -221,10 +221,10 @@ def disturbance(
     outcome, why = ending(found.outcome)
     if outcome != "converged":
         answer(f"no disturbance: {why}")
-        return EXIT.answer_is_no
+        return ExitCodes.answer_is_no
     answer(
         f"smallest disturbance found: {float(found.distance):.6g}, in l_pre and l_pre ω",
         f"by the linear motion: {float(found.linear_distance):.6g}; "
         f"the start at rest: {float(found.rest_distance):.6g}",
     )
-    return EXIT.done
+    return ExitCodes.done

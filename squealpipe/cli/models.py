@@ -29,7 +29,7 @@ from squealpipe.cli.arguments import (
     pairs_of,
     parse_share,
 )
-from squealpipe.cli.console import EXIT, SESSION, answer, working
+from squealpipe.cli.console import ExitCodes, answer, current_session, working
 from squealpipe.cli.output import check_output, check_picture, compute, finish, write
 from squealpipe.cli.signatures import errors_in_options, options_of
 from squealpipe.inputs import parse_number, reader
@@ -75,7 +75,7 @@ def choose(
         f"{question.replace('_', ' ')}: {value}",
         f"by {Level[choice.model].label}: {choice.reason}",
     )
-    return EXIT.done
+    return ExitCodes.done
 
 
 @options_of("infer_parameters")
@@ -124,7 +124,7 @@ def infer(
         inference.reading.values, inference.feasible_count.values, strict=True
     ):
         answer(f"{name}: {count} of {samples} sets meet every statement")
-    return EXIT.done
+    return ExitCodes.done
 
 
 @options_of("propensity")
@@ -217,7 +217,7 @@ def propensity(
     distributions = dict(map(_distribution, distribution))
     if len(distributions) < len(distribution):
         raise ValueError("--distribution: a duplicate name; keep one")
-    for name in sorted(set(distributions) & SESSION.typed):
+    for name in sorted(set(distributions) & current_session.typed):
         raise ValueError(f"{name} is both fixed and distributed; keep one")
     t_end = HORIZON * brake.params.time_unit if t_end is None else t_end
     shares = compute(
@@ -233,7 +233,7 @@ def propensity(
         **common,
     )
     _say_shares(shares, "quantity")
-    return EXIT.done
+    return ExitCodes.done
 
 
 def _of_structure(
@@ -269,7 +269,7 @@ def _of_structure(
             )
     finish(shares, output, drawn, brake)
     _say_shares(shares, "verdict")
-    return EXIT.done
+    return ExitCodes.done
 
 
 def _say_shares(shares: xr.Dataset, dim: str) -> None:

@@ -23,7 +23,7 @@ from squealpipe.cli.arguments import (
     Whole,
     parse_state,
 )
-from squealpipe.cli.console import EXIT, answer
+from squealpipe.cli.console import ExitCodes, answer
 from squealpipe.cli.output import compute, ending, refuse_existing
 from squealpipe.cli.signatures import options_of
 from squealpipe.inputs import reader
@@ -112,9 +112,9 @@ def simulate(
             answer(f"note: {missed}")
     outcome, why = ending(run.outcome)
     if outcome == "converged":
-        return EXIT.done
+        return ExitCodes.done
     answer(f"the run ended early: {why}")
-    return EXIT.answer_is_no
+    return ExitCodes.answer_is_no
 
 
 @options_of("backbone")
@@ -159,13 +159,13 @@ def backbone(
         answer(
             f"mode {mode} has no periodic motions here: {why}; try other angles or parameters"
         )
-        return EXIT.answer_is_no
+        return ExitCodes.answer_is_no
     answer(
         f"mode {mode}: {branch.sizes['point']} points, ω from {float(branch.omega[0]):.6g} "
         f"to {float(branch.omega[-1]):.6g} rad/s",
         f"the branch ends: {why}",
     )
-    return EXIT.done
+    return ExitCodes.done
 
 
 @options_of("limit_cycle")
@@ -201,7 +201,7 @@ def cycle(
     outcome, why = ending(orbit.outcome)
     if outcome not in {"converged", "family_member"}:
         answer(f"no periodic motion was found: {why}")
-        return EXIT.answer_is_no
+        return ExitCodes.answer_is_no
     answer(
         f"period {float(orbit.period):.9g} s, {'stable' if orbit.stable == 1 else 'not stable'}, "
         f"{orbit.sizes['event']} events",
@@ -212,7 +212,7 @@ def cycle(
     )
     if outcome == "family_member":
         answer(f"note: {why}")
-    return EXIT.done
+    return ExitCodes.done
 
 
 @options_of("cycle_branch")
@@ -259,7 +259,7 @@ def branch(
     _, why = ending(cycles.end)
     if not cycles.sizes["point"]:
         answer(f"no point of a branch was found: {why}")
-        return EXIT.answer_is_no
+        return ExitCodes.answer_is_no
     values = cycles[name]
     answer(
         f"{cycles.sizes['point']} points, {parameter} from {float(values[0]):.6g} to "
@@ -267,7 +267,7 @@ def branch(
         *_special(cycles, values),
         f"the branch ends: {why}",
     )
-    return EXIT.done
+    return ExitCodes.done
 
 
 def _start(text: str | None) -> Any:

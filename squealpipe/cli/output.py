@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from squealpipe.cli.arguments import Drawn, Look, Written
-from squealpipe.cli.console import SESSION, say, working
+from squealpipe.cli.console import current_session, say, working
 from squealpipe.cli.long_work import say_what_it_takes
 from squealpipe.cli.reservation import reserve
 
@@ -30,7 +30,7 @@ def check_output(
         endings = ", ".join(kinds[:-1]) + f" or {kinds[-1]}"
         raise ValueError(f"{option} {path}: end the name in {endings}")
     refuse_existing(path, force=force, option=option)
-    reserve(path, SESSION.held, option)
+    reserve(path, current_session.held, option)
     # another command may just have finished
     refuse_existing(path, force=force, option=option)
     if path.suffix in {".csv", ".parquet"} and not force:
@@ -141,10 +141,10 @@ def finish(
         say(f"wrote {output}{f' and {drawn}' if drawn else ''}")
 
     if drawn is not None:
-        SESSION.remedy = (
+        current_session.remedy = (
             f"{output} is written; squealpipe plot {output} -o {drawn} draws it"
         )
-    SESSION.closing.append(finishing)
+    current_session.closing.append(finishing)
 
 
 def ending(outcome: xr.DataArray) -> tuple[str, str]:

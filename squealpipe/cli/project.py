@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from squealpipe.cli.arguments import Configs, Force, Switch, Whole
-from squealpipe.cli.console import EXIT, SESSION, say
+from squealpipe.cli.console import ExitCodes, current_session, say
 from squealpipe.cli.output import check_output
 from squealpipe.parameters import DEFAULTS, TABLE, Row
 from squealpipe.text import duration
@@ -131,7 +131,7 @@ def init(
     say(
         f"wrote {file}; edit it, then: squealpipe run --config {shlex.quote(str(file))}"
     )
-    return EXIT.done
+    return ExitCodes.done
 
 
 def overlay_text(paper: str, *, file: str, results: str) -> str:
@@ -185,7 +185,7 @@ def run(
         say(removed)
     started = time.perf_counter()
     command += ["--cores", str(cores or "all")]
-    if SESSION.quiet:
+    if current_session.quiet:
         command += ["--quiet", "all"]
     else:
         command += ["--logger", "squealpipe"]
@@ -203,11 +203,11 @@ def run(
             "then run the same command again: what is finished stays",
             file=sys.stderr,
         )
-        return EXIT.not_done
+        return ExitCodes.not_done
     say(
         f"done in {duration(time.perf_counter() - started)}: {study.results}/report/index.html"
     )
-    return EXIT.done
+    return ExitCodes.done
 
 
 def _found_by_snakemake(folders: Iterable[str]) -> dict[str, str]:

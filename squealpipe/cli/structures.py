@@ -28,9 +28,9 @@ from squealpipe.cli.arguments import (
     pairs_of,
 )
 from squealpipe.cli.console import (
-    EXIT,
-    SESSION,
+    ExitCodes,
     answer,
+    current_session,
     keeping_on_interrupt,
     say,
     working,
@@ -129,7 +129,7 @@ def modes(
 
     dataset = _compute(complex_modes, file, asked, output, files)
     _tell_modes(dataset, shown, contacts)
-    return EXIT.done
+    return ExitCodes.done
 
 
 def _tell_modes(dataset: xr.Dataset, shown: str, contacts: Sequence[Any]) -> None:
@@ -333,10 +333,10 @@ def squeal(
     answer(*map(in_options, lines(dataset)))
     if stopped:
         say("interrupted: starts that had not settled by then count as not settled")
-        return EXIT.interrupted
+        return ExitCodes.interrupted
     if run is not None:
         _write_run(reductions[0], dataset, run, tol)
-    return EXIT.done if int(dataset.verdict) == 0 else EXIT.answer_is_no
+    return ExitCodes.done if int(dataset.verdict) == 0 else ExitCodes.answer_is_no
 
 
 def _write_run(structure: Any, told: xr.Dataset, path: Path, tol: float) -> None:
@@ -397,7 +397,9 @@ def ladder(
     dataset = _compute(squeal_ladder, file, asked, output, files)
     answer(*lines(dataset))
     return (
-        EXIT.done if (dataset.verdict == Reliability.right).all() else EXIT.answer_is_no
+        ExitCodes.done
+        if (dataset.verdict == Reliability.right).all()
+        else ExitCodes.answer_is_no
     )
 
 
@@ -488,7 +490,7 @@ def operating(
         f"{count} operating points" + (f"; {done} are already computed" if done else "")
     )
     # points that are finished are kept
-    SESSION.remedy = "run the same command again"
+    current_session.remedy = "run the same command again"
     with working("operating map"):
         dataset = write(
             lambda: run_sweep(plan, workers=workers, kept=kept), output, config=settings
@@ -497,4 +499,4 @@ def operating(
     finish(dataset, output, drawn, files)
     answer(*lines(dataset))
     quiet = bool((dataset.verdict == Verdict.quiet).all())
-    return EXIT.done if quiet else EXIT.answer_is_no
+    return ExitCodes.done if quiet else ExitCodes.answer_is_no

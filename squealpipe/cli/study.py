@@ -6,7 +6,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from squealpipe.cli.arguments import AsJson, Configs, Switch, Texts
-from squealpipe.cli.console import EXIT, answer, working
+from squealpipe.cli.console import ExitCodes, answer, working
 from squealpipe.text import duration
 
 
@@ -41,12 +41,12 @@ def explain(
         plan = plan_of(config or [], quick=quick)
     if json_:
         print(json.dumps(plan.as_dict(), indent=1))
-        return EXIT.done
+        return ExitCodes.done
     for line in plan.became:
         print(line)
     if not plan.jobs:
         print("nothing to do: every result is up to date")
-        return EXIT.done
+        return ExitCodes.done
     grid = Table(
         "rule", "why", "last took", title="will be computed", title_justify="left"
     )
@@ -58,7 +58,7 @@ def explain(
         f"figures that change: {', '.join(plan.figures) or 'none'}\n{plan.estimate()}\n"
         f"code: that of {PACKAGE}"
     )
-    return EXIT.done
+    return ExitCodes.done
 
 
 def _tell_costs(*, json_: bool) -> int:
@@ -71,10 +71,10 @@ def _tell_costs(*, json_: bool) -> int:
     if json_:
         plain = {rule: cost._asdict() for rule, cost in costs.items()}
         print(json.dumps(plain, indent=1))
-        return EXIT.done
+        return ExitCodes.done
     if not costs:
         print("no job has run in this folder; `squealpipe run` runs the study")
-        return EXIT.done
+        return ExitCodes.done
     from rich.console import Console
     from rich.table import Table
 
@@ -86,7 +86,7 @@ def _tell_costs(*, json_: bool) -> int:
     for rule, cost in [*costs.items(), ("all", total)]:
         grid.add_row(rule, *("" if each is None else f"{each:.1f}" for each in cost))
     Console().print(grid)
-    return EXIT.done
+    return ExitCodes.done
 
 
 def archive(name: str, /, *, config: Configs = None, leave_out: Texts = None) -> int:
@@ -114,7 +114,7 @@ def archive(name: str, /, *, config: Configs = None, leave_out: Texts = None) ->
         )
     size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
     print(f"froze the run in {folder} ({size / 1e6:.1f} MB)")
-    return EXIT.done
+    return ExitCodes.done
 
 
 def verify(name: str, /) -> int:
@@ -130,7 +130,7 @@ def verify(name: str, /) -> int:
     with working("verify"):
         found = check(name)
     answer(*found.lines())
-    return EXIT.done if found.intact else EXIT.answer_is_no
+    return ExitCodes.done if found.intact else ExitCodes.answer_is_no
 
 
 def compare(

@@ -17,7 +17,7 @@ from squealpipe.cli.arguments import (
     Written,
     pairs_of,
 )
-from squealpipe.cli.console import EXIT, SESSION, answer, say, working
+from squealpipe.cli.console import ExitCodes, answer, current_session, say, working
 from squealpipe.cli.output import check_output, refuse_existing, write
 from squealpipe.ranges import read_fixed, read_values, sweep_config
 
@@ -63,7 +63,9 @@ def sweep(
     angles = {
         name: v for name, v in (("alpha1", alpha1), ("alpha2", alpha2)) if v is not None
     }
-    for name in sorted(set(varied) & (set(options) | set(angles) | SESSION.typed)):
+    for name in sorted(
+        set(varied) & (set(options) | set(angles) | current_session.typed)
+    ):
         raise ValueError(f"{name} is both fixed and varied; keep one")
     settings = sweep_config(
         task=task,
@@ -82,7 +84,7 @@ def sweep(
     if done := plan.finished(kept):
         say(f"{done} of them are already computed")
     again = "run the same command again"
-    SESSION.remedy = again  # runs that are finished are kept
+    current_session.remedy = again  # runs that are finished are kept
     with working(f"sweep of {task}"):
         dataset = write(
             lambda: run_sweep(plan, workers=workers, kept=kept), output, config=settings
@@ -90,4 +92,4 @@ def sweep(
     kept.remove()
     answer(*outcome_lines(dataset, plan.names))
     say(f"wrote {output}")
-    return EXIT.done
+    return ExitCodes.done

@@ -8,9 +8,6 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-_BLANKS = "\u0020\u00a0\u2009\u202f"
-"""Between thousands: blanks of four widths."""
-_PLAIN = re.compile(r"[+-]?(\d+(\.\d*|,\d+)?|[.,]\d+)", re.ASCII)
 MAY_BE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}([.,])\d{3}", re.ASCII)
 _GROUPED = {
     # thousands, and in India hundreds of thousands; with a decimal sign behind, or several groups
@@ -41,8 +38,10 @@ def numeral(cell: str) -> Numeral | None:
     # Fortran writes 1.5D-3
     exponent = re.compile(r"(?<=[\d.,])[dD](?=[+-]?\d{1,3}(?!\d))")
     text = exponent.sub("e", times_ten.sub(r"e\1", text))
-    if match := re.match(rf"[+-]?\d{{1,3}}([{_BLANKS}'’]\d{{3}})+(?!\d)", text):
-        whole = re.sub(rf"[{_BLANKS}'’]", "", match[0])
+    # Between thousands: blanks of four widths.
+    blanks = "\u0020\u00a0\u2009\u202f"
+    if match := re.match(rf"[+-]?\d{{1,3}}([{blanks}'’]\d{{3}})+(?!\d)", text):
+        whole = re.sub(rf"[{blanks}'’]", "", match[0])
         text = whole + text[match.end() :]
     number_and_unit = re.compile(
         r"([+-]?(?:\d[\d.,]*|[.,]\d+)(?:[eE][+-]?\d{1,3})?)\s*([^\d\s.,_].*)?", re.ASCII
@@ -113,7 +112,8 @@ def _mantissa(text: str) -> str:
 
 
 def _is_number(mantissa: str) -> bool:
-    return any(form.fullmatch(mantissa) for form in (_PLAIN, *_GROUPED.values()))
+    plain = re.compile(r"[+-]?(\d+(\.\d*|,\d+)?|[.,]\d+)", re.ASCII)
+    return any(form.fullmatch(mantissa) for form in (plain, *_GROUPED.values()))
 
 
 def are_numbers(cells: Sequence[str]) -> bool:

@@ -10,7 +10,10 @@ import xarray as xr
 
 from squealpipe.codes import Verdict
 from squealpipe.schema import Outcome, build
-from squealpipe.structures.schema.contact_points import CONTACT_POINTS, MOST_FRICTION
+from squealpipe.structures.schema.contact_points import (
+    MOST_FRICTION,
+    contact_points_schema,
+)
 from squealpipe.structures.schema.squealing import NO_ATTRACTOR
 from squealpipe.structures.shipped_pad import YOUNG, elastic_pad
 from squealpipe.structures.squeal.plant import Plant
@@ -61,7 +64,7 @@ def contact_points(
     most = max(count for _, count, _ in pads)
     rows = [_pad(count, young, how, most, workers) for _, count, young in pads]
     return build(
-        CONTACT_POINTS,
+        contact_points_schema,
         {name: np.array([row[name] for row in rows]) for name in rows[0]},
         {
             "design": [name for name, _, _ in pads],

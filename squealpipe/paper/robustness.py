@@ -9,9 +9,13 @@ import xarray as xr
 
 from squealpipe.paper.inference.candidates import Candidates
 from squealpipe.paper.inference.consequences import CONSEQUENCES, judge_consequences
-from squealpipe.paper.inference.constraints import CONSTRAINTS, Stage, measure
+from squealpipe.paper.inference.constraints import (
+    Stage,
+    measure,
+    registered_constraints,
+)
 from squealpipe.paper.schema.inference import of_study
-from squealpipe.paper.schema.robustness import VERDICT_ROBUSTNESS
+from squealpipe.paper.schema.robustness import verdict_robustness_schema
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
@@ -19,7 +23,6 @@ from squealpipe.substitutes import critical_damping
 from squealpipe.validation import Natural, Seed, Tolerance, Workers
 from squealpipe.vibration.shares import wilson_interval
 
-STATEMENT_COLUMNS = ("share", "share_low", "share_high", "judged", "outcome")
 Share = tuple[float, float, float, int, int]
 """A value for each of :data:`STATEMENT_COLUMNS`."""
 
@@ -84,7 +87,9 @@ def verdict_robustness(
         inferred: dataset ``parameter_inference``; its feasible parameter sets become a variant, in
             which statements that were fitted are not judged, for they hold by construction.
     """
-    names = [constraint.name for constraint in CONSTRAINTS] + list(CONSEQUENCES)
+    names = [constraint.name for constraint in registered_constraints] + list(
+        CONSEQUENCES
+    )
     named = list(variants(params))
     titles = [title for title, _ in named]
     rows = _verdicts_of([each for _, each in named], names, tol, workers)
@@ -104,7 +109,7 @@ def verdict_robustness(
         verdicts = _margins(
             candidates, set(Stage) - {Stage.printed, Stage.black, Stage.maps}
         )  # maps are of starts at rest
-        for constraint in CONSTRAINTS:
+        for constraint in registered_constraints:
             if constraint.stage == Stage.linear:  # one setting however it starts
                 holds, judged = verdicts[constraint.name]
                 verdicts[constraint.name] = holds[:1], judged[:1]
@@ -113,10 +118,13 @@ def verdict_robustness(
     if inferred is not None:
         rows.insert(1, _feasible(of_study(inferred), names))
         titles.insert(1, "feasible parameters")
+    statement_columns = ("share", "share_low", "share_high", "judged", "outcome")
     columns = dict(
-        zip(STATEMENT_COLUMNS, np.moveaxis(np.array(rows), -1, 0), strict=True)
+        zip(statement_columns, np.moveaxis(np.array(rows), -1, 0), strict=True)
     )
-    return build(VERDICT_ROBUSTNESS, columns, {"variant": titles, "statement": names})
+    return build(
+        verdict_robustness_schema, columns, {"variant": titles, "statement": names}
+    )
 
 
 def _verdicts_of(

@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
-from squealpipe.vibration.sobol import SOBOL
+from squealpipe.vibration.sobol import SobolRules
 
 COLOURS = (style.BLUE, style.ORANGE, style.RED, style.PURPLE, style.GREEN)
 
@@ -53,7 +53,11 @@ def figure(spread: xr.Dataset) -> Figure:
             base = spread.index_samples.sel(quantity=row.quantity)
             widths.plot(base, row, ".-", color=colour)
     widths.axhline(
-        SOBOL.widest, color=style.GREY, ls="--", lw=0.8, label="widest that is given"
+        SobolRules.widest,
+        color=style.GREY,
+        ls="--",
+        lw=0.8,
+        label="widest that is given",
     )
     widths.legend()
     widths.set(

@@ -39,9 +39,6 @@ class RunPictures:
     """Periods at the end of a long run that get panels of their own."""
 
 
-RUN_PICTURES = RunPictures()
-
-
 def figure(run: xr.Dataset) -> Figure:
     """Four panels of one run; of a long one six, two of which show its last periods."""
     end = last_periods(run)
@@ -52,7 +49,7 @@ def figure(run: xr.Dataset) -> Figure:
         (draw_spectrum, "spectrum of the contact force"),
     ]
     if end is not None:
-        last = f"last {RUN_PICTURES.last_periods_shown} periods"
+        last = f"last {RunPictures.last_periods_shown} periods"
         panels[1:1] = [(partial(draw_force, window=end), f"contact force, {last}")]
         panels[3:3] = [(partial(draw_displacements, window=end), last)]
     rows = len(panels) // 2
@@ -84,11 +81,10 @@ def last_periods(run: xr.Dataset) -> Window | None:
     if not _uniform(steps):
         return None
     omega, _ = highest_peaks(
-        *amplitude_spectrum(y, float(steps[0]), padding=RUN_PICTURES.spectrum_padding),
-        1,
+        *amplitude_spectrum(y, float(steps[0]), padding=RunPictures.spectrum_padding), 1
     )
     length = (
-        RUN_PICTURES.last_periods_shown * 2.0 * np.pi / omega[0]
+        RunPictures.last_periods_shown * 2.0 * np.pi / omega[0]
         if omega.size
         else np.inf
     )
@@ -199,10 +195,10 @@ def draw_spectrum(axes: Axes, dataset: xr.Dataset) -> None:
             style.say_instead(axes, "no contact in\nthe second half")
             return
         frequency, amplitude = amplitude_spectrum(
-            force, float(steps[0]), padding=RUN_PICTURES.spectrum_padding
+            force, float(steps[0]), padding=RunPictures.spectrum_padding
         )
     lines = strongest_lines(
-        frequency, amplitude, 3, RUN_PICTURES.spectrum_padding * float(frequency[1])
+        frequency, amplitude, 3, RunPictures.spectrum_padding * float(frequency[1])
     )
     if _draw_lines(axes, frequency, amplitude, lines):
         axes.set(xlabel="ω (rad/s)", ylabel=f"amplitude of {FORCE_LABEL}")

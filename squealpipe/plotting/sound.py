@@ -82,9 +82,6 @@ class Listening:
     """Length of the fades at both ends of a file, s. Without them a player clicks there."""
 
 
-LISTENING = Listening()
-
-
 COMPONENTS = ("x", "y")
 
 
@@ -114,11 +111,11 @@ class Sound:
         """Return the loop repeated for some time, faded in and out, (n,) of 16 bit."""
         count = max(round(seconds * SAMPLING_RATE), 2)
         played = np.resize(self.loop, count)
-        edge = min(round(LISTENING.fade * SAMPLING_RATE), count // 2)
+        edge = min(round(Listening.fade * SAMPLING_RATE), count // 2)
         ramp = np.sin(0.5 * np.pi * (np.arange(edge) + 0.5) / edge) ** 2
         played[:edge] *= ramp
         played[-edge:] *= ramp[::-1]
-        top = 10 ** (LISTENING.peak / 20) / max(float(np.abs(played).max()), 1e-300)
+        top = 10 ** (Listening.peak / 20) / max(float(np.abs(played).max()), 1e-300)
         return np.round(32767 * top * played).astype("<i2")
 
     def told(self) -> str:
@@ -133,7 +130,7 @@ class Sound:
                 f"heard at {heard}"
             )
         length = self.loop.size / SAMPLING_RATE
-        if self.correlation < LISTENING.repeats:
+        if self.correlation < Listening.repeats:
             line += f"; it does not repeat, and is cross-faded every {engineering(length, 's', 2)}"
         return line
 
@@ -208,7 +205,7 @@ def sound(
     signal = signal - signal.mean()
     frequency = _strongest(signal, step_of(time))
     periods = frequency * (time[-1] - time[0])
-    if not periods >= LISTENING.fewest_periods:
+    if not periods >= Listening.fewest_periods:
         remedy = (
             "reduce the structure to fewer modes (squealpipe squeal --n-modes)"
             if run.attrs.get("schema") == STRUCTURE_RUN
@@ -217,7 +214,7 @@ def sound(
         raise ValueError(
             "the settled part of the run is too short to be heard: "
             f"{number(periods, 2) if math.isfinite(periods) else 'fewer than 3'} periods of its "
-            f"strongest line, {LISTENING.fewest_periods:g} are needed; {remedy}"
+            f"strongest line, {Listening.fewest_periods:g} are needed; {remedy}"
         )
     _check_audible(frequency, speed)
     loop, correlation = _loop(signal, step_of(time), seconds * speed, speed)
@@ -242,7 +239,7 @@ def _signal(
         motion = _settled_part(motion)
     step = (motion.time[-1] - motion.time[0]) / (motion.time.size - 1)
     words_of = {"x": "along the belt (x)", "y": "across the belt (y)"}
-    for _ in range(int(math.log2(LISTENING.finest)) // 2 + 1):
+    for _ in range(int(math.log2(Listening.finest)) // 2 + 1):
         missing = _missing(motion.time, motion.velocity[:, column])
         if missing is None:
             return motion.time, motion.velocity[:, column], words_of[name]
@@ -285,15 +282,15 @@ def _settled_part(motion: PadMotion) -> PadMotion:
     count = motion.time.size
     level = float(np.sqrt(motion.velocity[3 * count // 4 :].var(axis=0).sum()))
     largest = float(np.abs(motion.velocity).max())
-    if not level > LISTENING.quiet * max(largest, 1e-3 * abs(motion.belt_speed)):
+    if not level > Listening.quiet * max(largest, 1e-3 * abs(motion.belt_speed)):
         raise ValueError(
             "nothing is heard: the motion has died out, its rms velocity is "
             f"{engineering(level, 'm s-1', 2)} in the last quarter of the run"
         )
-    for share in LISTENING.tails:
+    for share in Listening.tails:
         halves = np.array_split(np.arange(int(share * count), count), 2)
         change = difference(*(_levels(motion, half) for half in halves))
-        if change <= LISTENING.level_agreement:
+        if change <= Listening.level_agreement:
             return motion.from_(motion.time[halves[0][0]])
     raise ValueError(
         f"the motion has not settled: its level changes by {100.0 * change:.0f} % within the last "
@@ -320,9 +317,9 @@ def _missing(
     except ValueError as error:
         return str(error)
     omega, amplitude = amplitude_spectrum(signal, step)
-    loud = omega[amplitude > LISTENING.audible * amplitude.max()]
+    loud = omega[amplitude > Listening.audible * amplitude.max()]
     highest = float(loud.max(initial=0.0)) / (2.0 * math.pi)
-    needed = LISTENING.samples_per_period * highest
+    needed = Listening.samples_per_period * highest
     if 1.0 / step >= needed:
         return None
     # what is between the samples may lie higher still
@@ -351,17 +348,17 @@ def comfortable_speed(frequency: float) -> float:
 
     It is 1 where the frequency is heard as it is.
     """
-    low, high = LISTENING.hearing
+    low, high = Listening.hearing
     if not math.isfinite(frequency) or low <= frequency <= high:
         return 1.0
-    below, above = (math.log10(limit / frequency) for limit in LISTENING.comfortable)
+    below, above = (math.log10(limit / frequency) for limit in Listening.comfortable)
     power = math.ceil(below) if frequency < low else math.floor(above)
     return float(10.0**power)
 
 
 def _check_audible(frequency: float, speed: float) -> None:
     """Refuse a pitch that no ear hears."""
-    low, high = LISTENING.hearing
+    low, high = Listening.hearing
     heard = frequency * speed
     if low <= heard <= high:
         return

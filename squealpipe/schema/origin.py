@@ -20,7 +20,7 @@ from squealpipe.validation import checked
 
 Given = ParamSpec("Given")
 
-_HOW: dict[str, tuple[str, str]] = {}
+_recorded_calls: dict[str, tuple[str, str]] = {}
 """Task → model and method, as given to :func:`recorded`."""
 
 
@@ -40,7 +40,7 @@ def recorded(
         defaults = {
             each.name: each.default for each in named if each.kind != each.VAR_KEYWORD
         }
-        _HOW[task.__name__] = model, method
+        _recorded_calls[task.__name__] = model, method
 
         @functools.wraps(task)
         def run(*args: Given.args, **kwargs: Given.kwargs) -> xr.Dataset:
@@ -64,7 +64,7 @@ def origin(name: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
     Args:
         arguments: argument → value; of a dataset among them, the attributes are inherited.
     """
-    model, method = _HOW[name]
+    model, method = _recorded_calls[name]
     options = {key: value for key, value in arguments.items() if key != "workers"}
     stated: dict[str, Any] = {"made_by": f"squealpipe.{name}"}
     inherited = ("parameters", "model", "method", "tolerance")

@@ -17,7 +17,7 @@ from squealpipe.structures.onset import Crossing, confirmed, grows
 from squealpipe.structures.pencil import DENSE
 from squealpipe.structures.refinement import unit_vector
 from squealpipe.structures.schema.structures import Onset
-from squealpipe.structures.sliding import BALANCE, NoSlidingError, changes
+from squealpipe.structures.sliding import NoSlidingError, SlidingBalance, changes
 from squealpipe.structures.spectrum import Solver, Spectrum
 from squealpipe.structures.subspace import projected, subspace
 
@@ -154,9 +154,9 @@ class ConfirmedWay(Way):
         """The friction at which the whole turns unstable as the subspace does; None if not."""
         # two that merge have one friction, which their searches may give with another last digit
         for known, mu in self._confirmed.items():
-            if abs(known - crossing.mu) <= 10 * BALANCE.located and self._is_merging(
-                crossing
-            ):
+            if abs(
+                known - crossing.mu
+            ) <= 10 * SlidingBalance.located and self._is_merging(crossing):
                 return mu
         if crossing.known is None:
             mu = self._located_at_change(crossing)

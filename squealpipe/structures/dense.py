@@ -16,15 +16,15 @@ import scipy.sparse as sp
 from squealpipe.structures.onset import Block, turned
 from squealpipe.structures.pencil import LowRank, Pencil
 from squealpipe.structures.refinement import (
-    REFINEMENT,
     Eigenpair,
+    Refinement,
     error_of_rounding,
     error_of_rounding_of_square,
     polished,
     quotient,
     unit_vector,
 )
-from squealpipe.structures.stiff import SPECTRAL_GAP, condensation, stiff_degrees
+from squealpipe.structures.stiff import Gap, condensation, stiff_degrees
 
 BACKWARD = 8.0
 """Backward error of LAPACK's eigenvalues, in units of round-off of the norm of the matrix."""
@@ -81,7 +81,7 @@ def _accurate(pencil: Pencil, pair: Eigenpair) -> Eigenpair:
     """The pair itself if it is accurate enough, or polished."""
     value, right, left, error = pair
     on_axis = pencil.is_undamped and value.real == 0  # its growth is exact
-    if on_axis or error <= REFINEMENT.enough * max(abs(value.real), 1.0):
+    if on_axis or error <= Refinement.enough * max(abs(value.real), 1.0):
         return pair
     try:
         better = polished(pencil, value, right, left)
@@ -185,7 +185,7 @@ def _of_block(
     matrix = np.asarray(block.matrix, float)
     mean = 0.5 * float(np.trace(matrix))
     carried = la.svdvals(block.left.T @ (pencil.mass @ block.right))[-1]
-    moved = REFINEMENT.sure * max(
+    moved = Refinement.sure * max(
         pencil.rounded(1j * np.sqrt(abs(mean)), left, right)
         for left in block.left.T
         for right in block.right.T
@@ -291,7 +291,7 @@ def _damped_slowly(pencil: Pencil) -> list[Eigenpair]:
     if not gaps.size:
         return _damped(pencil)
     # far from all that is kept, and near enough for round-off not to count
-    cap = 1e5 * max(ascending[gaps[0]], np.sqrt(SPECTRAL_GAP.least) * pencil.unit)
+    cap = 1e5 * max(ascending[gaps[0]], np.sqrt(Gap.least) * pencil.unit)
     fast = rates > cap
     added = np.where(fast, mass.diagonal() * (rates / cap), 0.0)
     lifted = replace(pencil, mass=sp.csr_array(pencil.mass + sp.diags_array(added)))
@@ -342,7 +342,7 @@ def _damped(pencil: Pencil) -> list[Eigenpair]:
         error = min(bound * condition, np.sqrt(bound * norm))
         v = unit_vector(shapes[index].astype(complex))
         w = unit_vector(shapes_left[index].astype(complex))
-        if error > REFINEMENT.enough * max(abs(value.real), 1.0):
+        if error > Refinement.enough * max(abs(value.real), 1.0):
             root, rate = quotient(pencil, value, v, w)
             gap = np.abs(np.delete(values, index) - value).min(initial=np.inf)
             second = error**2 / gap if gap else np.inf

@@ -11,7 +11,7 @@ import xarray as xr
 from squealpipe.schema import Outcome, build
 from squealpipe.structures.contact import Contact, PointOrigin, face_of
 from squealpipe.structures.meshes.merging import merged
-from squealpipe.structures.schema.fewer_points import FEWER_POINTS
+from squealpipe.structures.schema.fewer_points import fewer_points_schema
 from squealpipe.structures.sliding import NoSlidingError
 from squealpipe.systems.datasets.versions import versions
 from squealpipe.systems.inputs.values import brief, is_whole_number
@@ -90,7 +90,7 @@ def fewer_points(structure: Any, *, frequency_max: float | None = None) -> xr.Da
     points = [2**power for power in range((most - 1).bit_length())] + [most]
     rows = [_growing(structure.with_points(point), frequency_max) for point in points]
     return build(
-        FEWER_POINTS,
+        fewer_points_schema,
         {name: np.array([row[name] for row in rows]) for name in rows[0]},
         {"points": points},
         {

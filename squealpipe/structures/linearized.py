@@ -13,7 +13,7 @@ import scipy.sparse as sp
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.pencil import LowRank, Pencil, Uncertain
 from squealpipe.structures.sliding import (
-    BALANCE,
+    SlidingBalance,
     SteadySliding,
     acting_directions,
     contact_stiffness,
@@ -49,7 +49,7 @@ def pencil_about(
 
 def _uncertain(structure: ContactStructure, state: SteadySliding) -> Uncertain | None:
     """Return the uncertainty of damping and stiffness from rounding of forces and of friction."""
-    rounding = BALANCE.rounding_of_friction * np.finfo(float).eps
+    rounding = SlidingBalance.rounding_of_friction * np.finfo(float).eps
     closed = state.closed
     if not closed.any():
         return None

@@ -22,7 +22,7 @@ from squealpipe.structures.dynamics import (
     reads_speed,
 )
 from squealpipe.structures.modes import modes_at_rest
-from squealpipe.systems.definition import SIZE_LIMITS
+from squealpipe.systems.definition import SizeLimits
 from squealpipe.systems.inputs.values import brief, is_finite_number, is_whole_number
 from squealpipe.systems.linear.matrices import (
     COULOMB,
@@ -69,7 +69,7 @@ def system(
             that does not exist.
     """
     # what nothing touches is a system as any other, without a loop of its own
-    free = Caps(modes=SIZE_LIMITS.states // 2)
+    free = Caps(modes=SizeLimits.states // 2)
     _check_size(structure, Caps() if structure.contacts else free)
     numbers, scale = Numbers.of(structure), Scale.of(structure)
     states = _states(structure, scale)

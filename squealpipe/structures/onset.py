@@ -20,12 +20,12 @@ from scipy.sparse.linalg import splu
 
 from squealpipe.structures.pencil import FEW_ENTRIES, Pencil
 from squealpipe.structures.refinement import (
-    REFINEMENT,
     Eigenpair,
+    Refinement,
     polished,
     unit_vector,
 )
-from squealpipe.structures.sliding import BALANCE
+from squealpipe.structures.sliding import SlidingBalance
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ def onset(
         None where the mode cannot be followed to it.
     """
     (low, before), (high, after) = stable, unstable
-    if high - low <= BALANCE.located:  # a contact opens or closes between both
+    if high - low <= SlidingBalance.located:  # a contact opens or closes between both
         return Crossing(high, low, high, before, after)
     measure: _Followed
     if pencil_at(high).is_undamped and pencil_at(low).is_undamped:
@@ -185,7 +185,11 @@ def _zero(measure: Callable[[float], float], low: float, high: float) -> float |
         upper, step = lower, 1.5 * step
     at_lower = measure(lower)
     # a friction that is the critical one itself leaves a round-off of either sign
-    if 0 < at_lower * (upper - lower) <= BALANCE.located * (measure(upper) - at_lower):
+    if (
+        0
+        < at_lower * (upper - lower)
+        <= SlidingBalance.located * (measure(upper) - at_lower)
+    ):
         return float(lower)
     if not at_lower <= 0:
         return None
@@ -197,7 +201,7 @@ def _between(
 ) -> float | None:
     """The zero between two frictions of which the measure is positive at the upper one."""
     zero = brentq(
-        measure, lower, upper, xtol=BALANCE.located, rtol=4 * np.finfo(float).eps
+        measure, lower, upper, xtol=SlidingBalance.located, rtol=4 * np.finfo(float).eps
     )
     # the measure jumps where the mode has become another one on the way
     largest = max(abs(measure(lower)), abs(measure(upper)))
@@ -341,7 +345,7 @@ def _solver(
     About their mean alone an eigenvalue between both would come in.
     """
     aside = limits.aside * max(
-        float(abs(np.mean(roots))), (REFINEMENT.slow * pencil.unit) ** 2
+        float(abs(np.mean(roots))), (Refinement.slow * pencil.unit) ** 2
     )
     is_pair = roots[0].imag != 0
     shifts = [roots[0]] if is_pair else [root.real for root in roots]

@@ -57,9 +57,6 @@ class Following:
     """Distance of two cubics from the true path, over that of their tangents in the middle."""
 
 
-INTERVAL_FOLLOWING = Following()
-
-
 class _Linear(NamedTuple):
     """Matrices of small motions about steady sliding, and which contacts are closed there.
 
@@ -115,11 +112,7 @@ class _Node:
     @cached_property
     def limit(self) -> float:
         """Growth that is round-off, 1/s."""
-        share = (
-            INTERVAL_FOLLOWING.round_off
-            if self._is_damped
-            else INTERVAL_FOLLOWING.undamped
-        )
+        share = Following.round_off if self._is_damped else Following.undamped
         return share * float(np.abs(self.values).max())
 
     @property
@@ -201,7 +194,7 @@ class _Search:
 
     def _slopes(self, at: float, linear: _Linear) -> np.ndarray:
         """Return derivatives of the matrices, from values where the same contacts are closed."""
-        step = INTERVAL_FOLLOWING.difference * self._first_step(at)
+        step = Following.difference * self._first_step(at)
         low, high = self.stations[0], self.stations[-1]
         for _ in range(4):  # at a contact that opens there is no slope
             # at an end of the range, and where a contact opens, differences are one-sided
@@ -231,7 +224,7 @@ class _Search:
         while steps:
             a, b = steps.pop()
             changes = self.grows(a) != self.grows(b)
-            is_finest = b - a <= INTERVAL_FOLLOWING.finest * self._first_step(b)
+            is_finest = b - a <= Following.finest * self._first_step(b)
             if self._is_sure(a, b, changes) or is_finest:
                 if changes:
                     found.append(self._located(a, b))
@@ -243,8 +236,8 @@ class _Search:
     def _located(self, a: float, b: float) -> float:
         """Return where the answer changes, by halving: growth may jump, or leave zero as a root."""
         grows = self.grows(b)
-        least = INTERVAL_FOLLOWING.finest * self._first_step(b)  # next to 0
-        while b - a > INTERVAL_FOLLOWING.located * max(abs(a), abs(b), least):
+        least = Following.finest * self._first_step(b)  # next to 0
+        while b - a > Following.located * max(abs(a), abs(b), least):
             middle = 0.5 * (a + b)
             if middle in (a, b):
                 break
@@ -313,7 +306,7 @@ class _Paths:
             + first * t * (1 - t) ** 2
             - last * t**2 * (1 - t)
         )
-        off = INTERVAL_FOLLOWING.doubt * apart[rows, columns]
+        off = Following.doubt * apart[rows, columns]
         return cls(cubic, off, max(one.limit, other.limit))
 
     @property

@@ -30,9 +30,6 @@ class Refinement:
     """Standard deviations of rounded entries that an error bound covers."""
 
 
-REFINEMENT = Refinement()
-
-
 class Estimate(NamedTuple):
     """An eigenvalue with its vectors, as of a search about a point.
 
@@ -81,7 +78,7 @@ def error_of_rounding(
     pencil: Pencil, value: complex, right: np.ndarray, left: np.ndarray, rate: complex
 ) -> float:
     """Return how far rounded entries of the matrices can have moved an eigenvalue, rad/s."""
-    moved = REFINEMENT.sure * pencil.rounded(value, left, right)
+    moved = Refinement.sure * pencil.rounded(value, left, right)
     return float(_shift(pencil, moved, right, left, rate))
 
 
@@ -127,7 +124,7 @@ def error_of_rounding_of_square(
     pencil: Pencil, square: float, right: np.ndarray, left: np.ndarray
 ) -> float:
     """Return how far rounded entries can have moved λ of K v = λ M v."""
-    moved = REFINEMENT.sure * pencil.rounded(np.sqrt(abs(square)), left, right)
+    moved = Refinement.sure * pencil.rounded(np.sqrt(abs(square)), left, right)
     return float(moved / max(abs(np.vdot(left, pencil.mass @ right)), 1e-300))
 
 
@@ -140,7 +137,7 @@ def polished(
     change, rate = np.inf, 0j
     for _ in range(4):
         # relative: at the eigenvalue itself the matrix is singular
-        offset = 1e-9 * max(abs(value), REFINEMENT.slow * pencil.unit) * (1.0 + 0.5j)
+        offset = 1e-9 * max(abs(value), Refinement.slow * pencil.unit) * (1.0 + 0.5j)
         factors = pencil.factorized(value + offset)
         before = value
         for _ in range(2):
@@ -172,7 +169,7 @@ def refined(pencil: Pencil, estimates: Sequence[Estimate]) -> Iterator[Eigenpair
         rest = pencil.from_left(value, left) @ each.factors.solve(residual)
         nearby = max(abs(value - each.factors.at) / others.min(initial=np.inf), 1.0)
         error = abs(rest / rate) * nearby if rate else np.inf
-        if error > REFINEMENT.enough * max(abs(value.real), 1.0):
+        if error > Refinement.enough * max(abs(value.real), 1.0):
             yield polished(pencil, value, right, left)
         else:
             error += error_of_rounding(pencil, value, right, left, rate)

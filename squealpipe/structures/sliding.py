@@ -57,9 +57,6 @@ class SlidingBalance:
     """Share of the largest force up to which two combinations are one state, at a knot."""
 
 
-BALANCE = SlidingBalance()
-
-
 class NoSlidingError(ValueError):
     """There is no steady sliding."""
 
@@ -163,8 +160,8 @@ class _Laws:
         contact, used = np.arange(len(self.counts)), np.maximum(piece, 0)
         low, high = self.low[contact, used], self.high[contact, used]
         # at a knot round-off would turn back for ever
-        below = np.where(used > 0, reach < low * (1.0 - BALANCE.at_knot), ~(reach > 0))
-        above = reach > high * (1.0 + BALANCE.at_knot)
+        below = np.where(used > 0, reach < low * (1.0 - SlidingBalance.at_knot), ~(reach > 0))
+        above = reach > high * (1.0 + SlidingBalance.at_knot)
         changed = piece + above * 1 - below * 1
         return np.where(piece < 0, np.where(reach > 0, 0, -1), changed)
 
@@ -207,7 +204,7 @@ def steady_sliding(
     if state is None:
         reason = (
             f"the contacts {', '.join(names)} can be neither open nor closed together"
-            if pivoting.laws.combinations <= 2**BALANCE.most_sought
+            if pivoting.laws.combinations <= 2**SlidingBalance.most_sought
             else "a search among the states of the contacts did not end"
         )
         raise NoSlidingError(
@@ -270,15 +267,15 @@ class _Pivoting:
             piece[wrong[0]] = following[wrong[0]]
             # with much friction pivoting may pass the state by
             if piece.tobytes() in seen:
-                fitting = self._sought(2**BALANCE.most_sought, first=True)
+                fitting = self._sought(2**SlidingBalance.most_sought, first=True)
                 piece = fitting[0][0] if fitting else None
         return None
 
     def another(self, force: np.ndarray) -> np.ndarray | None:
         """Return the forces of another state, if one is found."""
-        laws, same = self.laws, BALANCE.one_state * float(force.max(initial=0.0))
-        if laws.combinations <= BALANCE.most_compared:
-            fitting = [each for _, each in self._sought(BALANCE.most_compared)]
+        laws, same = self.laws, SlidingBalance.one_state * float(force.max(initial=0.0))
+        if laws.combinations <= SlidingBalance.most_compared:
+            fitting = [each for _, each in self._sought(SlidingBalance.most_compared)]
         else:
             states = (self.state(each) for each in (0 * laws.counts, laws.counts - 1))
             fitting = [state[2] for state in states if state is not None]
@@ -358,9 +355,9 @@ def changes(
 
     passed: list[tuple[float, float]] = []
     closed, last = closed_at(low), closed_at(high)
-    while (closed != last).any() and len(passed) < BALANCE.most_changes:
+    while (closed != last).any() and len(passed) < SlidingBalance.most_changes:
         before, after = low, high
-        while after - before > BALANCE.located:
+        while after - before > SlidingBalance.located:
             middle = 0.5 * (before + after)
             if np.array_equal(closed_at(middle), closed):
                 before = middle
@@ -446,9 +443,9 @@ def static_answers(
 
 
 def _held(structure: ContactStructure) -> _Held:
-    held = _HELD.get(structure)
+    held = _held_states.get(structure)
     if held is None:
-        held = _HELD[structure] = _Held(structure)
+        held = _held_states[structure] = _Held(structure)
     return held
 
 
@@ -467,7 +464,7 @@ def _solver(
     return splu(sp.csc_array(matrix)).solve  # type: ignore[no-any-return]
 
 
-_HELD: WeakKeyDictionary[ContactStructure, _Held] = WeakKeyDictionary()
+_held_states: WeakKeyDictionary[ContactStructure, _Held] = WeakKeyDictionary()
 """Factors of large structures, kept as long as these live."""
 
 
@@ -492,7 +489,7 @@ def _balance(
         # extended precision bring back
         unbalanced = _unbalanced(structure, line, drag)
         change = solution
-        for _ in range(BALANCE.refinements):
+        for _ in range(SlidingBalance.refinements):
             change = solve(unbalanced(solution))
             solution = solution + change
         missed = np.abs(unbalanced(solution))
@@ -505,8 +502,8 @@ def _balance(
             for each in (solution, change)
         )
         pressed = max(forces, np.abs(structure.preloads).max(initial=0.0))
-        unsettled = changes_of_forces > BALANCE.unsettled * pressed
-        is_unbalanced = not (missed <= 1e3 * BALANCE.singular * carried).all()
+        unsettled = changes_of_forces > SlidingBalance.unsettled * pressed
+        is_unbalanced = not (missed <= 1e3 * SlidingBalance.singular * carried).all()
     except RuntimeError:  # the factor is exactly singular
         is_unbalanced = unsettled = True
     if unsettled or is_unbalanced:
@@ -529,7 +526,7 @@ def _balance(
     drawn = solve(structure.tangentials * closed)
     reach = np.abs(line.at_rest) + carried
     by_drag = springs[:, None] * np.abs(structure.normals.T @ drawn)
-    pulled = BALANCE.rounding_of_friction * rounding * np.abs(drag) * reach
+    pulled = SlidingBalance.rounding_of_friction * rounding * np.abs(drag) * reach
     return solution, rounding * reach + left_over + by_drag @ pulled
 
 

@@ -35,9 +35,6 @@ class Gap:
     conditioned: float = 1e-8
 
 
-SPECTRAL_GAP = Gap()
-
-
 def stiff_degrees(
     mass: np.ndarray, stiffness: np.ndarray, damping: np.ndarray | None = None
 ) -> Any:
@@ -52,12 +49,12 @@ def stiff_degrees(
     ascending = ratios[order]
     for place in range(1, size):
         below, above = ascending[place - 1], ascending[place]
-        if not below > 0 or not above > SPECTRAL_GAP.least * below:
+        if not below > 0 or not above > Gap.least * below:
             continue
         stiff = none.copy()
         stiff[order[place:]] = True
-        held = above >= SPECTRAL_GAP.mechanical or (
-            above > SPECTRAL_GAP.alone * below and _is_apart(stiffness, stiff)
+        held = above >= Gap.mechanical or (
+            above > Gap.alone * below and _is_apart(stiffness, stiff)
         )
         late = damping is not None and _is_late(damping, stiffness, stiff, below)
         if held and not late and _is_regular(stiffness[np.ix_(stiff, stiff)]):
@@ -78,8 +75,8 @@ def _is_late(
 def beyond_gap(mass: np.ndarray, stiffness: np.ndarray) -> int:
     """Count the rows that a penalty fixes, by the diagonals of both matrices alone."""
     ratios = np.sort(np.abs(stiffness) / mass)
-    above = (ratios[1:] > SPECTRAL_GAP.least * ratios[:-1]) & (ratios[:-1] > 0)
-    places = np.flatnonzero(above & (ratios[1:] >= SPECTRAL_GAP.mechanical))
+    above = (ratios[1:] > Gap.least * ratios[:-1]) & (ratios[:-1] > 0)
+    places = np.flatnonzero(above & (ratios[1:] >= Gap.mechanical))
     return len(ratios) - 1 - int(places[0]) if places.size else 0
 
 
@@ -96,7 +93,7 @@ def _is_apart(stiffness: np.ndarray, stiff: np.ndarray) -> bool:
 def _is_regular(block: np.ndarray) -> bool:
     scale = 1.0 / np.sqrt(np.abs(block.diagonal()))
     sizes = la.svdvals(scale[:, None] * block * scale)
-    return bool(sizes[-1] > SPECTRAL_GAP.conditioned * sizes[0])
+    return bool(sizes[-1] > Gap.conditioned * sizes[0])
 
 
 def condensation(stiffness: np.ndarray, stiff: np.ndarray) -> np.ndarray:

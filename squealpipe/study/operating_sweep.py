@@ -21,8 +21,6 @@ from squealpipe.text import suggestion
 TASK = operating_map.__name__
 REDUCTION = ("n_modes", "frequency_max")
 OPTIONS = ("mu_of", "measured", "frequency_band", "band_edges", "tol", *REDUCTION)
-TABLE = "mu_of_"
-"""Prefix of an option that is a table of friction, like ``mu_of_temperature``."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,10 +45,12 @@ class OperatingSweep(PointSweep):
     def __post_init__(self) -> None:
         structure = Structure.read(self.task.rpartition(":")[0])
         options = dict(self.fixed)
+        # Prefix of an option that is a table of friction, like ``mu_of_temperature``.
+        table = "mu_of_"
         tables = {
-            name.removeprefix(TABLE): options.pop(name)
+            name.removeprefix(table): options.pop(name)
             for name in self.fixed
-            if name.startswith(TABLE)
+            if name.startswith(table)
         }
         if tables:
             options["mu_of"] = tables

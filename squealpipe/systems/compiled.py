@@ -71,24 +71,26 @@ class _CompilerClock(event.Listener):  # type: ignore[misc]
             self.total += time.process_time() - self._since
 
 
-_CLOCK = _CompilerClock()
+_compiler_clock = _CompilerClock()
 _register: Any = event.register
-_register("numba:compile", _CLOCK)  # what Python calls is compiled on its first call
+_register(
+    "numba:compile", _compiler_clock
+)  # what Python calls is compiled on its first call
 
 
 def compile_time() -> float:
     """CPU time that this process has spent on compiling, s; none on code from the store."""
-    return _CLOCK.total
+    return _compiler_clock.total
 
 
 @contextmanager
 def timed_compilation() -> Iterator[None]:
     """Count what is done inside as compiling."""
-    _CLOCK.on_start(None)
+    _compiler_clock.on_start(None)
     try:
         yield
     finally:
-        _CLOCK.on_end(None)
+        _compiler_clock.on_end(None)
 
 
 def kernel_sources() -> list[Path]:

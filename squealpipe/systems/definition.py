@@ -62,9 +62,6 @@ class SizeLimits:
     regimes: int = 256
 
 
-SIZE_LIMITS = SizeLimits()
-
-
 class Definition:
     """A piecewise-smooth system: regimes, a field, and switches between them.
 
@@ -101,7 +98,7 @@ class Definition:
 
     batch: Any = None
     """Integrator of runs in place of series that are compiled for the system; None: these."""
-    most_states, most_regimes = SIZE_LIMITS.states, SIZE_LIMITS.regimes
+    most_states, most_regimes = SizeLimits.states, SizeLimits.regimes
     scales: Any = None
     has_typical_sizes = True
 

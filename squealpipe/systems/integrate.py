@@ -41,14 +41,14 @@ def symbolic(system: System) -> HybridSystem:
     )
 
 
-_COMPILED: weakref.WeakKeyDictionary[
+_compiled_systems: weakref.WeakKeyDictionary[
     Any, dict[tuple[bool, bool], lanes.CompiledSystem]
 ] = weakref.WeakKeyDictionary()
 
 
 def compiled(system: System, *, tangent: bool, few: bool) -> lanes.CompiledSystem:
     """The machine code of a system, built once a process and kept on disk."""
-    known = _COMPILED.setdefault(system.form, {})
+    known = _compiled_systems.setdefault(system.form, {})
     if (tangent, few) not in known:
         t = system.integrated
         scalar = ScalarSource(

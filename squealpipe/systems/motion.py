@@ -15,7 +15,7 @@ import numpy as np
 from squealpipe.systems.datasets import Outcome
 from squealpipe.systems.integrate import MOST_STEPS, RunOptions, integrate
 from squealpipe.systems.recurrence import (
-    RECURRENCE,
+    Recurrence,
     crossings,
     in_blocks,
     repeats_after,
@@ -51,7 +51,7 @@ def drift_tolerance(tol: float) -> float:
 
     A thousand steps are counted, each of which adds ``tol`` at most.
     """
-    return min(1e3 * tol, RECURRENCE.repeated)
+    return min(1e3 * tol, Recurrence.repeated)
 
 
 def has_settled(earlier: Any, later: Any, tolerance: float) -> Any:
@@ -67,7 +67,7 @@ def has_settled(earlier: Any, later: Any, tolerance: float) -> Any:
     """
     shrinks = later < earlier
     to_come = later**2 / np.where(shrinks, earlier - later, 1.0)
-    return (later <= tolerance) | (shrinks & (to_come <= RECURRENCE.repeated))
+    return (later <= tolerance) | (shrinks & (to_come <= Recurrence.repeated))
 
 
 class MotionKind(IntEnum):
@@ -171,7 +171,7 @@ class RepeatableRuns:
             raise ValueError(
                 f"{self.system.name}: the period of its forcing must be greater than 0"
             )
-        most = RECURRENCE.least_repeats * limits.most_periods
+        most = Recurrence.least_repeats * limits.most_periods
         kept = int(np.clip(0.5 * self.duration / forcing.max(), 0, most))
         quarter = (0.25 * self.duration / forcing[rows]).astype(int)[:, None]
         # also a quarter and half of the run earlier, for every number of periods that may repeat
@@ -194,9 +194,9 @@ class RepeatableRuns:
         every /= spans[rows, None]
         states = every[:, : kept + 1]
         rounds = np.zeros(rows.size, int)
-        for lag in range(kept // RECURRENCE.least_repeats, 0, -1):
+        for lag in range(kept // Recurrence.least_repeats, 0, -1):
             moved = np.abs(states[:, lag:] - states[:, :-lag])
-            near = moved.max(axis=2, initial=0.0) <= RECURRENCE.repeated
+            near = moved.max(axis=2, initial=0.0) <= Recurrence.repeated
             # at first the distance to a cycle may be less after several of its periods
             again = near.all(axis=1) | (
                 (rounds > 0) & (rounds % lag == 0) & near[:, -1]
@@ -230,7 +230,7 @@ class RepeatableRuns:
             late = times > 0.5 * self.duration
             silent[i] = not late.any()
             marks = states[late] / spans[row]
-            lag = repeats_after(times[late], kinds[late], RECURRENCE.repeated, marks)
+            lag = repeats_after(times[late], kinds[late], Recurrence.repeated, marks)
             if lag:
                 # whole cycles in half of these events
                 count = (len(marks) - 1) // (2 * lag) * lag
@@ -297,11 +297,11 @@ class RepeatableRuns:
 
             time = np.array([returns[i][number] for i in which])
             time = back_at(time, window[which] / (limits.samples - 1))
-            again = time[:, None] * np.arange(1, RECURRENCE.least_repeats + 1)
+            again = time[:, None] * np.arange(1, Recurrence.least_repeats + 1)
             fits = again[:, -1] <= 0.5 * self.duration
             again = np.minimum(again, 0.5 * self.duration)
             off = np.abs(at(which, again) - begin[which]).max(axis=(1, 2))
-            repeats = fits & (off <= RECURRENCE.repeated)
+            repeats = fits & (off <= Recurrence.repeated)
             if repeats.any():
                 rounds = np.maximum(0.25 * self.duration // time, 1.0)
                 later = [back_at(k * rounds * time, 0.25 * time) for k in (1.0, 2.0)]

@@ -17,55 +17,57 @@ class _Progress:
     stops = False
 
 
-_NOW = _Progress()
+_progress = _Progress()
 
 
 def report(share: Callable[[], float]) -> None:
     """Show how much of the present part is done; ``share`` is called only where it is shown."""
-    if _NOW.show is not None:
-        _NOW.show(_NOW.low + _NOW.size * min(max(float(share()), 0.0), 1.0))
+    if _progress.show is not None:
+        _progress.show(
+            _progress.low + _progress.size * min(max(float(share()), 0.0), 1.0)
+        )
 
 
 def partial_answer(line: Callable[[], str]) -> None:
     """Show what is known already; ``line`` is called only where it is shown."""
-    if _NOW.say is not None:
-        _NOW.say(line())
+    if _progress.say is not None:
+        _progress.say(line())
 
 
 @contextmanager
 def stage(name: str) -> Iterator[None]:
     """Name the stage that runs within the block; its progress counts from 0 to 1."""
-    with shown(_NOW.show, _NOW.say, _NOW.name):
-        _NOW.low, _NOW.size = 0.0, 1.0
-        if _NOW.name is not None:
-            _NOW.name(name)
+    with shown(_progress.show, _progress.say, _progress.name):
+        _progress.low, _progress.size = 0.0, 1.0
+        if _progress.name is not None:
+            _progress.name(name)
         try:
             yield
         finally:
-            if _NOW.name is not None:
-                _NOW.name("")
+            if _progress.name is not None:
+                _progress.name("")
 
 
 def ask_to_stop(*, stops: bool = True) -> None:
     """Ask long work to end soon and keep its results so far, or withdraw that request."""
-    _NOW.stops = stops
+    _progress.stops = stops
 
 
 def stop_is_asked() -> bool:
     """Tell whether the work is to end soon."""
-    return _NOW.stops
+    return _progress.stops
 
 
 @contextmanager
 def part_of_work(first: float, size: float) -> Iterator[None]:
     """Show what is computed meanwhile as so large a part of the work, from a share of it on."""
-    low, whole = _NOW.low, _NOW.size
-    _NOW.low, _NOW.size = low + whole * first, whole * size
+    low, whole = _progress.low, _progress.size
+    _progress.low, _progress.size = low + whole * first, whole * size
     try:
         report(lambda: 0.0)
         yield
     finally:
-        _NOW.low, _NOW.size = low, whole
+        _progress.low, _progress.size = low, whole
 
 
 def with_progress(items: Sequence[Item]) -> Iterator[Item]:
@@ -78,9 +80,13 @@ def with_progress(items: Sequence[Item]) -> Iterator[Item]:
 @contextmanager
 def alone() -> Iterator[Callable[[float], None]]:
     """Take over: what is computed meanwhile shows nothing, and its caller shows its own share."""
-    show = _NOW.show
-    with shown(None, _NOW.say, _NOW.name):
-        yield lambda share: None if show is None else show(_NOW.low + _NOW.size * share)
+    show = _progress.show
+    with shown(None, _progress.say, _progress.name):
+        yield (
+            lambda share: (
+                None if show is None else show(_progress.low + _progress.size * share)
+            )
+        )
 
 
 @contextmanager
@@ -95,12 +101,12 @@ def shown(
         say: takes lines of partial answers.
         name: takes the name of each stage as it begins, and an empty one at its end.
     """
-    before = dict(vars(_NOW))
+    before = dict(vars(_progress))
     before.pop("stops", None)
-    _NOW.show, _NOW.say, _NOW.name = show, say, name
+    _progress.show, _progress.say, _progress.name = show, say, name
     try:
         yield
     finally:
-        stops = _NOW.stops
-        vars(_NOW).clear()
-        vars(_NOW).update(before, stops=stops)
+        stops = _progress.stops
+        vars(_progress).clear()
+        vars(_progress).update(before, stops=stops)

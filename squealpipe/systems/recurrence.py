@@ -19,9 +19,6 @@ class Recurrence:
     """Logged events that are held in memory at once, 48 bytes each."""
 
 
-RECURRENCE = Recurrence()
-
-
 def repeats_after(
     times: np.ndarray,
     kinds: np.ndarray,
@@ -42,7 +39,7 @@ def repeats_after(
     """
     intervals, kinds = np.diff(times), kinds[:-1]
     marks = np.empty((len(times), 0)) if states is None else states
-    lags = np.arange(1, intervals.size // RECURRENCE.least_repeats + 1)
+    lags = np.arange(1, intervals.size // Recurrence.least_repeats + 1)
     if not lags.size:
         return 0
     allowed = tolerance * intervals.mean()
@@ -79,6 +76,6 @@ def in_blocks(rows: np.ndarray, events: np.ndarray) -> Iterator[np.ndarray]:
     """Rows, so many at a time that their logs fit; the busiest first, so that few are wide."""
     rows = rows[np.argsort(-events[rows], kind="stable")]
     while rows.size:
-        count = max(1, RECURRENCE.events_at_once // max(1, int(events[rows[0]])))
+        count = max(1, Recurrence.events_at_once // max(1, int(events[rows[0]])))
         yield rows[:count]
         rows = rows[count:]

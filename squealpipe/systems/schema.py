@@ -44,7 +44,7 @@ def _count(long_name: str, *dims: str) -> Variable:
     return count(long_name, *dims, dtype="i8")
 
 
-SIMULATE = DatasetSchema(
+simulate_schema = DatasetSchema(
     name=SYSTEM + "simulate",
     title="One run of a system, with every switch located",
     lists={"event": Listing(kinds=("event_kind",))},
@@ -66,7 +66,7 @@ SIMULATE = DatasetSchema(
     },
 )
 
-ENSEMBLE = DatasetSchema(
+ensemble_schema = DatasetSchema(
     name=SYSTEM + "ensemble",
     title="Many runs of a system",
     coordinates={**_COMPONENT, GRID: Variable("start or parameter", UNIT, (GRID,))},
@@ -103,10 +103,10 @@ ENSEMBLE = DatasetSchema(
     },
 )
 
-BASIN = DatasetSchema(
+basin_schema = DatasetSchema(
     name=SYSTEM + "basin",
     title="The kind of motion of a system from each of many starts",
-    coordinates=ENSEMBLE.coordinates,
+    coordinates=ensemble_schema.coordinates,
     variables={
         "motion": _flag("what the motion has become", GRID),
         "attractor": _count("number of the attractor (-1: unsettled)", GRID),
@@ -163,7 +163,7 @@ def _extremes(*dims: str) -> dict[str, Variable]:
     }
 
 
-LIMIT_CYCLE = DatasetSchema(
+limit_cycle_schema = DatasetSchema(
     name=SYSTEM + "limit cycle",
     title="A periodic motion of a system, events located, with its Floquet multipliers",
     coordinates=_COMPONENT,
@@ -180,7 +180,7 @@ LIMIT_CYCLE = DatasetSchema(
     },
 )
 
-CYCLE_BRANCH = DatasetSchema(
+cycle_branch_schema = DatasetSchema(
     name=SYSTEM + "cycle branch",
     title="A branch of periodic motions of a system in one parameter",
     coordinates=_COMPONENT,
@@ -194,7 +194,7 @@ CYCLE_BRANCH = DatasetSchema(
     },
 )
 
-CYCLE_CURVE = DatasetSchema(
+cycle_curve_schema = DatasetSchema(
     name=SYSTEM + "cycle curve",
     title="A curve of special periodic motions of a system in two parameters",
     variables={
@@ -209,7 +209,14 @@ CYCLE_CURVE = DatasetSchema(
 
 TABLES = {
     table.name: table
-    for table in (SIMULATE, ENSEMBLE, BASIN, LIMIT_CYCLE, CYCLE_BRANCH, CYCLE_CURVE)
+    for table in (
+        simulate_schema,
+        ensemble_schema,
+        basin_schema,
+        limit_cycle_schema,
+        cycle_branch_schema,
+        cycle_curve_schema,
+    )
 }
 
 

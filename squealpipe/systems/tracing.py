@@ -10,7 +10,7 @@ from typing import Any, Self
 import numpy as np
 
 from squealpipe.systems.components import Switch
-from squealpipe.systems.definition import SIZE_LIMITS, Definition
+from squealpipe.systems.definition import Definition, SizeLimits
 from squealpipe.systems.entries import Entries, constants_of
 from squealpipe.systems.joint import Joint
 from squealpipe.systems.starts import Starts
@@ -307,9 +307,9 @@ class TracedSystem(Definition):
             watched += [
                 (regime, (same + opposite)[0], rises, number) for regime in regimes
             ]
-        if len(surfaces) > SIZE_LIMITS.surfaces:
+        if len(surfaces) > SizeLimits.surfaces:
             raise ValueError(
-                f"{len(surfaces)} surfaces; at most {SIZE_LIMITS.surfaces} can be watched"
+                f"{len(surfaces)} surfaces; at most {SizeLimits.surfaces} can be watched"
             )
         table = np.full((2, len(self.regimes), len(surfaces)), -1, np.int64)
         for regime, index, rises, number in watched:

@@ -40,9 +40,6 @@ class Following:
     """Motions of a side that are followed at most; more cost a run each for every value."""
 
 
-FOLLOWING = Following()
-
-
 class Subjects(Protocol):
     """Functions that the search asks of the subjects that a cure makes."""
 
@@ -168,7 +165,7 @@ def any_start(
         outer = side.values[beyond]
         side.rungs = thinned(outer)
         if not quiet:
-            side.rungs = [side.beyond(side.inner, FOLLOWING.located), *side.rungs[1:]]
+            side.rungs = [side.beyond(side.inner, Following.located), *side.rungs[1:]]
         elif math.isnan(side.exact):
             side.rungs = _shown(side, subjects)
     climbed = _climb(sides, quiet=quiet, always=always, test=test, follow=follow)
@@ -179,7 +176,7 @@ def _shown(side: Side, subjects: Subjects) -> list[float]:
     """Values up to the first at which strikes decay too slowly to be told from what lasts."""
 
     def is_slow(value: float) -> bool:
-        return subjects.fading(side.cure.apply(value)) > -FOLLOWING.fades
+        return subjects.fading(side.cure.apply(value)) > -Following.fades
 
     if is_slow(side.cure.value):
         return side.rungs
@@ -203,7 +200,7 @@ def _climb(
                 side.outer, side.rungs = rung, []
         waiting = [side for side in waiting if side.rungs]
     open_sides = [side for side in sides if math.isnan(side.answer)]
-    bisect(open_sides, always, test, FOLLOWING.located)
+    bisect(open_sides, always, test, Following.located)
     brackets = [side for side in open_sides if not math.isnan(side.outer)]
     _follow(brackets, always, follow, test)
     if always:
@@ -272,7 +269,7 @@ class _Step:
     def is_small(self) -> bool:
         """True if the step is as small as a boundary is located."""
         near = min(self.lasting, self.next, key=abs)
-        return abs(self.size) <= self.side.scale(FOLLOWING.located, near) * (1.0 + 1e-9)
+        return abs(self.size) <= self.side.scale(Following.located, near) * (1.0 + 1e-9)
 
     def lasts(self) -> bool:
         """Take the step; whether the range goes on."""
@@ -286,7 +283,7 @@ class _Step:
         if self.is_small:
             return False
         least = self.side.scale(
-            FOLLOWING.located, min(self.lasting, self.next, key=abs)
+            Following.located, min(self.lasting, self.next, key=abs)
         )
         self.size = math.copysign(max(0.25 * abs(self.size), least), self.size)
         return True
@@ -306,7 +303,7 @@ def lead(
         way = nearest.get(side.name, math.nan) - side.cure.value
         if side.motions and way * (side.values[0] - side.cure.value) > 0:
             ways[row] = way
-    left = 1.0 - FOLLOWING.along
+    left = 1.0 - Following.along
     while ways:
         starts = []
         for row, way in ways.items():
@@ -318,7 +315,7 @@ def lead(
             settled = [next(ends) for _ in sides[row].motions]
             lasting = [each.last.final for each in settled if each.lasts]
             quiet_from = nearest[sides[row].name]
-            near = sides[row].scale(FOLLOWING.located, quiet_from)
+            near = sides[row].scale(Following.located, quiet_from)
             sides[row].motions = lasting or sides[row].motions
             if not lasting or abs(left * ways[row]) <= near:
                 del ways[row]
@@ -359,7 +356,7 @@ def dies_out_always(
                 lasting.setdefault(row, []).append(settled.last.final)
         for row, states in lasting.items():
             answers[row] = False
-            sides[row].motions = states[: FOLLOWING.most_motions]
+            sides[row].motions = states[: Following.most_motions]
             del open_rows[row]
     return answers
 

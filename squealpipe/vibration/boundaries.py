@@ -43,9 +43,6 @@ class Search:
     """Relative width to which the linear boundary is located; more would show in printed digits."""
 
 
-SEARCH = Search()
-
-
 class Cure(NamedTuple):
     """One parameter of a subject that is changed.
 
@@ -79,7 +76,7 @@ class Cure(NamedTuple):
         """Return the distance next to a value that counts as located."""
         if self.is_angle:
             return located
-        return located * max(abs(value), SEARCH.least * abs(self.value), 1e-12)
+        return located * max(abs(value), Search.least * abs(self.value), 1e-12)
 
 
 @dataclass
@@ -172,11 +169,11 @@ def _zero(at: Callable[[float], float], stable: float, unstable: float) -> float
 
     Where growth crosses zero, by Brent's method, which bisects where it jumps.
     """
-    near = SEARCH.root * abs(unstable - stable)
+    near = Search.root * abs(unstable - stable)
     root = float(
-        scipy.optimize.brentq(at, stable, unstable, xtol=near, rtol=SEARCH.root)
+        scipy.optimize.brentq(at, stable, unstable, xtol=near, rtol=Search.root)
     )
-    step = near + SEARCH.root * abs(root)
+    step = near + Search.root * abs(root)
     value = root
     while value != stable and at(value) > 0.0:
         way = min(step, abs(stable - root))
@@ -188,7 +185,7 @@ def thinned(values: np.ndarray) -> list[float]:
     """Return some of the values, dense at first, the last among them."""
     if not values.size:
         return []
-    places = np.geomspace(1, values.size, min(SEARCH.rungs, values.size)).astype(int)
+    places = np.geomspace(1, values.size, min(Search.rungs, values.size)).astype(int)
     return [float(value) for value in values[np.unique(places) - 1]]
 
 
@@ -236,7 +233,7 @@ class _Stretch:
         """Return the value that tells whether an end of the stretch is quiet."""
         if is_open:
             return end
-        step = min(self.cure.scale(SEARCH.located, end), 0.5 * abs(other - end))
+        step = min(self.cure.scale(Search.located, end), 0.5 * abs(other - end))
         return end + math.copysign(step, other - end)
 
     def brackets(self) -> list[list[float]]:
@@ -296,7 +293,7 @@ def _bisect(stretches: Sequence[_Stretch], test: Test) -> None:
             for one, other in stretch.brackets():
                 # next to a boundary of growth the bracket is as narrow as it can be
                 near = min(one, other, key=abs)
-                if abs(one - other) > stretch.cure.scale(SEARCH.located, near) * (
+                if abs(one - other) > stretch.cure.scale(Search.located, near) * (
                     1.0 + 1e-9
                 ):
                     asked.append((stretch, 0.5 * (one + other)))

@@ -56,9 +56,6 @@ class Measurement:
     """Records that measure an irregular motion; a torus gets no more."""
 
 
-MEASUREMENT = Measurement()
-
-
 @dataclass(frozen=True)
 class Record:
     """A settled motion at uniform instants.
@@ -182,9 +179,9 @@ def unknown() -> tuple[dict[str, Any], dict[str, Any]]:
     scalars: dict[str, Any] = dict.fromkeys([*names, "settled_by"], np.nan)
     scalars |= {"verdict": Verdict.undetermined, "periodic": False}
     path = [f"path_{name}" for name in ("time", "x", "y", "force")]
-    nothing = dict.fromkeys(path, np.full(MEASUREMENT.shown_instants, np.nan))
+    nothing = dict.fromkeys(path, np.full(Measurement.shown_instants, np.nan))
     return scalars, _no_spectrum() | nothing | {
-        "path_regime": np.full(MEASUREMENT.shown_instants, -1)
+        "path_regime": np.full(Measurement.shown_instants, -1)
     }
 
 
@@ -194,11 +191,11 @@ def _blocks(settled: SettledRun, period: float, periodic: bool) -> int:
     A torus is measured for as long as it took to settle: its beat may be longer than one record.
     """
     if settled.irregular:
-        return MEASUREMENT.blocks
+        return Measurement.blocks
     if periodic or settled.verdict in (Verdict.quiet, Verdict.undetermined):
         return 1
-    settled_in = settled.elapsed / (MEASUREMENT.periods * period)
-    return int(min(max(np.ceil(settled_in), 2), MEASUREMENT.blocks))
+    settled_in = settled.elapsed / (Measurement.periods * period)
+    return int(min(max(np.ceil(settled_in), 2), Measurement.blocks))
 
 
 def _known(record: Record) -> np.ndarray:
@@ -320,7 +317,7 @@ def _spectrum(blocks: Sequence[Record]) -> dict[str, Any]:
     )
     if not np.isfinite(signals).all():
         return _no_spectrum()
-    padding = MEASUREMENT.padding
+    padding = Measurement.padding
     frequency, amplitude = amplitude_spectrum(signals, step, padding=padding)
     amplitude = np.sqrt((amplitude**2).mean(axis=1))
     frequency = frequency / (2.0 * np.pi)
@@ -328,7 +325,7 @@ def _spectrum(blocks: Sequence[Record]) -> dict[str, Any]:
     peaks, _ = highest_peaks(frequency, amplitude[louder], 1)
     strongest = float(peaks[0]) if peaks.size else np.nan
     resolution = 1.0 / float(times[-1])
-    multiples = strongest * np.arange(1, MEASUREMENT.harmonics + 1)
+    multiples = strongest * np.arange(1, Measurement.harmonics + 1)
     near = np.abs(frequency[:, None] - multiples) <= resolution
     heights = np.where(near, amplitude[louder][:, None], 0.0).max(axis=0)
     # lines as far apart as the resolution, or more: peaks keep their heights
@@ -356,7 +353,7 @@ def _no_spectrum() -> dict[str, Any]:
         "frequency_resolution": np.nan,
         **dict.fromkeys(
             ("harmonic_frequency", "harmonic_velocity"),
-            np.full(MEASUREMENT.harmonics, np.nan),
+            np.full(Measurement.harmonics, np.nan),
         ),
         **dict.fromkeys(
             (
@@ -376,9 +373,9 @@ def _path(record: Record, period: float) -> dict[str, Any]:
     deviation = np.nan_to_num(record.signals.var(axis=-1)).sum(axis=0)
     contact = int(np.argmax(deviation))
     per_period = period / float(times[1] - times[0])
-    first = max(times.size - int(MEASUREMENT.shown * per_period + 1e-6) - 1, 0)
+    first = max(times.size - int(Measurement.shown * per_period + 1e-6) - 1, 0)
     # instants of the settled motion that a dataset keeps
-    samples = MEASUREMENT.shown_instants
+    samples = Measurement.shown_instants
     at = np.unique(np.linspace(first, times.size - 1, samples).astype(int))
     at = np.concatenate([np.full(samples - at.size, at[0]), at])
     return {
@@ -396,11 +393,11 @@ def _repeats(record: Record, frequency: float) -> bool:
         return False
     if record.event_times.size:
         logged = record.event_times, record.event_kinds
-        return bool(repeats_after(*logged, MEASUREMENT.repeats))
+        return bool(repeats_after(*logged, Measurement.repeats))
     path, times = record.states, record.times
     later = times - times[0] >= 1.0 / frequency
     before = np.stack(
         [np.interp(times[later] - 1.0 / frequency, times, each) for each in path.T], -1
     )
-    near = np.abs(path[later] - before) <= MEASUREMENT.alike * np.ptp(path, axis=0)
+    near = np.abs(path[later] - before) <= Measurement.alike * np.ptp(path, axis=0)
     return bool(near.all())

@@ -92,7 +92,7 @@ def _optional(
     return or_nan(long_name, units, dims, optional=True, rtol=rtol)
 
 
-_OF_PADS = {
+_pad_variables = {
     "growth_rate": _optional("growth rate of small motions by model A3", "s-1"),
     "x_sliding": _optional("x of steady sliding", "m"),
     "y_sliding": _optional("y of steady sliding", "m"),
@@ -109,7 +109,7 @@ _OF_PADS = {
 }
 """Variables of pads on two springs alone."""
 _LEVEL = 2e-2
-_OF_STRUCTURES = {
+_structure_variables = {
     "contact_velocity_rms": _optional(
         "rms velocity of each contact", "m s-1", "contact", "direction", rtol=_LEVEL
     ),
@@ -159,7 +159,7 @@ def sobol_variables(*dims: str) -> dict[str, Variable]:
     }
 
 
-ASSESS = DatasetSchema(
+assess_schema = DatasetSchema(
     name="assess",
     title="Whether it squeals or hammers, why, how loud, and what stops it",
     coordinates={
@@ -268,8 +268,8 @@ ASSESS = DatasetSchema(
         "snap_distance": or_nan(
             "distance between both equilibria", "m", ("cure",), rtol=2e-2, optional=True
         ),
-        **_OF_PADS,
-        **_OF_STRUCTURES,
+        **_pad_variables,
+        **_structure_variables,
         "outcome": outcome(
             among=(Outcome.converged, Outcome.unresolved, Outcome.no_sliding_state)
         ),

@@ -47,9 +47,6 @@ class Quietness:
     """Share of the decay of small motions that a motion has to show. At 1 beats would hide it."""
 
 
-QUIETNESS = Quietness()
-
-
 @dataclass(frozen=True, kw_only=True)
 class Start:
     """A start, and what is known of small motions about its steady sliding.
@@ -301,10 +298,10 @@ def _settled(
         return end
     if _lost_in_part(now):
         return None
-    faded = QUIETNESS.faded * start.speed
+    faded = Quietness.faded * start.speed
     if start.sliding is None and now.total < faded:
         return Verdict.quiet, *end[1:]
-    is_shown = abs(start.rate) * float(now.length) >= QUIETNESS.shown or now.switched
+    is_shown = abs(start.rate) * float(now.length) >= Quietness.shown or now.switched
     return end if is_shown or start.rate == 0.0 else None
 
 
@@ -327,12 +324,12 @@ def _lost_in_part(now: Windows) -> bool:
 def _dies_out(start: Start, before: Windows, now: Windows) -> bool:
     """Tell whether a motion without events is small and decays as small motions do."""
     largest = float(now.largest_velocity)
-    if largest > QUIETNESS.stays_small * start.speed:
+    if largest > Quietness.stays_small * start.speed:
         # a long window may begin loud: a part of the decay within it has to be seen
-        decay = QUIETNESS.decay_share * start.rate * float(now.length)
-        left = min(QUIETNESS.stays_small * start.speed, largest * np.exp(decay))
-        return bool(decay < -QUIETNESS.seen and start.distance(now.final) < left)
-    if largest < QUIETNESS.faded * start.speed or start.rate == 0.0:
+        decay = Quietness.decay_share * start.rate * float(now.length)
+        left = min(Quietness.stays_small * start.speed, largest * np.exp(decay))
+        return bool(decay < -Quietness.seen and start.distance(now.final) < left)
+    if largest < Quietness.faded * start.speed or start.rate == 0.0:
         return True
     return _decays(start, before, now)
 
@@ -344,5 +341,5 @@ def _decays(start: Start, before: Windows, now: Windows) -> bool:
     # from the middle of one window to that of the next
     apart = 0.5 * float(before.length + now.length)
     return bool(
-        now.total < before.total * np.exp(QUIETNESS.decay_share * start.rate * apart)
+        now.total < before.total * np.exp(Quietness.decay_share * start.rate * apart)
     )

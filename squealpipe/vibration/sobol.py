@@ -27,7 +27,6 @@ class SobolRules:
     """Half-width of an index's 95 % interval above which it is not given."""
 
 
-SOBOL = SobolRules()
 INDEX_ORDERS = ("first_order", "total_order")
 INDICES = tuple(
     f"{order}{end}" for order in INDEX_ORDERS for end in ("", "_low", "_high")
@@ -39,8 +38,8 @@ def scrambled(inputs: int, size: int, seed: int) -> np.ndarray:
     """Points in the open unit cube, (size, inputs); equal parts are independent scramblings."""
     points = np.concatenate(
         [
-            scipy.stats.qmc.Sobol(inputs, rng=rng).random(size // SOBOL.replicates)
-            for rng in np.random.default_rng(seed).spawn(SOBOL.replicates)
+            scipy.stats.qmc.Sobol(inputs, rng=rng).random(size // SobolRules.replicates)
+            for rng in np.random.default_rng(seed).spawn(SobolRules.replicates)
         ]
     )
     return np.asarray(np.clip(points, 1e-12, 1.0 - 1e-12))
@@ -53,10 +52,10 @@ def share_interval(happens: np.ndarray) -> tuple[float, float]:
     which gain nothing by evenness, and of nearly certain ones Wilson's.
     """
     count, size = int(happens.sum()), happens.size
-    if min(count, size - count) < SOBOL.least_events:
+    if min(count, size - count) < SobolRules.least_events:
         return wilson_interval(count, size)
-    shares = happens.reshape(SOBOL.replicates, -1).mean(axis=1)
-    half = max(float(_half_width(shares)), 0.5 * SOBOL.replicates / size)
+    shares = happens.reshape(SobolRules.replicates, -1).mean(axis=1)
+    half = max(float(_half_width(shares)), 0.5 * SobolRules.replicates / size)
     return max(0.0, count / size - half), min(1.0, count / size + half)
 
 
@@ -104,7 +103,7 @@ def sobol_indices(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def supported_indices(
-    judged: Sequence[np.ndarray], parts: int, widest: float = SOBOL.widest
+    judged: Sequence[np.ndarray], parts: int, widest: float = SobolRules.widest
 ) -> dict[str, np.ndarray]:
     """Sobol indices with intervals, and the widest total's half-width by sample size.
 
@@ -116,11 +115,11 @@ def supported_indices(
     found = {key: np.full(shape, np.nan) for key in INDICES}
     half_widths = np.full((len(judged), parts), np.nan)
     for row, flat in enumerate(judged):
-        whole = flat.reshape(len(flat), SOBOL.replicates, -1)
+        whole = flat.reshape(len(flat), SobolRules.replicates, -1)
         for column in range(parts):
             part = whole[..., : whole.shape[-1] >> (parts - 1 - column)]
             count = part[0].sum()
-            if min(count, part[0].size - count) < SOBOL.least_events:
+            if min(count, part[0].size - count) < SobolRules.least_events:
                 continue
             value, half = sobol_indices(part)
             half_widths[row, column] = half[1].max()

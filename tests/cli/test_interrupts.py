@@ -13,7 +13,7 @@ import psutil
 import pytest
 
 from squealpipe.cli import main
-from squealpipe.cli.console import EXIT
+from squealpipe.cli.console import ExitCodes
 from squealpipe.study.supervised import end_group, remove_stale_lock
 
 LONG = {
@@ -44,7 +44,7 @@ def test_interrupt_stops_the_command_and_its_processes(name, tmp_path):
         assert done.poll() is None, "the command ended before the interrupt"
         os.killpg(done.pid, signal.SIGINT)
         told = done.communicate(timeout=4.0)[1]
-    assert done.returncode == EXIT.interrupted
+    assert done.returncode == ExitCodes.interrupted
     remedy = "run the same command again" if name == "sweep" else "nothing was kept"
     assert told == f"squealpipe: interrupted; {remedy}\n"
     assert not list(tmp_path.iterdir())

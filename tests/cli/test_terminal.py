@@ -11,7 +11,7 @@ import pytest
 
 from squealpipe import Parameters, load, stability_map
 from squealpipe.cli import run
-from squealpipe.cli.console import SESSION, working
+from squealpipe.cli.console import current_session, working
 from squealpipe.store.mistakes import ConfigError
 from squealpipe.study.configuration.settings import read_study
 from squealpipe.systems.progress import alone, stage
@@ -47,7 +47,7 @@ def test_what_was_there_from_before_does_not_shorten_the_time_that_is_left(
     capsys, monkeypatch
 ):
     clock = iter([0.0, 1.0, 61.0])
-    monkeypatch.setattr(SESSION, "quiet", False)
+    monkeypatch.setattr(current_session, "quiet", False)
     ours = SimpleNamespace(monotonic=lambda: next(clock))
     monkeypatch.setattr("squealpipe.cli.console.time", ours)
     with working("sweep"), alone() as show:
@@ -115,7 +115,7 @@ def test_a_stage_that_lasts_is_named_in_a_log(capsys, monkeypatch):
             waits.append("ended")
 
     monkeypatch.setattr("squealpipe.cli.console.threading.Timer", Timer)
-    monkeypatch.setattr(SESSION, "quiet", False)
+    monkeypatch.setattr(current_session, "quiet", False)
     with working("squeal"), stage("the fewest modes that agree"):
         pass
     assert waits == [5.0, "ended"]

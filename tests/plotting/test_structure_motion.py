@@ -13,7 +13,7 @@ from squealpipe.schema import Outcome, build
 from squealpipe.store import save
 from squealpipe.structures import elastic_pad
 from squealpipe.structures.meshes.datasets import mesh_variables
-from squealpipe.structures.schema.structure_run import STRUCTURE_RUN
+from squealpipe.structures.schema.structure_run import structure_run_schema
 from squealpipe.structures.squeal.settled_run import squealing_run
 from tests.plotting.test_sound import heard, strongest
 from tests.structures.test_squealing import two_modes, two_pads
@@ -35,7 +35,7 @@ def swaying():
     regime = np.where(q > 0, Regime.separated, Regime.slip_slower)
     of_mesh, coordinates = mesh_variables(pad)
     return build(
-        STRUCTURE_RUN,
+        structure_run_schema,
         {
             "displacement": q,
             "velocity": v,

@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 from squealpipe import Parameters, Sweep, backbone, run_sweep, simulate
-from squealpipe.paper.schema.claims import CLAIMS
+from squealpipe.paper.schema.claims import claims_schema
 from squealpipe.schema import DatasetSchema, Variable, build, find
 from squealpipe.store import load, save
 from squealpipe.store.comparison.compare import compare, compare_datasets
@@ -455,7 +455,8 @@ def test_statements_that_changed_are_told_with_verdict_and_value(tmp_path):
             "figure": ["fig02", "fig03", ""],
         }
         save(
-            build(CLAIMS, data, {"claim": claims}), tmp_path / place / "data/claims.nc"
+            build(claims_schema, data, {"claim": claims}),
+            tmp_path / place / "data/claims.nc",
         )
     found = compare(tmp_path / "a", tmp_path / "b").statements
     assert [change.claim for change in found] == ["B", "A"]

@@ -7,7 +7,7 @@ import pytest
 
 from squealpipe.vibration.shares import wilson_interval
 from squealpipe.vibration.sobol import (
-    SOBOL,
+    SobolRules,
     saltelli_matrices,
     scrambled,
     share_interval,
@@ -68,7 +68,9 @@ def test_intervals_hold_the_closed_form_as_often_as_they_claim(function, exact):
     inputs, held, halves = exact.shape[1], [], []
     for seed in range(60):
         values = np.array([function(u) for u in saltelli_matrices(inputs, 1024, seed)])
-        found, half = sobol_indices(values.reshape(2 + inputs, SOBOL.replicates, -1))
+        found, half = sobol_indices(
+            values.reshape(2 + inputs, SobolRules.replicates, -1)
+        )
         held.append(abs(found - exact) <= half)
         halves.append(half)
     idle = exact[1] == 0.0  # its total index and interval are exactly 0
@@ -103,7 +105,7 @@ def test_rare_shares_have_an_interval_of_some_width():
 
 def test_one_quantity_in_other_units_has_the_same_indices():
     values = np.array([ishigami(u) for u in saltelli_matrices(3, 256, 7)])
-    values = values.reshape(5, SOBOL.replicates, -1)
+    values = values.reshape(5, SobolRules.replicates, -1)
     for one, other in zip(
         sobol_indices(values), sobol_indices(1e7 * values - 3e8), strict=True
     ):

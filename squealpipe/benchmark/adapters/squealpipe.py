@@ -10,12 +10,12 @@ from squealpipe.benchmark.problems import Problem
 from squealpipe.schema import Outcome
 from squealpipe.systems.integrate import RunOptions, integrate
 
-_KNOWN: dict[str, Any] = {}
+_known: dict[str, Any] = {}
 
 
 def solve(problem: Problem, tol: float) -> Any:
     """Times, kinds, state, evaluations, flag, derivative; a Taylor step of order p counts p + 1."""
-    system = _KNOWN.setdefault(problem.name, system_of(problem))
+    system = _known.setdefault(problem.name, system_of(problem))
     given = {**system.parameters, **problem.data["start"]}
     # room for the events of a run; more than any problem of the benchmark has
     max_events = 1000

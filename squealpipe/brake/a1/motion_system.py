@@ -119,8 +119,8 @@ def brake(  # noqa: C901 (one short function for each force and surface)
     defaults = {name: getattr(default, name) for name in NUMBERS_OF_A1}
     defaults |= {"alpha1": 1.0, "alpha2": 1.0}
     traced = (laws.form, damped, model, one_mu, long_springs)
-    if traced in _FORMS:
-        return _FORMS[traced].with_numbers(laws.belt.regimes(), defaults)
+    if traced in _forms:
+        return _forms[traced].with_numbers(laws.belt.regimes(), defaults)
     form = a1.Suspension(rules.linear_springs, long_springs, damped)
 
     def suspension(s: Any, p: Any, r: Any) -> tuple[Any, Any]:
@@ -210,11 +210,11 @@ def brake(  # noqa: C901 (one short function for each force and surface)
         stops={} if rules.linear_springs else {"pivot1": pivot(0), "pivot2": pivot(1)},
         scales=scales,
     )
-    _FORMS[traced] = made
+    _forms[traced] = made
     return made
 
 
-_FORMS: dict[tuple[Any, ...], System] = {}
+_forms: dict[tuple[Any, ...], System] = {}
 """Systems by what of them is traced: tables whose values alone differ share one trace, which takes
 a second or more."""
 

@@ -21,9 +21,9 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
 from squealpipe.validation import Angle, Tolerance
-from squealpipe.vibration.boundaries import SEARCH
+from squealpipe.vibration.boundaries import Search
 from squealpipe.vibration.cures import Boundary, cure_table
-from squealpipe.vibration.schema import ASSESS, Mechanism
+from squealpipe.vibration.schema import Mechanism, assess_schema
 from squealpipe.vibration.settling import FOR_NUMBERS
 
 
@@ -58,7 +58,7 @@ class Judged:
 
     def with_cures(self) -> xr.Dataset:
         """The whole answer; the search takes most of its time."""
-        coarse = max(self.tol, SEARCH.tol)
+        coarse = max(self.tol, Search.tol)
         cures, snaps = pad_boundaries(
             self.design, self.verdict, self.motions, tol=coarse
         )
@@ -73,7 +73,7 @@ class Judged:
     ) -> xr.Dataset:
         of_cures = [snaps.get(name, SnapThrough()) for name in cures]
         return build(
-            ASSESS,
+            assess_schema,
             {
                 **self.facts,
                 **cure_table(cures, CURES),

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from squealpipe.brake.assess.designs import CURE_RANGES, cures_of
+from squealpipe.brake.assess.designs import CureRanges, cures_of
 from squealpipe.brake.assess.settling import (
     MOST_PERIODS_OF_A_PAD,
     pushed,
@@ -111,8 +111,8 @@ def nearest_angles(
     Along each ray it is located as a cure is; the nearest lies between two rays, a few per cent
     nearer.
     """
-    steps = CURE_RANGES.angle_step * np.arange(
-        1, 1 + round(CURE_RANGES.farthest_angle / CURE_RANGES.angle_step)
+    steps = CureRanges.angle_step * np.arange(
+        1, 1 + round(CureRanges.farthest_angle / CureRanges.angle_step)
     )
     rays = {}
     # directions in which the nearest quiet pair of angles is sought

@@ -28,19 +28,6 @@ class CureRanges:
     missed."""
 
 
-CURE_RANGES = CureRanges()
-
-
-PLAIN = """\
-_plain_coefficient = coefficient
-class _AsGiven:
-    mu = {mu!r}
-def coefficient(speed, p):
-    return p.mu * _plain_coefficient(speed, _AsGiven)
-"""
-"""Added to a Python law: with ``mu`` as its factor it is compiled once for all of them."""
-
-
 def cures_of(design: Design) -> dict[str, Cure]:
     """All cures of a design by name."""
     params = design.params
@@ -55,8 +42,8 @@ def cures_of(design: Design) -> dict[str, Cure]:
         cures[name] = _scaled(getattr(params, name), partial(design.at, name))
     for name in ("alpha1", "alpha2"):
         now = getattr(design, name)
-        steps = CURE_RANGES.angle_step * np.arange(
-            1, 1 + round(CURE_RANGES.farthest_angle / CURE_RANGES.angle_step)
+        steps = CureRanges.angle_step * np.arange(
+            1, 1 + round(CureRanges.farthest_angle / CureRanges.angle_step)
         )
         cures[name] = Cure(
             now, partial(design.at, name), now - steps, now + steps, is_angle=True
@@ -73,7 +60,15 @@ def with_friction(params: Parameters, factor: float) -> Parameters:
         return params.with_(mu=params.mu * factor, mu_static=static)
     if is_table(law):
         return params.with_(friction_law=scaled(law, 1.0, 1.0 / factor))
-    source = f"{law}\n{PLAIN.format(mu=params.mu)}"
+    # the factor ``mu`` stands outside the law, which is then compiled once for all factors
+    plain = (
+        "_plain_coefficient = coefficient\n"
+        "class _AsGiven:\n"
+        "    mu = {mu!r}\n"
+        "def coefficient(speed, p):\n"
+        "    return p.mu * _plain_coefficient(speed, _AsGiven)\n"
+    )
+    source = f"{law}\n{plain.format(mu=params.mu)}"
     return params.with_(friction_law=source, mu=factor, mu_static=static)
 
 
@@ -102,7 +97,7 @@ def _friction(design: Design) -> Cure:
     # three times the friction, or coefficient 1 where that is more
     factors = _factors(max(3.0, 1.0 / mu))
     # a table of zeros could not be scaled back, so 0 itself is left out
-    below = np.append(mu / _factors(CURE_RANGES.factor), 1e-9 * mu)
+    below = np.append(mu / _factors(CureRanges.factor), 1e-9 * mu)
     return Cure(
         mu,
         lambda value: design._replace(params=with_friction(params, value / mu)),
@@ -137,7 +132,7 @@ def _damping(design: Design) -> Cure:
         return design._replace(params=params.with_(**changed))
 
     below = (
-        np.append(ratio / _factors(CURE_RANGES.factor), 0.0)
+        np.append(ratio / _factors(CureRanges.factor), 0.0)
         if ratio > 0.0
         else np.zeros(0)
     )
@@ -148,7 +143,7 @@ def _damping(design: Design) -> Cure:
 
 def _scaled(value: float, apply: Callable[[float], Design]) -> Cure:
     """A number whose sign stays."""
-    factors = _factors(CURE_RANGES.factor) if value else np.zeros(0)
+    factors = _factors(CureRanges.factor) if value else np.zeros(0)
     return Cure(value, apply, value / factors, value * factors)
 
 

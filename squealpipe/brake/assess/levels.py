@@ -11,7 +11,7 @@ from squealpipe.codes import Regime
 from squealpipe.laws.contact import normal_force
 from squealpipe.schema import Outcome
 from squealpipe.vibration import levels as measured
-from squealpipe.vibration.levels import MEASUREMENT, Record
+from squealpipe.vibration.levels import Measurement, Record
 from squealpipe.vibration.settled_runs import SettledRun
 
 
@@ -34,8 +34,8 @@ def levels(
 
 def _record(design: Design, state: np.ndarray, *, tol: float) -> Record:
     params = design.params
-    length = MEASUREMENT.periods * design.period
-    count = int(MEASUREMENT.periods * MEASUREMENT.fine)
+    length = Measurement.periods * design.period
+    count = int(Measurement.periods * Measurement.fine)
     times = np.linspace(0.0, length, count + 1)[1:]
     run = run_ensemble(
         params,
@@ -47,14 +47,14 @@ def _record(design: Design, state: np.ndarray, *, tol: float) -> Record:
         tol=tol,
         tracked=(LARGEST_CONTACT_FORCE,),
         sums=True,
-        log_events=MEASUREMENT.most_events,
+        log_events=Measurement.most_events,
         workers=1,
     )
     load = params.k3 * params.preload
     x, y, vx, vy = run.samples.T
     off = run.sample_regimes == Regime.separated.value
     force = np.where(off, 0.0, normal_force(y, vy, params) / load)
-    logged = min(int(run.events), MEASUREMENT.most_events)
+    logged = min(int(run.events), Measurement.most_events)
     return Record(
         times=times,
         states=run.samples,

@@ -9,7 +9,7 @@ import xarray as xr
 
 from squealpipe.brake.assess.settling import pushed, settle, start_at
 from squealpipe.brake.assess.sliding import Design, Sliding
-from squealpipe.brake.schema.assess import VERDICT_MAP
+from squealpipe.brake.schema.assess import verdict_map_schema
 from squealpipe.codes import Verdict
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
@@ -72,7 +72,7 @@ def verdict_map(
     undetermined = maps["verdict"] == Verdict.undetermined
     without = maps["mechanism"] == Mechanism.no_sliding_state
     return build(
-        VERDICT_MAP,
+        verdict_map_schema,
         {
             "verdict": maps["verdict"],
             "mechanism": maps["mechanism"],

@@ -8,7 +8,7 @@ from squealpipe.brake.assess.sliding import Design, Sliding
 from squealpipe.brake.assess.windows import run_windows
 from squealpipe.brake.models.damped import is_undamped
 from squealpipe.brake.schema.assess import KICKS
-from squealpipe.vibration.settled_runs import QUIETNESS, Horizon, SettledRun, Start
+from squealpipe.vibration.settled_runs import Horizon, Quietness, SettledRun, Start
 from squealpipe.vibration.settled_runs import settle as settle_runs
 from squealpipe.vibration.settling import FOR_VERDICTS, Settling
 
@@ -35,7 +35,7 @@ def start_at(design: Design, sliding: Sliding | None, state: np.ndarray) -> Star
     if is_undamped(design.params):
         away = np.hypot(*(state - rest)[:2]) * design.rate
         own = float(np.hypot(away, np.hypot(*state[2:])))
-        speed = max(speed, own / QUIETNESS.stays_small * 2.0)
+        speed = max(speed, own / Quietness.stays_small * 2.0)
     return _start(design, sliding, np.asarray(state, float), speed)
 
 
@@ -104,6 +104,6 @@ def settle(
 def _first_window(start: Start, most: float) -> float:
     """Periods of the first window, in which small motions grow to e^½ or more."""
     rate = abs(start.rate) * start.period
-    shown = QUIETNESS.shown / rate if rate > 0 else 0.0
+    shown = Quietness.shown / rate if rate > 0 else 0.0
     # periods: the first two windows
     return float(np.clip(shown, 50.0, 0.25 * most))

@@ -12,7 +12,7 @@ from annotated_types import Ge, MinLen
 from squealpipe.brake.assess.settling import pushed, settle, start_at
 from squealpipe.brake.assess.sliding import Design, Sliding
 from squealpipe.brake.propensity.distributions import check_stick, distribution
-from squealpipe.brake.schema.assess import VERDICT_SHARES
+from squealpipe.brake.schema.assess import verdict_shares_schema
 from squealpipe.codes import Verdict
 from squealpipe.parameters import Parameters
 from squealpipe.schema import build
@@ -64,7 +64,7 @@ def verdict_shares(
     counts = [int((verdicts == kind).sum()) for kind in Verdict]
     low, high = np.transpose([wilson_interval(count, samples) for count in counts])
     return build(
-        VERDICT_SHARES,
+        verdict_shares_schema,
         {
             "share": np.array(counts) / samples,
             "share_low": low,

@@ -54,9 +54,6 @@ class SlidingSearch:
     subtracted, any tiny number does."""
 
 
-SLIDING_SEARCH = SlidingSearch()
-
-
 class Design(NamedTuple):
     """A brake: parameters, angles (rad) and "A1" or one of its variants."""
 
@@ -138,7 +135,7 @@ class Sliding:
     @cached_property
     def marginal(self) -> float:
         """Growth too slow for any run to show, 1/s."""
-        return SLIDING_SEARCH.grows * float(np.abs(self._roots).max())
+        return SlidingSearch.grows * float(np.abs(self._roots).max())
 
     @cached_property
     def mechanism(self) -> Mechanism:
@@ -150,7 +147,7 @@ class Sliding:
         if excess_growth(_jacobian(slopes)) <= 0.0:
             return Mechanism.falling_friction
         leading = self._roots[np.argmax(self._roots.real)]
-        oscillates = abs(leading.imag) > np.sqrt(SLIDING_SEARCH.grows) * abs(leading)
+        oscillates = abs(leading.imag) > np.sqrt(SlidingSearch.grows) * abs(leading)
         return Mechanism.flutter if oscillates else Mechanism.divergence
 
     @cached_property
@@ -180,11 +177,11 @@ def _balanced(design: Design) -> np.ndarray | None:
     At the whole friction at once it would jump to another branch where springs are soft.
     """
     raised = [
-        ((step + 1) / SLIDING_SEARCH.first_steps, math.inf)
-        for step in range(SLIDING_SEARCH.first_steps)
+        ((step + 1) / SlidingSearch.first_steps, math.inf)
+        for step in range(SlidingSearch.first_steps)
     ]
     return _approach(
-        design, raised + [(1.0, math.inf)] * SLIDING_SEARCH.most_newton_steps
+        design, raised + [(1.0, math.inf)] * SlidingSearch.most_newton_steps
     )
 
 
@@ -195,15 +192,15 @@ def _followed(design: Design) -> np.ndarray | None:
     implicit Euler steps that end as Newton's. Just beyond a fold the mass lingers, then goes far.
     """
     raised = [
-        ((step + 1) / SLIDING_SEARCH.friction_steps, SLIDING_SEARCH.pace)
-        for step in range(SLIDING_SEARCH.friction_steps)
+        ((step + 1) / SlidingSearch.friction_steps, SlidingSearch.pace)
+        for step in range(SlidingSearch.friction_steps)
     ]
-    settles = [(1.0, SLIDING_SEARCH.pace)] * SLIDING_SEARCH.friction_steps
+    settles = [(1.0, SlidingSearch.pace)] * SlidingSearch.friction_steps
     doubled = [
-        min(step, SLIDING_SEARCH.most_newton_steps)
-        for step in range(SLIDING_SEARCH.most_doubled)
+        min(step, SlidingSearch.most_newton_steps)
+        for step in range(SlidingSearch.most_doubled)
     ]
-    ends = [(1.0, SLIDING_SEARCH.pace * 2.0**step) for step in doubled]
+    ends = [(1.0, SlidingSearch.pace * 2.0**step) for step in doubled]
     return _approach(design, raised + settles + ends)
 
 
@@ -211,7 +208,7 @@ def _approach(design: Design, steps: list[tuple[float, float]]) -> np.ndarray | 
     """A place in balance after steps with a share of friction and a time over 1/rate each."""
     params, stiffness = design.params, np.eye(2) * design.rate**2
     balance = params.k3 * params.preload / params.mass
-    longest = SLIDING_SEARCH.longest_step * min(params.length1, params.length2)
+    longest = SlidingSearch.longest_step * min(params.length1, params.length2)
     place, acceleration, last = np.zeros(2), _acceleration(design), 1.0
     for share, time in steps:
         if share != last:
@@ -222,7 +219,7 @@ def _approach(design: Design, steps: list[tuple[float, float]]) -> np.ndarray | 
             return None
         if not np.isfinite(force).all():
             return None
-        if share == 1.0 and np.abs(force).max() < SLIDING_SEARCH.balance * balance:
+        if share == 1.0 and np.abs(force).max() < SlidingSearch.balance * balance:
             return place
         try:
             place = place + _step(force, slopes, stiffness, time, longest)
@@ -292,7 +289,7 @@ def _linearized(
     length = design.params.preload
     speed = length * design.rate
     steps = [
-        SLIDING_SEARCH.complex_step * unit for unit in (length, length, speed, speed)
+        SlidingSearch.complex_step * unit for unit in (length, length, speed, speed)
     ]
     rest = [float(each) for each in (*place, 0.0, 0.0)]
     values, slopes = (0j, 0j), np.empty((2, count))
@@ -317,8 +314,8 @@ def excess_growth(jacobian: np.ndarray) -> float:
     """
     roots = np.linalg.eigvals(jacobian)
     share = (
-        SLIDING_SEARCH.grows_with_damping
+        SlidingSearch.grows_with_damping
         if jacobian[2:, 2:].any()
-        else SLIDING_SEARCH.grows
+        else SlidingSearch.grows
     )
     return float(roots.real.max() - share * np.abs(roots).max())

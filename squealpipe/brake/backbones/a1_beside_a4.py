@@ -12,7 +12,7 @@ from squealpipe.brake.a4.orbits import find_orbit
 from squealpipe.brake.a4.system import scaled_system
 from squealpipe.brake.dynamics.runs import simulate
 from squealpipe.brake.orbits.orbit_shape import sample
-from squealpipe.brake.schema.backbones import A1_BESIDE_A4
+from squealpipe.brake.schema.backbones import a1_beside_a4_schema
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.vibration.spectrum import amplitude_spectrum, highest_peaks
@@ -102,7 +102,7 @@ def a1_beside_a4(
                 peaks, _ = highest_peaks(orders[near], spectra[i, j, near], 1)
                 dominant[i, j] = omega * next(iter(peaks), np.nan)
     return build(
-        A1_BESIDE_A4,
+        a1_beside_a4_schema,
         {
             "omega": omegas,
             "y_a4": np.array([history[kept] for history in references]),

@@ -22,7 +22,7 @@ from squealpipe.brake.balance.harmonic_balance import (
 )
 from squealpipe.brake.orbits.orbits import Orbit
 from squealpipe.brake.orbits.special_points import special_points
-from squealpipe.brake.schema.backbones import BACKBONE
+from squealpipe.brake.schema.backbones import backbone_schema
 from squealpipe.codes import SpecialPoint
 from squealpipe.laws.friction import slides
 from squealpipe.parameters import SCENES, Parameters
@@ -83,7 +83,7 @@ def backbone(
         beyond = special_beyond_contact(scene, orbits, outcomes)
         variables = exact_variables(scene, params, orbits, outcomes, end)
         return build(
-            BACKBONE,
+            backbone_schema,
             variables | special_variables(scene, beyond),
             {"point": np.arange(len(orbits)), "special": np.arange(len(beyond))},
             attrs,
@@ -211,7 +211,7 @@ def _harmonic_dataset(
     y_wave = series_extremes(y)
     x_speed = series_speed(x) * omega
     return build(
-        BACKBONE,
+        backbone_schema,
         {
             "omega": omega,
             "x_at_peak": x.sum(axis=1),

@@ -17,7 +17,7 @@ from squealpipe.brake.backbones.orbit import check_length
 from squealpipe.brake.models.a4 import first_integral_value
 from squealpipe.brake.orbits.orbits import Orbit
 from squealpipe.brake.orbits.special_points import special_points
-from squealpipe.brake.schema.backbones import DOUBLED_BRANCH
+from squealpipe.brake.schema.backbones import doubled_branch_schema
 from squealpipe.codes import SpecialPoint
 from squealpipe.laws.springs import geometry, linear_stiffness
 from squealpipe.parameters import Parameters
@@ -85,7 +85,7 @@ def _dataset(
     rest = np.array([orbit.point[:2] for orbit in orbits]).reshape(-1, 2) * scene.length
     highest = [orbit.largest_y(scene.system) for orbit in orbits]
     return build(
-        DOUBLED_BRANCH,
+        doubled_branch_schema,
         {
             **variables,
             **special_variables(scene, special),

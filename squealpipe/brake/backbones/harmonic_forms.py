@@ -14,7 +14,7 @@ from squealpipe.brake.balance.harmonic_balance import cosines_of
 from squealpipe.brake.balance.sampled_balance import SampledBalance
 from squealpipe.brake.orbits.orbit_shape import sample
 from squealpipe.brake.orbits.orbits import Orbit
-from squealpipe.brake.schema.backbones import HARMONIC_FORMS, Form
+from squealpipe.brake.schema.backbones import Form, harmonic_forms_schema
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 
@@ -83,7 +83,7 @@ def compare_harmonic_forms(params: Parameters, branches: Branches) -> xr.Dataset
     counts += [16 * FORM_HARMONICS, 64 * FORM_HARMONICS]
     spreads = [_phase_spread(motions[-1], n, sigma) for n in counts]
     return build(
-        HARMONIC_FORMS,
+        harmonic_forms_schema,
         {
             "omega": np.array([[s.omega for s in row] for row in solved])
             * unit[:, None],

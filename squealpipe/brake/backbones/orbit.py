@@ -11,7 +11,7 @@ import xarray as xr
 from squealpipe.brake.a4.orbits import find_orbit, orbit_values
 from squealpipe.brake.a4.system import scaled_system
 from squealpipe.brake.orbits.orbit_shape import sample
-from squealpipe.brake.schema.backbones import PERIODIC_ORBIT, Assumption
+from squealpipe.brake.schema.backbones import Assumption, periodic_orbit_schema
 from squealpipe.parameters import Parameters
 from squealpipe.schema import blank, build
 from squealpipe.schema.origin import recorded
@@ -46,7 +46,7 @@ def periodic_orbit(
     scene = scaled_system(params, alpha1, alpha2)
     found, outcome = find_orbit(scene, mode, y_peak / scene.length, across=True)
     values: dict[str, Any] = {
-        **blank(PERIODIC_ORBIT),
+        **blank(periodic_orbit_schema),
         "sliding_assumption": Assumption.holds,
     }
     switches, path = np.empty(0), np.empty((0, 4))
@@ -59,7 +59,7 @@ def periodic_orbit(
         switches = found.switches / scene.frequency
         path = sample(scene.system.rows, found.point, path_phases) * scene.length
     return build(
-        PERIODIC_ORBIT,
+        periodic_orbit_schema,
         {
             **values,
             "y_peak": y_peak,

@@ -10,7 +10,7 @@ from annotated_types import Ge
 
 from squealpipe.brake.a1.ensemble import run_ensemble
 from squealpipe.brake.a1.jobs import Model
-from squealpipe.brake.assess.sliding import SLIDING_SEARCH, Design, Sliding
+from squealpipe.brake.assess.sliding import Design, Sliding, SlidingSearch
 from squealpipe.brake.basins.smallest_vector import (
     IMPROVED,
     SearchResult,
@@ -20,7 +20,7 @@ from squealpipe.brake.basins.smallest_vector import (
 from squealpipe.brake.dynamics.motion import linear_time, whirls
 from squealpipe.brake.linear.maps import stability_map
 from squealpipe.brake.models.variants import VARIANT_RULES
-from squealpipe.brake.schema.basins import SMALLEST_DISTURBANCE, LeadsTo
+from squealpipe.brake.schema.basins import LeadsTo, smallest_disturbance_schema
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, blank, build
 from squealpipe.schema.origin import recorded
@@ -90,7 +90,9 @@ def smallest_disturbance(
         np.append(2 ** np.arange(3, directions.bit_length()), directions)
     )
     nothing: dict[str, Any] = {
-        **blank(SMALLEST_DISTURBANCE, directions=numbers.size, improved=IMPROVED),
+        **blank(
+            smallest_disturbance_schema, directions=numbers.size, improved=IMPROVED
+        ),
         "leads_to": goal,
         "regime_linear": stability_map(params, [alpha1], [alpha2]).regime_linear.item(),
         "alpha1": alpha1,
@@ -102,7 +104,9 @@ def smallest_disturbance(
 
     def result(outcome: Outcome, **found: Any) -> xr.Dataset:
         return build(
-            SMALLEST_DISTURBANCE, {**nothing, **found, "outcome": outcome}, coordinates
+            smallest_disturbance_schema,
+            {**nothing, **found, "outcome": outcome},
+            coordinates,
         )
 
     if sliding is None:
@@ -117,7 +121,7 @@ def smallest_disturbance(
         "growth_rate": growth,
         "rest_distance": float(np.linalg.norm(rest / scale)),
     }
-    if growth > SLIDING_SEARCH.grows * float(np.abs(values).max()):
+    if growth > SlidingSearch.grows * float(np.abs(values).max()):
         return result(Outcome.already_unstable, **known)
     if goal == LeadsTo.contact_lost:
         known["linear_distance"] = smallest_linear(

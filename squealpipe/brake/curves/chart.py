@@ -14,7 +14,7 @@ from squealpipe.brake.curves.chords import Vector
 from squealpipe.brake.curves.contact import Square, contact_lines, nearest_on, two_axes
 from squealpipe.brake.curves.regions import chains_of, holds, loops_of
 from squealpipe.brake.curves.stability import REGIME_GRID, Regimes, centres
-from squealpipe.brake.schema.curves import REGIME_CHART, ChartLine
+from squealpipe.brake.schema.curves import ChartLine, regime_chart_schema
 from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
@@ -131,7 +131,7 @@ def regime_chart(
     places = np.concatenate([np.empty((0, 2)), *(line for _, line, _ in chains)])
     lengths = [len(line) for _, line, _ in chains]
     return build(
-        REGIME_CHART,
+        regime_chart_schema,
         data
         | {
             **dict(zip(square.names, places.T, strict=True)),

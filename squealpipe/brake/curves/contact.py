@@ -23,10 +23,10 @@ from squealpipe.brake.curves.regions import chains_of, gathered, holds, inside, 
 from squealpipe.brake.curves.zero_lines import FirstGrid, ZeroLines
 from squealpipe.brake.models.refusals import refuse_unread
 from squealpipe.brake.schema.curves import (
-    BOUNDARY_DISTANCE,
-    CONTACT_BOUNDARY,
     VARIED,
     PointKind,
+    boundary_distance_schema,
+    contact_boundary_schema,
 )
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import COULOMB, LAWS
@@ -208,7 +208,7 @@ class FollowedLines(NamedTuple):
     lines: ZeroLines
 
 
-_LATEST: list[FollowedLines] = []
+_latest: list[FollowedLines] = []
 """None or one. A study follows the boundary in two readings of the sign of friction, which differ
 only where a mass is faster than the belt."""
 
@@ -219,7 +219,7 @@ def lines_of(square: Square, coarse: int, finest: int) -> ZeroLines:
     Where a mass was once as fast as the belt its reserve is computed anew.
     """
     cells, motions = (coarse, finest), square.motions()
-    for latest in _LATEST:
+    for latest in _latest:
         if motions is None or (cells, motions) != (latest.cells, latest.motions):
             continue
         if all(
@@ -230,9 +230,9 @@ def lines_of(square: Square, coarse: int, finest: int) -> ZeroLines:
             return latest.lines
     square.runs = 0
     lines = contact_lines(square, coarse, finest)
-    _LATEST.clear()
+    _latest.clear()
     if not square.sticks:
-        _LATEST.append(FollowedLines(cells, motions, square, lines))
+        _latest.append(FollowedLines(cells, motions, square, lines))
     return lines
 
 
@@ -351,7 +351,7 @@ def boundary_distance(boundary: xr.Dataset, design: Mapping[str, Number]) -> xr.
     loops = [vertices[owner == loop] for loop in np.unique(owner)]
     nearest, distance = nearest_on(loops, place, boundary.range.values)
     return build(
-        BOUNDARY_DISTANCE,
+        boundary_distance_schema,
         {
             "design": place,
             "distance": distance,
@@ -392,7 +392,7 @@ def _dataset(
     kept, areas, errors = np.array(regions).T
     inside = kept.astype(bool)
     return build(
-        CONTACT_BOUNDARY,
+        contact_boundary_schema,
         {
             **dict(zip(square.names, square.values(lines.place[at]).T, strict=True)),
             "kept": holds(lines, *shares),

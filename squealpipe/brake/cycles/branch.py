@@ -22,7 +22,7 @@ from squealpipe.brake.cycles.cycle import (
 )
 from squealpipe.brake.cycles.onset import find_onset
 from squealpipe.brake.models.refusals import refuse_unread
-from squealpipe.brake.schema.cycles import A1_CYCLE_BRANCH, A1_LIMIT_CYCLE
+from squealpipe.brake.schema.cycles import a1_cycle_branch_schema, a1_limit_cycle_schema
 from squealpipe.parameters import TABLE, Parameters
 from squealpipe.schema import Outcome, blank, build
 from squealpipe.schema.origin import recorded
@@ -151,7 +151,7 @@ def _first_cycle(
     design: Design, parameter: str, start: Any
 ) -> tuple[Cycle | None, Outcome]:
     if isinstance(start, xr.Dataset):
-        if start.attrs.get("schema") != A1_LIMIT_CYCLE.name:
+        if start.attrs.get("schema") != a1_limit_cycle_schema.name:
             raise ValueError(
                 f"start holds {', '.join(map(str, start.data_vars)) or 'nothing'}: a dataset of "
                 "limit_cycle is needed"
@@ -169,7 +169,7 @@ def _dataset(
     design: Design, parameter: str, points: list[BranchPoint], end: Outcome
 ) -> xr.Dataset:
     rows = in_rows(points, numbers)
-    columns: dict[str, Any] = blank(A1_CYCLE_BRANCH, multiplier=4)
+    columns: dict[str, Any] = blank(a1_cycle_branch_schema, multiplier=4)
     if rows:
         columns |= {name: np.array([row[name] for row in rows]) for name in rows[0]}
     states = np.array([start_of(point.cycle) for point in points]).reshape(-1, 4)
@@ -181,7 +181,7 @@ def _dataset(
         for point in points
     ]
     return build(
-        A1_CYCLE_BRANCH,
+        a1_cycle_branch_schema,
         {
             **columns,
             **{name: np.full(len(points), value) for name, value in fixed.items()},

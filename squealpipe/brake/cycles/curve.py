@@ -11,7 +11,7 @@ from squealpipe.brake.a1.jobs import STATE
 from squealpipe.brake.assess.sliding import Design
 from squealpipe.brake.cycles.cycle import IN_SYSTEM, cycle_from, n_events
 from squealpipe.brake.models.refusals import refuse_unread
-from squealpipe.brake.schema.cycles import A1_CYCLE_CURVE
+from squealpipe.brake.schema.cycles import a1_cycle_curve_schema
 from squealpipe.parameters import NUMBERS_OF_A1, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
@@ -19,19 +19,6 @@ from squealpipe.systems.branch_labels import Label
 from squealpipe.systems.cycles.curve import check, point_of
 from squealpipe.systems.cycles.curve_following import ENDS, follow_curve
 from squealpipe.validation import Angle, Number, Several
-
-REASONS = dict(
-    zip(
-        ENDS,
-        (
-            Outcome.point_limit,
-            Outcome.converged,
-            Outcome.branch_lost,
-            Outcome.real_multipliers,
-        ),
-        strict=True,
-    )
-)
 
 
 @recorded(
@@ -111,16 +98,28 @@ def cycle_curve(
         name: [point.cycle.parameters[IN_SYSTEM[name]] for point in points]
         for name in {*parameters, "alpha1", "alpha2"}
     }
+    reasons = dict(
+        zip(
+            ENDS,
+            (
+                Outcome.point_limit,
+                Outcome.converged,
+                Outcome.branch_lost,
+                Outcome.real_multipliers,
+            ),
+            strict=True,
+        )
+    )
     return build(
-        A1_CYCLE_CURVE,
+        a1_cycle_curve_schema,
         {
             **values,
             "period": [point.cycle.period * point.cycle.second for point in points],
             "residual": [point.residual for point in points],
             "label": [point.label for point in points],
             "events": [n_events(point.cycle) for point in points],
-            "outcome": [REASONS.get(end, Outcome.order_changes) for end in ends],
-            "change": ["" if end in REASONS else end for end in ends],
+            "outcome": [reasons.get(end, Outcome.order_changes) for end in ends],
+            "change": ["" if end in reasons else end for end in ends],
         },
         {"point": np.arange(len(points)), "parameter": list(parameters)},
         {"curve": label},

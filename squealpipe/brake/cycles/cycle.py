@@ -13,7 +13,7 @@ from squealpipe.brake.a1.ensemble import NEAR_PIVOT
 from squealpipe.brake.a1.jobs import STATE
 from squealpipe.brake.a1.motion_system import brake_of, parameters_of_run, regimes_of
 from squealpipe.brake.assess.sliding import Design
-from squealpipe.brake.schema.cycles import A1_LIMIT_CYCLE
+from squealpipe.brake.schema.cycles import a1_limit_cycle_schema
 from squealpipe.codes import Event, Regime
 from squealpipe.laws.springs import fixed_ends, geometry
 from squealpipe.parameters import NUMBERS_OF_A1, Parameters
@@ -65,10 +65,16 @@ def limit_cycle(
     """
     design = Design(params, alpha1, alpha2)
     cycle, outcome = cycle_from(design, guess, t_settle, max_steps)
-    found = blank(A1_LIMIT_CYCLE, multiplier=4) if cycle is None else _described(cycle)
+    found = (
+        blank(a1_limit_cycle_schema, multiplier=4)
+        if cycle is None
+        else _described(cycle)
+    )
     angles = {"alpha1": alpha1, "alpha2": alpha2}
     multiplier = {"multiplier": np.arange(1, 5)}
-    return build(A1_LIMIT_CYCLE, {**found, **angles, "outcome": outcome}, multiplier)
+    return build(
+        a1_limit_cycle_schema, {**found, **angles, "outcome": outcome}, multiplier
+    )
 
 
 def cycle_from(

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.brake.a1.ensemble import run_ensemble
-from squealpipe.brake.schema.cycles import SETTLED_EXTREMES
+from squealpipe.brake.schema.cycles import settled_extremes_schema
 from squealpipe.parameters import Parameters
 from squealpipe.schema import build
 from squealpipe.schema.origin import recorded
@@ -66,7 +66,7 @@ def settled_extremes(
         workers=workers,
     )
     return build(
-        SETTLED_EXTREMES,
+        settled_extremes_schema,
         {"late_max_x": run.late_max_x, "outcome": run.outcome, "t_end": t_end},
         {"scene": list(scenes), "mu": mu, "start": np.arange(starts)},
     )

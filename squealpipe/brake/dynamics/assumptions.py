@@ -17,7 +17,10 @@ from squealpipe.brake.dynamics.runs import simulate
 from squealpipe.brake.models import a2
 from squealpipe.brake.models.a4 import contact_matrix
 from squealpipe.brake.models.refusals import refuse_extensions
-from squealpipe.brake.schema.dynamics.assumptions import ASSUMPTIONS, LINEAR_PULL
+from squealpipe.brake.schema.dynamics.assumptions import (
+    assumptions_schema,
+    linear_pull_schema,
+)
 from squealpipe.brake.schema.dynamics.extremes import extremes, largest_size
 from squealpipe.laws import springs
 from squealpipe.laws.contact import contact_force
@@ -104,7 +107,7 @@ def check_assumptions(params: Parameters, scenes: Iterable[Scene] = ()) -> xr.Da
         [name in ("angles are constant", "springs are linear") for name in names]
     )
     return build(
-        ASSUMPTIONS,
+        assumptions_schema,
         {
             "needed": [
                 [name in ASSUMED_BY_LEVEL[level] for name in names]
@@ -152,7 +155,7 @@ def linear_pull_map(
         pulling += force < 0
         before, last = last, force
     return build(
-        LINEAR_PULL,
+        linear_pull_schema,
         {
             "lowest_contact_force": lowest,
             "pulling_fraction": pulling / (steps + 1),

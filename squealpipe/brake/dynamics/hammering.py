@@ -15,11 +15,11 @@ from squealpipe.brake.a1.ensemble import (
 )
 from squealpipe.brake.dynamics import motion
 from squealpipe.brake.normal_form import NormalForm
-from squealpipe.brake.schema.dynamics.runs import HAMMERING_MAP
+from squealpipe.brake.schema.dynamics.runs import hammering_map_schema
 from squealpipe.parameters import Parameters
 from squealpipe.schema import build
 from squealpipe.schema.origin import recorded
-from squealpipe.systems.recurrence import RECURRENCE
+from squealpipe.systems.recurrence import Recurrence
 from squealpipe.validation import Angles, Positive, Tolerance, Workers
 
 
@@ -57,7 +57,7 @@ def hammering_map(
         t_end: end of each run, s.
 
     Returns:
-        Dataset over (alpha1, alpha2); see ``schema.dynamics.runs.HAMMERING_MAP``. ``outcome`` is
+        Dataset over (alpha1, alpha2); see ``hammering_map_schema``. ``outcome`` is
         ``beyond_horizon`` where an error of ``tol`` decides the state before t_end: there only
         statistics mean something.
     """
@@ -68,7 +68,7 @@ def hammering_map(
         rows,
         columns,
         partial(_hammering, params=form.params, t_end=t_end, workers=workers),
-        at_once=RECURRENCE.events_at_once // motion.room_for_events(t_end, params),
+        at_once=Recurrence.events_at_once // motion.room_for_events(t_end, params),
         **motion.with_log(t_end, params),
         tol=tol,
         t_late="return",
@@ -77,7 +77,7 @@ def hammering_map(
     )
     maps["turns"] = form.sign * maps["turns"]
     return build(
-        HAMMERING_MAP,
+        hammering_map_schema,
         {**{name: form.back(values) for name, values in maps.items()}, "t_end": t_end},
         {"alpha1": alpha1, "alpha2": alpha2},
         {

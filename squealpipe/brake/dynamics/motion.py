@@ -8,7 +8,7 @@ import numpy as np
 from squealpipe.brake.a1.ensemble import Ensemble, integrate
 from squealpipe.brake.schema.dynamics.runs import MotionFlag
 from squealpipe.schema import Outcome
-from squealpipe.systems.recurrence import RECURRENCE, in_blocks, repeats_after
+from squealpipe.systems.recurrence import Recurrence, in_blocks, repeats_after
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class MotionClassification:
     regular_growth_power: float = 2.0
     """A perturbation of a regular motion grows like this power of time at most; of a chaotic one,
     exponentially."""
-    least_events: int = 4 * RECURRENCE.least_repeats
+    least_events: int = 4 * Recurrence.least_repeats
     """Events in the later half of a run from which a repetition is sought."""
     events_per_time: float = 0.5
     """Events in a :func:`linear_time` that a log has room for at first; the baseline has 0.35."""
@@ -192,7 +192,7 @@ def regular_kind(times: np.ndarray, kinds: np.ndarray, t_end: float) -> MotionFl
     late = times > 0.5 * t_end
     if np.count_nonzero(late) < limits.least_events:
         return MotionFlag.undetermined
-    if repeats_after(times[late], kinds[late], RECURRENCE.repeated):
+    if repeats_after(times[late], kinds[late], Recurrence.repeated):
         return MotionFlag.periodic_hammering
     after, kinds, late = np.diff(times), kinds[:-1], late[:-1]
     for kind in np.unique(kinds):

@@ -13,7 +13,7 @@ from squealpipe.brake.adaptive_grid import (
     follow_boundaries,
     refine_grid,
 )
-from squealpipe.brake.schema.dynamics.runs import REFINED_VALIDITY_MAP
+from squealpipe.brake.schema.dynamics.runs import refined_validity_map_schema
 from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
@@ -88,7 +88,7 @@ def refine_validity_map(
         checked, wrong = _check_inherited(evaluate, grid, seed + 1)
     time[~grid.computed], outcome[~grid.computed] = np.nan, Outcome.inherited
     return build(
-        REFINED_VALIDITY_MAP,
+        refined_validity_map_schema,
         {
             "separates": grid.labels,
             "first_separation_time": time,

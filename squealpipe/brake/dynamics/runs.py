@@ -13,7 +13,7 @@ from squealpipe.brake.a1.jobs import Model, jobs_of
 from squealpipe.brake.linear.maps import stability_map
 from squealpipe.brake.models.variants import VARIANT_RULES
 from squealpipe.brake.sampling import default_times, unresolved
-from squealpipe.brake.schema.dynamics.runs import SIMULATION, VALIDITY_MAP
+from squealpipe.brake.schema.dynamics.runs import simulation_schema, validity_map_schema
 from squealpipe.codes import Regime
 from squealpipe.laws.contact import normal_force
 from squealpipe.parameters import HORIZON, Parameters
@@ -59,7 +59,7 @@ def simulate(
         growth: also give the factor by which a small perturbation of the start has grown.
 
     Returns:
-        Dataset over ``time`` and ``event``; see ``schema.dynamics.runs.SIMULATION``. Instants
+        Dataset over ``time`` and ``event``; see ``simulation_schema``. Instants
         that a run with another outcome than ``converged`` did not reach hold NaN.
     """
     if times is None:
@@ -113,7 +113,7 @@ def simulate(
     extremes["normalized_contact_force"] = low, high
     states = {"x": x, "y": y, "vx": vx, "normalized_contact_force": force}
     return build(
-        SIMULATION,
+        simulation_schema,
         {
             "x": x,
             "y": y,
@@ -194,7 +194,7 @@ def validity_map(
     )
     regimes = stability_map(params, alpha1, alpha2)["regime_linear"]
     return build(
-        VALIDITY_MAP,
+        validity_map_schema,
         {**maps, "regime_linear": regimes, "t_end": t_end},
         {"alpha1": alpha1, "alpha2": alpha2},
     )

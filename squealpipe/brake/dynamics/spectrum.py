@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 from annotated_types import Gt
 
-from squealpipe.brake.schema.dynamics.runs import SPECTRUM
+from squealpipe.brake.schema.dynamics.runs import spectrum_schema
 from squealpipe.schema import build
 from squealpipe.schema.origin import recorded
 from squealpipe.vibration.spectrum import (
@@ -64,7 +64,7 @@ def spectrum(
         omega, amplitude[2], 10, 2.0 * math.pi * resolution
     )
     return build(
-        SPECTRUM,
+        spectrum_schema,
         {
             "velocity_along": amplitude[0],
             "velocity_across": amplitude[1],

@@ -8,7 +8,7 @@ import xarray as xr
 
 from squealpipe.brake.schema.dynamics.extremes import extremes, largest_size
 from squealpipe.brake.schema.dynamics.intervals import intervals
-from squealpipe.brake.schema.dynamics.runs import RUN_SUMMARY
+from squealpipe.brake.schema.dynamics.runs import run_summary_schema
 from squealpipe.codes import Event, Regime
 from squealpipe.schema import build
 from squealpipe.schema.origin import recorded
@@ -58,7 +58,7 @@ def summarize(run: xr.Dataset) -> xr.Dataset:
         frequency, amplitude, kept, padding * float(frequency[1])
     )
     return build(
-        RUN_SUMMARY,
+        run_summary_schema,
         {
             "first_separation_time": apart[0, 0] if len(apart) else np.nan,
             "impact_rate": returns / end,

@@ -12,7 +12,7 @@ import xarray as xr
 from squealpipe.brake.a1.ensemble import LARGEST_REACH, run_ensemble
 from squealpipe.brake.dynamics.motion import judge, with_log
 from squealpipe.brake.normal_form import NormalForm
-from squealpipe.brake.schema.dynamics.long_runs import TRANSIENT, WHIRL
+from squealpipe.brake.schema.dynamics.long_runs import transient_schema, whirl_schema
 from squealpipe.brake.schema.dynamics.runs import MotionFlag
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.schema import Outcome, build
@@ -38,7 +38,7 @@ def whirl_sizes(
         t_end: end of each run, s; the last fifth gives the size.
 
     Returns:
-        Dataset over belt_speed; see ``schema.dynamics.long_runs.WHIRL``. Without three such speeds
+        Dataset over belt_speed; see ``whirl_schema``. Without three such speeds
         slope and offset are NaN.
     """
     form, scene = NormalForm.of(params), SCENES["F3"]
@@ -71,7 +71,7 @@ def whirl_sizes(
         weights = 1.0 / run.late_max_x[fitted]
         slope, offset = np.polyfit(speeds[fitted], run.late_max_x[fitted], 1, w=weights)
     return build(
-        WHIRL,
+        whirl_schema,
         {
             "amplitude": run.late_max_x,
             "stick_fraction": run.stick_time / run.time,
@@ -123,7 +123,7 @@ def transient_lifetimes(
     )
     ended = run.outcome == Outcome.amplitude_reached
     return build(
-        TRANSIENT,
+        transient_schema,
         {
             "lifetime": np.where(ended, run.time, np.nan),
             "belt_speed": params.belt_speed,

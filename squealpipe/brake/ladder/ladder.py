@@ -10,7 +10,7 @@ from squealpipe.brake.ladder.choice import choose_models, run_a1
 from squealpipe.brake.ladder.levels import Scenes, answer
 from squealpipe.brake.models.refusals import refuse_extensions
 from squealpipe.brake.normal_form import NormalForm
-from squealpipe.brake.schema.ladder import MODEL_LADDER, QUESTIONS, Level
+from squealpipe.brake.schema.ladder import QUESTIONS, Level, model_ladder_schema
 from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.systems.processes import cpu_time
@@ -67,7 +67,7 @@ def model_ladder(
     chosen = choose_models(*asked, t_end=horizon, workers=workers)
     shape = (points, points)
     return build(
-        MODEL_LADDER,
+        model_ladder_schema,
         {
             "error": error.reshape(len(QUESTIONS), len(ladder_levels), *shape),
             "cheapest": np.array(ladder_levels)[cheapest].reshape(-1, *shape),

@@ -5,7 +5,7 @@ import xarray as xr
 
 from squealpipe.brake.models import a3
 from squealpipe.brake.models.refusals import refuse_extensions
-from squealpipe.brake.schema.linear import STABILITY_BOUNDARIES, BoundaryCurve
+from squealpipe.brake.schema.linear import BoundaryCurve, stability_boundaries_schema
 from squealpipe.parameters import Parameters
 from squealpipe.schema import build
 
@@ -52,7 +52,7 @@ def stability_boundaries(params: Parameters, *, points: int = 400) -> xr.Dataset
         np.concatenate([segment[i] for segment in segments]) for i in (1, 2)
     )
     return build(
-        STABILITY_BOUNDARIES,
+        stability_boundaries_schema,
         {
             "alpha1": alpha1,
             "alpha2": alpha2,

@@ -7,7 +7,10 @@ from types import SimpleNamespace
 import xarray as xr
 
 from squealpipe.brake.models.damped import critical_friction, dashpots_lower
-from squealpipe.brake.schema.linear import CRITICAL_DAMPING_MAP, CRITICAL_FRICTION_MAP
+from squealpipe.brake.schema.linear import (
+    critical_damping_map_schema,
+    critical_friction_map_schema,
+)
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import slope
 from squealpipe.parameters import Parameters
@@ -40,7 +43,7 @@ def critical_friction_map(
     critical, undamped = critical_friction(params, *pair)
     vanishing, _ = critical_friction(params, *pair, vanishing=True)
     return build(
-        CRITICAL_FRICTION_MAP,
+        critical_friction_map_schema,
         {
             "critical_mu": critical,
             "critical_mu_undamped": undamped,
@@ -80,7 +83,7 @@ def critical_damping_map(
     )
     critical, undamped = critical_friction(system, alpha1, alpha2)
     return build(
-        CRITICAL_DAMPING_MAP,
+        critical_damping_map_schema,
         {
             "critical_mu": critical,
             "critical_mu_undamped": undamped,

@@ -17,9 +17,9 @@ from squealpipe.brake.models.contact_system import contact_system
 from squealpipe.brake.models.damped import damped_system, is_undamped, stability
 from squealpipe.brake.models.refusals import WHY_A4, refuse_extensions, refuse_scales
 from squealpipe.brake.schema.linear import (
-    NATURAL_FREQUENCIES,
-    QUASI_STATIC_MAP,
-    STABILITY_MAP,
+    natural_frequencies_schema,
+    quasi_static_map_schema,
+    stability_map_schema,
 )
 from squealpipe.laws.springs import Geometry, linear_stiffness, pair_determinant
 from squealpipe.parameters import NUMBERS_OF_A1, Parameters
@@ -56,7 +56,7 @@ def quasi_static_map(
     singular = ~(np.hypot(state[0], state[1]) < farthest)
     x, y, force = (np.where(singular, np.nan, value) for value in state)
     return build(
-        QUASI_STATIC_MAP,
+        quasi_static_map_schema,
         {
             "possible_as_printed": a2.possible_as_printed(stiffness, params.drag),
             "possible": reaction > 0,
@@ -117,7 +117,7 @@ def stability_map(
         )
     outcomes = np.array([Outcome.converged, Outcome.complex_pair, Outcome.divergence])
     return build(
-        STABILITY_MAP,
+        stability_map_schema,
         {
             "growth_rate": growth,
             "frequency": frequency,
@@ -167,7 +167,7 @@ def natural_frequencies(
                 Outcome.converged,
             )
     return build(
-        NATURAL_FREQUENCIES,
+        natural_frequencies_schema,
         {"omega": omega, "outcome": outcomes},
         {
             "alpha1": alpha1,

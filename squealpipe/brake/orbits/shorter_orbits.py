@@ -21,9 +21,6 @@ class SameOrbit:
     """Distance over 1 + |z| below which two states are one, or one next to where branches meet."""
 
 
-SAME_ORBIT = SameOrbit()
-
-
 def _apart(system: PiecewiseLinearSystem, orbit: Orbit) -> NDArray[np.float64]:
     """States after T/n less the first one, (6, 4)."""
     states = sample(system.rows, orbit.point, 2.0 * math.pi / np.arange(7, 1, -1))
@@ -31,7 +28,7 @@ def _apart(system: PiecewiseLinearSystem, orbit: Orbit) -> NDArray[np.float64]:
 
 
 def is_primitive(
-    system: PiecewiseLinearSystem, orbit: Orbit, near: float = SAME_ORBIT.same_state
+    system: PiecewiseLinearSystem, orbit: Orbit, near: float = SameOrbit.same_state
 ) -> bool:
     """Return whether an orbit is not a shorter one that is run through several times.
 
@@ -50,8 +47,8 @@ def about_to_meet(system: PiecewiseLinearSystem, orbit: Orbit) -> bool:
     # checked for
     if not orbit.stability_index > 0.5:
         return False
-    next_to_it = abs(orbit.stability_index - 2.0) < SAME_ORBIT.nearly_same
-    near = SAME_ORBIT.nearly_same if next_to_it else SAME_ORBIT.same_state
+    next_to_it = abs(orbit.stability_index - 2.0) < SameOrbit.nearly_same
+    near = SameOrbit.nearly_same if next_to_it else SameOrbit.same_state
     return not is_primitive(system, orbit, near)
 
 
@@ -62,7 +59,7 @@ def shorter_orbit_between(
 
     At a shorter orbit the state after T/n is the initial one; its distance turns round there.
     """
-    if not is_primitive(system, last, SAME_ORBIT.nearly_same):
+    if not is_primitive(system, last, SameOrbit.nearly_same):
         return True
     before, after = _apart(system, first), _apart(system, last)
     size = np.abs(before).sum(axis=1) * np.abs(after).sum(axis=1)

@@ -26,7 +26,7 @@ from squealpipe.brake.models.damped import damped_system, is_undamped, regime
 from squealpipe.brake.models.refusals import refuse_unread
 from squealpipe.brake.propensity.distributions import check_stick, distribution
 from squealpipe.brake.schema.dynamics.runs import MotionFlag
-from squealpipe.brake.schema.propensity import PROPENSITY
+from squealpipe.brake.schema.propensity import propensity_schema
 from squealpipe.codes import LinearRegime
 from squealpipe.inputs import ANGLES
 from squealpipe.laws.contact_laws import LINEAR
@@ -122,7 +122,7 @@ def propensity(
         )
     supported = np.isfinite(table["total_order"]).all(axis=1)
     return build(
-        PROPENSITY,
+        propensity_schema,
         {
             "share": happens.mean(axis=1),
             "share_low": low,

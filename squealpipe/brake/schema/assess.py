@@ -31,7 +31,7 @@ CURES = {
     "belt_speed": "m s-1",
 }
 """Quantities that are changed one at a time to stop the noise, with their units."""
-VERDICT_MAP = DatasetSchema(
+verdict_map_schema = DatasetSchema(
     name="verdict_map",
     title="Whether a brake squeals or hammers, over both spring angles",
     coordinates=ANGLE_COORDINATES,
@@ -52,7 +52,7 @@ VERDICT_MAP = DatasetSchema(
     },
 )
 
-VERDICT_SHARES = DatasetSchema(
+verdict_shares_schema = DatasetSchema(
     name="verdict_shares",
     title="Shares of the verdicts over scattered parameters",
     coordinates={"kind": text("verdict", "kind")},

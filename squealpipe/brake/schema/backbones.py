@@ -49,7 +49,7 @@ def _orbit_variables(*dims: str) -> dict[str, Variable]:
     }
 
 
-PERIODIC_ORBIT = DatasetSchema(
+periodic_orbit_schema = DatasetSchema(
     name="periodic_orbit",
     title="An exact symmetric periodic motion of model A4",
     lists={"switch": Listing()},
@@ -79,7 +79,7 @@ PERIODIC_ORBIT = DatasetSchema(
     },
 )
 
-BACKBONE = DatasetSchema(
+backbone_schema = DatasetSchema(
     name="backbone",
     title="A backbone of model A4: a family of free periodic motions",
     lists={
@@ -140,15 +140,17 @@ BACKBONE = DatasetSchema(
     },
 )
 
-DOUBLED_BRANCH = DatasetSchema(
+doubled_branch_schema = DatasetSchema(
     name="doubled_branch",
     title="Periodic motions of model A4 of doubled period, from a period doubling on",
-    lists=BACKBONE.lists,
-    coordinates={name: BACKBONE.coordinates[name] for name in ("point", "special")},
+    lists=backbone_schema.lists,
+    coordinates={
+        name: backbone_schema.coordinates[name] for name in ("point", "special")
+    },
     variables={
         **{
             name: entry
-            for name, entry in BACKBONE.variables.items()
+            for name, entry in backbone_schema.variables.items()
             if not entry.optional
         },
         "end": flag(
@@ -179,7 +181,7 @@ class Form(IntEnum):
     as_printed = 1
 
 
-HARMONIC_FORMS = DatasetSchema(
+harmonic_forms_schema = DatasetSchema(
     name="harmonic_forms",
     title="The paper's harmonic balance, corrected and as printed, against exact orbits",
     coordinates={
@@ -211,7 +213,7 @@ HARMONIC_FORMS = DatasetSchema(
 )
 
 
-A1_BESIDE_A4 = DatasetSchema(
+a1_beside_a4_schema = DatasetSchema(
     name="a1_beside_a4",
     title="Model A1 in time, started on periodic motions of A4, for springs of several lengths",
     coordinates={

@@ -73,7 +73,7 @@ def basin_schema(swept: tuple[str, ...]) -> DatasetSchema:
     )
 
 
-BASIN_MAPS = tuple(
+basin_map_schemas = tuple(
     basin_schema(
         tuple(name for i, name in enumerate(START_VARIABLES) if chosen >> i & 1)
     )
@@ -93,7 +93,7 @@ def _distance(dim: str, long_name: str) -> Variable:
     return or_nan(long_name, dims=(dim,), rtol=1e-6)
 
 
-SMALLEST_DISTURBANCE = DatasetSchema(
+smallest_disturbance_schema = DatasetSchema(
     name="smallest_disturbance",
     title="Smallest disturbance of steady sliding that leads to contact loss, or to the whirl",
     coordinates={

@@ -55,10 +55,9 @@ VARIED = {
 }
 """The two that vary are there."""
 
-_REGION = ("region",)
 PARAMETER = {"parameter": text("parameter that varies", "parameter")}
 
-CONTACT_BOUNDARY = DatasetSchema(
+contact_boundary_schema = DatasetSchema(
     name="contact_boundary",
     title="Where model A1, from rest, just keeps contact: arcs and corners over two parameters",
     coordinates={
@@ -91,10 +90,10 @@ CONTACT_BOUNDARY = DatasetSchema(
         "kind": flag("what the point is", PointKind, "point"),
         "region_kept": whether("whether contact is kept there", "region"),
         "region_area": Variable(
-            "area, in the units of both parameters", "1", _REGION, rtol=1e-5
+            "area, in the units of both parameters", "1", ("region",), rtol=1e-5
         ),
         "region_area_error": Variable(
-            "error of the area, from the shape of the arcs", "1", _REGION, rtol=1.0
+            "error of the area, from the shape of the arcs", "1", ("region",), rtol=1.0
         ),
         "kept_share": Variable("share of the rectangle in which contact is kept"),
         "kept_share_error": Variable("error of that share", rtol=1.0),
@@ -115,7 +114,7 @@ CONTACT_BOUNDARY = DatasetSchema(
     },
 )
 
-BOUNDARY_DISTANCE = DatasetSchema(
+boundary_distance_schema = DatasetSchema(
     name="boundary_distance",
     title="How far a design is from the boundary of kept contact",
     coordinates=PARAMETER,
@@ -130,7 +129,7 @@ BOUNDARY_DISTANCE = DatasetSchema(
     },
 )
 
-REGIME_CHART = DatasetSchema(
+regime_chart_schema = DatasetSchema(
     name="regime_chart",
     title="Lines over two parameters across which A3 is unstable or A1, from rest, loses contact",
     lists={
@@ -159,10 +158,10 @@ REGIME_CHART = DatasetSchema(
             "what A3 does in cells of equal size", LinearRegime, "row", "column"
         ),
         "cell_kept": whether("whether contact is kept", "row", "column"),
-        "region_regime": flag("what A3 does there", LinearRegime, *_REGION),
-        "region_kept": whether("whether contact is kept there", *_REGION),
+        "region_regime": flag("what A3 does there", LinearRegime, "region"),
+        "region_kept": whether("whether contact is kept there", "region"),
         "region_place": Variable("a place well inside", dims=("region", "parameter")),
-        "region_share": Variable("share of the chart", dims=_REGION),
+        "region_share": Variable("share of the chart", dims=("region",)),
         "design": Variable(
             "values of designs", dims=("place", "parameter"), optional=True
         ),

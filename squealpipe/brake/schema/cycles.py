@@ -66,7 +66,7 @@ def _cycle_variables(*dims: str) -> dict[str, Variable]:
 
 MULTIPLIER = count("number of the multiplier", "multiplier")
 
-A1_LIMIT_CYCLE = DatasetSchema(
+a1_limit_cycle_schema = DatasetSchema(
     name="limit_cycle",
     title="A periodic motion of model A1, events located, with its Floquet multipliers",
     coordinates={"multiplier": MULTIPLIER},
@@ -106,7 +106,7 @@ def _followed() -> dict[str, Variable]:
     }
 
 
-A1_CYCLE_BRANCH = DatasetSchema(
+a1_cycle_branch_schema = DatasetSchema(
     name="cycle_branch",
     title="A branch of periodic motions of model A1 in one parameter",
     lists={
@@ -148,7 +148,7 @@ A1_CYCLE_BRANCH = DatasetSchema(
     },
 )
 
-A1_CYCLE_CURVE = DatasetSchema(
+a1_cycle_curve_schema = DatasetSchema(
     name="cycle_curve",
     title="A curve of special periodic motions of model A1 in two parameters",
     coordinates={
@@ -182,7 +182,7 @@ A1_CYCLE_CURVE = DatasetSchema(
     },
 )
 
-SETTLED_EXTREMES = DatasetSchema(
+settled_extremes_schema = DatasetSchema(
     name="settled_extremes",
     title="Largest displacement late in runs of model A1 from many starts",
     coordinates={

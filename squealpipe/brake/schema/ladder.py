@@ -103,7 +103,7 @@ QUESTIONS = ("contact_lost", "frequency", "peak_contact_force", "max_displacemen
 """Question that can be asked of a scene."""
 
 
-MODEL_LADDER = DatasetSchema(
+model_ladder_schema = DatasetSchema(
     name="model_ladder",
     title="The cheapest adequate model over both spring angles",
     coordinates={

@@ -34,7 +34,7 @@ ALIKE = 0.5
 
 REGIME_LINEAR = flag("stability regime of model A3", LinearRegime, *MAP)
 
-STABILITY_MAP = DatasetSchema(
+stability_map_schema = DatasetSchema(
     name="stability_map",
     title="Linear stability (model A3) over both spring angles",
     coordinates={**ANGLE_COORDINATES, **MODES},
@@ -58,7 +58,7 @@ def _critical(suffix: str) -> Variable:
     return Variable(f"critical friction{suffix}", "1", MAP)
 
 
-CRITICAL_FRICTION_MAP = DatasetSchema(
+critical_friction_map_schema = DatasetSchema(
     name="critical_friction_map",
     title="Friction at which steady sliding loses its stability (model A3) over both spring angles",
     coordinates=ANGLE_COORDINATES,
@@ -70,7 +70,7 @@ CRITICAL_FRICTION_MAP = DatasetSchema(
     },
 )
 
-CRITICAL_DAMPING_MAP = DatasetSchema(
+critical_damping_map_schema = DatasetSchema(
     name="critical_damping_map",
     title="Friction at which steady sliding loses its stability (model A3) over both dashpots",
     coordinates={
@@ -94,7 +94,7 @@ def _stiffness(symbol: str) -> Variable:
     return Variable(f"{symbol} of Eq. (8), springs alone", "N m-1", MAP, optional=True)
 
 
-QUASI_STATIC_MAP = DatasetSchema(
+quasi_static_map_schema = DatasetSchema(
     name="quasi_static_map",
     title="Quasi-static sliding (model A2) and the linear static state over both spring angles",
     coordinates=ANGLE_COORDINATES,
@@ -116,7 +116,7 @@ QUASI_STATIC_MAP = DatasetSchema(
     },
 )
 
-NATURAL_FREQUENCIES = DatasetSchema(
+natural_frequencies_schema = DatasetSchema(
     name="natural_frequencies",
     title="Natural frequencies of model A4, in contact and separated",
     coordinates={
@@ -142,7 +142,7 @@ class BoundaryCurve(IntEnum):
     no_coupling = 3
 
 
-STABILITY_BOUNDARIES = DatasetSchema(
+stability_boundaries_schema = DatasetSchema(
     name="stability_boundaries",
     title="Exact boundaries of flutter, divergence and quasi-static sliding",
     lists={"point": Listing(kinds=("boundary", "segment"))},

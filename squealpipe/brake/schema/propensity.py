@@ -1,6 +1,6 @@
 """Shares of the events of a pad of scattered parameters, and what they depend on."""
 
-from squealpipe.brake.schema.linear import ONE_PAIR
+from squealpipe.brake.schema.linear import angles_of_one_pair
 from squealpipe.schema import (
     DatasetSchema,
     Outcome,
@@ -12,7 +12,7 @@ from squealpipe.schema import (
 )
 from squealpipe.vibration.schema import share_variables, sobol_variables
 
-PROPENSITY = DatasetSchema(
+propensity_schema = DatasetSchema(
     name="propensity",
     title="Propensity for instability, and what it depends on, over a spread of parameters",
     coordinates={
@@ -37,7 +37,7 @@ PROPENSITY = DatasetSchema(
         ),
         "judged": count("number of parameter sets"),
         "outcome": outcome("quantity", among=(Outcome.converged, Outcome.unresolved)),
-        **ONE_PAIR,
+        **angles_of_one_pair,
         "t_end": Variable(units="s", long_name="end of each run"),
     },
 )

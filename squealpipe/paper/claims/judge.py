@@ -11,7 +11,7 @@ import xarray as xr
 from squealpipe.paper.claims.evidence import Finding
 from squealpipe.paper.claims.statement import Check, Statement
 from squealpipe.paper.claims.statements import PAPER_STATEMENTS, STATEMENTS
-from squealpipe.paper.schema.claims import CLAIMS, Basis, ClaimVerdict, Origin
+from squealpipe.paper.schema.claims import Basis, ClaimVerdict, Origin, claims_schema
 from squealpipe.paper.schema.inference import of_study
 from squealpipe.parameters import Parameters
 from squealpipe.reading import corrected, for_linear
@@ -47,7 +47,10 @@ def judge(
     data = {key: np.array([row[key] for row in rows]) for key in rows[0]}
     shipped = parameters == Parameters() and reading == "as_printed"
     return build(
-        CLAIMS, data, {"claim": names}, {"shipped": int(shipped), "reading": reading}
+        claims_schema,
+        data,
+        {"claim": names},
+        {"shipped": int(shipped), "reading": reading},
     )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from squealpipe.benchmark.schema import FAILURE_ATLAS, Reliability, Role
+from squealpipe.benchmark.schema import Reliability, Role, failure_atlas_schema
 from squealpipe.brake.a4.harmonic_branches import linear_series
 from squealpipe.brake.a4.orbits import find_orbit, linear_orbit
 from squealpipe.brake.a4.system import ScaledSystem, scaled_system
@@ -51,8 +51,6 @@ class MethodNames:
     numeric: str = "numpy.linalg"
 
 
-METHODS = MethodNames()
-
 CASE_HARMONICS = 16
 NOT_CONVERGED = "Newton did not converge"
 
@@ -73,19 +71,6 @@ class BranchCase(NamedTuple):
     def angles(self) -> tuple[float, float]:
         """In rad."""
         return self.alpha1_over_pi * math.pi, self.alpha2_over_pi * math.pi
-
-
-CASES = (
-    BranchCase("σ too small (balance)", 0.3, 0.9, 1, 3.0, sigma=10.0),
-    BranchCase("σ too large (balance)", 0.3, 0.9, 1, 3.0, n_time=40, sigma=1e6),
-    BranchCase(
-        "aliasing, N ≈ 2N_h", 0.3, 0.9, 1, 3.0, n_time=2 * CASE_HARMONICS + 2, warm=True
-    ),
-    BranchCase("pole at ω_x/2", 0.97, 0.97, 1, 1.5),
-    BranchCase("tongue end", 0.05, 0.85, 1, 3.0),
-    BranchCase("tongue end, slow mode", 0.4, 0.55, 1, 3.0),
-    BranchCase("cold start, wrong basin", 0.3, 0.8, 1, 3.0),
-)
 
 
 class Answer(NamedTuple):
@@ -120,23 +105,40 @@ def judge_balances() -> xr.Dataset:
 
     Truths are exact orbits, closed forms, 128 harmonics or sixty digits.
     """
+    cases = (
+        BranchCase("σ too small (balance)", 0.3, 0.9, 1, 3.0, sigma=10.0),
+        BranchCase("σ too large (balance)", 0.3, 0.9, 1, 3.0, n_time=40, sigma=1e6),
+        BranchCase(
+            "aliasing, N ≈ 2N_h",
+            0.3,
+            0.9,
+            1,
+            3.0,
+            n_time=2 * CASE_HARMONICS + 2,
+            warm=True,
+        ),
+        BranchCase("pole at ω_x/2", 0.97, 0.97, 1, 1.5),
+        BranchCase("tongue end", 0.05, 0.85, 1, 3.0),
+        BranchCase("tongue end, slow mode", 0.4, 0.55, 1, 3.0),
+        BranchCase("cold start, wrong basin", 0.3, 0.8, 1, 3.0),
+    )
     scenes = [
         _singular_static_state(),
         _flutter_onset(),
-        *map(_branch, CASES),
+        *map(_branch, cases),
         _period_doubling(),
     ]
     # the columns of the chart; the first two methods are ours
     frequency_methods = (
-        METHODS.exact_orbit,
-        METHODS.closed_form_balance,
-        METHODS.cold_newton,
-        METHODS.arc_length,
-        METHODS.tanh_balance,
+        MethodNames.exact_orbit,
+        MethodNames.closed_form_balance,
+        MethodNames.cold_newton,
+        MethodNames.arc_length,
+        MethodNames.tanh_balance,
         CORRECTED,
         AS_PRINTED,
-        METHODS.hill,
-        METHODS.numeric,
+        MethodNames.hill,
+        MethodNames.numeric,
     )
     shape = len(scenes), len(frequency_methods)
     verdict = np.zeros(shape)
@@ -150,7 +152,7 @@ def judge_balances() -> xr.Dataset:
             )
             message[cell] = answer.flag[:64]
     return build(
-        FAILURE_ATLAS,
+        failure_atlas_schema,
         {
             "verdict": verdict,
             "error": error,
@@ -188,16 +190,16 @@ def _branch(case: BranchCase) -> HardScene:
             scene, case, fine, orbit_series(scene, exact, truth_harmonics)
         ).value
     answers: dict[str, Callable[[], Answer]] = {
-        METHODS.exact_orbit: lambda: _exact_orbit(case),
-        METHODS.closed_form_balance: lambda: _our_balance(case),
+        MethodNames.exact_orbit: lambda: _exact_orbit(case),
+        MethodNames.closed_form_balance: lambda: _our_balance(case),
         CORRECTED: lambda: _paper(scene, case, start, exact, as_printed=False),
         AS_PRINTED: lambda: _paper(scene, case, start, exact, as_printed=True),
-        METHODS.cold_newton if case.sigma is None else METHODS.tanh_balance: lambda: (
-            _newton(scene, case, balance, start)
-        ),
+        MethodNames.cold_newton
+        if case.sigma is None
+        else MethodNames.tanh_balance: lambda: _newton(scene, case, balance, start),
     }
     if case.sigma is None:
-        answers[METHODS.arc_length] = lambda: _arc_length(scene, case, balance)
+        answers[MethodNames.arc_length] = lambda: _arc_length(scene, case, balance)
     # largest error of ω that counts as right, in √(k1/m)
     return HardScene(case.name, truth, 1e-5, answers)
 
@@ -349,9 +351,9 @@ def _period_doubling() -> HardScene:
         truth,
         0.5,
         {
-            METHODS.exact_orbit: ours,
-            METHODS.closed_form_balance: series,
-            METHODS.hill: hill,
+            MethodNames.exact_orbit: ours,
+            MethodNames.closed_form_balance: series,
+            MethodNames.hill: hill,
         },
     )
 
@@ -383,7 +385,7 @@ def _singular_static_state() -> HardScene:
         "singular static state",
         math.nan,
         1.0,
-        {METHODS.exact_orbit: ours, METHODS.numeric: numeric},
+        {MethodNames.exact_orbit: ours, MethodNames.numeric: numeric},
     )
 
 
@@ -413,5 +415,5 @@ def _flutter_onset() -> HardScene:
         "flutter onset",
         truth,
         1e-12,
-        {METHODS.exact_orbit: ours, METHODS.numeric: numeric},
+        {MethodNames.exact_orbit: ours, MethodNames.numeric: numeric},
     )

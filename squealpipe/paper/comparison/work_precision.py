@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from squealpipe.benchmark.schema import WORK_PRECISION, Role
+from squealpipe.benchmark.schema import Role, work_precision_schema
 from squealpipe.brake.a4.orbits import find_orbit
 from squealpipe.brake.a4.system import ScaledSystem, scaled_system
 from squealpipe.brake.balance.harmonic_balance import (
@@ -70,8 +70,10 @@ def work_precision(
             Outcome.converged if fine.any() and fine.all() else Outcome.no_convergence
         )
         rows.append((*names, error, statistics.median(seconds or [0.0]), outcome))
-    columns = dict(zip(WORK_PRECISION.variables, zip(*rows, strict=True), strict=True))
-    return build(WORK_PRECISION, columns, {"run": np.arange(len(rows))})
+    columns = dict(
+        zip(work_precision_schema.variables, zip(*rows, strict=True), strict=True)
+    )
+    return build(work_precision_schema, columns, {"run": np.arange(len(rows))})
 
 
 def _methods(

@@ -16,7 +16,7 @@ from squealpipe.paper.inference.unstable_cells import (
     unstable_along_edges,
     unstable_cells,
 )
-from squealpipe.paper.schema.growth import GROWTH_RULE, growth_fails
+from squealpipe.paper.schema.growth import GrowthRule, growth_fails
 from squealpipe.parameters import SCENES, TABLE, Parameters, Scene, direction_of
 from squealpipe.reading import reading_of
 from squealpipe.schema import Outcome
@@ -128,11 +128,11 @@ class Candidates:
         up again, and its windows from there on are NaN; so, unless margins are wanted, one that
         does not grow by the rule of :mod:`squealpipe.paper.schema.growth` whatever comes next.
         """
-        sizes = np.full((self.size, GROWTH_RULE.n_windows), np.nan)
+        sizes = np.full((self.size, GrowthRule.n_windows), np.nan)
         outcome = np.full(self.size, int(Outcome.converged), np.int8)
         state = np.broadcast_to(np.array(self.initial_state, float), (self.size, 4))
         state = state.copy()
-        for window in range(GROWTH_RULE.n_windows):
+        for window in range(GrowthRule.n_windows):
             going = outcome == Outcome.converged
             left = np.flatnonzero(going if self.exact else going & ~growth_fails(sizes))
             if not left.size:
@@ -141,7 +141,7 @@ class Candidates:
             run = some.ensemble(
                 scene.alpha1,
                 scene.alpha2,
-                t_end=GROWTH_RULE.window * some.time_unit,
+                t_end=GrowthRule.window * some.time_unit,
                 tracked=("x",),
                 initial_state=state[left],
             )

@@ -22,8 +22,8 @@ from squealpipe.laws.dashpots import linear_damping
 from squealpipe.laws.springs import geometry
 from squealpipe.paper.inference.angle_maps import keeping_share, separating_share
 from squealpipe.paper.inference.candidates import Candidates, StatementMargin
-from squealpipe.paper.schema.growth import GROWTH_RULE, RULE, growth_margin
-from squealpipe.paper.schema.inference import AS_NUMBERS, Holds
+from squealpipe.paper.schema.growth import RULE, GrowthRule, growth_margin
+from squealpipe.paper.schema.inference import Holds, WordsInNumbers
 from squealpipe.parameters import SCENES, Scene
 from squealpipe.schema import Outcome
 
@@ -87,9 +87,7 @@ class SeveralStarts:
         return candidates.moved(x, y)
 
 
-SEVERAL_STARTS = SeveralStarts()
-
-CONSTRAINTS: list[Constraint] = []
+registered_constraints: list[Constraint] = []
 """What the paper says of its figures, where it constrains the parameters: the functions below."""
 
 Check = Callable[[Candidates], StatementMargin]
@@ -99,7 +97,7 @@ def constrains(name: str, stage: Stage, criterion: str) -> Callable[[Check], Che
     """Decorator of a check; the arguments are those of :class:`Constraint`."""
 
     def keep(check: Check) -> Check:
-        CONSTRAINTS.append(Constraint(name, stage, criterion, check))
+        registered_constraints.append(Constraint(name, stage, criterion, check))
         return check
 
     return keep
@@ -160,10 +158,10 @@ def from_several_starts(check: Check) -> Check:
         first = check(candidates)
         if candidates.sampled:
             return first
-        margins = [first.margin, check(SEVERAL_STARTS.moved(candidates, 0)).margin]
+        margins = [first.margin, check(SeveralStarts().moved(candidates, 0)).margin]
         with np.errstate(invalid="ignore"):
             change = np.abs(margins[1] - margins[0])
-            regular = change <= SEVERAL_STARTS.alike * np.min(np.abs(margins), axis=0)
+            regular = change <= SeveralStarts.alike * np.min(np.abs(margins), axis=0)
         return _agreed(check, candidates, first, np.flatnonzero(~regular))
 
     return judged
@@ -175,7 +173,7 @@ def compared_near_the_threshold(check: Check) -> Check:
     @wraps(check)
     def judged(candidates: Candidates) -> StatementMargin:
         first = check(candidates)
-        near = np.flatnonzero(np.abs(first.margin) < SEVERAL_STARTS.near)
+        near = np.flatnonzero(np.abs(first.margin) < SeveralStarts.near)
         return _agreed(check, candidates, first, near)
 
     return judged
@@ -189,8 +187,8 @@ def _agreed(
         return first
     some, margin = candidates.subset(rows), first.margin.copy()
     found = [
-        verdicts(check(SEVERAL_STARTS.moved(some, number)))
-        for number in range(len(SEVERAL_STARTS.directions))
+        verdicts(check(SeveralStarts().moved(some, number)))
+        for number in range(len(SeveralStarts.directions))
     ]
     mine = verdicts(StatementMargin(margin[rows], first.outcome[rows]))
     margin[rows[(np.array(found) != mine).any(axis=0)]] = np.nan
@@ -221,15 +219,15 @@ def _loses_contact(candidates: Candidates) -> StatementMargin:
 @constrains(
     "F2e",
     Stage.contact,
-    f"lowest N/(k3 l_pre) of F2a to F2c within {AS_NUMBERS.minimal_difference}; "
-    f"margin {AS_NUMBERS.minimal_difference} − spread",
+    f"lowest N/(k3 l_pre) of F2a to F2c within {WordsInNumbers.minimal_difference}; "
+    f"margin {WordsInNumbers.minimal_difference} − spread",
 )
 @compared_near_the_threshold
 def _alike(candidates: Candidates) -> StatementMargin:
     runs = [candidates.contact[name] for name in ("F2a", "F2b", "F2c")]
     lowest = np.stack([np.maximum(run.margin, 0.0) for run in runs])
     return StatementMargin(
-        AS_NUMBERS.minimal_difference - np.ptp(lowest, axis=0),
+        WordsInNumbers.minimal_difference - np.ptp(lowest, axis=0),
         np.max([run.outcome for run in runs], axis=0),
     )
 
@@ -239,7 +237,7 @@ def _growth_and_size(
 ) -> tuple[Any, Any, np.ndarray]:
     """ln of late over early |x| and of |x| over 2L, and how the runs ended."""
     run = candidates.run(scene)
-    bound = AS_NUMBERS.bounded_within * np.maximum(
+    bound = WordsInNumbers.bounded_within * np.maximum(
         candidates.fields["length1"], candidates.fields["length2"]
     )
     size = np.maximum(run.early_max_x, run.late_max_x) / bound
@@ -249,7 +247,7 @@ def _growth_and_size(
 @constrains(
     "F3",
     Stage.growth,
-    f"largest |x|: {RULE}; margin ln(least ratio/{GROWTH_RULE.least_ratio:g}), "
+    f"largest |x|: {RULE}; margin ln(least ratio/{GrowthRule.least_ratio:g}), "
     "none where starts 1e-9 "
     "l_pre apart disagree",
 )
@@ -277,29 +275,33 @@ def _stays_bounded(candidates: Candidates) -> StatementMargin:
 @constrains(
     "F5a",
     Stage.level,
-    f"peak force and time off the belt at (π, π) and (0, 0) differ by d < {AS_NUMBERS.same_force}; "
-    f"margin ({AS_NUMBERS.same_force} − d)/({AS_NUMBERS.same_force} + d)",
+    f"peak force and time off the belt at (π, π) and (0, 0) differ by d < "
+    f"{WordsInNumbers.same_force}; margin ({WordsInNumbers.same_force} − d)/"
+    f"({WordsInNumbers.same_force} + d)",
 )
 def _same_levels(candidates: Candidates) -> StatementMargin:
     first, second = candidates.level, candidates.run(SCENES["F5b"])
     force = np.abs(first.peak_contact_force - second.peak_contact_force)
     share = np.abs(first.separated_time - second.separated_time) / first.time
     difference = np.maximum(force, share)
-    margin = (AS_NUMBERS.same_force - difference) / (AS_NUMBERS.same_force + difference)
+    margin = (WordsInNumbers.same_force - difference) / (
+        WordsInNumbers.same_force + difference
+    )
     return StatementMargin(margin, np.maximum(first.outcome, second.outcome))
 
 
 @constrains(
     "F5b",
     Stage.level,
-    f"at least {AS_NUMBERS.again_and_again} separations at (π, π); "
-    f"margin (separations − {AS_NUMBERS.again_and_again - 0.5})/{AS_NUMBERS.again_and_again}",
+    f"at least {WordsInNumbers.again_and_again} separations at (π, π); "
+    f"margin (separations − {WordsInNumbers.again_and_again - 0.5})/"
+    f"{WordsInNumbers.again_and_again}",
 )
 def _jumps(candidates: Candidates) -> StatementMargin:
     run = candidates.level
     return StatementMargin(
-        (run.separations - (AS_NUMBERS.again_and_again - 0.5))
-        / AS_NUMBERS.again_and_again,
+        (run.separations - (WordsInNumbers.again_and_again - 0.5))
+        / WordsInNumbers.again_and_again,
         run.outcome,
     )
 
@@ -333,7 +335,7 @@ def _unstable_only_without_sliding(candidates: Candidates) -> StatementMargin:
     "A1 separates in more than half of the angle map; margin share/½ − 1",
 )
 def _separates_mostly(candidates: Candidates) -> StatementMargin:
-    return _closed(separating_share(candidates) / AS_NUMBERS.large_region - 1.0)
+    return _closed(separating_share(candidates) / WordsInNumbers.large_region - 1.0)
 
 
 @constrains(
@@ -369,7 +371,7 @@ def measure(
     """The margin of every statement of some stages, for every candidate."""
     return {
         constraint.name: constraint.check(candidates)
-        for constraint in CONSTRAINTS
+        for constraint in registered_constraints
         if constraint.stage in stages
     }
 
@@ -391,14 +393,14 @@ def judge(
             further stage: there its margins are NaN and its verdicts ``not_judged``.
     """
     candidates = replace(candidates, exact=exact)
-    margin = np.full((candidates.size, len(CONSTRAINTS)), np.nan)
+    margin = np.full((candidates.size, len(registered_constraints)), np.nan)
     holds = np.full(margin.shape, int(Holds.not_judged), np.int8)
     for stage in Stage:
         left = np.flatnonzero((holds == Holds.no).sum(axis=1) <= failures)
         if not left.size:
             break
         measured = measure(candidates.subset(left), [stage])
-        for column, constraint in enumerate(CONSTRAINTS):
+        for column, constraint in enumerate(registered_constraints):
             if constraint.stage == stage:
                 margin[left, column] = measured[constraint.name].margin
                 holds[left, column] = verdicts(measured[constraint.name])

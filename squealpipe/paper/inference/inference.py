@@ -16,8 +16,13 @@ from pydantic import Strict
 from squealpipe.brake.models.refusals import refuse_extensions
 from squealpipe.paper.inference.candidates import Candidates, sets_of
 from squealpipe.paper.inference.consequences import CONSEQUENCES, judge_consequences
-from squealpipe.paper.inference.constraints import CONSTRAINTS, Stage, judge, measure
-from squealpipe.paper.schema.inference import PARAMETER_INFERENCE, Holds
+from squealpipe.paper.inference.constraints import (
+    Stage,
+    judge,
+    measure,
+    registered_constraints,
+)
+from squealpipe.paper.schema.inference import Holds, parameter_inference_schema
 from squealpipe.parameters import Parameters
 from squealpipe.reading import READINGS, reading_of
 from squealpipe.schema import Outcome, build
@@ -93,7 +98,7 @@ def infer_parameters(
         joined[name] = joined[name].swapaxes(0, 1)
     margins = [list(measure(own.read(name)).values()) for name in READINGS]
     return build(
-        PARAMETER_INFERENCE,
+        parameter_inference_schema,
         {
             **groups,
             **joined,
@@ -102,12 +107,14 @@ def infer_parameters(
             "baseline_margin": [
                 [float(each.margin[0]) for each in row] for row in margins
             ],
-            "criterion": [constraint.criterion for constraint in CONSTRAINTS],
+            "criterion": [
+                constraint.criterion for constraint in registered_constraints
+            ],
         },
         {
             "sample": np.arange(samples),
             "reading": list(READINGS),
-            "statement": [constraint.name for constraint in CONSTRAINTS],
+            "statement": [constraint.name for constraint in registered_constraints],
             "consequence": list(CONSEQUENCES),
         },
     )
@@ -119,8 +126,8 @@ def _over_samples(sets: Candidates) -> dict[str, Any]:
     _, holds = judge(sets, failures=shown.astype(int))
     met, failed = holds == Holds.yes, holds == Holds.no
     feasible = met.all(axis=1)
-    alone = failed & (met.sum(axis=1, keepdims=True) == len(CONSTRAINTS) - 1)
-    last = [constraint.stage == max(Stage) for constraint in CONSTRAINTS]
+    alone = failed & (met.sum(axis=1, keepdims=True) == len(registered_constraints) - 1)
+    last = [constraint.stage == max(Stage) for constraint in registered_constraints]
     consequences = judge_consequences(sets.subset(np.flatnonzero(feasible)))
     count = int(feasible.sum())
     held = [int(values.sum()) for values in consequences.values()]

@@ -44,7 +44,7 @@ def _flag(meaning: str, flags: type[IntEnum]) -> Variable:
     return flag(meaning, flags, "claim")
 
 
-CLAIMS = DatasetSchema(
+claims_schema = DatasetSchema(
     name="claims",
     title="The paper's statements, judged",
     coordinates={"claim": text("id of the statement", "claim")},

@@ -25,14 +25,12 @@ class GrowthRule:
     """Least ratio of each of these sizes to the one before in growth without bound."""
 
 
-GROWTH_RULE = GrowthRule()
-
-GROWTH_HORIZON = GROWTH_RULE.n_windows * GROWTH_RULE.window
+GROWTH_HORIZON = GrowthRule.n_windows * GrowthRule.window
 """Length of a run, √(m/k1)."""
 RULE = (
-    f"of a run to t = {GROWTH_HORIZON:g} √(m/k1), each of the last {GROWTH_RULE.n_judged} windows "
-    f"of {GROWTH_RULE.window:g} exceeds the one before "
-    f"by {100 * (GROWTH_RULE.least_ratio - 1):.0f} %"
+    f"of a run to t = {GROWTH_HORIZON:g} √(m/k1), each of the last {GrowthRule.n_judged} windows "
+    f"of {GrowthRule.window:g} exceeds the one before "
+    f"by {100 * (GrowthRule.least_ratio - 1):.0f} %"
 )
 
 
@@ -46,7 +44,7 @@ class Growth(IntEnum):
 
 def _ratios(sizes: Any) -> np.ndarray:
     """Return the ratio of each of the last sizes to the one before; ``sizes``: (…, windows)."""
-    last = np.asarray(sizes, float)[..., -GROWTH_RULE.n_judged - 1 :]
+    last = np.asarray(sizes, float)[..., -GrowthRule.n_judged - 1 :]
     return np.asarray(last[..., 1:] / last[..., :-1])
 
 
@@ -57,12 +55,12 @@ def least_growth(sizes: Any) -> np.ndarray:
 
 def judge_growth(sizes: Any) -> np.ndarray:
     """:class:`Growth` of runs from the largest |x| in each window, (…, ``n_windows``)."""
-    last = np.asarray(sizes, float)[..., -GROWTH_RULE.n_judged :]
+    last = np.asarray(sizes, float)[..., -GrowthRule.n_judged :]
     # a motion whose sizes agree to 2 % has stopped growing
     agree = last.max(axis=-1) <= 1.02 * last.min(axis=-1)
     otherwise = np.where(agree, Growth.saturates, Growth.undecided)
     return np.where(
-        least_growth(sizes) >= GROWTH_RULE.least_ratio, Growth.grows, otherwise
+        least_growth(sizes) >= GrowthRule.least_ratio, Growth.grows, otherwise
     )
 
 
@@ -72,7 +70,7 @@ def growth_fails(sizes: Any) -> np.ndarray:
     Args:
         sizes: (…, ``n_windows``), NaN of windows that were not run.
     """
-    return np.asarray((_ratios(sizes) < GROWTH_RULE.least_ratio).any(axis=-1))
+    return np.asarray((_ratios(sizes) < GrowthRule.least_ratio).any(axis=-1))
 
 
 def growth_margin(sizes: Any) -> np.ndarray:
@@ -82,4 +80,4 @@ def growth_margin(sizes: Any) -> np.ndarray:
         sizes: (…, ``n_windows``), NaN from the window on that follows one in which growth fails.
     """
     least = np.fmin.reduce(_ratios(sizes), axis=-1)
-    return np.asarray(np.log(least / GROWTH_RULE.least_ratio))
+    return np.asarray(np.log(least / GrowthRule.least_ratio))

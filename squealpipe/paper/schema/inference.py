@@ -21,12 +21,6 @@ from squealpipe.schema import (
 from squealpipe.systems.datasets.agreement import ComparedAs, RoundOff
 from squealpipe.vibration.shares import CONFIDENCE
 
-BY_SAMPLE = ("sample",)
-STATEMENT = ("statement",)
-READING = ("reading",)
-SAMPLE_BY_READING = ("sample", "reading")
-BY_READING = ("reading", "statement")
-
 
 class Holds(IntEnum):
     """Verdict on a statement at one parameter set, as stored."""
@@ -91,63 +85,62 @@ class WordsInNumbers:
     """F7a: share of the angle map from which a region is called large."""
 
 
-AS_NUMBERS = WordsInNumbers()
-
-
 DAMPED_GRID = 181
 """Angles per axis at which instability is looked for where it has no closed form."""
 
 
-PARAMETER_INFERENCE = DatasetSchema(
+parameter_inference_schema = DatasetSchema(
     name="parameter_inference",
     title="Which parameters agree with the paper's statements, in which reading of its friction",
     coordinates={
-        "sample": count("number of the sample", *BY_SAMPLE),
-        "reading": text("reading of the sign of friction", *READING),
-        "statement": text("id of the statement", *STATEMENT),
+        "sample": count("number of the sample", "sample"),
+        "reading": text("reading of the sign of friction", "reading"),
+        "statement": text("id of the statement", "statement"),
         "consequence": text(
             "id of a statement that was not a constraint", "consequence"
         ),
     },
     variables={
-        "kappa": Variable("contact stiffness k3/k", dims=BY_SAMPLE),
-        "mu": Variable("friction coefficient", dims=BY_SAMPLE),
+        "kappa": Variable("contact stiffness k3/k", dims=("sample",)),
+        "mu": Variable("friction coefficient", dims=("sample",)),
         "length_ratio": Variable(
-            "free length of the springs over l_pre", dims=BY_SAMPLE
+            "free length of the springs over l_pre", dims=("sample",)
         ),
-        "speed_ratio": Variable("belt speed over l_pre √(k/m)", dims=BY_SAMPLE),
+        "speed_ratio": Variable("belt speed over l_pre √(k/m)", dims=("sample",)),
         "holds": flag(
             "whether the statement holds: undecided where indistinguishable starts disagree, "
             "not judged where cheaper statements had already failed",
             Holds,
-            *SAMPLE_BY_READING,
-            *STATEMENT,
+            "sample",
+            "reading",
+            "statement",
             round_off=RoundOff(
                 ComparedAs.judged,
                 "once a statement has refuted a parameter set, the others are not judged",
                 none=int(Holds.not_judged),
             ),
         ),
-        "feasible": whether("all statements hold", *SAMPLE_BY_READING),
+        "feasible": whether("all statements hold", "sample", "reading"),
         "outcome": outcome(
-            *SAMPLE_BY_READING,
+            "sample",
+            "reading",
             among=(Outcome.converged, Outcome.unresolved, Outcome.infeasible),
         ),
-        "feasible_count": count("number of feasible samples", *READING),
-        "share": Variable("share of the samples that are feasible", dims=READING),
+        "feasible_count": count("number of feasible samples", "reading"),
+        "share": Variable("share of the samples that are feasible", dims=("reading",)),
         **{
             f"share_{end}": or_nan(
                 f"{words} end of the {CONFIDENCE:.0%} Wilson interval of share",
-                dims=READING,
+                dims=("reading",),
             )
             for end, words in (("low", "lower"), ("high", "upper"))
         },
         "share_cut_alone": Variable(
             "share of the samples that this statement alone excludes, among the first sixteenth; "
             "for growth, which is judged last, among all",
-            dims=BY_READING,
+            dims=("reading", "statement"),
         ),
-        "criterion": text("what was checked", *STATEMENT),
+        "criterion": text("what was checked", "statement"),
         "baseline_kappa": Variable("k3/k1 of the study"),
         "baseline_mu": Variable("friction coefficient of the study"),
         "baseline_length_ratio": Variable("L1/l_pre of the study"),
@@ -155,7 +148,7 @@ PARAMETER_INFERENCE = DatasetSchema(
         "baseline_reading": flag("the study's reading", dict(enumerate(READINGS))),
         "baseline_margin": Variable(
             "margin at the parameters of the study",
-            dims=BY_READING,
+            dims=("reading", "statement"),
             rtol=1e-6,
             atol=1e-6,
         ),

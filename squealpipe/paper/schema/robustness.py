@@ -2,9 +2,7 @@
 
 from squealpipe.schema import DatasetSchema, Outcome, count, or_nan, outcome, text
 
-_CELL = ("variant", "statement")
-
-VERDICT_ROBUSTNESS = DatasetSchema(
+verdict_robustness_schema = DatasetSchema(
     name="verdict_robustness",
     title="Statements of the paper in settings that it leaves out",
     coordinates={
@@ -14,13 +12,13 @@ VERDICT_ROBUSTNESS = DatasetSchema(
     variables={
         "share": or_nan(
             "share of the runs in which the statement holds; 1 or 0 for a single one",
-            dims=_CELL,
+            dims=("variant", "statement"),
         ),
-        "share_low": or_nan("lower end of its 95 % interval", dims=_CELL),
-        "share_high": or_nan("upper end of its 95 % interval", dims=_CELL),
-        "judged": count("number of runs judged", *_CELL),
+        "share_low": or_nan("lower end of its 95 % interval", dims=("variant", "statement")),
+        "share_high": or_nan("upper end of its 95 % interval", dims=("variant", "statement")),
+        "judged": count("number of runs judged", "variant", "statement"),
         "outcome": outcome(
-            *_CELL, among=(Outcome.converged, Outcome.unresolved, Outcome.not_computed)
+            "variant", "statement", among=(Outcome.converged, Outcome.unresolved, Outcome.not_computed)
         ),
     },
 )

@@ -24,14 +24,14 @@ from squealpipe.structures.squeal.windows import Running
 from squealpipe.systems.progress import partial_answer, with_progress
 from squealpipe.validation import Natural, Seed, Tolerance, Workers
 from squealpipe.vibration.boundaries import (
-    SEARCH,
     Cure,
     QuietInterval,
+    Search,
     nearest_boundary,
 )
 from squealpipe.vibration.cures import Boundary, boundaries, by_change, cure_table
 from squealpipe.vibration.levels import unknown
-from squealpipe.vibration.schema import ASSESS
+from squealpipe.vibration.schema import assess_schema
 from squealpipe.vibration.settling import FOR_NUMBERS
 
 
@@ -90,7 +90,7 @@ class JudgedStructure:
         # velocities at a contact are along the belt, and away from it
         directions = ("along", "across")
         return build(
-            ASSESS,
+            assess_schema,
             {**self.facts, **cure_table(found, units)},
             {
                 "cure": np.array(list(found), str),
@@ -187,7 +187,7 @@ def judge_structure(
         else Outcome.converged,
     }
     motions = [design.to_whole(run.last.final) for run in lasting[:2]]
-    searched = replace(family, tol=max(tol, SEARCH.tol))
+    searched = replace(family, tol=max(tol, Search.tol))
     return JudgedStructure(design, verdict, motions, facts, searched, named)
 
 
@@ -222,6 +222,6 @@ def small_motions_alone(structure: Any) -> xr.Dataset:
         "random_starts_noisy": 0,
         "outcome": Outcome.unresolved,
     }
-    family = Structures(SEARCH.tol, 0, 0)
+    family = Structures(Search.tol, 0, 0)
     judged = JudgedStructure(design, Verdict.undetermined, [], facts, family, {})
     return judged.without_cures()

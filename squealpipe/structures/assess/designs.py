@@ -17,7 +17,7 @@ from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
 from squealpipe.structures.squeal.windows import Running, followed_windows, run_windows
 from squealpipe.structures.subspace import projected, subspace, with_answers
 from squealpipe.vibration.schema import Mechanism
-from squealpipe.vibration.settled_runs import QUIETNESS, Horizon, SettledRun, Start
+from squealpipe.vibration.settled_runs import Horizon, Quietness, SettledRun, Start
 from squealpipe.vibration.settled_runs import settle as settle_runs
 from squealpipe.vibration.settling import FOR_VERDICTS, Settling
 from squealpipe.vibration.windows import joined
@@ -220,7 +220,7 @@ def _start(design: Design, plant: Plant, state: np.ndarray) -> Start:
 
     if plant.spectrum.pencil.is_undamped:
         own = measure(state - plant.sliding)
-        speed = max(speed, own / QUIETNESS.stays_small * 2.0)
+        speed = max(speed, own / Quietness.stays_small * 2.0)
     return Start(
         subject=design,
         state=state,
@@ -325,7 +325,7 @@ def _of_whole(design: Design, last: Any) -> Any:
 def _first_window(start: Start) -> float:
     """Periods of the first window, in which small motions grow to e^½ or more."""
     rate = abs(start.rate) * start.period
-    shown = QUIETNESS.shown / rate if rate > 0 else 0.0
+    shown = Quietness.shown / rate if rate > 0 else 0.0
     # in periods of the slowest mode that grows, or of any; twice as many take twice as long where
     # the motion settles at once
     first_window = 50.0

@@ -30,9 +30,9 @@ from squealpipe.structures.assess.operating_units import FrictionTable, Operatin
 from squealpipe.structures.assess.records import levels
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.schema.operating_map import (
-    OPERATING_MAP,
-    OVER_TEMPERATURE,
     QUANTITIES,
+    operating_map_schema,
+    over_temperature_schema,
 )
 from squealpipe.structures.squeal.plant import Plant, in_modes
 from squealpipe.structures.squeal.windows import Running
@@ -223,7 +223,11 @@ class OperatingPoints:
             level = 20.0 * np.log10(values["velocity_rms"] / reference_velocity)
         values["velocity_level"] = np.where(np.isfinite(level), level, np.nan)
         noisy = np.isin(values["verdict"], (Verdict.squeals, Verdict.hammers))
-        schema = OVER_TEMPERATURE if "temperature" in self.axes else OPERATING_MAP
+        schema = (
+            over_temperature_schema
+            if "temperature" in self.axes
+            else operating_map_schema
+        )
         noises = [] if self.noises is None else read_noises(self.noises, self.units)
         bands = self._bands(
             [*values["frequency"][noisy], *[n.frequency for n in noises]]

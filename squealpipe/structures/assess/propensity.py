@@ -25,7 +25,7 @@ from squealpipe.structures.assess.cures import with_preload
 from squealpipe.structures.assess.designs import Design, Structures, pushed
 from squealpipe.structures.contact import face_of
 from squealpipe.structures.definition import ContactStructure
-from squealpipe.structures.schema.propensity import STRUCTURE_PROPENSITY
+from squealpipe.structures.schema.propensity import structure_propensity_schema
 from squealpipe.systems.inputs.values import brief
 from squealpipe.systems.processes import available_cores, run_shared
 from squealpipe.systems.progress import with_progress
@@ -76,7 +76,7 @@ def structure_propensity(
     del table["half_width_by_size"]
     supported = np.isfinite(table["total_order"]).all(axis=1)
     return build(
-        STRUCTURE_PROPENSITY,
+        structure_propensity_schema,
         {
             "share": counts / samples,
             "share_low": low,

@@ -13,7 +13,7 @@ from squealpipe.structures.assess.designs import Design
 from squealpipe.structures.squeal.plant import Plant
 from squealpipe.structures.squeal.windows import Running, run
 from squealpipe.vibration import levels as measured
-from squealpipe.vibration.levels import MEASUREMENT, Record
+from squealpipe.vibration.levels import Measurement, Record
 from squealpipe.vibration.settled_runs import SettledRun
 
 
@@ -50,7 +50,7 @@ def _record(
     # of the fastest mode: fewer would miss its peaks
     samples_per_period = 6.0
     fine = max(
-        MEASUREMENT.fine,
+        Measurement.fine,
         int(np.ceil(samples_per_period * plant.fastest / plant.slowest)),
     )
     held = 2 * plant.size + len(regimes) + len(traced.kinds)
@@ -58,7 +58,7 @@ def _record(
     # doubles, 270 MB
     most_numbers = 2**25
     most = min(most_samples, most_numbers // held)
-    count = int(min(MEASUREMENT.periods * fine, most))
+    count = int(min(Measurement.periods * fine, most))
     step = 1.0 / (plant.slowest * fine)
     times = step * np.arange(1, count + 1)
     state, first = begin
@@ -69,7 +69,7 @@ def _record(
         how,
         regime=first[None],
         sums=True,
-        log_events=MEASUREMENT.most_events,
+        log_events=Measurement.most_events,
     )
     row = {name: value[0] for name, value in raw.items()}
     owners = np.asarray(traced.component_of)
@@ -78,7 +78,7 @@ def _record(
     forces = plant.normal_forces(samples)
     codes = np.array([_code(name) for name in regimes])
     now = codes[np.maximum(row["sample_regimes"], 0)]
-    logged = int(min(row["n_events"], MEASUREMENT.most_events))
+    logged = int(min(row["n_events"], Measurement.most_events))
 
     def spent(regime: Regime) -> np.ndarray:
         """Time that has added up in a regime, (samples, contacts)."""

@@ -14,16 +14,18 @@ from squealpipe.schema import (
 
 MOST_FRICTION = 1.0
 """The largest friction at which an onset is looked for."""
-_PAD, _AT, _OVER = ("design",), ("design", "point"), ("design", "point", "instant")
 
 
 def _of_point(long_name: str, units: str = "1") -> Variable:
     return or_nan(
-        f"{long_name}; NaN where there is no such point", units, _AT, atol=0.02
+        f"{long_name}; NaN where there is no such point",
+        units,
+        ("design", "point"),
+        atol=0.02,
     )
 
 
-CONTACT_POINTS = DatasetSchema(
+contact_points_schema = DatasetSchema(
     name="contact_points",
     title="An elastic pad on one, two and more contact points, and a stiff one",
     coordinates={
@@ -32,60 +34,69 @@ CONTACT_POINTS = DatasetSchema(
         "instant": Variable("time in periods of the strongest line", dims=("instant",)),
     },
     variables={
-        "contacts": count("contact points", *_PAD),
-        "young": Variable("modulus of elasticity", "Pa", _PAD),
-        "n_modes": count("modes in which it was run", *_PAD),
+        "contacts": count("contact points", "design"),
+        "young": Variable("modulus of elasticity", "Pa", ("design",)),
+        "n_modes": count("modes in which it was run", "design"),
         "frequency_error": Variable(
             "largest relative error of an unstable frequency, from the reduction",
-            dims=_PAD,
+            dims=("design",),
             atol=1e-6,
         ),
         "growth_rate_error": Variable(
             "largest error of an unstable growth rate, over the larger of it and 1 % of ω",
-            dims=_PAD,
+            dims=("design",),
             atol=1e-6,
         ),
         "critical_mu": or_nan(
             "smallest friction at which a mode turns unstable; NaN: none up to "
             f"{MOST_FRICTION:g}",
             "1",
-            _PAD,
+            ("design",),
             rtol=1e-6,
         ),
-        "unstable": count("unstable modes", *_PAD),
-        "frequency": or_nan("frequency of the fastest of them", "Hz", _PAD, rtol=1e-6),
-        "growth_rate": or_nan("its growth rate", "s-1", _PAD, rtol=1e-5),
+        "unstable": count("unstable modes", "design"),
+        "frequency": or_nan(
+            "frequency of the fastest of them", "Hz", ("design",), rtol=1e-6
+        ),
+        "growth_rate": or_nan("its growth rate", "s-1", ("design",), rtol=1e-5),
         "verdict": flag(
             "what steady sliding ends in after a push of 1 % along its least stable mode",
             Verdict,
-            *_PAD,
+            "design",
         ),
         "dominant_frequency": or_nan(
-            "strongest line of that motion", "Hz", _PAD, rtol=0.01
+            "strongest line of that motion", "Hz", ("design",), rtol=0.01
         ),
         "velocity_rms": or_nan(
-            "its rms speed at the contacts", "m s-1", _PAD, rtol=0.05
+            "its rms speed at the contacts", "m s-1", ("design",), rtol=0.05
         ),
         "share": or_nan(
-            "share of the random starts that end in it", "1", _PAD, atol=0.5
+            "share of the random starts that end in it", "1", ("design",), atol=0.5
         ),
         "common_frequency": or_nan(
             "strongest line of what most random starts end in",
             "Hz",
-            _PAD,
+            ("design",),
             volatile=True,
         ),
         "position": _of_point("place over the pad's length"),
         "separated_fraction": _of_point("share of the time without contact"),
         "stick_fraction": _of_point("share of the time in stick"),
-        "peak_force": or_nan("largest force over its preload", "1", _AT, rtol=0.1),
+        "peak_force": or_nan(
+            "largest force over its preload", "1", ("design", "point"), rtol=0.1
+        ),
         "lag": or_nan(
             "delay of the force behind that of the first point, at the strongest line, in periods",
             "1",
-            _AT,
+            ("design", "point"),
             volatile=True,
         ),
-        "force": or_nan("normal force over its preload", "1", _OVER, volatile=True),
-        "outcome": outcome(*_PAD, among=(Outcome.converged, Outcome.unresolved)),
+        "force": or_nan(
+            "normal force over its preload",
+            "1",
+            ("design", "point", "instant"),
+            volatile=True,
+        ),
+        "outcome": outcome("design", among=(Outcome.converged, Outcome.unresolved)),
     },
 )

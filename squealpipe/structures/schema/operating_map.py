@@ -138,12 +138,12 @@ def _map_over(name: str, last: str, coordinate: Variable) -> DatasetSchema:
     )
 
 
-OPERATING_MAP = _map_over(
+operating_map_schema = _map_over(
     "operating_map",
     "mu",
     Variable("coefficient of friction, with tables a factor of it", "1", ("mu",)),
 )
-OVER_TEMPERATURE = _map_over(
+over_temperature_schema = _map_over(
     "operating_map over temperature",
     "temperature",
     Variable("temperature", "degC", ("temperature",)),

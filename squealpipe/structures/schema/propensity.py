@@ -3,7 +3,7 @@
 from squealpipe.schema import DatasetSchema, Outcome, Variable, count, outcome, text
 from squealpipe.vibration.schema import share_variables, sobol_variables
 
-STRUCTURE_PROPENSITY = DatasetSchema(
+structure_propensity_schema = DatasetSchema(
     name="structure_propensity",
     title="Verdicts on a structure over a scatter of its parameters, and which of them decides",
     coordinates={

@@ -16,7 +16,6 @@ from squealpipe.schema import (
 from squealpipe.systems.datasets.agreement import Listing
 
 NO_MODE = -1
-RUN, PUSHED, AT = ("run",), ("run", "mode"), ("run", "mode", "contact")
 
 
 class PushAnswer(IntEnum):
@@ -33,7 +32,7 @@ class PushAnswer(IntEnum):
 
 def _error(long_name: str) -> Variable:
     words = "largest over the pushes; NaN: not answered"
-    return or_nan(f"{long_name}, {words}", dims=RUN, rtol=0.2, atol=1e-3)
+    return or_nan(f"{long_name}, {words}", dims=("run",), rtol=0.2, atol=1e-3)
 
 
 def _uncertainty(long_name: str) -> Variable:
@@ -45,11 +44,11 @@ def _uncertainty(long_name: str) -> Variable:
     )
 
 
-SQUEAL_LADDER = DatasetSchema(
+squeal_ladder_schema = DatasetSchema(
     name="squeal_ladder",
     title="What methods say of a structure's squeal, against the finest run, and their cost",
     coordinates={
-        "run": count("one method at one setting", *RUN),
+        "run": count("one method at one setting", "run"),
         "mode": count(
             "mode of the finest structure along which is pushed, numbered as by complex_modes",
             "mode",
@@ -57,56 +56,63 @@ SQUEAL_LADDER = DatasetSchema(
         "contact": text("name of the contact", "contact"),
     },
     variables={
-        "method": text("method", *RUN),
-        "setting": text("its setting", *RUN),
-        "role": flag("whose method it is", Role, *RUN),
-        "n_modes": count("modes of the structure", *RUN),
+        "method": text("method", "run"),
+        "setting": text("its setting", "run"),
+        "role": flag("whose method it is", Role, "run"),
+        "n_modes": count("modes of the structure", "run"),
         "friction_width": or_nan(
             "sliding speed over which friction is smoothed, over the belt's; 0: exact; NaN: no run",
-            dims=RUN,
+            dims=("run",),
         ),
         "contact_width": or_nan(
             "force over which loss of contact is smoothed, over the preload; 0: exact; NaN: no run",
-            dims=RUN,
+            dims=("run",),
         ),
-        "answer": flag("what becomes of a push", PushAnswer, *PUSHED),
+        "answer": flag("what becomes of a push", PushAnswer, "run", "mode"),
         "verdict": flag(
             "right: the same modes ring after all pushes; flagged: a motion has not settled; "
             "silently wrong: another mode rings, or none does",
             Reliability,
-            *RUN,
+            "run",
         ),
         "rings_near": count(
             "mode of the finest structure nearest to the strongest line, -1: none rings",
-            *PUSHED,
+            "run",
+            "mode",
         ),
         "frequency": or_nan(
-            "strongest line of the kinetic energy", "Hz", PUSHED, rtol=1e-2
+            "strongest line of the kinetic energy", "Hz", ("run", "mode"), rtol=1e-2
         ),
         "velocity_rms": or_nan(
             "rms speed of vibration, all contacts",
             "m s-1",
-            PUSHED,
+            ("run", "mode"),
             rtol=0.05,
             atol=1e-3,
         ),
         "separated_fraction": or_nan(
-            "share of the time without contact", dims=AT, rtol=0.05, atol=0.01
+            "share of the time without contact",
+            dims=("run", "mode", "contact"),
+            rtol=0.05,
+            atol=0.01,
         ),
         "stick_fraction": or_nan(
             "share of the time in stick; of smoothed friction, slower than its width",
-            dims=AT,
+            dims=("run", "mode", "contact"),
             rtol=0.05,
             atol=0.01,
         ),
         "creep": or_nan(
             "mean speed of sliding in that time, over the belt's; NaN: no such time",
-            dims=AT,
+            dims=("run", "mode", "contact"),
             rtol=0.1,
             atol=1e-3,
         ),
         "peak_force": or_nan(
-            "largest normal force over the preload", dims=AT, rtol=0.05, atol=0.01
+            "largest normal force over the preload",
+            dims=("run", "mode", "contact"),
+            rtol=0.05,
+            atol=0.01,
         ),
         "frequency_error": _error(
             "relative error of the frequency, 1 where none rings"
@@ -119,24 +125,25 @@ SQUEAL_LADDER = DatasetSchema(
         "cpu_time": Variable(
             "CPU time for all pushes, median; of exact events that of one in an ensemble",
             "s",
-            RUN,
+            ("run",),
             volatile=True,
         ),
         "compile_time": Variable(
             "CPU time to compile before, about 0 where the code was kept",
             "s",
-            RUN,
+            ("run",),
             volatile=True,
         ),
         "evaluations": count(
             "calls of the field for all pushes, a Taylor step of order p as p + 1; 0: none",
-            *RUN,
+            "run",
             dtype="i8",
             rtol=0.2,
         ),
         "t_end": Variable("time that is run", "s"),
         "outcome": outcome(
-            *PUSHED,
+            "run",
+            "mode",
             among=(Outcome.converged, Outcome.unresolved, Outcome.no_convergence),
         ),
     },

@@ -63,10 +63,6 @@ class OnsetKind(IntEnum):
     """it lasts below"""
 
 
-_MODE, _ATTRACTOR, _SAMPLE, _POLE = ("mode",), ("attractor",), ("sample",), ("pole",)
-_ATTRACTOR_BY_CONTACT = ("attractor", "contact")
-
-
 def _of_onset(long_name: str, units: str = "1", *dims: str, **other: Any) -> Variable:
     """One that is there if the onset was asked for."""
     return or_nan(long_name, units, dims, optional=True, **other)
@@ -79,26 +75,26 @@ def _of_whole(long_name: str, units: str = "1", *dims: str, **other: Any) -> Var
 
 
 def _level(long_name: str, units: str = "1", *, rtol: float = 0.05) -> Variable:
-    return or_nan(long_name, units, _ATTRACTOR, rtol=rtol, atol=1e-3)
+    return or_nan(long_name, units, ("attractor",), rtol=rtol, atol=1e-3)
 
 
 def _of_contact(long_name: str, units: str = "1") -> Variable:
-    return or_nan(long_name, units, _ATTRACTOR_BY_CONTACT, rtol=0.05, atol=0.01)
+    return or_nan(long_name, units, ("attractor", "contact"), rtol=0.05, atol=0.01)
 
 
-SQUEALING = DatasetSchema(
+squealing_schema = DatasetSchema(
     name="squealing_modes",
     title="Which unstable modes of a structure squeal, how loud, and with how much contact loss",
     coordinates={
         "mode": count(
-            "unstable mode of steady sliding, numbered as by complex_modes", *_MODE
+            "unstable mode of steady sliding, numbered as by complex_modes", "mode"
         ),
         "attractor": count(
-            "what starts settle to, by share of random starts", *_ATTRACTOR
+            "what starts settle to, by share of random starts", "attractor"
         ),
         "contact": text("name of the contact", "contact"),
-        "sample": count("number of the random start", *_SAMPLE),
-        "pole": count("mode of steady sliding, by frequency", *_POLE),
+        "sample": count("number of the random start", "sample"),
+        "pole": count("mode of steady sliding, by frequency", "pole"),
         **MESH_COORDINATES,
     },
     variables={
@@ -109,10 +105,10 @@ SQUEALING = DatasetSchema(
         "quiet_unless_struck": whether(
             "quiet from steady sliding, but some random starts end elsewhere"
         ),
-        "growth_rate": Variable("growth rate", "s-1", _MODE, rtol=1e-6),
-        "frequency": Variable("frequency", "Hz", _MODE, rtol=1e-8),
+        "growth_rate": Variable("growth rate", "s-1", ("mode",), rtol=1e-6),
+        "frequency": Variable("frequency", "Hz", ("mode",), rtol=1e-8),
         "critical_mu": or_nan(
-            "smallest friction at which growth leaves zero", "1", _MODE, rtol=1e-8
+            "smallest friction at which growth leaves zero", "1", ("mode",), rtol=1e-8
         ),
         "mode_frequency_error": _of_whole(
             "difference of its frequency from the whole structure's", "Hz", "mode"
@@ -154,45 +150,48 @@ SQUEALING = DatasetSchema(
         **MESH,
         "frequency_max": _of_whole("end of the band that was compared, NaN: all", "Hz"),
         "ends_in": count(
-            "attractor of a start of 1 % along this mode, -1: undetermined", *_MODE
+            "attractor of a start of 1 % along this mode, -1: undetermined", "mode"
         ),
         "squeals": whether(
             "whether, of the unstable modes, this one is nearest in frequency to that motion",
-            *_MODE,
+            "mode",
         ),
         "time_to_squeal": or_nan(
             "time from there until the kinetic energy first reaches half its settled value",
             "s",
-            _MODE,
+            ("mode",),
             rtol=0.2,
         ),
-        "kind": flag("kind of motion", Kind, *_ATTRACTOR),
+        "kind": flag("kind of motion", Kind, "attractor"),
         "motion": flag(
             "what is heard: it squeals if contact is kept, hammers if it is lost repeatedly",
             Verdict,
-            *_ATTRACTOR,
+            "attractor",
         ),
         "dominant_frequency": _level(
             "strongest line of the kinetic energy", "Hz", rtol=1e-2
         ),
         "frequency_resolution": or_nan(
-            "resolution of the spectrum", "Hz", _ATTRACTOR, volatile=True
+            "resolution of the spectrum", "Hz", ("attractor",), volatile=True
         ),
         "nearest_mode": count(
             "mode nearest to that line, an unstable one where one is within 2 % of either",
-            *_ATTRACTOR,
+            "attractor",
         ),
         "frequency_shift": _level(
             "dominant frequency less that of the nearest mode", "Hz", rtol=0.1
         ),
         "period": or_nan(
-            "period of the cycle, closed by the exact map", "s", _ATTRACTOR, rtol=1e-6
+            "period of the cycle, closed by the exact map",
+            "s",
+            ("attractor",),
+            rtol=1e-6,
         ),
-        "events_per_period": count("events in it, 0 where it is no cycle", *_ATTRACTOR),
+        "events_per_period": count("events in it, 0 where it is no cycle", "attractor"),
         "largest_multiplier": or_nan(
             "largest modulus of its multipliers, the trivial one left out",
             "1",
-            _ATTRACTOR,
+            ("attractor",),
             rtol=1e-4,
         ),
         "multiplier_real": or_nan(
@@ -206,7 +205,7 @@ SQUEALING = DatasetSchema(
         "divergence_rate": or_nan(
             "growth rate of the distance between neighbouring motions",
             "s-1",
-            _ATTRACTOR,
+            ("attractor",),
             volatile=True,
         ),
         "velocity_rms": _level("rms speed of vibration, all contacts", "m s-1"),
@@ -222,7 +221,7 @@ SQUEALING = DatasetSchema(
         "peak_normal_force": or_nan(
             "largest normal force",
             "N",
-            _ATTRACTOR_BY_CONTACT,
+            ("attractor", "contact"),
             rtol=0.05,
             atol=0.01,
             optional=True,
@@ -237,17 +236,17 @@ SQUEALING = DatasetSchema(
         "impacts_per_period": _of_contact(
             "returns to contact in a period of the dominant frequency"
         ),
-        "count": count("random starts that end here", *_ATTRACTOR, rtol=0.3),
+        "count": count("random starts that end here", "attractor", rtol=0.3),
         "share": Variable(
             "share of the random starts that end here",
-            dims=_ATTRACTOR,
+            dims=("attractor",),
             rtol=0.3,
             atol=0.1,
         ),
         **{
             f"share_{end}": Variable(
                 f"{end} end of its 95 % Wilson interval",
-                dims=_ATTRACTOR,
+                dims=("attractor",),
                 rtol=0.3,
                 atol=0.1,
             )
@@ -256,16 +255,19 @@ SQUEALING = DatasetSchema(
         "share_undetermined": Variable(
             "share of random starts that did not settle within the horizon", atol=0.1
         ),
-        "ends_at": count("attractor of the random start, -1: undetermined", *_SAMPLE),
+        "ends_at": count("attractor of the random start, -1: undetermined", "sample"),
         "start_energy": Variable(
-            "energy of the random start over that of the preload", dims=_SAMPLE
+            "energy of the random start over that of the preload", dims=("sample",)
         ),
         "settled_by": Variable(
-            "time run until it had settled, or to the end", "s", _SAMPLE, volatile=True
+            "time run until it had settled, or to the end",
+            "s",
+            ("sample",),
+            volatile=True,
         ),
-        "pole_frequency": Variable("frequency of the mode", "Hz", _POLE, rtol=1e-8),
+        "pole_frequency": Variable("frequency of the mode", "Hz", ("pole",), rtol=1e-8),
         "pole_growth_rate": Variable(
-            "growth rate of the mode", "s-1", _POLE, rtol=1e-6, atol=1e-6
+            "growth rate of the mode", "s-1", ("pole",), rtol=1e-6, atol=1e-6
         ),
         "pole_frequency_error": _of_whole(
             "difference of its frequency from the whole structure's, NaN: not known",
@@ -396,7 +398,7 @@ SQUEALING = DatasetSchema(
         "growth_rate_error": or_nan(
             "largest error of an unstable growth rate, over the larger of it and 1 % of ω"
         ),
-        "outcome": outcome(*_ATTRACTOR, among=(Outcome.converged, Outcome.unresolved)),
+        "outcome": outcome("attractor", among=(Outcome.converged, Outcome.unresolved)),
     },
     lists={"attractor": Listing(kinds=("kind",))},
 )

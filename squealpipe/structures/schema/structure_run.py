@@ -13,9 +13,7 @@ from squealpipe.schema import (
 )
 from squealpipe.schema.meshes import MESH, MESH_COORDINATES
 
-_OF_CONTACT = ("time", "contact")
-
-STRUCTURE_RUN = DatasetSchema(
+structure_run_schema = DatasetSchema(
     name="structure_run",
     title="Settled motion of a structure over time",
     coordinates={
@@ -42,14 +40,18 @@ STRUCTURE_RUN = DatasetSchema(
             f"contact_{name}_{way}": Variable(
                 f"{name} of the contact {way} the belt",
                 units,
-                _OF_CONTACT,
+                ("time", "contact"),
                 volatile=True,
             )
             for name, units in (("displacement", "m"), ("velocity", "m s-1"))
             for way in ("along", "across")
         },
-        "normal_force": Variable("normal force", "N", _OF_CONTACT, volatile=True),
-        "regime": flag("regime of the contact", Regime, *_OF_CONTACT, volatile=True),
+        "normal_force": Variable(
+            "normal force", "N", ("time", "contact"), volatile=True
+        ),
+        "regime": flag(
+            "regime of the contact", Regime, "time", "contact", volatile=True
+        ),
         "preload": Variable("preload of the contact", "N", ("contact",)),
         "attractor": count("attractor of squealing_modes that the motion is on"),
         "dominant_frequency": or_nan("strongest line of the motion", "Hz", rtol=1e-3),

@@ -187,7 +187,7 @@ def _modes(dims: tuple[str, ...]) -> DatasetSchema:
     )
 
 
-COMPLEX_MODES = tuple(
+complex_modes_schemas = tuple(
     _modes(dims) for dims in ((), ("mu",), ("belt_speed",), ("mu", "belt_speed"))
 )
 

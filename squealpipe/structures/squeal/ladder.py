@@ -17,8 +17,8 @@ from squealpipe.structures.pencil import DENSE
 from squealpipe.structures.reduction import reduce
 from squealpipe.structures.schema.squeal_ladder import (
     NO_MODE,
-    SQUEAL_LADDER,
     PushAnswer,
+    squeal_ladder_schema,
 )
 from squealpipe.structures.schema.squealing import SQUEAL_LIMITS
 from squealpipe.structures.squeal.ends import PushEnd
@@ -241,7 +241,7 @@ def _dataset(
     roles = [each.role for each in told]
     roles[reference] = Role.our_setting
     return build(
-        SQUEAL_LADDER,
+        squeal_ladder_schema,
         {
             "method": [each.method for each in told],
             "setting": [each.setting for each in told],

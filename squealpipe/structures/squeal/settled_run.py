@@ -14,7 +14,7 @@ from squealpipe.schema.origin import recorded
 from squealpipe.structures.meshes.datasets import mesh_variables
 from squealpipe.structures.reduction import reduced_again
 from squealpipe.structures.schema.squealing import NO_ATTRACTOR, Kind
-from squealpipe.structures.schema.structure_run import STRUCTURE_RUN
+from squealpipe.structures.schema.structure_run import structure_run_schema
 from squealpipe.validation import Natural, Tolerance
 
 
@@ -119,7 +119,7 @@ def _dataset(
     of_mesh, mesh_coordinates = mesh_variables(structure)
     ways = ("along", structure.tangentials), ("across", structure.normals)
     return build(
-        STRUCTURE_RUN,
+        structure_run_schema,
         {
             "displacement": q,
             "velocity": v,

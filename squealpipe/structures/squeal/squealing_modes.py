@@ -18,7 +18,7 @@ from squealpipe.codes import Verdict
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
 from squealpipe.structures.meshes.datasets import mesh_variables
-from squealpipe.structures.schema.squealing import NO_ATTRACTOR, SQUEALING, Kind
+from squealpipe.structures.schema.squealing import NO_ATTRACTOR, Kind, squealing_schema
 from squealpipe.structures.squeal.attractors import grouped, is_same
 from squealpipe.structures.squeal.hysteresis import hysteresis
 from squealpipe.structures.squeal.kinds import Described, described
@@ -162,7 +162,7 @@ def squealing_of(
         of_whole = _of_whole(plant)
     of_mesh, mesh_coordinates = mesh_variables(plant.structure)
     return build(
-        SQUEALING,
+        squealing_schema,
         {
             **of_mode,
             **of_attractor,

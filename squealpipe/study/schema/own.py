@@ -9,8 +9,6 @@ from squealpipe.brake.schema.dynamics.runs import IMPACT_SPEED, RETURN_FORCE
 from squealpipe.brake.schema.linear import ONE_PAIR
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Variable, count, outcome, text
 
-_RUN = ("scene", "variant")
-
 NUMBERS = (
     "first_separation_time",
     "separated_fraction",
@@ -24,10 +22,12 @@ NUMBERS = (
 
 
 def _number(meaning: str, units: str = "1") -> Variable:
-    return Variable(meaning, units, _RUN, nan_allowed=True, rtol=1e-3, atol=1e-9)
+    return Variable(
+        meaning, units, ("scene", "variant"), nan_allowed=True, rtol=1e-3, atol=1e-9
+    )
 
 
-OWN_SCENES = DatasetSchema(
+own_scenes_schema = DatasetSchema(
     name="own_scenes",
     title="What the scenes of a study do, as configured and with one thing changed",
     coordinates={
@@ -37,7 +37,7 @@ OWN_SCENES = DatasetSchema(
         "peak": count("peak of the spectrum, by height", "peak"),
     },
     variables={
-        "motion": text("kind of motion", *_RUN),
+        "motion": text("kind of motion", "scene", "variant"),
         "first_separation_time": _number("time of the first loss of contact", "s"),
         "separated_fraction": _number("share of the time without contact"),
         "stick_fraction": _number("share of the time in stick"),
@@ -49,13 +49,13 @@ OWN_SCENES = DatasetSchema(
         "dominant_frequency": Variable(
             "angular frequencies of the contact force",
             "rad s-1",
-            (*_RUN, "peak"),
+            ("scene", "variant", "peak"),
             nan_allowed=True,
             rtol=1e-3,
         ),
         "model": text("cheapest level that answers", "scene", "question"),
         **{name: replace(entry, dims=("scene",)) for name, entry in ONE_PAIR.items()},
         "t_end": Variable("end of the runs", "s", ("scene",)),
-        "outcome": outcome(*_RUN, among=RUN_ENDS),
+        "outcome": outcome("scene", "variant", among=RUN_ENDS),
     },
 )

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from squealpipe.systems.tracing import TracedSystem as System
 
 
-_FUNCTIONS: WeakKeyDictionary[Any, dict[tuple[str, ...], dict[Any, Any]]] = (
+_compiled_functions: WeakKeyDictionary[Any, dict[tuple[str, ...], dict[Any, Any]]] = (
     WeakKeyDictionary()
 )
 """Functions of flows by the system whose symbols they are made of, and followed parameters."""
@@ -202,7 +202,7 @@ class TracedFlow(Flow):
         fixed = [parameter(name) for name in (*t.parameters, *t.constants)]
         self.arguments = [*t.variables, *fixed]
         # what is made of the symbols is the same for all flows of systems that share them
-        shared = _FUNCTIONS.setdefault(system.form, {})
+        shared = _compiled_functions.setdefault(system.form, {})
         self._functions: dict[Any, Any] = shared.setdefault(self.followed, {})
         # steps of a leg that are kept at first; one that has more is run again with room for all
         self._room, self._legs = 48, 0

@@ -26,9 +26,6 @@ class TrailDistances:
     """Distance from a cycle of a part of the period, over its extent, where a branch ends on it."""
 
 
-TRAIL = TrailDistances()
-
-
 @dataclass(frozen=True)
 class BranchPoint:
     """A cycle on a branch; ``rest`` is where one that has all but shrunk to rest has no size."""
@@ -93,7 +90,7 @@ class Trail:
         """Return whether a fold is where the branch ends on a cycle of a part of the period."""
         near = (
             min(float(np.linalg.norm(point.cycle.after_part(n))) for n in (2, 3))
-            < TRAIL.met
+            < TrailDistances.met
         )
         return near and point.label == Label.fold
 
@@ -108,7 +105,7 @@ class Trail:
         parts = [float(np.linalg.norm(cycle.after_part(n))) for n in (2, 3)]
         return (
             Outcome.tongue_end
-            if min(parts) < TRAIL.met and second < TRAIL.met
+            if min(parts) < TrailDistances.met and second < TrailDistances.met
             else Outcome.branch_lost
         )
 
@@ -127,7 +124,7 @@ class Trail:
         rises = bool((np.diff(periods[first:]) > -1e-6 * periods[-1]).all())
         return rises and bool(periods[-1] >= 1.5 * periods[first])
 
-    def has_shrunk(self, cycle: Cycle, share: float = TRAIL.at_rest) -> bool:
+    def has_shrunk(self, cycle: Cycle, share: float = TrailDistances.at_rest) -> bool:
         """Return whether a cycle without forcing is next to a state of rest."""
         if cycle.map.periods:
             return False
@@ -141,7 +138,7 @@ class Trail:
         Of the smallest cycles round-off decides the parameter.
         """
         sizes, last = _sizes_of(self.shapes), self.points[-1].parameter
-        fit = np.flatnonzero(sizes > 0.2 * TRAIL.at_rest * sizes.max())[-3:]
+        fit = np.flatnonzero(sizes > 0.2 * TrailDistances.at_rest * sizes.max())[-3:]
         shapes = []
         for state, equations in (
             (self.points[i].state, self.points[i].cycle.map) for i in fit
@@ -155,4 +152,8 @@ class Trail:
         unit = float(self.points[-1].cycle.map.units[-1])
         beyond = np.array([shape[0] for shape in shapes]) * unit - last
         rest = float(scipy.interpolate.barycentric_interpolate(squares, beyond, 0.0))
-        return last + rest if abs(rest) < TRAIL.at_rest * np.abs(beyond).max() else None
+        return (
+            last + rest
+            if abs(rest) < TrailDistances.at_rest * np.abs(beyond).max()
+            else None
+        )

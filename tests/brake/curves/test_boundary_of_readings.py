@@ -19,7 +19,7 @@ def square(speed, model, **parameters):
 
 def followed(*squares):
     """Lines of each, and how many runs were made for it."""
-    contact._LATEST.clear()
+    contact._latest.clear()
     found = []
     for each in squares:
         made = []

@@ -3,8 +3,13 @@
 import numpy as np
 import pytest
 
-from squealpipe.benchmark.schema import BENCHMARK, FAILURE_ATLAS, Reliability, Role
-from squealpipe.brake.schema.ladder import MODEL_LADDER, QUESTIONS, Level
+from squealpipe.benchmark.schema import (
+    Reliability,
+    Role,
+    benchmark_schema,
+    failure_atlas_schema,
+)
+from squealpipe.brake.schema.ladder import QUESTIONS, Level, model_ladder_schema
 from squealpipe.paper.figures.comparison import (
     failure_atlas,
     model_needed,
@@ -47,7 +52,7 @@ def benchmark():
     }
     attributes = {"platform": "a machine", "libraries": '{"scipy": "1.0"}'}
     return build(
-        BENCHMARK, data, {**axes, "solver": ["squealpipe", "theirs"]}, attributes
+        benchmark_schema, data, {**axes, "solver": ["squealpipe", "theirs"]}, attributes
     )
 
 
@@ -83,7 +88,7 @@ def test_atlas_prints_verdicts_and_counts(benchmark):
         "scene": ["grazing", "chaos", "onset"],
         "solver": ["ours", "theirs", "closed form"],
     }
-    atlas = build(FAILURE_ATLAS, data, axes)
+    atlas = build(failure_atlas_schema, data, axes)
     figure = failure_atlas.draw(benchmark, atlas)
     text = written(figure)
     for sign, verdict in (("✗", Reliability.silently_wrong), ("✓", Reliability.right)):
@@ -143,7 +148,7 @@ def test_bars_tell_hindsight_from_what_is_known_beforehand():
         "belt_reached": np.zeros((2, 2), bool),
         "outcome": np.zeros((2, 2)),
     }
-    ladder = build(MODEL_LADDER, data, axes)
+    ladder = build(model_ladder_schema, data, axes)
     assert model_needed.shares_of_a3(ladder) == (75.0, 25.0)
     text = written(model_needed.draw(ladder))
     assert "beforehand" in text

@@ -10,7 +10,12 @@ from scipy.stats import binomtest
 from squealpipe.brake.a1.ensemble import run_ensemble
 from squealpipe.brake.linear.maps import stability_map
 from squealpipe.paper.inference.candidates import Candidates, sets_of
-from squealpipe.paper.inference.constraints import CONSTRAINTS, Stage, judge, measure
+from squealpipe.paper.inference.constraints import (
+    Stage,
+    judge,
+    measure,
+    registered_constraints,
+)
 from squealpipe.paper.inference.inference import infer_parameters
 from squealpipe.paper.schema.inference import Holds, of_study
 from squealpipe.parameters import SCENES, Parameters
@@ -42,7 +47,7 @@ def test_the_studys_parameters_agree_as_printed_alone():
     own, failing = Candidates.of(STUDY, tol=1e-12), {}
     for name in READINGS:
         _, holds = judge(own.read(name), failures=99)
-        pairs = zip(CONSTRAINTS, holds[0], strict=True)
+        pairs = zip(registered_constraints, holds[0], strict=True)
         failing[name] = [each.name for each, verdict in pairs if verdict != Holds.yes]
     assert failing == {
         "as_printed": [],
@@ -162,7 +167,7 @@ def test_what_a_statement_excludes_alone_is_known_however_late_it_comes():
     sets = sets_of(groups, tol=1e-9, workers=None).read("as_printed")
     whole = judge(sets, failures=99)[1] == Holds.yes
     staged = judge(sets, failures=1)[1] == Holds.yes
-    last = len(CONSTRAINTS) - 1
+    last = len(registered_constraints) - 1
     alone = whole.sum(axis=1) == last
     assert alone.sum() > 8
     np.testing.assert_array_equal(staged.sum(axis=1) == last, alone)
@@ -199,7 +204,9 @@ def test_samples_and_maps_are_judged_alike():
     sets = random_sets(generator, 150, equal=True) + random_sets(
         generator, 150, equal=False
     )
-    f6d = next(constraint for constraint in CONSTRAINTS if constraint.name == "F6d")
+    f6d = next(
+        constraint for constraint in registered_constraints if constraint.name == "F6d"
+    )
     margin = f6d.check(Candidates(fields_of(sets), 1e-9)).margin
     scene = SCENES["F3"]
     for params, value in zip(sets, margin, strict=True):
@@ -258,7 +265,7 @@ def test_the_study_meets_every_statement_and_no_simple_numbers_meet_them_by_far_
     is_study = np.isclose(np.stack(list(groups.values()), axis=1), chosen).all(axis=1)
     assert meets[is_study].tolist() == [True]
     # growth's margin is much the same wherever it grows: |x| goes with the root of time
-    others = [constraint.name != "F3" for constraint in CONSTRAINTS]
+    others = [constraint.name != "F3" for constraint in registered_constraints]
     smallest = np.where(meets, margin[:, others].min(axis=1), -np.inf)
     assert smallest[is_study] == pytest.approx(0.0767, abs=5e-5)
     assert smallest.max() == pytest.approx(0.0842, abs=5e-5)

@@ -8,16 +8,16 @@ import xarray as xr
 
 from squealpipe.paper.inference.candidates import sets_of
 from squealpipe.paper.inference.constraints import (
-    CONSTRAINTS,
-    SEVERAL_STARTS,
+    SeveralStarts,
     StatementMargin,
     compared_near_the_threshold,
     from_several_starts,
+    registered_constraints,
     verdicts,
 )
 from squealpipe.paper.inference.inference import FULLY_JUDGED, _sample
 from squealpipe.paper.schema.growth import growth_margin
-from squealpipe.paper.schema.inference import PARAMETER_INFERENCE, Holds
+from squealpipe.paper.schema.inference import Holds, parameter_inference_schema
 from squealpipe.parameters import SCENES
 from squealpipe.store.comparison.differences import Agreement, judge
 
@@ -27,7 +27,7 @@ RANGES = {
     "length_ratio": (2.0, 100.0),
     "speed_ratio": (0.1, 316.0),
 }
-CHECKS = {constraint.name: constraint.check for constraint in CONSTRAINTS}
+CHECKS = {constraint.name: constraint.check for constraint in registered_constraints}
 
 
 def candidates(*rows):
@@ -91,7 +91,7 @@ def test_more_starts_are_asked_where_two_disagree_only():
     check, asked = counted(margins)
     found = verdicts(from_several_starts(check)(sets))
     assert found.tolist() == [Holds.yes, Holds.yes, Holds.undecided]
-    assert asked == [3, 3, *[2] * len(SEVERAL_STARTS.directions)]
+    assert asked == [3, 3, *[2] * len(SeveralStarts.directions)]
     check, asked = counted(margins)
     sampled = replace(sets, sampled=True)
     assert verdicts(from_several_starts(check)(sampled)).tolist() == [1, 1, 0]
@@ -104,7 +104,7 @@ def test_a_regular_motion_is_compared_at_its_threshold(distance, verdict):
     sets = replace(candidates(STUDY), initial_state=np.zeros(4))
     sets.fields["mu"][:] = 0
     assert verdicts(compared_near_the_threshold(check)(sets)).tolist() == [verdict]
-    assert len(asked) == (1 if verdict == 1 else 1 + len(SEVERAL_STARTS.directions))
+    assert len(asked) == (1 if verdict == 1 else 1 + len(SeveralStarts.directions))
 
 
 def test_samples_do_not_depend_on_the_last_bit_of_exp():
@@ -130,7 +130,7 @@ def test_samples_that_are_judged_further_cover_the_ranges():
 
 def test_what_one_side_did_not_judge_is_no_difference():
     """A verdict that differs is one; what follows from it, that others were not judged, is not."""
-    entry = PARAMETER_INFERENCE.variables["holds"]
+    entry = parameter_inference_schema.variables["holds"]
     one = xr.Dataset({"holds": ("sample", np.array([1, 0, 3, 1], np.int8))})
     other = xr.Dataset({"holds": ("sample", np.array([1, 0, 1, 3], np.int8))})
     assert judge("holds", one, other, entry).verdict == Agreement.equal

@@ -14,7 +14,7 @@ from squealpipe.schema import Outcome, build
 from squealpipe.store import save
 from squealpipe.store.mistakes import ConfigError
 from squealpipe.store.rerun.key import files_named_in, rule_key
-from squealpipe.structures.schema.fewer_points import FEWER_POINTS
+from squealpipe.structures.schema.fewer_points import fewer_points_schema
 from squealpipe.study.configuration.settings import PAPER, parse_study, read_study
 from squealpipe.study.report import structure as report
 from squealpipe.study.report.build import write_document
@@ -113,7 +113,7 @@ def fewer_points_of(growths, faces=1):
         "outcome": outcomes,
     }
     arrays = {name: np.array(each) for name, each in values.items()}
-    return build(FEWER_POINTS, arrays, {"points": [*growths]})
+    return build(fewer_points_schema, arrays, {"points": [*growths]})
 
 
 @pytest.mark.parametrize(

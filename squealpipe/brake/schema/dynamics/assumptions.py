@@ -12,15 +12,12 @@ from squealpipe.schema import (
     text,
 )
 
-YES_NO = {0: "no", 1: "yes"}
-LEVEL_BY_SCENE = ("level", "scene")
-
 
 def _largest(units: str, meaning: str) -> Variable:
-    return or_nan(meaning, units, LEVEL_BY_SCENE, rtol=1e-6)
+    return or_nan(meaning, units, ("level", "scene"), rtol=1e-6)
 
 
-ASSUMPTIONS = DatasetSchema(
+assumptions_schema = DatasetSchema(
     name="assumptions",
     title="Which assumptions held along the motion that each model level computes for each scene",
     coordinates={
@@ -30,16 +27,20 @@ ASSUMPTIONS = DatasetSchema(
     },
     variables={
         "needed": flag(
-            "whether the level makes the assumption", YES_NO, "level", "assumption"
+            "whether the level makes the assumption",
+            {0: "no", 1: "yes"},
+            "level",
+            "assumption",
         ),
         "measure": or_nan(
-            "the number that decides", dims=(*LEVEL_BY_SCENE, "assumption"), rtol=1e-6
+            "the number that decides", dims=("level", "scene", "assumption"), rtol=1e-6
         ),
         "limit": Variable("limit of the measure", dims=("assumption",)),
         "held": flag(
             "whether the assumption held along the whole motion",
-            YES_NO,
-            *LEVEL_BY_SCENE,
+            {0: "no", 1: "yes"},
+            "level",
+            "scene",
             "assumption",
         ),
         "largest_x": _largest("m", "largest |x|"),
@@ -47,13 +48,14 @@ ASSUMPTIONS = DatasetSchema(
         "max_displacement": _largest("m", "largest distance from the start position"),
         "t_end": Variable("end of the motion", "s", ("scene",)),
         "outcome": outcome(
-            *LEVEL_BY_SCENE,
+            "level",
+            "scene",
             among=(*RUN_ENDS, Outcome.separated, Outcome.singular_static_state),
         ),
     },
 )
 
-LINEAR_PULL = DatasetSchema(
+linear_pull_schema = DatasetSchema(
     name="linear_pull",
     title="How far the linear model lets the contact spring pull, from rest",
     coordinates=ANGLE_COORDINATES,

@@ -3,8 +3,12 @@
 from dataclasses import replace
 from typing import Any
 
-from squealpipe.brake.schema.backbones import BACKBONE
-from squealpipe.brake.schema.dynamics.runs import FREQUENCY, SIMULATION, TIME_COORDINATE
+from squealpipe.brake.schema.backbones import backbone_schema
+from squealpipe.brake.schema.dynamics.runs import (
+    FREQUENCY,
+    TIME_COORDINATE,
+    simulation_schema,
+)
 from squealpipe.brake.schema.linear import ANGLE_COORDINATES, MAP, MODES
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Variable, count, outcome
 
@@ -13,7 +17,7 @@ SINGLE_PRECISION: dict[str, Any] = {"dtype": "f4", "rtol": 1e-5, "atol": 1e-6}
 HISTORIES = ("x", "y", "normalized_contact_force")
 ORBITS = ("omega", "x_amplitude", "y_amplitude", "y_peak", "stability_index")
 
-EXPLORER = DatasetSchema(
+explorer_schema = DatasetSchema(
     name="explorer",
     title="Motions from rest (A1), their spectra, and exact backbones (A4) over both angles",
     coordinates={
@@ -26,7 +30,7 @@ EXPLORER = DatasetSchema(
     variables={
         **{
             name: replace(
-                SIMULATION.variables[name],
+                simulation_schema.variables[name],
                 dims=(*MAP, "time"),
                 nan_allowed=False,
                 round_off=None,
@@ -44,7 +48,7 @@ EXPLORER = DatasetSchema(
         "outcome": outcome(*MAP, among=RUN_ENDS),
         **{
             name: replace(
-                BACKBONE.variables[name],
+                backbone_schema.variables[name],
                 dims=(*MAP, "mode", "point"),
                 nan_allowed=True,
                 optional=True,
@@ -52,7 +56,9 @@ EXPLORER = DatasetSchema(
             )
             for name in ORBITS
         },
-        "end": replace(BACKBONE.variables["end"], dims=(*MAP, "mode"), optional=True),
+        "end": replace(
+            backbone_schema.variables["end"], dims=(*MAP, "mode"), optional=True
+        ),
         "preload": Variable("precompression l_pre of the contact spring", "m"),
         "length1": Variable("free length of spring 1", "m"),
         "length2": Variable("free length of spring 2", "m"),

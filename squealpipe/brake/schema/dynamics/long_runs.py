@@ -21,7 +21,7 @@ _IRREGULAR = (
 )
 _LONG_SAMPLE = RoundOff(ComparedAs.sample, _IRREGULAR, sample="belt_speed")
 
-WHIRL = DatasetSchema(
+whirl_schema = DatasetSchema(
     name="whirl",
     title="Where the growth at (0.4 pi, 0.6 pi) ends, over belt speed",
     coordinates={"belt_speed": Variable("belt speed V", "m s-1", ("belt_speed",))},
@@ -66,7 +66,7 @@ _CHAOTIC = RoundOff(
     "distribution of its lifetimes is a result",
     sample="sample",
 )
-TRANSIENT = DatasetSchema(
+transient_schema = DatasetSchema(
     name="transient",
     title="How long the bounded motion at (0.2 pi, 0.8 pi) lasts",
     coordinates={"sample": count("number of the perturbation", "sample")},

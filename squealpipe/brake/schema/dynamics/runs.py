@@ -101,7 +101,7 @@ def _extremes_between() -> dict[str, Variable]:
 TIME_COORDINATE = Variable("time", "s", ("time",))
 FREQUENCY = Variable("angular frequency", "rad s-1", ("frequency",))
 
-SIMULATION = DatasetSchema(
+simulation_schema = DatasetSchema(
     name="simulation",
     title="One nonlinear run from given initial conditions, events located",
     lists={"event": Listing(kinds=("event_kind",))},
@@ -142,7 +142,7 @@ SIMULATION = DatasetSchema(
     },
 )
 
-RUN_SUMMARY = DatasetSchema(
+run_summary_schema = DatasetSchema(
     name="run_summary",
     title="Summary of one run",
     lists={"peak": Listing()},
@@ -171,7 +171,7 @@ RUN_SUMMARY = DatasetSchema(
     },
 )
 
-SPECTRUM = DatasetSchema(
+spectrum_schema = DatasetSchema(
     name="spectrum",
     title="Amplitude spectra of one run",
     lists={"peak": Listing()},
@@ -205,7 +205,7 @@ GROWTH_THRESHOLD = 2.0
 one half of a run to the next; exponential growth exceeds that, and a bounded one falls short.
 """
 
-VALIDITY_MAP = DatasetSchema(
+validity_map_schema = DatasetSchema(
     name="validity_map",
     title="Where model A1 keeps contact, and the regime of the linear model A3",
     coordinates=ANGLE_COORDINATES,
@@ -225,7 +225,7 @@ VALIDITY_MAP = DatasetSchema(
 )
 
 
-HAMMERING_MAP = DatasetSchema(
+hammering_map_schema = DatasetSchema(
     name="hammering_map",
     title="Impacts, forces and kind of motion of model A1 over both spring angles",
     coordinates=ANGLE_COORDINATES,
@@ -264,7 +264,7 @@ HAMMERING_MAP = DatasetSchema(
     },
 )
 
-REFINED_VALIDITY_MAP = DatasetSchema(
+refined_validity_map_schema = DatasetSchema(
     name="refined_validity_map",
     title="Where model A1 keeps contact, computed only where the answer changes",
     coordinates=ANGLE_COORDINATES,

@@ -17,12 +17,12 @@ from squealpipe.paper.claims.evidence import Finding, finding
 from squealpipe.paper.claims.statement import Check, StatementRows
 from squealpipe.paper.schema.claims import ClaimVerdict
 from squealpipe.paper.schema.growth import (
-    GROWTH_RULE,
     Growth,
+    GrowthRule,
     judge_growth,
     least_growth,
 )
-from squealpipe.paper.schema.inference import AS_NUMBERS
+from squealpipe.paper.schema.inference import WordsInNumbers
 from squealpipe.study.evidence import Evidence
 
 rows = StatementRows("4", "fig02")
@@ -83,11 +83,11 @@ def responses_differ_little(run: Evidence) -> Finding:
     closer = spread < apart
     undecided = ClaimVerdict.cannot_be_decided
     return finding(
-        (spread, "≤", AS_NUMBERS.minimal_difference),
+        (spread, "≤", WordsInNumbers.minimal_difference),
         f"The lowest forces are {_listed(ends[:3, 0])} of the preload, the highest "
         f"{_listed(ends[:3, 1])}: a spread of {spread:.3g}, and at least {apart:.3g} from the "
         "fourth response. The text has no number for “minimal”; "
-        f"the inference took {AS_NUMBERS.minimal_difference:g}.",
+        f"the inference took {WordsInNumbers.minimal_difference:g}.",
         passed=ClaimVerdict.holds if closer else undecided,
         otherwise=undecided if closer else ClaimVerdict.fails,
     )
@@ -108,8 +108,8 @@ def unstable_response_grows(run: Evidence) -> Finding:
     undecided = growth is Growth.undecided
     judged = growth.name.replace("undecided", "is undecided")
     return finding(
-        (float(least_growth(sizes)), "≥", GROWTH_RULE.least_ratio),
-        f"In windows of {GROWTH_RULE.window:g} √(m/k1) of a run to {until(run, longer)}, "
+        (float(least_growth(sizes)), "≥", GrowthRule.least_ratio),
+        f"In windows of {GrowthRule.window:g} √(m/k1) of a run to {until(run, longer)}, "
         "|x| reaches "
         f"{_listed(sizes, digits=5)} l_pre: it {judged}. In the time of the paper's figure it "
         f"reaches {early:.3g} l_pre in the first half of the run to {until(run, shown)} and "
@@ -136,7 +136,7 @@ def limit_cycle_is_bounded(run: Evidence) -> Finding:
     longer = scene(run, "F4_long")
     later = float(largest_size(longer, "x").max() / longest)
     bounded = (
-        max(largest, later) < AS_NUMBERS.bounded_within
+        max(largest, later) < WordsInNumbers.bounded_within
         and late < GROWTH_THRESHOLD * early
     )
     evidence = (
@@ -181,7 +181,7 @@ def runs_are_identical(run: Evidence) -> Finding:
     )
     difference = float(np.abs(first.values - second.values).max())
     return finding(
-        (difference, "≤", AS_NUMBERS.same_force),
+        (difference, "≤", WordsInNumbers.same_force),
         f"The contact forces differ by at most {difference:.1g} of the preload.",
     )
 
@@ -197,7 +197,7 @@ def mass_jumps(run: Evidence) -> Finding:
     flights = events(motion, Event.separation).size
     height = float(extremes(motion, "y")[1].max() / run.parameters.preload)
     return finding(
-        (flights, "≥", AS_NUMBERS.again_and_again),
+        (flights, "≥", WordsInNumbers.again_and_again),
         f"{flights} flights up to {until(run, motion)}, up to y = {height:.3g} l_pre; "
         "the springs lie along x and have no vertical stiffness to first order.",
     )

@@ -12,8 +12,8 @@ from squealpipe.paper.claims.maps import (
 )
 from squealpipe.paper.claims.statement import StatementRows
 from squealpipe.paper.schema.claims import ClaimVerdict
-from squealpipe.paper.schema.growth import GROWTH_RULE, Growth, judge_growth
-from squealpipe.paper.schema.inference import AS_NUMBERS
+from squealpipe.paper.schema.growth import Growth, GrowthRule, judge_growth
+from squealpipe.paper.schema.inference import WordsInNumbers
 from squealpipe.study.evidence import Evidence
 
 rows = StatementRows("6", "fig06")
@@ -121,7 +121,7 @@ def linearly_stable_but_not(run: Evidence) -> Finding:
     return finding(
         (rate, "≤", smallest_rate),
         f"A3's largest growth rate there is {rate:.1g}; in a long run of A1 |x| reaches "
-        f"{early:.5g} l_pre in the first window of {GROWTH_RULE.window:g} √(m/k1) "
+        f"{early:.5g} l_pre in the first window of {GrowthRule.window:g} √(m/k1) "
         f"and {late:.5g} l_pre "
         "in the last.",
         also=growth is Growth.grows,
@@ -172,7 +172,7 @@ def invalid_where_separated(run: Evidence) -> Finding:
             f" By the curves of its boundary it loses it in {100 * lost:.4g} % of the square of "
             f"angles, right to {100 * error:.1g} %."
         )
-    return finding((lost, ">", AS_NUMBERS.large_region), evidence)
+    return finding((lost, ">", WordsInNumbers.large_region), evidence)
 
 
 @rows.add(

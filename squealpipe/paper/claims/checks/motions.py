@@ -6,7 +6,7 @@ import xarray as xr
 
 from squealpipe.brake.schema.dynamics.extremes import extremes, largest_size
 from squealpipe.codes import Event
-from squealpipe.paper.schema.growth import GROWTH_HORIZON, GROWTH_RULE
+from squealpipe.paper.schema.growth import GROWTH_HORIZON, GrowthRule
 from squealpipe.study.evidence import Evidence, MissingDataError
 
 
@@ -43,10 +43,10 @@ def windows(run: Evidence, motion: xr.Dataset) -> np.ndarray:
         )
     size = largest_size(motion, "x") / float(motion.preload)
     window = (
-        motion.time.values / (GROWTH_RULE.window * run.parameters.time_unit)
+        motion.time.values / (GrowthRule.window * run.parameters.time_unit)
     ).astype(int)
     return np.array(
-        [size[window == number].max() for number in range(GROWTH_RULE.n_windows)]
+        [size[window == number].max() for number in range(GrowthRule.n_windows)]
     )
 
 

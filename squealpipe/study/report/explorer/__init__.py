@@ -20,8 +20,6 @@ from squealpipe.store.whole_files import whole_file
 from squealpipe.study.report.explorer.layers import Layer
 from squealpipe.units import engineering
 
-HERE = Path(str(files("squealpipe.study.report.explorer")))
-
 
 def write_explorer(
     explorer: xr.Dataset,
@@ -57,11 +55,14 @@ def page(
 ) -> str:
     """The text of the page."""
     environment = Environment(undefined=StrictUndefined, autoescape=True)
-    shell = environment.from_string((HERE / "page.html.j2").read_text(encoding="utf-8"))
+    folder = Path(str(files("squealpipe.study.report.explorer")))
+    shell = environment.from_string(
+        (folder / "page.html.j2").read_text(encoding="utf-8")
+    )
     return shell.render(
-        style=(HERE / "explorer.css").read_text(encoding="utf-8"),
-        script=(HERE / "explorer.js").read_text(encoding="utf-8"),
-        chart=(HERE / "chart.js").read_text(encoding="utf-8"),
+        style=(folder / "explorer.css").read_text(encoding="utf-8"),
+        script=(folder / "explorer.js").read_text(encoding="utf-8"),
+        chart=(folder / "chart.js").read_text(encoding="utf-8"),
         layers={key: layer.label for key, layer in layers.items()},
         branches="end" in explorer,
         belt=belt_in_words(explorer, paper=paper),
