@@ -81,10 +81,10 @@ class RunOptions:
             components); by default what fits each.
         t_late: from when the late extremes are kept, in the system's unit of time.
         late_from: kind of event whose first begins the late part, if ``t_late`` does not.
-        until: kind of event whose first ends a run, as ``BY_EVENT``.
+        until: kind of event whose first ends a run, as ``by_event``.
         around: points (runs, points, 2) in the plane of the first two states around which half
             turns are counted, counterclockwise.
-        most_turns: net turns around all of them that end a run, as ``BY_TURNS``.
+        most_turns: net turns around all of them that end a run, as ``by_turns``.
         tracked: states and outputs whose extremes are kept, by default all; after ``LARGEST`` the
             largest value alone.
         times: instants at which the state is kept, (instants,) or (runs, instants).
@@ -299,7 +299,12 @@ class Batch:
         """Return how many items the loop goes through, and the addresses of code."""
         system, code, t = self.system, self.code, self.system.integrated
         n_constants, n_points = len(t.all_constants), self.points.shape[1]
-        n_rows = layout.FIXED_ROWS + len(t.variables) + t.size + 2 * len(self.watched)
+        n_rows = (
+            layout.numbers.first_of_system
+            + len(t.variables)
+            + t.size
+            + 2 * len(self.watched)
+        )
         n_rows += len(system.regimes) + 3 * n_points + t.n_components
         n_rows += len(t.parameters) + n_constants
         number: dict[str | None, int] = {kind: i for i, kind in enumerate(t.kinds)}
@@ -343,9 +348,12 @@ class Batch:
         active = np.zeros(n_events, np.int64)
         active[[w - len(t.variables) for w, _ in self.watched if w >= t.size]] = -1
         width = max(3 * n_events, len(t.variables), len(t.all_constants)) + 2
-        integers = np.full((layout.FIRST_REGIME + t.n_components, LANES), -1, np.int64)
-        integers[layout.OUTCOME] = 0  # every lane asks for a job
-        share = max(layout.SHARE * self.tol, layout.ROUND_OFF)
+        integers = np.full(
+            (layout.integers.first_regime + t.n_components, LANES), -1, np.int64
+        )
+        integers[layout.integers.outcome] = 0  # every lane asks for a job
+        # a step's end may differ by a tenth of the tolerance; less than 2e-14 is round-off
+        share = max(0.1 * self.tol, 2e-14)
         return {
             "rows": lanes.aligned(counts["n_rows"], LANES),
             "integers": integers,
@@ -416,8 +424,13 @@ class Batch:
             memory,
             {name: counts[name] for name in layout.LOOP_SIZES},
         )
-        rows, job = memory["rows"], memory["integers"][layout.JOB]
-        at = job, rows[layout.CLOCK], rows[layout.T_END], memory["queue"]
+        rows, job = memory["rows"], memory["integers"][layout.integers.job]
+        at = (
+            job,
+            rows[layout.numbers.clock],
+            rows[layout.numbers.t_end],
+            memory["queue"],
+        )
         lanes.drive(self.loop(), table, lambda: lanes.share_of(*at))
         if job.max() >= 0 or memory["queue"][0] < self.size:
             raise RuntimeError(

@@ -70,7 +70,7 @@ def explained(
     system: System, long_name: str, dims: Any, values: Any, table: Mapping[int, str]
 ) -> Any:
     """A flag variable of outcomes and of the system's own stops, with what each means and helps."""
-    stops = {layout.STOPPED + i: name for i, name in enumerate(system.stops)}
+    stops = {layout.outcomes.stopped + i: name for i, name in enumerate(system.stops)}
     table = {**table, **stops}
     dims, values, attributes = flag(long_name, dims, values, table)
     return dims, values, attributes | {"comment": in_words(table)} | _own(stops)

@@ -18,7 +18,7 @@ from squealpipe.schema import Outcome
 from squealpipe.systems.integrate import LARGEST, RunOptions
 from squealpipe.systems.integrate import integrate as integrate_system
 from squealpipe.systems.system import System
-from squealpipe.systems.taylor.layout import BY_EVENT, BY_TURNS, STOPPED
+from squealpipe.systems.taylor.layout import outcomes
 from squealpipe.systems.trace import TIME
 from squealpipe.validation import Seed, Workers, checked
 
@@ -142,15 +142,15 @@ class Ensemble:
     def outcome(self) -> np.ndarray:
         """``schema.Outcome`` of each run."""
         codes = self._raw["outcome"]
-        lost = codes >= STOPPED
+        lost = codes >= outcomes.stopped
         hidden = (Outcome.not_finite, Outcome.hidden_event, Outcome.discontinuity)
         unknown = np.isin(codes, hidden)
         if unknown.any():
             # a state that is lost next to a pivot is so by its doing, and so is the sight of it
             lost |= unknown & self._next_to_pivot()
         found = np.where(lost, Outcome.singular_geometry, codes)
-        found[codes == BY_EVENT] = Outcome.separated
-        found[codes == BY_TURNS] = Outcome.amplitude_reached
+        found[codes == outcomes.by_event] = Outcome.separated
+        found[codes == outcomes.by_turns] = Outcome.amplitude_reached
         if self.jobs.stop_at_first_separation:
             found[self._raw["starts_apart"]] = Outcome.separated
         return self._shaped(found.astype(np.int8))

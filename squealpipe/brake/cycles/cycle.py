@@ -24,7 +24,7 @@ from squealpipe.systems.cycles.event_map import FREE
 from squealpipe.systems.cycles.find import find_cycle
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.integrate import MOST_STEPS
-from squealpipe.systems.taylor.layout import STOPPED
+from squealpipe.systems.taylor.layout import outcomes
 from squealpipe.validation import Angle, Natural, Positive, State, one_of
 
 IN_SYSTEM = {of: name for name, of in NUMBERS_OF_A1.items()} | {
@@ -106,7 +106,9 @@ def cycle_from(
     )
     if outcome == Outcome.not_finite and is_next_to_pivot(values, state[:2]):
         outcome = Outcome.singular_geometry
-    return cycle, Outcome.singular_geometry if outcome >= STOPPED else Outcome(outcome)
+    return cycle, Outcome.singular_geometry if outcome >= outcomes.stopped else Outcome(
+        outcome
+    )
 
 
 def is_next_to_pivot(values: Mapping[str, float], places: np.ndarray) -> bool:

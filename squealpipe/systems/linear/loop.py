@@ -39,7 +39,11 @@ from squealpipe.systems.linear.plan import (
 )
 from squealpipe.systems.linear.starts import find_starts
 from squealpipe.systems.taylor import layout
-from squealpipe.systems.taylor.checking import FINEST, believe_or_halve, stands_still
+from squealpipe.systems.taylor.checking import (
+    believe_or_halve,
+    stands_still,
+    step_checks,
+)
 from squealpipe.systems.taylor.lanes import (
     address_of,
     call,
@@ -56,7 +60,7 @@ from squealpipe.systems.taylor.observation import (
     extremes_inside,
     sample,
 )
-from squealpipe.systems.taylor.step import FITS, SPARE, cut
+from squealpipe.systems.taylor.step import cut, series_convergence
 from squealpipe.systems.taylor.switching import parameters_of, switch, watch
 
 _FOLDER = Path(__file__).parent
@@ -90,11 +94,11 @@ def _has_converged(mem: Any, place: int, step: float) -> Any:
     height, slope, bend = abs(mem[0, place]), abs(mem[1, place]), abs(mem[2, place])
     shorter = step
     size = height + shorter * (slope + shorter * bend)
-    share = SPARE * math.exp(-2.0 * (terms - 3.0)) * size
+    share = series_convergence.spare * math.exp(-2.0 * (terms - 3.0)) * size
     at_last, at_later = last * step ** (terms - 3), later * step ** (terms - 2)
     if at_last < share and at_later < share * math.exp(-2.0):
         return step
-    for _ in range(FITS):
+    for _ in range(series_convergence.fits):
         size = height + shorter * (slope + shorter * bend)
         if not size > 1e-300:
             break
@@ -182,7 +186,7 @@ def _end_states(t: Any, m: Any, mem: Any, step: float, work: Any) -> Any:
     _write_ends(mem, 0, step, value[:n])
     lost = 0.0
     for i in range(n):
-        m.rows[layout.FIXED_ROWS + i, LANE] = value[i]
+        m.rows[layout.numbers.first_of_system + i, LANE] = value[i]
         lost += 0.0 * value[i]
     return lost == 0.0
 
@@ -190,37 +194,43 @@ def _end_states(t: Any, m: Any, mem: Any, step: float, work: Any) -> Any:
 @inline
 def _reaches(m: Any, instant: int) -> Any:
     """Tell whether the step does not end before the instant in a row."""
-    left = m.rows[instant, LANE] - m.rows[layout.CLOCK, LANE]
-    return not m.rows[layout.STEP, LANE] < left - m.rows[layout.CORRECTION, LANE]
+    left = m.rows[instant, LANE] - m.rows[layout.numbers.clock, LANE]
+    return (
+        not m.rows[layout.numbers.step, LANE]
+        < left - m.rows[layout.numbers.correction, LANE]
+    )
 
 
 @inline
 def _take_step(t: Any, m: Any, k: Any, rows: Any, mem: Any, work: Any) -> Any:
     """Choose a step; tell whether something may happen in it."""
-    step = min(step_length(mem, m.units), m.rows[layout.LONGEST, LANE])
+    step = min(step_length(mem, m.units), m.rows[layout.numbers.longest, LANE])
     natural, left = step, -math.inf
     if k.curved:
-        left = m.rows[layout.T_END, LANE] - m.rows[layout.CLOCK, LANE]
-        left -= m.rows[layout.CORRECTION, LANE]
+        left = m.rows[layout.numbers.t_end, LANE] - m.rows[layout.numbers.clock, LANE]
+        left -= m.rows[layout.numbers.correction, LANE]
         step = shorter_step(m, k, rows, mem, min(step, left))
-    m.rows[layout.STEP, LANE] = step
-    m.rows[layout.NATURAL, LANE] = step if step < left else natural
+    m.rows[layout.numbers.step, LANE] = step
+    m.rows[layout.numbers.natural, LANE] = step if step < left else natural
     plain = _end_states(t, m, mem, step, work)
     suspect = _look_at_surfaces(t, m, mem, step, work)
-    ends = _reaches(m, layout.T_END) or _reaches(m, layout.T_LATE)
+    ends = _reaches(m, layout.numbers.t_end) or _reaches(m, layout.numbers.t_late)
     return not plain or suspect or ends
 
 
 @part
 def _check(t: Any, m: Any, c: Any, k: Any, rows: Any, work: Any) -> Any:
     """Halve a step until its end can be believed; tell whether it was halved or ended the run."""
-    m.rows[layout.GAP, LANE], halved = math.inf, False
-    while m.rows[layout.STEP, LANE] > 0.0:
+    m.rows[layout.numbers.gap, LANE], halved = math.inf, False
+    while m.rows[layout.numbers.step, LANE] > 0.0:
         for i in range(t.n_variables):
-            work[0, i] = m.rows[layout.FIXED_ROWS + i, LANE]
+            work[0, i] = m.rows[layout.numbers.first_of_system + i, LANE]
         exact_ends(k, rows, work[0], m.exact)
         stands = believe_or_halve(t, m, c, LANE)
-        if not stands or m.integers[layout.OUTCOME, LANE] != layout.RUNNING:
+        if (
+            not stands
+            or m.integers[layout.integers.outcome, LANE] != layout.outcomes.running
+        ):
             halved = True
         if stands:
             break
@@ -235,14 +245,14 @@ def _observe(t: Any, m: Any, c: Any, mem: Any, first_extreme: int) -> None:
     derivative, bounded by its first orders and a share for the others: only where that could be a
     record are turning points looked for.
     """
-    step, n = m.rows[layout.STEP, LANE], t.n_variables
+    step, n = m.rows[layout.numbers.step, LANE], t.n_variables
     ends = m.scratch[4]
     if t.n_tracked:  # states at the end are known
         _write_ends(mem, n, step, ends[: t.n_surfaces + t.n_outputs])
     for index in range(t.n_tracked):
         place, r = m.tracked[index, 0], first_extreme + 2 * index
         start = c[place, 0, LANE]
-        end = m.rows[layout.FIXED_ROWS + place, LANE]
+        end = m.rows[layout.numbers.first_of_system + place, LANE]
         if place >= n:
             end = ends[place - n]
         low, high = min(start, end), max(start, end)
@@ -260,13 +270,15 @@ def _observe(t: Any, m: Any, c: Any, mem: Any, first_extreme: int) -> None:
 def _go_on(t: Any, m: Any, mem: Any) -> None:
     """Start the next step where this one ended; the time is compensated."""
     for i in range(t.n_variables):
-        mem[0, i] = m.rows[layout.FIXED_ROWS + i, LANE]
-    m.rows[layout.STEPS, LANE] += 1.0
-    increment = m.rows[layout.STEP, LANE] + m.rows[layout.CORRECTION, LANE]
-    clock = m.rows[layout.CLOCK, LANE]
+        mem[0, i] = m.rows[layout.numbers.first_of_system + i, LANE]
+    m.rows[layout.numbers.steps, LANE] += 1.0
+    increment = (
+        m.rows[layout.numbers.step, LANE] + m.rows[layout.numbers.correction, LANE]
+    )
+    clock = m.rows[layout.numbers.clock, LANE]
     time = clock + increment
-    m.rows[layout.CORRECTION, LANE] = (clock - time) + increment
-    m.rows[layout.CLOCK, LANE] = time
+    m.rows[layout.numbers.correction, LANE] = (clock - time) + increment
+    m.rows[layout.numbers.clock, LANE] = time
 
 
 @part
@@ -276,23 +288,26 @@ def _switch(t: Any, m: Any, c: Any, tangent_row: int, special: bool) -> None:
         m.fresh[surface] = 0
     if not special:
         return
-    hit = m.integers[layout.HIT, LANE]
-    if hit == layout.LATE_BEGINS:
+    hit = m.integers[layout.integers.hit, LANE]
+    if hit == layout.integers.late_begins:
         begin_late(t, m, LANE, tangent_row + t.n_states)
         # a surface may be crossed at this very instant
-        watch(t, m, c, LANE, m.rows[layout.STEP, LANE])
-    elif hit >= 0 and m.integers[layout.OUTCOME, LANE] == layout.RUNNING:
+        watch(t, m, c, LANE, m.rows[layout.numbers.step, LANE])
+    elif (
+        hit >= 0
+        and m.integers[layout.integers.outcome, LANE] == layout.outcomes.running
+    ):
         switch(t, m, c, LANE, tangent_row)
-    m.integers[layout.HIT, LANE] = -1
+    m.integers[layout.integers.hit, LANE] = -1
 
 
 @part
 def _next_run(t: Any, m: Any, c: Any, k: Any, tangent_row: int) -> Any:
     """Finish the run that has ended and start the next one; tell whether there is one."""
     first_extreme = tangent_row + t.n_states
-    if m.integers[layout.JOB, LANE] >= 0:
+    if m.integers[layout.integers.job, LANE] >= 0:
         finish(t, m, c, LANE, tangent_row, first_extreme)
-    m.integers[layout.JOB, LANE] = -1
+    m.integers[layout.integers.job, LANE] = -1
     if m.queue[0] >= m.queue[1]:
         return False
     job = m.queue[0]
@@ -313,9 +328,9 @@ def _step(t: Any, m: Any, c: Any, k: Any, rows: Any, mem: Any, work: Any) -> Any
         cut(t, m, c, LANE)
     if k.curved:
         special = _check(t, m, c, k, rows, work) or special
-    short = FINEST * m.rows[layout.T_END, LANE]
-    if m.rows[layout.STEP, LANE] < short and stands_still(t, m, c, LANE):
-        m.integers[layout.OUTCOME, LANE] = layout.DISCONTINUITY
+    short = step_checks.finest * m.rows[layout.numbers.t_end, LANE]
+    if m.rows[layout.numbers.step, LANE] < short and stands_still(t, m, c, LANE):
+        m.integers[layout.integers.outcome, LANE] = layout.outcomes.discontinuity
         special = True
     return special
 
@@ -328,11 +343,11 @@ def _rounds(table: int, t: Any, m: Any, c: Any, k: Any, mem: Any) -> Any:
         table: address of what ``t`` is.
     """
     parameters = parameters_of(t, LANE)
-    tangent_row = layout.FIXED_ROWS + t.n_variables
+    tangent_row = layout.numbers.first_of_system + t.n_variables
     first_extreme = tangent_row + t.n_states
     first_time = first_extreme + 2 * t.n_tracked
     for _ in range(t.n_rounds):
-        ended = m.integers[layout.OUTCOME, LANE] != layout.RUNNING
+        ended = m.integers[layout.integers.outcome, LANE] != layout.outcomes.running
         if ended and not _next_run(t, m, c, k, tangent_row):
             return 0
         call(t.take_step, (parameters, t.series, t.n_terms))
@@ -341,14 +356,20 @@ def _rounds(table: int, t: Any, m: Any, c: Any, k: Any, mem: Any) -> Any:
         # before the samples, which count on to the next one that is due
         if t.n_between:
             extremes_between(t, m, c, LANE)
-        if t.n_samples and _reaches(m, layout.NEXT_SAMPLE):
+        if t.n_samples and _reaches(m, layout.numbers.next_sample):
             sample(t, m, c, LANE, first_time)
         _observe(t, m, c, mem, first_extreme)
         _go_on(t, m, mem)
         _switch(t, m, c, tangent_row, special)
-        spent = m.rows[layout.STEPS, LANE] >= m.rows[layout.MOST_STEPS, LANE]
-        if spent and m.integers[layout.OUTCOME, LANE] == layout.RUNNING:
-            m.integers[layout.OUTCOME, LANE] = layout.STEP_LIMIT
+        spent = (
+            m.rows[layout.numbers.steps, LANE]
+            >= m.rows[layout.numbers.most_steps, LANE]
+        )
+        if (
+            spent
+            and m.integers[layout.integers.outcome, LANE] == layout.outcomes.running
+        ):
+            m.integers[layout.integers.outcome, LANE] = layout.outcomes.step_limit
     return 1
 
 

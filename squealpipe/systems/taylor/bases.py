@@ -39,9 +39,6 @@ class RootSettings:
     tries: int = 6
 
 
-ROOTS = RootSettings()
-
-
 @dataclass(frozen=True, eq=False)
 class Base:
     """A base that may vanish.
@@ -59,7 +56,7 @@ class Base:
     @property
     def nearest(self) -> float:
         """Shortest step before its root, over the longest recent one."""
-        return ROOTS.nearest if self.jumps else ROOTS.nearest_kink
+        return RootSettings.nearest if self.jumps else RootSettings.nearest_kink
 
 
 def bases_of(moving: Iterable[Symbol], roots: Sequence[Symbol]) -> list[Base]:

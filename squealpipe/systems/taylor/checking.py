@@ -6,7 +6,7 @@ from their polynomials by more than the tolerance's share, the step is halved.
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 from squealpipe.systems.compiled import inline, part
 from squealpipe.systems.taylor import layout
@@ -23,23 +23,35 @@ from squealpipe.systems.taylor.simd import (
     splat,
 )
 from squealpipe.systems.taylor.step import at_end, cut, set_end, slope_at_end
-from squealpipe.systems.taylor.switching import SLACK, gauge
+from squealpipe.systems.taylor.switching import gauge, surface_round_off
 
-RATES = 1e-14
-"""Round-off of a rate, relative to it."""
-HELPLESS = 1e5
-"""A difference below this many tolerances that a halved step does not halve is round-off."""
-FINEST = 2.0**-52
-"""Share of the time reached below which there is no step, and of the whole run below which steps
-that move nothing lead nowhere."""
+
+class StepChecks(NamedTuple):
+    """Thresholds by which a step is believed, halved or given up.
+
+    Attributes:
+        rate_round_off: of a rate, relative to it. Doubling it believes steps across jumps twice as
+            high.
+        helpless: a difference below this many tolerances that a halved step does not halve is
+            round-off. Doubling it takes larger jumps for round-off.
+        finest: share of the time reached below which there is no step, and of the whole run below
+            which steps that move nothing lead nowhere. Doubling it gives up one halving earlier.
+    """
+
+    rate_round_off: float = 1e-14
+    helpless: float = 1e5
+    finest: float = 2.0**-52
+
+
+step_checks = StepChecks()
 
 
 @inline
 def differing(t: Any, m: Any, parameters: int) -> Any:
     """Lanes at the end of whose steps something may differ from its polynomial by too much."""
     terms, base, at = t.n_terms, t.series, t.rows
-    call(t.verify, (at + layout.FIXED_ROWS * ROW, parameters, t.exact))
-    step, share = load(at + layout.STEP * ROW), m.share[0]
+    call(t.verify, (at + layout.numbers.first_of_system * ROW, parameters, t.exact))
+    step, share = load(at + layout.numbers.step * ROW), m.share[0]
     size = splat(1.0)
     for variable in range(t.n_states):
         start = magnitude(load(base + variable * terms * ROW))
@@ -51,13 +63,15 @@ def differing(t: Any, m: Any, parameters: int) -> Any:
             slope = slope_at_end(base + variable * terms * ROW, terms, step)
             unit = step * load(t.units + variable * ROW)
             gap = magnitude(load(t.exact + variable * ROW) - slope) * unit
-            limit = fma(magnitude(slope) * unit, splat(RATES), size)
+            limit = fma(
+                magnitude(slope) * unit, splat(step_checks.rate_round_off), size
+            )
             agree &= bits_below(gap, limit)
     for event in range(t.n_surfaces + t.n_outputs):
         if m.bent[event] and m.active[event]:
             agree &= _event_agrees(t, event, step, share) | ~m.active[event]
     if t.shorten:
-        agree &= ~bits_below(splat(0.0), load(at + layout.ACROSS * ROW))
+        agree &= ~bits_below(splat(0.0), load(at + layout.numbers.across * ROW))
     return ~agree & bits_below(splat(0.0), step)
 
 
@@ -77,14 +91,14 @@ def end_stalled(t: Any, m: Any, c: Any, busy: int) -> int:
     The step has moved no variable, so that all later ones are like it, and the run would take more
     than 2⁵² of them. So it is where a numerator vanishes with its base, as in Painlevé's problem.
     """
-    short = splat(FINEST) * load(t.rows + layout.T_END * ROW)
-    bits = bits_below(load(t.rows + layout.STEP * ROW), short) & busy
+    short = splat(step_checks.finest) * load(t.rows + layout.numbers.t_end * ROW)
+    bits = bits_below(load(t.rows + layout.numbers.step * ROW), short) & busy
     ended = 0
     while bits:
         lane = first_bit(bits)
         bits ^= 1 << lane
         if stands_still(t, m, c, lane):
-            m.integers[layout.OUTCOME, lane] = layout.DISCONTINUITY
+            m.integers[layout.integers.outcome, lane] = layout.outcomes.discontinuity
             ended |= 1 << lane
     return ended
 
@@ -92,11 +106,17 @@ def end_stalled(t: Any, m: Any, c: Any, busy: int) -> int:
 @part
 def stands_still(t: Any, m: Any, c: Any, lane: int) -> bool:
     """Whether a lane runs on after a step that has moved no variable; the next one is the same."""
-    hit, outcome = m.integers[layout.HIT, lane], m.integers[layout.OUTCOME, lane]
-    if hit != -1 or outcome != layout.RUNNING:
+    hit, outcome = (
+        m.integers[layout.integers.hit, lane],
+        m.integers[layout.integers.outcome, lane],
+    )
+    if hit != -1 or outcome != layout.outcomes.running:
         return False
     for variable in range(t.n_variables):
-        start, end = c[variable, 0, lane], m.rows[layout.FIXED_ROWS + variable, lane]
+        start, end = (
+            c[variable, 0, lane],
+            m.rows[layout.numbers.first_of_system + variable, lane],
+        )
         if start != end:
             return False
     fresh = False  # the next step of a surface that starts from zero is another
@@ -108,7 +128,7 @@ def stands_still(t: Any, m: Any, c: Any, lane: int) -> bool:
 @part
 def _largest_gap(t: Any, m: Any, c: Any, lane: int) -> float:
     """The largest difference at the end of a lane's step, over what is tolerated."""
-    step, share = m.rows[layout.STEP, lane], m.share[0]
+    step, share = m.rows[layout.numbers.step, lane], m.share[0]
     size, most = 1.0, 0.0
     for variable in range(t.n_states):
         size = max(size, abs(c[variable, 0, lane]) * m.units[variable, lane])
@@ -116,12 +136,12 @@ def _largest_gap(t: Any, m: Any, c: Any, lane: int) -> float:
         if m.steep[variable]:
             _, slope, _ = evaluate_twice(c, variable, lane, step)
             unit = step * m.units[variable, lane]
-            limit = size * share + abs(slope) * unit * RATES
+            limit = size * share + abs(slope) * unit * step_checks.rate_round_off
             ratio = abs(m.exact[variable, lane] - slope) * unit / limit
             most = ratio if not ratio <= most else most
     z, sizes = m.scratch[0], m.scratch[1]
     for variable in range(t.n_variables):
-        z[variable] = m.rows[layout.FIXED_ROWS + variable, lane]
+        z[variable] = m.rows[layout.numbers.first_of_system + variable, lane]
         sizes[variable] = abs(z[variable])
     gauge(t, lane, m.scratch.shape[1])
     for event in range(t.n_surfaces + t.n_outputs):
@@ -134,7 +154,7 @@ def _largest_gap(t: Any, m: Any, c: Any, lane: int) -> float:
 @part
 def _jumps(t: Any, m: Any, c: Any, lane: int) -> bool:
     """Whether a rate jumps in a lane's step, which leads across the root of a base."""
-    reach, most = m.rows[layout.REACH, lane], 0.0
+    reach, most = m.rows[layout.numbers.reach, lane], 0.0
     for variable in range(t.n_states):
         if m.steep[variable]:
             change = abs(m.exact[variable, lane] - c[variable, 1, lane])
@@ -157,8 +177,8 @@ def _event_gap(t: Any, m: Any, c: Any, lane: int, event: int) -> float:
     tiny = 1e-300
     limit = max(m.share[0] * size, round_off * terms, tiny)
     if event < t.n_surfaces and m.fresh[event] & (1 << lane):
-        limit += max(SLACK, m.share[1]) * terms
-    gap = abs(evaluate(c, index, lane, m.rows[layout.STEP, lane]) - exact)
+        limit += max(surface_round_off.slack, m.share[1]) * terms
+    gap = abs(evaluate(c, index, lane, m.rows[layout.numbers.step, lane]) - exact)
     # an output of another regime need not be a number
     agrees = gap == 0.0 or (event >= t.n_surfaces and not gap >= 0.0)
     return 0.0 if agrees else gap / limit
@@ -170,25 +190,33 @@ def believe_or_halve(t: Any, m: Any, c: Any, lane: int) -> bool:
     rows, integers = m.rows, m.integers
     gap = _largest_gap(t, m, c, lane)
     # the difference that a jump leaves is halved with the step, as that of round-off is
-    across = rows[layout.ACROSS, lane] > 0.0
+    across = rows[layout.numbers.across, lane] > 0.0
     jumps = across and _jumps(t, m, c, lane)
-    helpless = not across and 0.5 * rows[layout.GAP, lane] < gap < HELPLESS
+    helpless = (
+        not across and 0.5 * rows[layout.numbers.gap, lane] < gap < step_checks.helpless
+    )
     if (gap <= 1.0 and not jumps) or helpless:
         return True
-    rows[layout.GAP, lane] = gap
-    rows[layout.STEPS, lane] += 1.0
-    integers[layout.HIT, lane], integers[layout.OUTCOME, lane] = -1, layout.RUNNING
-    step = 0.5 * rows[layout.STEP, lane]
+    rows[layout.numbers.gap, lane] = gap
+    rows[layout.numbers.steps, lane] += 1.0
+    integers[layout.integers.hit, lane], integers[layout.integers.outcome, lane] = (
+        -1,
+        layout.outcomes.running,
+    )
+    step = 0.5 * rows[layout.numbers.step, lane]
     if gap <= 1.0:
-        integers[layout.OUTCOME, lane] = layout.DISCONTINUITY
-    elif not step > FINEST * abs(rows[layout.CLOCK, lane]) or step < 1e-290:
+        integers[layout.integers.outcome, lane] = layout.outcomes.discontinuity
+    elif (
+        not step > step_checks.finest * abs(rows[layout.numbers.clock, lane])
+        or step < 1e-290
+    ):
         finite = gap < math.inf
-        ends = layout.DISCONTINUITY if finite else layout.NOT_FINITE
-        integers[layout.OUTCOME, lane] = ends
-    elif rows[layout.STEPS, lane] >= rows[layout.MOST_STEPS, lane]:
-        integers[layout.OUTCOME, lane] = layout.STEP_LIMIT
-    ended = integers[layout.OUTCOME, lane] != layout.RUNNING
-    rows[layout.STEP, lane] = 0.0 if ended else step
+        ends = layout.outcomes.discontinuity if finite else layout.outcomes.not_finite
+        integers[layout.integers.outcome, lane] = ends
+    elif rows[layout.numbers.steps, lane] >= rows[layout.numbers.most_steps, lane]:
+        integers[layout.integers.outcome, lane] = layout.outcomes.step_limit
+    ended = integers[layout.integers.outcome, lane] != layout.outcomes.running
+    rows[layout.numbers.step, lane] = 0.0 if ended else step
     set_end(t, m, c, lane)
     if not ended:
         cut(t, m, c, lane)

@@ -42,7 +42,6 @@ _cgutils: Any = cgutils
 ROUNDS = 4096
 """Steps of all lanes between two returns from compiled code: some ten milliseconds."""
 MOST_TERMS = 64
-_START = ctypes.c_char * 0
 INVERSES = 1.0 / np.maximum(1.0, np.arange(MOST_TERMS))
 
 
@@ -175,7 +174,8 @@ def _address_of(array: np.ndarray) -> int:
     if array.dtype.names:
         return array.ctypes.data
     buffer: Any = array
-    return ctypes.addressof(_START.from_buffer(buffer))
+    start = ctypes.c_char * 0
+    return ctypes.addressof(start.from_buffer(buffer))
 
 
 def compile_advance(advance: Callable[..., Any], folder: Path | None = None) -> Any:

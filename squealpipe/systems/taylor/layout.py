@@ -6,44 +6,82 @@ import numpy as np
 
 LOST_ERROR = 1e-3
 """Error, in units of the states' sizes, from which a state says nothing about its run."""
-SHARE, ROUND_OFF = 0.1, 2e-14
-"""Share of the tolerance by which a step's end may differ, and the least such difference."""
-LATE_BEGINS = -2
-"""What ends a step where the late part of a run begins."""
-RUNNING, CONVERGED, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE = -1, 0, 3, 4, 6
-ACCUMULATION, HIDDEN, DISCONTINUITY = 38, 40, 41
-"""How a run ends, by the numbers of ``schema.Outcome``."""
-STOPPED = 100
-"""A stop of the system's own is this plus its number."""
-BY_EVENT, BY_TURNS = 98, 99
-"""Ends of runs that were to end at the first event of a kind, or after so many turns."""
-(
-    CLOCK,
-    CORRECTION,
-    STEP,
-    REACH,
-    ACROSS,
-    LONGEST,
-    T_END,
-    T_LATE,
-    NEXT_SAMPLE,
-    STEPS,
-    MOST_STEPS,
-    LOST,
-    DELAY,
-    GAP,
-    ORIGIN,
-    NATURAL,
-    FIXED_ROWS,
-) = range(17)
-"""Rows of numbers of the lanes that every system has; those of a system follow.
 
-``NATURAL`` is the step that the series allow, before the end of the run cuts it short.
 
-``REACH`` and ``ACROSS`` follow ``STEP`` for ``shorten``: the longest step of late, and whether the
-step leads across what may be a jump."""
-JOB, OUTCOME, SAMPLE, EVENTS, LOGGED, CHAINED, HIT, LATE, FIRST_REGIME = range(9)
-"""Rows of integers of the lanes; the last is the first of the regimes, one a component."""
+class Outcomes(NamedTuple):
+    """Ends of a run, by the numbers of ``schema.Outcome``.
+
+    Attributes:
+        by_event, by_turns: ends of runs that were to end at the first event of a kind, or after so
+            many turns.
+        stopped: a stop of the system's own is this plus its number.
+    """
+
+    running: int = -1
+    converged: int = 0
+    step_limit: int = 3
+    event_limit: int = 4
+    not_finite: int = 6
+    accumulation: int = 38
+    hidden: int = 40
+    discontinuity: int = 41
+    by_event: int = 98
+    by_turns: int = 99
+    stopped: int = 100
+
+
+class NumberRows(NamedTuple):
+    """Rows of numbers of the lanes that every system has; those of a system follow.
+
+    Attributes:
+        reach, across: follow ``step`` for ``shorten``: the longest step of late, and whether the
+            step leads across what may be a jump.
+        natural: the step that the series allow, before the end of the run cuts it short.
+        first_of_system: how many rows every system has.
+    """
+
+    clock: int = 0
+    correction: int = 1
+    step: int = 2
+    reach: int = 3
+    across: int = 4
+    longest: int = 5
+    t_end: int = 6
+    t_late: int = 7
+    next_sample: int = 8
+    steps: int = 9
+    most_steps: int = 10
+    lost: int = 11
+    delay: int = 12
+    gap: int = 13
+    origin: int = 14
+    natural: int = 15
+    first_of_system: int = 16
+
+
+class IntegerRows(NamedTuple):
+    """Rows of integers of the lanes.
+
+    Attributes:
+        hit: the switch that ends the step, or ``late_begins`` where the late part of a run begins.
+        first_regime: the first of the regimes, one a component.
+        late_begins: no row, but a value of ``hit``.
+    """
+
+    job: int = 0
+    outcome: int = 1
+    sample: int = 2
+    events: int = 3
+    logged: int = 4
+    chained: int = 5
+    hit: int = 6
+    late: int = 7
+    first_regime: int = 8
+    late_begins: int = -2
+
+
+# compiled code takes fields of such records as the numbers that they are
+outcomes, numbers, integers = Outcomes(), NumberRows(), IntegerRows()
 
 LOOP_ARRAYS = (
     "rows",

@@ -20,9 +20,6 @@ from squealpipe.systems.taylor.step import reach, step_length
 _numba: Any = numba
 FIRST_PARAMETER = 3
 """The row of the first parameter, after those of the steps that ``shorten`` reads and writes."""
-_TOGETHER = 4096
-"""Entries of all states' derivatives at one node that are iterated together: six nodes of rates and
-states fill 400 kB, a processor's second cache. Of twice as many, rates wait for the memory."""
 LEG_ARRAYS = (
     "rows",
     "series",
@@ -223,7 +220,9 @@ def transfer(
         found: (legs, columns, columns), identities at first; the last rows keep parameters.
     """
     n, columns, nodes, steps = slopes.shape
-    together = max(8, _TOGETHER // (n * columns))
+    # 4096 entries at one node are iterated together: six nodes of rates and states fill 400 kB,
+    # a processor's second cache; of twice as many, rates wait for the memory
+    together = max(8, 4096 // (n * columns))
     rates = np.empty((nodes, n, columns, together))
     states = np.empty((nodes, n, columns, together))
     growth = np.empty((n, columns))

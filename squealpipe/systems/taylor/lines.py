@@ -6,20 +6,6 @@ from dataclasses import dataclass, field
 from squealpipe.systems.taylor.sums import Sums
 from squealpipe.systems.taylor.symbols import FUNCTIONS, Symbol, in_order
 
-_SIZES = {
-    # of a long time an angle has lost digits
-    "sin": "{inner} + abs({value})",
-    "cos": "{inner} + abs({value})",
-    "tanh": "min(1.0, {inner}) + abs({value})",
-    "atan": "min(2.0, {inner}) + abs({value})",
-    "asin": "{slope} * {inner} + abs({value})",
-    "sinh": "{slope} * {inner} + abs({value})",
-    "cosh": "{slope} * {inner} + abs({value})",
-    "exp": "abs({value}) * (1.0 + {inner})",
-    "log": "1.0 + abs({value})",
-}
-"""Size of the terms of a function from its value, its slope and the size of its argument."""
-
 
 @dataclass
 class Writer:
@@ -141,7 +127,21 @@ class Writer:
             return f"{' * '.join(first)} + {' * '.join(second)}"
         if node.kind in FUNCTIONS:
             slope = _slope_size(self, node)
-            return _SIZES[node.kind].format(value=value, inner=inner[0], slope=slope)
+            # Size of the terms of a function from its value, its slope and the size of
+            # its argument.
+            sizes = {
+                # of a long time an angle has lost digits
+                "sin": "{inner} + abs({value})",
+                "cos": "{inner} + abs({value})",
+                "tanh": "min(1.0, {inner}) + abs({value})",
+                "atan": "min(2.0, {inner}) + abs({value})",
+                "asin": "{slope} * {inner} + abs({value})",
+                "sinh": "{slope} * {inner} + abs({value})",
+                "cosh": "{slope} * {inner} + abs({value})",
+                "exp": "abs({value}) * (1.0 + {inner})",
+                "log": "1.0 + abs({value})",
+            }
+            return sizes[node.kind].format(value=value, inner=inner[0], slope=slope)
         return f"abs({value})"
 
     def rate_scale(self, root: Symbol, of_rates: Mapping[int, str]) -> str:

@@ -50,12 +50,12 @@ _numba: Any = numba
 @part
 def _grow(t: Any, m: Any, lane: int, tangent_row: int) -> None:
     """Note the horizon when it is passed, and scale a perturbation back."""
-    job, size = m.integers[layout.JOB, lane], log_norm(t, m, lane, tangent_row)
+    job, size = m.integers[layout.integers.job, lane], log_norm(t, m, lane, tangent_row)
     if size == -math.inf:
         return
     growth = m.summary[job, 0] + size
     if math.isnan(m.summary[job, 1]) and growth > m.limits[job, 4]:
-        m.summary[job, 1] = m.rows[layout.CLOCK, lane]
+        m.summary[job, 1] = m.rows[layout.numbers.clock, lane]
     if not 1e-6 < math.exp(2.0 * size) < 1e6:
         for variable in range(t.n_states):
             m.rows[tangent_row + variable, lane] /= math.exp(size)
@@ -66,10 +66,10 @@ def _grow(t: Any, m: Any, lane: int, tangent_row: int) -> None:
 @part
 def _limit_growth(m: Any, lane: int) -> None:
     """The squared size of a perturbation at which the horizon is passed."""
-    job = m.integers[layout.JOB, lane]
+    job = m.integers[layout.integers.job, lane]
     left = m.limits[job, 4] - m.summary[job, 0]
     waits = math.isnan(m.summary[job, 1]) and left < 300.0
-    m.rows[layout.LOST, lane] = math.exp(2.0 * left) if waits else math.inf
+    m.rows[layout.numbers.lost, lane] = math.exp(2.0 * left) if waits else math.inf
 
 
 @inline
@@ -82,7 +82,9 @@ def _grow_all(t: Any, m: Any, tangent_row: int, busy: int) -> None:
         )
         square = square + part * part
     usual = bits_below(splat(1e-6), square) & bits_below(square, splat(1e6))
-    bits = ~(usual & bits_below(square, load(t.rows + layout.LOST * ROW))) & busy
+    bits = (
+        ~(usual & bits_below(square, load(t.rows + layout.numbers.lost * ROW))) & busy
+    )
     while bits:
         lane = first_bit(bits)
         bits ^= 1 << lane
@@ -94,22 +96,22 @@ def finish(
     t: Any, m: Any, c: Any, lane: int, tangent_row: int, first_extreme: int
 ) -> None:
     """Write a job's results."""
-    rows, job = m.rows, m.integers[layout.JOB, lane]
-    m.ends[job, 0] = m.integers[layout.OUTCOME, lane]
-    m.ends[job, 1] = int(rows[layout.STEPS, lane])
-    m.ends[job, 2] = m.integers[layout.EVENTS, lane]
-    m.summary[job, 2] = rows[layout.CLOCK, lane]
+    rows, job = m.rows, m.integers[layout.integers.job, lane]
+    m.ends[job, 0] = m.integers[layout.integers.outcome, lane]
+    m.ends[job, 1] = int(rows[layout.numbers.steps, lane])
+    m.ends[job, 2] = m.integers[layout.integers.events, lane]
+    m.summary[job, 2] = rows[layout.numbers.clock, lane]
     for variable in range(t.n_states):
         m.final[job, variable] = c[variable, 0, lane]
     for index in range(t.n_tracked):
         for each in range(2):
             found = rows[first_extreme + 2 * index + each, lane]
-            m.extremes[job, index, m.integers[layout.LATE, lane], each] = found
+            m.extremes[job, index, m.integers[layout.integers.late, lane], each] = found
     first_time = first_extreme + 2 * t.n_tracked
     for component in range(t.n_components):
-        last = m.integers[layout.FIRST_REGIME + component, lane]
+        last = m.integers[layout.integers.first_regime + component, lane]
         since = rows[entered_row(t) + component, lane]
-        rows[first_time + last, lane] += rows[layout.CLOCK, lane] - since
+        rows[first_time + last, lane] += rows[layout.numbers.clock, lane] - since
     for regime in range(t.n_regimes):
         m.durations[job, regime] = rows[first_time + regime, lane]
     for point in range(t.n_points):
@@ -125,27 +127,33 @@ def start(
     """Start a job in a lane."""
     rows, integers = m.rows, m.integers
     integers[:, lane] = 0
-    integers[layout.JOB, lane], integers[layout.OUTCOME, lane] = job, layout.RUNNING
-    integers[layout.HIT, lane] = -1
+    integers[layout.integers.job, lane], integers[layout.integers.outcome, lane] = (
+        job,
+        layout.outcomes.running,
+    )
+    integers[layout.integers.hit, lane] = -1
     for row in (
-        layout.CLOCK,
-        layout.CORRECTION,
-        layout.STEPS,
-        layout.STEP,
-        layout.REACH,
-        layout.ACROSS,
-        layout.DELAY,
+        layout.numbers.clock,
+        layout.numbers.correction,
+        layout.numbers.steps,
+        layout.numbers.step,
+        layout.numbers.reach,
+        layout.numbers.across,
+        layout.numbers.delay,
     ):
         rows[row, lane] = 0.0
-    rows[layout.LONGEST, lane] = math.inf
-    rows[layout.T_END, lane] = m.limits[job, 0]
-    rows[layout.T_LATE, lane] = m.limits[job, 1]
-    rows[layout.MOST_STEPS, lane] = m.limits[job, 2]
-    rows[layout.ORIGIN, lane] = m.limits[job, 6]
+    rows[layout.numbers.longest, lane] = math.inf
+    rows[layout.numbers.t_end, lane] = m.limits[job, 0]
+    rows[layout.numbers.t_late, lane] = m.limits[job, 1]
+    rows[layout.numbers.most_steps, lane] = m.limits[job, 2]
+    rows[layout.numbers.origin, lane] = m.limits[job, 6]
     if m.limits[job, 1] <= 0.0:
-        rows[layout.T_LATE, lane], integers[layout.LATE, lane] = math.inf, 1
+        rows[layout.numbers.t_late, lane], integers[layout.integers.late, lane] = (
+            math.inf,
+            1,
+        )
     times = m.sample_times[job]
-    rows[layout.NEXT_SAMPLE, lane] = times[0] if times.size else math.inf
+    rows[layout.numbers.next_sample, lane] = times[0] if times.size else math.inf
     first_parameter = t.n_rows - t.n_constants - t.n_parameters
     for parameter in range(t.n_parameters):
         rows[first_parameter + parameter, lane] = m.parameters[job, parameter]
@@ -157,7 +165,7 @@ def start(
             t.n_states
         )
     if t.n_variables > t.n_states:
-        c[t.n_states, 0, lane] = rows[layout.ORIGIN, lane]
+        c[t.n_states, 0, lane] = rows[layout.numbers.origin, lane]
     for index in range(t.n_tracked):
         clear_extremes(m, lane, index, first)
         if t.n_between:
@@ -186,14 +194,16 @@ def _go_on(t: Any) -> None:
     for variable in range(t.n_variables):
         store(
             t.series + variable * t.n_terms * ROW,
-            load(at + (layout.FIXED_ROWS + variable) * ROW),
+            load(at + (layout.numbers.first_of_system + variable) * ROW),
         )
-    store(at + layout.STEPS * ROW, load(at + layout.STEPS * ROW) + 1.0)
-    increment = load(at + layout.STEP * ROW) + load(at + layout.CORRECTION * ROW)
-    clock = load(at + layout.CLOCK * ROW)
+    store(at + layout.numbers.steps * ROW, load(at + layout.numbers.steps * ROW) + 1.0)
+    increment = load(at + layout.numbers.step * ROW) + load(
+        at + layout.numbers.correction * ROW
+    )
+    clock = load(at + layout.numbers.clock * ROW)
     time = clock + increment
-    store(at + layout.CORRECTION * ROW, (clock - time) + increment)
-    store(at + layout.CLOCK * ROW, time)
+    store(at + layout.numbers.correction * ROW, (clock - time) + increment)
+    store(at + layout.numbers.clock * ROW, time)
 
 
 @inline
@@ -208,7 +218,7 @@ def _cut_all(t: Any, m: Any, c: Any, special: int) -> None:
 @inline
 def _check(t: Any, m: Any, c: Any, parameters: int, busy: int) -> int:
     """Halve steps until their ends can be believed; returns lanes that were halved or ended."""
-    store(t.rows + layout.GAP * ROW, splat(math.inf))
+    store(t.rows + layout.numbers.gap * ROW, splat(math.inf))
     wrong, halved = busy, 0
     while True:
         wrong &= differing(t, m, parameters)
@@ -221,7 +231,10 @@ def _check(t: Any, m: Any, c: Any, parameters: int, busy: int) -> int:
             stands = believe_or_halve(t, m, c, lane)
             if stands:
                 wrong ^= 1 << lane
-            if not stands or m.integers[layout.OUTCOME, lane] != layout.RUNNING:
+            if (
+                not stands
+                or m.integers[layout.integers.outcome, lane] != layout.outcomes.running
+            ):
                 halved |= 1 << lane
 
 
@@ -233,10 +246,10 @@ def _refill(
     while ended:
         lane = first_bit(ended)
         ended ^= 1 << lane
-        if m.integers[layout.JOB, lane] >= 0:
+        if m.integers[layout.integers.job, lane] >= 0:
             finish(t, m, c, lane, tangent_row, first_extreme)
         busy &= ~(1 << lane)
-        m.integers[layout.JOB, lane] = -1
+        m.integers[layout.integers.job, lane] = -1
         if m.queue[0] < m.queue[1]:
             job = m.queue[0]
             m.queue[0] += m.queue[2]
@@ -249,15 +262,18 @@ def _refill(
 def _ended(t: Any, m: Any, special: int, busy: int) -> int:
     """Lanes whose run has ended, among those that ended their step and those out of steps."""
     spent = ~bits_below(
-        load(t.rows + layout.STEPS * ROW), load(t.rows + layout.MOST_STEPS * ROW)
+        load(t.rows + layout.numbers.steps * ROW),
+        load(t.rows + layout.numbers.most_steps * ROW),
     )
     bits, ended = (special | spent) & busy, 0
     while bits:
         lane = first_bit(bits)
         bits ^= 1 << lane
-        if m.integers[layout.OUTCOME, lane] == layout.RUNNING and spent & (1 << lane):
-            m.integers[layout.OUTCOME, lane] = layout.STEP_LIMIT
-        if m.integers[layout.OUTCOME, lane] != layout.RUNNING:
+        if m.integers[
+            layout.integers.outcome, lane
+        ] == layout.outcomes.running and spent & (1 << lane):
+            m.integers[layout.integers.outcome, lane] = layout.outcomes.step_limit
+        if m.integers[layout.integers.outcome, lane] != layout.outcomes.running:
             ended |= 1 << lane
     return ended
 
@@ -274,7 +290,7 @@ def _gather_extremes(t: Any, m: Any, c: Any, busy: int) -> None:
 @inline
 def _rounds(t: Any, m: Any, c: Any) -> int:
     """Steps of all lanes until none is busy, or there were enough."""
-    tangent_row = layout.FIXED_ROWS + t.n_variables
+    tangent_row = layout.numbers.first_of_system + t.n_variables
     first_extreme = tangent_row + t.n_states
     first_time = first_extreme + 2 * t.n_tracked
     first_parameter = t.n_rows - t.n_constants - t.n_parameters
@@ -282,9 +298,11 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
     time_unit = first_parameter + t.n_parameters - 1
     busy, ended = 0, 0
     for lane in range(LANES):
-        busy |= (1 << lane) if m.integers[layout.JOB, lane] >= 0 else 0
+        busy |= (1 << lane) if m.integers[layout.integers.job, lane] >= 0 else 0
         ended |= (
-            (1 << lane) if m.integers[layout.OUTCOME, lane] != layout.RUNNING else 0
+            (1 << lane)
+            if m.integers[layout.integers.outcome, lane] != layout.outcomes.running
+            else 0
         )
     for _ in range(t.n_rounds):
         busy = _refill(t, m, c, busy, ended, tangent_row, first_extreme)
@@ -294,11 +312,16 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
         if t.tangent:
             call(
                 t.longest,
-                (t.series, parameters, t.rows + layout.LONGEST * ROW, t.n_terms),
+                (
+                    t.series,
+                    parameters,
+                    t.rows + layout.numbers.longest * ROW,
+                    t.n_terms,
+                ),
             )
         start_from_zero(t, m, c)
         special = take_step(t, m, parameters) & busy
-        due = reaches(t.rows, layout.NEXT_SAMPLE) & busy if t.n_samples else 0
+        due = reaches(t.rows, layout.numbers.next_sample) & busy if t.n_samples else 0
         _cut_all(t, m, c, special)
         if t.verify:
             special |= _check(t, m, c, parameters, busy)
@@ -312,15 +335,15 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
         observe(t, m, c, first_extreme, busy)
         turned = count_turns(t, m, first_time + t.n_regimes, busy)
         if t.tangent:
-            step, at = t.rows + layout.STEP * ROW, t.rows + tangent_row * ROW
+            step, at = t.rows + layout.numbers.step * ROW, t.rows + tangent_row * ROW
             call(t.perturb, (t.series, parameters, step, at, t.n_terms))
         _go_on(t)
         if t.n_variables > t.n_states:
-            clock = load(t.rows + layout.CLOCK * ROW) + load(
-                t.rows + layout.CORRECTION * ROW
+            clock = load(t.rows + layout.numbers.clock * ROW) + load(
+                t.rows + layout.numbers.correction * ROW
             )
             now = clock * load(t.rows + time_unit * ROW)
-            now = now + load(t.rows + layout.ORIGIN * ROW)
+            now = now + load(t.rows + layout.numbers.origin * ROW)
             store(t.series + t.n_states * t.n_terms * ROW, now)
         switch_all(t, m, c, special, tangent_row)
         if t.tangent:

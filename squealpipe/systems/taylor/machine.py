@@ -76,13 +76,13 @@ def address_of(write: Write, n_arguments: int, content: bytes) -> int:
     return address
 
 
-_ADDRESSES: dict[str, int] = {}
+_addresses: dict[str, int] = {}
 
 
 @_only_one_thread  # type: ignore[untyped-decorator]
 def _loaded(digest: str, write: Write, n_arguments: int) -> int:
     """The address of a function, by a digest that names it."""
-    if digest not in _ADDRESSES:
+    if digest not in _addresses:
         name = f"written_{digest}"
         path = Path(store_folder("written", b"")) / f"{digest}.o"
         code = _kept(path)
@@ -93,8 +93,8 @@ def _loaded(digest: str, write: Write, n_arguments: int) -> int:
         engine = _engine()
         engine.add_object_file(_llvm.ObjectFileRef.from_data(code))
         engine.finalize_object()
-        _ADDRESSES[digest] = engine.get_function_address(name)
-    return _ADDRESSES[digest]
+        _addresses[digest] = engine.get_function_address(name)
+    return _addresses[digest]
 
 
 def _compiled(name: str, write: Write, n_arguments: int) -> bytes:

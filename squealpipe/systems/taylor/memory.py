@@ -19,7 +19,7 @@ def memory_of(t: Any) -> Any:
     return layout.Memory(
         rows=view(t.rows, (t.n_rows, LANES), np.float64),
         integers=view(
-            t.integers, (layout.FIRST_REGIME + t.n_components, LANES), np.int64
+            t.integers, (layout.integers.first_regime + t.n_components, LANES), np.int64
         ),
         sizes=view(t.sizes, (t.n_jobs, size), np.float64),
         units=view(t.units, (size, LANES), np.float64),

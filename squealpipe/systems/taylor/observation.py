@@ -26,9 +26,6 @@ from squealpipe.systems.taylor.simd import (
     store,
 )
 
-PIECES = 8
-"""Pieces of a step in which turning points are looked for, where there may be several."""
-
 
 @part
 def extremes_inside(c: Any, index: int, lane: int, begin: float, end: float) -> Any:
@@ -47,7 +44,8 @@ def extremes_inside(c: Any, index: int, lane: int, begin: float, end: float) -> 
             return low, high
     else:
         plain = bend * last_bend > 0.0
-    pieces = 1 if plain else PIECES
+    # where there may be several turning points they are looked for in eighths of the step
+    pieces = 1 if plain else 8
     left, width = begin, step / pieces
     # Newton iterations for an extremum; two do where the step is short beside the oscillation
     most_iterations = 60
@@ -93,7 +91,7 @@ def observe(t: Any, m: Any, c: Any, first_extreme: int, busy: int) -> None:
     turning points looked for.
     """
     at, terms = t.rows, t.n_terms
-    step, zero = load(at + layout.STEP * ROW), splat(0.0)
+    step, zero = load(at + layout.numbers.step * ROW), splat(0.0)
     # share of a quantity that the higher orders of its second derivative add to a step's span
     rest = 2e-4
     for index in range(t.n_tracked):
@@ -126,7 +124,7 @@ def observe(t: Any, m: Any, c: Any, first_extreme: int, busy: int) -> None:
             lane = first_bit(bits)
             bits ^= 1 << lane
             inner_low, inner_high = extremes_inside(
-                c, variable, lane, 0.0, m.rows[layout.STEP, lane]
+                c, variable, lane, 0.0, m.rows[layout.numbers.step, lane]
             )
             m.rows[r, lane] = min(m.rows[r, lane], inner_low)
             m.rows[r + 1, lane] = max(m.rows[r + 1, lane], inner_high)
@@ -139,14 +137,14 @@ def extremes_between(t: Any, m: Any, c: Any, lane: int) -> None:
     Each instant gets those since the instant before it, the first those since the run's begin: an
     extreme lies between samples, and a record of samples alone would miss it.
     """
-    rows, job = m.rows, m.integers[layout.JOB, lane]
-    following, times = m.integers[layout.SAMPLE, lane], m.sample_times[job]
-    step, begin = rows[layout.STEP, lane], 0.0
+    rows, job = m.rows, m.integers[layout.integers.job, lane]
+    following, times = m.integers[layout.integers.sample, lane], m.sample_times[job]
+    step, begin = rows[layout.numbers.step, lane], 0.0
     while True:
         end, due = step, False
         if following < times.size:
-            offset = (times[following] - rows[layout.CLOCK, lane]) - rows[
-                layout.CORRECTION, lane
+            offset = (times[following] - rows[layout.numbers.clock, lane]) - rows[
+                layout.numbers.correction, lane
             ]
             due = offset <= step
             end = offset if due else step
@@ -175,11 +173,11 @@ def count_turns(t: Any, m: Any, first_turn: int, busy: int) -> int:
     at, zero, ended = t.rows, splat(0.0), 0
     for point in range(t.n_points):
         row = at + (first_turn + 3 * point) * ROW
-        left = bits_below(load(at + layout.FIXED_ROWS * ROW), load(row))
+        left = bits_below(load(at + layout.numbers.first_of_system * ROW), load(row))
         crossed = (bits_below(load(t.series), load(row)) ^ left) & busy
         if not crossed:
             continue
-        y = load(at + (layout.FIXED_ROWS + 1) * ROW) - load(row + ROW)
+        y = load(at + (layout.numbers.first_of_system + 1) * ROW) - load(row + ROW)
         same = ~(bits_below(zero, y) ^ left)
         while crossed:
             lane = first_bit(crossed)
@@ -189,8 +187,8 @@ def count_turns(t: Any, m: Any, first_turn: int, busy: int) -> int:
             least = math.inf
             for each in range(t.n_points):
                 least = min(least, abs(m.rows[first_turn + 3 * each + 2, lane]))
-            if 0.5 * least >= m.limits[m.integers[layout.JOB, lane], 5]:
-                m.integers[layout.OUTCOME, lane] = layout.BY_TURNS
+            if 0.5 * least >= m.limits[m.integers[layout.integers.job, lane], 5]:
+                m.integers[layout.integers.outcome, lane] = layout.outcomes.by_turns
                 ended |= 1 << lane
     return ended
 
@@ -204,25 +202,25 @@ def entered_row(t: Any) -> int:
 @part
 def sample(t: Any, m: Any, c: Any, lane: int, first_time: int) -> None:
     """States, and sums, at the asked instants of one job that fall into this step."""
-    rows, job = m.rows, m.integers[layout.JOB, lane]
-    following, times = m.integers[layout.SAMPLE, lane], m.sample_times[job]
+    rows, job = m.rows, m.integers[layout.integers.job, lane]
+    following, times = m.integers[layout.integers.sample, lane], m.sample_times[job]
     while following < times.size:
-        offset = (times[following] - rows[layout.CLOCK, lane]) - rows[
-            layout.CORRECTION, lane
+        offset = (times[following] - rows[layout.numbers.clock, lane]) - rows[
+            layout.numbers.correction, lane
         ]
-        if offset > rows[layout.STEP, lane]:
+        if offset > rows[layout.numbers.step, lane]:
             break
         evaluate_all(c, t.n_states, lane, offset, m.samples[job, following])
         for component in range(t.n_components):
-            regime = m.integers[layout.FIRST_REGIME + component, lane]
+            regime = m.integers[layout.integers.first_regime + component, lane]
             m.sample_regimes[job, following, component] = regime
         if t.n_sums:
             _sum(
                 t, m, lane, m.sample_sums[job, following], first_time, times[following]
             )
         following += 1
-    m.integers[layout.SAMPLE, lane] = following
-    rows[layout.NEXT_SAMPLE, lane] = (
+    m.integers[layout.integers.sample, lane] = following
+    rows[layout.numbers.next_sample, lane] = (
         times[following] if following < times.size else math.inf
     )
 
@@ -230,7 +228,7 @@ def sample(t: Any, m: Any, c: Any, lane: int, first_time: int) -> None:
 @part
 def _sum(t: Any, m: Any, lane: int, sums: Any, first_time: int, time: float) -> None:
     """What has added up: growth (to the last step's end), times in regimes, half turns, events."""
-    job, rows = m.integers[layout.JOB, lane], m.rows
+    job, rows = m.integers[layout.integers.job, lane], m.rows
     sums[0] = m.summary[job, 0] + log_norm(
         t, m, lane, first_time - 2 * t.n_tracked - t.n_states
     )
@@ -238,7 +236,7 @@ def _sum(t: Any, m: Any, lane: int, sums: Any, first_time: int, time: float) -> 
         sums[1 + regime] = rows[first_time + regime, lane]
     for component in range(t.n_components):
         since = time - rows[entered_row(t) + component, lane]
-        sums[1 + m.integers[layout.FIRST_REGIME + component, lane]] += since
+        sums[1 + m.integers[layout.integers.first_regime + component, lane]] += since
     place = 1 + t.n_regimes
     for point in range(t.n_points):
         sums[place + point] = rows[first_time + t.n_regimes + 3 * point + 2, lane]
@@ -267,11 +265,11 @@ def clear_extremes(m: Any, lane: int, index: int, first_extreme: int) -> None:
 @part
 def begin_late(t: Any, m: Any, lane: int, first_extreme: int) -> None:
     """From here on extremes are those of the late part."""
-    job = m.integers[layout.JOB, lane]
+    job = m.integers[layout.integers.job, lane]
     for index in range(t.n_tracked):
         for each in range(2):
             r = first_extreme + 2 * index + each
             m.extremes[job, index, 0, each] = m.rows[r, lane]
         clear_extremes(m, lane, index, first_extreme)
-    m.integers[layout.LATE, lane] = 1
-    m.rows[layout.T_LATE, lane] = math.inf
+    m.integers[layout.integers.late, lane] = 1
+    m.rows[layout.numbers.t_late, lane] = math.inf

@@ -11,11 +11,25 @@ from typing import Any, NamedTuple
 
 from squealpipe.systems.compiled import part, polynomial
 
-NO_ROOT, UNDECIDED = -1.0, -2.0
-FINEST_INTERVAL = 2.0**-48
-"""Share of a step below which round-off hides what an undecided interval holds."""
-UNSURE = 1e-6
-"""Share of a step: a root that round-off hides by more on both sides is a multiple one."""
+
+class RootSearch(NamedTuple):
+    """Numbers of the search for the first root of a surface within a step.
+
+    Attributes:
+        no_root, undecided: stand for a root where there is none, and where nothing can be said.
+        finest_interval: share of a step below which round-off hides what an undecided interval
+            holds. Doubling it gives up one halving earlier.
+        unsure: share of a step: a root that round-off hides by more on both sides is a multiple
+            one. Doubling it tells roots apart that lie half as far from each other.
+    """
+
+    no_root: float = -1.0
+    undecided: float = -2.0
+    finest_interval: float = 2.0**-48
+    unsure: float = 1e-6
+
+
+root_search = RootSearch()
 
 
 class End(NamedTuple):
@@ -116,7 +130,7 @@ def is_hidden(
 
     What is below ``floor`` is round-off. Of two roots close together each is clear on one side.
     """
-    off = UNSURE * step
+    off = root_search.unsure * step
     before = abs(evaluate(coefficients, variable, lane, root - off))
     after = abs(evaluate(coefficients, variable, lane, root + off))
     _, slope, _ = evaluate_twice(coefficients, variable, lane, root)
@@ -140,7 +154,7 @@ def first_root(
     sign just after it where round-off hides it.
 
     Returns:
-        The root, ``NO_ROOT`` where there is none or ``UNDECIDED`` where nothing can be said, and
+        The root, ``no_root`` where there is none or ``undecided`` where nothing can be said, and
         the time up to which the search is complete: a step may end where its sign is hidden.
     """
     third = largest_third(coefficients, variable, lane, step)
@@ -163,7 +177,7 @@ def first_root(
         decided, root = _look(coefficients, variable, lane, ends, before, third)
         bend = max(abs(b0), abs(b1)) + 0.5 * third * width
         hidden = max(abs(p0), abs(p1)) + 0.125 * bend * width * width <= 2.0 * floor
-        if not (decided or hidden or width < FINEST_INTERVAL * step):
+        if not (decided or hidden or width < root_search.finest_interval * step):
             right = left + 0.5 * width
             continue
         if decided and root >= 0.0:
@@ -174,7 +188,7 @@ def first_root(
             return _at_the_end(step, p1, floor, band, band_side)
         left, right = right, min(step, right + 2.0 * width)
         p0, s0, b0 = p1, s1, b1
-    return UNDECIDED, left
+    return root_search.undecided, left
 
 
 @part
@@ -183,8 +197,8 @@ def _at_the_end(
 ) -> Any:
     """What :func:`first_root` returns if round-off has hidden it since ``band`` (side not 0)."""
     if side != 0.0 and abs(value) <= floor:
-        return NO_ROOT, band
-    return 0.5 * (band + step) if side * value < 0.0 else NO_ROOT, step
+        return root_search.no_root, band
+    return 0.5 * (band + step) if side * value < 0.0 else root_search.no_root, step
 
 
 @part
@@ -197,7 +211,7 @@ def _agree(a: float, b: float) -> Any:
 def _look(
     coefficients: Any, variable: int, lane: int, ends: Any, side: float, third: float
 ) -> Any:
-    """Whether an interval between two ends is decided, and its first root or ``NO_ROOT``."""
+    """Whether an interval between two ends is decided, and its first root or ``no_root``."""
     left, p0, s0, b0 = ends[0]
     right, p1, s1, b1 = ends[1]
     width = right - left
@@ -208,18 +222,18 @@ def _look(
     if not _agree(side, p1):
         if monotone or curved:
             return True, _bracketed(coefficients, variable, lane, left, right, side)
-        return False, NO_ROOT
+        return False, root_search.no_root
     if monotone or min(abs(p0), abs(p1)) > 0.125 * bend * width * width:
-        return True, NO_ROOT
+        return True, root_search.no_root
     if not curved:
-        return False, NO_ROOT
+        return False, root_search.no_root
     if _agree(side, -b0) or not _agree(s0, -s1):
         # An arch is lowest at its ends; a bow without a turning point likewise.
-        return True, NO_ROOT
+        return True, root_search.no_root
     lowest = _bracketed(coefficients, variable, lane, left, right, s0, of_slope=True)
     value, _, _ = evaluate_twice(coefficients, variable, lane, lowest)
     if _agree(side, value):
-        return True, NO_ROOT
+        return True, root_search.no_root
     return True, _bracketed(coefficients, variable, lane, left, lowest, side)
 
 
@@ -284,7 +298,7 @@ def first_crossing(
         if root < 0.0 or (side > 0.0 and falls) or (side < 0.0 and rises):
             return root, looked
         start, side = root, -side
-    return NO_ROOT, step
+    return root_search.no_root, step
 
 
 @part
@@ -292,7 +306,7 @@ def _leaves_zero(
     coefficients: Any, variable: int, lane: int, step: float, noise: float, drift: float
 ) -> Any:
     """When a polynomial that starts from zero first differs from it, and by what; 0 if never."""
-    time = step * FINEST_INTERVAL
+    time = step * root_search.finest_interval
     while 0.0 < time <= step:
         value, _, _ = evaluate_twice(coefficients, variable, lane, time)
         if abs(value) > noise + drift * time:

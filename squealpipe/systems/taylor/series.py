@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from squealpipe.systems.taylor import simd
-from squealpipe.systems.taylor.bases import ROOTS, Base, bases_of
+from squealpipe.systems.taylor.bases import Base, RootSettings, bases_of
 from squealpipe.systems.taylor.sums import Sums
 from squealpipe.systems.taylor.symbols import (
     FUNCTIONS,
@@ -453,7 +453,7 @@ class _SeriesWriter:
         node, needed = base.node, " + ".join(map(self._v, base.marks))
         yield f"s = base + {self.place[id(moving_part(node))]} * stride"
         yield f"b = {self._at_start(node)}"
-        yield f"m = abs(b) * splat({ROOTS.room!r})"
+        yield f"m = abs(b) * splat({RootSettings.room!r})"
         yield "u = splat(0.0)"
         yield orders
         yield f" u = fma(u, h, abs(load(s + k * {simd.ROW})))"
@@ -462,12 +462,12 @@ class _SeriesWriter:
         yield "near = u * h - m"  # not a number in other regimes, maybe
         yield "bits = bits_below(splat(0.0), near)"
         yield "if bits != 0:"
-        yield f" m = larger(m, {self._terms(node)} * splat({ROOTS.noise!r}))"
+        yield f" m = larger(m, {self._terms(node)} * splat({RootSettings.noise!r}))"
         yield " down = splat(0.0) - copysign(splat(1.0), b)"
         yield " x = h"
         yield f" least = load(row + {simd.ROW}) * splat({base.nearest!r})"
         yield " low = least"
-        yield f" for i in range({ROOTS.tries}):"
+        yield f" for i in range({RootSettings.tries}):"
         yield "  u = splat(0.0)"
         yield f"  {orders}"
         yield f"   u = fma(u, x, larger(load(s + k * {simd.ROW}) * down, splat(0.0)))"

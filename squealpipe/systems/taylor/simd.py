@@ -183,10 +183,6 @@ def _larger(builder: Any, first: Any, second: Any) -> Any:
     return _choose_below(builder, second, first, first, second)
 
 
-_SHIFT = 2.0**52
-"""Its last 52 bits count in ones: integers become doubles, and back, by one addition."""
-
-
 def _power(builder: Any, value: Any, exponent: Any) -> Any:
     """value ** exponent to about 1 %, from the bits of a positive normal number."""
     rows, words = value.type, ir.VectorType(ir.IntType(64), LANES)
@@ -198,15 +194,18 @@ def _power(builder: Any, value: Any, exponent: Any) -> Any:
         return ir.Constant(rows, [each] * LANES)
 
     high = builder.lshr(builder.bitcast(value, words), word(32))
-    high = builder.or_(high, builder.bitcast(double(_SHIFT), words))
-    units = builder.fsub(builder.bitcast(high, rows), double(_SHIFT))
+    # Its last 52 bits count in ones: integers become doubles, and back, by one
+    # addition.
+    shift = 2.0**52
+    high = builder.or_(high, builder.bitcast(double(shift), words))
+    units = builder.fsub(builder.bitcast(high, rows), double(shift))
     mantissa_log = builder.fsub(builder.fmul(units, double(2.0**-20)), double(1023.0))
     power = builder.fmul(mantissa_log, exponent)
     whole = _called("floor")(builder, power)
     part = builder.fsub(power, whole)
     curve = builder.fadd(builder.fmul(part, double(0.3431)), double(0.6569))
     curve = builder.fadd(builder.fmul(part, curve), double(1.0))
-    shifted = builder.bitcast(builder.fadd(whole, double(_SHIFT + 1023.0)), words)
+    shifted = builder.bitcast(builder.fadd(whole, double(shift + 1023.0)), words)
     scale = builder.bitcast(builder.shl(shifted, word(52)), rows)
     return builder.fmul(curve, scale)
 

@@ -9,7 +9,7 @@ of its terms does not hide. Cost: without crossings, a few operations a surface 
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,8 +17,6 @@ from squealpipe.systems.compiled import inline, part
 from squealpipe.systems.taylor import layout
 from squealpipe.systems.taylor.lanes import call
 from squealpipe.systems.taylor.roots import (
-    UNDECIDED,
-    UNSURE,
     Watch,
     evaluate_all,
     evaluate_twice,
@@ -26,6 +24,7 @@ from squealpipe.systems.taylor.roots import (
     hidden_below,
     is_hidden,
     largest_third,
+    root_search,
 )
 from squealpipe.systems.taylor.simd import (
     ROW,
@@ -41,12 +40,24 @@ from squealpipe.systems.taylor.simd import (
     splat,
     store,
 )
-from squealpipe.systems.taylor.switching import NOISE, gauge
+from squealpipe.systems.taylor.switching import gauge, surface_round_off
 
-SPARE = 100.0
-"""What the last orders of such a series may be more than those of the states."""
-FITS = 4
-"""Times that a step is fitted to the size of a series, which depends on the step."""
+
+class SeriesConvergence(NamedTuple):
+    """Thresholds by which a step is short enough for a series that is no state's.
+
+    Attributes:
+        spare: what its last orders may be more than those of the states. Doubling it lengthens
+            steps by a few per cent, where such a series decides.
+        fits: times that a step is fitted to the size of a series, which depends on the step.
+            Doubling it costs as many passes more; the step hardly changes after the fourth.
+    """
+
+    spare: float = 100.0
+    fits: int = 4
+
+
+series_convergence = SeriesConvergence()
 
 
 @inline
@@ -108,7 +119,7 @@ def converged_steps(series: int, terms: int, step: Any) -> Any:
     last = magnitude(load(series + (terms - 3) * ROW))
     later = magnitude(load(series + (terms - 2) * ROW))
     tiny, shorter = splat(1e-300), step
-    for _ in range(FITS):
+    for _ in range(series_convergence.fits):
         size = height + shorter * (slope + shorter * bend)
         target = smaller(
             _until(size, last, terms - 3.0), _until(size, later, terms - 2.0)
@@ -131,7 +142,7 @@ def _has_converged(series: int, terms: int, step: Any, power: Any) -> Any:
     size = magnitude(load(series + 2 * ROW))
     for k in (1, 0):
         size = fma(size, step, magnitude(load(series + k * ROW)))
-    share = SPARE * math.exp(-2.0 * (terms - 3.0))
+    share = series_convergence.spare * math.exp(-2.0 * (terms - 3.0))
     last = magnitude(load(series + (terms - 3) * ROW)) * power
     later = magnitude(load(series + (terms - 2) * ROW)) * power * step
     size = size * splat(share)
@@ -193,9 +204,10 @@ def _free(series: int, terms: int, step: Any) -> Any:
 @inline
 def reaches(rows: int, instant: int) -> Any:
     """Lanes whose step does not end before the instant in a row."""
-    left = load(rows + instant * ROW) - load(rows + layout.CLOCK * ROW)
+    left = load(rows + instant * ROW) - load(rows + layout.numbers.clock * ROW)
     return ~bits_below(
-        load(rows + layout.STEP * ROW), left - load(rows + layout.CORRECTION * ROW)
+        load(rows + layout.numbers.step * ROW),
+        left - load(rows + layout.numbers.correction * ROW),
     )
 
 
@@ -204,7 +216,8 @@ def take_step(t: Any, m: Any, parameters: int) -> Any:
     """Ends of all lanes' steps; returns the lanes that need a look of their own."""
     terms, base, at = t.n_terms, t.series, t.rows
     step = smaller(
-        step_length(base, terms, t.n_states, t.units), load(at + layout.LONGEST * ROW)
+        step_length(base, terms, t.n_states, t.units),
+        load(at + layout.numbers.longest * ROW),
     )
     if t.n_variables > t.n_states:
         for each in range(t.n_surfaces + t.n_tracked - t.n_states):
@@ -213,32 +226,36 @@ def take_step(t: Any, m: Any, parameters: int) -> Any:
             )
     natural = left = step
     if t.shorten or m.share[2] != 0.0:
-        left = load(at + layout.T_END * ROW) - load(at + layout.CLOCK * ROW)
-        left = left - load(at + layout.CORRECTION * ROW)
+        left = load(at + layout.numbers.t_end * ROW) - load(
+            at + layout.numbers.clock * ROW
+        )
+        left = left - load(at + layout.numbers.correction * ROW)
         step = shorten_steps(t, m, smaller(step, left))
     if t.shorten:
         # what a step leaves of the longest one of late; near a root of a base steps shrink by
         # half
         fading = 0.95
-        reached = load(at + layout.REACH * ROW) * splat(fading)
-        store(at + layout.REACH * ROW, larger(reached, step))
-        store(at + layout.STEP * ROW, step)
-        call(t.shorten, (base, parameters, at + layout.STEP * ROW, terms))
+        reached = load(at + layout.numbers.reach * ROW) * splat(fading)
+        store(at + layout.numbers.reach * ROW, larger(reached, step))
+        store(at + layout.numbers.step * ROW, step)
+        call(t.shorten, (base, parameters, at + layout.numbers.step * ROW, terms))
         # of the time reached: a step below it would not move the state, and none is shortened to
         # that
         resolved_share = 2.0**-50
-        resolved = magnitude(load(at + layout.CLOCK * ROW)) * splat(resolved_share)
-        short, least = load(at + layout.STEP * ROW), smaller(step, resolved)
-        across = load(at + layout.ACROSS * ROW)
+        resolved = magnitude(load(at + layout.numbers.clock * ROW)) * splat(
+            resolved_share
+        )
+        short, least = load(at + layout.numbers.step * ROW), smaller(step, resolved)
+        across = load(at + layout.numbers.across * ROW)
         across = choose_below(short, least, splat(1.0), across)
-        store(at + layout.ACROSS * ROW, across)
+        store(at + layout.numbers.across * ROW, across)
         step = larger(short, least)
-    store(at + layout.STEP * ROW, step)
-    store(at + layout.NATURAL * ROW, choose_below(step, left, step, natural))
+    store(at + layout.numbers.step * ROW, step)
+    store(at + layout.numbers.natural * ROW, choose_below(step, left, step, natural))
     lost = step
     for variable in range(t.n_variables):
         value = at_end(base + variable * terms * ROW, terms, step)
-        store(at + (layout.FIXED_ROWS + variable) * ROW, value)
+        store(at + (layout.numbers.first_of_system + variable) * ROW, value)
         lost = lost + value * 0.0
     plain = bits_below(magnitude(lost), splat(np.inf))
     for surface in range(t.n_surfaces):
@@ -246,7 +263,9 @@ def take_step(t: Any, m: Any, parameters: int) -> Any:
             series = base + (t.n_variables + surface) * terms * ROW
             plain &= _free(series, terms, step) | ~m.active[surface]
             plain &= ~m.beyond[surface]
-    return ~plain | reaches(at, layout.T_END) | reaches(at, layout.T_LATE)
+    return (
+        ~plain | reaches(at, layout.numbers.t_end) | reaches(at, layout.numbers.t_late)
+    )
 
 
 @part
@@ -257,7 +276,7 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
     first, tie, complete, winner = step, step * 2.0**-44, step, -1
     unclear = False
     for surface in range(t.n_surfaces):
-        regime = integers[layout.FIRST_REGIME + m.owner[surface], lane]
+        regime = integers[layout.integers.first_regime + m.owner[surface], lane]
         falls, rises = m.falls[regime, surface], m.rises[regime, surface]
         if (falls < 0 and rises < 0) or not m.suspects[surface] & bit:
             continue
@@ -266,7 +285,7 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
             fresh = (m.fresh[surface] & bit) != 0
             at_once = m.marks[regime, surface] == 0
             if m.clocks[surface]:
-                ticked = m.ticked[surface, lane] == m.rows[layout.CLOCK, lane]
+                ticked = m.ticked[surface, lane] == m.rows[layout.numbers.clock, lane]
                 at_once = fresh and not ticked  # of a marker, too
             watch = Watch(
                 falls >= 0,
@@ -278,16 +297,16 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
             )
             index = t.n_variables + surface
             root, looked = first_crossing(c, index, lane, step, watch)
-            unclear |= root == UNDECIDED
+            unclear |= root == root_search.undecided
             complete = min(complete, looked)
         if root < 0.0 or root > first + tie:
             continue
         _, slope, _ = evaluate_twice(c, t.n_variables + surface, lane, root)
         which = falls if rises < 0 or (falls >= 0 and slope < 0.0) else rises
-        earlier = root < first - tie or integers[layout.HIT, lane] < 0
+        earlier = root < first - tie or integers[layout.integers.hit, lane] < 0
         # of switches at one instant the first by name goes first, whatever their order
-        if earlier or which < integers[layout.HIT, lane]:
-            first, integers[layout.HIT, lane] = min(root, first), which
+        if earlier or which < integers[layout.integers.hit, lane]:
+            first, integers[layout.integers.hit, lane] = min(root, first), which
             winner = surface
     # a step may be shortened to this share of it where round-off hides a surface at its end
     least_share = 0.1
@@ -298,7 +317,7 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
         first = min(first, complete)
         unclear = False
     if unclear:
-        integers[layout.OUTCOME, lane] = layout.HIDDEN
+        integers[layout.integers.outcome, lane] = layout.outcomes.hidden
     return first
 
 
@@ -313,13 +332,13 @@ def _is_hidden(
     accumulate, is crossed there if it is clear of round-off halfway and half as long again.
     """
     index = t.n_variables + surface
-    span = min(m.rows[layout.NATURAL, lane], m.rows[layout.T_END, lane])
+    span = min(m.rows[layout.numbers.natural, lane], m.rows[layout.numbers.t_end, lane])
     within = step
     # share of a step: a surface that returns to zero by then may chatter; its root is uncertain
     # by no more than half of this time
     soon = 1e-2
     if m.fresh[surface] & (1 << lane) and root <= soon * span:
-        span, within = max(span, 0.5 * root / UNSURE), min(step, 2.0 * root)
+        span, within = max(span, 0.5 * root / root_search.unsure), min(step, 2.0 * root)
     floor = hidden_below(c, index, lane, within)
     # a root that this many times the round-off would hide may be hidden by that of its terms
     suspect = 1e6
@@ -329,20 +348,20 @@ def _is_hidden(
     for variable in range(t.n_variables):
         m.scratch[1, variable] = abs(m.scratch[0, variable])
     gauge(t, lane, m.scratch.shape[1])
-    floor = max(floor, NOISE * m.scratch[2, 3 * surface + 1])
+    floor = max(floor, surface_round_off.noise * m.scratch[2, 3 * surface + 1])
     return bool(is_hidden(c, index, lane, span, root, floor))
 
 
 @part
 def _is_finite(t: Any, m: Any, c: Any, lane: int) -> bool:
     """Whether a lane's step is, and the surfaces it watches; others are looked through for ever."""
-    total = m.rows[layout.STEP, lane]
+    total = m.rows[layout.numbers.step, lane]
     for variable in range(t.n_variables):
-        total += 0.0 * m.rows[layout.FIXED_ROWS + variable, lane]
+        total += 0.0 * m.rows[layout.numbers.first_of_system + variable, lane]
     for surface in range(t.n_surfaces):
         if m.active[surface] & (1 << lane):
             third = largest_third(
-                c, t.n_variables + surface, lane, m.rows[layout.STEP, lane]
+                c, t.n_variables + surface, lane, m.rows[layout.numbers.step, lane]
             )
             total += 0.0 * third
     return math.isfinite(total)
@@ -352,42 +371,46 @@ def _is_finite(t: Any, m: Any, c: Any, lane: int) -> bool:
 def cut(t: Any, m: Any, c: Any, lane: int) -> None:
     """End a lane's step at the first crossing, at the late time or at the end of its run."""
     rows, integers = m.rows, m.integers
-    integers[layout.HIT, lane] = -1
+    integers[layout.integers.hit, lane] = -1
     if not _is_finite(t, m, c, lane):
-        rows[layout.STEP, lane] = 0.0
-        integers[layout.OUTCOME, lane] = layout.NOT_FINITE
+        rows[layout.numbers.step, lane] = 0.0
+        integers[layout.integers.outcome, lane] = layout.outcomes.not_finite
         for variable in range(
             t.n_variables
         ):  # of its series higher orders may be no numbers
-            rows[layout.FIXED_ROWS + variable, lane] = c[variable, 0, lane]
+            rows[layout.numbers.first_of_system + variable, lane] = c[variable, 0, lane]
         return
-    done = rows[layout.CLOCK, lane]
-    remaining = (rows[layout.T_END, lane] - done) - rows[layout.CORRECTION, lane]
-    step = min(rows[layout.STEP, lane], remaining)
-    ends = remaining <= rows[layout.STEP, lane]
-    late = (rows[layout.T_LATE, lane] - done) - rows[layout.CORRECTION, lane]
+    done = rows[layout.numbers.clock, lane]
+    remaining = (rows[layout.numbers.t_end, lane] - done) - rows[
+        layout.numbers.correction, lane
+    ]
+    step = min(rows[layout.numbers.step, lane], remaining)
+    ends = remaining <= rows[layout.numbers.step, lane]
+    late = (rows[layout.numbers.t_late, lane] - done) - rows[
+        layout.numbers.correction, lane
+    ]
     turns_late = late <= step
     if turns_late:
         step, ends = late, ends and late >= remaining
     first = _first_switch(t, m, c, lane, step)
-    if integers[layout.OUTCOME, lane] == layout.HIDDEN:
-        integers[layout.HIT, lane] = -1
+    if integers[layout.integers.outcome, lane] == layout.outcomes.hidden:
+        integers[layout.integers.hit, lane] = -1
         step, ends, turns_late = first, False, False
-    elif integers[layout.HIT, lane] >= 0 or first < step:
+    elif integers[layout.integers.hit, lane] >= 0 or first < step:
         step, ends, turns_late = first, False, False
-    if step != rows[layout.STEP, lane]:
-        rows[layout.STEP, lane] = step
+    if step != rows[layout.numbers.step, lane]:
+        rows[layout.numbers.step, lane] = step
         set_end(t, m, c, lane)
     if turns_late:
-        integers[layout.HIT, lane] = layout.LATE_BEGINS
+        integers[layout.integers.hit, lane] = layout.integers.late_begins
     if ends:
-        integers[layout.OUTCOME, lane] = layout.CONVERGED
+        integers[layout.integers.outcome, lane] = layout.outcomes.converged
 
 
 @part
 def set_end(t: Any, m: Any, c: Any, lane: int) -> None:
     """The variables at the end of a lane's step."""
     values = m.scratch[4]
-    evaluate_all(c, t.n_variables, lane, m.rows[layout.STEP, lane], values)
+    evaluate_all(c, t.n_variables, lane, m.rows[layout.numbers.step, lane], values)
     for variable in range(t.n_variables):
-        m.rows[layout.FIXED_ROWS + variable, lane] = values[variable]
+        m.rows[layout.numbers.first_of_system + variable, lane] = values[variable]

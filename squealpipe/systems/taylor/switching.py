@@ -8,7 +8,7 @@ state is beyond fires at once, and a clock's tick counts once. Cost: one lane at
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 from squealpipe.systems.compiled import inline, part
 from squealpipe.systems.taylor import layout
@@ -16,16 +16,28 @@ from squealpipe.systems.taylor.lanes import call
 from squealpipe.systems.taylor.observation import begin_late, entered_row
 from squealpipe.systems.taylor.simd import ROW, first_bit
 
-SLACK = 1e-13
-"""A surface lies within this of zero where round-off hides its sign, over the terms that cancel."""
-NOISE = 1e-15
-"""Round-off of a surface's polynomial and of its rate, likewise."""
+
+class SurfaceRoundOff(NamedTuple):
+    """Round-off of a surface's values, over the terms that cancel in them.
+
+    Attributes:
+        slack: a surface lies within this of zero where round-off hides its sign. Doubling it takes
+            twice as many starts for lying on their surface.
+        noise: of its polynomial and of its rate. Doubling it hides roots twice as far from each
+            other.
+    """
+
+    slack: float = 1e-13
+    noise: float = 1e-15
+
+
+surface_round_off = SurfaceRoundOff()
 
 
 @part
 def put_into(t: Any, m: Any, lane: int, component: int, regime: int) -> None:
     """Put a component of a lane into a regime: its constants."""
-    m.integers[layout.FIRST_REGIME + component, lane] = regime
+    m.integers[layout.integers.first_regime + component, lane] = regime
     first = t.n_rows - t.n_constants
     for constant in range(m.first_constant[component], m.first_constant[component + 1]):
         m.rows[first + constant, lane] = m.regimes[regime, constant]
@@ -57,9 +69,9 @@ def gauge(t: Any, lane: int, width: int) -> None:
 def _watch_clock(m: Any, lane: int, surface: int, gauged: Any) -> None:
     """Whether a clock ticks just now, and whether that tick has been carried out already."""
     height, terms, rate = gauged[0], gauged[1], gauged[2]
-    if abs(height) <= SLACK * terms:
+    if abs(height) <= surface_round_off.slack * terms:
         m.fresh[surface] |= 1 << lane
-        now = m.rows[layout.CLOCK, lane]
+        now = m.rows[layout.numbers.clock, lane]
         # a clock that fired less than this share of its unit of time before has not come round
         # again
         same_tick = 1e-6
@@ -84,13 +96,15 @@ def watch(t: Any, m: Any, c: Any, lane: int, span: float) -> None:
     gauge(t, lane, m.scratch.shape[1])
     # where an event was located to the tolerance only, the rate that follows from it is no better
     located = max(
-        NOISE, layout.LOST_ERROR * math.exp(-m.limits[m.integers[layout.JOB, lane], 4])
+        surface_round_off.noise,
+        layout.LOST_ERROR
+        * math.exp(-m.limits[m.integers[layout.integers.job, lane], 4]),
     )
     for surface in range(t.n_surfaces):
-        m.noise[surface, 0, lane] = NOISE * out[3 * surface + 1]
+        m.noise[surface, 0, lane] = surface_round_off.noise * out[3 * surface + 1]
         m.noise[surface, 1, lane] = located * out[3 * surface + 2]
     # a state is known to round-off of its typical size, however small it has become
-    job = m.integers[layout.JOB, lane]
+    job = m.integers[layout.integers.job, lane]
     for variable in range(t.n_states):
         sizes[variable] = max(sizes[variable], m.sizes[job, variable])
     gauge(t, lane, m.scratch.shape[1])
@@ -98,7 +112,7 @@ def watch(t: Any, m: Any, c: Any, lane: int, span: float) -> None:
         m.active[surface] &= keep
         m.fresh[surface] &= keep
         m.beyond[surface] &= keep
-        regime = m.integers[layout.FIRST_REGIME + m.owner[surface], lane]
+        regime = m.integers[layout.integers.first_regime + m.owner[surface], lane]
         falls, rises = m.falls[regime, surface] >= 0, m.rises[regime, surface] >= 0
         if not (falls or rises):
             continue
@@ -109,9 +123,9 @@ def watch(t: Any, m: Any, c: Any, lane: int, span: float) -> None:
             continue
         passed = falls != rises and (height < 0.0) == falls
         passed = passed and m.marks[regime, surface] == 0
-        if passed and abs(height) > max(SLACK, located) * terms:
+        if passed and abs(height) > max(surface_round_off.slack, located) * terms:
             m.beyond[surface] |= bit
-        elif passed or abs(height) <= SLACK * terms:
+        elif passed or abs(height) <= surface_round_off.slack * terms:
             m.fresh[surface] |= bit
 
 
@@ -133,18 +147,18 @@ def _start_where_crossed(t: Any, m: Any, lane: int, which: int, before: int) -> 
     for surface in range(t.n_surfaces):
         crossed = m.falls[before, surface] == which or m.rises[before, surface] == which
         height, terms = out[3 * surface], out[3 * surface + 1]
-        known = m.clocks[surface] != 0 or abs(height) <= SLACK * terms
+        known = m.clocks[surface] != 0 or abs(height) <= surface_round_off.slack * terms
         if known or not (crossed and m.active[surface] & bit):
             continue
         for variable in range(t.n_states):
-            z[variable] = m.rows[layout.FIXED_ROWS + variable, lane]
-        after = m.integers[layout.FIRST_REGIME + component, lane]
+            z[variable] = m.rows[layout.numbers.first_of_system + variable, lane]
+        after = m.integers[layout.integers.first_regime + component, lane]
         put_into(t, m, lane, component, before)
         settle(t, lane)
         gauge(t, lane, m.scratch.shape[1])
         put_into(t, m, lane, component, after)
         settle(t, lane)
-        if abs(height) <= abs(out[3 * surface]) + SLACK * terms:
+        if abs(height) <= abs(out[3 * surface]) + surface_round_off.slack * terms:
             m.beyond[surface] &= ~bit
             m.fresh[surface] |= bit
         return
@@ -155,7 +169,7 @@ def is_beyond(t: Any, m: Any, lane: int, which: int) -> bool:
     """Whether a lane has entered a regime beyond the surface of this switch of the regime."""
     beyond = False
     for surface in range(t.n_surfaces):
-        regime = m.integers[layout.FIRST_REGIME + m.owner[surface], lane]
+        regime = m.integers[layout.integers.first_regime + m.owner[surface], lane]
         if m.falls[regime, surface] == which or m.rises[regime, surface] == which:
             beyond |= (m.beyond[surface] & (1 << lane)) != 0
     return beyond
@@ -164,25 +178,34 @@ def is_beyond(t: Any, m: Any, lane: int, which: int) -> bool:
 @part
 def _log(t: Any, m: Any, lane: int, kind: int, regime: int) -> int:
     """Count an event and, if its kind is and there is room, log it; returns how many there were."""
-    integers, job, after = m.integers, m.integers[layout.JOB, lane], m.scratch[3]
-    count, place = integers[layout.EVENTS, lane], integers[layout.LOGGED, lane]
+    integers, job, after = (
+        m.integers,
+        m.integers[layout.integers.job, lane],
+        m.scratch[3],
+    )
+    count, place = (
+        integers[layout.integers.events, lane],
+        integers[layout.integers.logged, lane],
+    )
     if m.logs[kind] and place < t.n_logged:
         m.event_times[job, place] = (
-            m.rows[layout.CLOCK, lane] + m.rows[layout.CORRECTION, lane]
+            m.rows[layout.numbers.clock, lane] + m.rows[layout.numbers.correction, lane]
         )
         m.event_kinds[job, place], m.event_regimes[job, place] = kind, regime
         for variable in range(t.n_states):
             m.event_states[job, place, variable] = after[variable]
-        integers[layout.LOGGED, lane] = place + 1
-    integers[layout.EVENTS, lane] = count + 1
+        integers[layout.integers.logged, lane] = place + 1
+    integers[layout.integers.events, lane] = count + 1
     m.counts[job, kind] += 1
     before, peaks = m.scratch[0], m.peaks[job, kind]
     for variable in range(t.n_states):
         peaks[variable] = max(peaks[variable], abs(before[variable]))
     if math.isnan(m.firsts[job, kind]):
-        m.firsts[job, kind] = m.rows[layout.CLOCK, lane]
+        m.firsts[job, kind] = m.rows[layout.numbers.clock, lane]
         if kind == t.late_from:
-            begin_late(t, m, lane, layout.FIXED_ROWS + t.n_variables + t.n_states)
+            begin_late(
+                t, m, lane, layout.numbers.first_of_system + t.n_variables + t.n_states
+            )
     return int(count + 1)
 
 
@@ -203,9 +226,9 @@ def _carry_over(
     for variable in range(t.n_states):
         d[variable] = m.rows[tangent_row + variable, lane]
     z, y, constants = t.scratch, t.scratch + 3 * stride, t.scratch + 5 * stride
-    at, which = t.scratch + 4 * stride, m.integers[layout.HIT, lane]
+    at, which = t.scratch + 4 * stride, m.integers[layout.integers.hit, lane]
     arguments = z, y, parameters_of(t, lane), constants, at, t.scratch + 2 * stride
-    delay = t.rows + layout.DELAY * ROW + 8 * lane
+    delay = t.rows + layout.numbers.delay * ROW + 8 * lane
     call(t.jump, (which, regime, at_once, delay, *arguments))
     for variable in range(t.n_states):
         m.rows[tangent_row + variable, lane] = out[variable]
@@ -215,11 +238,13 @@ def _carry_over(
 def switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
     """Carry out the switch that ended a lane's step."""
     rows, integers = m.rows, m.integers
-    which = integers[layout.HIT, lane]
+    which = integers[layout.integers.hit, lane]
     if which >= t.n_switches:
-        integers[layout.OUTCOME, lane] = layout.STOPPED + which - t.n_switches
+        integers[layout.integers.outcome, lane] = (
+            layout.outcomes.stopped + which - t.n_switches
+        )
         return
-    span, clock = rows[layout.STEP, lane], rows[layout.CLOCK, lane]
+    span, clock = rows[layout.numbers.step, lane], rows[layout.numbers.clock, lane]
     z, after, out = m.scratch[0], m.scratch[3], m.scratch[2]
     for variable in range(t.n_variables):
         z[variable] = c[variable, 0, lane]
@@ -230,11 +255,11 @@ def switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
     for variable in range(t.n_states):
         after[variable] = out[2 + variable]
     for surface in range(t.n_surfaces):
-        now = integers[layout.FIRST_REGIME + m.owner[surface], lane]
+        now = integers[layout.integers.first_regime + m.owner[surface], lane]
         if m.falls[now, surface] == which or m.rises[now, surface] == which:
             m.ticked[surface, lane] = clock
     component = m.component_of[regime]
-    before = integers[layout.FIRST_REGIME + component, lane]
+    before = integers[layout.integers.first_regime + component, lane]
     at_once = int(is_beyond(t, m, lane, which))
     _note_constants(t, m, lane)
     put_into(t, m, lane, component, regime)
@@ -243,11 +268,13 @@ def switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
         _carry_over(t, m, lane, tangent_row, regime, at_once)
     for variable in range(t.n_states):
         c[variable, 0, lane] = after[variable]
-    integers[layout.CHAINED, lane] += 1
+    integers[layout.integers.chained, lane] += 1
     if span > 4.0 * 2.0**-52 * abs(clock):
-        integers[layout.CHAINED, lane] = 0
+        integers[layout.integers.chained, lane] = 0
     count = _log(t, m, lane, kind, regime)
-    first_time = layout.FIXED_ROWS + t.n_variables + t.n_states + 2 * t.n_tracked
+    first_time = (
+        layout.numbers.first_of_system + t.n_variables + t.n_states + 2 * t.n_tracked
+    )
     entered = entered_row(t) + component
     rows[first_time + before, lane] += clock - rows[entered, lane]
     rows[entered, lane] = clock
@@ -260,15 +287,15 @@ def switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
 @part
 def _may_end(t: Any, m: Any, lane: int, kind: int, count: int) -> None:
     """End a run at the event that it waits for, or that makes too many."""
-    integers, job = m.integers, m.integers[layout.JOB, lane]
+    integers, job = m.integers, m.integers[layout.integers.job, lane]
     # so many switches of a component without progress in time end a run
     longest_chain = 64
     if kind == t.until:
-        integers[layout.OUTCOME, lane] = layout.BY_EVENT
-    elif integers[layout.CHAINED, lane] >= longest_chain * t.n_components:
-        integers[layout.OUTCOME, lane] = layout.ACCUMULATION
+        integers[layout.integers.outcome, lane] = layout.outcomes.by_event
+    elif integers[layout.integers.chained, lane] >= longest_chain * t.n_components:
+        integers[layout.integers.outcome, lane] = layout.outcomes.accumulation
     elif count >= m.limits[job, 3]:
-        integers[layout.OUTCOME, lane] = layout.EVENT_LIMIT
+        integers[layout.integers.outcome, lane] = layout.outcomes.event_limit
 
 
 @inline
@@ -290,11 +317,14 @@ def switch_all(t: Any, m: Any, c: Any, special: int, tangent_row: int) -> None:
     while special:
         lane = first_bit(special)
         special ^= 1 << lane
-        hit = m.integers[layout.HIT, lane]
-        if hit == layout.LATE_BEGINS:
+        hit = m.integers[layout.integers.hit, lane]
+        if hit == layout.integers.late_begins:
             begin_late(t, m, lane, tangent_row + t.n_states)
             # a surface may be crossed at this very instant
-            watch(t, m, c, lane, m.rows[layout.STEP, lane])
-        elif hit >= 0 and m.integers[layout.OUTCOME, lane] == layout.RUNNING:
+            watch(t, m, c, lane, m.rows[layout.numbers.step, lane])
+        elif (
+            hit >= 0
+            and m.integers[layout.integers.outcome, lane] == layout.outcomes.running
+        ):
             switch(t, m, c, lane, tangent_row)
-        m.integers[layout.HIT, lane] = -1
+        m.integers[layout.integers.hit, lane] = -1

@@ -136,8 +136,10 @@ def parameter(name: str) -> Symbol:
     return Symbol("parameter", name)
 
 
-_NAMES = ("exp", "log", "sin", "cos", "tanh", "sinh", "cosh", "atan", "asin")
-FUNCTIONS = {name: getattr(math, name) for name in _NAMES}
+FUNCTIONS = {
+    name: getattr(math, name)
+    for name in ("exp", "log", "sin", "cos", "tanh", "sinh", "cosh", "atan", "asin")
+}
 """Functions of one argument that have a recurrence, as floats compute them."""
 
 

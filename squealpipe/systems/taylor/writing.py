@@ -16,17 +16,7 @@ from squealpipe.systems.taylor import simd
 from squealpipe.systems.taylor.machine import address_of
 
 _cgutils: Any = cgutils
-_WORD, _DOUBLE = ir.IntType(64), ir.DoubleType()
-_INTEGERS = {
-    ast.Add: "add",
-    ast.Sub: "sub",
-    ast.Mult: "mul",
-    ast.FloorDiv: "sdiv",
-    ast.Mod: "srem",
-}
-"""Those of integers that are not negative."""
-_DOUBLES = {ast.Add: "fadd", ast.Sub: "fsub", ast.Mult: "fmul", ast.Div: "fdiv"}
-_TESTS = {ast.Eq: "==", ast.NotEq: "!=", ast.GtE: ">="}
+_word_type, _double_type = ir.IntType(64), ir.DoubleType()
 
 
 def compile_source(source: str, width: int = simd.LANES) -> int:
@@ -121,11 +111,11 @@ class _Writer:
             else:
                 bounds = [self._value(bound) for bound in each.iter.args]
                 start, stop, step = (
-                    [_WORD(0)] * (len(bounds) == 1) + bounds + [_WORD(1)]
+                    [_word_type(0)] * (len(bounds) == 1) + bounds + [_word_type(1)]
                 )[:3]
                 up = step.constant > 0
                 loop = _cgutils.for_range_slice(
-                    self.builder, start, stop, step, _WORD, inc=up
+                    self.builder, start, stop, step, _word_type, inc=up
                 )
                 with loop as (index, _):
                     self._assign(each.target.id, index)
@@ -141,8 +131,9 @@ class _Writer:
 
     def _test(self, node: Any) -> Any:
         pair = self._value(node.left), self._value(node.comparators[0])
-        symbol = _TESTS[type(node.ops[0])]
-        if pair[0].type == _WORD:
+        tests = {ast.Eq: "==", ast.NotEq: "!=", ast.GtE: ">="}
+        symbol = tests[type(node.ops[0])]
+        if pair[0].type == _word_type:
             return self.builder.icmp_signed(symbol, *pair)
         unlike = self.builder.fcmp_unordered  # NaN is unlike anything
         return (unlike if symbol == "!=" else self.builder.fcmp_ordered)(symbol, *pair)
@@ -153,7 +144,9 @@ class _Writer:
                 return self.values[node.id]
             return self.builder.load(self.places[node.id])
         if isinstance(node, ast.Constant):
-            return (_WORD if isinstance(node.value, int) else _DOUBLE)(node.value)
+            return (_word_type if isinstance(node.value, int) else _double_type)(
+                node.value
+            )
         if isinstance(node, ast.UnaryOp):
             operand: Any = node.operand
             if isinstance(operand, ast.Constant):
@@ -167,13 +160,24 @@ class _Writer:
             return self.functions[name](self.builder, *map(self._value, node.args))
         operands = [self._value(node.left), self._value(node.right)]
         kinds = {each.type for each in operands}
-        if kinds == {_WORD}:
-            return getattr(self.builder, _INTEGERS[type(node.op)])(*operands)
-        if _WORD in kinds:
+        if kinds == {_word_type}:
+            # integers that are not negative: their quotient is rounded down
+            instructions: dict[Any, str] = {
+                ast.Add: "add",
+                ast.Sub: "sub",
+                ast.Mult: "mul",
+                ast.FloorDiv: "sdiv",
+                ast.Mod: "srem",
+            }
+            return getattr(self.builder, instructions[type(node.op)])(*operands)
+        if _word_type in kinds:
             operands = [
-                self.builder.sitofp(each, _DOUBLE) if each.type == _WORD else each
+                self.builder.sitofp(each, _double_type)
+                if each.type == _word_type
+                else each
                 for each in operands
             ]
         if isinstance(node.op, ast.Pow):
             return self.functions["pow"](self.builder, *operands)
-        return getattr(self.builder, _DOUBLES[type(node.op)])(*operands)
+        doubles = {ast.Add: "fadd", ast.Sub: "fsub", ast.Mult: "fmul", ast.Div: "fdiv"}
+        return getattr(self.builder, doubles[type(node.op)])(*operands)

@@ -26,7 +26,7 @@ def compiled(tmp_path, monkeypatch):
     """Compiles as a new process would, with a store of its own."""
 
     def value():
-        monkeypatch.setattr(machine, "_ADDRESSES", {})
+        monkeypatch.setattr(machine, "_addresses", {})
         monkeypatch.setattr(machine, "_engine", cache(machine._engine.__wrapped__))
         words = [ctypes.c_ssize_t] * 3
         function = ctypes.CFUNCTYPE(None, *words)(compile_source(SOURCE))

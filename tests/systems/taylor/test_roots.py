@@ -4,7 +4,7 @@ import numba
 import numpy as np
 import pytest
 
-from squealpipe.systems.taylor.roots import NO_ROOT, first_root
+from squealpipe.systems.taylor.roots import first_root, root_search
 
 ORDER, STEP = 15, 0.7
 
@@ -31,13 +31,16 @@ def test_first_of_many_known_roots():
             np.abs(roots - STEP) < 1e-9
         ):
             continue
-        expected = inside[0] if inside.size else NO_ROOT
+        expected = inside[0] if inside.size else root_search.no_root
         assert found(polynomial) == pytest.approx(expected, abs=1e-11)
 
 
 def test_a_start_on_the_surface_is_no_root():
     for slope in (1e-12, 1.0, -1.0):
-        assert found(np.polynomial.Polynomial([0.0, slope, 0.1 * slope])) == NO_ROOT
+        assert (
+            found(np.polynomial.Polynomial([0.0, slope, 0.1 * slope]))
+            == root_search.no_root
+        )
     assert found(np.polynomial.Polynomial([0.0, -0.3, 1.0])) == pytest.approx(
         0.3, abs=1e-15
     )
@@ -46,5 +49,6 @@ def test_a_start_on_the_surface_is_no_root():
 def test_a_root_at_the_end_counts():
     assert found(np.polynomial.Polynomial([-0.5, 1.0]), 0.5) == 0.5
     assert (
-        found(np.polynomial.Polynomial([-0.5, 1.0]), np.nextafter(0.5, 0.0)) == NO_ROOT
+        found(np.polynomial.Polynomial([-0.5, 1.0]), np.nextafter(0.5, 0.0))
+        == root_search.no_root
     )
