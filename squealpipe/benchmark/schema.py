@@ -86,7 +86,7 @@ failure_atlas_schema = DatasetSchema(
     },
 )
 
-_STEPS = RoundOff(
+_adaptive_step_round_off = RoundOff(
     ComparedAs.magnitude, "errors of adaptive steps follow round-off", floor=1e-9
 )
 _COUNT = "; -1 where no events are reported or judged"
@@ -146,13 +146,13 @@ benchmark_schema = DatasetSchema(
             "largest error of an event's time",
             dims=("problem", "solver", "tol"),
             nan_allowed=True,
-            round_off=_STEPS,
+            round_off=_adaptive_step_round_off,
         ),
         "error": Variable(
             "largest error of final state and event times over the growth of a perturbation",
             dims=("problem", "solver", "tol"),
             nan_allowed=True,
-            round_off=_STEPS,
+            round_off=_adaptive_step_round_off,
         ),
         "evaluations": count(
             "calls of the field, counted by the harness; a solver that makes its own functions "

@@ -210,10 +210,10 @@ Tolerances = Annotated[
 ]
 Texts = Annotated[list[str] | None, Parameter(negative="")]
 
-BASELINE = Parameters()
+baseline_parameters = Parameters()
 
 
-PHYSICAL_GROUP = Group(
+physical_parameters = Group(
     "Physical parameters", help="In SI, or with a unit like 0.57mm.", sort_key=10
 )
 
@@ -237,8 +237,9 @@ class Brake:
         ),
     ] = None
     params: Annotated[
-        Parameters, Parameter(name="*", group=PHYSICAL_GROUP, allow_leading_hyphen=True)
-    ] = BASELINE
+        Parameters,
+        Parameter(name="*", group=physical_parameters, allow_leading_hyphen=True),
+    ] = baseline_parameters
     preload_force: Annotated[str | None, _instead("preload_force")] = None
     pressure: Annotated[str | None, _instead("pressure")] = None
     area: Annotated[str | None, _instead("area")] = None

@@ -14,6 +14,9 @@ from squealpipe.text import duration
 if TYPE_CHECKING:
     from squealpipe.parameters import Parameters
 
+MANY_CELLS = 250_000
+"""A map of at least so many cells says beforehand what it takes."""
+
 
 def say_what_it_takes(
     function: str, params: Parameters, angles: Sequence[Any], options: Mapping[str, Any]
@@ -27,9 +30,7 @@ def say_what_it_takes(
         return
     sizes = [len(angle) for angle in angles]
     cells = prod(sizes)
-    # Cells of a map from which on it is said what they take.
-    many = 250_000
-    if cells < many:
+    if cells < MANY_CELLS:
         return
     memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     # arrays of the size of the result that are in memory at once, about

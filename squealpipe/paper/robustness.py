@@ -24,7 +24,7 @@ from squealpipe.validation import Natural, Seed, Tolerance, Workers
 from squealpipe.vibration.shares import wilson_interval
 
 Share = tuple[float, float, float, int, int]
-"""A value for each of :data:`STATEMENT_COLUMNS`."""
+"""Share of sets, its lower and upper bound, how many were judged, and the outcome."""
 
 
 def variants(params: Parameters) -> Iterator[tuple[str, Parameters]]:

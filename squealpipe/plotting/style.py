@@ -39,7 +39,7 @@ POWER_OF_TEN_BELOW = 1e-3
 
 WHITE, LIGHT, BLACK = "#FFFFFF", "#BDBDBD", "#1A1A1A"
 """The paper's three tones."""
-HALO = [withStroke(linewidth=2, foreground="white")]
+white_halo = [withStroke(linewidth=2, foreground="white")]
 """Around words and marks on a map."""
 HATCH = "//////"
 

@@ -2,7 +2,7 @@
 
 from squealpipe.schema import Variable, count, or_nan
 
-MESH = {
+mesh_entries = {
     "node_position": Variable(
         "position of the node", "m", ("node", "axis"), optional=True
     ),
@@ -36,7 +36,7 @@ MESH = {
     ),
 }
 """Data variables."""
-MESH_COORDINATES = {
+mesh_coordinates = {
     "node": count("number of the node in its program", "node", optional=True),
     "axis": Variable("axis of the position", dims=("axis",), dtype="U", optional=True),
 }

@@ -15,6 +15,9 @@ from squealpipe.study.sweep_plan import SweepPlan
 from squealpipe.systems.processes import available_cores, leave_interrupts_to_the_parent
 from squealpipe.systems.progress import alone
 
+MOST_HELD = 2000
+"""Finished runs that are held in memory."""
+
 
 class PointSweep(SweepPlan):
     """A sweep of independent runs."""
@@ -47,14 +50,12 @@ class PointSweep(SweepPlan):
         with alone() as show:
             show(done / total)
             try:
-                # Finished runs that are held in memory.
-                most_held = 2000
                 for number, run in enumerate(_runs(self, workers, done), done + 1):
                     made.append(run)
                     show(number / total)
                     # after 5 s of new results they go to disk: a stopped sweep loses no more
                     if kept and (
-                        time.monotonic() - written > 5.0 or len(made) >= most_held
+                        time.monotonic() - written > 5.0 or len(made) >= MOST_HELD
                     ):
                         kept.save(number - len(made), made)
                         made, written = [], time.monotonic()

@@ -15,6 +15,8 @@ from typing import Any
 STOPS = [
     getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)
 ]
+PATIENCE = 20.0
+"""Time that interrupted jobs have to tidy up before they are killed, s."""
 HOLDERS = Path(".snakemake/squealpipe")
 LOCKS = Path(".snakemake/locks")
 
@@ -112,9 +114,7 @@ def _works_in(folder: Path) -> bool:
 
 def end_group(number: int) -> None:
     """Interrupt all processes of a group, and kill what is left after a while."""
-    # Time that interrupted jobs have to tidy up before they are killed, s.
-    patience = 20.0
-    until = time.monotonic() + patience
+    until = time.monotonic() + PATIENCE
     with suppress(ProcessLookupError):
         os.killpg(number, signal.SIGINT)
         while time.monotonic() < until and not _only_zombies(number):

@@ -119,14 +119,14 @@ class RunOptions:
     t_start: float = 0.0
 
 
-_DEFAULT = RunOptions()
+_default_options = RunOptions()
 
 
 def integrate(
     system: System,
     values: Mapping[str, np.ndarray],
     t_end: np.ndarray,
-    options: RunOptions = _DEFAULT,
+    options: RunOptions = _default_options,
     *,
     tol: float,
     workers: int | None = None,

@@ -10,7 +10,7 @@ from squealpipe.systems.tracing import TracedSystem as System
 
 FIRST_LOG = 256
 """Events kept at first; a run that has more is made again with room for all."""
-_DEFAULT_RUN = RunOptions()
+_default_options = RunOptions()
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ def single_run(
     system: System,
     values: Mapping[str, float],
     t_end: float,
-    options: RunOptions = _DEFAULT_RUN,
+    options: RunOptions = _default_options,
     *,
     tol: float,
     room: int = FIRST_LOG,

@@ -29,10 +29,12 @@ from squealpipe.systems.datasets.agreement import ComparedAs, Listing, RoundOff
 UNIT, GRID = "<unit>", "<grid>"
 CYCLE: dict[str, Any] = {"rtol": 1e-7, "atol": 1e-9}
 """To so many digits two ways to a cycle lead to the same one."""
-_RESIDUAL = or_nan(
+_residual = or_nan(
     "largest residual of the equations, without units", rtol=1.0, atol=1e-8
 )
-_COMPONENT = {"component": replace(text("component", "component"), optional=True)}
+_component_coordinate = {
+    "component": replace(text("component", "component"), optional=True)
+}
 
 
 def _flag(long_name: str, *dims: str) -> Variable:
@@ -48,7 +50,7 @@ simulate_schema = DatasetSchema(
     name=SYSTEM + "simulate",
     title="One run of a system, with every switch located",
     lists={"event": Listing(kinds=("event_kind",))},
-    coordinates={"time": Variable("time", "s", ("time",)), **_COMPONENT},
+    coordinates={"time": Variable("time", "s", ("time",)), **_component_coordinate},
     variables={
         "regime": _flag("regime, of each component if there are several", "time"),
         "event_time": Variable("time of the event", "s", ("event",)),
@@ -69,7 +71,10 @@ simulate_schema = DatasetSchema(
 ensemble_schema = DatasetSchema(
     name=SYSTEM + "ensemble",
     title="Many runs of a system",
-    coordinates={**_COMPONENT, GRID: Variable("start or parameter", UNIT, (GRID,))},
+    coordinates={
+        **_component_coordinate,
+        GRID: Variable("start or parameter", UNIT, (GRID,)),
+    },
     variables={
         "outcome": _flag("how the run ended", GRID),
         "lyapunov_exponent": or_nan(
@@ -137,7 +142,7 @@ def _of_cycles(*dims: str) -> dict[str, Variable]:
     }
     return {
         "period": or_nan("period", "s", dims, **CYCLE),
-        "residual": replace(_RESIDUAL, dims=dims),
+        "residual": replace(_residual, dims=dims),
         "stable": _flag("whether small disturbances decay", *dims),
         **multipliers,
         "periods": _count("forcing periods, or returns to the section"),
@@ -166,7 +171,7 @@ def _extremes(*dims: str) -> dict[str, Variable]:
 limit_cycle_schema = DatasetSchema(
     name=SYSTEM + "limit cycle",
     title="A periodic motion of a system, events located, with its Floquet multipliers",
-    coordinates=_COMPONENT,
+    coordinates=_component_coordinate,
     lists={"event": Listing(kinds=("event_kind",))},
     variables={
         **_of_cycles(),
@@ -183,7 +188,7 @@ limit_cycle_schema = DatasetSchema(
 cycle_branch_schema = DatasetSchema(
     name=SYSTEM + "cycle branch",
     title="A branch of periodic motions of a system in one parameter",
-    coordinates=_COMPONENT,
+    coordinates=_component_coordinate,
     variables={
         **_of_cycles("point"),
         "label": _flag("what is special about the point", "point"),
@@ -200,14 +205,14 @@ cycle_curve_schema = DatasetSchema(
     variables={
         "period": Variable("period", "s", ("point",), **CYCLE),
         "events": _count("events of the cycle", "point"),
-        "residual": replace(_RESIDUAL, dims=("point",)),
+        "residual": replace(_residual, dims=("point",)),
         "label": _flag("what else happens at the point", "point"),
         "outcome": _flag("why the curve ended", "side"),
         "<parameter>": Variable("a followed parameter", UNIT, ("point",), **CYCLE),
     },
 )
 
-TABLES = {
+system_schemas = {
     table.name: table
     for table in (
         simulate_schema,
@@ -241,7 +246,7 @@ def check(dataset: xr.Dataset) -> xr.Dataset:
         SchemaError: with all faults: a variable that has no place, is missing, or has other
             dimensions or units than its table says; NaN or flags that have no meaning.
     """
-    table = TABLES[dataset.attrs["schema"]]
+    table = system_schemas[dataset.attrs["schema"]]
     coordinates = set(dataset.coords)
     grid = tuple(str(dim) for dim in dataset.coords if dim != "component")
     faults = []
@@ -271,7 +276,7 @@ def check(dataset: xr.Dataset) -> xr.Dataset:
 def of_dataset(dataset: xr.Dataset) -> DatasetSchema:
     """The schema of one dataset of a system: its own names, with the tolerances of its table."""
     name = str(dataset.attrs.get("schema"))
-    lists = TABLES[name].lists if name in TABLES else {}
+    lists = system_schemas[name].lists if name in system_schemas else {}
     described = {
         str(key): _described(name, str(key), value)
         for key, value in dataset.variables.items()
@@ -290,9 +295,9 @@ def of_dataset(dataset: xr.Dataset) -> DatasetSchema:
 @cache
 def entry_of(table: str, name: str) -> Variable | None:
     """The first entry of a table that a variable of a system fits."""
-    if table not in TABLES:
+    if table not in system_schemas:
         return None
-    if (exact := TABLES[table].lookup(name)) is not None:
+    if (exact := system_schemas[table].lookup(name)) is not None:
         return exact
     fits = (entry for pattern, entry in _patterns(table) if pattern.fullmatch(name))
     return next(fits, None)
@@ -305,7 +310,7 @@ def names_in_results(own: Mapping[str, Iterable[str]]) -> set[str]:
         own: the word between brackets → the system's names that it stands for.
     """
     names: set[str] = set()
-    for table in TABLES.values():
+    for table in system_schemas.values():
         for name, entry in {**table.variables, **table.coordinates}.items():
             names.update(entry.dims)
             before, bracket, rest = name.partition("<")
@@ -319,7 +324,7 @@ def names_in_results(own: Mapping[str, Iterable[str]]) -> set[str]:
 
 @cache
 def _patterns(table: str) -> list[tuple[re.Pattern[str], Variable]]:
-    entries = {**TABLES[table].variables, **TABLES[table].coordinates}
+    entries = {**system_schemas[table].variables, **system_schemas[table].coordinates}
     return [
         (re.compile(re.sub("<[a-z]+>", ".+", name)), entry)
         for name, entry in entries.items()

@@ -65,9 +65,9 @@ class Settling:
         return math.isfinite(self.peak_agreement)
 
 
-FOR_VERDICTS = Settling(agreement=0.03)
+settling_of_verdicts = Settling(agreement=0.03)
 """Rules that suffice for the kind of motion; thousands of designs are judged by them."""
-FOR_NUMBERS = Settling(
+settling_of_numbers = Settling(
     agreement=0.005, peak_agreement=0.005, shortest=400.0, samples=4096
 )
 """Rules for levels that are printed to about 1 %."""

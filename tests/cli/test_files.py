@@ -284,7 +284,7 @@ def test_a_map_that_does_not_fit_is_refused_with_what_it_would_take(
 
 
 def test_a_big_map_says_what_it_takes_before_it_begins(capsys, monkeypatch):
-    monkeypatch.setattr("squealpipe.cli.long_work.MANY", 100)
+    monkeypatch.setattr("squealpipe.cli.long_work.MANY_CELLS", 100)
     words = ["map", "stability", "--alpha1", "0:pi:40", "--alpha2", "0:pi:40"]
     assert run([*words, "-o", "map.nc"]) == 0
     assert capsys.readouterr().out.startswith("1,600 cells: at most about ")

@@ -350,7 +350,7 @@ def test_no_label_of_a_random_branch_is_lost_between_dense_samples(seed, monkeyp
     to = 1.2 * values["drive"]
     coarse = system.cycle_branch("drive", to, start=start)
     monkeypatch.setattr(
-        following, "BRANCH_STEPS", replace(following.BRANCH_STEPS, longest_step=0.005)
+        following, "branch_steps", replace(following.branch_steps, longest_step=0.005)
     )
     dense = system.cycle_branch("drive", to, start=start, n_points=2000)
     for label in (

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from squealpipe.vibration.settling import (
-    FOR_NUMBERS,
-    FOR_VERDICTS,
     Agreement,
     WindowLevels,
     agreement,
     late_growth,
+    settling_of_numbers,
+    settling_of_verdicts,
     tapered,
 )
 
@@ -47,15 +47,15 @@ def levels(velocities, *, peak=1.0, growth=0.0, late=0.0, periods=800.0, separat
 )
 def test_windows_agree_only_if_nothing_grows_or_decays(before, now, shown):
     pair = levels([1.0, 0.2], **before), levels([1.0, 0.2], **now)
-    assert agreement(*pair, FOR_NUMBERS) is shown
+    assert agreement(*pair, settling_of_numbers) is shown
 
 
 def test_a_component_that_grows_is_seen_beneath_a_loud_one():
     before, now = levels([1.0, 1e-3]), levels([1.0, 2e-3])
-    for rules in (FOR_VERDICTS, FOR_NUMBERS):
+    for rules in (settling_of_verdicts, settling_of_numbers):
         assert agreement(before, now, rules) is Agreement.none
     silent = levels([1.0, 0.0]), levels([1.0, 1e-12])
-    assert agreement(*silent, FOR_VERDICTS) is Agreement.regular
+    assert agreement(*silent, settling_of_verdicts) is Agreement.regular
 
 
 @pytest.mark.parametrize("periods", [20.3, 51.7, 173.45])

@@ -8,7 +8,7 @@ import pytest
 from squealpipe.codes import Verdict
 from squealpipe.systems.progress import ask_to_stop
 from squealpipe.vibration.settled_runs import Horizon, Start, settle
-from squealpipe.vibration.settling import FOR_VERDICTS
+from squealpipe.vibration.settling import settling_of_verdicts
 
 
 def start():
@@ -39,7 +39,11 @@ def test_a_stop_keeps_the_windows_that_have_ended_and_runs_no_more():
     starts = [start() for _ in range(3)]
     try:
         runs = settle(
-            starts, advance, horizon, FOR_VERDICTS, told=lambda *_: ask_to_stop()
+            starts,
+            advance,
+            horizon,
+            settling_of_verdicts,
+            told=lambda *_: ask_to_stop(),
         )
         assert turns == [0]
         assert [run.verdict for run in runs] == [Verdict.undetermined] * 3
@@ -47,6 +51,6 @@ def test_a_stop_keeps_the_windows_that_have_ended_and_runs_no_more():
         with pytest.raises(
             KeyboardInterrupt
         ):  # there is nothing yet that could be kept
-            settle(starts, advance, horizon, FOR_VERDICTS)
+            settle(starts, advance, horizon, settling_of_verdicts)
     finally:
         ask_to_stop(stops=False)

@@ -24,7 +24,7 @@ from squealpipe.validation import Angle, Tolerance
 from squealpipe.vibration.boundaries import Search
 from squealpipe.vibration.cures import Boundary, cure_table
 from squealpipe.vibration.schema import Mechanism, assess_schema
-from squealpipe.vibration.settling import FOR_NUMBERS
+from squealpipe.vibration.settling import settling_of_numbers
 
 
 @recorded(model="A1", method="Taylor series with located events")
@@ -94,7 +94,7 @@ def judge(params: Parameters, alpha1: float, alpha2: float, *, tol: float) -> Ju
     starts = [sudden]
     if sliding is not None:
         starts += [pushed(design, sliding), *strikes(design, sliding)]
-    settled = settle(starts, tol=tol, rules=FOR_NUMBERS)
+    settled = settle(starts, tol=tol, rules=settling_of_numbers)
     of_sudden, of_verdict = settled[0], settled[min(1, len(settled) - 1)]
     others = [each for each in settled if each.verdict is not Verdict.quiet]
     scalars, pictured = levels(design, of_verdict, sliding, tol=tol)

@@ -10,7 +10,7 @@ from squealpipe.brake.models.damped import is_undamped
 from squealpipe.brake.schema.assess import KICKS
 from squealpipe.vibration.settled_runs import Horizon, Quietness, SettledRun, Start
 from squealpipe.vibration.settled_runs import settle as settle_runs
-from squealpipe.vibration.settling import FOR_VERDICTS, Settling
+from squealpipe.vibration.settling import Settling, settling_of_verdicts
 
 PUSH = 0.01
 """Push of steady sliding, over the static compression."""
@@ -82,7 +82,7 @@ def settle(
     *,
     tol: float,
     most: float = MOST_PERIODS_OF_A_PAD,
-    rules: Settling = FOR_VERDICTS,
+    rules: Settling = settling_of_verdicts,
 ) -> list[SettledRun]:
     """Run each start until it has settled by the rules, ``most`` periods at most."""
 

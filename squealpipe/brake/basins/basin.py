@@ -7,7 +7,7 @@ import xarray as xr
 
 from squealpipe.brake.a1.ensemble import run_ensemble
 from squealpipe.brake.dynamics.motion import judge, predictability, with_log
-from squealpipe.brake.schema.basins import START_VARIABLES, basin_schema
+from squealpipe.brake.schema.basins import basin_schema, start_variables
 from squealpipe.brake.schema.dynamics.runs import MotionFlag
 from squealpipe.parameters import Parameters
 from squealpipe.schema import build
@@ -51,7 +51,7 @@ def basin_map(
         raise ValueError(
             f"t_late = {t_late!r}: 0 or a time before t_end = {t_end!r} is needed, s"
         )
-    axes = dict(zip(START_VARIABLES, map(np.asarray, (x, y, vx, vy)), strict=True))
+    axes = dict(zip(start_variables, map(np.asarray, (x, y, vx, vy)), strict=True))
     shape = tuple(axis.size for axis in axes.values() if axis.ndim)
     grid = np.meshgrid(*(np.atleast_1d(axis) for axis in axes.values()), indexing="ij")
     starts = np.stack([part.ravel() for part in grid], axis=-1)

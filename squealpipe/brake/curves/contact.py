@@ -23,10 +23,10 @@ from squealpipe.brake.curves.regions import chains_of, gathered, holds, inside, 
 from squealpipe.brake.curves.zero_lines import FirstGrid, ZeroLines
 from squealpipe.brake.models.refusals import refuse_unread
 from squealpipe.brake.schema.curves import (
-    VARIED,
     PointKind,
     boundary_distance_schema,
     contact_boundary_schema,
+    varied_parameters,
 )
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import COULOMB, LAWS
@@ -165,8 +165,10 @@ def two_axes(
             "or more values, the others numbers"
         )
     for name in axes:
-        if name not in VARIED:
-            raise ValueError(f"{name!r} cannot vary; {suggestion(name, VARIED)}")
+        if name not in varied_parameters:
+            raise ValueError(
+                f"{name!r} cannot vary; {suggestion(name, varied_parameters)}"
+            )
     for ratio, same in (
         ("kappa", "k3"),
         ("lambda_", "length1"),

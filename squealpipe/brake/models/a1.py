@@ -49,11 +49,11 @@ class Suspension(NamedTuple):
     dashpots: bool = True
 
 
-EXACT_SUSPENSION = Suspension()
+exact_suspension = Suspension()
 
 
 def suspension_force(
-    s: Any, p: Any, g: springs.Geometry, form: Suspension = EXACT_SUSPENSION
+    s: Any, p: Any, g: springs.Geometry, form: Suspension = exact_suspension
 ) -> tuple[Any, Any]:
     """Force of both springs and their dashpots, if any, on the mass in a state ``s``, N."""
     if form.linear:
@@ -77,7 +77,7 @@ def acceleration(
     contact: Any,
     direction: Any,
     stick: Any = 0.0,
-    form: Suspension = EXACT_SUSPENSION,
+    form: Suspension = exact_suspension,
 ) -> tuple[Any, Any]:
     """Eqs. (4), (5): (ẍ, ÿ) within one regime, m/s².
 

@@ -5,9 +5,9 @@ B = A − λm I, every function of A is α I + β B, where α is the mean and β
 of the function at the eigenvalues ω1², ω2². Written with ω2 ± ω1 these stay exact for repeated,
 zero, negative and complex eigenvalues, where eigenvectors do not exist or lose digits.
 
-A *state row* holds these numbers by name (:data:`STATE_ROW`): of A the mean λm of its diagonal,
-half the difference B11 of both, the couplings B12 and B21 and the discriminant δ² = −det B; ω1 and
-ω2, real and imaginary; the load b; and the threshold of y
+A *state row* holds these numbers by name (:data:`state_row_type`): of A the mean λm of its
+diagonal, half the difference B11 of both, the couplings B12 and B21 and the discriminant δ² = −det
+B; ω1 and ω2, real and imaginary; the load b; and the threshold of y
 (see :class:`squealpipe.brake.orbits.piecewise_linear.PiecewiseLinearSystem`).
 """
 
@@ -17,7 +17,7 @@ import numpy as np
 
 from squealpipe.systems.compiled import compiled
 
-STATE_ROW = np.dtype(
+state_row_type = np.dtype(
     [
         (name, "f8")
         for name in (

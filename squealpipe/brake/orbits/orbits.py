@@ -164,7 +164,7 @@ class Across(PseudoArclength):
         return point, math.copysign(1.0, tangent @ unit) * tangent, iterations, residual
 
 
-TO_ROUND_OFF = Across(ContinuationSettings(tolerance=1e-300))
+to_round_off = Across(ContinuationSettings(tolerance=1e-300))
 """Goes on until round-off stops the progress."""
 
 
@@ -173,7 +173,7 @@ def orbit_across(
 ) -> Orbit | None:
     """The orbit on the plane through a guess across a normal, or None where Newton fails."""
     equations = OrbitEquations(system)
-    found = TO_ROUND_OFF.correct(equations, guess[:3], normal)
+    found = to_round_off.correct(equations, guess[:3], normal)
     return None if found is None else equations.orbit(found[0])
 
 

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from squealpipe.brake.orbits.modal_flow import STATE_ROW
+from squealpipe.brake.orbits.modal_flow import state_row_type
 
 Matrix = tuple[tuple[float, float], tuple[float, float]]
 
@@ -51,7 +51,7 @@ class LinearState:
             *self.load,
             threshold,
         )
-        row: np.void = np.array([numbers], STATE_ROW)[0]
+        row: np.void = np.array([numbers], state_row_type)[0]
         return row
 
 
@@ -68,9 +68,10 @@ class PiecewiseLinearSystem:
 
     @cached_property
     def rows(self) -> NDArray[np.void]:
-        """Both states for the compiled kernels, (2,) records of ``STATE_ROW``."""
+        """Both states for the compiled kernels, (2,) records of ``state_row_type``."""
         return np.array(
-            [self.below.row(self.threshold), self.above.row(self.threshold)], STATE_ROW
+            [self.below.row(self.threshold), self.above.row(self.threshold)],
+            state_row_type,
         )
 
     @property

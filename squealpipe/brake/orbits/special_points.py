@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from squealpipe.brake.orbits.orbits import TO_ROUND_OFF, Orbit, OrbitEquations
+from squealpipe.brake.orbits.orbits import Orbit, OrbitEquations, to_round_off
 from squealpipe.brake.orbits.piecewise_linear import PiecewiseLinearSystem
 from squealpipe.codes import SpecialPoint
 from squealpipe.systems.branch_line import Line
@@ -56,12 +56,12 @@ def _between(
     last = np.array([*nearer, second.point[2]])
     chord = last - first.point
     start, end = (
-        TO_ROUND_OFF.solve(equations, z, chord, 0.0) for z in (first.point, last)
+        to_round_off.solve(equations, z, chord, 0.0) for z in (first.point, last)
     )
     if start is None or end is None:
         return None
     ends = [(state, equations.orbit(state.point)) for state in (start, end)]
-    return Line(TO_ROUND_OFF, equations, ends[0], ends[1], equations.orbit)
+    return Line(to_round_off, equations, ends[0], ends[1], equations.orbit)
 
 
 def _measures(state: ContinuationState, orbit: Orbit) -> Vector:

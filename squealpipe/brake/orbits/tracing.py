@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squealpipe.brake.orbits.orbits import (
-    TO_ROUND_OFF,
     Across,
     Orbit,
     OrbitEquations,
     orbit_across,
     solve_orbit,
+    to_round_off,
 )
 from squealpipe.brake.orbits.piecewise_linear import PiecewiseLinearSystem
 from squealpipe.brake.orbits.shooting import LONGEST_PHASE
@@ -163,7 +163,7 @@ class _Trace:
                 return
             there = self.equations.orbit(following.point)
             line = Line(
-                TO_ROUND_OFF,
+                to_round_off,
                 self.equations,
                 (state, here),
                 (following, there),

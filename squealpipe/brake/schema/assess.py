@@ -1,6 +1,6 @@
 """Datasets of verdicts over angles and over scattered parameters, and what is changed of a pad."""
 
-from squealpipe.brake.schema.linear import ANGLE_COORDINATES, MAP, ONE_PAIR
+from squealpipe.brake.schema.linear import MAP, angle_coordinates, angles_of_one_pair
 from squealpipe.codes import Verdict
 from squealpipe.schema import (
     DatasetSchema,
@@ -34,7 +34,7 @@ CURES = {
 verdict_map_schema = DatasetSchema(
     name="verdict_map",
     title="Whether a brake squeals or hammers, over both spring angles",
-    coordinates=ANGLE_COORDINATES,
+    coordinates=angle_coordinates,
     variables={
         "verdict": flag(
             "verdict on the motion that steady sliding settles on after a push",
@@ -65,6 +65,6 @@ verdict_shares_schema = DatasetSchema(
             for end in ("low", "high")
         },
         "samples": count("brakes in the sample", dtype="i8"),
-        **ONE_PAIR,
+        **angles_of_one_pair,
     },
 )

@@ -167,7 +167,7 @@ doubled_branch_schema = DatasetSchema(
     },
 )
 
-SCENE = {"scene": text("scene and mode", "scene")}
+scene_coordinate = {"scene": text("scene and mode", "scene")}
 
 
 def _error(*dims: str, long_name: str, units: str = "rad s-1") -> Variable:
@@ -185,7 +185,7 @@ harmonic_forms_schema = DatasetSchema(
     name="harmonic_forms",
     title="The paper's harmonic balance, corrected and as printed, against exact orbits",
     coordinates={
-        **SCENE,
+        **scene_coordinate,
         "form": Variable("Eq. (34)", dims=("form",), dtype="i4", flags=Form),
         "samples": count("samples N a period", "samples"),
     },
@@ -217,7 +217,7 @@ a1_beside_a4_schema = DatasetSchema(
     name="a1_beside_a4",
     title="Model A1 in time, started on periodic motions of A4, for springs of several lengths",
     coordinates={
-        **SCENE,
+        **scene_coordinate,
         "length_ratio": Variable("spring length over l_pre", dims=("length_ratio",)),
         "period": Variable("time over the period of A4", dims=("period",)),
         "order": Variable("frequency over omega of A4", dims=("order",)),

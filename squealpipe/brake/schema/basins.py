@@ -4,7 +4,7 @@ from dataclasses import replace
 from enum import IntEnum
 
 from squealpipe.brake.schema.dynamics.runs import IN_MAP, STATE_UNITS, MotionFlag
-from squealpipe.brake.schema.linear import ONE_PAIR
+from squealpipe.brake.schema.linear import angles_of_one_pair
 from squealpipe.codes import LinearRegime
 from squealpipe.schema import (
     RUN_ENDS,
@@ -18,14 +18,14 @@ from squealpipe.schema import (
     whether,
 )
 
-START_VARIABLES = {
+start_variables = {
     f"{name}0": Variable(f"{words} at the start", units)
     for name, (units, words) in STATE_UNITS.items()
 }
 
 
 def basin_schema(swept: tuple[str, ...]) -> DatasetSchema:
-    """The schema of a basin map whose dimensions are the ``swept`` ones of START_VARIABLES."""
+    """The schema of a basin map whose dimensions are the ``swept`` ones of start_variables."""
 
     def real(units: str, long_name: str) -> Variable:
         return or_nan(long_name, units, swept, **IN_MAP)
@@ -34,7 +34,7 @@ def basin_schema(swept: tuple[str, ...]) -> DatasetSchema:
         name="basin_map" + "".join(f"_{name}" for name in swept),
         title="Kind of motion of model A1 over its starts",
         coordinates={
-            name: replace(START_VARIABLES[name], dims=(name,)) for name in swept
+            name: replace(start_variables[name], dims=(name,)) for name in swept
         },
         variables={
             "motion": flag(
@@ -63,11 +63,11 @@ def basin_schema(swept: tuple[str, ...]) -> DatasetSchema:
             ),
             "outcome": outcome(*swept, among=(*RUN_ENDS, Outcome.beyond_horizon)),
             **{
-                name: START_VARIABLES[name]
-                for name in START_VARIABLES
+                name: start_variables[name]
+                for name in start_variables
                 if name not in swept
             },
-            **ONE_PAIR,
+            **angles_of_one_pair,
             "t_end": Variable("end of each run", "s"),
         },
     )
@@ -75,7 +75,7 @@ def basin_schema(swept: tuple[str, ...]) -> DatasetSchema:
 
 basin_map_schemas = tuple(
     basin_schema(
-        tuple(name for i, name in enumerate(START_VARIABLES) if chosen >> i & 1)
+        tuple(name for i, name in enumerate(start_variables) if chosen >> i & 1)
     )
     for chosen in range(16)
 )
@@ -141,7 +141,7 @@ smallest_disturbance_schema = DatasetSchema(
                 Outcome.no_sliding_state,
             )
         ),
-        **ONE_PAIR,
+        **angles_of_one_pair,
         "t_end": Variable("end of each run", "s"),
         "bound": Variable("largest norm tried"),
     },

@@ -35,7 +35,7 @@ class ChartLine(IntEnum):
     stick = 4
 
 
-VARIED = {
+varied_parameters = {
     "alpha1": Variable("angle of spring 1", "rad", ("point",), optional=True),
     "alpha2": Variable("angle of spring 2", "rad", ("point",), optional=True),
     **{
@@ -55,19 +55,19 @@ VARIED = {
 }
 """The two that vary are there."""
 
-PARAMETER = {"parameter": text("parameter that varies", "parameter")}
+parameter_coordinate = {"parameter": text("parameter that varies", "parameter")}
 
 contact_boundary_schema = DatasetSchema(
     name="contact_boundary",
     title="Where model A1, from rest, just keeps contact: arcs and corners over two parameters",
     coordinates={
         "point": count("point", "point"),
-        **PARAMETER,
+        **parameter_coordinate,
         "row": Variable("given values of the first parameter", dims=("row",)),
         "column": Variable("given values of the second parameter", dims=("column",)),
     },
     variables={
-        **VARIED,
+        **varied_parameters,
         "kept": whether(
             "whether contact is kept, by the side of the curves", "row", "column"
         ),
@@ -117,7 +117,7 @@ contact_boundary_schema = DatasetSchema(
 boundary_distance_schema = DatasetSchema(
     name="boundary_distance",
     title="How far a design is from the boundary of kept contact",
-    coordinates=PARAMETER,
+    coordinates=parameter_coordinate,
     variables={
         "design": Variable("value of the design", dims=("parameter",)),
         "kept": whether("whether contact is kept there"),
@@ -141,11 +141,11 @@ regime_chart_schema = DatasetSchema(
     },
     coordinates={
         "point": count("point", "point"),
-        **PARAMETER,
+        **parameter_coordinate,
         "boundary": text("what changes", "boundary"),
     },
     variables={
-        **VARIED,
+        **varied_parameters,
         "line": flag("what changes across the line", ChartLine, "point"),
         "curve": count("connected line", "point"),
         "residual": Variable(

@@ -3,7 +3,7 @@
 from enum import IntEnum
 
 from squealpipe.brake.schema.dynamics.runs import REGIME_MEANINGS, STATE_UNITS
-from squealpipe.brake.schema.linear import ONE_PAIR
+from squealpipe.brake.schema.linear import angles_of_one_pair
 from squealpipe.codes import Event
 from squealpipe.parameters import Parameters
 from squealpipe.schema import (
@@ -64,12 +64,12 @@ def _cycle_variables(*dims: str) -> dict[str, Variable]:
     }
 
 
-MULTIPLIER = count("number of the multiplier", "multiplier")
+multiplier_coordinate = count("number of the multiplier", "multiplier")
 
 a1_limit_cycle_schema = DatasetSchema(
     name="limit_cycle",
     title="A periodic motion of model A1, events located, with its Floquet multipliers",
-    coordinates={"multiplier": MULTIPLIER},
+    coordinates={"multiplier": multiplier_coordinate},
     variables={
         **_cycle_variables(),
         "event_time": Variable(
@@ -90,7 +90,7 @@ a1_limit_cycle_schema = DatasetSchema(
             for name, (units, words) in STATE_UNITS.items()
         },
         "regime_path": flag("regime along the cycle", REGIME_MEANINGS, "sample"),
-        **ONE_PAIR,
+        **angles_of_one_pair,
     },
 )
 
@@ -115,7 +115,7 @@ a1_cycle_branch_schema = DatasetSchema(
         )
     },
     coordinates={
-        "multiplier": MULTIPLIER,
+        "multiplier": multiplier_coordinate,
         "point": count("point along the branch", "point"),
     },
     variables={

@@ -3,7 +3,7 @@
 from enum import IntEnum
 from typing import Self
 
-from squealpipe.brake.schema.linear import ANGLE_COORDINATES, MAP
+from squealpipe.brake.schema.linear import MAP, angle_coordinates
 from squealpipe.schema import (
     DatasetSchema,
     Outcome,
@@ -107,7 +107,7 @@ model_ladder_schema = DatasetSchema(
     name="model_ladder",
     title="The cheapest adequate model over both spring angles",
     coordinates={
-        **ANGLE_COORDINATES,
+        **angle_coordinates,
         "question": text("question asked of a cell", "question"),
         "level": text("level of the ladder", "level"),
     },

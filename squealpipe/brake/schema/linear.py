@@ -19,31 +19,33 @@ from squealpipe.systems.datasets.agreement import Listing
 
 MAP = ("alpha1", "alpha2")
 
-ANGLE_COORDINATES = {
+angle_coordinates = {
     "alpha1": Variable("angle of spring 1", "rad", ("alpha1",)),
     "alpha2": Variable("angle of spring 2", "rad", ("alpha2",)),
 }
-ONE_PAIR = {name: replace(entry, dims=()) for name, entry in ANGLE_COORDINATES.items()}
+angles_of_one_pair = {
+    name: replace(entry, dims=()) for name, entry in angle_coordinates.items()
+}
 """The angles of a dataset that is of one pair."""
-MODES = {"mode": count("mode, by ascending frequency", "mode")}
+mode_coordinate = {"mode": count("mode, by ascending frequency", "mode")}
 
 
 ALIKE = 0.5
 """Modal assurance criterion from which two shapes are nearer to one than to perpendicular ones."""
 
 
-REGIME_LINEAR = flag("stability regime of model A3", LinearRegime, *MAP)
+linear_regime_of_map = flag("stability regime of model A3", LinearRegime, *MAP)
 
 stability_map_schema = DatasetSchema(
     name="stability_map",
     title="Linear stability (model A3) over both spring angles",
-    coordinates={**ANGLE_COORDINATES, **MODES},
+    coordinates={**angle_coordinates, **mode_coordinate},
     variables={
         "growth_rate": or_nan("largest real part of the eigenvalues", "s-1", MAP),
         "frequency": or_nan(
             "imaginary part of the eigenvalues", "rad s-1", (*MAP, "mode")
         ),
-        "regime_linear": REGIME_LINEAR,
+        "regime_linear": linear_regime_of_map,
         "shape_similarity": or_nan(
             "modal assurance criterion of both modes: 1 where they have one shape",
             dims=MAP,
@@ -61,7 +63,7 @@ def _critical(suffix: str) -> Variable:
 critical_friction_map_schema = DatasetSchema(
     name="critical_friction_map",
     title="Friction at which steady sliding loses its stability (model A3) over both spring angles",
-    coordinates=ANGLE_COORDINATES,
+    coordinates=angle_coordinates,
     variables={
         "critical_mu": _critical(""),
         "critical_mu_undamped": _critical(" without dashpots"),
@@ -85,7 +87,7 @@ critical_damping_map_schema = DatasetSchema(
         "destabilized": whether(
             "dashpots lower the critical friction", "damping1", "damping2"
         ),
-        **ONE_PAIR,
+        **angles_of_one_pair,
     },
 )
 
@@ -97,7 +99,7 @@ def _stiffness(symbol: str) -> Variable:
 quasi_static_map_schema = DatasetSchema(
     name="quasi_static_map",
     title="Quasi-static sliding (model A2) and the linear static state over both spring angles",
-    coordinates=ANGLE_COORDINATES,
+    coordinates=angle_coordinates,
     variables={
         "possible_as_printed": whether("Eq. (11) as printed holds", *MAP),
         "possible": whether("reaction force of model A2 is positive", *MAP),
@@ -120,8 +122,8 @@ natural_frequencies_schema = DatasetSchema(
     name="natural_frequencies",
     title="Natural frequencies of model A4, in contact and separated",
     coordinates={
-        **ANGLE_COORDINATES,
-        **MODES,
+        **angle_coordinates,
+        **mode_coordinate,
         "contact_state": text("state of the contact", "contact_state"),
     },
     variables={

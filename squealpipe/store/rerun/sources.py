@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 PACKAGE = Path(__file__).resolve().parents[2]
+STATEMENT_CHECKS = PACKAGE / "paper/claims/checks"
+"""Docstrings here are results: the table of statements shows them."""
 DECLARED_BY = "INPUT_FILES"
 """Constant in which a module names what it reads beside what it imports."""
 WORKFLOW = (PACKAGE / "workflow").resolve()
@@ -56,9 +58,7 @@ def read_source(path: Path) -> Source:
     content = path.read_bytes()
     if path.suffix != ".py":
         return Source(frozenset(), hashlib.sha256(content).hexdigest()[:16])
-    # Docstrings here are results: the table of statements shows them.
-    statement_checks = PACKAGE / "paper/claims/checks"
-    module = _parsed(content, path.parent == statement_checks)
+    module = _parsed(content, path.parent == STATEMENT_CHECKS)
     files = {file for name in module.imports for file in _files(name)}
     if path.is_relative_to(PACKAGE):
         files |= {file for each in module.inputs for file in path.parent.glob(each)}

@@ -32,7 +32,7 @@ from squealpipe.vibration.boundaries import (
 from squealpipe.vibration.cures import Boundary, boundaries, by_change, cure_table
 from squealpipe.vibration.levels import unknown
 from squealpipe.vibration.schema import assess_schema
-from squealpipe.vibration.settling import FOR_NUMBERS
+from squealpipe.vibration.settling import settling_of_numbers
 
 
 @dataclass(frozen=True)
@@ -166,7 +166,7 @@ def judge_structure(
     push = pushed(design)
     sudden = start_at(design, np.zeros(2 * plant.size))
     assert push is not None and sudden is not None  # noqa: S101, PT018
-    of_push, of_sudden = family.settled([push, sudden], FOR_NUMBERS)
+    of_push, of_sudden = family.settled([push, sudden], settling_of_numbers)
     drawn = family.starts(design, 2, [])
     others = family.settled(drawn) if drawn else []
     how = Running(tol, seed, workers)

@@ -19,7 +19,7 @@ from squealpipe.structures.subspace import projected, subspace, with_answers
 from squealpipe.vibration.schema import Mechanism
 from squealpipe.vibration.settled_runs import Horizon, Quietness, SettledRun, Start
 from squealpipe.vibration.settled_runs import settle as settle_runs
-from squealpipe.vibration.settling import FOR_VERDICTS, Settling
+from squealpipe.vibration.settling import Settling, settling_of_verdicts
 from squealpipe.vibration.windows import joined
 
 MOST_PERIODS = 20_000.0
@@ -296,7 +296,7 @@ class Structures:
         return [_start(subject, plant, state) for state in states]
 
     def settle(
-        self, starts: Sequence[Start], rules: Settling = FOR_VERDICTS
+        self, starts: Sequence[Start], rules: Settling = settling_of_verdicts
     ) -> list[SettledRun]:
         """Run starts until they have settled by the rules; their last states are of the whole."""
         if not starts:
@@ -307,7 +307,7 @@ class Structures:
         ]
 
     def settled(
-        self, starts: Sequence[Start], rules: Settling = FOR_VERDICTS
+        self, starts: Sequence[Start], rules: Settling = settling_of_verdicts
     ) -> list[SettledRun]:
         """Run starts until they have settled by the rules."""
         period = np.array([start.period for start in starts])

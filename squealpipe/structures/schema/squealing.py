@@ -16,7 +16,7 @@ from squealpipe.schema import (
     text,
     whether,
 )
-from squealpipe.schema.meshes import MESH, MESH_COORDINATES
+from squealpipe.schema.meshes import mesh_coordinates, mesh_entries
 from squealpipe.systems.datasets.agreement import Listing
 
 NO_ATTRACTOR = -1
@@ -95,7 +95,7 @@ squealing_schema = DatasetSchema(
         "contact": text("name of the contact", "contact"),
         "sample": count("number of the random start", "sample"),
         "pole": count("mode of steady sliding, by frequency", "pole"),
-        **MESH_COORDINATES,
+        **mesh_coordinates,
     },
     variables={
         "verdict": flag(
@@ -147,7 +147,7 @@ squealing_schema = DatasetSchema(
             optional=True,
         ),
         "degrees_of_freedom": count("of the whole structure", optional=True),
-        **MESH,
+        **mesh_entries,
         "frequency_max": _of_whole("end of the band that was compared, NaN: all", "Hz"),
         "ends_in": count(
             "attractor of a start of 1 % along this mode, -1: undetermined", "mode"

@@ -11,7 +11,7 @@ from squealpipe.schema import (
     outcome,
     text,
 )
-from squealpipe.schema.meshes import MESH, MESH_COORDINATES
+from squealpipe.schema.meshes import mesh_coordinates, mesh_entries
 
 structure_run_schema = DatasetSchema(
     name="structure_run",
@@ -19,7 +19,7 @@ structure_run_schema = DatasetSchema(
     coordinates={
         "time": Variable("time", "s", ("time",)),
         "contact": text("name of the contact", "contact"),
-        **MESH_COORDINATES,
+        **mesh_coordinates,
     },
     variables={
         "displacement": Variable(
@@ -55,7 +55,7 @@ structure_run_schema = DatasetSchema(
         "preload": Variable("preload of the contact", "N", ("contact",)),
         "attractor": count("attractor of squealing_modes that the motion is on"),
         "dominant_frequency": or_nan("strongest line of the motion", "Hz", rtol=1e-3),
-        **MESH,
+        **mesh_entries,
         "outcome": outcome(among=(Outcome.converged, Outcome.not_computed)),
     },
 )

@@ -13,7 +13,7 @@ from squealpipe.schema import (
     outcome,
     whether,
 )
-from squealpipe.schema.meshes import MESH, MESH_COORDINATES
+from squealpipe.schema.meshes import mesh_coordinates, mesh_entries
 
 NAME = "complex_modes"
 FACTORS = {
@@ -89,7 +89,7 @@ def _modes(dims: tuple[str, ...]) -> DatasetSchema:
             "contact": Variable(
                 "name of the contact", dims=("contact",), dtype="U", optional=True
             ),
-            **MESH_COORDINATES,
+            **mesh_coordinates,
         },
         variables={
             "growth_rate": or_nan(
@@ -182,7 +182,7 @@ def _modes(dims: tuple[str, ...]) -> DatasetSchema:
             "shape_belt_speed": Variable(
                 "belt speed at which the shapes are", "m s-1", optional=True
             ),
-            **MESH,
+            **mesh_entries,
         },
     )
 

@@ -5,7 +5,7 @@ from scipy.sparse.csgraph import connected_components
 
 from squealpipe.structures.schema.squealing import NO_ATTRACTOR
 from squealpipe.vibration.settled_runs import SettledRun
-from squealpipe.vibration.settling import FOR_VERDICTS, difference
+from squealpipe.vibration.settling import difference, settling_of_verdicts
 
 
 def grouped(settled: list[SettledRun], pushes: int) -> np.ndarray:
@@ -39,7 +39,7 @@ def is_same(one: SettledRun, other: SettledRun) -> bool:
     """Tell whether two settled runs may show one motion."""
     if one.quiet or other.quiet:
         return one.quiet and other.quiet
-    nearest = FOR_VERDICTS.agreement
+    nearest = settling_of_verdicts.agreement
     # two runs of one motion differ by up to three times their own change between windows, but
     # runs whose statistics differ by more than 6 % are never one motion
     allowed = np.clip(3.0 * max(one.change, other.change), nearest, 0.06)

@@ -18,7 +18,7 @@ from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
 from squealpipe.structures.squeal.settling import GROWTH, RUN_LENGTHS, start_at
 from squealpipe.structures.squeal.windows import Running, StructureWindows, run_windows
 from squealpipe.vibration.settled_runs import Horizon, settle
-from squealpipe.vibration.settling import FOR_VERDICTS
+from squealpipe.vibration.settling import settling_of_verdicts
 
 
 @dataclass(frozen=True)
@@ -150,7 +150,7 @@ def _run_on(
         starts,
         advance,
         Horizon(unit, 2.0 * unit, (2.0**6 - 1.0) * unit),
-        FOR_VERDICTS,
+        settling_of_verdicts,
         regimes=np.tile(start.regimes, (len(starts), 1)),
     )
     return [None if run.quiet else run.last for run in ended]

@@ -16,10 +16,10 @@ from squealpipe.structures.squeal.windows import (
     strongest_line,
 )
 from squealpipe.vibration.settling import (
-    FOR_VERDICTS,
     Agreement,
     WindowLevels,
     agreement,
+    settling_of_verdicts,
 )
 
 
@@ -82,7 +82,7 @@ def _died_out(plant: Plant, before: float, now: float) -> bool:
 
 
 def _agree(before: WindowLevels, now: WindowLevels) -> bool:
-    return agreement(before, now, FOR_VERDICTS) is not Agreement.none
+    return agreement(before, now, settling_of_verdicts) is not Agreement.none
 
 
 def exact_ends(

@@ -25,7 +25,7 @@ from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.progress import stop_is_asked
 from squealpipe.systems.recurrence import repeats_after
 from squealpipe.vibration.settled_runs import SettledRun
-from squealpipe.vibration.settling import FOR_NUMBERS, late_growth
+from squealpipe.vibration.settling import late_growth, settling_of_numbers
 from squealpipe.vibration.spectrum import amplitude_spectrum
 
 
@@ -143,7 +143,7 @@ def described(
     power = np.sqrt((amplitude**2).sum(axis=0))
     frequency = strongest_line(modal, step)
     kind, cycle = Kind.undetermined, None
-    rules, late = FOR_NUMBERS, apart.late_growth
+    rules, late = settling_of_numbers, apart.late_growth
     leaves = late > rules.still_grows and late > rules.proportional * before
     if lost:
         kind = Kind.irregular

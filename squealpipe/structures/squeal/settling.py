@@ -29,9 +29,9 @@ from squealpipe.structures.squeal.windows import (
 from squealpipe.systems.processes import available_cores
 from squealpipe.systems.progress import partial_answer, stop_is_asked, with_progress
 from squealpipe.units import engineering
-from squealpipe.vibration.settled_runs import QUIETNESS, Horizon, SettledRun, Start
+from squealpipe.vibration.settled_runs import Quietness, Horizon, SettledRun, Start
 from squealpipe.vibration.settled_runs import settle as settle_runs
-from squealpipe.vibration.settling import FOR_VERDICTS
+from squealpipe.vibration.settling import settling_of_verdicts
 
 GROWTH = np.log(1e4)
 """Growth of a small push before statistics start (ln; from 1 % of the static deformation to
@@ -122,7 +122,7 @@ def times_of(
         return np.full(len(rates), slowest_growing), first, first, most
     period = 1.0 / plant.slowest
     slowest = plant.spectrum.values.real[plant.asked].min()
-    shortest = max(QUIETNESS.shown / slowest, RUN_LENGTHS.fewest_in_window * period)
+    shortest = max(Quietness.shown / slowest, RUN_LENGTHS.fewest_in_window * period)
     shortest = min(shortest, first)
     longest = min(RUN_LENGTHS.longest_growth * period, 0.25 * most)
     return np.clip(GROWTH / rates, first, longest), shortest, first, most
@@ -266,7 +266,7 @@ def _settle(
         starts,
         advance,
         lengths,
-        FOR_VERDICTS,
+        settling_of_verdicts,
         regimes=regimes,
         told=told,
         second=second,

@@ -43,7 +43,7 @@ class Section(BaseModel):
     )
 
 
-WHOLE = BeforeValidator(
+whole_validator = BeforeValidator(
     lambda value: (
         int(value) if isinstance(value, float) and value.is_integer() else value
     )
@@ -52,7 +52,7 @@ WHOLE = BeforeValidator(
 Number = Annotated[float, Field(strict=True)]
 Positive = Annotated[float, Field(gt=0)]
 NotNegative = Annotated[float, Field(ge=0)]
-Points = Annotated[int, Field(ge=3, le=4001), WHOLE]
+Points = Annotated[int, Field(ge=3, le=4001), whole_validator]
 Time = Annotated[Positive, In("s", of_study=True)]
 Length = Annotated[Positive, In("m", of_study=True)]
 Speed = Annotated[Positive, In("m s-1", of_study=True)]
@@ -193,15 +193,15 @@ Range = Annotated[tuple[Ratio, Ratio], AfterValidator(_ascending)]
 class InferenceSection(Section):
     """Quasi-random parameter sets that are judged by the paper's statements."""
 
-    samples: Annotated[int, Field(ge=16, le=1_000_000), WHOLE] = 20_480
-    seed: Annotated[int, Field(ge=0), WHOLE] = 2021
+    samples: Annotated[int, Field(ge=16, le=1_000_000), whole_validator] = 20_480
+    seed: Annotated[int, Field(ge=0), whole_validator] = 2021
     kappa: Range = (0.3, 1.3)
     mu: Range = (0.02, 0.8)
     length_ratio: Range = (2.0, 100.0)
     speed_ratio: Range = (0.1, 316.0)
 
 
-Harmonics = Annotated[int, Field(ge=1, le=512), WHOLE]
+Harmonics = Annotated[int, Field(ge=1, le=512), whole_validator]
 
 
 class HarmonicComparison(Section):
@@ -215,12 +215,13 @@ class HarmonicComparison(Section):
         64,
     )
     oversampling: Annotated[
-        tuple[Annotated[int, Field(ge=1, le=256), WHOLE], ...], Field(min_length=1)
+        tuple[Annotated[int, Field(ge=1, le=256), whole_validator], ...],
+        Field(min_length=1),
     ] = (1, 4, 16)
     sigmas: Annotated[
         tuple[Annotated[Positive, In("m-1", of_study=True)], ...], Field(min_length=1)
     ] = (10.0, 100.0, 1e3)
-    repeats: Annotated[int, Field(ge=1, le=100), WHOLE] = 3
+    repeats: Annotated[int, Field(ge=1, le=100), whole_validator] = 3
 
 
 class BenchmarkComparison(Section):
@@ -245,7 +246,7 @@ class BenchmarkComparison(Section):
 class LadderComparison(Section):
     """The cheapest adequate model over both angles; horizon in √(m/k1)."""
 
-    points: Annotated[int, Field(ge=3, le=361), WHOLE] = 46
+    points: Annotated[int, Field(ge=3, le=361), whole_validator] = 46
     tolerance: Annotated[float, Field(gt=0, lt=1), In("1")] = 0.05
     horizon: Time = 200.0
 
@@ -273,9 +274,9 @@ class DynamicsSection(Section):
         0.3,
         300.0,
     )
-    whirl_count: Annotated[int, Field(ge=2, le=1000), WHOLE] = 31
+    whirl_count: Annotated[int, Field(ge=2, le=1000), whole_validator] = 31
     whirl_horizon: Time = 10_000.0
-    transient_samples: Annotated[int, Field(ge=2, le=100_000), WHOLE] = 400
+    transient_samples: Annotated[int, Field(ge=2, le=100_000), whole_validator] = 400
     transient_horizon: Time = 20_000.0
 
 
@@ -299,7 +300,7 @@ class BackbonesSection(Section):
     )
 
 
-DASHPOT = In("N s m-1", of_study=True)
+dashpot_unit = In("N s m-1", of_study=True)
 
 
 class CyclesSection(Section):
@@ -308,13 +309,13 @@ class CyclesSection(Section):
     ``damping`` is that of each dashpot over √(k1 m): twice the damping ratio of one spring.
     """
 
-    damping: Annotated[Positive, DASHPOT] = 0.02
+    damping: Annotated[Positive, dashpot_unit] = 0.02
     mu: Range = (0.01, 1.0)
     flutter: tuple[Angle, Angle] = (0.305, 0.07)
-    points: Annotated[int, Field(ge=2, le=5000), WHOLE] = 150
+    points: Annotated[int, Field(ge=2, le=5000), whole_validator] = 150
     settle: Time = 6000.0
-    extremes_mu: Annotated[int, Field(ge=2, le=1000), WHOLE] = 17
-    extremes_starts: Annotated[int, Field(ge=1, le=1000), WHOLE] = 6
+    extremes_mu: Annotated[int, Field(ge=2, le=1000), whole_validator] = 17
+    extremes_starts: Annotated[int, Field(ge=1, le=1000), whole_validator] = 6
     extremes_horizon: Time = 2000.0
 
 
@@ -339,19 +340,21 @@ class RobustnessSection(Section):
     over π.
     """
 
-    random_starts: Annotated[int, Field(ge=2, le=100_000), WHOLE] = 200
-    basin_points: Annotated[int, Field(ge=2, le=2001), WHOLE] = 41
+    random_starts: Annotated[int, Field(ge=2, le=100_000), whole_validator] = 200
+    basin_points: Annotated[int, Field(ge=2, le=2001), whole_validator] = 41
     basin_extent: Speed = 12.0
     basin_horizon: Time = 300.0
-    disturbance_directions: Annotated[int, Field(ge=8, le=100_000), WHOLE] = 64
+    disturbance_directions: Annotated[int, Field(ge=8, le=100_000), whole_validator] = (
+        64
+    )
     disturbance_horizon: Time = 100.0
     critical_damping: tuple[
-        Annotated[NotNegative, DASHPOT], Annotated[NotNegative, DASHPOT]
+        Annotated[NotNegative, dashpot_unit], Annotated[NotNegative, dashpot_unit]
     ] = (0.02, 0.01)
     critical_points: Points = 61
-    critical_extent: Annotated[Positive, DASHPOT] = 0.1
+    critical_extent: Annotated[Positive, dashpot_unit] = 0.1
     scene: tuple[Angle, Angle] = (0.305, 0.07)
-    samples: Annotated[int, Field(ge=64, le=2**20), WHOLE] = 4096
+    samples: Annotated[int, Field(ge=64, le=2**20), whole_validator] = 4096
     horizon: Time = 200.0
     spring_correlation: Annotated[float, Field(gt=-1, lt=1), In("1")] = 0.0
     distributions: Annotated[dict[str, Distribution], Field(min_length=1)] | None = None
@@ -374,21 +377,22 @@ class ContactPointsSection(Section):
     """An elastic pad on several contact points of equal total stiffness and preload."""
 
     points: Annotated[
-        tuple[Annotated[int, Field(ge=1, le=16), WHOLE], ...], Field(min_length=1)
+        tuple[Annotated[int, Field(ge=1, le=16), whole_validator], ...],
+        Field(min_length=1),
     ] = (1, 2, 4, 8)
-    stiff_points: Annotated[int, Field(ge=1, le=16), WHOLE] = 4
+    stiff_points: Annotated[int, Field(ge=1, le=16), whole_validator] = 4
     mu: NotNegative = 0.5
     modal_damping: Annotated[float, Field(ge=0, lt=1)] = 0.01
-    n_modes: Annotated[int, Field(ge=2, le=32), WHOLE] = 20
-    samples: Annotated[int, Field(ge=1, le=10_000), WHOLE] = 4
+    n_modes: Annotated[int, Field(ge=2, le=32), whole_validator] = 20
+    samples: Annotated[int, Field(ge=1, le=10_000), whole_validator] = 4
     t_end: Annotated[Positive, In("s")] = 0.06
 
 
 class ExplorerSection(Section):
     """The click grid of the explorer page; times in √(m/k1)."""
 
-    points: Annotated[int, Field(ge=3, le=61), WHOLE] = 31
+    points: Annotated[int, Field(ge=3, le=61), whole_validator] = 31
     history_time: Time = 60.0
     spectrum_time: Time = 180.0
-    samples: Annotated[int, Field(ge=16, le=2000), WHOLE] = 400
-    branch_points: Annotated[int, Field(ge=2, le=200), WHOLE] = 24
+    samples: Annotated[int, Field(ge=16, le=2000), whole_validator] = 400
+    branch_points: Annotated[int, Field(ge=2, le=200), whole_validator] = 24

@@ -9,17 +9,17 @@ from pydantic import Field, WithJsonSchema
 
 from squealpipe.study.configuration.own import Name
 from squealpipe.study.configuration.quantities import In
-from squealpipe.study.configuration.sections import WHOLE, Positive, Section
+from squealpipe.study.configuration.sections import Positive, Section, whole_validator
 
 
 class StructureSection(Section):
     """A structure in a file; beside it the options of ``squealpipe squeal``."""
 
     file: str
-    samples: Annotated[int, Field(ge=1, le=100_000), WHOLE] = 64
-    seed: Annotated[int, Field(ge=0), WHOLE] = 0
+    samples: Annotated[int, Field(ge=1, le=100_000), whole_validator] = 64
+    seed: Annotated[int, Field(ge=0), whole_validator] = 0
     t_end: Annotated[Positive, In("s")] | None = None
-    n_modes: Annotated[int, Field(ge=1), WHOLE] | None = None
+    n_modes: Annotated[int, Field(ge=1), whole_validator] | None = None
     frequency_max: Annotated[Positive, In("Hz")] | None = None
 
 

@@ -5,8 +5,11 @@ Studies of 1.0.0 hold it; ``assess`` answers in its place, and it is still read.
 
 from dataclasses import replace
 
-from squealpipe.brake.schema.dynamics.runs import IMPACT_SPEED, RETURN_FORCE
-from squealpipe.brake.schema.linear import ONE_PAIR
+from squealpipe.brake.schema.dynamics.runs import (
+    first_return_force,
+    largest_impact_speed,
+)
+from squealpipe.brake.schema.linear import angles_of_one_pair
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Variable, count, outcome, text
 
 NUMBERS = (
@@ -41,8 +44,10 @@ own_scenes_schema = DatasetSchema(
         "first_separation_time": _number("time of the first loss of contact", "s"),
         "separated_fraction": _number("share of the time without contact"),
         "stick_fraction": _number("share of the time in stick"),
-        "return_peak_contact_force": _number(RETURN_FORCE.long_name),
-        "impact_speed": _number(IMPACT_SPEED.long_name, IMPACT_SPEED.units),
+        "return_peak_contact_force": _number(first_return_force.long_name),
+        "impact_speed": _number(
+            largest_impact_speed.long_name, largest_impact_speed.units
+        ),
         "largest_x": _number("largest |x|", "m"),
         "largest_y": _number("largest |y|", "m"),
         "predictability_horizon": _number("time to which a run can be computed", "s"),
@@ -54,7 +59,10 @@ own_scenes_schema = DatasetSchema(
             rtol=1e-3,
         ),
         "model": text("cheapest level that answers", "scene", "question"),
-        **{name: replace(entry, dims=("scene",)) for name, entry in ONE_PAIR.items()},
+        **{
+            name: replace(entry, dims=("scene",))
+            for name, entry in angles_of_one_pair.items()
+        },
         "t_end": Variable("end of the runs", "s", ("scene",)),
         "outcome": outcome("scene", "variant", among=RUN_ENDS),
     },

@@ -25,7 +25,7 @@ from squealpipe.systems.cycles.legs import LegEnd, Vector
 from squealpipe.systems.cycles.line import flip
 from squealpipe.systems.cycles.solution import Cycle
 
-_NO_MARGIN = Margin(MarginKind.length, -1, FREE)
+_no_margin = Margin(MarginKind.length, -1, FREE)
 RETURNS = {Label.fold: 0.0, Label.period_doubling: np.pi, Label.torus: np.nan}
 """By which angle a disturbance is turned in a period; NaN where it is an unknown."""
 
@@ -45,7 +45,7 @@ class Curve:
 
     map: EventMap
     label: Label
-    own: Margin = _NO_MARGIN
+    own: Margin = _no_margin
     border: tuple[Vector, Vector] = (np.empty(0), np.empty(0))
 
     def known(self, point: Vector) -> Vector:

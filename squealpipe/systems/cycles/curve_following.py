@@ -30,7 +30,7 @@ from squealpipe.systems.cycles.admissible import (
 from squealpipe.systems.cycles.curve_equations import RETURNS, Curve, Test, curve_of
 from squealpipe.systems.cycles.event_order import label_of, order_of, run_of
 from squealpipe.systems.cycles.legs import Vector
-from squealpipe.systems.cycles.line import BRANCH_STEPS, PRECISE
+from squealpipe.systems.cycles.line import branch_steps, precise_steps
 from squealpipe.systems.cycles.solution import Cycle
 
 ENDS = ("point_limit", "end_of_range", "curve_lost", "multipliers_are_real")
@@ -64,7 +64,9 @@ class _Way:
 
     def __init__(self, curve: Curve, limits: Mapping[str, tuple[float, float]]) -> None:
         self.curve, self.limits = curve, limits
-        self.algorithm = PseudoArclength(PRECISE, least_iterations=0, own_tangent=True)
+        self.algorithm = PseudoArclength(
+            precise_steps, least_iterations=0, own_tangent=True
+        )
         self.end = "point_limit"
 
     def inside(self, point: Vector) -> float:
@@ -162,9 +164,9 @@ class _Way:
             normal[size : size + 2] = state.tangent[old.map.size : old.map.size + 2]
             self.curve.renew(guess)
             algorithm = replace(
-                self.algorithm, settings=replace(PRECISE, max_iterations=20)
+                self.algorithm, settings=replace(precise_steps, max_iterations=20)
             )
-            new = algorithm.solve(self.curve, guess, normal, BRANCH_STEPS.first_step)
+            new = algorithm.solve(self.curve, guess, normal, branch_steps.first_step)
             if new is not None:
                 moved = (
                     new.point[size : size + 2]
@@ -255,11 +257,11 @@ def follow_curve(
     curve, guess = curve_of(Cycle.at(*cycle.followed_in(flow, units)), label)
     curve.renew(guess)
     algorithm = PseudoArclength(
-        replace(PRECISE, max_iterations=20), 0, own_tangent=True
+        replace(precise_steps, max_iterations=20), 0, own_tangent=True
     )
     normals = np.eye(len(guess))[[curve.map.size + 1, curve.map.size]]
     starts = (
-        algorithm.solve(curve, guess, normal, BRANCH_STEPS.first_step)
+        algorithm.solve(curve, guess, normal, branch_steps.first_step)
         for normal in normals
     )
     first = next((start for start in starts if start is not None), None)

@@ -8,7 +8,7 @@ import numpy as np
 
 from squealpipe.systems.continuation import ContinuationState
 from squealpipe.systems.cycles.event_map import FREE
-from squealpipe.systems.cycles.line import ALONG, BRANCH_STEPS
+from squealpipe.systems.cycles.line import ALONG, branch_steps
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.cycles.trail import BranchPoint
 
@@ -63,7 +63,7 @@ def doubled_start(point: BranchPoint) -> tuple[ContinuationState, Cycle] | None:
     direction /= np.linalg.norm(direction)
     for length in (1e-3, 3e-3, 1e-2):
         state = ALONG.solve(
-            twice, base + length * direction, direction, BRANCH_STEPS.first_step
+            twice, base + length * direction, direction, branch_steps.first_step
         )
         if state is not None:
             return state, Cycle.at(twice, state.point)

@@ -34,7 +34,7 @@ from squealpipe.systems.cycles.guess import (
     without_brief_legs,
 )
 from squealpipe.systems.cycles.legs import LegEnd, Vector
-from squealpipe.systems.cycles.line import ALONG, BRANCH_STEPS
+from squealpipe.systems.cycles.line import ALONG, branch_steps
 from squealpipe.systems.cycles.solution import Cycle
 
 if TYPE_CHECKING:
@@ -154,11 +154,11 @@ class NewOrder:
         # just begun
         most = 0.1 * min(1.0, usual)
         weak = {k: v for k, v in near.items() if k.kind in kinds and v < most}
-        algorithm = replace(ALONG, settings=replace(BRANCH_STEPS, max_iterations=12))
+        algorithm = replace(ALONG, settings=replace(branch_steps, max_iterations=12))
         normal = np.eye(len(guess))[-1]
         if weak:
             normal = _gradient(equations, guess, min(weak, key=lambda k: weak[k]))
-        state = algorithm.solve(equations, guess, normal, BRANCH_STEPS.first_step)
+        state = algorithm.solve(equations, guess, normal, branch_steps.first_step)
         if state is None:
             return None
         cycle = Cycle.at(equations, state.point)

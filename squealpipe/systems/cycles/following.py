@@ -24,10 +24,10 @@ from squealpipe.systems.cycles.legs import Vector
 from squealpipe.systems.cycles.line import (
     ALONG,
     AT_SPECIAL_POINTS,
-    BRANCH_STEPS,
     TESTS,
     Test,
     at_edge,
+    branch_steps,
     branching_label,
     explains,
     hides_folds,
@@ -205,7 +205,7 @@ class Follower:
     def _advance(self, state: ContinuationState, cycle: Cycle) -> BranchStep | None:
         """The next step that is shown to be on the same branch."""
         step, equations = state.step, cycle.map
-        while step >= BRANCH_STEPS.shortest_step:
+        while step >= branch_steps.shortest_step:
             trial = replace(state, step=step)
             following = at_edge(equations, trial, self.low, self.high)
             if following is None:
@@ -229,7 +229,7 @@ class Follower:
         """Return whether a step is too long to be sure of what lies in it."""
         if (
             reached.period <= 0.0
-            or float(following.tangent @ state.tangent) < BRANCH_STEPS.least_cosine
+            or float(following.tangent @ state.tangent) < branch_steps.least_cosine
         ):
             return True
         section = cycle.map.section
@@ -366,7 +366,7 @@ class Follower:
                 special, replace(turned[0], step=state.step), turned[1], shows=not label
             )
         # no change of the events that is understood: nearer, perhaps
-        if state.step > 1e3 * BRANCH_STEPS.shortest_step:
+        if state.step > 1e3 * branch_steps.shortest_step:
             return None
         return BranchStep(
             special, *there, end=Outcome.tangency if label else self.trail.reason()

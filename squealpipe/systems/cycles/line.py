@@ -17,17 +17,17 @@ from squealpipe.systems.cycles.solution import Cycle
 
 # Round-off in the closing error is eps times the longest length over the cycle's: 3e-9 for
 # springs of 10⁶ and a cycle of one.
-BRANCH_STEPS = ContinuationSettings(
+branch_steps = ContinuationSettings(
     first_step=1e-3,
     shortest_step=1e-9,
     longest_step=0.05,
     tolerance=1e-11,
     stagnant=1e-8,
 )
-PRECISE = replace(BRANCH_STEPS, tolerance=3e-14, max_iterations=10)
+precise_steps = replace(branch_steps, tolerance=3e-14, max_iterations=10)
 ALONG, AT_SPECIAL_POINTS = (
     PseudoArclength(steps, least_iterations=0, own_tangent=True)
-    for steps in (BRANCH_STEPS, PRECISE)
+    for steps in (branch_steps, precise_steps)
 )
 """Along a branch, and at a special point, which is located to round-off."""
 
@@ -131,13 +131,13 @@ def multiplier_change(one: Cycle, other: Cycle) -> float:
 
 def next_length(state: ContinuationState, following: ContinuationState) -> float:
     """The step after this one: longer, but not so that the branch turns by too much in it."""
-    most = np.arccos(BRANCH_STEPS.least_cosine)
+    most = np.arccos(branch_steps.least_cosine)
     turn = float(np.linalg.norm(following.tangent - state.tangent))
     # after few iterations the next step may grow, but by no more than three times
     growth = 3.0 if following.iterations <= 3 else 1.0
     # the next step is meant for 0.7 of the largest turn, so that few steps are refused
     length = state.step * float(np.clip(0.7 * most / max(turn, 1e-300), 0.5, growth))
-    return min(length, BRANCH_STEPS.longest_step)
+    return min(length, branch_steps.longest_step)
 
 
 def at_edge(

@@ -23,7 +23,7 @@ from squealpipe.vibration.levels import error_of_mean
 from squealpipe.vibration.schema import Mechanism
 from squealpipe.vibration.settled_runs import Horizon
 from squealpipe.vibration.settled_runs import settle as settle_runs
-from squealpipe.vibration.settling import FOR_NUMBERS, FOR_VERDICTS
+from squealpipe.vibration.settling import settling_of_numbers, settling_of_verdicts
 from tests.oracles.pad import Pad, strongest_line
 
 NUMBERS = {
@@ -371,7 +371,7 @@ def test_a_mode_that_grows_slowly_beneath_a_loud_one_has_its_time(start):
     begun = pushed(design, sliding)
     if start == "sudden":
         begun = start_at(design, sliding, np.zeros(4))
-    (settled,) = settle([begun], tol=1e-9, rules=FOR_NUMBERS)
+    (settled,) = settle([begun], tol=1e-9, rules=settling_of_numbers)
     found, _ = levels(design, settled, sliding, tol=1e-9)
     assert settled.verdict is Verdict.squeals
     assert found["velocity_rms_along"] == pytest.approx(0.95416, rel=1e-3)
@@ -407,12 +407,17 @@ def test_a_long_window_that_begins_loud_and_ends_small_is_quiet():
     design, sliding, start = begun_loud()
     seconds = 8.0 / abs(sliding.growth_rate)
     lengths = np.array([seconds])
-    window = run_windows([design], start.state[None], lengths, FOR_VERDICTS, tol=1e-9)
+    window = run_windows(
+        [design], start.state[None], lengths, settling_of_verdicts, tol=1e-9
+    )
     now = window.row(0)
     assert not now.switched
     assert now.largest_velocity > 15.0 * start.speed
     (settled,) = settle_runs(
-        [start], lambda *_: window, Horizon(*[lengths] * 2, 9.0 * lengths), FOR_VERDICTS
+        [start],
+        lambda *_: window,
+        Horizon(*[lengths] * 2, 9.0 * lengths),
+        settling_of_verdicts,
     )
     assert settled.verdict is Verdict.quiet
     assert settled.elapsed == 2.0 * seconds

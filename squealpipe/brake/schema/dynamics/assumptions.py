@@ -1,6 +1,6 @@
 """Datasets on what the model levels take for granted (Table 1 and section 6 of the paper)."""
 
-from squealpipe.brake.schema.linear import ANGLE_COORDINATES, MAP
+from squealpipe.brake.schema.linear import MAP, angle_coordinates
 from squealpipe.schema import (
     RUN_ENDS,
     DatasetSchema,
@@ -58,7 +58,7 @@ assumptions_schema = DatasetSchema(
 linear_pull_schema = DatasetSchema(
     name="linear_pull",
     title="How far the linear model lets the contact spring pull, from rest",
-    coordinates=ANGLE_COORDINATES,
+    coordinates=angle_coordinates,
     variables={
         "lowest_contact_force": Variable(
             "lowest contact force over k3 l_pre; negative: the spring pulls", dims=MAP

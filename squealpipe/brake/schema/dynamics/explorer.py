@@ -5,11 +5,11 @@ from typing import Any
 
 from squealpipe.brake.schema.backbones import backbone_schema
 from squealpipe.brake.schema.dynamics.runs import (
-    FREQUENCY,
-    TIME_COORDINATE,
+    angular_frequency_coordinate,
     simulation_schema,
+    time_coordinate,
 )
-from squealpipe.brake.schema.linear import ANGLE_COORDINATES, MAP, MODES
+from squealpipe.brake.schema.linear import MAP, angle_coordinates, mode_coordinate
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Variable, count, outcome
 
 SINGLE_PRECISION: dict[str, Any] = {"dtype": "f4", "rtol": 1e-5, "atol": 1e-6}
@@ -21,10 +21,13 @@ explorer_schema = DatasetSchema(
     name="explorer",
     title="Motions from rest (A1), their spectra, and exact backbones (A4) over both angles",
     coordinates={
-        **ANGLE_COORDINATES,
-        **{name: replace(entry, optional=True) for name, entry in MODES.items()},
-        "time": TIME_COORDINATE,
-        "frequency": FREQUENCY,
+        **angle_coordinates,
+        **{
+            name: replace(entry, optional=True)
+            for name, entry in mode_coordinate.items()
+        },
+        "time": time_coordinate,
+        "frequency": angular_frequency_coordinate,
         "point": count("point along the branch", "point", optional=True),
     },
     variables={

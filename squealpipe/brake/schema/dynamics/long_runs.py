@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from squealpipe.brake.schema.dynamics.runs import MOTION, MOTION_CHANGED
+from squealpipe.brake.schema.dynamics.runs import motion_label, motion_label_changes
 from squealpipe.schema import (
     RUN_ENDS,
     DatasetSchema,
@@ -19,7 +19,7 @@ _IRREGULAR = (
     "one long run, irregular where the belt is slow: the last bit of the belt speed, which the "
     "vector instructions of the processor decide, changes when each extreme is reached"
 )
-_LONG_SAMPLE = RoundOff(ComparedAs.sample, _IRREGULAR, sample="belt_speed")
+_long_run_round_off = RoundOff(ComparedAs.sample, _IRREGULAR, sample="belt_speed")
 
 whirl_schema = DatasetSchema(
     name="whirl",
@@ -35,11 +35,13 @@ whirl_schema = DatasetSchema(
         "stick_fraction": Variable(
             "share of the time sticking to the belt",
             dims=("belt_speed",),
-            round_off=_LONG_SAMPLE,
+            round_off=_long_run_round_off,
         ),
-        "motion": replace(MOTION, dims=("belt_speed",), round_off=_LONG_SAMPLE),
+        "motion": replace(
+            motion_label, dims=("belt_speed",), round_off=_long_run_round_off
+        ),
         "motion_changed": replace(
-            MOTION_CHANGED, dims=("belt_speed",), round_off=_LONG_SAMPLE
+            motion_label_changes, dims=("belt_speed",), round_off=_long_run_round_off
         ),
         "fitted": whether("whether the speed is in the fit", "belt_speed"),
         "slope": or_nan(
@@ -60,7 +62,7 @@ whirl_schema = DatasetSchema(
     },
 )
 
-_CHAOTIC = RoundOff(
+_transient_round_off = RoundOff(
     ComparedAs.sample,
     "a chaotic transient multiplies round-off by e many times over before it ends: only the "
     "distribution of its lifetimes is a result",
@@ -75,13 +77,13 @@ transient_schema = DatasetSchema(
             "time of the tenth net turn around both fixed ends (NaN: not before t_end)",
             "s",
             ("sample",),
-            round_off=_CHAOTIC,
+            round_off=_transient_round_off,
         ),
         "belt_speed": Variable("belt speed V", "m s-1"),
         "t_end": Variable("end of each run", "s"),
         "outcome": replace(
             outcome("sample", among=(*RUN_ENDS, Outcome.amplitude_reached)),
-            round_off=_CHAOTIC,
+            round_off=_transient_round_off,
         ),
     },
 )

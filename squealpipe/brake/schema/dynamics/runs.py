@@ -6,10 +6,10 @@ from typing import Any
 
 from squealpipe.brake.schema.dynamics.extremes import EXTREMES
 from squealpipe.brake.schema.linear import (
-    ANGLE_COORDINATES,
     MAP,
-    ONE_PAIR,
-    REGIME_LINEAR,
+    angle_coordinates,
+    angles_of_one_pair,
+    linear_regime_of_map,
 )
 from squealpipe.codes import Event, Regime
 from squealpipe.schema import (
@@ -44,7 +44,7 @@ class MotionFlag(IntEnum):
     unsettled = 9
 
 
-_GROWN = RoundOff(
+_grown_round_off = RoundOff(
     ComparedAs.grown, "an error of the last digit grows along the run", by="growth"
 )
 
@@ -68,18 +68,18 @@ STATE_UNITS = {
     "vy": ("m s-1", "velocity away from the belt"),
 }
 """Unit of each state and words for it."""
-MOTION = flag("kind of motion in the second half of the run", MotionFlag)
-MOTION_CHANGED = whether("whether the quarters of that half have other labels")
-RETURN_FORCE = or_nan(
+motion_label = flag("kind of motion in the second half of the run", MotionFlag)
+motion_label_changes = whether("whether the quarters of that half have other labels")
+first_return_force = or_nan(
     "largest contact force after the first return to the belt, over k3 l_pre (NaN: no return)"
 )
-IMPACT_SPEED = or_nan(
+largest_impact_speed = or_nan(
     "largest speed towards the belt at a return to it (NaN: no return)", "m s-1"
 )
 
 
 def _series(units: str, long_name: str) -> Variable:
-    return or_nan(long_name, units, ("time",), round_off=_GROWN)
+    return or_nan(long_name, units, ("time",), round_off=_grown_round_off)
 
 
 def _extremes_between() -> dict[str, Variable]:
@@ -91,21 +91,21 @@ def _extremes_between() -> dict[str, Variable]:
             units[name],
             ("time",),
             optional=True,
-            round_off=_GROWN,
+            round_off=_grown_round_off,
         )
         for name in EXTREMES
         for end, words in (("min", "smallest"), ("max", "largest"))
     }
 
 
-TIME_COORDINATE = Variable("time", "s", ("time",))
-FREQUENCY = Variable("angular frequency", "rad s-1", ("frequency",))
+time_coordinate = Variable("time", "s", ("time",))
+angular_frequency_coordinate = Variable("angular frequency", "rad s-1", ("frequency",))
 
 simulation_schema = DatasetSchema(
     name="simulation",
     title="One nonlinear run from given initial conditions, events located",
     lists={"event": Listing(kinds=("event_kind",))},
-    coordinates={"time": TIME_COORDINATE},
+    coordinates={"time": time_coordinate},
     variables={
         "x": _series("m", "displacement along the belt"),
         "y": _series("m", "displacement away from the belt"),
@@ -116,19 +116,24 @@ simulation_schema = DatasetSchema(
         **_extremes_between(),
         "regime": flag("regime", REGIME_MEANINGS, "time"),
         "event_time": Variable(
-            "instant of a regime change", "s", ("event",), round_off=_GROWN
+            "instant of a regime change", "s", ("event",), round_off=_grown_round_off
         ),
         "event_kind": flag("kind of regime change", Event, "event"),
-        **ONE_PAIR,
+        **angles_of_one_pair,
         "preload": Variable("precompression l_pre of the contact spring", "m"),
         "length1": Variable("free length L1 of spring 1", "m"),
         "length2": Variable("free length L2 of spring 2", "m"),
         "time_reached": Variable("time at which the run ended", "s"),
         "n_steps": count("Taylor steps of the run", dtype="i8"),
-        "return_peak_contact_force": replace(RETURN_FORCE, round_off=_GROWN),
-        "impact_speed": replace(IMPACT_SPEED, round_off=_GROWN),
+        "return_peak_contact_force": replace(
+            first_return_force, round_off=_grown_round_off
+        ),
+        "impact_speed": replace(largest_impact_speed, round_off=_grown_round_off),
         "max_displacement": Variable(
-            "largest distance from the origin", "m", optional=True, round_off=_GROWN
+            "largest distance from the origin",
+            "m",
+            optional=True,
+            round_off=_grown_round_off,
         ),
         "growth": or_nan(
             "factor by which a small perturbation of the start has grown at the end",
@@ -147,7 +152,7 @@ run_summary_schema = DatasetSchema(
     title="Summary of one run",
     lists={"peak": Listing()},
     coordinates={
-        "frequency": FREQUENCY,
+        "frequency": angular_frequency_coordinate,
         "peak": count("peak of the spectrum, by height", "peak"),
     },
     variables={
@@ -156,8 +161,8 @@ run_summary_schema = DatasetSchema(
         "separated_fraction": Variable("share of the time without contact"),
         "stick_fraction": Variable("share of the time in stick"),
         "peak_contact_force": Variable("largest contact force over k3 l_pre"),
-        "return_peak_contact_force": RETURN_FORCE,
-        "impact_speed": IMPACT_SPEED,
+        "return_peak_contact_force": first_return_force,
+        "impact_speed": largest_impact_speed,
         "largest_x": Variable("largest |x|", "m"),
         "largest_y": Variable("largest |y|", "m"),
         "force_spectrum": Variable(
@@ -208,13 +213,13 @@ one half of a run to the next; exponential growth exceeds that, and a bounded on
 validity_map_schema = DatasetSchema(
     name="validity_map",
     title="Where model A1 keeps contact, and the regime of the linear model A3",
-    coordinates=ANGLE_COORDINATES,
+    coordinates=angle_coordinates,
     variables={
         "first_separation_time": or_nan(
             "first loss of contact from rest (NaN: none before t_end)", "s", MAP
         ),
         "separates": whether("whether contact is lost before t_end", *MAP),
-        "regime_linear": REGIME_LINEAR,
+        "regime_linear": linear_regime_of_map,
         "response_growth": or_nan(
             "largest |x| of the second half of a run over that of the first (NaN: separated)",
             dims=MAP,
@@ -228,7 +233,7 @@ validity_map_schema = DatasetSchema(
 hammering_map_schema = DatasetSchema(
     name="hammering_map",
     title="Impacts, forces and kind of motion of model A1 over both spring angles",
-    coordinates=ANGLE_COORDINATES,
+    coordinates=angle_coordinates,
     variables={
         "impact_rate": Variable(
             "returns to the belt per unit of time", "s-1", MAP, **IN_MAP
@@ -239,8 +244,8 @@ hammering_map_schema = DatasetSchema(
         "peak_contact_force": Variable(
             "largest contact force over the preload k3 l_pre", dims=MAP, **IN_MAP
         ),
-        "return_peak_contact_force": replace(RETURN_FORCE, dims=MAP, **IN_MAP),
-        "impact_speed": replace(IMPACT_SPEED, dims=MAP, **IN_MAP),
+        "return_peak_contact_force": replace(first_return_force, dims=MAP, **IN_MAP),
+        "impact_speed": replace(largest_impact_speed, dims=MAP, **IN_MAP),
         "stick_fraction": Variable(
             "share of the time sticking to the belt", dims=MAP, **IN_MAP
         ),
@@ -257,8 +262,8 @@ hammering_map_schema = DatasetSchema(
             MAP,
             rtol=1e-6,
         ),
-        "motion": replace(MOTION, dims=MAP, **IN_MAP),
-        "motion_changed": replace(MOTION_CHANGED, dims=MAP, **IN_MAP),
+        "motion": replace(motion_label, dims=MAP, **IN_MAP),
+        "motion_changed": replace(motion_label_changes, dims=MAP, **IN_MAP),
         "t_end": Variable("end of each run", "s"),
         "outcome": outcome(*MAP, among=(*RUN_ENDS, Outcome.beyond_horizon)),
     },
@@ -267,7 +272,7 @@ hammering_map_schema = DatasetSchema(
 refined_validity_map_schema = DatasetSchema(
     name="refined_validity_map",
     title="Where model A1 keeps contact, computed only where the answer changes",
-    coordinates=ANGLE_COORDINATES,
+    coordinates=angle_coordinates,
     variables={
         "separates": whether("whether contact is lost before t_end", *MAP),
         "first_separation_time": or_nan(

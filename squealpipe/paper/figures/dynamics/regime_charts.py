@@ -96,7 +96,7 @@ def draw(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> Figure:
             textcoords="offset points",
             ha="right" if left else "left",
             color=style.RED,
-            path_effects=style.HALO,
+            path_effects=style.white_halo,
         )
     for panel, letter, name in zip(
         panels[1:], ascii_lowercase[1:], names, strict=False
@@ -138,7 +138,7 @@ def _draw(panel: Axes, chart: xr.Dataset) -> None:
         style.draw_lines(
             panel, (x[on], y[on]), chart.curve.values[on], label=label, **look
         )
-    look = {"color": style.RED, "ms": 7, "mew": 1.8, "path_effects": style.HALO}
+    look = {"color": style.RED, "ms": 7, "mew": 1.8, "path_effects": style.white_halo}
     panel.plot(*chart.design.values.T, "x", label="scene", **look)
     panel.set(xlim=extent[:2], ylim=extent[2:], aspect="auto", box_aspect=1)
 

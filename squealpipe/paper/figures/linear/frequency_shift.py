@@ -5,7 +5,7 @@ import xarray as xr
 from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
 
-from squealpipe.paper.figures.panels.frequency_map import HATCH_KEY, isoline, outline
+from squealpipe.paper.figures.panels.frequency_map import hatch_key, isoline, outline
 from squealpipe.plotting.style import PAGE, draw_map, new_figure, panel_letter
 from squealpipe.schema import Outcome
 from squealpipe.study.figures.declared import report_figure
@@ -44,5 +44,5 @@ def draw(frequencies: xr.Dataset) -> Figure:
         ticks = [*np.linspace(low, 0, 5), *np.linspace(0, high, 3)[1:]]
         bar = figure.colorbar(mesh, ax=panel, label=label, shrink=0.8)
         bar.set_ticks(ticks, labels=[number(float(tick), 2) for tick in ticks])
-    figure.legend(handles=[HATCH_KEY], loc="outside lower center")
+    figure.legend(handles=[hatch_key], loc="outside lower center")
     return figure

@@ -17,7 +17,7 @@ LINES_AND_HATCHING = (
 )
 """Key for captions: what the lines and the hatching mean."""
 
-(HATCH_KEY,) = style.patches(
+(hatch_key,) = style.patches(
     [(style.WHITE, "flutter: common frequency")], hatch=style.HATCH
 )
 """Key to what :func:`outline` draws."""
@@ -61,7 +61,7 @@ def draw_mode(frequencies: xr.Dataset, mode: int) -> Figure:
         style.panel_letter(panel, letter, "in contact" if state == "contact" else state)
     draw_sums(axes[0, 1])
     lines, _ = axes[0, 1].get_legend_handles_labels()
-    figure.legend(handles=[*lines, HATCH_KEY], loc="outside lower center", ncols=3)
+    figure.legend(handles=[*lines, hatch_key], loc="outside lower center", ncols=3)
     figure.colorbar(mesh, ax=axes, label=f"ω{'₁₂'[mode - 1]} (rad/s)", shrink=0.8)  # type: ignore[arg-type]
     return figure
 

@@ -10,7 +10,6 @@ from squealpipe.codes import Verdict
 from squealpipe.plotting.style import (
     BLACK,
     BLUE,
-    HALO,
     LIGHT,
     ORANGE,
     PAGE,
@@ -19,6 +18,7 @@ from squealpipe.plotting.style import (
     category_colours,
     new_figure,
     patches,
+    white_halo,
 )
 from squealpipe.study.figures.declared import report_figure
 
@@ -91,7 +91,7 @@ def draw(verdicts: xr.Dataset, answers: Mapping[str, xr.Dataset]) -> Figure:
             textcoords="offset points",
             ha="right" if is_right else "left",
             color=BLUE,
-            path_effects=HALO,
+            path_effects=white_halo,
         )
     figure.legend(
         handles=patches(tones.values()), loc="outside lower center", ncols=len(tones)
