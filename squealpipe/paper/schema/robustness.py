@@ -14,11 +14,17 @@ verdict_robustness_schema = DatasetSchema(
             "share of the runs in which the statement holds; 1 or 0 for a single one",
             dims=("variant", "statement"),
         ),
-        "share_low": or_nan("lower end of its 95 % interval", dims=("variant", "statement")),
-        "share_high": or_nan("upper end of its 95 % interval", dims=("variant", "statement")),
+        "share_low": or_nan(
+            "lower end of its 95 % interval", dims=("variant", "statement")
+        ),
+        "share_high": or_nan(
+            "upper end of its 95 % interval", dims=("variant", "statement")
+        ),
         "judged": count("number of runs judged", "variant", "statement"),
         "outcome": outcome(
-            "variant", "statement", among=(Outcome.converged, Outcome.unresolved, Outcome.not_computed)
+            "variant",
+            "statement",
+            among=(Outcome.converged, Outcome.unresolved, Outcome.not_computed),
         ),
     },
 )
