@@ -160,7 +160,9 @@ class _Laws:
         contact, used = np.arange(len(self.counts)), np.maximum(piece, 0)
         low, high = self.low[contact, used], self.high[contact, used]
         # at a knot round-off would turn back for ever
-        below = np.where(used > 0, reach < low * (1.0 - SlidingBalance.at_knot), ~(reach > 0))
+        below = np.where(
+            used > 0, reach < low * (1.0 - SlidingBalance.at_knot), ~(reach > 0)
+        )
         above = reach > high * (1.0 + SlidingBalance.at_knot)
         changed = piece + above * 1 - below * 1
         return np.where(piece < 0, np.where(reach > 0, 0, -1), changed)
