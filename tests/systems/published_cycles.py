@@ -1,10 +1,8 @@
 """Published systems with cycles, and their return maps by SciPy."""
 
-from types import SimpleNamespace
 from typing import NamedTuple
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from squealpipe import Switch, System
 from squealpipe.functions import cos, sin
@@ -249,65 +247,3 @@ CASES = [
     Case(relay, {"damping": 0.2}, 1),
 ]
 """Sixty-two. Without events every smooth cycle has one return."""
-
-
-class Truth:
-    """Runs of a system by DOP853, from the definition of its field, surfaces and resets."""
-
-    def __init__(self, case):
-        self.system, self.longest = case.system, case.longest
-        named = {**case.system.parameters, **case.parameters}
-        self.parameters = SimpleNamespace(**named)
-
-    def at(self, t, state, regime):
-        named = dict(zip(self.system.states, state, strict=True))
-        constants = SimpleNamespace(**self.system.regimes[regime])
-        return t, SimpleNamespace(**named), self.parameters, constants
-
-    def rates(self, t, state, regime):
-        rates = self.system.field(*self.at(t, state, regime))
-        return [rates[name] for name in self.system.states]
-
-    def after(self, state, regime, end):
-        """The state at an instant."""
-        t = 0.0
-        while True:
-            watched = [e for e in self.system.switches if regime in _several(e.leaves)]
-            leg = solve_ivp(
-                self.rates,
-                (t, end),
-                state,
-                "DOP853",
-                args=(regime,),
-                events=[self._event(each) for each in watched] or None,
-                rtol=1e-10,
-                atol=1e-10 * self.system.sizes_in(self.system.parameters),
-                max_step=self.longest,
-            )
-            t, state = leg.t[-1], leg.y[:, -1]
-            if leg.status != 1:
-                return state
-            which = next(i for i in range(len(watched)) if len(leg.t_events[i]))
-            state, regime = self._switched(watched[which], t, state, regime)
-
-    def _event(self, switch):
-        def height(t, state, regime):
-            return switch.when(*self.at(t, state, regime))
-
-        height.terminal, height.direction = True, -1.0
-        return height
-
-    def _switched(self, switch, t, state, regime):
-        before = self.at(t, state, regime)
-        reset = switch.reset(*before) if switch.reset else {}
-        names = zip(self.system.states, state, strict=True)
-        after = np.array([reset.get(name, value) for name, value in names], float)
-        for target in switch.to if isinstance(switch.to, list) else [switch.to]:
-            name, *condition = _several(target)
-            if not condition or condition[0](*before) >= 0.0:
-                return after, name
-        raise AssertionError("no target")
-
-
-def _several(names):
-    return (names,) if isinstance(names, str) else names

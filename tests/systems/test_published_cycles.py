@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from squealpipe.schema import Outcome
-from tests.systems.published_cycles import ANY, CASES, Truth, impact_oscillator
+from tests.oracles.definition import Definition
+from tests.systems.published_cycles import ANY, CASES, impact_oscillator
 
 TENTH = np.random.default_rng(42).permutation(len(CASES))[:6]
 LONG = (47,)
@@ -33,13 +34,19 @@ def test_a_cycle_returns_with_its_multipliers(number):
         cycle = system.limit_cycle(
             start=case.start, periods=int(cycle.periods), **parameters
         )
-    truth, period = Truth(case), float(cycle.period)
+    truth = Definition(
+        system,
+        parameters,
+        rtol=1e-10,
+        atol=1e-10 * system.sizes_in(system.parameters),
+        max_step=case.longest,
+    )
     start = np.array([float(cycle[f"{name}_start"]) for name in system.states])
     extent = [float(cycle[f"{n}_max"] - cycle[f"{n}_min"]) for n in system.states]
     regime = list(system.regimes)[int(cycle.start_regime)]
 
     def after(state):
-        return truth.after(state, regime, period)
+        return truth.run(state, regime, float(cycle.period))[1]
 
     np.testing.assert_allclose((after(start) - start) / extent, 0.0, atol=1e-7)
     steps = 1e-5 * np.diag(extent)

@@ -1,17 +1,16 @@
 """Systems from a generator, event by event against DOP853, and what is refused."""
 
 import os
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 from squealpipe import Switch, System
 from squealpipe.functions import cos
 from squealpipe.schema import Outcome
 from squealpipe.systems.shipped.dry_friction import dry_friction_oscillator
 from squealpipe.systems.shipped.impact_oscillator import impact_oscillator
+from tests.oracles.definition import Definition
 from tests.samples import some
 
 T_END, MOST_EVENTS = 15.0, 60
@@ -144,75 +143,6 @@ def random_system(seed):
     )
 
 
-def target_of(switch, t, s, p, r):
-    """The regime that a switch leads to, and the name of the event."""
-    targets = [switch.to] if isinstance(switch.to, str) else switch.to
-    for entry in targets:
-        parts = entry if type(entry) is tuple else (entry, None)
-        regime, condition, kind = (*parts, switch.name)[:3]
-        if condition is None or condition(t, s, p, r) >= 0.0:
-            break
-    return regime, kind
-
-
-def independent_run(system, start, parameters, max_step):
-    """The same functions on floats, by DOP853; times and kinds of the events.
-
-    What a regime is entered beyond fires at once, the first by name.
-    """
-    p = SimpleNamespace(**{**system.parameters, **parameters})
-    names, regime, t = list(system.states), system.start["regime"], 0.0
-    z, found = np.array([start[name] for name in names]), []
-
-    def state(values):
-        return SimpleNamespace(**dict(zip(names, values, strict=True)))
-
-    while t < T_END and len(found) < MOST_EVENTS:
-        here = [
-            s
-            for s in sorted(system.switches, key=lambda each: each.name)
-            if regime in ([s.leaves], s.leaves)[type(s.leaves) is tuple]
-        ]
-
-        r = SimpleNamespace(**system.regimes[regime])
-        field = system.field[regime] if isinstance(system.field, dict) else system.field
-
-        def rates(time, values, field=field, r=r):
-            return list(field(time, state(values), p, r).values())
-
-        def guard(switch, r=r):
-            def value(time, values):
-                return switch.when(time, state(values), p, r)
-
-            value.terminal, value.direction = True, -1
-            return value
-
-        beyond = [s for s in here if guard(s)(t, z) < -1e-10]
-        if beyond:
-            switch = beyond[0]
-        else:
-            run = solve_ivp(
-                rates,
-                (t, T_END),
-                z,
-                "DOP853",
-                rtol=1e-12,
-                atol=1e-12,
-                max_step=max_step,
-                events=[guard(s) for s in here],
-            )
-            t, z = run.t[-1], run.y[:, -1]
-            if run.status != 1:
-                break
-            switch = here[next(i for i, times in enumerate(run.t_events) if len(times))]
-        s = state(z)
-        regime, kind = target_of(switch, t, s, p, r)
-        found.append((t, kind))
-        for name, new in (switch.reset(t, s, p, r) if switch.reset else {}).items():
-            z[names.index(name)] = new
-    return found, z
-
-
 @pytest.mark.parametrize(
     ("seed", "draws"),
     [
@@ -251,7 +181,10 @@ def test_events_of_random_systems_are_those_of_dop853(seed, draws):
         accumulates, trapped = int(run.outcome) == Outcome.accumulation, False
         # DOP853 sees two crossings in one of its steps as none, or as one at its start
         for max_step in (0.2, 0.01, 0.001, 1e-4):
-            events, z = independent_run(system, start, given, max_step)
+            truth = Definition(system, given, max_step=max_step)
+            begin = [start[name] for name in system.states]
+            regime = system.start["regime"]
+            events, z = truth.run(begin, regime, T_END, MOST_EVENTS)
             if accumulates:  # where it falls through the surface, or is beyond all
                 trapped = len(events) == MOST_EVENTS
                 trapped = trapped and abs(events[-1][0] - float(run.end_time)) < 1e-8
