@@ -31,7 +31,7 @@ CALLS: dict[str, Callable[[sp.Parameters], xr.Dataset]] = {
     "smallest_disturbance": lambda p: sp.smallest_disturbance(
         p, 0.4, 1.0, directions=8
     ),
-    "assess": lambda p: sp.assess(p, 0.4, 1.0, tol=1e-9, samples=8),
+    "assess": lambda p: sp.assess(p, 0.4, 1.0, tol=1e-9),
     "quasi_static_map": lambda p: sp.quasi_static_map(p, AXIS, AXIS),
     "stability_map": lambda p: sp.stability_map(p, AXIS, AXIS),
     "critical_friction_map": lambda p: sp.critical_friction_map(p, AXIS, AXIS),

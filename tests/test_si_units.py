@@ -70,7 +70,7 @@ def without_curves(*charts):
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param(name, marks=[pytest.mark.release] * (name == "assess"))  # 20 s
+        pytest.param(name, marks=[pytest.mark.long] * (name == "assess"))  # 20 s
         for name in CALLS
     ],
 )
