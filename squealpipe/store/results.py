@@ -3,15 +3,11 @@
 from __future__ import annotations  # help shows Angle, not its checks
 
 import os
-from collections.abc import Mapping
-from pathlib import Path
-from typing import Any
 
 import xarray as xr
 
 from squealpipe.store.netcdf import read
-from squealpipe.store.runs import dataset_files, locate
-from squealpipe.store.whole_files import StoreError
+from squealpipe.store.runs import dataset_files, locate, refuse_copy
 from squealpipe.validation import AnyPath, checked
 
 
@@ -40,12 +36,3 @@ def open_results(
         datasets[name] = read(path)
         refuse_copy(name, path, datasets[name].attrs)
     return xr.DataTree.from_dict(datasets, name=place.name)
-
-
-def refuse_copy(name: str, path: Path, stated: Mapping[str, Any]) -> None:
-    """Raise if the attributes of a dataset state that it was made under another name."""
-    made_as = str(stated.get("key", "")).partition(" ")[2]
-    if made_as not in {"", f"data/{name}.nc"}:
-        raise StoreError(
-            f"{path} is a copy of {made_as}; delete it and run snakemake again"
-        )

@@ -4,7 +4,7 @@ import fnmatch
 import json
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -167,3 +167,12 @@ def regular_files(base: Path) -> list[Path]:
         and not path.is_symlink()
         and not any(name.startswith(".") for name in path.relative_to(base).parts)
     )
+
+
+def refuse_copy(name: str, path: Path, stated: Mapping[str, Any]) -> None:
+    """Raise if the attributes of a dataset state that it was made under another name."""
+    made_as = str(stated.get("key", "")).partition(" ")[2]
+    if made_as not in {"", f"data/{name}.nc"}:
+        raise StoreError(
+            f"{path} is a copy of {made_as}; delete it and run snakemake again"
+        )

@@ -8,12 +8,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import pandas as pd
-
 from squealpipe.laws.friction_laws import COULOMB
 from squealpipe.parameters import DEFAULTS, SYMBOLS, TABLE, Parameters
-from squealpipe.store.results import refuse_copy
-from squealpipe.store.runs import dataset_files, read_manifest, verify
+from squealpipe.store.runs import dataset_files, read_manifest, refuse_copy, verify
 from squealpipe.store.sealed import attributes
 from squealpipe.store.whole_files import ARCHIVES, MANIFEST
 from squealpipe.store.yaml_files import flat
@@ -68,6 +65,8 @@ def matching(expression: str, found: list[StoredRun]) -> list[str]:
     configuration with their section (``linear.points``). Where a table stands for a parameter,
     its value is meant; no condition holds of the static coefficient of a law in Python.
     """
+    import pandas as pd  # half of the time of a list, which needs no condition
+
     known = [run for run in found if run.config]
     rows = [_row(run.config) for run in known] or [_row({})]
     text = re.sub(r"\b[a-z]\w*(\.\w+)+", lambda key: f"`{key[0]}`", expression)

@@ -20,7 +20,6 @@ from pydantic import (
     WrapValidator,
     validate_call,
 )
-from xarray import Dataset
 
 from squealpipe.systems.inputs.units import refuse_units
 from squealpipe.systems.inputs.values import brief, is_whole_number, numbers_in_si
@@ -216,8 +215,8 @@ def _path(value: Any) -> Path:
 
 
 def _values(value: Any) -> Any:
-    if isinstance(value, Dataset):
-        raise ValueError("names and values are needed, not a dataset")  # noqa: TRY004
+    if hasattr(value, "data_vars"):  # importing xarray takes longer than most commands
+        raise ValueError("names and values are needed, not a dataset")
     return value
 
 
