@@ -1,5 +1,6 @@
 """A structure in a file: ``pad.yaml`` names matrices, contacts and numbers."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from os import PathLike
@@ -431,8 +432,12 @@ def _in_order(key: str, given: Labelled, labels: list[str] | None) -> Any:
     if labels is None:
         return given.matrix
     if len(set(labels)) < len(labels):
-        twice = next(label for label in labels if labels.count(label) > 1)
-        raise ValueError(f"{key}: {twice} (node.direction) is there twice; rename one")
+        twice = [label for label, count in Counter(labels).items() if count > 1]
+        raise ValueError(
+            f"{key}: {twice[0]} (node.direction) is there twice, as are {len(twice) - 1} more; "
+            "each row needs a name of its own. CalculiX repeats names where it expands shells into "
+            "solids: mesh such bodies by C3D8, C3D20 or C3D10 instead"
+        )
     if given.labels is None or given.labels == labels:
         size = given.matrix.shape[0]
         if size != len(labels):

@@ -240,7 +240,10 @@ BROKEN = [
         lambda folder: (folder / "M.dof").write_text("\n".join(NAMES[:-1])),
         "mass has 198 rows, but 197 have names .*written together",
     ),
-    (replaced("M.dof", "5003.2", "5003.1"), "5003.1 .*twice"),
+    (
+        replaced("M.dof", "5003.2", "5003.1"),
+        "5003.1 .*twice, as are 0 more; .*expands shells",
+    ),
     (
         lambda folder: (folder / "M.dof").write_text(
             "\n".join(f"{70000 + i}.1" for i in range(len(NAMES)))
