@@ -8,10 +8,8 @@ from typing import Any
 import xarray as xr
 
 from squealpipe.brake.assess.assess import assess as assess_pad
-from squealpipe.parameters import Parameters
 from squealpipe.structures.assess.assess import assess_structure
-from squealpipe.structures.definition import ContactStructure
-from squealpipe.systems.inputs.values import brief
+from squealpipe.study.subjects import is_structure, refuse_missing
 from squealpipe.validation import Angle, Natural, Seed, Tolerance, Workers, checked
 
 
@@ -74,12 +72,10 @@ def assess(
     Raises:
         ValueError: an argument; a structure without steady sliding or contacts, or too large.
     """
-    if isinstance(params, ContactStructure):
-        for name, angle in (("alpha1", alpha1), ("alpha2", alpha2)):
-            if angle is not None:
-                raise ValueError(
-                    f"{name} = {angle!r}: a structure has no angles; leave it out"
-                )
+    angles: dict[str, Any] = {"alpha1": alpha1, "alpha2": alpha2}
+    if is_structure(
+        params, of_pads=angles, of_structures={"modifications": modifications}
+    ):
         answer = assess_structure(
             params,
             modifications=modifications,
@@ -90,15 +86,5 @@ def assess(
         )
         answer.attrs["made_by"] = "squealpipe.assess"
         return answer
-    if not isinstance(params, Parameters):
-        raise ValueError(  # noqa: TRY004 (of all arguments mistakes are values)
-            f"params = {brief(params)}: Parameters of a pad or a Structure is needed"
-        )
-    if alpha1 is None or alpha2 is None:
-        missing = "alpha1" if alpha1 is None else "alpha2"
-        raise TypeError(f"assess: {missing}: missing required argument of a pad")
-    if modifications is not None:
-        raise ValueError(
-            f"modifications = {modifications!r}: a pad on two springs has none; give a Structure"
-        )
-    return assess_pad(params, alpha1, alpha2, tol=tol)
+    refuse_missing("assess", "pad", angles)
+    return assess_pad(params, **angles, tol=tol)

@@ -8,10 +8,8 @@ from typing import Any
 import xarray as xr
 
 from squealpipe.brake.propensity.propensity import propensity as propensity_of_pad
-from squealpipe.parameters import Parameters
 from squealpipe.structures.assess.propensity import structure_propensity
-from squealpipe.structures.definition import ContactStructure
-from squealpipe.systems.inputs.values import brief
+from squealpipe.study.subjects import is_structure, refuse_missing
 from squealpipe.validation import (
     Angle,
     Number,
@@ -76,22 +74,19 @@ def propensity(
     Raises:
         ValueError: an argument; a structure without steady sliding or contacts, or too large.
     """
-    if isinstance(params, ContactStructure):
-        of_pads: dict[str, Any] = {"alpha1": alpha1, "alpha2": alpha2, "t_end": t_end}
-        of_pads |= {"distributions": distributions}
-        of_pads["spring_correlation"] = spring_correlation or None
-        for name, value in of_pads.items():
-            if value is not None:
-                raise ValueError(
-                    f"{name} = {brief(value)}: a structure has none; leave it out"
-                )
-        if relative_std is None:
-            raise TypeError(
-                "propensity: relative_std: missing required argument of a structure"
-            )
+    needed: dict[str, Any] = {
+        "alpha1": alpha1,
+        "alpha2": alpha2,
+        "distributions": distributions,
+        "t_end": t_end,
+    }
+    correlation = {"spring_correlation": spring_correlation or None}
+    scatter: dict[str, Any] = {"relative_std": relative_std}
+    if is_structure(params, of_pads=needed | correlation, of_structures=scatter):
+        refuse_missing("propensity", "structure", scatter)
         spread = structure_propensity(
             params,
-            relative_std=relative_std,
+            **scatter,
             samples=256 if samples is None else samples,
             seed=0 if seed is None else seed,
             tol=tol,
@@ -99,23 +94,8 @@ def propensity(
         )
         spread.attrs["made_by"] = "squealpipe.propensity"
         return spread
-    if not isinstance(params, Parameters):
-        raise ValueError(  # noqa: TRY004 (of all arguments mistakes are values)
-            f"params = {brief(params)}: Parameters of a pad or a Structure is needed"
-        )
-    needed: dict[str, Any] = {
-        "alpha1": alpha1,
-        "alpha2": alpha2,
-        "distributions": distributions,
-    }
-    needed |= {"samples": samples, "t_end": t_end}
-    for name, value in needed.items():
-        if value is None:
-            raise TypeError(f"propensity: {name}: missing required argument of a pad")
-    if relative_std is not None:
-        raise ValueError(
-            f"relative_std = {brief(relative_std)}: a pad takes distributions instead"
-        )
+    needed["samples"] = samples
+    refuse_missing("propensity", "pad", needed)
     return propensity_of_pad(
         params,
         **needed,

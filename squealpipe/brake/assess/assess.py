@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -18,9 +19,10 @@ from squealpipe.brake.linear.maps import stability_map
 from squealpipe.brake.schema.assess import CURES
 from squealpipe.codes import Verdict
 from squealpipe.parameters import Parameters
-from squealpipe.schema import Outcome, build
+from squealpipe.schema import build
 from squealpipe.schema.origin import recorded
 from squealpipe.validation import Angle, Tolerance
+from squealpipe.vibration import judgement
 from squealpipe.vibration.boundaries import Search
 from squealpipe.vibration.cures import Boundary, cure_table
 from squealpipe.vibration.schema import Mechanism, assess_schema
@@ -94,29 +96,20 @@ def judge(params: Parameters, alpha1: float, alpha2: float, *, tol: float) -> Ju
     starts = [sudden]
     if sliding is not None:
         starts += [pushed(design, sliding), *strikes(design, sliding)]
-    settled = settle(starts, tol=tol, rules=settling_of_numbers)
-    of_sudden, of_verdict = settled[0], settled[min(1, len(settled) - 1)]
-    others = [each for each in settled if each.verdict is not Verdict.quiet]
-    scalars, pictured = levels(design, of_verdict, sliding, tol=tol)
-    sudden_scalars, _ = levels(design, of_sudden, sliding, tol=tol)
-    outcome = Outcome.converged
-    if of_verdict.verdict is Verdict.undetermined:
-        outcome = Outcome.unresolved
-    elif sliding is None:
-        outcome = Outcome.no_sliding_state
+    of_sudden, *rest = settle(starts, tol=tol, rules=settling_of_numbers)
+    of_push = rest.pop(0) if rest else None
+    judged = judgement.judge(
+        of_push, of_sudden, rest, partial(levels, design, sliding, tol=tol)
+    )
     facts = {
-        **scalars,
-        **{f"sudden_{name}": value for name, value in sudden_scalars.items()},
-        **pictured,
+        **judged.facts,
         **_linear(design, sliding),
-        "quiet_unless_struck": of_verdict.verdict is Verdict.quiet and bool(others),
         "alpha1": alpha1,
         "alpha2": alpha2,
         "preload": params.preload,
-        "outcome": outcome,
     }
-    motions = [each.last.final for each in others[:2]]
-    return Judged(design, of_verdict.verdict, motions, facts, tol)
+    motions = [run.last.final for run in judged.lasting[:2]]
+    return Judged(design, judged.verdict, motions, facts, tol)
 
 
 def _linear(design: Design, sliding: Sliding | None) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from squealpipe.vibration.settled_runs import SettledRun
 
 
 def levels(
-    design: Design, settled: SettledRun, sliding: Sliding | None, *, tol: float
+    design: Design, sliding: Sliding | None, settled: SettledRun, *, tol: float
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return scalars of a settled motion, and its spectrum and path."""
     params = design.params

@@ -23,6 +23,7 @@ from squealpipe.structures.squeal.plant import Plant
 from squealpipe.structures.squeal.windows import Running
 from squealpipe.systems.progress import partial_answer, with_progress
 from squealpipe.validation import Natural, Seed, Tolerance, Workers
+from squealpipe.vibration import judgement
 from squealpipe.vibration.boundaries import (
     Cure,
     QuietInterval,
@@ -169,26 +170,21 @@ def judge_structure(
     of_push, of_sudden = family.settled([push, sudden], settling_of_numbers)
     drawn = family.starts(design, 2, [])
     others = family.settled(drawn) if drawn else []
-    how = Running(tol, seed, workers)
-    scalars, pictured = levels(design, of_push, how=how)
-    sudden_scalars, _ = levels(design, of_sudden, how=how)
-    lasting = [run for run in (of_push, of_sudden, *others) if not run.quiet]
-    verdict = of_push.verdict
+    judged = judgement.judge(
+        of_push,
+        of_sudden,
+        others,
+        partial(levels, design, how=Running(tol, seed, workers)),
+    )
     facts = {
-        **scalars,
-        **{f"sudden_{name}": value for name, value in sudden_scalars.items()},
-        **pictured,
+        **judged.facts,
         **_of_small_motions(design, plant),
-        "quiet_unless_struck": verdict is Verdict.quiet and bool(lasting),
         "random_starts": len(others),
         "random_starts_noisy": sum(run.lasts for run in others),
-        "outcome": Outcome.unresolved
-        if verdict is Verdict.undetermined
-        else Outcome.converged,
     }
-    motions = [design.to_whole(run.last.final) for run in lasting[:2]]
+    motions = [design.to_whole(run.last.final) for run in judged.lasting[:2]]
     searched = replace(family, tol=max(tol, Search.tol))
-    return JudgedStructure(design, verdict, motions, facts, searched, named)
+    return JudgedStructure(design, judged.verdict, motions, facts, searched, named)
 
 
 def _of_small_motions(design: Design, plant: Plant) -> dict[str, Any]:

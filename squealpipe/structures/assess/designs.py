@@ -13,7 +13,7 @@ from squealpipe.laws.friction_laws import COULOMB
 from squealpipe.structures.coordinates import Coordinates, StaticSpace
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.sliding import NoSlidingError
-from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
+from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant, damped_beyond
 from squealpipe.structures.squeal.windows import Running, followed_windows, run_windows
 from squealpipe.structures.subspace import projected, subspace, with_answers
 from squealpipe.vibration.schema import Mechanism
@@ -37,6 +37,8 @@ class Design:
     Attributes:
         whole: the structure, of a large one in these coordinates.
         n_modes: modes in which it is run; None: as it is.
+        band: end of the band in which modes count, rad/s.
+        damping_beyond: damping ratio that coordinates beyond the band have been given.
         directions: static responses of each contact among these: 0 none, 1 the normal one, 2 both.
         origin: large structure of all degrees of freedom; None where that is ``whole``.
         coordinates: (n of the origin, n of the whole), amplitudes → displacements.
@@ -51,6 +53,8 @@ class Design:
     running: ContactStructure | None = None
     obstacle: str | None = None
     directions: int = 0
+    band: float = np.inf
+    damping_beyond: float = 0.0
 
     @classmethod
     def of(cls, structure: ContactStructure) -> Self:
@@ -74,6 +78,8 @@ class Design:
             coordinates,
             obstacle=plant.obstacle,
             directions=running.reduced_from.directions,
+            band=plant.band,
+            damping_beyond=plant.damping_beyond,
         )
 
     @property
@@ -85,7 +91,7 @@ class Design:
     def plant(self) -> Plant | None:
         """The structure about its steady sliding; None where there is none."""
         try:
-            return Plant(self.structure)
+            return Plant(self.structure, is_ready=True)
         except NoSlidingError:
             return None
 
@@ -98,7 +104,7 @@ class Design:
             return self.whole
         space = StaticSpace(self.whole, self.n_modes)
         kept = Coordinates(space, self.n_modes, self.directions)
-        reduced = kept.reduced()
+        reduced = damped_beyond(kept.reduced(), self.band, self.damping_beyond)
         reduced.modes = kept.modes
         return reduced
 
@@ -182,7 +188,7 @@ class Design:
             replace(contact, mu=float(mu), friction_law=COULOMB, mu_static=None)
             for contact, mu in zip(self.structure.contacts, drag, strict=True)
         ]
-        level = Plant(self.structure.with_(contacts=contacts))
+        level = Plant(self.structure.with_(contacts=contacts), is_ready=True)
         if not level.unstable.size:
             return Mechanism.falling_friction
         leading = self.plant.spectrum.values[self.plant.unstable[0]]

@@ -1,11 +1,13 @@
 """A structure as it is run: its system, its steady sliding, its modes, and a measure of states."""
 
+import copy
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 import scipy.linalg as la
+import scipy.sparse as sp
 from scipy.optimize import linear_sum_assignment
 
 from squealpipe.laws.friction_laws import COULOMB
@@ -99,28 +101,81 @@ def in_modes(
     return reduce(structure, n_modes=n_modes, frequency_max=frequency_max)
 
 
+def damped_beyond(
+    structure: ContactStructure, limit: float, ratio: float
+) -> ContactStructure:
+    """Return a reduced structure whose coordinates beyond a frequency have more damping.
+
+    Args:
+        structure: in coordinates of which the mass is 1 and the stiffness at rest diagonal.
+        limit: rad/s.
+        ratio: damping ratio that is added.
+    """
+    if ratio == 0.0:
+        return structure
+    omega = np.sqrt(np.maximum(structure.stiffness_at_rest.diagonal(), 0.0))
+    added = sp.diags_array(2.0 * ratio * omega * (omega > limit))
+    other = copy.copy(structure)
+    other.given_damping = sp.csr_array(structure.given_damping + added)
+    other.assemble()
+    return other
+
+
+def _spectrum(structure: ContactStructure) -> Spectrum:
+    """Return the complex modes about steady sliding."""
+    solver = Solver(structure, Limits(None, None), structure.belt_speed)
+    return solver.at(structure.mu)
+
+
 class Plant:
     """A structure of few degrees of freedom, about its steady sliding.
 
     States are (q, v) side by side, (2 n,). Their size is √E of the deviation from steady sliding,
     E = ½ vᵀ M v + ½ qᵀ (K + Σ kᵢ nᵢnᵢᵀ) q.
 
+    Modes beyond the band that a reduced structure was made for are no answer, since truncated
+    coordinates make some grow that decay in the whole. Where one grows, coordinates beyond the band
+    are damped until none does.
+
     Args:
         structure: of any size; one that is larger than a system can carry is reduced.
+        is_ready: whether it is run as it is, whatever its size.
+
+    Attributes:
+        band: end of the band, rad/s; infinite without one.
+        damping_beyond: damping ratio that coordinates beyond the band have been given.
 
     Raises:
         NoSlidingError: there is no steady sliding.
         ValueError: no contact; or beyond 1000 degrees of freedom, which are to be reduced by hand.
     """
 
-    def __init__(self, structure: ContactStructure) -> None:
-        self.structure = carried(structure)
+    def __init__(self, structure: ContactStructure, *, is_ready: bool = False) -> None:
+        self.structure = structure if is_ready else carried(structure)
+        origin = self.structure.reduced_from
+        limit = None if origin is None else origin.frequency_max
+        self.band = np.inf if limit is None else 2.0 * np.pi * limit
         self.size = self.structure.size
-        solver = Solver(self.structure, Limits(None, None), self.structure.belt_speed)
-        self.spectrum: Spectrum = solver.at(self.structure.mu)
+        self.damping_beyond = 0.0
+        self.spectrum = _spectrum(self.structure)
+        reduced = self.structure
+        # the first that suffices: more would reach into the band
+        for ratio in (0.05, 0.1, 0.2, 0.5) if np.isfinite(self.band) else ():
+            if not self._grows_beyond:
+                break
+            self.damping_beyond = ratio
+            self.structure = damped_beyond(reduced, self.band, ratio)
+            self.spectrum = _spectrum(self.structure)
         self.sliding = np.concatenate(
             [self.spectrum.state.displacement, np.zeros(self.size)]
         )
+
+    @property
+    def _grows_beyond(self) -> bool:
+        """Tell whether a mode beyond the band grows."""
+        beyond = self.spectrum.values.imag > self.band
+        growth = self.spectrum.values.real - self.spectrum.growth_errors
+        return bool((growth[beyond] > 0.0).any())
 
     @cached_property
     def obstacle(self) -> str | None:
@@ -217,8 +272,7 @@ class Plant:
         """Places of the unstable modes in the spectrum, the fastest first; beyond the band last."""
         growth = self.spectrum.values.real
         places = np.flatnonzero(growth > self.spectrum.growth_errors)
-        limit = np.inf if self.truth is None else self.truth.limit
-        beyond = self.spectrum.values.imag[places] > limit
+        beyond = self.spectrum.values.imag[places] > self.band
         return places[np.lexsort((-growth[places], beyond))]
 
     @property

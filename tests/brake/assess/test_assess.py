@@ -372,7 +372,7 @@ def test_a_mode_that_grows_slowly_beneath_a_loud_one_has_its_time(start):
     if start == "sudden":
         begun = start_at(design, sliding, np.zeros(4))
     (settled,) = settle([begun], tol=1e-9, rules=settling_of_numbers)
-    found, _ = levels(design, settled, sliding, tol=1e-9)
+    found, _ = levels(design, sliding, settled, tol=1e-9)
     assert settled.verdict is Verdict.squeals
     assert found["velocity_rms_along"] == pytest.approx(0.95416, rel=1e-3)
     assert found["velocity_rms_across"] == pytest.approx(0.55343, rel=1e-3)
@@ -504,7 +504,7 @@ def test_a_measured_table_squeals_as_its_law_does(squealing):
     design = Design(measured_pad(), *SQUEAL)
     sliding = Sliding.of(design)
     (settled,) = settle([pushed(design, sliding)], tol=1e-9)
-    found, _ = levels(design, settled, sliding, tol=1e-9)
+    found, _ = levels(design, sliding, settled, tol=1e-9)
     assert settled.verdict is Verdict.squeals
     assert found["frequency"] == pytest.approx(float(squealing.frequency), rel=2e-3)
     assert found["stick_fraction"] == pytest.approx(

@@ -124,7 +124,7 @@ def test_a_modification_that_cannot_be_is_refused_with_its_name(content, message
 
 
 def test_a_structure_has_no_angles_and_a_pad_no_modifications():
-    with pytest.raises(ValueError, match=r"alpha1 = 1\.0: a structure has no angles"):
+    with pytest.raises(ValueError, match=r"alpha1 = 1\.0: a structure has none"):
         assess(two_degrees(), 1.0)
     with pytest.raises(ValueError, match="name of a cure"):
         assess(two_degrees(), modifications={"mu": {"added_mass": {1: 0.1}}})

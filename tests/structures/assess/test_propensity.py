@@ -113,7 +113,9 @@ def test_pads_and_structures_need_arguments_of_their_own():
     with pytest.raises(TypeError, match="distributions: missing"):
         propensity(Parameters(), 0.3, 1.0, samples=64, t_end=1.0)
     options = {"distributions": SPREAD_OF_PAD, "samples": 64, "t_end": 1.0}
-    with pytest.raises(ValueError, match="a pad takes distributions"):
+    with pytest.raises(
+        ValueError, match="relative_std = .*a pad on two springs has none"
+    ):
         propensity(Parameters(), 0.3, 1.0, relative_std={"mu": 0.1}, **options)
 
 

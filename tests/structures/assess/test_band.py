@@ -1,0 +1,58 @@
+"""Modes beyond the band that was asked for neither grow nor enter the answer."""
+
+import numpy as np
+import pytest
+
+from squealpipe.structures import elastic_pad
+from squealpipe.structures.assess.assess import judge_structure
+from squealpipe.structures.assess.designs import Design
+from squealpipe.structures.squeal.plant import Plant
+
+BAND = 20e3
+
+
+@pytest.fixture(scope="module")
+def pad():
+    """An elastic pad whose fastest unstable mode, 41.7 kHz, lies beyond the band."""
+    return elastic_pad(modal_damping=0.002)
+
+
+def _own_growth(structure, limit):
+    """Growth and frequency of the modes of matrices up to a limit, rad/s, by their own."""
+    mass, damping, stiffness = (
+        each.toarray()
+        for each in (structure.mass, structure.damping, structure.stiffness)
+    )
+    drag = structure.mu_of_contacts * np.sign(structure.speeds * structure.belt_speed)
+    acting = structure.normals + structure.tangentials * drag
+    stiffness = stiffness + acting * structure.stiffnesses @ structure.normals.T
+    size = len(mass)
+    solved = np.linalg.solve(mass, np.hstack([stiffness, damping]))
+    first = np.block([[np.zeros((size, size)), np.eye(size)], [-solved]])
+    values = np.linalg.eigvals(first)
+    inside = (values.imag > 0.0) & (values.imag <= limit)
+    return values[inside], values[values.imag > limit]
+
+
+def test_modes_beyond_the_band_decay_and_those_within_are_the_same(pad):
+    reduced = pad.reduce(frequency_max=BAND)
+    within, beyond = _own_growth(reduced, 2.0 * np.pi * BAND)
+    assert beyond.real.max() > 0.0
+    assert within.real.max() > 0.0
+    plant = Plant(reduced)
+    after, damped = _own_growth(plant.structure, 2.0 * np.pi * BAND)
+    assert damped.real.max() < 0.0
+    leading, kept = (each[each.real.argmax()] for each in (within, after))
+    assert kept.imag == pytest.approx(leading.imag, rel=1e-3)
+    assert kept.real == pytest.approx(leading.real, abs=1e-4 * leading.imag)
+    # the same holds of what is changed, in coordinates of its own
+    changed = Design.of(reduced).changed(Design.of(reduced).whole).structure
+    assert _own_growth(changed, 2.0 * np.pi * BAND)[1].real.max() < 0.0
+
+
+def test_cause_and_frequency_lie_in_the_band(pad):
+    judged = judge_structure(
+        pad.reduce(frequency_max=BAND), samples=1, seed=0, tol=1e-9, workers=1
+    )
+    assert judged.facts["leading_frequency"] < BAND
+    assert judged.facts["frequency"] < BAND
