@@ -114,7 +114,7 @@ def test_pads_and_structures_need_arguments_of_their_own():
         propensity(Parameters(), 0.3, 1.0, samples=64, t_end=1.0)
     options = {"distributions": SPREAD_OF_PAD, "samples": 64, "t_end": 1.0}
     with pytest.raises(
-        ValueError, match="relative_std = .*a pad on two springs has none"
+        ValueError, match=r"relative_std = .*a pad on two springs has none"
     ):
         propensity(Parameters(), 0.3, 1.0, relative_std={"mu": 0.1}, **options)
 
