@@ -278,8 +278,7 @@ class Plant:
     @property
     def asked(self) -> np.ndarray:
         """Places of the unstable modes that are pushed: within the band, or the fastest beyond."""
-        limit = np.inf if self.truth is None else self.truth.limit
-        within = self.spectrum.values.imag[self.unstable] <= limit
+        within = self.spectrum.values.imag[self.unstable] <= self.band
         return self.unstable[: max(int(within.sum()), 1)]
 
     @cached_property
