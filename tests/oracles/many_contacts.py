@@ -152,10 +152,10 @@ class ManyContacts:
         """Go on for a time; instants of events from here and the sides after each."""
         time, events = 0.0, [(0.0, tuple(self.side))]
         while True:
-            before = self.state.copy(), list(self.side)
+            before = self.state.copy(), list(self.side), list(self.piece)
             wait = self.next_event(step, t_end - time)
             if wait is None or time + wait > t_end:
-                self.state, self.side = before
+                self.state, self.side, self.piece = before
                 whole, _ = self.flow(self.side)
                 end = expm(whole * (t_end - time)) @ np.append(self.state, 1.0)
                 self.state = end[:-1]

@@ -25,6 +25,7 @@ class Motion(ManyContacts):
         if state is None:
             state = np.zeros(2 * size)
         super().__init__(structure, state[:size], state[size:])
+        self.k = structure.stiffnesses  # no tables
         at_rest = self.stiffness + (self.n * self.k) @ self.n.T
         squares, modes = la.eigh(0.5 * (at_rest + at_rest.T), self.mass)
         self.omega, self.modes = np.sqrt(np.maximum(squares, 0.0)), modes

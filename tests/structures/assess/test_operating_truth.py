@@ -1,18 +1,19 @@
 """Maps of operating points against own event-driven runs, which share no code with the project.
 
-Between events the pad is linear, so that each step is a matrix exponential; events are located by
-Brent's method. The list of noises is written from these runs.
+The list of noises is written from these runs.
 """
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
 
 from squealpipe import Contact, Structure, operating_map
 from squealpipe.codes import Verdict
 from squealpipe.structures.assess.measured import matched, read_noises
 from squealpipe.structures.assess.operating_units import OperatingUnits
 from squealpipe.structures.schema.operating_map import Match
+from tests.oracles.structure_answers import Motion
 
 UNITS = OperatingUnits("m s-1", np.nan)
 MASS, STIFFNESS, PRELOAD = 0.5, 6e6, 3000.0
@@ -27,123 +28,17 @@ def structure():
     return Structure(MASS * np.eye(2), ROD, DAMPING, contacts=[contact], mu=0.5, load=0)
 
 
-class Pad:
-    """Two degrees of freedom on a belt: state x, y, vx, vy, the contact pressed along −y."""
-
-    def __init__(self, pressure, speed, mu, step):
-        self.preload, self.speed, self.mu = pressure * PRELOAD, speed, mu
-        self.step = step
-        self.powers, self.whole = {}, {}
-        at = np.linalg.solve(
-            ROD + STIFFNESS * np.array([[0.0, mu * np.sign(speed)], [0.0, 1.0]]),
-            self.preload * np.array([mu * np.sign(speed), 1.0]),
-        )
-        self.sliding = np.array([*at, 0.0, 0.0])
-
-    def law(self, regime):
-        """Affine acceleration of a regime, as the matrix of (state, 1)."""
-        a = np.zeros((5, 5))
-        a[:2, 2:4] = np.eye(2)
-        a[2:4, :2], a[2:4, 2:4] = -ROD / MASS, -DAMPING / MASS
-        if regime != "open":
-            a[3, 1] -= STIFFNESS / MASS
-            a[3, 4] = self.preload / MASS
-        if regime in (1, -1):
-            a[2, 1] -= regime * self.mu * STIFFNESS / MASS
-            a[2, 4] = regime * self.mu * self.preload / MASS
-        if regime == "stick":
-            a[2] = 0.0
-        return a
-
-    def after(self, state, regime, time):
-        """State after a time, by the series of the matrix exponential to order 16."""
-        if regime not in self.powers:
-            a, power, powers = self.law(regime), np.eye(5), []
-            for order in range(17):
-                powers.append(power)
-                power = a @ power / (order + 1)
-            self.powers[regime] = np.array(powers)[:, :4]
-            self.whole[regime] = sum(
-                power * self.step**order
-                for order, power in enumerate(self.powers[regime])
-            )
-        start = np.array([*state, 1.0])
-        if time == self.step:
-            return self.whole[regime] @ start
-        return time ** np.arange(17) @ (self.powers[regime] @ start)
-
-    def force(self, state):
-        return self.preload - STIFFNESS * state[1]
-
-    def held(self, state):
-        """Friction that stick needs."""
-        return ROD[0] @ state[:2] + DAMPING[0] @ state[2:]
-
-    def limits(self, state, regime):
-        """Quantities that are positive while a regime lasts."""
-        normal, slip = self.force(state), self.speed - state[2]
-        if regime == "open":
-            return [-normal]
-        if regime == "stick":
-            return [normal, self.mu * normal - abs(self.held(state))]
-        return [normal, regime * slip]
-
-    def next(self, state, regime, ended):
-        """Regime after the limit of that number was reached."""
-        if regime == "open":
-            return int(np.sign(self.speed - state[2])) or 1
-        if ended == 0:
-            return "open"
-        if regime == "stick":
-            return int(np.sign(self.held(state)))
-        state[2] = self.speed
-        if abs(self.held(state)) < self.mu * self.force(state):
-            return "stick"
-        return int(np.sign(self.held(state)))
-
-    def run(self, periods, per_period=64):
-        """Samples of the last quarter, and the share of the time without contact."""
-        state = self.sliding + np.array([1e-7, 2e-6, 0.0, 0.0])
-        regime = int(np.sign(self.speed))
-        count = periods * per_period
-        kept, opened = [], 0.0
-        for number in range(count):
-            left = self.step
-            late = number >= 3 * count // 4
-            while left > 0.0:
-                reached = self.after(state, regime, left)
-                gone = [
-                    i
-                    for i, value in enumerate(self.limits(reached, regime))
-                    if value < 0.0
-                ]
-                at, ended = left, None
-                for i in gone:
-
-                    def limit(time, i=i, state=state, regime=regime):
-                        return self.limits(self.after(state, regime, time), regime)[i]
-
-                    start = 1e-9 * self.step
-                    root = brentq(limit, start, left) if limit(start) > 0 else start
-                    if root < at or ended is None:
-                        at, ended = root, i
-                opened += at * (late and regime == "open")
-                if ended is None:
-                    state, left = reached, 0.0
-                else:
-                    state = self.after(state, regime, at)
-                    regime, left = self.next(state, regime, ended), left - at
-            if late:
-                kept.append(state)
-        return np.array(kept), opened / (len(kept) * self.step)
-
-
 def truth(pressure, speed, mu):
     """Verdict, frequency (Hz), rms velocity (m/s) and share without contact by own runs."""
-    step = 1.0 / (64 * 900.0)
-    pad = Pad(pressure, speed, mu, step)
-    samples, opened = pad.run(600)
-    away = samples - pad.sliding
+    step, period = 1.0 / (64 * 900.0), 1.0 / 900.0
+    (contact,) = structure().contacts
+    pressed = replace(contact, preload=pressure * PRELOAD)
+    pad = structure().with_(contacts=[pressed], mu=mu, belt_speed=speed)
+    sliding = np.array([*Motion(pad).steady()[0], 0.0, 0.0])
+    motion = Motion(pad, sliding + np.array([1e-7, 2e-6, 0.0, 0.0]))
+    motion.run(450 * period)
+    late = motion.run(150 * period, step)
+    away, opened = late["samples"] - sliding, late["open"][0] / (150 * period)
     velocity = np.sqrt((away[:, 2:] ** 2).mean(axis=0).sum())
     if velocity < 1e-4:
         return Verdict.quiet, np.nan, 0.0, 0.0
