@@ -25,19 +25,20 @@ from squealpipe.structures.modes import modes_at_rest
 from squealpipe.systems.definition import SizeLimits
 from squealpipe.systems.inputs.values import brief, is_finite_number, is_whole_number
 from squealpipe.systems.linear.matrices import (
-    COULOMB,
-    EXPONENTIAL,
-    HYPERBOLIC,
     PIECE_FIELDS,
-    TABLE,
     Caps,
     ContactMatrices,
     diagonal_if_it_is,
+    friction_number,
 )
 from squealpipe.systems.linear.system import LinearSystem
 from squealpipe.systems.system import System
 
-LAW_NUMBERS = {"coulomb": COULOMB, "exponential": EXPONENTIAL, "hyperbolic": HYPERBOLIC}
+LAW_NUMBERS = {
+    "coulomb": friction_number.coulomb,
+    "exponential": friction_number.exponential,
+    "hyperbolic": friction_number.hyperbolic,
+}
 """Friction laws that the loop of linear structures has beside tables."""
 STICK_ROUND_OFF = 1e-14
 """Force over a typical one: a contact sticks if friction lacks no more than this to hold it."""
@@ -180,7 +181,9 @@ def matrices_of(
         springs=structure.stiffnesses,
         preloads=structure.preloads,
         speeds=structure.speeds,
-        laws=np.array([LAW_NUMBERS.get(law, TABLE) for law in laws], np.int64),
+        laws=np.array(
+            [LAW_NUMBERS.get(law, friction_number.table) for law in laws], np.int64
+        ),
         pieces=[_pieces(law) for law in laws],
         presses=[contact.lines for contact in structure.contacts],
         hidden=STICK_ROUND_OFF * scale.force,

@@ -41,9 +41,6 @@ class ReductionSearch:
     """Modes computed at first of a large structure; up to here every number is tried."""
 
 
-REDUCTION_SEARCH = ReductionSearch()
-
-
 def band_needed(structure: ContactStructure, n_modes: int | None) -> str:
     """Ask for the band of a structure that is too large for all its modes, in words.
 
@@ -149,7 +146,7 @@ class Search:
     ) -> None:
         self.whole, self.truth, self.frequency_max = structure, truth, frequency_max
         self.space = StaticSpace(
-            structure, min(REDUCTION_SEARCH.first_modes, structure.size)
+            structure, min(ReductionSearch.first_modes, structure.size)
         )
         self._agreements: dict[tuple[int, int], Agreement | None] = {}
 
@@ -185,7 +182,7 @@ class Search:
             # beyond, by an eighth at a time: trying every number takes minutes
             number += (
                 1
-                if number < REDUCTION_SEARCH.first_modes
+                if number < ReductionSearch.first_modes
                 else max(1, min(number // 8, most - number))
             )
         return best
@@ -195,7 +192,7 @@ class Search:
         return float(number**2 * self._coordinates(number, directions).omega[-1])
 
     def _meets_with_larger(self, number: int, directions: int, tol: float) -> bool:
-        largest = min(number + REDUCTION_SEARCH.and_larger, self.whole.size)
+        largest = min(number + ReductionSearch.and_larger, self.whole.size)
         for each in range(number, largest + 1):
             agreement = self._agreement(each, directions)
             if agreement is None or not agreement.holds:
@@ -241,7 +238,7 @@ class Search:
 
     def _coordinates(self, number: int, directions: int) -> Coordinates:
         if number > self.space.n_modes:
-            larger = max(number + REDUCTION_SEARCH.and_larger, 2 * self.space.n_modes)
+            larger = max(number + ReductionSearch.and_larger, 2 * self.space.n_modes)
             self.space = StaticSpace(self.whole, min(larger, self.whole.size))
         return Coordinates(self.space, number, directions)
 

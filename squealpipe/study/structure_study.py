@@ -16,7 +16,7 @@ from squealpipe.structures.contact import face_of
 from squealpipe.structures.fewer_points import fewer_points
 from squealpipe.structures.pencil import DENSE
 from squealpipe.structures.reduction import band_needed
-from squealpipe.structures.schema.squealing import SQUEAL_LIMITS
+from squealpipe.structures.schema.squealing import SquealLimits
 from squealpipe.structures.squeal.plant import band_of, in_modes
 from squealpipe.structures.squeal.settled_run import (
     moving_attractors,
@@ -102,7 +102,7 @@ def modes_over_friction(structure: Structure, section: Mapping[str, Any]) -> xr.
     points = next(
         (
             n
-            for size, n in ((SQUEAL_LIMITS.most_modes, 41), (DENSE, 13))
+            for size, n in ((SquealLimits.most_modes, 41), (DENSE, 13))
             if structure.size <= size
         ),
         5,

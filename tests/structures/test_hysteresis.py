@@ -7,7 +7,7 @@ from squealpipe import Contact, Structure, load, plot, save, squealing_modes
 from squealpipe.codes import Verdict
 from squealpipe.plotting import picture
 from squealpipe.schema import Outcome
-from squealpipe.structures.schema.squealing import JUST_ABOVE, SQUEAL_LIMITS, OnsetKind
+from squealpipe.structures.schema.squealing import JUST_ABOVE, OnsetKind, SquealLimits
 from squealpipe.study.report.squealing import lines
 from tests.oracles.structure_answers import Motion
 
@@ -94,7 +94,7 @@ def test_squeal_lasts_below_the_critical_friction_down_to_the_fold(answer):
     assert answer.mu_dies_is_fold.all()
     # what runs say brackets what the exact map says
     low, high = float(answer.mu_dies_low[0]), float(answer.mu_dies_high[0])
-    assert low < fold < high <= low + 1.001 * SQUEAL_LIMITS.narrow * critical
+    assert low < fold < high <= low + 1.001 * SquealLimits.narrow * critical
     assert float(answer.hysteresis) == pytest.approx(critical - fold)
     # an integrator apart: it lasts, and does not begin, just above the fold; below it dies
     assert squealing(answer, 1.004 * fold, 1.0, 0.15)

@@ -57,8 +57,8 @@ def stop_after(number):
 @pytest.fixture
 def all_are_long(monkeypatch):
     """Runs of any length are treated as long ones, two starts at a time."""
-    rules = replace(settling.RUN_LENGTHS, long=0.0, side_by_side=2)
-    monkeypatch.setattr(settling, "RUN_LENGTHS", rules)
+    rules = replace(settling.RunLengths(), long=0.0, side_by_side=2)
+    monkeypatch.setattr(settling, "RunLengths", rules)
 
 
 def test_long_runs_say_how_long_and_answer_a_few_starts_at_a_time(all_are_long):

@@ -34,9 +34,6 @@ class Ranges:
     """Amounts of a modification that are looked at first."""
 
 
-RANGES = Ranges()
-
-
 def cures_of(
     design: Design, modifications: Mapping[str, Any]
 ) -> tuple[dict[str, Cure], dict[str, str]]:
@@ -64,7 +61,7 @@ def cures_of(
     cures["contact_stiffness"] = _factor(design, _with_stiffness)
     cures["preload"] = _factor(design, with_preload)
     cures["modal_damping"] = _damping(design)
-    speed, factors = whole.belt_speed, _factors(RANGES.factor)
+    speed, factors = whole.belt_speed, _factors(Ranges.factor)
     cures["belt_speed"] = Cure(
         speed, _sliding(design, "belt_speed"), speed / factors, speed * factors
     )
@@ -74,7 +71,7 @@ def cures_of(
                 f"modifications: {name!r} is the name of a cure; rename it"
             )
         change = read_modification(name, content, design.given, _leading(design))
-        amounts = change.most * np.linspace(0.0, 1.0, RANGES.steps + 1)[1:]
+        amounts = change.most * np.linspace(0.0, 1.0, Ranges.steps + 1)[1:]
         cures[name] = Cure(
             0.0, _modified(design, change), np.zeros(0), amounts, of_none=change.most
         )
@@ -92,7 +89,7 @@ def _leading(design: Design) -> float:
 
 def _factors(most: float) -> np.ndarray:
     """Return factors from just above 1 to the largest."""
-    count = 1 + int(np.ceil(np.log(most) / np.log(RANGES.ratio)))
+    count = 1 + int(np.ceil(np.log(most) / np.log(Ranges.ratio)))
     return np.geomspace(1.0, most, count)[1:]
 
 
@@ -133,7 +130,7 @@ def _sliding(design: Design, name: str) -> Callable[[float], Design]:
 
 
 def _factor(design: Design, change: Change) -> Cure:
-    factors = _factors(RANGES.factor)
+    factors = _factors(Ranges.factor)
     return Cure(1.0, _whole(design, change), 1.0 / factors, factors)
 
 
@@ -162,8 +159,8 @@ def _damping(design: Design) -> Cure:
         return structure.with_(modal_damping=shifted.tolist())
 
     least = max(mean, 1e-4)
-    above = np.geomspace(least, max(RANGES.damping, 2.0 * least), 40)
-    below = np.append(mean / _factors(RANGES.factor), 0.0) if mean else np.zeros(0)
+    above = np.geomspace(least, max(Ranges.damping, 2.0 * least), 40)
+    below = np.append(mean / _factors(Ranges.factor), 0.0) if mean else np.zeros(0)
     return Cure(
         mean,
         _whole(design, change),
@@ -214,6 +211,6 @@ def _friction(mu: float, apply: Callable[[float], Design], largest: float) -> Cu
     if mu == 0.0:
         above = np.linspace(0.0, 1.0, 26)[1:]
         return Cure(mu, apply, np.zeros(0), above[above <= largest])
-    above = mu * _factors(max(RANGES.friction, 1.0 / mu))
-    below = np.append(mu / _factors(RANGES.factor), 0.0)
+    above = mu * _factors(max(Ranges.friction, 1.0 / mu))
+    below = np.append(mu / _factors(Ranges.factor), 0.0)
     return Cure(mu, apply, below, above[above <= largest])

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from squealpipe.structures.contact import Contact, face_of
-from squealpipe.structures.meshes.pairing import PAIRING
+from squealpipe.structures.meshes.pairing import Pairing
 from squealpipe.text import number
 from squealpipe.units import engineering
 
@@ -41,7 +41,7 @@ class FaceGaps(NamedTuple):
 
     def __str__(self) -> str:
         """Return largest and mean gap in one sentence."""
-        if abs(self.largest) < PAIRING.matching * self.facet:
+        if abs(self.largest) < Pairing.matching * self.facet:
             return f"{self.face}: the faces touch"
         largest = engineering(abs(self.largest), "m")
         kind = "bodies overlap by" if self.largest < 0 else "gap"

@@ -34,9 +34,6 @@ class Pairing:
     """Change of ξ and η that is round-off."""
 
 
-PAIRING = Pairing()
-
-
 class Partner(NamedTuple):
     """The point of a surface that is nearest to another point.
 
@@ -110,7 +107,7 @@ class FacetedSurface:
         """
         distances, places = self._tree.query(points)
         nearest = self.members[places]
-        matches = distances <= PAIRING.matching * self.node_sizes[nearest]
+        matches = distances <= Pairing.matching * self.node_sizes[nearest]
         found: dict[int, Partner] = {
             int(index): self._of_node(int(nearest[index]), float(distances[index]))
             for index in np.flatnonzero(matches)
@@ -191,7 +188,7 @@ class FacetedSurface:
             for candidate in candidates
             if candidate.distance <= distance + same_distance * extent
             and np.linalg.norm(self._position(candidate) - self._position(best))
-            <= PAIRING.matching * extent
+            <= Pairing.matching * extent
         ]
         if len(tied) == 1:
             normal = self._normal(best)
@@ -235,11 +232,11 @@ def nearest_places(
     nodes = positions.shape[1]
     start = 1.0 / 3.0 if is_triangle(nodes) else 0.0
     place = np.full((len(positions), 2), start)
-    for _ in range(PAIRING.newton_steps):
+    for _ in range(Pairing.newton_steps):
         moved = _within(nodes, place + _step(positions, points, place))
         change = np.abs(moved - place).max(initial=0.0)
         place = moved
-        if change < PAIRING.rounding:
+        if change < Pairing.rounding:
             break
     nearest = _distances(positions, points, place)
     for edge in _edges(nodes):
@@ -297,14 +294,14 @@ def _along_edge(
     """Return the nearest place of one edge of each facet, (facets, 2), by Newton's method."""
     start, direction = edge
     along = np.full(len(positions), 0.5)
-    for _ in range(PAIRING.newton_steps):
+    for _ in range(Pairing.newton_steps):
         place = start + along[:, None] * direction
         _, slopes = shape(positions.shape[1], place)
         slope = np.einsum("fnx,fnd,d->fx", positions, slopes, direction)
         gap = _gaps(positions, points, place)
         step = -(gap * slope).sum(axis=1) / (slope**2).sum(axis=1)
         moved = np.clip(along + step, 0.0, 1.0)
-        if np.abs(moved - along).max(initial=0.0) < PAIRING.rounding:
+        if np.abs(moved - along).max(initial=0.0) < Pairing.rounding:
             break
         along = moved
     return np.asarray(start + along[:, None] * direction)

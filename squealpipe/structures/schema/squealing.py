@@ -37,8 +37,6 @@ class SquealLimits:
     """Distance of frictions between which a motion is known to die, over that of the onset."""
 
 
-SQUEAL_LIMITS = SquealLimits()
-
 JUST_ABOVE = -1
 """Track of what a push just above the onset ends in; others are of an attractor."""
 
@@ -314,12 +312,12 @@ squealing_schema = DatasetSchema(
             "critical friction of steady sliding: the smallest of all modes", rtol=1e-8
         ),
         "onset_frequency": _of_onset(
-            f"frequency of the mode that grows at {SQUEAL_LIMITS.above:g} of it",
+            f"frequency of the mode that grows at {SquealLimits.above:g} of it",
             "Hz",
             rtol=1e-6,
         ),
         "onset_kind": flag(
-            f"whether what a small push ends in at {SQUEAL_LIMITS.above:g} of it dies at the onset "
+            f"whether what a small push ends in at {SquealLimits.above:g} of it dies at the onset "
             "(supercritical) or lasts below (subcritical)",
             OnsetKind,
             optional=True,
@@ -338,7 +336,7 @@ squealing_schema = DatasetSchema(
         ),
         "track_attractor": count(
             f"attractor that is followed as friction falls, {JUST_ABOVE}: what a small push "
-            f"ends in at {SQUEAL_LIMITS.above:g} of the critical friction",
+            f"ends in at {SquealLimits.above:g} of the critical friction",
             "track",
             optional=True,
         ),

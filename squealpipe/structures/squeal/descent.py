@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squealpipe.structures.schema.squealing import SQUEAL_LIMITS
+from squealpipe.structures.schema.squealing import SquealLimits
 from squealpipe.structures.squeal.first_onset import FirstOnset
 from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
-from squealpipe.structures.squeal.settling import GROWTH, RUN_LENGTHS, start_at
+from squealpipe.structures.squeal.settling import GROWTH, RunLengths, start_at
 from squealpipe.structures.squeal.windows import Running, StructureWindows, run_windows
 from squealpipe.vibration.settled_runs import Horizon, settle
 from squealpipe.vibration.settling import settling_of_verdicts
@@ -94,7 +94,7 @@ def followed_down(plant: Plant, start: TrackState, onset: float, how: Running) -
 
 def width_of(track: Track, onset: float) -> float:
     """Return the width to which the end is to be located."""
-    return SQUEAL_LIMITS.narrow * min(onset, track.states[0].mu)
+    return SquealLimits.narrow * min(onset, track.states[0].mu)
 
 
 def _turns(track: Track, onset: float) -> Iterator[np.ndarray]:
@@ -126,7 +126,7 @@ def _run_on(
     plant: Plant, start: TrackState, frictions: np.ndarray, how: Running
 ) -> list[StructureWindows | None]:
     """Return what a motion becomes at other frictions; None where it dies out."""
-    first = RUN_LENGTHS.first_window / plant.slowest
+    first = RunLengths.first_window / plant.slowest
     subjects = [Plant(plant.structure.with_(mu=mu)) for mu in frictions.tolist()]
     starts = [
         replace(start_at(subject, start.state), period=1.0 / plant.slowest)
@@ -162,18 +162,18 @@ def just_above(onset: FirstOnset, plant: Plant, how: Running) -> TrackState | No
     place = int(above.unstable[0])
     period = 1.0 / above.slowest
     rate = float(above.spectrum.values[place].real)
-    frictions = np.full(1, SQUEAL_LIMITS.above * onset.mu)
+    frictions = np.full(1, SquealLimits.above * onset.mu)
     window = run_windows(
         plant,
         np.tile(above.pushed(place, PUSH_OF_A_MODE), (1, 1)),
-        min(GROWTH / rate, RUN_LENGTHS.longest_growth * period),
+        min(GROWTH / rate, RunLengths.longest_growth * period),
         how,
         frictions=frictions,
     ).row(0)
     if not window.finished:
         return None
     begun = TrackState(
-        SQUEAL_LIMITS.above * onset.mu, window.final, window.regimes, 0.0, 0.0
+        SquealLimits.above * onset.mu, window.final, window.regimes, 0.0, 0.0
     )
     (row,) = _run_on(plant, begun, frictions[:1], how)
     # where nothing switches it still grows

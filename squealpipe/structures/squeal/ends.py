@@ -35,9 +35,6 @@ class EndSearch:
     """Most samples in each window."""
 
 
-END_SEARCH = EndSearch()
-
-
 @dataclass(frozen=True, kw_only=True)
 class PushEnd:
     """Motion that a push ends in, by one method.
@@ -95,8 +92,8 @@ def exact_ends(
     """Return the end of each push, over the starts that belong to it; the frequency from a run
     behind.
     """
-    step = 1.0 / (END_SEARCH.samples_per_fast_period * plant.fastest)
-    length = int(min(np.ceil(float(now.length[0]) / step), END_SEARCH.most_samples))
+    step = 1.0 / (EndSearch.samples_per_fast_period * plant.fastest)
+    length = int(min(np.ceil(float(now.length[0]) / step), EndSearch.most_samples))
     times = step * np.arange(1, length + 1)
     how = Running(tol, workers=1)
     raw = run(plant, now.final, times, how, regime=now.regimes)
@@ -125,7 +122,7 @@ def exact_ends(
         )
         quiet = all(calm)
         # starts that end apart have not settled to one motion
-        together = quiet or (scatter[0] < END_SEARCH.same_mode and not any(calm))
+        together = quiet or (scatter[0] < EndSearch.same_mode and not any(calm))
         outcome = Outcome.no_convergence
         if finished:
             outcome = Outcome.unresolved

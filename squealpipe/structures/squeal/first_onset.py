@@ -7,7 +7,7 @@ import numpy as np
 
 from squealpipe.schema import Outcome
 from squealpipe.structures.complex_modes import complex_modes
-from squealpipe.structures.schema.squealing import SQUEAL_LIMITS
+from squealpipe.structures.schema.squealing import SquealLimits
 from squealpipe.structures.schema.structures import Onset
 from squealpipe.structures.sliding import NoSlidingError
 from squealpipe.structures.squeal.plant import Plant
@@ -21,9 +21,6 @@ class FirstOnsetSearch:
     """Factor of the structure's own friction up to which an onset is sought where nothing grows."""
     below: float = 0.99
     """Friction over that of the onset at which small motions have to die out."""
-
-
-ONSET_SEARCH = FirstOnsetSearch()
 
 
 @dataclass(frozen=True)
@@ -59,11 +56,12 @@ def confirmed_onset(plant: Plant) -> FirstOnset | Outcome:
             return False
 
     most = min(
-        ONSET_SEARCH.searched_factor * plant.structure.mu, plant.structure.largest_mu
+        FirstOnsetSearch.searched_factor * plant.structure.mu,
+        plant.structure.largest_mu,
     )
     if isinstance(found, FirstOnset):
-        agrees = grows(SQUEAL_LIMITS.above * found.mu) and not grows(
-            ONSET_SEARCH.below * found.mu
+        agrees = grows(SquealLimits.above * found.mu) and not grows(
+            FirstOnsetSearch.below * found.mu
         )
     elif found is Outcome.already_unstable:
         agrees = grows(0.0)
@@ -83,19 +81,24 @@ def first_onset(plant: Plant) -> FirstOnset | Outcome:
     if (modes.onset == Onset.unstable_throughout).any():
         return Outcome.already_unstable
     if not plant.unstable.size:
-        frictions = np.linspace(1.0, ONSET_SEARCH.searched_factor, 24) * structure.mu
+        frictions = (
+            np.linspace(1.0, FirstOnsetSearch.searched_factor, 24) * structure.mu
+        )
         frictions = frictions[frictions <= most]
         if len(frictions) < 2 or not structure.mu:
             return Outcome.not_reached
         modes = complex_modes(structure, mu=frictions)
     mu = float(np.nanmin(modes.critical_mu.values, initial=math.inf))
-    if SQUEAL_LIMITS.above * mu > most or not math.isfinite(mu):
+    if SquealLimits.above * mu > most or not math.isfinite(mu):
         lost = (modes.onset == Onset.not_followed).any()
         return Outcome.unresolved if lost else Outcome.not_reached
-    above = Plant(structure.with_(mu=SQUEAL_LIMITS.above * mu))
+    above = Plant(structure.with_(mu=SquealLimits.above * mu))
     if not above.unstable.size:
         return Outcome.unresolved
     frequency = float(above.frequencies[above.unstable[0]])
     return FirstOnset(
-        mu, frequency, above, Plant(structure.with_(mu=ONSET_SEARCH.below * mu)).decays
+        mu,
+        frequency,
+        above,
+        Plant(structure.with_(mu=FirstOnsetSearch.below * mu)).decays,
     )

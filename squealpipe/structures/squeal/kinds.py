@@ -59,9 +59,6 @@ class KindRules:
     """Largest such difference of a motion whose cycle is worth a search."""
 
 
-KIND_RULES = KindRules()
-
-
 @dataclass(frozen=True)
 class Described:
     """A settled motion.
@@ -106,29 +103,29 @@ def described(
         return Described(
             Kind.steady_sliding, np.nan, np.nan, np.nan, None, nothing, nothing
         )
-    length = max(KIND_RULES.periods / plant.slowest, 0.5 * float(settled.last.length))
-    step = 1.0 / (KIND_RULES.samples_per_period * plant.fastest)
-    count = int(min(np.ceil(length / step), KIND_RULES.most_samples))
+    length = max(KindRules.periods / plant.slowest, 0.5 * float(settled.last.length))
+    step = 1.0 / (KindRules.samples_per_period * plant.fastest)
+    count = int(min(np.ceil(length / step), KindRules.most_samples))
     length = count * step
     times = step * np.arange(1, count + 1)
     rng = np.random.default_rng(how.seed)
     base = settled.last.final
     extent = float(plant.sizes(base - plant.sliding))
-    directions = rng.standard_normal((KIND_RULES.neighbours, base.size)) * np.abs(
+    directions = rng.standard_normal((KindRules.neighbours, base.size)) * np.abs(
         base - plant.sliding
     )
-    directions *= KIND_RULES.first_distance * extent / plant.sizes(directions)[:, None]
+    directions *= KindRules.first_distance * extent / plant.sizes(directions)[:, None]
     states = np.concatenate([base[None], base + directions])
     # all start in the regimes of the motion, but for a contact that is just at a switch
     regimes = np.tile(settled.last.regimes, (len(states), 1))
-    few = np.arange(len(times) // KIND_RULES.early)
+    few = np.arange(len(times) // KindRules.early)
     stopped, lost, apart = stop_is_asked(), False, _Apart()
     if stopped:  # a kind takes longer than somebody waits who has asked for an end
         times = times[few]
     else:
         beside = run(plant, states[:4], times[few], how, regime=regimes[:4])["samples"]
         apart = _apart(plant, beside, times[few], extent)
-        lost = apart.saturates and apart.grown >= KIND_RULES.exponential_growth
+        lost = apart.saturates and apart.grown >= KindRules.exponential_growth
     length = float(times[-1])
     room = int(2.0 * length * settled.last.events / settled.last.length) + 64
     logged = 0 if lost else room
@@ -137,7 +134,7 @@ def described(
         others = run(plant, states[1:], times, how, regime=regimes[1:])["samples"]
         beside = np.concatenate([raw["samples"], others])
         apart = _apart(plant, beside, times, extent)
-        lost = apart.grown >= KIND_RULES.exponential_growth
+        lost = apart.grown >= KindRules.exponential_growth
     modal = plant.modal_velocities(raw["samples"][0])
     omega, amplitude = amplitude_spectrum(modal.T, step)
     power = np.sqrt((amplitude**2).sum(axis=0))
@@ -150,12 +147,12 @@ def described(
         leaves = apart.exponent * float(settled.last.length) < rules.irregular
     elif not stopped:
         # on a torus near returns are many, and closing each takes minutes
-        if _repeats(raw, length, KIND_RULES.nearly_repeated):
+        if _repeats(raw, length, KindRules.nearly_repeated):
             cycle = _closed(plant, settled, raw, frequency)
         if cycle is not None:
             kind, leaves = Kind.cycle, False
-        elif apart.grown <= KIND_RULES.linear_growth and not _repeats(
-            raw, length, KIND_RULES.repeated_intervals
+        elif apart.grown <= KindRules.linear_growth and not _repeats(
+            raw, length, KindRules.repeated_intervals
         ):
             kind = Kind.torus
     window = statistics_of(plant, raw, length).row(0)
@@ -209,7 +206,7 @@ def _apart(
         areas[index] = np.sqrt(max(0.5 * float(area.max()), 0.0))
     middles = np.array([times[block].mean() for block in blocks])
     grown = float(spread.max() / spread[0])
-    far = np.flatnonzero(spread > KIND_RULES.saturation)
+    far = np.flatnonzero(spread > KindRules.saturation)
     grows = slice(max(int(far[0]), 3) + 1 if far.size else None)
     rate = np.polyfit(middles[grows], np.log(spread[grows] + 1e-300), 1)[0]
     late = float(late_growth(np.log(areas + 1e-300)))

@@ -20,7 +20,7 @@ from squealpipe.structures.schema.squeal_ladder import (
     PushAnswer,
     squeal_ladder_schema,
 )
-from squealpipe.structures.schema.squealing import SQUEAL_LIMITS
+from squealpipe.structures.schema.squealing import SquealLimits
 from squealpipe.structures.squeal.ends import PushEnd
 from squealpipe.structures.squeal.methods import (
     Horizon,
@@ -31,7 +31,7 @@ from squealpipe.structures.squeal.methods import (
     smoothed_told,
 )
 from squealpipe.structures.squeal.plant import Plant
-from squealpipe.structures.squeal.settling import RUN_LENGTHS, horizon
+from squealpipe.structures.squeal.settling import RunLengths, horizon
 from squealpipe.structures.squeal.squealing_modes import nearest
 from squealpipe.systems.datasets.outcomes import Outcome
 from squealpipe.systems.progress import alone
@@ -124,13 +124,13 @@ def squeal_ladder(
 
 def _sizes(structure: ContactStructure, n_modes: Sequence[int]) -> list[int]:
     fewest = max(len(structure.contacts), 2)
-    sizes = distinct(n_modes, fewest, min(structure.size, SQUEAL_LIMITS.most_modes))
-    if structure.size <= SQUEAL_LIMITS.most_modes:
+    sizes = distinct(n_modes, fewest, min(structure.size, SquealLimits.most_modes))
+    if structure.size <= SquealLimits.most_modes:
         sizes = distinct([*sizes, structure.size], 1, structure.size)
     if not sizes:
         raise ValueError(
             f"n_modes = {tuple(n_modes)!r}: from {fewest}, as many as the contacts and two at "
-            f"least, to {min(structure.size, SQUEAL_LIMITS.most_modes)} are needed"
+            f"least, to {min(structure.size, SquealLimits.most_modes)} are needed"
         )
     return sizes
 
@@ -151,7 +151,7 @@ def _horizon(plant: Plant, places: np.ndarray, t_end: float | None) -> Horizon:
     if t_end is not None:
         horizon(plant, t_end)  # says what is too short
         window = min(
-            RUN_LENGTHS.first_window / plant.slowest, t_end / RUN_LENGTHS.fewest_periods
+            RunLengths.first_window / plant.slowest, t_end / RunLengths.fewest_periods
         )
         return Horizon(t_end - 2.0 * window, window)
     rates = plant.spectrum.values.real[places]

@@ -18,7 +18,7 @@ from squealpipe.structures.coordinates import Coordinates, StaticSpace
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.spectrum import Limits, Solver
 from squealpipe.structures.squeal.ends import (
-    END_SEARCH,
+    EndSearch,
     PushEnd,
     exact_ends,
     nothing,
@@ -227,7 +227,7 @@ def _same(frequencies: np.ndarray, grows: np.ndarray, frequency: float) -> int |
     for which in (grows, np.ones(len(away), bool)):
         if which.any():
             place = int(np.where(which, away, np.inf).argmin())
-            if away[place] <= END_SEARCH.same_mode * frequency:
+            if away[place] <= EndSearch.same_mode * frequency:
                 return place
     return None
 
@@ -242,11 +242,11 @@ def _pushes(plant: Plant, frequencies: np.ndarray) -> list[int | None]:
 def _instants(plant: Plant, horizon: Horizon) -> tuple[float, np.ndarray]:
     """Step and instants, s: 0, and both windows in equal steps."""
     count = int(
-        np.ceil(horizon.window * END_SEARCH.samples_per_fast_period * plant.fastest)
+        np.ceil(horizon.window * EndSearch.samples_per_fast_period * plant.fastest)
     )
     # in each window
     fewest_samples = 2**14
-    count = min(max(count, fewest_samples), END_SEARCH.most_samples)
+    count = min(max(count, fewest_samples), EndSearch.most_samples)
     step = horizon.window / count
     late = horizon.growing + step * np.arange(1, 2 * count + 1)
     return step, np.concatenate([[0.0], late])

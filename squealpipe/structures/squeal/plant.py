@@ -23,7 +23,7 @@ from squealpipe.structures.reduction import (
     modes_that_would_do,
     reduce,
 )
-from squealpipe.structures.schema.squealing import SQUEAL_LIMITS
+from squealpipe.structures.schema.squealing import SquealLimits
 from squealpipe.structures.spectrum import Limits, Solver, Spectrum
 from squealpipe.systems.linear.matrices import Caps
 from squealpipe.systems.one_thread import one_thread
@@ -47,7 +47,7 @@ def carried(
     """
     if not structure.contacts:
         raise ValueError("the structure has no contacts: nothing rubs")
-    if structure.size <= SQUEAL_LIMITS.most_modes:
+    if structure.size <= SquealLimits.most_modes:
         return structure
     if structure.reduced_from is not None and structure.size <= Caps().modes:
         return structure  # reduced by hand
@@ -61,7 +61,7 @@ def carried(
         )
     # each contact has a static deflection of its own, which takes a few modes
     return fitted(
-        whole, band, min(max(SQUEAL_LIMITS.most_modes, 4 * count), Caps().modes)
+        whole, band, min(max(SquealLimits.most_modes, 4 * count), Caps().modes)
     )
 
 
@@ -74,7 +74,7 @@ def band_of(structure: ContactStructure, frequency_max: float | None) -> float |
     Returns:
         None for a structure that is run whole.
     """
-    if structure.size <= SQUEAL_LIMITS.most_modes:
+    if structure.size <= SquealLimits.most_modes:
         return None
     return audible_band(structure) if frequency_max is None else frequency_max
 

@@ -21,7 +21,7 @@ from squealpipe.structures.coordinates import Coordinates, StaticSpace
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.pencil import DENSE
 from squealpipe.structures.reduction import quick_values
-from squealpipe.structures.schema.squealing import SQUEAL_LIMITS
+from squealpipe.structures.schema.squealing import SquealLimits
 from squealpipe.structures.squeal.plant import Plant
 
 
@@ -59,7 +59,7 @@ def added_damping(plant: Plant) -> tuple[float, Outcome]:
 def _confirmed(grows: Callable[[float], bool], ratio: float) -> bool:
     """Tell whether modes of the whole grow with 1 % less damping, and none with 1 % more."""
     if not math.isfinite(ratio):
-        return grows(SQUEAL_LIMITS.most_damping)
+        return grows(SquealLimits.most_damping)
     return not grows(1.01 * ratio) and grows(0.99 * ratio)
 
 
@@ -105,10 +105,7 @@ class _Damped:
             near: the ratio of a reduction, in which all larger ones were tried; 0: none.
         """
         # ratios of damping between which stability is taken to change once at most
-        tried = [
-            *np.geomspace(1e-4, SQUEAL_LIMITS.most_damping, 24)[::-1].tolist(),
-            0.0,
-        ]
+        tried = [*np.geomspace(1e-4, SquealLimits.most_damping, 24)[::-1].tolist(), 0.0]
         if near > 0.0 and not self.grows(1.25 * near):
             tried = [1.25 * near, *(ratio for ratio in tried if ratio < 0.8 * near)]
         above = math.nan

@@ -60,9 +60,6 @@ class RunLengths:
     """Starts that settle side by side then."""
 
 
-RUN_LENGTHS = RunLengths()
-
-
 def arrival(run: SettledRun) -> float:
     """Return when the kinetic energy first came to half of what it settles to, s."""
     energies = np.concatenate([window.kinetic for window in run.windows])
@@ -80,17 +77,17 @@ def arrival(run: SettledRun) -> float:
 def horizon(plant: Plant, t_end: float | None) -> tuple[float, float, float]:
     """Time for growth, length of the first window, and the end of all runs, s."""
     period = 1.0 / plant.slowest
-    if t_end is not None and t_end < RUN_LENGTHS.fewest_periods * period:
+    if t_end is not None and t_end < RunLengths.fewest_periods * period:
         raise ValueError(
-            f"t_end = {t_end!r}: {RUN_LENGTHS.fewest_periods:g} periods of the slowest mode are "
-            f"needed at least, {RUN_LENGTHS.fewest_periods * period:.3g} s"
+            f"t_end = {t_end!r}: {RunLengths.fewest_periods:g} periods of the slowest mode are "
+            f"needed at least, {RunLengths.fewest_periods * period:.3g} s"
         )
-    first = RUN_LENGTHS.first_window * period
+    first = RunLengths.first_window * period
     growing = 0.0
     if plant.unstable.size:
         rate = plant.spectrum.values.real[plant.unstable].min()
-        growing = min(GROWTH / rate, RUN_LENGTHS.longest_growth * period)
-    most = RUN_LENGTHS.most_periods * period + growing if t_end is None else t_end
+        growing = min(GROWTH / rate, RunLengths.longest_growth * period)
+    most = RunLengths.most_periods * period + growing if t_end is None else t_end
     growing = min(max(growing, first), 0.25 * most)
     return growing, min(first, 0.25 * most), most
 
@@ -122,9 +119,9 @@ def times_of(
         return np.full(len(rates), slowest_growing), first, first, most
     period = 1.0 / plant.slowest
     slowest = plant.spectrum.values.real[plant.asked].min()
-    shortest = max(Quietness.shown / slowest, RUN_LENGTHS.fewest_in_window * period)
+    shortest = max(Quietness.shown / slowest, RunLengths.fewest_in_window * period)
     shortest = min(shortest, first)
-    longest = min(RUN_LENGTHS.longest_growth * period, 0.25 * most)
+    longest = min(RunLengths.longest_growth * period, 0.25 * most)
     return np.clip(GROWTH / rates, first, longest), shortest, first, most
 
 
@@ -151,7 +148,7 @@ def settings_of(
     raw = run(plant, state[None], span * np.ones(1), alone, most_steps=few_steps)
     cost = (time.process_time() - began) / float(raw["reached"][0])
     seconds = cost * span
-    if seconds < RUN_LENGTHS.long:
+    if seconds < RunLengths.long:
         return how, seconds
     return replace(how, workers=how.workers or available_cores(), cost=cost), seconds
 
@@ -173,12 +170,12 @@ def settle(
 
     def second(_: int, window: StructureWindows) -> float:
         frequency = plant.rest[0][window.velocities.argmax()] / (2.0 * np.pi)
-        wanted = max(RUN_LENGTHS.first_window / max(frequency, plant.slowest), shortest)
+        wanted = max(RunLengths.first_window / max(frequency, plant.slowest), shortest)
         # by halves: windows of all starts then have the same lengths in the end
         return float(longest * 2.0 ** min(np.ceil(np.log2(wanted / longest)), 0.0))
 
     settled: list[SettledRun] = []
-    count = RUN_LENGTHS.side_by_side if how.cost else len(starts)
+    count = RunLengths.side_by_side if how.cost else len(starts)
     for first in with_progress(range(0, len(starts), count)):
         if stop_is_asked() and settled:
             break
@@ -207,12 +204,10 @@ def settle_on(
     _, _, most = horizon(plant, t_end)
     if t_end is None:
         # a run that leaves what it seemed to have settled on goes on for so many periods
-        most *= 20_000.0 / RUN_LENGTHS.most_periods
+        most *= 20_000.0 / RunLengths.most_periods
     length = 2.0 * max(float(run.last.length) for run in settled)
     left = most - max(run.elapsed for run in settled)
-    if (
-        left < RUN_LENGTHS.fewest_periods * length
-    ):  # without statistics, and two windows
+    if left < RunLengths.fewest_periods * length:  # without statistics, and two windows
         return [replace(run, verdict=Verdict.undetermined) for run in settled]
     starts = [start_at(plant, run.last.final) for run in settled]
     regimes = np.array([run.last.regimes for run in settled])

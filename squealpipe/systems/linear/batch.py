@@ -10,8 +10,8 @@ import numpy as np
 from squealpipe.systems.cycles.sensitivity import growth
 from squealpipe.systems.integrate import Batch, RunOptions, table_of
 from squealpipe.systems.linear.loop import functions, loop
-from squealpipe.systems.linear.matrices import COULOMB, TABLE, ContactMatrices
-from squealpipe.systems.linear.numbering import MARGIN, Numbering
+from squealpipe.systems.linear.matrices import ContactMatrices, friction_number
+from squealpipe.systems.linear.numbering import Numbering, surface_number
 from squealpipe.systems.linear.plan import plan
 from squealpipe.systems.record import single_run
 
@@ -31,7 +31,7 @@ def coefficients_of_contacts(
         matrices.laws, matrices.pieces, compressions, coefficients, strict=True
     ):
         # of a table μ is a factor
-        at_rest = pieces[0, 2] if law == TABLE else 1.0
+        at_rest = pieces[0, 2] if law == friction_number.table else 1.0
         yield (
             values[mu],
             values[mu] * at_rest if static is None else values[static],
@@ -129,11 +129,15 @@ class LinearBatch(Batch):
         n, c = matrices.n_modes, matrices.n_contacts
         events = len(numbering.surfaces) + len(numbering.outputs)
         self.n_series = 2 * n + events
-        smooth = np.isin(matrices.laws, [COULOMB, TABLE]).all()
+        smooth = np.isin(
+            matrices.laws, [friction_number.coulomb, friction_number.table]
+        ).all()
         # rates that are no polynomials, and friction in stick beside them or beside cubics
         self.steep = np.repeat([0, int(not smooth)], n)
         self.bent = np.zeros(events, np.int64)
-        self.bent[MARGIN * c : (MARGIN + 2) * c] = matrices.curved
+        self.bent[surface_number.margin * c : (surface_number.margin + 2) * c] = (
+            matrices.curved
+        )
 
     def _series(self, n_terms: int) -> dict[str, Any]:
         return {

@@ -29,28 +29,13 @@ from squealpipe.systems.linear.batch import coefficients_of_contacts, numbers_of
 from squealpipe.systems.linear.forces import DEPENDENT, limit_left
 from squealpipe.systems.linear.legs import SIZES, TABLE, run_legs
 from squealpipe.systems.linear.matrices import (
-    DIRECTION,
-    EXPONENTIAL,
-    FIRST_OF_PIECE,
     FIRST_OF_PRESS,
-    HYPERBOLIC,
-    IS_CLOSED,
-    IS_STUCK,
     ContactMatrices,
+    friction_number,
     full_matrix,
+    regime_constant,
 )
-from squealpipe.systems.linear.matrices import TABLE as FRICTION_TABLE
-from squealpipe.systems.linear.numbering import (
-    AFTER_START,
-    BEFORE_END,
-    LAG,
-    MARGIN,
-    PRESS_END,
-    PRESS_START,
-    PRESSING,
-    REVERSAL,
-    Numbering,
-)
+from squealpipe.systems.linear.numbering import Numbering, surface_number, switch_number
 from squealpipe.systems.linear.plan import plan
 from squealpipe.systems.scales import Scales
 from squealpipe.systems.taylor.lanes import Workspace, taylor_terms
@@ -93,14 +78,14 @@ class Forces:
         """
         m = self.matrices = matrices
         self.constants = constants
-        self.stuck = np.flatnonzero(constants[:, IS_STUCK])
+        self.stuck = np.flatnonzero(constants[:, regime_constant.is_stuck])
 
         def along(values: Vector) -> Vector:
             return values.reshape(-1, *(1,) * (state.ndim - 1))
 
         self.mu, self.static, self.reference = map(along, coefficients[:3])
-        self.closed = along(constants[:, IS_CLOSED])
-        self.side = along(constants[:, DIRECTION])
+        self.closed = along(constants[:, regime_constant.is_closed])
+        self.side = along(constants[:, regime_constant.direction])
         self.springs, pressed = map(along, m.lines(constants, preload))
         q, v = np.split(state, 2)
         lift = m.normals.T @ q
@@ -133,16 +118,18 @@ class Forces:
         laws, mu, reference = self.matrices.laws, self.mu, self.reference
         u, fall = self.side * self.speed / reference, self.static - mu
         value, slope = mu + 0.0 * u, 0.0 * u
-        at = laws == EXPONENTIAL
+        at = laws == friction_number.exponential
         part = fall[at] * np.exp(-u[at])
         value[at] += part
         slope[at] = -part / reference[at]
-        at = laws == HYPERBOLIC
+        at = laws == friction_number.hyperbolic
         value[at] += fall[at] / (1.0 + u[at])
         slope[at] = -fall[at] / reference[at] / (1.0 + u[at]) ** 2
-        at = laws == FRICTION_TABLE
+        at = laws == friction_number.table
         if at.any():
-            fields = self.constants[at, FIRST_OF_PIECE:FIRST_OF_PRESS].T
+            fields = self.constants[
+                at, regime_constant.first_of_piece : FIRST_OF_PRESS
+            ].T
             start, _, *c = (each.reshape(mu[at].shape) for each in fields)
             x = u[at] - start
             value[at] = mu[at] * (c[0] + x * (c[1] + x * (c[2] + x * c[3])))
@@ -221,19 +208,21 @@ class Forces:
 
     def surface(self, kind: int, i: int) -> tuple[Any, Vector]:
         """Return a surface of a contact and its derivative by the state."""
-        if kind == PRESSING:
+        if kind == surface_number.pressing:
             return self.press[i], self.press_by[i]
         lag, lag_by = self.side[i] * self.speed[i], self.side[i] * self.speed_by[i]
-        if kind == LAG:
+        if kind == surface_number.lag:
             return lag, lag_by
-        if kind in {BEFORE_END, AFTER_START}:
-            knot = self.constants[i, FIRST_OF_PIECE + (kind == BEFORE_END)]
+        if kind in {surface_number.before_end, surface_number.after_start}:
+            knot = self.constants[
+                i, regime_constant.first_of_piece + (kind == surface_number.before_end)
+            ]
             return lag - self.reference[i] * knot, lag_by
-        if kind in {PRESS_END, PRESS_START}:
+        if kind in {surface_number.press_end, surface_number.press_start}:
             start, end, c0, c1 = self.constants[i, FIRST_OF_PRESS:]
-            knot = c0 + c1 * (end - start) * (kind == PRESS_END)
+            knot = c0 + c1 * (end - start) * (kind == surface_number.press_end)
             return self.press[i] - knot, self.press_by[i]
-        sign = 1.0 if kind == MARGIN else -1.0
+        sign = 1.0 if kind == surface_number.margin else -1.0
         return (
             self.static[i] * self.press[i] - sign * self.stick[i],
             self.static[i] * self.press_by[i] - sign * self.stick_by[i],
@@ -404,7 +393,7 @@ class LinearFlow(Flow):
         conditions: list[float] = []
         if each:
             i, m = each.contact, here.matrices
-            if each.what == REVERSAL:
+            if each.what == switch_number.reversal:
                 push = np.concatenate(
                     [np.zeros(n // 2), m.drags[:, i] / m.mobility[i, i]]
                 )
@@ -497,7 +486,10 @@ class LinearFlow(Flow):
         terms, n_surfaces = taylor_terms(1e-16), len(numbering.surfaces)
         n_series = n + n_surfaces + len(numbering.outputs)
         active = np.zeros(n_surfaces, np.int64)
-        active[MARGIN * matrices.n_contacts : (MARGIN + 2) * matrices.n_contacts] = 1
+        active[
+            surface_number.margin * matrices.n_contacts : (surface_number.margin + 2)
+            * matrices.n_contacts
+        ] = 1
         counts = np.zeros(len(states), np.int64)
         arrays = {
             "rows": np.concatenate([given, constants[0]])[:, None].copy(),

@@ -12,56 +12,43 @@ Cost: an order takes four products of n × c numbers; a switch that changes S ta
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 from squealpipe.systems.compiled import inline, part
 from squealpipe.systems.linear.matrices import (
-    DIRECTION,
-    EXPONENTIAL,
-    FIRST_OF_PIECE,
     FIRST_OF_PRESS,
-    HYPERBOLIC,
-    IS_CLOSED,
-    IS_STUCK,
-    TABLE,
+    friction_number,
+    regime_constant,
 )
 from squealpipe.systems.linear.numbering import (
-    BEFORE_END,
-    CONTACT,
-    KNOT,
-    LAG,
-    LANDS,
-    MARGIN,
-    MARGIN_BACK,
     OF_CONTACT,
-    PASSES,
-    PRESS_END,
-    PRESSING,
-    REVERSAL,
-    REVERSES,
-    SEPARATES,
-    SEPARATION,
-    SLIPS,
-    SLIPS_AWAY,
-    STICKS,
+    event_number,
+    surface_number,
+    switch_number,
 )
-from squealpipe.systems.linear.plan import (
-    BASE,
-    BELT,
-    COEFFICIENTS,
-    PLACE,
-    PRELOAD,
-    RATE,
-    SCALE,
-    SPEED,
-)
+from squealpipe.systems.linear.plan import mode_row, parameter_row
 from squealpipe.systems.taylor.simd import ROW, fma, load, splat, store
 
-(
-    LAGS, RELIEVED, SLIP, STICK, OF_PRESS, OF_LAG, OF_STICK, CLOSED, SIDE, LIMIT, DRAG,
-    PRESS,
-) = range(12)  # fmt: skip
-"""Rows of the work by contact."""
+
+class ContactRows(NamedTuple):
+    """Rows of the work by contact."""
+
+    lags: int = 0
+    relieved: int = 1
+    slip: int = 2
+    stick: int = 3
+    of_press: int = 4
+    of_lag: int = 5
+    of_stick: int = 6
+    closed: int = 7
+    side: int = 8
+    limit: int = 9
+    drag: int = 10
+    press: int = 11
+
+
+contact_row = ContactRows()
+
 DEPENDENT = 1e-13
 """Share of its own mobility that a sticking direction must add to those before it.
 
@@ -72,20 +59,22 @@ Below it round-off decides; doubling it merges directions 1.4 times as far apart
 @inline
 def _constant(k: Any, rows: Any, contact: int, which: int) -> Any:
     """Return a constant of a contact's regime."""
-    return rows[COEFFICIENTS + OF_CONTACT * k.c + 1 + contact * k.width + which, 0]
+    return rows[
+        parameter_row.coefficients + OF_CONTACT * k.c + 1 + contact * k.width + which, 0
+    ]
 
 
 @part
 def _coefficients(k: Any, rows: Any, i: int) -> Any:
     """Return μ, the coefficient of static friction and the reference speed of a contact."""
-    at = COEFFICIENTS + OF_CONTACT * i
+    at = parameter_row.coefficients + OF_CONTACT * i
     return rows[at, 0], rows[at + 1, 0], rows[at + 2, 0]
 
 
 @inline
 def _unit(k: Any, rows: Any) -> Any:
     """Return the unit of time."""
-    return rows[COEFFICIENTS + OF_CONTACT * k.c, 0]
+    return rows[parameter_row.coefficients + OF_CONTACT * k.c, 0]
 
 
 @part
@@ -96,7 +85,7 @@ def _line(k: Any, rows: Any, i: int) -> Any:
         _constant(k, rows, i, FIRST_OF_PRESS + 2),
     )
     stiffness = _constant(k, rows, i, FIRST_OF_PRESS + 3)
-    at_rest = rows[COEFFICIENTS + OF_CONTACT * i + 3, 0]
+    at_rest = rows[parameter_row.coefficients + OF_CONTACT * i + 3, 0]
     return stiffness, c0 + stiffness * (at_rest - start)
 
 
@@ -260,17 +249,19 @@ def _add_product(matrix: Any, full: int, by: Any, total: Any) -> None:
 def coefficient(k: Any, rows: Any, i: int, speed: float) -> Any:
     """Return μ at a sliding speed of a contact in its regime."""
     mu, static, reference = _coefficients(k, rows, i)
-    lag = _constant(k, rows, i, DIRECTION) * speed
+    lag = _constant(k, rows, i, regime_constant.direction) * speed
     law = k.laws[i]
-    if law == EXPONENTIAL:
+    if law == friction_number.exponential:
         return mu + (static - mu) * math.exp(-lag / reference)
-    if law == HYPERBOLIC:
+    if law == friction_number.hyperbolic:
         return mu + (static - mu) * reference / (reference + lag)
-    if law == TABLE:
-        at = lag / reference - _constant(k, rows, i, FIRST_OF_PIECE)
+    if law == friction_number.table:
+        at = lag / reference - _constant(k, rows, i, regime_constant.first_of_piece)
         value = 0.0
         for power in range(3, -1, -1):
-            value = value * at + _constant(k, rows, i, FIRST_OF_PIECE + 2 + power)
+            value = value * at + _constant(
+                k, rows, i, regime_constant.first_of_piece + 2 + power
+            )
         return mu * value
     return mu
 
@@ -280,7 +271,7 @@ def settle_stick(k: Any, rows: Any) -> None:
     """Factorize the mobility of the contacts that stick, where they are others than before."""
     count, same = 0, True
     for i in range(k.c):
-        if _constant(k, rows, i, IS_STUCK) > 0.0:
+        if _constant(k, rows, i, regime_constant.is_stuck) > 0.0:
             same = same and count < k.counts[0] and k.stuck[count] == i
             k.stuck[count] = i
             count += 1
@@ -392,26 +383,30 @@ def state_forces(k: Any, rows: Any, z: Any, pressing: Any) -> None:
     """Compute forces at a state: the work by contact, and accelerations without those of stick."""
     n, c = k.n, k.c
     q, v = z[:n], z[n : 2 * n]
-    lags, base, preload = k.by_contact[LAGS], k.by_mode[BASE], rows[PRELOAD, 0]
+    lags, base, preload = (
+        k.by_contact[contact_row.lags],
+        k.by_mode[mode_row.base],
+        rows[parameter_row.preload, 0],
+    )
     _write_columns(k.normals, q, pressing)
     _write_columns(k.tangentials, v, lags)
     for j in range(n):
         base[j] = k.load[j] * (preload if k.balanced else 1.0)
     _add_product(k.pull_back, k.full_stiffness, q, base)
     _add_product(k.drag_back, k.full_damping, v, base)
-    relieved, slip = k.by_contact[RELIEVED], k.by_contact[SLIP]
+    relieved, slip = k.by_contact[contact_row.relieved], k.by_contact[contact_row.slip]
     for i in range(c):
         lift = pressing[i]
         pressing[i] = k.preloads[i] * preload - k.springs[i] * lift
-        lags[i] = k.speeds[i] * rows[BELT, 0] - lags[i]
-        closed = _constant(k, rows, i, IS_CLOSED) > 0.0
+        lags[i] = k.speeds[i] * rows[parameter_row.belt, 0] - lags[i]
+        closed = _constant(k, rows, i, regime_constant.is_closed) > 0.0
         relieved[i] = k.preloads[i] * preload if closed else k.springs[i] * lift
         if k.n_tables and k.press_counts[i] > 1:
             stiffness, at_rest = _line(k, rows, i)
             pressing[i] = at_rest - stiffness * lift
             if closed:
                 relieved[i] = at_rest + (k.springs[i] - stiffness) * lift
-        direction, slip[i] = _constant(k, rows, i, DIRECTION), 0.0
+        direction, slip[i] = _constant(k, rows, i, regime_constant.direction), 0.0
         if closed and direction != 0.0:
             slip[i] = direction * pressing[i] * coefficient(k, rows, i, lags[i])
     _add_columns(k.push_rows, relieved, base)
@@ -422,7 +417,11 @@ def state_forces(k: Any, rows: Any, z: Any, pressing: Any) -> None:
 @part
 def _stick_forces(k: Any, base: Any) -> None:
     """Compute the friction of the contacts that stick from all other accelerations."""
-    count, stick, pulls = k.counts[0], k.by_contact[STICK], k.by_contact[RELIEVED]
+    count, stick, pulls = (
+        k.counts[0],
+        k.by_contact[contact_row.stick],
+        k.by_contact[contact_row.relieved],
+    )
     for a in range(count):
         pulls[a] = dot(k.tangent_rows[k.stuck[a]], base)
     for i in range(k.c):
@@ -436,7 +435,7 @@ def add_stick(k: Any, base: Any) -> None:
     """Add the accelerations by the friction of the contacts that stick."""
     for a in range(k.counts[0]):
         i = k.stuck[a]
-        _add_row(k.drag_rows[i], k.by_contact[STICK, i], base)
+        _add_row(k.drag_rows[i], k.by_contact[contact_row.stick, i], base)
 
 
 @part
@@ -447,18 +446,18 @@ def holding(k: Any, i: int) -> Any:
     that is left, over the mobility with the contacts held that stick. A direction that these hold
     already needs no friction more.
     """
-    count, held = k.counts[0], k.by_contact[RELIEVED]
-    friction = k.by_contact[SLIP, i] + k.by_contact[STICK, i]
+    count, held = k.counts[0], k.by_contact[contact_row.relieved]
+    friction = k.by_contact[contact_row.slip, i] + k.by_contact[contact_row.stick, i]
     for a in range(count):
         if k.stuck[a] == i:
             return friction
     whole = k.mobility[i, i]
-    mobility, acceleration = whole, dot(k.tangent_rows[i], k.by_mode[BASE])
+    mobility, acceleration = whole, dot(k.tangent_rows[i], k.by_mode[mode_row.base])
     for a in range(count):
         held[a] = k.mobility[i, k.stuck[a]]
     for a in range(count):
         mobility -= held[a] * dot(k.held[a, :count], held[:count])
-        acceleration += held[a] * k.by_contact[STICK, k.stuck[a]]
+        acceleration += held[a] * k.by_contact[contact_row.stick, k.stuck[a]]
     if mobility <= DEPENDENT * whole:
         return friction
     return friction - acceleration / mobility
@@ -493,16 +492,19 @@ def _sizes_of_contacts(
         of_q, of_v: sizes of displacements and velocities, or of their rates.
         constant: 1 where what does not change counts, 0 for rates.
     """
-    press, lag = k.by_contact[OF_PRESS], k.by_contact[OF_LAG]
+    press, lag = k.by_contact[contact_row.of_press], k.by_contact[contact_row.of_lag]
     for i in range(k.c):
         press[i], lag[i] = 0.0, 0.0
     _add_sizes(k.normals, of_q, press)
     _add_sizes(k.tangentials, of_v, lag)
-    preload, belt = constant * abs(rows[PRELOAD, 0]), constant * abs(rows[BELT, 0])
+    preload, belt = (
+        constant * abs(rows[parameter_row.preload, 0]),
+        constant * abs(rows[parameter_row.belt, 0]),
+    )
     for i in range(k.c):
         if k.n_tables and k.press_counts[i] > 1:
             stiffness, _ = _line(k, rows, i)
-            at_rest = abs(rows[COEFFICIENTS + OF_CONTACT * i + 3, 0])
+            at_rest = abs(rows[parameter_row.coefficients + OF_CONTACT * i + 3, 0])
             at_rest += abs(_constant(k, rows, i, FIRST_OF_PRESS))
             fixed = abs(_constant(k, rows, i, FIRST_OF_PRESS + 2)) + stiffness * at_rest
             press[i] = constant * fixed + stiffness * press[i]
@@ -530,14 +532,17 @@ def _sizes_of_rates(
     Args:
         scale: (n,) gets the sizes of the accelerations.
     """
-    preload = constant * abs(rows[PRELOAD, 0])
-    press, force = k.by_contact[OF_PRESS], k.by_contact[RELIEVED]
+    preload = constant * abs(rows[parameter_row.preload, 0])
+    press, force = (
+        k.by_contact[contact_row.of_press],
+        k.by_contact[contact_row.relieved],
+    )
     for j in range(k.n):
         scale[j] = abs(k.load[j]) * (preload if k.balanced else constant)
     _sizes_of_products(k.pull_back, k.full_stiffness, of_q, scale)
     _sizes_of_products(k.drag_back, k.full_damping, of_v, scale)
     for i in range(k.c):
-        closed = _constant(k, rows, i, IS_CLOSED) > 0.0
+        closed = _constant(k, rows, i, regime_constant.is_closed) > 0.0
         force[i] = abs(k.preloads[i]) * preload if closed else press[i]
         if k.n_tables and k.press_counts[i] > 1:
             stiffness, _ = _line(k, rows, i)
@@ -545,10 +550,14 @@ def _sizes_of_rates(
     _add_sizes(k.push_rows, force, scale)
     for i in range(k.c):
         mu, static, _ = _coefficients(k, rows, i)
-        slips = _constant(k, rows, i, DIRECTION) != 0.0
+        slips = _constant(k, rows, i, regime_constant.direction) != 0.0
         force[i] = max(abs(mu), abs(static)) * press[i] if slips else 0.0
     _add_sizes(k.drag_rows, force, scale)
-    count, pulls, stick = k.counts[0], k.by_contact[RELIEVED], k.by_contact[OF_STICK]
+    count, pulls, stick = (
+        k.counts[0],
+        k.by_contact[contact_row.relieved],
+        k.by_contact[contact_row.of_stick],
+    )
     for a in range(count):
         row, total = k.tangent_rows[k.stuck[a]], 0.0
         for j in range(k.n):
@@ -564,30 +573,35 @@ def _sizes_of_rates(
 @part
 def _values(k: Any, rows: Any, z: Any, out: Any) -> None:
     """Write the value of each surface, and the size of its terms."""
-    c, lags = k.c, k.by_contact[LAGS]
-    state_forces(k, rows, z, k.by_contact[PRESS])
+    c, lags = k.c, k.by_contact[contact_row.lags]
+    state_forces(k, rows, z, k.by_contact[contact_row.press])
     for i in range(c):
         _, static, reference = _coefficients(k, rows, i)
         pressing, lag = (
-            k.by_contact[PRESS, i],
-            _constant(k, rows, i, DIRECTION) * lags[i],
+            k.by_contact[contact_row.press, i],
+            _constant(k, rows, i, regime_constant.direction) * lags[i],
         )
-        of_press, of_lag = k.by_contact[OF_PRESS, i], k.by_contact[OF_LAG, i]
-        at = 3 * (PRESSING * c + i)
+        of_press, of_lag = (
+            k.by_contact[contact_row.of_press, i],
+            k.by_contact[contact_row.of_lag, i],
+        )
+        at = 3 * (surface_number.pressing * c + i)
         out[at], out[at + 1] = pressing, of_press
-        at = 3 * (LAG * c + i)
+        at = 3 * (surface_number.lag * c + i)
         out[at], out[at + 1] = lag, of_lag
         for which in range(2):
-            at, sign = 3 * ((MARGIN + which) * c + i), 1.0 - 2.0 * which
-            out[at] = static * pressing - sign * k.by_contact[STICK, i]
-            out[at + 1] = abs(static) * of_press + k.by_contact[OF_STICK, i]
-            if k.n_sorts > BEFORE_END:
-                knot = reference * _constant(k, rows, i, FIRST_OF_PIECE + 1 - which)
-                at = 3 * ((BEFORE_END + which) * c + i)
+            at, sign = 3 * ((surface_number.margin + which) * c + i), 1.0 - 2.0 * which
+            out[at] = static * pressing - sign * k.by_contact[contact_row.stick, i]
+            out[at + 1] = abs(static) * of_press + k.by_contact[contact_row.of_stick, i]
+            if k.n_sorts > surface_number.before_end:
+                knot = reference * _constant(
+                    k, rows, i, regime_constant.first_of_piece + 1 - which
+                )
+                at = 3 * ((surface_number.before_end + which) * c + i)
                 out[at], out[at + 1] = lag - knot, of_lag + abs(knot)
-            if k.n_sorts > PRESS_END:
+            if k.n_sorts > surface_number.press_end:
                 knot = _press_knot(k, rows, i, which)
-                at = 3 * ((PRESS_END + which) * c + i)
+                at = 3 * ((surface_number.press_end + which) * c + i)
                 out[at], out[at + 1] = pressing - knot, of_press + abs(knot)
 
 
@@ -596,11 +610,14 @@ def _output_values(k: Any, rows: Any, z: Any, sizes: Any, out: Any) -> None:
     """Write the value of each output, and the size of its terms."""
     n, c = k.n, k.c
     for i in range(c):
-        closed = _constant(k, rows, i, IS_CLOSED) > 0.0
+        closed = _constant(k, rows, i, regime_constant.is_closed) > 0.0
         at = 6 * i
-        out[at] = k.by_contact[PRESS, i] if closed else 0.0
-        out[at + 1] = k.by_contact[OF_PRESS, i]
-        out[at + 3], out[at + 4] = k.by_contact[LAGS, i], k.by_contact[OF_LAG, i]
+        out[at] = k.by_contact[contact_row.press, i] if closed else 0.0
+        out[at + 1] = k.by_contact[contact_row.of_press, i]
+        out[at + 3], out[at + 4] = (
+            k.by_contact[contact_row.lags, i],
+            k.by_contact[contact_row.of_lag, i],
+        )
     for shape in range(k.n_shapes):
         value, size = 0.0, 0.0
         for j in range(n):
@@ -616,30 +633,36 @@ def gauge_state(k: Any, rows: Any, z: Any, sizes: Any, out: Any) -> None:
     n_surfaces = k.n_sorts * c
     of_q, of_v = sizes[:n], sizes[n : 2 * n]
     _sizes_of_contacts(k, rows, of_q, of_v, 1.0)
-    _sizes_of_rates(k, rows, of_q, of_v, 1.0, k.by_mode[SCALE])
+    _sizes_of_rates(k, rows, of_q, of_v, 1.0, k.by_mode[mode_row.scale])
     _values(k, rows, z, out)
     _output_values(k, rows, z, sizes, out[3 * n_surfaces :])
-    scale, rate = k.by_mode[SCALE], k.by_mode[RATE]
+    scale, rate = k.by_mode[mode_row.scale], k.by_mode[mode_row.rate]
     for a in range(k.counts[0]):
         i = k.stuck[a]
         for j in range(n):
-            scale[j] += abs(k.drag_rows[i, j]) * k.by_contact[OF_STICK, i]
+            scale[j] += abs(k.drag_rows[i, j]) * k.by_contact[contact_row.of_stick, i]
     for j in range(n):
         rate[j], scale[j] = unit * of_v[j], unit * scale[j]
     _sizes_of_contacts(k, rows, rate, scale, 0.0)
     if k.counts[0]:
-        _sizes_of_rates(k, rows, rate, scale, 0.0, k.by_mode[BASE])
+        _sizes_of_rates(k, rows, rate, scale, 0.0, k.by_mode[mode_row.base])
     for i in range(c):
         _, static, _ = _coefficients(k, rows, i)
-        of_press, of_lag = k.by_contact[OF_PRESS, i], k.by_contact[OF_LAG, i]
-        out[3 * (PRESSING * c + i) + 2], out[3 * (LAG * c + i) + 2] = of_press, of_lag
+        of_press, of_lag = (
+            k.by_contact[contact_row.of_press, i],
+            k.by_contact[contact_row.of_lag, i],
+        )
+        (
+            out[3 * (surface_number.pressing * c + i) + 2],
+            out[3 * (surface_number.lag * c + i) + 2],
+        ) = of_press, of_lag
         for which in range(2):
-            of_margin = abs(static) * of_press + k.by_contact[OF_STICK, i]
-            out[3 * ((MARGIN + which) * c + i) + 2] = of_margin
-            if k.n_sorts > BEFORE_END:
-                out[3 * ((BEFORE_END + which) * c + i) + 2] = of_lag
-            if k.n_sorts > PRESS_END:
-                out[3 * ((PRESS_END + which) * c + i) + 2] = of_press
+            of_margin = abs(static) * of_press + k.by_contact[contact_row.of_stick, i]
+            out[3 * ((surface_number.margin + which) * c + i) + 2] = of_margin
+            if k.n_sorts > surface_number.before_end:
+                out[3 * ((surface_number.before_end + which) * c + i) + 2] = of_lag
+            if k.n_sorts > surface_number.press_end:
+                out[3 * ((surface_number.press_end + which) * c + i) + 2] = of_press
 
 
 @part
@@ -655,7 +678,9 @@ def slip_regime(k: Any, rows: Any, i: int, speed: float, press: int) -> Any:
     piece = count // 2 - 1
     while (
         piece > 0
-        and abs(speed) - reference * k.table[first + 2 * piece, FIRST_OF_PIECE] < 0.0
+        and abs(speed)
+        - reference * k.table[first + 2 * piece, regime_constant.first_of_piece]
+        < 0.0
     ):
         piece -= 1
     return press * count + 2 * piece + side
@@ -671,27 +696,32 @@ def change_state(k: Any, rows: Any, which: int, z: Any, out: Any) -> None:
     after = out[2 : 2 + 2 * n]
     for j in range(2 * n):
         after[j] = z[j]
-    regime, kind = 0, LANDS
-    if what == SEPARATION:
-        regime, kind = k.first[0, i + 1] - first - 1, SEPARATES
-    elif what == KNOT:
-        regime, kind = target - first, PASSES
-    elif what == SLIPS or (what != CONTACT and what != REVERSAL):
-        regime, kind = block + (0 if what == SLIPS else 1), SLIPS_AWAY
+    regime, kind = 0, event_number.lands
+    if what == switch_number.separation:
+        regime, kind = k.first[0, i + 1] - first - 1, event_number.separates
+    elif what == switch_number.knot:
+        regime, kind = target - first, event_number.passes
+    elif what == switch_number.slips or (
+        what != switch_number.contact and what != switch_number.reversal
+    ):
+        regime, kind = (
+            block + (0 if what == switch_number.slips else 1),
+            event_number.slips_away,
+        )
     else:
         # values go where nothing is read any more
-        pressing = k.by_contact[OF_PRESS]
+        pressing = k.by_contact[contact_row.of_press]
         state_forces(k, rows, z, pressing)
-        speed = k.by_contact[LAGS, i]
-        if what == CONTACT:
+        speed = k.by_contact[contact_row.lags, i]
+        if what == switch_number.contact:
             regime = slip_regime(k, rows, i, speed, 0)
         else:
             for j in range(n):
                 after[n + j] += k.drag_rows[i, j] / k.mobility[i, i] * speed
-            regime, kind = block, REVERSES
+            regime, kind = block, event_number.reverses
             if holds(k, rows, i, pressing[i]):
-                regime, kind = block + count - 1, STICKS
-            elif _constant(k, rows, i, DIRECTION) >= 0.0:
+                regime, kind = block + count - 1, event_number.sticks
+            elif _constant(k, rows, i, regime_constant.direction) >= 0.0:
                 regime = block + 1
     out[0], out[1] = float(first + regime), float(k.first[1, i] + kind)
 
@@ -705,15 +735,15 @@ def _list_forces(k: Any, rows: Any) -> None:
     """
     opened, slipping = 0, 0
     for i in range(k.c):
-        closed = _constant(k, rows, i, IS_CLOSED) > 0.0
-        direction = _constant(k, rows, i, DIRECTION)
+        closed = _constant(k, rows, i, regime_constant.is_closed) > 0.0
+        direction = _constant(k, rows, i, regime_constant.direction)
         mu, static, _ = _coefficients(k, rows, i)
-        k.by_contact[CLOSED, i], k.by_contact[SIDE, i] = (
+        k.by_contact[contact_row.closed, i], k.by_contact[contact_row.side, i] = (
             1.0 if closed else 0.0,
             direction,
         )
-        k.by_contact[LIMIT, i] = static
-        k.by_contact[DRAG, i] = direction * mu if closed else 0.0
+        k.by_contact[contact_row.limit, i] = static
+        k.by_contact[contact_row.drag, i] = direction * mu if closed else 0.0
         if not closed:
             k.lists[0, opened] = i
             opened += 1
@@ -734,17 +764,22 @@ def _forces_of_lifts(k: Any, preload: float, belt: float) -> None:
     springs, preloads = k.springs.ctypes.data, k.preloads.ctypes.data
     for place in range(0, width, ROW):
         at = work + place
-        shut = load(at + CLOSED * width)
-        force = load(springs + place) * load(at + PRESS * width)
+        shut = load(at + contact_row.closed * width)
+        force = load(springs + place) * load(at + contact_row.press * width)
         pushed = load(preloads + place) * preload
         pressing = pushed - force
-        store(at + PRESS * width, pressing)
-        store(at + RELIEVED * width, shut * pushed + (1.0 - shut) * force)
-        store(at + SLIP * width, load(at + DRAG * width) * pressing)
+        store(at + contact_row.press * width, pressing)
+        store(at + contact_row.relieved * width, shut * pushed + (1.0 - shut) * force)
+        store(
+            at + contact_row.slip * width,
+            load(at + contact_row.drag * width) * pressing,
+        )
         carried = load(k.speeds.ctypes.data + place) * belt
-        slide = carried - load(at + LAGS * width)
-        store(at + LAGS * width, slide)
-        store(at + OF_LAG * width, load(at + SIDE * width) * slide)
+        slide = carried - load(at + contact_row.lags * width)
+        store(at + contact_row.lags * width, slide)
+        store(
+            at + contact_row.of_lag * width, load(at + contact_row.side * width) * slide
+        )
 
 
 @inline
@@ -756,15 +791,19 @@ def _contacts_at_order(k: Any, rows: Any, mem: Any, order: int, q: Any, v: Any) 
     """
     n, c, row = k.n, k.c, mem[order]
     first_output = 2 * n + k.n_sorts * c
-    pressing, slides = k.by_contact[PRESS], k.by_contact[LAGS]
-    lags, closed = k.by_contact[OF_LAG], k.by_contact[CLOSED]
+    pressing, slides = k.by_contact[contact_row.press], k.by_contact[contact_row.lags]
+    lags, closed = k.by_contact[contact_row.of_lag], k.by_contact[contact_row.closed]
     _write_columns(k.normals, q, pressing)
     _write_columns(k.tangentials, v, slides)
     for a in range(k.n_tables):
         # a row of work that no series uses keeps what the next line overwrites
-        k.by_contact[OF_PRESS, k.with_tables[a]] = pressing[k.with_tables[a]]
+        k.by_contact[contact_row.of_press, k.with_tables[a]] = pressing[
+            k.with_tables[a]
+        ]
     _forces_of_lifts(
-        k, rows[PRELOAD, 0] if order == 0 else 0.0, rows[BELT, 0] if order == 0 else 0.0
+        k,
+        rows[parameter_row.preload, 0] if order == 0 else 0.0,
+        rows[parameter_row.belt, 0] if order == 0 else 0.0,
     )
     if k.n_tables:
         _tables_at_order(k, rows, order)
@@ -780,7 +819,7 @@ def _contacts_at_order(k: Any, rows: Any, mem: Any, order: int, q: Any, v: Any) 
         row[at], row[at + 1] = closed[i] * pressing[i], slides[i]
     if k.curved:
         _curved_slip_at_order(k, rows, mem, order)
-    if k.n_sorts > BEFORE_END:
+    if k.n_sorts > surface_number.before_end:
         _knots_at_order(k, rows, row, order)
     for shape in range(k.n_shapes):
         row[first_output + 2 * c + shape] = dot(k.shapes[shape], row[:n])
@@ -791,16 +830,16 @@ def _tables_at_order(k: Any, rows: Any, order: int) -> None:
     """Compute an order of the forces of contacts with tables, by their pieces."""
     for a in range(k.n_tables):
         i = k.with_tables[a]
-        lift = k.by_contact[OF_PRESS, i]
+        lift = k.by_contact[contact_row.of_press, i]
         stiffness, at_rest = _line(k, rows, i)
         if order:
             at_rest = 0.0
         force = at_rest - stiffness * lift
-        k.by_contact[PRESS, i] = force
-        k.by_contact[SLIP, i] = k.by_contact[DRAG, i] * force
-        if k.by_contact[CLOSED, i] > 0.0:
+        k.by_contact[contact_row.press, i] = force
+        k.by_contact[contact_row.slip, i] = k.by_contact[contact_row.drag, i] * force
+        if k.by_contact[contact_row.closed, i] > 0.0:
             pushed = at_rest + (k.springs[i] - stiffness) * lift
-            k.by_contact[RELIEVED, i] = pushed
+            k.by_contact[contact_row.relieved, i] = pushed
 
 
 @part
@@ -810,7 +849,7 @@ def _curved_slip_at_order(k: Any, rows: Any, mem: Any, order: int) -> None:
         i = k.lists[1, a]
         if k.laws[i]:
             slip = _slip_order(k, rows, mem, i, order)
-            k.by_contact[SLIP, i] = k.by_contact[SIDE, i] * slip
+            k.by_contact[contact_row.slip, i] = k.by_contact[contact_row.side, i] * slip
 
 
 @part
@@ -820,12 +859,16 @@ def _knots_at_order(k: Any, rows: Any, row: Any, order: int) -> None:
     for i in range(c):
         _, _, reference = _coefficients(k, rows, i)
         for which in range(2):
-            knot = reference * _constant(k, rows, i, FIRST_OF_PIECE + 1 - which)
-            place = 2 * n + (BEFORE_END + which) * c + i
-            row[place] = row[2 * n + LAG * c + i] - (knot if order == 0 else 0.0)
-            if k.n_sorts > PRESS_END:
-                place = 2 * n + (PRESS_END + which) * c + i
-                row[place] = row[2 * n + PRESSING * c + i]
+            knot = reference * _constant(
+                k, rows, i, regime_constant.first_of_piece + 1 - which
+            )
+            place = 2 * n + (surface_number.before_end + which) * c + i
+            row[place] = row[2 * n + surface_number.lag * c + i] - (
+                knot if order == 0 else 0.0
+            )
+            if k.n_sorts > surface_number.press_end:
+                place = 2 * n + (surface_number.press_end + which) * c + i
+                row[place] = row[2 * n + surface_number.pressing * c + i]
                 if order == 0:
                     row[place] -= _press_knot(k, rows, i, which)
 
@@ -834,13 +877,20 @@ def _knots_at_order(k: Any, rows: Any, row: Any, order: int) -> None:
 def _stick_at_order(k: Any, row: Any) -> None:
     """Compute an order of the friction of the contacts that stick, and what it lacks to slip."""
     n, c = k.n, k.c
-    _stick_forces(k, k.by_mode[BASE])
-    add_stick(k, k.by_mode[BASE])
+    _stick_forces(k, k.by_mode[mode_row.base])
+    add_stick(k, k.by_mode[mode_row.base])
     for a in range(k.counts[0]):
         i = k.stuck[a]
-        limit = k.by_contact[LIMIT, i] * row[2 * n + PRESSING * c + i]
-        row[2 * n + MARGIN * c + i] = limit - k.by_contact[STICK, i]
-        row[2 * n + MARGIN_BACK * c + i] = limit + k.by_contact[STICK, i]
+        limit = (
+            k.by_contact[contact_row.limit, i]
+            * row[2 * n + surface_number.pressing * c + i]
+        )
+        row[2 * n + surface_number.margin * c + i] = (
+            limit - k.by_contact[contact_row.stick, i]
+        )
+        row[2 * n + surface_number.margin_back * c + i] = (
+            limit + k.by_contact[contact_row.stick, i]
+        )
 
 
 @inline
@@ -851,15 +901,19 @@ def _linear_rates(k: Any) -> None:
     for place in range(0, width, ROW):
         rates = splat(0.0)
         if not k.full_stiffness:
-            rates = load(pull + place) * load(at + PLACE * width + place)
+            rates = load(pull + place) * load(at + mode_row.place * width + place)
         if not k.full_damping:
-            speed = load(at + SPEED * width + place)
+            speed = load(at + mode_row.speed * width + place)
             rates = fma(load(drag + place), speed, rates)
-        store(at + BASE * width + place, rates)
+        store(at + mode_row.base * width + place, rates)
     if k.full_stiffness:
-        _add_columns(k.pull_back, k.by_mode[PLACE, : k.n], k.by_mode[BASE])
+        _add_columns(
+            k.pull_back, k.by_mode[mode_row.place, : k.n], k.by_mode[mode_row.base]
+        )
     if k.full_damping:
-        _add_columns(k.drag_back, k.by_mode[SPEED, : k.n], k.by_mode[BASE])
+        _add_columns(
+            k.drag_back, k.by_mode[mode_row.speed, : k.n], k.by_mode[mode_row.base]
+        )
 
 
 @inline
@@ -869,8 +923,8 @@ def series(k: Any, rows: Any, mem: Any) -> None:
     Args:
         mem: (orders, series): states, whose order 0 is given, surfaces and outputs.
     """
-    terms, n, unit, base = mem.shape[0], k.n, _unit(k, rows), k.by_mode[BASE]
-    q, v = k.by_mode[PLACE, :n], k.by_mode[SPEED, :n]
+    terms, n, unit, base = mem.shape[0], k.n, _unit(k, rows), k.by_mode[mode_row.base]
+    q, v = k.by_mode[mode_row.place, :n], k.by_mode[mode_row.speed, :n]
     at, width = k.by_mode.ctypes.data, 8 * k.by_mode.shape[1]
     for j in range(n):
         q[j], v[j] = mem[0, j], mem[0, n + j]
@@ -881,20 +935,34 @@ def series(k: Any, rows: Any, mem: Any) -> None:
             return
         _linear_rates(k)
         if order == 0:
-            _add_row(k.load, rows[PRELOAD, 0] if k.balanced else 1.0, base)
-            _add_columns(k.push_rows, k.by_contact[RELIEVED], base)
+            _add_row(
+                k.load, rows[parameter_row.preload, 0] if k.balanced else 1.0, base
+            )
+            _add_columns(k.push_rows, k.by_contact[contact_row.relieved], base)
         else:
             _add_listed(
-                k.push_rows, k.lists[0], k.counts[2], k.by_contact[RELIEVED], base
+                k.push_rows,
+                k.lists[0],
+                k.counts[2],
+                k.by_contact[contact_row.relieved],
+                base,
             )
-        _add_listed(k.drag_rows, k.lists[1], k.counts[3], k.by_contact[SLIP], base)
+        _add_listed(
+            k.drag_rows, k.lists[1], k.counts[3], k.by_contact[contact_row.slip], base
+        )
         if k.counts[0]:
             _stick_at_order(k, mem[order])
         if order < terms - 1:
             share, later = unit / (order + 1.0), mem[order + 1]
             for place in range(at, at + width, ROW):
-                store(place + PLACE * width, load(place + SPEED * width) * share)
-                store(place + SPEED * width, load(place + BASE * width) * share)
+                store(
+                    place + mode_row.place * width,
+                    load(place + mode_row.speed * width) * share,
+                )
+                store(
+                    place + mode_row.speed * width,
+                    load(place + mode_row.base * width) * share,
+                )
             for j in range(n):
                 later[j] = q[j]
             for j in range(n):
@@ -907,18 +975,18 @@ def _slip_order(k: Any, rows: Any, mem: Any, i: int, order: int) -> Any:
     mu, static, reference = _coefficients(k, rows, i)
     lag, press, law = 2 * k.n + k.c + i, 2 * k.n + i, k.laws[i]
     s, inner = k.law_series[0], k.law_series[1]
-    if law == TABLE:
+    if law == friction_number.table:
         _cubic_order(k, rows, i, order, mem[order, lag] / reference)
         s[order, i] *= mu
     else:
         # of exp(−u) and of 1/(1 + u) each order follows from lower ones
         value, first = 0.0, mem[0, lag] / reference
         for j in range(1, order + 1):
-            weight = float(j) if law == EXPONENTIAL else 1.0
+            weight = float(j) if law == friction_number.exponential else 1.0
             value -= weight * mem[j, lag] / reference * inner[order - j, i]
         if order == 0:
-            value = math.exp(-first) if law == EXPONENTIAL else 1.0
-        if law == EXPONENTIAL:
+            value = math.exp(-first) if law == friction_number.exponential else 1.0
+        if law == friction_number.exponential:
             inner[order, i] = value / max(order, 1)
         else:
             inner[order, i] = value / (1.0 + first)
@@ -940,7 +1008,7 @@ def _cubic_order(k: Any, rows: Any, i: int, order: int, speed: float) -> None:
         k.law_series[2],
         k.law_series[3],
     )
-    at, constant = FIRST_OF_PIECE, 1.0 if order == 0 else 0.0
+    at, constant = regime_constant.first_of_piece, 1.0 if order == 0 else 0.0
     shifted[order, i] = speed - constant * _constant(k, rows, i, at)
     inner[order, i] = _constant(k, rows, i, at + 5) * shifted[order, i]
     inner[order, i] += constant * _constant(k, rows, i, at + 4)
@@ -958,13 +1026,13 @@ def _cubic_order(k: Any, rows: Any, i: int, order: int, speed: float) -> None:
 def exact_ends(k: Any, rows: Any, z: Any, exact: Any) -> None:
     """Write rates, surfaces and outputs at a state, where friction depends on the speed."""
     n, c, unit = k.n, k.c, _unit(k, rows)
-    pressing = k.by_contact[OF_PRESS]
+    pressing = k.by_contact[contact_row.of_press]
     state_forces(k, rows, z, pressing)
     for i in range(c):
         _, static, _ = _coefficients(k, rows, i)
-        limit, friction = static * pressing[i], k.by_contact[STICK, i]
-        exact[2 * n + MARGIN * c + i, 0] = limit - friction
-        exact[2 * n + MARGIN_BACK * c + i, 0] = limit + friction
-    add_stick(k, k.by_mode[BASE])
+        limit, friction = static * pressing[i], k.by_contact[contact_row.stick, i]
+        exact[2 * n + surface_number.margin * c + i, 0] = limit - friction
+        exact[2 * n + surface_number.margin_back * c + i, 0] = limit + friction
+    add_stick(k, k.by_mode[mode_row.base])
     for j in range(n):
-        exact[n + j, 0] = unit * k.by_mode[BASE, j]
+        exact[n + j, 0] = unit * k.by_mode[mode_row.base, j]

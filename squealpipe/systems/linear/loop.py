@@ -21,19 +21,19 @@ import numpy as np
 
 from squealpipe.systems.compiled import inline, part
 from squealpipe.systems.linear.forces import (
-    SIDE,
     change_state,
+    contact_row,
     exact_ends,
     gauge_state,
     series,
     settle_stick,
 )
-from squealpipe.systems.linear.matrices import EXPONENTIAL
-from squealpipe.systems.linear.numbering import LAG, MARGIN, OF_CONTACT
+from squealpipe.systems.linear.matrices import friction_number
+from squealpipe.systems.linear.numbering import OF_CONTACT, surface_number
 from squealpipe.systems.linear.plan import (
-    COEFFICIENTS,
     SPECIAL,
     numbers_of,
+    parameter_row,
     plan_at,
     plan_of,
 )
@@ -120,14 +120,17 @@ def shorter_step(m: Any, k: Any, rows: Any, mem: Any, step: float) -> Any:
     changes by 2, or by a share of what lies beyond, at most (as ``series.shorten_source``).
     """
     terms, n, c = mem.shape[0], k.n, k.c
-    for surface in range(MARGIN * c, (MARGIN + 2) * c):
+    for surface in range(surface_number.margin * c, (surface_number.margin + 2) * c):
         if m.active[surface] & 1:
             step = _has_converged(mem, 2 * n + surface, step)
     for i in range(c):
-        if k.laws[i] != EXPONENTIAL or k.by_contact[SIDE, i] == 0.0:
+        if (
+            k.laws[i] != friction_number.exponential
+            or k.by_contact[contact_row.side, i] == 0.0
+        ):
             continue
-        reference = rows[COEFFICIENTS + OF_CONTACT * i + 2, 0]
-        place = 2 * n + LAG * c + i
+        reference = rows[parameter_row.coefficients + OF_CONTACT * i + 2, 0]
+        place = 2 * n + surface_number.lag * c + i
         most = max(0.3 * (abs(mem[0, place]) / reference - 20.0), 2.0) * reference
         low, x = step * 1e-12, step
         for _ in range(6):

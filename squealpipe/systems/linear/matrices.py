@@ -6,17 +6,36 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-COULOMB, EXPONENTIAL, HYPERBOLIC, TABLE = range(4)
-"""Friction laws by number."""
+
+class FrictionNumbers(NamedTuple):
+    """Friction laws by number."""
+
+    coulomb: int = 0
+    exponential: int = 1
+    hyperbolic: int = 2
+    table: int = 3
+
+
+friction_number = FrictionNumbers()
+
 PIECE_FIELDS = ("mu_start", "mu_end", "mu_c0", "mu_c1", "mu_c2", "mu_c3")
 """Constants of one piece of a table of friction."""
 PRESS_FIELDS = ("press_start", "press_end", "press_c0", "press_c1")
 """Constants of one piece of a table of contact: compressions, m, force at the first, N, and N/m."""
 
 
-IS_CLOSED, DIRECTION, IS_STUCK, FIRST_OF_PIECE = range(4)
-"""Constants of a regime; those of a piece of a table follow."""
-FIRST_OF_PRESS = FIRST_OF_PIECE + len(PIECE_FIELDS)
+class RegimeConstants(NamedTuple):
+    """Constants of a regime; those of a piece of a table follow."""
+
+    is_closed: int = 0
+    direction: int = 1
+    is_stuck: int = 2
+    first_of_piece: int = 3
+
+
+regime_constant = RegimeConstants()
+
+FIRST_OF_PRESS = regime_constant.first_of_piece + len(PIECE_FIELDS)
 """Place of the constants of a piece of a table of contact, where some contact has one."""
 
 
@@ -149,7 +168,7 @@ class ContactMatrices:
     @property
     def curved(self) -> bool:
         """Whether friction depends on the sliding speed somewhere."""
-        return bool((self.laws != COULOMB).any())
+        return bool((self.laws != friction_number.coulomb).any())
 
     @property
     def mobility(self) -> np.ndarray:

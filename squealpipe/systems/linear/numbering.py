@@ -14,24 +14,68 @@ import numpy as np
 from squealpipe.systems.belt_contact import SLIP, BeltContact
 from squealpipe.systems.components import Composition, joined
 from squealpipe.systems.linear.matrices import (
-    FIRST_OF_PIECE,
     FIRST_OF_PRESS,
     PIECE_FIELDS,
     PRESS_FIELDS,
+    regime_constant,
 )
 
-CONTACT, REVERSAL, SEPARATION, SLIPS, SLIPS_BACK, KNOT = range(6)
-"""Switches of a contact."""
-(
-    PRESSING, LAG, MARGIN, MARGIN_BACK, BEFORE_END, AFTER_START, PRESS_END, PRESS_START,
-) = range(8)  # fmt: skip
-"""Surfaces of a contact: normal force, |sliding speed|, what friction lacks to its limits, and how
-far the speed, and the normal force, are from the end and the start of their piece of a table."""
+
+class SwitchNumbers(NamedTuple):
+    """Switches of a contact."""
+
+    contact: int = 0
+    reversal: int = 1
+    separation: int = 2
+    slips: int = 3
+    slips_back: int = 4
+    knot: int = 5
+
+
+switch_number = SwitchNumbers()
+
+
+class SurfaceNumbers(NamedTuple):
+    """Surfaces of a contact.
+
+    Attributes:
+        pressing: normal force.
+        lag: magnitude of the sliding speed.
+        margin, margin_back: what friction lacks to its limits.
+        before_end, after_start: distance of the speed from both ends of its piece of a table.
+        press_end, press_start: distance of the normal force from those of its piece.
+    """
+
+    pressing: int = 0
+    lag: int = 1
+    margin: int = 2
+    margin_back: int = 3
+    before_end: int = 4
+    after_start: int = 5
+    press_end: int = 6
+    press_start: int = 7
+
+
+surface_number = SurfaceNumbers()
+
 OF_CONTACT = 4
 """Numbers of each contact among the parameters of a run: μ, its static limit, the reference speed,
 and the compression where nᵀq = 0, of a table of contact."""
-LANDS, STICKS, REVERSES, SEPARATES, SLIPS_AWAY, PASSES = range(6)
-"""Kinds of events of a contact."""
+
+
+class EventNumbers(NamedTuple):
+    """Kinds of events of a contact."""
+
+    lands: int = 0
+    sticks: int = 1
+    reverses: int = 2
+    separates: int = 3
+    slips_away: int = 4
+    passes: int = 5
+
+
+event_number = EventNumbers()
+
 KINDS = ("contact", "stick", "reversal", "separation", "slip", "knot")
 
 
@@ -132,7 +176,7 @@ class Numbering:
         """Number of constants of a contact's regime."""
         if self.has_presses:
             return FIRST_OF_PRESS + len(PRESS_FIELDS)
-        return FIRST_OF_PIECE + len(PIECE_FIELDS) * self.has_tables
+        return regime_constant.first_of_piece + len(PIECE_FIELDS) * self.has_tables
 
     @cached_property
     def regime_constants(self) -> dict[str, dict[str, float]]:
@@ -188,8 +232,11 @@ class Numbering:
             surface: int,
             targets: list[tuple[int, Condition | None, int]],
         ) -> ContactSwitch:
-            rises = what == CONTACT or surface in {BEFORE_END, PRESS_END}
-            target = targets[0][0] if what == KNOT else -1
+            rises = what == switch_number.contact or surface in {
+                surface_number.before_end,
+                surface_number.press_end,
+            }
+            target = targets[0][0] if what == switch_number.knot else -1
             first = int(self.first_kind[contact])
             to = tuple((regime, each, first + kind) for regime, each, kind in targets)
             where = tuple(leaves), surface, rises, to
@@ -202,7 +249,7 @@ class Numbering:
             (
                 number(kind, i),
                 Condition(self.pieces[contact][i, 0] * (i > 0), side),
-                LANDS,
+                event_number.lands,
             )
             for kind, side in SLIP.items()
             for i in reversed(range(len(belt.frictions)))
@@ -211,14 +258,18 @@ class Numbering:
         # what falls for the leaving side rises for the side that is entered
         found = [
             switch(
-                "separation", SEPARATION, closed, PRESSING, [(apart, None, SEPARATES)]
+                "separation",
+                switch_number.separation,
+                closed,
+                surface_number.pressing,
+                [(apart, None, event_number.separates)],
             ),
             switch(
                 "contact",
-                CONTACT,
+                switch_number.contact,
                 [apart],
-                PRESSING,
-                [*landings[:-1], (landings[-1][0], None, LANDS)],
+                surface_number.pressing,
+                [*landings[:-1], (landings[-1][0], None, event_number.lands)],
             ),
         ]
         for press in range(len(belt.presses)):
@@ -226,16 +277,35 @@ class Numbering:
             stuck = number("stick", 0, press)
             slower, faster = (number(kind, 0, press) for kind in SLIP)
             reverses: list[tuple[int, Condition | None, int]] = [
-                (stuck, Condition(None, 0.0), STICKS),
-                (faster, Condition(0.0, 0.0), REVERSES),
-                (slower, None, REVERSES),
+                (stuck, Condition(None, 0.0), event_number.sticks),
+                (faster, Condition(0.0, 0.0), event_number.reverses),
+                (slower, None, event_number.reverses),
             ]
-            away = [(slower, None, SLIPS_AWAY)], [(faster, None, SLIPS_AWAY)]
+            away = (
+                [(slower, None, event_number.slips_away)],
+                [(faster, None, event_number.slips_away)],
+            )
             found += [
-                switch(f"reversal{tail}", REVERSAL, [slower, faster], LAG, reverses),
-                switch(f"slip{tail}", SLIPS, [stuck], MARGIN, [*away[0]]),
                 switch(
-                    f"slip_back{tail}", SLIPS_BACK, [stuck], MARGIN_BACK, [*away[1]]
+                    f"reversal{tail}",
+                    switch_number.reversal,
+                    [slower, faster],
+                    surface_number.lag,
+                    reverses,
+                ),
+                switch(
+                    f"slip{tail}",
+                    switch_number.slips,
+                    [stuck],
+                    surface_number.margin,
+                    [*away[0]],
+                ),
+                switch(
+                    f"slip_back{tail}",
+                    switch_number.slips_back,
+                    [stuck],
+                    surface_number.margin_back,
+                    [*away[1]],
                 ),
             ]
         for one, other, ends in self._neighbours(belt):
@@ -243,10 +313,10 @@ class Numbering:
             found += [
                 switch(
                     f"{belt.name(*left)} to {belt.name(*to)}",
-                    KNOT,
+                    switch_number.knot,
                     [number(*left)],
                     surface,
-                    [(number(*to), None, PASSES)],
+                    [(number(*to), None, event_number.passes)],
                 )
                 for left, to, surface in ways
             ]
@@ -260,10 +330,18 @@ class Numbering:
         for kind, piece, press in belt.in_contact():
             if kind in SLIP and piece + 1 < len(belt.frictions):
                 other = kind, piece + 1, press
-                yield (kind, piece, press), other, (BEFORE_END, AFTER_START)
+                yield (
+                    (kind, piece, press),
+                    other,
+                    (surface_number.before_end, surface_number.after_start),
+                )
             if press + 1 < len(belt.presses):
                 other = kind, piece, press + 1
-                yield (kind, piece, press), other, (PRESS_END, PRESS_START)
+                yield (
+                    (kind, piece, press),
+                    other,
+                    (surface_number.press_end, surface_number.press_start),
+                )
 
     @cached_property
     def switches(self) -> tuple[ContactSwitch, ...]:

@@ -22,13 +22,46 @@ from squealpipe.systems.taylor.lanes import (
 )
 from squealpipe.systems.taylor.simd import LANES
 
-PLAN, BELT, PRELOAD, COEFFICIENTS = range(4)
-"""Rows of the parameters of a run: the address of the plan, belt speed, factor of preload; then the
-numbers of each contact, and last the unit of time."""
+
+class ParameterRows(NamedTuple):
+    """Rows of the parameters of a run.
+
+    Attributes:
+        plan: address of the plan.
+        belt, preload: belt speed, and the factor of all preloads.
+        coefficients: first of the numbers of the contacts, behind which the unit of time is last.
+    """
+
+    plan: int = 0
+    belt: int = 1
+    preload: int = 2
+    coefficients: int = 3
+
+
+parameter_row = ParameterRows()
+
 WORK = 12
 """Rows of work by contact."""
-BASE, SCALE, RATE, PLACE, SPEED = range(5)
-"""Work by displacement: accelerations without stick, sizes of terms, and an order of the states."""
+
+
+class ModeRows(NamedTuple):
+    """Rows of the work by displacement.
+
+    Attributes:
+        base: accelerations without stick.
+        scale, rate: sizes of terms.
+        place, speed: an order of the states.
+    """
+
+    base: int = 0
+    scale: int = 1
+    rate: int = 2
+    place: int = 3
+    speed: int = 4
+
+
+mode_row = ModeRows()
+
 SPECIAL = 4
 """Place among the counts of whether something happens in the last step."""
 ARRAYS = (
@@ -161,7 +194,7 @@ def plan_at(address: int) -> Any:
 @views
 def n_parameters(k: Any) -> int:
     """Return the number of parameters, which the constants of the regimes follow."""
-    return int(COEFFICIENTS + OF_CONTACT * k.c + 1)
+    return int(parameter_row.coefficients + OF_CONTACT * k.c + 1)
 
 
 @inline_views

@@ -6,9 +6,7 @@ import numpy as np
 
 from squealpipe.systems.compiled import part
 from squealpipe.systems.linear.forces import (
-    LAGS,
-    OF_PRESS,
-    STICK,
+    contact_row,
     holding,
     holds,
     press_of_force,
@@ -17,14 +15,7 @@ from squealpipe.systems.linear.forces import (
     state_forces,
 )
 from squealpipe.systems.linear.numbering import OF_CONTACT
-from squealpipe.systems.linear.plan import (
-    BASE,
-    BELT,
-    COEFFICIENTS,
-    PRELOAD,
-    plan_at,
-    record_at,
-)
+from squealpipe.systems.linear.plan import mode_row, parameter_row, plan_at, record_at
 from squealpipe.systems.taylor.lanes import call, view
 from squealpipe.systems.taylor.simd import LANES
 
@@ -43,7 +34,7 @@ def _put(settle: Any, k: Any, rows: Any, i: int, regime: int) -> None:
     Args:
         settle: address of :func:`.forces.settle_stick` as a function, and of the parameters.
     """
-    first = COEFFICIENTS + OF_CONTACT * k.c + 1 + i * k.width
+    first = parameter_row.coefficients + OF_CONTACT * k.c + 1 + i * k.width
     for which in range(k.width):
         rows[first + which, 0] = k.table[k.first[0, i] + regime, which]
     call(settle[0], (settle[1],))
@@ -55,9 +46,9 @@ def _rises(k: Any, i: int, z: Any) -> Any:
     n, velocity, acceleration = k.n, 0.0, 0.0
     for j in range(n):
         velocity += k.normals[j, i] * z[n + j]
-        acceleration += k.normals[j, i] * k.by_mode[BASE, j]
+        acceleration += k.normals[j, i] * k.by_mode[mode_row.base, j]
         for a in range(k.counts[0]):
-            friction = k.by_contact[STICK, k.stuck[a]]
+            friction = k.by_contact[contact_row.stick, k.stuck[a]]
             acceleration += k.normals[j, i] * k.drag_rows[k.stuck[a], j] * friction
     return FIRST * velocity + acceleration
 
@@ -65,9 +56,13 @@ def _rises(k: Any, i: int, z: Any) -> Any:
 @part
 def _first_that_fits(settle: Any, k: Any, rows: Any, z: Any, i: int) -> Any:
     """Return the first regime of a contact that fits the state, the others' being as they are."""
-    n, pressing = k.n, k.by_contact[OF_PRESS]
+    n, pressing = k.n, k.by_contact[contact_row.of_press]
     last = k.first[0, i + 1] - k.first[0, i] - 1
-    size_q, size_v, reach = abs(rows[PRELOAD, 0]), abs(rows[BELT, 0]), 0.0
+    size_q, size_v, reach = (
+        abs(rows[parameter_row.preload, 0]),
+        abs(rows[parameter_row.belt, 0]),
+        0.0,
+    )
     for j in range(n):
         if k.normals[j, i] != 0.0:
             size_q += abs(z[j])
@@ -76,7 +71,7 @@ def _first_that_fits(settle: Any, k: Any, rows: Any, z: Any, i: int) -> Any:
         reach = max(reach, abs(k.tangentials[j, i]))
     _put(settle, k, rows, i, last)
     state_forces(k, rows, z, pressing)
-    press, speed = pressing[i], k.by_contact[LAGS, i]
+    press, speed = pressing[i], k.by_contact[contact_row.lags, i]
     if abs(press) <= EQUAL * size_q and _rises(k, i, z) >= 0.0:
         return last
     if -FIRST * press - 1e14 * k.hidden[0] >= 0.0:
@@ -102,7 +97,7 @@ def find_starts(address: int) -> None:
     k = plan_at(address)
     t = record_at(address)
     n, c, jobs = k.n, k.c, t.n_jobs
-    given = COEFFICIENTS + OF_CONTACT * c + 1
+    given = parameter_row.coefficients + OF_CONTACT * c + 1
     starts = view(t.starts, (jobs, given + 2 * n), np.float64)
     numbers = view(t.numbers, (jobs, c), np.int64)
     opened = view(t.opened, (c,), np.int64)

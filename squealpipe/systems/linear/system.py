@@ -12,13 +12,8 @@ import xarray as xr
 from squealpipe.systems.joint import Joint
 from squealpipe.systems.linear.batch import LinearBatch, first_regimes
 from squealpipe.systems.linear.flow import LinearFlow
-from squealpipe.systems.linear.matrices import (
-    IS_CLOSED,
-    IS_STUCK,
-    Caps,
-    ContactMatrices,
-)
-from squealpipe.systems.linear.numbering import LAG, Numbering
+from squealpipe.systems.linear.matrices import Caps, ContactMatrices, regime_constant
+from squealpipe.systems.linear.numbering import Numbering, surface_number
 from squealpipe.systems.system import System
 
 WRITTEN = 4096
@@ -36,7 +31,9 @@ class ContactJoint(Joint):
         """(surface,) the sliding speeds of contacts that stick."""
         own = list(self.regimes(number))
         held = np.zeros((self.numbering.surfaces_of_a_contact, len(own)), dtype=bool)
-        held[LAG] = self.numbering.constants_of_regimes[own, IS_STUCK] > 0.0
+        held[surface_number.lag] = (
+            self.numbering.constants_of_regimes[own, regime_constant.is_stuck] > 0.0
+        )
         return held.ravel()
 
 
@@ -214,7 +211,9 @@ class LinearSystem(System):
         q, v = path[:, : m.n_modes], path[:, m.n_modes :]
         constants = self.numbering.constants_of_regimes[np.maximum(regimes, 0)]
         stiffness, at_rest = m.lines(constants, values["preload"])
-        force = constants[..., IS_CLOSED] * (at_rest - (q @ m.normals) * stiffness)
+        force = constants[..., regime_constant.is_closed] * (
+            at_rest - (q @ m.normals) * stiffness
+        )
         speed = m.speeds * values["belt_speed"] - v @ m.tangentials
         pairs = np.stack([force, speed], 2).reshape(len(path), -1)
         return [*pairs.T, *(q @ m.shapes.T).T]
