@@ -51,16 +51,16 @@ class Row:
             return None
         if self.allowed == "law":
             try:
-                law = named(value, self.laws.COLUMNS)
+                law = named(value, self.laws.own_law_rules.columns)
                 if isinstance(law, str) and self.laws.law_of(law) is not None:
                     return law
             except (ValueError, OSError) as error:
                 raise ValueError(f"{name}: {error}") from error
-            if why := self.laws.REFUSED.get(str(value)):
+            if why := self.laws.own_law_rules.refused.get(str(value)):
                 raise ValueError(f"{name} = {value!r}: {why}")
             near = suggestion(value, self.laws.LAWS)
             raise ValueError(
-                f"{name} = {brief(value)}: unknown; {near}, {self.laws.FILES}"
+                f"{name} = {brief(value)}: unknown; {near}, {self.laws.own_law_rules.files}"
             )
         number = finite_number(name, value, self.units, KEYS_THAT_TAKE)
         if self.allowed == "positive" and not number > 0:
@@ -180,7 +180,7 @@ class Parameters:
         COULOMB,
         "1",
         '"law"',
-        f"friction law: {', '.join(LAWS)}, {friction_laws.FILES}",
+        f"friction law: {', '.join(LAWS)}, {friction_laws.own_law_rules.files}",
         allowed="law",
         laws=friction_laws,
         extension=True,
@@ -205,7 +205,7 @@ class Parameters:
         LINEAR,
         "1",
         '"contact"',
-        f"contact law: {', '.join(contact_laws.LAWS)}, {contact_laws.FILES}",
+        f"contact law: {', '.join(contact_laws.LAWS)}, {contact_laws.own_law_rules.files}",
         allowed="law",
         laws=contact_laws,
         extension=True,

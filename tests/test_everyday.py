@@ -9,8 +9,8 @@ import openpyxl
 import pytest
 
 from squealpipe.inputs import parse_angle, parse_number
-from squealpipe.laws.contact_laws import COLUMNS as CONTACT
-from squealpipe.laws.friction_laws import COLUMNS as FRICTION
+from squealpipe.laws.contact_laws import own_law_rules as contact_rules
+from squealpipe.laws.friction_laws import own_law_rules as friction_rules
 from squealpipe.laws.table_files import read_pairs
 from squealpipe.units import UnitError, in_si
 
@@ -367,14 +367,14 @@ def _check(path, columns, expected):
 def test_tables_of_friction(text, tmp_path):
     path = tmp_path / "table.csv"
     path.write_text(text, encoding="utf-8")
-    _check(path, FRICTION, FRICTIONS[text])
+    _check(path, friction_rules.columns, FRICTIONS[text])
 
 
 @pytest.mark.parametrize("text", CONTACTS)
 def test_tables_of_contact(text, tmp_path):
     path = tmp_path / "table.csv"
     path.write_text(text, encoding="utf-8")
-    _check(path, CONTACT, CONTACTS[text])
+    _check(path, contact_rules.columns, CONTACTS[text])
 
 
 @pytest.mark.parametrize(("rows", "expected"), SHEETS)
@@ -384,4 +384,10 @@ def test_sheets_of_excel(rows, expected, tmp_path):
         book.active.append(row)
     path = tmp_path / "table.xlsx"
     book.save(path)
-    _check(path, FRICTION if rows[0][0].startswith("speed") else CONTACT, expected)
+    _check(
+        path,
+        friction_rules.columns
+        if rows[0][0].startswith("speed")
+        else contact_rules.columns,
+        expected,
+    )

@@ -22,6 +22,26 @@ from squealpipe.text import as_number
 BETWEEN = ("linear", "cubic")
 
 
+class OwnLawRules(NamedTuple):
+    """Rules for laws of the user's own, in place of those of a package of laws.
+
+    Attributes:
+        columns: of a table, (abscissa, value).
+        units: of these columns.
+        files: which files are read, as an error says it.
+        refused: names of laws that cannot be carried, with the reason.
+        in_table: parameters that a table stands in for.
+        in_source: those that a Python file stands in for.
+    """
+
+    columns: tuple[str, str]
+    units: tuple[str, str]
+    files: str
+    refused: Mapping[str, str]
+    in_table: tuple[str, ...]
+    in_source: tuple[str, ...]
+
+
 class Pieces(NamedTuple):
     """A piecewise polynomial.
 
@@ -137,8 +157,8 @@ def is_table(name: object) -> bool:
 def stood_for(law: Any, laws: Any) -> tuple[str, ...]:
     """Parameters in whose place a law of a package of laws stands."""
     if is_table(law):
-        return tuple(laws.IN_TABLE)
-    return tuple(laws.IN_SOURCE) if "\n" in str(law) else ()
+        return tuple(laws.own_law_rules.in_table)
+    return tuple(laws.own_law_rules.in_source) if "\n" in str(law) else ()
 
 
 @lru_cache(maxsize=64)

@@ -51,7 +51,9 @@ def draw_settled_orbit(axes: Axes, answer: xr.Dataset) -> None:
     # a structure's contacts are closed up to a displacement of their own
     limit = float(answer.preload) if "preload" in answer else np.inf
     if limit < 1.2 * float(np.nanmax(y)):
-        axes.axhline(factor * limit, color=style.GREY, linewidth=0.8, linestyle=":")
+        axes.axhline(
+            factor * limit, color=style.Colour.grey, linewidth=0.8, linestyle=":"
+        )
     axes.set(xlabel=f"along the belt, x ({unit})", ylabel=f"away from it, y ({unit})")
     axes.set_aspect("equal", adjustable="datalim")
     axes.legend(fontsize=6, loc="best", borderaxespad=0)
@@ -65,7 +67,7 @@ def draw_settled_force(axes: Axes, answer: xr.Dataset) -> None:
     factor, unit = shown_in(float(time[-1]), "s")
     time, force = factor * time, answer.path_force.values
     top = 1.15 * float(np.nanmax(force))
-    axes.plot(time, force, color=style.BLUE)
+    axes.plot(time, force, color=style.Colour.blue)
     lost = meanings(answer.path_regime)
     off = [code for code, name in lost.items() if name == "separated"]
     axes.fill_between(
@@ -73,11 +75,11 @@ def draw_settled_force(axes: Axes, answer: xr.Dataset) -> None:
         -0.06 * top,
         0.0,
         where=np.isin(answer.path_regime.values, off),
-        color=style.RED,
+        color=style.Colour.red,
         linewidth=0.8,
         step="mid",
     )
-    axes.axhline(0.0, color=style.GREY, linewidth=0.5)
+    axes.axhline(0.0, color=style.Colour.grey, linewidth=0.5)
     axes.set(
         xlim=(float(time[0]), float(time[-1])),
         ylim=(-0.065 * top, top),
@@ -97,13 +99,13 @@ def draw_settled_spectrum(axes: Axes, answer: xr.Dataset) -> None:
     shown_multiples = 6.0
     shown = frequency <= shown_multiples * strongest
     for name, colour, words in (
-        ("along", style.X_COLOUR, "along the belt"),
-        ("across", style.Y_COLOUR, "across it"),
+        ("along", style.Colour.along, "along the belt"),
+        ("across", style.Colour.across, "across it"),
     ):
         values = np.maximum(answer[f"velocity_spectrum_{name}"].values[shown], 1e-300)
         axes.semilogy(factor * frequency[shown], values, color=colour, label=words)
     top = float(answer.harmonic_velocity[0])
-    axes.plot(factor * strongest, top, "v", color=style.RED, markersize=4)
+    axes.plot(factor * strongest, top, "v", color=style.Colour.red, markersize=4)
     axes.set(
         ylim=(1e-4 * top, 5.0 * top),
         xlim=(0.0, factor * shown_multiples * strongest),

@@ -14,11 +14,16 @@ def draw_onsets(axes: Axes, pads: xr.Dataset) -> None:
     critical = pads.critical_mu.values
     places = np.arange(len(critical))
     known = np.isfinite(critical)
-    axes.plot(places[known], critical[known], "o", color=style.RED)
+    axes.plot(places[known], critical[known], "o", color=style.Colour.red)
     axes.plot(
-        places[~known], np.full((~known).sum(), MOST_FRICTION), "^", color=style.BLUE
+        places[~known],
+        np.full((~known).sum(), MOST_FRICTION),
+        "^",
+        color=style.Colour.blue,
     )
-    axes.axhline(parameter(pads, "mu"), color=style.GREY, linestyle="--", linewidth=0.8)
+    axes.axhline(
+        parameter(pads, "mu"), color=style.Colour.grey, linestyle="--", linewidth=0.8
+    )
     names = [str(name).replace(", ", "\n") for name in pads.design.values]
     axes.set_xticks(places, names)
     axes.set(

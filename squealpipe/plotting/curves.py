@@ -26,7 +26,7 @@ def draw_curves(axes: Axes, curves: xr.Dataset) -> None:
     kind = next((curves[name] for name in ("line", "boundary") if name in curves), one)
     words = meanings(kind) or {0: curves.attrs.get("curve", "boundary of kept contact")}
     for colour, code in zip(
-        style.PALETTE * len(words), np.unique(kind.values), strict=False
+        style.Colour.palette * len(words), np.unique(kind.values), strict=False
     ):
         on = kind.values == code
         lines = (x.values[on], y.values[on])
@@ -34,6 +34,6 @@ def draw_curves(axes: Axes, curves: xr.Dataset) -> None:
             axes, lines, number[on], color=colour, label=style.flag_words(words[code])
         )
     if "design" in curves:
-        axes.plot(*curves.design.values.T, "x", color=style.RED, label="design")
+        axes.plot(*curves.design.values.T, "x", color=style.Colour.red, label="design")
     axes.set(xlabel=label(x), ylabel=label(y))
     axes.legend(fontsize="small")

@@ -20,8 +20,8 @@ def draw_backbone(axes: Axes, branch: xr.Dataset) -> None:
         return
     unstable = np.abs(branch.stability_index.values) > 2
     for values, colour, dash, words in (
-        (branch.y_peak, style.Y_COLOUR, "-", "y peak"),
-        (branch.x_amplitude, style.X_COLOUR, "--", "x amplitude"),
+        (branch.y_peak, style.Colour.across, "-", "y peak"),
+        (branch.x_amplitude, style.Colour.along, "--", "x amplitude"),
     ):
         axes.plot(branch.omega, values, color=colour, linestyle=dash, label=words)
         axes.plot(
@@ -53,8 +53,8 @@ def draw_cycle(axes: Axes, cycle: xr.Dataset) -> None:
         draw_regimes(axes, x, y, cycle.regime_path)
     else:
         for part, colour, words in (
-            (y > preload, style.RED, "separated"),
-            (y <= preload, style.BLUE, "contact"),
+            (y > preload, style.Colour.red, "separated"),
+            (y <= preload, style.Colour.blue, "contact"),
         ):
             axes.plot(x, np.where(joined(part), y, np.nan), color=colour, label=words)
     style.preload_line(axes, preload)
@@ -111,9 +111,9 @@ def trace_branch(
     ends = np.flatnonzero(np.diff(steady)) + 1
     for piece in np.split(np.arange(len(steady)), ends):
         colour, dash, words = (
-            (style.BLUE, "-", "stable")
+            (style.Colour.blue, "-", "stable")
             if steady[piece[0]]
-            else (style.ORANGE, "--", "unstable")
+            else (style.Colour.orange, "--", "unstable")
         )
         points = slice(piece[0], piece[-1] + 2)
         axes.plot(
@@ -121,11 +121,11 @@ def trace_branch(
         )
     # marker, colour and words of each
     special_point_marks = {
-        "fold": ("^", style.RED, "fold"),
-        "period_doubling": ("s", style.PURPLE, "period doubling"),
-        "torus": ("D", style.GREEN, "torus bifurcation"),
-        "grazing": ("o", style.BLACK, "grazing"),
-        "stick_onset": ("v", style.GREEN, "stick just begins or ends"),
+        "fold": ("^", style.Colour.red, "fold"),
+        "period_doubling": ("s", style.Colour.purple, "period doubling"),
+        "torus": ("D", style.Colour.green, "torus bifurcation"),
+        "grazing": ("o", style.Colour.black, "grazing"),
+        "stick_onset": ("v", style.Colour.green, "stick just begins or ends"),
     }
     for value, name in meanings(branch.label).items():
         points = branch.label.values == value

@@ -118,9 +118,11 @@ class Film:
         # what is seen most has most colours of 64; those that mean something are kept as they are,
         # since marks of stick and of open contacts are small and would get one and the same
         colours = sample.quantize(
-            64 - len(style.PALETTE), method=Image.Quantize.MEDIANCUT
+            64 - len(style.Colour.palette), method=Image.Quantize.MEDIANCUT
         ).getpalette()
-        kept = [round(255 * part) for each in style.PALETTE for part in to_rgb(each)]
+        kept = [
+            round(255 * part) for each in style.Colour.palette for part in to_rgb(each)
+        ]
         palette = Image.new("P", (1, 1))
         palette.putpalette([*kept, *(colours or [])])
         shown = [

@@ -29,15 +29,19 @@ def draw_hysteresis(axes: Axes, answer: xr.Dataset) -> None:
         if np.isfinite(friction):
             label = f"{words}, μ = {number(friction, 3)}"
             axes.axvline(
-                friction, color=style.BLACK, linewidth=0.8, linestyle=line, label=label
+                friction,
+                color=style.Colour.black,
+                linewidth=0.8,
+                linestyle=line,
+                label=label,
             )
-    attractor_colours = (style.BLUE, style.ORANGE, style.PURPLE)
+    attractor_colours = (style.Colour.blue, style.Colour.orange, style.Colour.purple)
     colours = cycle(attractor_colours)
     unstable: str | None = "unstable cycle"
     for place in range(answer.sizes["track"]):
         one = answer.isel(track=place)
         above = int(one.track_attractor) == JUST_ABOVE
-        colour = style.LIGHT if above else next(colours)
+        colour = style.Colour.light if above else next(colours)
         label = "from just above the onset" if above else _named(answer, one)
         frictions, speeds = one.track_mu.values, one.track_velocity_rms.values
         # what begins at the onset is often what squeals above: it stays visible below
@@ -48,15 +52,17 @@ def draw_hysteresis(axes: Axes, answer: xr.Dataset) -> None:
                 one.unstable_mu,
                 one.unstable_velocity_rms,
                 "--",
-                color=style.RED,
+                color=style.Colour.red,
                 label=unstable,
             )
             unstable = None
         dies = float(one.mu_dies)
         if np.isfinite(dies):
             lowest = _level_at_end(one)
-            axes.plot(dies, lowest, "x", color=style.BLACK, ms=5)
-            axes.plot([dies, dies], [0.0, lowest], color=style.GREY, linewidth=0.8)
+            axes.plot(dies, lowest, "x", color=style.Colour.black, ms=5)
+            axes.plot(
+                [dies, dies], [0.0, lowest], color=style.Colour.grey, linewidth=0.8
+            )
     axes.set(xlabel="friction μ", ylabel="rms speed (m/s)")
     axes.set_ylim(bottom=0.0)
     axes.margins(x=0.04)

@@ -6,9 +6,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Arc, Circle, FancyArrowPatch, Rectangle
 
-from squealpipe.plotting.style import BLUE, GREY, ORANGE, RED
+from squealpipe.plotting.style import Colour
 
-SPRING_COLOURS = (BLUE, ORANGE)
+SPRING_COLOURS = (Colour.blue, Colour.orange)
 """Springs 1 and 2, here and in every schematic."""
 
 
@@ -75,7 +75,7 @@ def draw_mechanism(
         )
         axes.add_patch(Circle(tuple(towards), 0.04, color="black", zorder=3))
     contact = coil((0.0, -radius), (0.0, belt_top), turns=4, width=0.07)
-    axes.plot(*contact.T, color=GREY, linewidth=line, zorder=1)
+    axes.plot(*contact.T, color=Colour.grey, linewidth=line, zorder=1)
     axes.add_patch(
         Circle((0.0, 0.0), radius, facecolor="white", edgecolor="black", zorder=4)
     )
@@ -85,7 +85,7 @@ def draw_mechanism(
         Rectangle((-half, belt_top - 0.12), 2 * half, 0.12, lw=0.6, ec="black", **look)
     )
     start, end = ((direction * share * half, belt_top - 0.27) for share in (0.30, 0.85))
-    arrow(axes, start, end, 11 if labels else 6, RED)
+    arrow(axes, start, end, 11 if labels else 6, Colour.red)
     if labels:
         _label(axes, directions, (alpha1, alpha2), belt_top)
     axes.set_aspect("equal")
@@ -110,7 +110,10 @@ def _label(
     top, aside = 0.28, 1.08
     for height in (0.0, top):
         axes.plot(
-            [aside - 0.14, aside + 0.14], [height, height], color=GREY, linewidth=0.6
+            [aside - 0.14, aside + 0.14],
+            [height, height],
+            color=Colour.grey,
+            linewidth=0.6,
         )
     look: dict[str, Any] = {
         "arrowstyle": "<|-|>",
@@ -124,7 +127,7 @@ def _label(
     )
     axes.text(aside - 0.27, 0.5 * top, r"$l_\mathrm{pre}$", **text)
     span = 0.42
-    axes.plot([-0.62, 0.62], [0, 0], color=GREY, linewidth=0.6, linestyle=":")
+    axes.plot([-0.62, 0.62], [0, 0], color=Colour.grey, linewidth=0.6, linestyle=":")
     degrees = np.degrees(angles)
     for ends in ((0, degrees[0]), (180 - degrees[1], 180)):
         axes.add_patch(
@@ -133,9 +136,9 @@ def _label(
     for index, mid in ((1, angles[0] / 2), (2, np.pi - angles[1] / 2)):
         place = 1.3 * span * np.array([np.cos(mid), np.sin(mid)])
         axes.text(place[0], place[1], f"$\\alpha_{index}$", **text)
-    axes.text(0.26, 0.5 * belt_top - 0.06, "$k_3$", color=GREY, **text)
+    axes.text(0.26, 0.5 * belt_top - 0.06, "$k_3$", color=Colour.grey, **text)
     axes.text(-0.75, belt_top + 0.1, "friction $\\mu$", **text)
-    axes.text(1.14, belt_top - 0.27, "$V$", color=RED, **text)
+    axes.text(1.14, belt_top - 0.27, "$V$", color=Colour.red, **text)
     origin = np.array([-1.2, 0.02])
     for step, name in (((0.3, 0.0), "x"), ((0.0, 0.3), "y")):
         tip = origin + step

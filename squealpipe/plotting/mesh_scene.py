@@ -127,7 +127,12 @@ class StructureDrawing:
         self.facets = None
         if motion.mesh is not None and motion.contact_position is not None:
             Facets(
-                axes, motion.mesh, view, facecolor="none", edgecolor=style.LIGHT, lw=0.3
+                axes,
+                motion.mesh,
+                view,
+                facecolor="none",
+                edgecolor=style.Colour.light,
+                lw=0.3,
             )
             self.facets = Facets(
                 axes,
@@ -212,9 +217,11 @@ def draw_forces(axes: Axes, run: xr.Dataset) -> None:
     last = float(run.time[-1])
     shown = run.sel(time=slice(last - 6.0 / float(run.dominant_frequency), None))
     factor, unit = shown_in(last, "s")
-    for index, name in enumerate(shown.contact.values[: len(style.PALETTE)]):
+    for index, name in enumerate(shown.contact.values[: len(style.Colour.palette)]):
         force = shown.normal_force[:, index]
-        axes.plot(factor * shown.time, force, color=style.PALETTE[index], label=name)
+        axes.plot(
+            factor * shown.time, force, color=style.Colour.palette[index], label=name
+        )
     axes.set(xlabel=f"time ({unit})", ylabel="normal force (N)")
     axes.legend(ncols=3)
 

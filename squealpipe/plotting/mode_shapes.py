@@ -66,7 +66,9 @@ def draw_shape(
     # form
     largest_deflection = 0.08
     scale = largest_deflection * extent / max(float(amplitude.max()), 1e-300)
-    Facets(axes, mesh, view, facecolor="none", edgecolor=style.LIGHT, linewidth=0.4)
+    Facets(
+        axes, mesh, view, facecolor="none", edgecolor=style.Colour.light, linewidth=0.4
+    )
     drawn = Facets(axes, mesh, view, cmap="cividis", edgecolor="#404040", linewidth=0.3)
     drawn.show(mesh.nodes + scale * nodes)
     share = amplitude / max(float(amplitude.max()), 1e-300)
@@ -81,7 +83,7 @@ def draw_shape(
     if "contact_position" in modes:
         places = modes.contact_position.values
         places = places[np.isfinite(places).all(axis=1)] @ view[:2].T
-        axes.plot(*places.T, "o", color=style.BLACK, markersize=2.5, zorder=5)
+        axes.plot(*places.T, "o", color=style.Colour.black, markersize=2.5, zorder=5)
     axes.margins(0.02)
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_axis_off()
@@ -94,8 +96,8 @@ def _draw_arrows(axes: Axes, moved: np.ndarray) -> None:
     most_arrows = 40
     chosen = np.sort(np.argsort(-np.abs(moved), kind="stable")[:most_arrows])
     places = np.arange(len(chosen))
-    axes.axhline(0.0, color=style.LIGHT, linewidth=1.0)
-    axes.plot(places, 0.0 * places, "o", color=style.GREY, markersize=3)
+    axes.axhline(0.0, color=style.Colour.light, linewidth=1.0)
+    axes.plot(places, 0.0 * places, "o", color=style.Colour.grey, markersize=3)
     axes.quiver(
         places,
         0.0 * places,
@@ -104,7 +106,7 @@ def _draw_arrows(axes: Axes, moved: np.ndarray) -> None:
         angles="xy",
         scale_units="xy",
         scale=1.0,
-        color=style.BLUE,
+        color=style.Colour.blue,
         width=0.006,
     )
     axes.set_xticks(places, [str(each) for each in chosen], fontsize=6)

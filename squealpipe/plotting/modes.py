@@ -69,7 +69,7 @@ def _draw_spectrum(axes: Axes, modes: xr.Dataset) -> None:
             frequency[below],
             np.full(below.sum(), 0.97 * lowest),
             "v",
-            color=style.BLUE,
+            color=style.Colour.blue,
             label=f"stable, below {number(lowest, 2)} 1/s",
         )
     axes.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
@@ -81,10 +81,10 @@ def draw_stability(
     axes: Axes, frequency: np.ndarray, height: np.ndarray, unstable: np.ndarray
 ) -> None:
     """Draw modes over frequency, stable and unstable ones, as far as there are any."""
-    axes.axhline(0.0, color=style.GREY, linewidth=0.6)
+    axes.axhline(0.0, color=style.Colour.grey, linewidth=0.6)
     for which, mark, colour, words in (
-        (~unstable, ".", style.BLUE, "stable"),
-        (unstable, "o", style.RED, "unstable"),
+        (~unstable, ".", style.Colour.blue, "stable"),
+        (unstable, "o", style.Colour.red, "unstable"),
     ):
         if which.any():
             axes.plot(
@@ -144,11 +144,13 @@ def _draw_along(axes: Axes, modes: xr.Dataset, name: str, dim: str) -> None:
                 for each, value in ((x, onset), (heights, at))
             )
             grows = np.insert(grows, behind, True)
-            axes.plot(onset, at, "D", color=style.BLACK, ms=3, zorder=3)
-        axes.plot(places, heights, color=style.BLUE, linewidth=0.7)
-        axes.plot(places, np.where(grows, heights, np.nan), ".-", color=style.RED, ms=3)
+            axes.plot(onset, at, "D", color=style.Colour.black, ms=3, zorder=3)
+        axes.plot(places, heights, color=style.Colour.blue, linewidth=0.7)
+        axes.plot(
+            places, np.where(grows, heights, np.nan), ".-", color=style.Colour.red, ms=3
+        )
     if name == "growth_rate":
-        axes.axhline(0.0, color=style.GREY, linewidth=0.6)
+        axes.axhline(0.0, color=style.Colour.grey, linewidth=0.6)
         show_what_grows(axes, values)
     varied = (
         f" of {modes.attrs['mu_of']}" if dim == "mu" and "mu_of" in modes.attrs else ""

@@ -19,10 +19,10 @@ from squealpipe.text import number
 from squealpipe.units import engineering, shown_in
 
 CONTACT_LOOKS = {
-    Regime.slip_slower: ("slip", style.BLUE),
-    Regime.slip_faster: ("slip", style.BLUE),
-    Regime.stick: ("stick", style.ORANGE),
-    Regime.separated: ("open", style.RED),
+    Regime.slip_slower: ("slip", style.Colour.blue),
+    Regime.slip_faster: ("slip", style.Colour.blue),
+    Regime.stick: ("stick", style.Colour.orange),
+    Regime.separated: ("open", style.Colour.red),
 }
 """State of a contact in a word, and its colour."""
 COLOURS_IN_WORDS = "Blue: the contact slips; orange: it sticks; red: it is open."
@@ -91,8 +91,8 @@ class Panels:
         self.force_time = self.factor * motion.time[kept]
         self.force = motion.force[kept]
         top = 1.1 * max(float(np.nanmax(self.force)), 1e-12)
-        axes.plot(self.force_time, self.force, color=style.LIGHT, lw=0.8)
-        axes.axhline(0.0, color=style.GREY, lw=0.5)
+        axes.plot(self.force_time, self.force, color=style.Colour.light, lw=0.8)
+        axes.axhline(0.0, color=style.Colour.grey, lw=0.5)
         margin = 0.03 * self.factor * (last - first)
         axes.set(
             xlim=(self.factor * first - margin, self.factor * last + margin),
@@ -101,8 +101,8 @@ class Panels:
             ylabel=label,
         )
         axes.locator_params(axis="x", nbins=4)
-        past: Line2D = axes.plot([], [], color=style.BLACK, lw=1.0)[0]
-        now: Line2D = axes.plot([], [], "o", color=style.BLACK, ms=5)[0]
+        past: Line2D = axes.plot([], [], color=style.Colour.black, lw=1.0)[0]
+        now: Line2D = axes.plot([], [], "o", color=style.Colour.black, ms=5)[0]
         return past, now
 
     def _draw_path(self, axes: Axes, motion: Traces) -> Line2D:
@@ -114,11 +114,13 @@ class Panels:
             axes.plot(x, shown, color=colour, lw=0.7)
         limit = self.unit_factor * motion.limit
         if y.min() < limit < 1.2 * max(y.max(), 0.0):
-            axes.axhline(limit, color=style.GREY, lw=0.8, linestyle=":")
+            axes.axhline(limit, color=style.Colour.grey, lw=0.8, linestyle=":")
         axes.set(xlabel=f"along the belt ({unit})", ylabel=f"away from it ({unit})")
         axes.set_aspect("equal", adjustable="datalim")
         axes.locator_params(nbins=5)
-        dot: Line2D = axes.plot([], [], "o", color=style.BLACK, ms=6, zorder=5)[0]
+        dot: Line2D = axes.plot([], [], "o", color=style.Colour.black, ms=6, zorder=5)[
+            0
+        ]
         return dot
 
     def show(self, frame: int) -> None:

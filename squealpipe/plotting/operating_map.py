@@ -96,7 +96,7 @@ def _draw(axes: Axes, points: xr.Dataset, scale: LogNorm) -> None:
                 *at, s=size, marker=mark, cmap="viridis", edgecolors="none", **look
             )
         else:
-            axes.scatter(*at, s=0.5 * size, marker=mark, color=style.GREY)
+            axes.scatter(*at, s=0.5 * size, marker=mark, color=style.Colour.grey)
     last = next(name for name in ("temperature", "mu") if name in points.coords)
     value = number(float(points[last]))
     axes.set(
@@ -116,7 +116,7 @@ def _legend(axes: Axes, dataset: xr.Dataset, drawn: Figure | None = None) -> Non
     """Draw the legend of the verdicts that occur, above the map or, for a figure, above all."""
     handles = [
         mpl.lines.Line2D(
-            [], [], marker=mark, color=style.GREY, linestyle="none", label=words
+            [], [], marker=mark, color=style.Colour.grey, linestyle="none", label=words
         )
         for verdict, (mark, words) in MARKS.items()
         if (dataset.verdict.values == verdict).any()
@@ -168,7 +168,7 @@ def _draw_occurrence(axes: Axes, dataset: xr.Dataset) -> None:
         place - shift,
         100.0 * dataset.occurrence.values,
         width,
-        color=style.BLUE,
+        color=style.Colour.blue,
         label="points of the map",
     )
     axes.bar_label(
@@ -180,7 +180,7 @@ def _draw_occurrence(axes: Axes, dataset: xr.Dataset) -> None:
             100.0 * dataset.measured_occurrence.values,
             width,
             color="white",
-            edgecolor=style.GREY,
+            edgecolor=style.Colour.grey,
             label="lines of the measured list",
         )
         share = dataset.measured_occurrence.values

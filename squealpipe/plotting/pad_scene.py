@@ -130,19 +130,19 @@ class PadDrawing:
             middle = (0.5 * (low[0] + high[0]), geometry.belt - 0.5 * deep)
             draw_belt_motion(axes, middle, geometry.size, motion.belt_speed, 11)
         # colours tell what the contact does, so the springs have none
-        look: dict[str, Any] = {"color": style.GREY, "lw": width}
+        look: dict[str, Any] = {"color": style.Colour.grey, "lw": width}
         self.springs = [
             axes.plot([], [], solid_joinstyle="round", zorder=2, **look)[0]
             for _ in motion.angles
         ]
-        self.contact: Line2D = axes.plot([], [], color=style.GREY, lw=width, zorder=1)[
-            0
-        ]
+        self.contact: Line2D = axes.plot(
+            [], [], color=style.Colour.grey, lw=width, zorder=1
+        )[0]
         self.foot: Line2D = axes.plot(
             [], [], lw=2.5 if small else 5, solid_capstyle="butt", zorder=3
         )[0]
         self.mass = Circle(
-            (0, 0), geometry.radius, facecolor=style.BLACK, lw=0, zorder=4
+            (0, 0), geometry.radius, facecolor=style.Colour.black, lw=0, zorder=4
         )
         axes.add_patch(self.mass)
         self.state: Text = axes.text(

@@ -8,7 +8,13 @@ from matplotlib.figure import Figure
 from squealpipe.plotting import style
 from squealpipe.vibration.sobol import SobolRules
 
-COLOURS = (style.BLUE, style.ORANGE, style.RED, style.PURPLE, style.GREEN)
+COLOURS = (
+    style.Colour.blue,
+    style.Colour.orange,
+    style.Colour.red,
+    style.Colour.purple,
+    style.Colour.green,
+)
 
 
 def figure(spread: xr.Dataset) -> Figure:
@@ -38,7 +44,7 @@ def figure(spread: xr.Dataset) -> Figure:
             width,
             yerr=np.abs(limits - total),
             color=COLOURS[i],
-            ecolor=style.GREY,
+            ecolor=style.Colour.grey,
             label=names[i],
         )
         indices.plot(at, spread.first_order.values[i], "k.", markersize=3)
@@ -54,7 +60,7 @@ def figure(spread: xr.Dataset) -> Figure:
             widths.plot(base, row, ".-", color=colour)
     widths.axhline(
         SobolRules.widest,
-        color=style.GREY,
+        color=style.Colour.grey,
         ls="--",
         lw=0.8,
         label="widest that is given",
@@ -96,7 +102,7 @@ def figure_of_structure(spread: xr.Dataset) -> Figure:
             height,
             xerr=np.abs(limits - total),
             color=COLOURS[row],
-            ecolor=style.GREY,
+            ecolor=style.Colour.grey,
             label=str(one.verdict.item()),
         )
     indices.set_yticks(at, inputs)
@@ -135,7 +141,7 @@ def draw_shares(axes: Axes, spread: xr.Dataset) -> None:
         share,
         xerr=error,
         color=COLOURS[: len(names)],
-        ecolor=style.GREY,
+        ecolor=style.Colour.grey,
         height=0.6,
     )
     axes.set_yticks(place, names)

@@ -88,7 +88,7 @@ def mark_changed(axes: Axes, dataset: xr.Dataset) -> None:
     changed = dataset.motion_changed
     x, y = (changed[dim].values for dim in changed.dims)
     first, second = np.nonzero(changed.values)
-    axes.plot(x[first], y[second], ".", color=style.BLACK, ms=1.2)
+    axes.plot(x[first], y[second], ".", color=style.Colour.black, ms=1.2)
 
 
 def draw_quantity(axes: Axes, variable: xr.DataArray) -> None:
@@ -123,7 +123,9 @@ def draw_quantity(axes: Axes, variable: xr.DataArray) -> None:
     if by_name:
         axes.tick_params("x", rotation=90)
     if variable.ndim == 1:
-        axes.plot(x.values, values, "." if names or by_name else "-", color=style.BLUE)
+        axes.plot(
+            x.values, values, "." if names or by_name else "-", color=style.Colour.blue
+        )
         axes.set_ylabel(label(variable))
         if names:
             axes.set_yticks(range(len(names)), list(map(style.flag_words, names)))
@@ -137,7 +139,7 @@ def _draw_map(
     x, y = (variable[dim] for dim in variable.dims)
     if names:
         free = iter(
-            style.PALETTE * len(names)
+            style.Colour.palette * len(names)
         )  # for flags without a colour of their own
         colours = [style.REGIME_COLOURS.get(name) or next(free) for name in names]
         scale = style.category_colours(colours)

@@ -112,19 +112,19 @@ def draw_force(axes: Axes, run: xr.Dataset, window: Window | None = None) -> Non
     shown = _shown(run, window)
     time, force = shown.time.values, shown.normalized_contact_force.values
     top = max(1.3, 1.1 * float(np.nanmax(force)))
-    axes.plot(time, force, color=style.BLUE)
+    axes.plot(time, force, color=style.Colour.blue)
     apart = np.clip(intervals(run, Regime.separated), time[0], time[-1])
     apart = apart[apart[:, 1] > apart[:, 0]]
     # points: one pixel at 90 dots per inch, so that dense oscillations stay apart
     axes.broken_barh(
         list(zip(apart[:, 0], np.diff(apart)[:, 0], strict=True)),
         (-0.05 * top, 0.05 * top),
-        color=style.RED,
+        color=style.Colour.red,
         linewidth=0.8,
         antialiased=False,
         label="separated",
     )
-    axes.axhline(0.0, color=style.GREY, linewidth=0.5)
+    axes.axhline(0.0, color=style.Colour.grey, linewidth=0.5)
     limits = (float(time[0]), float(time[-1])) if window is None else window
     axes.set(xlim=limits, ylim=(-0.065 * top, top))
     axes.set(xlabel="t (s)", ylabel=FORCE_LABEL)
@@ -137,8 +137,8 @@ def draw_displacements(
     if _too_short(axes, run):
         return
     shown = _shown(run, window)
-    axes.plot(shown.time, shown.x, color=style.X_COLOUR, label="x")
-    axes.plot(shown.time, shown.y, color=style.Y_COLOUR, linestyle="--", label="y")
+    axes.plot(shown.time, shown.x, color=style.Colour.along, label="x")
+    axes.plot(shown.time, shown.y, color=style.Colour.across, linestyle="--", label="y")
     style.preload_line(axes, float(run.preload))
     limits = (0.0, float(run.time_reached)) if window is None else window
     axes.set(xlabel="t (s)", ylabel="displacement (m)", xlim=limits)
@@ -153,7 +153,7 @@ def draw_orbit(axes: Axes, run: xr.Dataset) -> None:
     """The path of the mass, with the springs at its end unless they dwarf it."""
     if _too_short(axes, run):
         return
-    axes.plot(run.x, run.y, color=style.GREY, linewidth=0.6)
+    axes.plot(run.x, run.y, color=style.Colour.grey, linewidth=0.6)
     path = np.stack([run.x.values, run.y.values])
     path = path[:, np.isfinite(path[0])]
     x, y = path[:, -1]
@@ -168,7 +168,9 @@ def draw_orbit(axes: Axes, run: xr.Dataset) -> None:
             axes.plot(*spring.T, color=colour, linewidth=0.9)
             axes.plot(*spring[-1], "s", color="black", markersize=3)
     axes.plot(x, y, "o", color="black", markersize=5)
-    axes.axhline(float(run.preload), color=style.GREY, linewidth=0.8, linestyle=":")
+    axes.axhline(
+        float(run.preload), color=style.Colour.grey, linewidth=0.8, linestyle=":"
+    )
     axes.set(xlabel="x (m)", ylabel="y (m)")
     axes.set_aspect("equal", adjustable="datalim")
     axes.locator_params(nbins=5)
@@ -224,8 +226,8 @@ def _draw_lines(
     if not loud.size:
         style.say_instead(axes, "the contact force does not oscillate")
         return False
-    axes.plot(frequency, amplitude, color=style.BLUE)
-    axes.plot(*lines, "v", color=style.RED, markersize=4)
+    axes.plot(frequency, amplitude, color=style.Colour.blue)
+    axes.plot(*lines, "v", color=style.Colour.red, markersize=4)
     axes.set(xlim=(0, 1.2 * frequency[loud[-1]]), ylim=(0, None))
     return True
 

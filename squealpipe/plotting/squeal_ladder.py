@@ -47,7 +47,9 @@ def draw_error(axes: Axes, ladder: xr.Dataset, quantity: str) -> None:
     left, right = float(shown.min()), float(shown.max())
     room = max(right / left, 10.0) ** 0.08
     axes.set_xlim(left / room, right * room)
-    axes.axvspan(left / room, known, color=style.LIGHT, alpha=0.35, zorder=0, lw=0)
+    axes.axvspan(
+        left / room, known, color=style.Colour.light, alpha=0.35, zorder=0, lw=0
+    )
     # offset in points (x, y) and alignment of the settings beside a method's markers, in turn
     label_offsets = [
         (-4, 3, "right"),
@@ -88,7 +90,7 @@ def draw_creep(axes: Axes, ladder: xr.Dataset) -> None:
             }
             axes.plot(width[mine], slow[mine], dash, **look)
     finest = float(slow[(ladder.role == Role.our_setting).values].item())
-    axes.axhline(finest, color=style.RED, lw=0.8, ls="--")
+    axes.axhline(finest, color=style.Colour.red, lw=0.8, ls="--")
     axes.annotate(
         "finest: stick",
         (1.0, finest),
@@ -97,7 +99,7 @@ def draw_creep(axes: Axes, ladder: xr.Dataset) -> None:
         textcoords="offset points",
         ha="right",
         fontsize=6.5,
-        color=style.RED,
+        color=style.Colour.red,
     )
     if (width > 0).any():
         axes.set_xscale("log")

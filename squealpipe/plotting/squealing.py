@@ -92,7 +92,7 @@ def _poles(axes: Axes, answer: xr.Dataset) -> None:
         axes.axvspan(
             limit * factor,
             1.05 * frequencies.max() * factor,
-            color=style.GREY,
+            color=style.Colour.grey,
             alpha=0.2,
             linewidth=0,
             label="beyond the band",
@@ -101,7 +101,11 @@ def _poles(axes: Axes, answer: xr.Dataset) -> None:
         if np.isfinite(ring):
             label = None if index else "strongest line"
             axes.axvline(
-                ring, color=style.BLACK, linewidth=0.8, linestyle="--", label=label
+                ring,
+                color=style.Colour.black,
+                linewidth=0.8,
+                linestyle="--",
+                label=label,
             )
     draw_stability(axes, frequency, growth.values, unstable)
     shown = growth.values
@@ -110,7 +114,13 @@ def _poles(axes: Axes, answer: xr.Dataset) -> None:
         shown = np.concatenate([shown, lost])
         at = answer.missing_frequency.values * factor
         axes.plot(
-            at, lost, "D", ms=4, mfc="none", color=style.RED, label="missing in the run"
+            at,
+            lost,
+            "D",
+            ms=4,
+            mfc="none",
+            color=style.Colour.red,
+            label="missing in the run",
         )
     show_what_grows(axes, shown)
     axes.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
@@ -128,7 +138,7 @@ def _errors(axes: Axes, answer: xr.Dataset, factor: float) -> None:
         answer.pole_growth_rate_error.values,
         answer.pole_frequency_error.values * factor,
         fmt="none",
-        ecolor=style.GREY,
+        ecolor=style.Colour.grey,
         elinewidth=0.8,
         label="error of the modes kept",
     )
@@ -165,7 +175,9 @@ def _losses(axes: Axes, answer: xr.Dataset) -> None:
     step = BARS_HEIGHT / len(names)
     for index, name in enumerate(names):
         at = np.arange(len(separated)) + (index + 0.5) * step - 0.5 * BARS_HEIGHT
-        axes.barh(at, separated[:, index], 0.8 * step, color=style.ORANGE, **_EDGE)
+        axes.barh(
+            at, separated[:, index], 0.8 * step, color=style.Colour.orange, **_EDGE
+        )
         for row, value in zip(at, separated[:, index], strict=True):
             axes.annotate(
                 name,
@@ -183,7 +195,7 @@ def _losses(axes: Axes, answer: xr.Dataset) -> None:
     )
 
 
-_EDGE: dict[str, Any] = {"edgecolor": style.BLACK, "linewidth": 0.4}
+_EDGE: dict[str, Any] = {"edgecolor": style.Colour.black, "linewidth": 0.4}
 
 
 def _bars(axes: Axes, values: np.ndarray, **error: Any) -> None:
@@ -191,8 +203,8 @@ def _bars(axes: Axes, values: np.ndarray, **error: Any) -> None:
         np.arange(len(values)),
         values,
         0.6 * BARS_HEIGHT,
-        color=style.BLUE,
-        ecolor=style.BLACK,
+        color=style.Colour.blue,
+        ecolor=style.Colour.black,
         **_EDGE,
         **error,
     )

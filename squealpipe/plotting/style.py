@@ -23,51 +23,58 @@ from squealpipe.parameters import TABLE
 from squealpipe.store.whole_files import whole_file
 from squealpipe.text import as_people_write
 
+
+class Colour:
+    """Colours of all figures, one for each meaning.
+
+    Attributes:
+        palette: Okabe–Ito: distinct for colour-blind readers; lines also differ in dash or marker.
+        white, light, black: the paper's three tones.
+        along, across: displacements along the belt and away from it, everywhere.
+    """
+
+    palette = ("#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#7F7F7F")
+    blue, orange, green, red, purple, grey = palette
+    white, light, black = "#FFFFFF", "#BDBDBD", "#1A1A1A"
+    along, across = orange, blue
+
+
 COLUMN = 3.5
 PAGE = 7.0
 """Widths of one column and of a page, inches."""
 
-PALETTE = ["#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#7F7F7F"]
-"""Okabe–Ito: distinct for colour-blind readers; lines also differ in dash or marker."""
-BLUE, ORANGE, GREEN, RED, PURPLE, GREY = PALETTE
-
-X_COLOUR, Y_COLOUR = ORANGE, BLUE
-"""Displacements along the belt and away from it, everywhere."""
-
 POWER_OF_TEN_BELOW = 1e-3
 """Largest number on an axis whose labels are written with a power of ten."""
 
-WHITE, LIGHT, BLACK = "#FFFFFF", "#BDBDBD", "#1A1A1A"
-"""The paper's three tones."""
 white_halo = [withStroke(linewidth=2, foreground="white")]
 """Around words and marks on a map."""
 HATCH = "//////"
 
 ANGLE_NAMES = ("alpha1", "alpha2")
 REGIME_COLOURS = {
-    "slip_slower": BLUE,
-    "slip_faster": GREEN,
-    "stick": ORANGE,
-    "separated": RED,
-    "contact_kept": BLUE,
-    "stick_slip": ORANGE,
-    "periodic_hammering": GREEN,
+    "slip_slower": Colour.blue,
+    "slip_faster": Colour.green,
+    "stick": Colour.orange,
+    "separated": Colour.red,
+    "contact_kept": Colour.blue,
+    "stick_slip": Colour.orange,
+    "periodic_hammering": Colour.green,
     "quasi_periodic_hammering": "#004D3A",  # dark: apart from whirl without colour too
     "undetermined": "#B8E3D4",
     "at_rest": "#9ECAE1",
     "hammered_then_contact": "#DEC24A",
-    "unsettled": WHITE,
+    "unsettled": Colour.white,
     "rest": "#9ECAE1",
-    "cycle": GREEN,
-    "irregular_hammering": RED,
-    "whirl": PURPLE,
-    "undecided": GREY,
-    "quiet": WHITE,
-    "squeals": ORANGE,
-    "hammers": RED,
-    "stable": WHITE,
-    "flutter": BLACK,
-    "divergence": RED,
+    "cycle": Colour.green,
+    "irregular_hammering": Colour.red,
+    "whirl": Colour.purple,
+    "undecided": Colour.grey,
+    "quiet": Colour.white,
+    "squeals": Colour.orange,
+    "hammers": Colour.red,
+    "stable": Colour.white,
+    "flutter": Colour.black,
+    "divergence": Colour.red,
 }
 """One colour for one regime, everywhere."""
 
@@ -187,13 +194,13 @@ def hatch(axes: Axes, dataset: xr.Dataset, mask: np.ndarray) -> None:
 
 def patches(tones: Iterable[tuple[Any, str]], **look: Any) -> list[Patch]:
     """Entries of a legend: colour and words."""
-    look = {"edgecolor": BLACK, "linewidth": 0.5, **look}
+    look = {"edgecolor": Colour.black, "linewidth": 0.5, **look}
     return [Patch(facecolor=colour, label=words, **look) for colour, words in tones]
 
 
 def colour_of(entry: Any) -> str:
     """Return the colour of this palette that an entry of an enumeration names."""
-    return str(globals()[entry.colour])
+    return str(getattr(Colour, entry.colour))
 
 
 def category_colours(colours: Sequence[Any]) -> dict[str, Any]:
@@ -238,7 +245,7 @@ def say_instead(axes: Axes, text: str) -> None:
 
 def preload_line(axes: Axes, preload: float) -> None:
     """A dotted line at l_pre, above which contact is lost, named at its right end."""
-    axes.axhline(preload, color=GREY, linewidth=0.8, linestyle=":")
+    axes.axhline(preload, color=Colour.grey, linewidth=0.8, linestyle=":")
     axes.annotate(
         r"$l_\mathrm{pre}$",
         (1, preload),
@@ -246,7 +253,7 @@ def preload_line(axes: Axes, preload: float) -> None:
         xytext=(2, 0),
         textcoords="offset points",
         va="center",
-        color=GREY,
+        color=Colour.grey,
         fontsize=7,
     )
 

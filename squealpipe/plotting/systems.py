@@ -10,7 +10,7 @@ from matplotlib.patches import Patch
 
 from squealpipe.plotting.cycles import say_why_empty
 from squealpipe.plotting.quantities import draw_quantity, label
-from squealpipe.plotting.style import BLUE, GREY, PALETTE, say_instead
+from squealpipe.plotting.style import Colour, say_instead
 from squealpipe.schema import meanings
 
 
@@ -24,14 +24,14 @@ def draw_states(axes: Axes, run: xr.Dataset) -> None:
     # more marks than this would hide the lines
     if run.sizes["event"] <= 60:
         for instant in run.event_time.values:
-            axes.axvline(instant, color=GREY, linewidth=0.4)
+            axes.axvline(instant, color=Colour.grey, linewidth=0.4)
     dashes = ("-", "--", ":")
     for index, state in enumerate(alike):
-        turn, colour = divmod(index, len(PALETTE))
+        turn, colour = divmod(index, len(Colour.palette))
         axes.plot(
             run.time,
             state,
-            color=PALETTE[colour],
+            color=Colour.palette[colour],
             label=str(state.name),
             linestyle=dashes[turn % len(dashes)],
         )
@@ -103,9 +103,9 @@ def draw_ensemble(axes: Axes, runs: xr.Dataset) -> None:
         draw_quantity(axes, high)
         return
     x = runs[high.dims[0]]
-    axes.fill_between(x, low, high, color=BLUE, alpha=0.15, linewidth=0)
+    axes.fill_between(x, low, high, color=Colour.blue, alpha=0.15, linewidth=0)
     for extreme in (low, high):
-        axes.plot(x, extreme, ".", color=BLUE, markersize=3)
+        axes.plot(x, extreme, ".", color=Colour.blue, markersize=3)
     axes.set(xlabel=label(x), ylabel=f"{first}, late extremes ({high.units})")
 
 
@@ -115,7 +115,7 @@ def draw_path(axes: Axes, cycle: xr.Dataset) -> None:
         return
     first, *others = [cycle[f"{name}_path"] for name in _states(cycle)]
     x, y = (first, others[0]) if others else (cycle.time, first)
-    axes.plot(x, y, color=BLUE)
+    axes.plot(x, y, color=Colour.blue)
     axes.set(xlabel=label(x), ylabel=label(y))
 
 

@@ -18,8 +18,13 @@ METHOD_MARKS = [
     for markers, dash in (("os^vDP*", "-"), ("x+<>dhp", ":"))
     for colour, marker in zip(
         (
-            *(style.BLACK, style.BLUE, style.GREEN, style.ORANGE),
-            *(style.RED, style.PURPLE, style.GREY),
+            *(
+                style.Colour.black,
+                style.Colour.blue,
+                style.Colour.green,
+                style.Colour.orange,
+            ),
+            *(style.Colour.red, style.Colour.purple, style.Colour.grey),
         ),
         markers,
         strict=True,
@@ -65,14 +70,19 @@ def draw_methods(
         axes.plot(error[mine], values[mine], dash, **look)
         rest = mine & ~right
         look |= {"marker": marker, "ls": "none"}
-        axes.plot(error[rest], values[rest], **look, mfc=style.WHITE)
+        axes.plot(error[rest], values[rest], **look, mfc=style.Colour.white)
         axes.plot(error[right], values[right], **look)
         axes.plot([], [], **look | {"ls": dash}, label=style.symbols(method))
     wrong = fine & (worth == Reliability.silently_wrong)
     ours = fine & (rows.role.values == Role.our_setting)
-    cross: dict[str, Any] = {"color": style.BLACK, "ms": 5.5, "mew": 1.1, "zorder": 3}
+    cross: dict[str, Any] = {
+        "color": style.Colour.black,
+        "ms": 5.5,
+        "mew": 1.1,
+        "zorder": 3,
+    }
     axes.plot(error[wrong], values[wrong], "x", label="silently wrong", **cross)
-    circle = cross | {"color": style.RED, "ms": 9, "mfc": "none", "mew": 1.0}
+    circle = cross | {"color": style.Colour.red, "ms": 9, "mfc": "none", "mew": 1.0}
     axes.plot(error[ours], values[ours], "o", label=ring, **circle)
     axes.set(xscale="log", yscale="log")
     axes.minorticks_off()
@@ -88,7 +98,12 @@ def _draw_front(
 ) -> None:
     """A grey band along the right answers that no other right one beats in both."""
     front = _pareto(error[right], cost[right])
-    look: dict[str, Any] = {"color": style.BLACK, "lw": 3.0, "alpha": 0.15, "zorder": 1}
+    look: dict[str, Any] = {
+        "color": style.Colour.black,
+        "lw": 3.0,
+        "alpha": 0.15,
+        "zorder": 1,
+    }
     axes.step(error[right][front], cost[right][front], where="post", **look)
 
 
@@ -118,4 +133,4 @@ def foot(figure: Figure, dataset: xr.Dataset) -> None:
     platform = dataset.attrs.get("platform", "platform unknown")
     if processor := dataset.attrs.get("processor", ""):
         platform = f"{processor}, {platform}"
-    figure.supxlabel(f"{platform}\n{versions}", fontsize=5.5, color=style.GREY)
+    figure.supxlabel(f"{platform}\n{versions}", fontsize=5.5, color=style.Colour.grey)

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from squealpipe.laws.contact_laws import COLUMNS, TABLE_UNITS
+from squealpipe.laws.contact_laws import own_law_rules
 from squealpipe.laws.numerals import Numeral, decimal_sign, numeral, plain
 from squealpipe.laws.rows import FileRows, text_rows
 from squealpipe.laws.sheets import IS_TIME, sheet
@@ -156,9 +156,9 @@ class _Line(NamedTuple):
             return self.law
         columns = {}
         for key, numbers, unit, factor in zip(
-            COLUMNS,
+            own_law_rules.columns,
             zip(*self.law, strict=True),
-            TABLE_UNITS,
+            own_law_rules.units,
             (scales.length, scales.force),
             strict=True,
         ):
@@ -216,7 +216,7 @@ def _law(
                 "contacts as .csv"
             )
         try:
-            return read_table(folder / text, COLUMNS)
+            return read_table(folder / text, own_law_rules.columns)
         except (ValueError, OSError) as error:
             raise ValueError(f"{where}: law: {error}") from error
     pairs = []

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import numpy as np
 import scipy.sparse as sp
 
-from squealpipe.laws.friction_laws import COLUMNS
+from squealpipe.laws.friction_laws import own_law_rules
 from squealpipe.laws.numerals import decimal_sign, numeral, plain
 from squealpipe.laws.rows import text_rows
 from squealpipe.laws.tables import named
@@ -162,7 +162,9 @@ def _numbers(
         if is_finite_number(arguments.get(name)):
             arguments[name] = float(arguments[name]) * factor
     if "friction_law" in content:
-        arguments["friction_law"] = named(content["friction_law"], COLUMNS, folder)
+        arguments["friction_law"] = named(
+            content["friction_law"], own_law_rules.columns, folder
+        )
     return arguments
 
 

@@ -5,8 +5,8 @@ import re
 import pytest
 
 from squealpipe import Parameters
-from squealpipe.laws.contact_laws import COLUMNS as CONTACT
-from squealpipe.laws.friction_laws import COLUMNS as FRICTION
+from squealpipe.laws.contact_laws import own_law_rules as contact_rules
+from squealpipe.laws.friction_laws import own_law_rules as friction_rules
 from squealpipe.laws.sheets import shown_as
 from squealpipe.laws.table_files import read_pairs
 from squealpipe.study.configuration.settings import ConfigError, read_study
@@ -239,14 +239,14 @@ REFUSED = {
 def test_tables_of_many_programs_are_read(name, tmp_path):
     path = tmp_path / "friction.csv"
     path.write_bytes(READ[name].encode())
-    assert read_pairs(path, FRICTION) == SI
+    assert read_pairs(path, friction_rules.columns) == SI
 
 
 @pytest.mark.parametrize("encoding", ENCODINGS)
 def test_encodings_of_windows_and_instruments(encoding, tmp_path):
     path = tmp_path / "friction.txt"
     path.write_bytes(READ["German Excel"].encode(encoding))
-    assert read_pairs(path, FRICTION) == SI
+    assert read_pairs(path, friction_rules.columns) == SI
     assert Parameters(friction_law=str(path)).static_mu == 0.5
 
 
@@ -255,7 +255,7 @@ def test_further_columns_are_chosen_by_name(name, tmp_path):
     text, chosen = CHOSEN[name]
     path = tmp_path / "friction.csv"
     path.write_text(text, encoding="utf-8")
-    assert read_pairs(path, FRICTION, chosen) == SI
+    assert read_pairs(path, friction_rules.columns, chosen) == SI
 
 
 @pytest.mark.parametrize("name", REFUSED)
@@ -264,9 +264,9 @@ def test_what_cannot_be_known_is_refused_and_the_remedy_works(name, tmp_path):
     path = tmp_path / "bad.csv"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(ValueError, match=rf"bad\.csv.*{re.escape(says)}"):
-        read_pairs(path, FRICTION)
+        read_pairs(path, friction_rules.columns)
     path.write_text(mended, encoding="utf-8")
-    assert read_pairs(path, FRICTION)
+    assert read_pairs(path, friction_rules.columns)
 
 
 def test_sheets_of_excel(tmp_path):
@@ -277,17 +277,17 @@ def test_sheets_of_excel(tmp_path):
         book.active.append(row)
     path = tmp_path / "friction.xlsx"
     book.save(path)
-    assert read_pairs(path, FRICTION, (None, "mu")) == SI
+    assert read_pairs(path, friction_rules.columns, (None, "mu")) == SI
     book.create_sheet("notes")["A1"] = "of the rig"
     book.save(path)
-    assert read_pairs(path, FRICTION, (None, "mu")) == SI
+    assert read_pairs(path, friction_rules.columns, (None, "mu")) == SI
     book.create_sheet("more")["A1"] = "speed"
     book.save(path)
     with pytest.raises(ValueError, match=r": Sheet, notes, more; save the one"):
-        read_pairs(path, FRICTION, (None, "mu"))
+        read_pairs(path, friction_rules.columns, (None, "mu"))
     path.write_text("speed,mu")
     with pytest.raises(ValueError, match=r"friction\.xlsx is no Excel file"):
-        read_pairs(path, FRICTION)
+        read_pairs(path, friction_rules.columns)
 
 
 def test_excel_shows_per_cent_and_stores_no_value_of_a_new_formula(tmp_path):
@@ -299,11 +299,11 @@ def test_excel_shows_per_cent_and_stores_no_value_of_a_new_formula(tmp_path):
         cell.number_format = "0%"
     path = tmp_path / "friction.xlsx"
     book.save(path)
-    assert read_pairs(path, FRICTION) == SI
+    assert read_pairs(path, friction_rules.columns) == SI
     book.active["A3"] = "=1/10"
     book.save(path)
     with pytest.raises(ValueError, match=r"row 3: the formula in A3 has no stored"):
-        read_pairs(path, FRICTION)
+        read_pairs(path, friction_rules.columns)
 
 
 def test_excel_is_read_as_people_see_it(tmp_path):
@@ -321,11 +321,15 @@ def test_excel_is_read_as_people_see_it(tmp_path):
         hidden.append(row)
     path = tmp_path / "contact.xlsx"
     book.save(path)
-    assert read_pairs(path, CONTACT) == [(0, 0), (2e-4, 400), (1.2e-3, 12345.6)]
+    assert read_pairs(path, contact_rules.columns) == [
+        (0, 0),
+        (2e-4, 400),
+        (1.2e-3, 12345.6),
+    ]
     sheet.row_dimensions[3].hidden = True
     book.save(path)
     with pytest.raises(ValueError, match="row 3 is hidden, by a filter maybe; show it"):
-        read_pairs(path, CONTACT)
+        read_pairs(path, contact_rules.columns)
 
 
 @pytest.mark.parametrize(
@@ -351,7 +355,11 @@ def test_a_contact_in_kilonewtons_over_micrometres(tmp_path):
     path.write_text(
         "compression [µm];Kraft [kN]\n0;0\n50;0,2\n100;0,9\n", encoding="utf-8"
     )
-    assert read_pairs(path, CONTACT) == [(0.0, 0.0), (5e-5, 200.0), (1e-4, 900.0)]
+    assert read_pairs(path, contact_rules.columns) == [
+        (0.0, 0.0),
+        (5e-5, 200.0),
+        (1e-4, 900.0),
+    ]
 
 
 def test_a_configuration_names_columns_and_the_file_at_fault(tmp_path):

@@ -41,14 +41,14 @@ class Level(IntEnum):
         "A3 in contact",
         "contact loss, geometry, reversal of friction",
         "contact kept, belt not reached, small displacements",
-        "LIGHT",
+        "light",
     )
     a4 = (
         1,
         "A4",
         "geometry, reversal of friction",
         "belt not reached, small displacements",
-        "BLUE",
+        "blue",
         "A4",
         1.0,
     )
@@ -57,7 +57,7 @@ class Level(IntEnum):
         "A1, linear springs",
         "geometry",
         "small displacements",
-        "PURPLE",
+        "purple",
         "A1-linear-springs",
         1.0,
     )
@@ -66,7 +66,7 @@ class Level(IntEnum):
         "A1 without stick",
         "stick",
         "short spells of stick",
-        "GREEN",
+        "green",
         "A1-no-stick",
         1.0,
     )
@@ -75,11 +75,11 @@ class Level(IntEnum):
         "A1, part of the horizon",
         "the rest of the horizon",
         "nothing new after that part",
-        "GREY",
+        "grey",
         "A1",
         0.5,
     )
-    a1 = (5, "A1", "nothing", "nothing", "BLACK", "A1", 1.0)
+    a1 = (5, "A1", "nothing", "nothing", "black", "A1", 1.0)
 
     def __new__(
         cls,

@@ -10,6 +10,7 @@ from typing import Any, Protocol, cast
 
 from squealpipe.laws.contact_laws import dashpot, linear  # noqa: F401
 from squealpipe.laws.tables import (
+    OwnLawRules,
     Pieces,
     is_table,
     knots_of,
@@ -18,18 +19,17 @@ from squealpipe.laws.tables import (
     scaled,
 )
 
-COLUMNS = ("compression", "force")
-"""Of a table of contact: δ, m, and N, N."""
-TABLE_UNITS = ("m", "N")
-FILES = "or a table (FILE.csv)"
-REFUSED = {
-    "hertz": "d^1.5 has no Taylor series at d = 0, where contact begins and ends, so its order "
-    "would be lost there; give a table of it, whose pieces have one"
-}
-"""Laws that cannot be carried, with the reason."""
-IN_TABLE = ("k3",)
-"""Parameters that a table stands in for."""
-IN_SOURCE = ()
+own_law_rules = OwnLawRules(
+    columns=("compression", "force"),
+    units=("m", "N"),
+    files="or a table (FILE.csv)",
+    refused={
+        "hertz": "d^1.5 has no Taylor series at d = 0, where contact begins and ends, so its "
+        "order would be lost there; give a table of it, whose pieces have one"
+    },
+    in_table=("k3",),
+    in_source=(),
+)
 
 
 class ContactLaw(Protocol):

@@ -12,18 +12,24 @@ from types import ModuleType, SimpleNamespace
 from typing import Any, Protocol, cast
 
 from squealpipe.laws.friction_laws import coulomb, exponential, hyperbolic  # noqa: F401
-from squealpipe.laws.tables import Pieces, functions_of, is_table, pieces_of, polynomial
+from squealpipe.laws.tables import (
+    OwnLawRules,
+    Pieces,
+    functions_of,
+    is_table,
+    pieces_of,
+    polynomial,
+)
 
-COLUMNS = ("speed", "coefficient")
-"""Of a table of friction: the sliding speed, m/s, and μ."""
-TABLE_UNITS = ("m s-1", "1")
-FILES = "or a table (FILE.csv), or a law in Python (FILE.py)"
-REFUSED: dict[str, str] = {}
-"""Laws that cannot be carried, with the reason."""
-IN_TABLE = ("mu", "mu_static", "friction_speed")
-"""Parameters that a table stands in for."""
-IN_SOURCE = ("friction_speed",)
-"""Those that a Python file stands in for: its speeds are in m/s, 1 m/s in the engine's units."""
+own_law_rules = OwnLawRules(
+    columns=("speed", "coefficient"),
+    units=("m s-1", "1"),
+    files="or a table (FILE.csv), or a law in Python (FILE.py)",
+    refused={},
+    in_table=("mu", "mu_static", "friction_speed"),
+    # its speeds are in m/s, 1 m/s in the engine's units
+    in_source=("friction_speed",),
+)
 
 
 class FrictionLaw(Protocol):

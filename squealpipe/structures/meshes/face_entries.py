@@ -5,7 +5,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from squealpipe.laws.contact_laws import COLUMNS
+from squealpipe.laws.contact_laws import own_law_rules
 from squealpipe.laws.numerals import decimal_sign, numeral, plain
 from squealpipe.laws.rows import text_rows
 from squealpipe.laws.tables import named
@@ -66,14 +66,16 @@ def _law(given: Any, folder: Path, scales: Scales) -> Any:
     """Return a law whose file is found and whose plain numbers are in SI."""
     if isinstance(given, Mapping):
         given = dict(given)
-        for column, factor in zip(COLUMNS, (scales.length, scales.force), strict=True):
+        for column, factor in zip(
+            own_law_rules.columns, (scales.length, scales.force), strict=True
+        ):
             if isinstance(given.get(column), list):
                 given[column] = [
                     float(each) * factor if is_finite_number(each) else each
                     for each in given[column]
                 ]
     try:
-        return named(given, COLUMNS, folder)
+        return named(given, own_law_rules.columns, folder)
     except (ValueError, OSError) as error:
         raise ValueError(f"law: {error}") from error
 

@@ -119,7 +119,7 @@ def _field_type(name: str, row: Row) -> Any:
             "properties": {
                 "table": {"type": "string"},
                 "between": {"enum": list(BETWEEN)},
-                f"{row.laws.COLUMNS[0]}_column": {"type": "string"},
+                f"{row.laws.own_law_rules.columns[0]}_column": {"type": "string"},
                 "value_column": {"type": "string"},
                 "python": {"type": "string"},
             },

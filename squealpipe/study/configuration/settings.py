@@ -175,7 +175,7 @@ def _read_laws(path: Path, content: dict[str, Any]) -> Iterator[str]:
     section = content.get("parameters") or {}
     for name, given, row in laws_in(section):
         try:
-            section[name] = named(given, row.laws.COLUMNS, path.parent)
+            section[name] = named(given, row.laws.own_law_rules.columns, path.parent)
         except (OSError, ValueError) as error:
             yield f"parameters.{name}: {error}"
             del section[name]

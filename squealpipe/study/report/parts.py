@@ -93,7 +93,7 @@ def parameter_table(
             continue
         shown, unit = value, ""
         if row.laws:
-            shown = law_in_words(value, row.laws.TABLE_UNITS)
+            shown = law_in_words(value, row.laws.own_law_rules.units)
         elif value is not None:
             factor, unit = shown_in(value, row.units)
             shown = value * factor

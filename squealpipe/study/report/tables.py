@@ -120,5 +120,5 @@ def _turned(units: str) -> tuple[float, str]:
 def _plain(name: str, value: Any) -> list[Any]:
     laws, units = TABLE[name].laws, TABLE[name].units
     if laws:
-        return [law_in_words(value, laws.TABLE_UNITS), ""]
+        return [law_in_words(value, laws.own_law_rules.units), ""]
     return [value, plain_unit(units)]

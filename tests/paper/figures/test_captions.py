@@ -20,9 +20,11 @@ def example():
     """Orange circles, a dotted grey line and a hatched cell on black, with their key."""
     figure, axes = style.new_figure()
     panel = axes[0, 0]
-    panel.imshow([[0, 1]], **style.category_colours([style.BLACK, style.WHITE]))
-    panel.plot([0, 1], [0, 1], "o", mfc="none", color=style.ORANGE, label="runs")
-    panel.axhline(0.5, ls=":", color=style.GREY, label="line")
+    panel.imshow(
+        [[0, 1]], **style.category_colours([style.Colour.black, style.Colour.white])
+    )
+    panel.plot([0, 1], [0, 1], "o", mfc="none", color=style.Colour.orange, label="runs")
+    panel.axhline(0.5, ls=":", color=style.Colour.grey, label="line")
     panel.contourf([[0, 1], [1, 0]], levels=[0.5, 1], colors="none", hatches=["//"])
     panel.legend()
     yield figure
@@ -50,8 +52,10 @@ def test_marks_that_are_not_drawn_are_told(example, caption, words):
 
 def test_entries_of_a_key_that_stand_for_nothing_are_told(example):
     panel = example.axes[0]
-    panel.plot([], [], "--", color=style.GREEN, label="nothing")
-    panel.legend(handles=[*panel.lines, *style.patches([(style.RED, "no cell")])])
+    panel.plot([], [], "--", color=style.Colour.green, label="nothing")
+    panel.legend(
+        handles=[*panel.lines, *style.patches([(style.Colour.red, "no cell")])]
+    )
     assert undrawn_entries(example) == ["nothing", "no cell"]
 
 

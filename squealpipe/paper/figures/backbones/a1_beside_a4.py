@@ -46,13 +46,18 @@ def draw(beside: xr.Dataset) -> Figure:
 def _draw(panel: Axes, part: xr.Dataset, axis: str) -> None:
     kind = "y" if axis == "period" else "spectrum"
     panel.plot(
-        part[axis], part[f"{kind}_a4"], color=style.GREY, lw=2.6, alpha=0.6, label="A4"
+        part[axis],
+        part[f"{kind}_a4"],
+        color=style.Colour.grey,
+        lw=2.6,
+        alpha=0.6,
+        label="A4",
     )
     looks = (
-        (style.RED, "-"),
-        (style.ORANGE, "--"),
-        (style.GREEN, "-."),
-        (style.BLUE, ":"),
+        (style.Colour.red, "-"),
+        (style.Colour.orange, "--"),
+        (style.Colour.green, "-."),
+        (style.Colour.blue, ":"),
     )
     for ratio, (colour, dash) in zip(
         part.length_ratio.values, cycle(looks), strict=False

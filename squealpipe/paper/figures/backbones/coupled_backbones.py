@@ -14,7 +14,7 @@ from squealpipe.paper.figures.panels.backbone_panels import (
     key,
 )
 from squealpipe.plotting.cycles import joined
-from squealpipe.plotting.style import BLACK, GREEN, PURPLE, Y_COLOUR
+from squealpipe.plotting.style import Colour
 from squealpipe.study.figures.declared import report_figure
 
 
@@ -61,7 +61,7 @@ def _draw_doubled(panel: Axes, simple: xr.Dataset, doubled: list[xr.Dataset]) ->
     inset.margins(0.12)
     # the inset ends a little above the backbone, where doubled branches go on
     top = 1.25 * float(simple.y_peak.max())
-    for branch, colour in zip(doubled, (GREEN, PURPLE), strict=False):
+    for branch, colour in zip(doubled, (Colour.green, Colour.purple), strict=False):
         shown = branch.isel(point=branch.y_largest.values <= top)
         _line(inset, shown, shown.y_largest.values, 2, colour)
         at = float(branch.doubling_omega), float(branch.y_largest[0])
@@ -70,17 +70,17 @@ def _draw_doubled(panel: Axes, simple: xr.Dataset, doubled: list[xr.Dataset]) ->
             "o",
             markersize=4,
             markerfacecolor="white",
-            markeredgecolor=BLACK,
+            markeredgecolor=Colour.black,
             zorder=3,
         )
     limits = inset.get_xlim(), inset.get_ylim()
-    _line(inset, simple, simple.y_peak.values, 1, Y_COLOUR)
+    _line(inset, simple, simple.y_peak.values, 1, Colour.across)
     inset.set(
         xlim=limits[0], ylim=(limits[1][0], min(limits[1][1], panel.get_ylim()[1]))
     )
     inset.xaxis.set_major_locator(MaxNLocator(4))
     inset.tick_params(labelsize=5)
-    panel.indicate_inset_zoom(inset, edgecolor=BLACK, alpha=0.4)
+    panel.indicate_inset_zoom(inset, edgecolor=Colour.black, alpha=0.4)
 
 
 def _line(

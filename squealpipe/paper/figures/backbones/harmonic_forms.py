@@ -34,11 +34,17 @@ def draw(forms: xr.Dataset) -> Figure:
 def _frequencies(panel: Axes, forms: xr.Dataset) -> None:
     places = np.arange(forms.sizes["scene"])
     panel.plot(
-        places, forms.omega_exact, "_", color=style.GREY, ms=22, mew=2, label="exact"
+        places,
+        forms.omega_exact,
+        "_",
+        color=style.Colour.grey,
+        ms=22,
+        mew=2,
+        label="exact",
     )
     for form, colour, marker, name in (
-        (Form.mended, style.BLUE, "x", "Eq. (34) corrected"),
-        (Form.as_printed, style.RED, "o", "Eq. (34) as printed"),
+        (Form.mended, style.Colour.blue, "x", "Eq. (34) corrected"),
+        (Form.as_printed, style.Colour.red, "o", "Eq. (34) as printed"),
     ):
         omega = forms.omega.sel(form=form).values
         panel.plot(places, omega, marker, mfc="none", color=colour, label=name)
@@ -59,11 +65,16 @@ def _spread(panel: Axes, forms: xr.Dataset) -> None:
         forms.samples,
         forms.phase_spread_y,
         marker="s",
-        color=style.ORANGE,
+        color=style.Colour.orange,
         markersize=4,
     )
     lacking = forms.phase_spread_y.where(forms.fourier_rank < forms.fourier_columns)
-    look = {"ms": 9, "mfc": "none", "color": style.RED, "label": "Γ lacks full rank"}
+    look = {
+        "ms": 9,
+        "mfc": "none",
+        "color": style.Colour.red,
+        "label": "Γ lacks full rank",
+    }
     panel.loglog(forms.samples, lacking, "o", **look)
     panel.set(xlabel="samples $N$", ylabel="spread of the largest y (m)")
     panel.set_xticks(

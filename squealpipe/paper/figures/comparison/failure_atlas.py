@@ -13,7 +13,12 @@ from squealpipe.plotting.work_precision import rule_table
 from squealpipe.study.figures.declared import report_figure
 from squealpipe.text import number
 
-_COLOURS = [style.WHITE, (style.BLUE, 0.25), style.ORANGE, style.RED]
+_COLOURS = [
+    style.Colour.white,
+    (style.Colour.blue, 0.25),
+    style.Colour.orange,
+    style.Colour.red,
+]
 """The worse, the darker: greyscale tells them apart."""
 _VERDICT_SIGNS = {
     Reliability.right: "✓ right",
@@ -21,7 +26,7 @@ _VERDICT_SIGNS = {
     Reliability.silently_wrong: "✗ silently wrong",
 }
 """Each verdict's sign, and what it means."""
-_SMALL: dict[str, Any] = {"fontsize": 5, "color": style.BLACK}
+_SMALL: dict[str, Any] = {"fontsize": 5, "color": style.Colour.black}
 
 
 @report_figure(
@@ -96,7 +101,7 @@ def _label(axes: Axes, found: xr.Dataset, names: list[str], silent: np.ndarray) 
     columns = len(names)
     for row, count in enumerate(silent):
         style.write(axes, columns, row, str(count), fontsize=6)
-    axes.axvline(columns - 0.5, color=style.GREY, lw=0.8)
+    axes.axvline(columns - 0.5, color=style.Colour.grey, lw=0.8)
     texts = [*map(style.symbols, names), "silently wrong"]
     axes.set_xticks(
         range(columns + 1),
@@ -107,4 +112,4 @@ def _label(axes: Axes, found: xr.Dataset, names: list[str], silent: np.ndarray) 
         fontsize=5.5,
     )
     axes.set_xlim(-0.5, columns + 0.5)
-    rule_table(axes, found, columns, color=style.WHITE, lw=1.0)
+    rule_table(axes, found, columns, color=style.Colour.white, lw=1.0)

@@ -60,7 +60,7 @@ def draw(ladder: xr.Dataset) -> Figure:
             # a number does not fit inside a narrower part of a bar
             if share >= 0.04:
                 dark = np.dot(to_rgb(colour), (0.299, 0.587, 0.114)) < 0.5
-                ink = style.WHITE if dark else style.BLACK
+                ink = style.Colour.white if dark else style.Colour.black
                 middle, words = left + 50 * share, f"{100 * share:.0f}"
                 style.write(panel, middle, row, words, color=ink)
             left += 100 * share

@@ -86,5 +86,5 @@ def draw(benchmark: xr.Dataset) -> Figure:
         rotation_mode="anchor",
     )
     panel.xaxis.tick_top()
-    rule_table(panel, benchmark, columns, color=style.LIGHT, lw=0.6)
+    rule_table(panel, benchmark, columns, color=style.Colour.light, lw=0.6)
     return figure

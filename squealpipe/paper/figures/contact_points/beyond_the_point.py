@@ -67,7 +67,7 @@ def _titles(pads: xr.Dataset, shown: np.ndarray) -> list[str]:
 
 
 def _draw_loss(axes: Axes, pads: xr.Dataset, loud: np.ndarray) -> None:
-    for place, colour in zip(loud, style.PALETTE, strict=False):
+    for place, colour in zip(loud, style.Colour.palette, strict=False):
         one = pads.isel(design=int(place))
         axes.plot(
             one.position,
@@ -95,6 +95,6 @@ def _draw_timing(axes: Axes, pad: xr.Dataset) -> None:
         extent=(0.0, float(pad.instant[-1]), count + 0.5, 0.5),
     )
     for edge in np.arange(1.5, count):
-        axes.axhline(edge, color=style.LIGHT, linewidth=0.5)
+        axes.axhline(edge, color=style.Colour.light, linewidth=0.5)
     axes.set_yticks(np.arange(1, count + 1))
     axes.set(xlabel="periods", ylabel="point, leading first")

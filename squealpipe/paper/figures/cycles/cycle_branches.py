@@ -57,7 +57,12 @@ def draw(
         title, branches = panels[name]
         friction = np.broadcast_to(extremes.mu.values[:, None], sizes[name].shape)
         runs = panel.plot(
-            friction, sizes[name], ".", color=style.GREY, markersize=2.5, zorder=1
+            friction,
+            sizes[name],
+            ".",
+            color=style.Colour.grey,
+            markersize=2.5,
+            zorder=1,
         )
         runs[0].set_label("long runs")
         for branch in branches:

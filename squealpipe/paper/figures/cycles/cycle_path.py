@@ -32,12 +32,14 @@ def draw(cycle: xr.Dataset) -> Figure:
         height, speed = parameter(cycle, "preload"), parameter(cycle, "belt_speed")
         path.axhline(
             height,
-            color=style.GREY,
+            color=style.Colour.grey,
             lw=0.6,
             label=r"$l_\mathrm{pre}$: contact is lost above",
         )
         path.set(aspect="equal", adjustable="datalim")
-        rate.axhline(speed, color=style.GREY, lw=0.6, ls="--", label="belt speed")
+        rate.axhline(
+            speed, color=style.Colour.grey, lw=0.6, ls="--", label="belt speed"
+        )
         handles, words = key_entries((path, rate))
         figure.legend(handles, words, loc="outside lower center", ncols=len(words))
     path.set(xlabel="x (m)", ylabel="y (m)")

@@ -24,8 +24,8 @@ def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
     """Two panels, and a third one where the study has long runs."""
     run = runs["simulate/F3"]
     readings = (
-        ("simulate/F3_long", style.X_COLOUR, "as printed"),
-        ("corrected/simulate/F3_long", style.BLACK, "one sign"),
+        ("simulate/F3_long", style.Colour.along, "as printed"),
+        ("corrected/simulate/F3_long", style.Colour.black, "one sign"),
     )
     long = [
         (runs[name], colour, words) for name, colour, words in readings if name in runs
@@ -38,10 +38,14 @@ def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
         "y": r"y, away from the belt (dotted: $l_\mathrm{pre}$)",
     }
     for panel, letter, name, colour in zip(
-        axes[:2, 0], "ab", ("x", "y"), (style.X_COLOUR, style.Y_COLOUR), strict=True
+        axes[:2, 0],
+        "ab",
+        ("x", "y"),
+        (style.Colour.along, style.Colour.across),
+        strict=True,
     ):
         panel.plot(run.time, run[name], color=colour, linewidth=0.7)
-        panel.axhline(0.0, color=style.GREY, linewidth=0.5)
+        panel.axhline(0.0, color=style.Colour.grey, linewidth=0.5)
         panel.set(ylabel=f"{name} (m)", xlim=(0.0, float(run.time[-1])))
         style.panel_letter(panel, letter, titles[name])
     axes[1, 0].axhline(float(run.preload), color="black", ls=":", lw=0.8)

@@ -7,7 +7,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from squealpipe.plotting.mechanism import SPRING_COLOURS, displaced_springs
-from squealpipe.plotting.style import GREY, LIGHT, PAGE, RED, new_figure
+from squealpipe.plotting.style import PAGE, Colour, new_figure
 from squealpipe.study.figures.declared import report_figure
 
 
@@ -32,7 +32,7 @@ def draw(run: xr.Dataset) -> Figure:
         pieces, cmap="viridis", array=time, linewidths=0.5, rasterized=True
     )
     panel.add_collection(orbit)
-    _springs(panel, run, 0.0, 0.0, (LIGHT, LIGHT))
+    _springs(panel, run, 0.0, 0.0, (Colour.light, Colour.light))
     _springs(panel, run, x[-1], y[-1], SPRING_COLOURS)
     label = r"$l_\mathrm{pre}$: contact is lost above"
     panel.axhline(
@@ -56,12 +56,12 @@ def _springs(
         displaced_springs(x, y, *angles, lengths, width), colours, strict=True
     ):
         axes.plot(*path.T, color=colour, linewidth=1.0, zorder=3)
-        axes.plot(*path[-1], "^", color=GREY, markersize=5, zorder=4)
+        axes.plot(*path[-1], "^", color=Colour.grey, markersize=5, zorder=4)
     axes.plot(
         x,
         y,
         "o",
-        color=RED if colours == SPRING_COLOURS else LIGHT,
+        color=Colour.red if colours == SPRING_COLOURS else Colour.light,
         markersize=7,
         zorder=5,
     )

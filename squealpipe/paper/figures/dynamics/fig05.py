@@ -31,7 +31,7 @@ def draw(first: xr.Dataset, second: xr.Dataset) -> Figure:
         few.time,
         few.normalized_contact_force,
         "o",
-        color=style.ORANGE,
+        color=style.Colour.orange,
         mfc="none",
         ms=4,
         label=f"α₁ = α₂ = {style.pi_label(float(second.alpha1))}",

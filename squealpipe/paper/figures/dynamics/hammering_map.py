@@ -53,5 +53,5 @@ def draw(hammering: xr.Dataset) -> Figure:
         style.panel_letter(panel, letter, title)
     halo = [withStroke(linewidth=3.2, foreground="white")]
     for panel in axes.flat:
-        mark_figure_3(panel, style.BLACK, path_effects=halo)
+        mark_figure_3(panel, style.Colour.black, path_effects=halo)
     return figure

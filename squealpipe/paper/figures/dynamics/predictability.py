@@ -54,7 +54,7 @@ def draw(hammering: xr.Dataset) -> Figure:
             label=label,
         )
     regular = float(hammering.attrs["regular_growth"])
-    panel.axvline(regular, color=style.GREY, ls="--", label="square of time")
+    panel.axvline(regular, color=style.Colour.grey, ls="--", label="square of time")
     panel.set_xlabel(f"ln of the growth over t = {number(t_end, 4)} s")
     panel.set_ylabel("share of the cells below")
     figure.legend(loc="outside lower right", ncols=3)

@@ -11,10 +11,10 @@ from squealpipe.plotting import style
 from squealpipe.study.figures.declared import report_figure
 
 CELL_TONES = {
-    style.WHITE: "contact lost",
-    style.LIGHT: "contact kept",
-    style.ORANGE: "lost, run",
-    style.BLUE: "kept, run",
+    style.Colour.white: "contact lost",
+    style.Colour.light: "contact kept",
+    style.Colour.orange: "lost, run",
+    style.Colour.blue: "kept, run",
 }
 WINDOW_SHARE = 0.12
 """Side of the window of panel (b) over that of the map."""
@@ -39,14 +39,14 @@ def draw(refined: xr.Dataset, boundary: xr.Dataset) -> Figure:
     window = _intricate(refined)
     corner, sides = window[::2], (window[1] - window[0], window[3] - window[2])
     axes[0, 0].add_patch(
-        Rectangle(corner, *sides, fill=False, edgecolor=style.RED, linewidth=1.2)
+        Rectangle(corner, *sides, fill=False, edgecolor=style.Colour.red, linewidth=1.2)
     )
     size, run = refined.alpha1.size, 100 * float(refined.computed.mean())
     style.panel_letter(axes[0, 0], "a", f"{size} × {size}, {run:.1f} % run")
     part = refined.sel(alpha1=slice(*window[:2]), alpha2=slice(*window[2:]))
     _map(axes[0, 1], part)
     curves = (boundary.alpha1.values, boundary.alpha2.values), boundary.curve.values
-    style.draw_lines(axes[0, 1], *curves, color=style.BLACK, linewidth=0.7)
+    style.draw_lines(axes[0, 1], *curves, color=style.Colour.black, linewidth=0.7)
     for axis in (axes[0, 1].xaxis, axes[0, 1].yaxis):
         style.angle_ticks(axis, np.pi, np.pi / 25)
     axes[0, 1].set(xlim=window[:2], ylim=window[2:])

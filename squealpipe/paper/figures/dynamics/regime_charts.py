@@ -20,11 +20,17 @@ from squealpipe.study.figures.declared import report_figure
 from squealpipe.text import number
 
 LINE_LOOKS: dict[ChartLine, tuple[str, dict[str, Any]]] = {
-    ChartLine.contact_lost: ("contact is lost", {"color": style.BLACK}),
-    ChartLine.flutter: ("A3 flutters", {"color": style.BLUE, "linestyle": "--"}),
-    ChartLine.divergence: ("A3 diverges", {"color": style.GREEN, "linestyle": ":"}),
-    ChartLine.whirl: ("the whirl is born", {"color": style.RED, "linestyle": "-."}),
-    ChartLine.stick: ("its stick begins", {"color": style.PURPLE}),
+    ChartLine.contact_lost: ("contact is lost", {"color": style.Colour.black}),
+    ChartLine.flutter: ("A3 flutters", {"color": style.Colour.blue, "linestyle": "--"}),
+    ChartLine.divergence: (
+        "A3 diverges",
+        {"color": style.Colour.green, "linestyle": ":"},
+    ),
+    ChartLine.whirl: (
+        "the whirl is born",
+        {"color": style.Colour.red, "linestyle": "-."},
+    ),
+    ChartLine.stick: ("its stick begins", {"color": style.Colour.purple}),
 }
 
 
@@ -95,7 +101,7 @@ def draw(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> Figure:
             (-5 if left else 5, 5),
             textcoords="offset points",
             ha="right" if left else "left",
-            color=style.RED,
+            color=style.Colour.red,
             path_effects=style.white_halo,
         )
     for panel, letter, name in zip(
@@ -138,7 +144,12 @@ def _draw(panel: Axes, chart: xr.Dataset) -> None:
         style.draw_lines(
             panel, (x[on], y[on]), chart.curve.values[on], label=label, **look
         )
-    look = {"color": style.RED, "ms": 7, "mew": 1.8, "path_effects": style.white_halo}
+    look = {
+        "color": style.Colour.red,
+        "ms": 7,
+        "mew": 1.8,
+        "path_effects": style.white_halo,
+    }
     panel.plot(*chart.design.values.T, "x", label="scene", **look)
     panel.set(xlim=extent[:2], ylim=extent[2:], aspect="auto", box_aspect=1)
 

@@ -44,12 +44,19 @@ def draw(run: xr.Dataset, sizes: xr.Dataset) -> Figure:
     """Two panels."""
     figure, axes = style.new_figure(style.PAGE, 2.9, ncols=2, width_ratios=(1.3, 1))
     panel = axes[0, 0]
-    panel.plot(run.time, run.x, color=style.X_COLOUR, linewidth=0.25, rasterized=True)
+    panel.plot(
+        run.time, run.x, color=style.Colour.along, linewidth=0.25, rasterized=True
+    )
     shown = SCENES["F3"].t_end * time_unit(run)
     panel.axvspan(
-        0, shown, color=style.GREY, alpha=0.25, linewidth=0, label="shown in Fig. 3"
+        0,
+        shown,
+        color=style.Colour.grey,
+        alpha=0.25,
+        linewidth=0,
+        label="shown in Fig. 3",
     )
-    panel.axhline(0, color=style.GREY, linewidth=0.5)
+    panel.axhline(0, color=style.Colour.grey, linewidth=0.5)
     panel.set(xlabel="t (s)", ylabel="x (m)", xlim=(0, float(run.time[-1])))
     panel.legend(loc="lower right", bbox_to_anchor=(1, 0.98))
     largest = number(float(largest_size(run, "x").max()), 4)
@@ -70,14 +77,14 @@ def _sizes(axes: Axes, sizes: xr.Dataset) -> None:
         for k, name in meanings(sizes.motion).items()
     ]
     changed = sizes.motion_changed.values == 1
-    kinds.append((changed, "x", style.BLACK, "another kind in the last quarter"))
+    kinds.append((changed, "x", style.Colour.black, "another kind in the last quarter"))
     for chosen, marker, colour, words in kinds:
         if chosen.any():
             points = speed[chosen], sizes.amplitude.values[chosen]
             axes.loglog(*points, marker, color=colour, markersize=4, label=words)
     line = np.geomspace(speed[0], speed[-1], 200)
     energy = float(sizes.energy_offset) + float(sizes.energy_slope) * line
-    axes.loglog(line, energy, "--", color=style.GREY, label="energy at speed V")
+    axes.loglog(line, energy, "--", color=style.Colour.grey, label="energy at speed V")
     if np.isfinite(sizes.slope):
         fit = float(sizes.offset) + float(sizes.slope) * line
         label = (
@@ -86,10 +93,18 @@ def _sizes(axes: Axes, sizes: xr.Dataset) -> None:
         low, high = sizes.fit_range.values
         inside = (line >= low) & (line <= high)
         axes.loglog(
-            line[inside], fit[inside], color=style.BLACK, linewidth=0.8, label=label
+            line[inside],
+            fit[inside],
+            color=style.Colour.black,
+            linewidth=0.8,
+            label=label,
         )
         axes.loglog(
-            line[line <= low], fit[line <= low], ":", color=style.BLACK, linewidth=0.8
+            line[line <= low],
+            fit[line <= low],
+            ":",
+            color=style.Colour.black,
+            linewidth=0.8,
         )
     axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     for axis in (axes.xaxis, axes.yaxis):

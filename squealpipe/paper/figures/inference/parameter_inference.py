@@ -12,9 +12,9 @@ from squealpipe.study.figures.declared import report_figure
 from squealpipe.text import number
 
 READING_LOOKS = (
-    ("as printed", style.GREEN, "s"),
-    ("along +x", style.BLUE, "o"),
-    ("along −x", style.ORANGE, "^"),
+    ("as printed", style.Colour.green, "s"),
+    ("along +x", style.Colour.blue, "o"),
+    ("along −x", style.Colour.orange, "^"),
 )
 """Label, colour and marker of each reading."""
 
@@ -72,7 +72,9 @@ def draw(inference: xr.Dataset) -> Figure:
         _scatter(panel, inference, *names)
         style.panel_letter(panel, letter, title)
         if letter == "a":
-            panel.axhline(1 / np.tan(0.4 * np.pi), color=style.GREY, ls="--", lw=0.8)
+            panel.axhline(
+                1 / np.tan(0.4 * np.pi), color=style.Colour.grey, ls="--", lw=0.8
+            )
     upper.legend(
         *panel.get_legend_handles_labels(), loc="outside lower center", ncols=3
     )
@@ -95,10 +97,12 @@ def draw(inference: xr.Dataset) -> Figure:
     style.panel_letter(shares, "d", "excluded by one alone")
     values = np.maximum(of_study(inference).baseline_margin.values, -1.0)
     bars = margins.barh(
-        places, values, color=np.where(values > 0, style.GREEN, style.ORANGE)
+        places,
+        values,
+        color=np.where(values > 0, style.Colour.green, style.Colour.orange),
     )
     margins.bar_label(bars, [number(value, 2) for value in values], padding=3, size=6)
-    margins.axvline(0, color=style.BLACK, lw=0.6)
+    margins.axvline(0, color=style.Colour.black, lw=0.6)
     margins.set(xlabel="margin at the study's parameters")
     style.panel_letter(margins, "e", "margins of this study")
     return figure
@@ -124,7 +128,13 @@ def _scatter(
         )
     own = [abs(float(inference[f"baseline_{name}"])) for name in (x, y)]
     panel.plot(
-        *own, "*", ms=9, mew=0.8, mfc="white", color=style.BLACK, label="this study"
+        *own,
+        "*",
+        ms=9,
+        mew=0.8,
+        mfc="white",
+        color=style.Colour.black,
+        label="this study",
     )
     for name, axis, scale, limits in (
         (x, panel.xaxis, panel.set_xscale, panel.set_xlim),

@@ -52,7 +52,7 @@ def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:
     shown = np.fmin(undamped, damped) < LARGEST_SHOWN
     moved = np.minimum(damped, LARGEST_SHOWN) - np.minimum(undamped, LARGEST_SHOWN)
     limit = float(np.percentile(abs(moved[shown]), 95)) if shown.any() else 0.0
-    change.set_facecolor(style.LIGHT)
+    change.set_facecolor(style.Colour.light)
     mesh = style.draw_map(
         change,
         angles,
@@ -99,6 +99,11 @@ def _draw_plane(figure: Figure, plane: Axes, dashpots: xr.Dataset) -> None:
     level = float(dashpots.critical_mu_undamped)
     if values.min() < level < values.max():
         plane.contour(
-            c1, c2, values.T, levels=[level], colors=[style.BLACK], linewidths=1.0
+            c1,
+            c2,
+            values.T,
+            levels=[level],
+            colors=[style.Colour.black],
+            linewidths=1.0,
         )
     figure.colorbar(mesh, ax=plane, label="critical μ", extend="max", location="bottom")

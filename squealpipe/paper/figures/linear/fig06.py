@@ -51,9 +51,9 @@ def draw(
         ("reaction force positive", quasi_static.possible, None),
     )
     cell_tones = {
-        style.WHITE: "sliding possible",
-        style.LIGHT: "sliding not possible",
-        style.BLACK: "linearly unstable",
+        style.Colour.white: "sliding possible",
+        style.Colour.light: "sliding not possible",
+        style.Colour.black: "linearly unstable",
     }
     for panel, letter, (title, possible, extra) in zip(
         axes[0], "ab", readings, strict=True

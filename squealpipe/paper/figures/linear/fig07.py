@@ -14,10 +14,10 @@ from squealpipe.plotting import style
 from squealpipe.study.figures.declared import report_figure
 
 CELL_KINDS = (
-    (style.WHITE, "A3 stable, A1 loses contact"),
-    (style.ORANGE, "A3 unstable, A1 loses contact"),
-    (style.LIGHT, "A3 stable, contact kept"),
-    (style.BLACK, "A3 unstable, contact kept"),
+    (style.Colour.white, "A3 stable, A1 loses contact"),
+    (style.Colour.orange, "A3 unstable, A1 loses contact"),
+    (style.Colour.light, "A3 stable, contact kept"),
+    (style.Colour.black, "A3 unstable, contact kept"),
 )
 TITLES = {"": "as printed", "corrected/": "one sign in all models"}
 
@@ -83,7 +83,7 @@ def draw_kinds(
     if boundary is not None:
         angles = boundary.alpha1.values, boundary.alpha2.values
         look = {
-            "color": style.BLUE,
+            "color": style.Colour.blue,
             "linewidth": 0.5,
             "label": "boundary of kept contact",
         }

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from squealpipe.brake.schema.linear import BoundaryCurve
 from squealpipe.parameters import SCENES
 from squealpipe.plotting.origin import scene_title
-from squealpipe.plotting.style import BLUE, GREEN, GREY, ORANGE, RED
+from squealpipe.plotting.style import Colour
 
 
 def draw_boundaries(
@@ -19,16 +19,22 @@ def draw_boundaries(
     """Exact curves over a map of 0 … π; curves that leave it come in again by periodicity."""
     alpha1, alpha2 = boundaries.alpha1.values, boundaries.alpha2.values
     looks: dict[BoundaryCurve, tuple[str, dict[str, Any]]] = {
-        BoundaryCurve.flutter: ("flutter boundary", {"color": BLUE, "linestyle": "-"}),
+        BoundaryCurve.flutter: (
+            "flutter boundary",
+            {"color": Colour.blue, "linestyle": "-"},
+        ),
         BoundaryCurve.divergence: (
             "divergence boundary",
-            {"color": ORANGE, "linestyle": (0, (4, 1))},
+            {"color": Colour.orange, "linestyle": (0, (4, 1))},
         ),
         BoundaryCurve.reaction_changes_sign: (
             "K₁₁ = μK₁₂",
-            {"color": GREEN, "linestyle": (0, (1, 1))},
+            {"color": Colour.green, "linestyle": (0, (1, 1))},
         ),
-        BoundaryCurve.no_coupling: ("K₁₂ = 0", {"color": GREY, "linestyle": "-."}),
+        BoundaryCurve.no_coupling: (
+            "K₁₂ = 0",
+            {"color": Colour.grey, "linestyle": "-."},
+        ),
     }
     for kind in kinds:
         label, look = looks[kind]
@@ -45,7 +51,7 @@ def draw_boundaries(
                     label = ""
 
 
-def mark_figure_3(axes: Axes, colour: str = RED, **look: Any) -> None:
+def mark_figure_3(axes: Axes, colour: str = Colour.red, **look: Any) -> None:
     """Mark the angles of the paper's Fig. 3 with its ×."""
     look = {"ms": 7, "mew": 1.8, "label": scene_title("F3"), "clip_on": False, **look}
     axes.plot(SCENES["F3"].alpha1, SCENES["F3"].alpha2, "x", color=colour, **look)

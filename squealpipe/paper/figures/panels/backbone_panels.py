@@ -67,7 +67,7 @@ def draw_branch(
     """One mode: lines for exact orbits beneath crosses for harmonic balance."""
     panel.axhline(
         preload,
-        color=style.BLACK,
+        color=style.Colour.black,
         linewidth=0.8,
         label=r"$l_\mathrm{pre}$, contact is lost",
     )
@@ -77,15 +77,15 @@ def draw_branch(
     omega = exact.omega.values
     shown = _evenly(series)
     quantities = (
-        ("x_amplitude", style.X_COLOUR, "amplitude of x"),
-        ("y_peak", style.Y_COLOUR, "largest y"),
+        ("x_amplitude", style.Colour.along, "amplitude of x"),
+        ("y_peak", style.Colour.across, "largest y"),
     )
     for name, colour, label in quantities:
         values = exact[name].values
         for chosen, shade, dash, words in (
             (~unstable & ~overtakes, colour, "-", label),
             (unstable & ~overtakes, colour, ":", "unstable"),
-            (overtakes, style.GREY, "-", "mass overtakes the belt"),
+            (overtakes, style.Colour.grey, "-", "mass overtakes the belt"),
         ):
             if chosen.any():
                 line = np.where(joined(chosen), values, np.nan)

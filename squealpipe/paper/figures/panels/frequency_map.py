@@ -18,7 +18,7 @@ LINES_AND_HATCHING = (
 """Key for captions: what the lines and the hatching mean."""
 
 (hatch_key,) = style.patches(
-    [(style.WHITE, "flutter: common frequency")], hatch=style.HATCH
+    [(style.Colour.white, "flutter: common frequency")], hatch=style.HATCH
 )
 """Key to what :func:`outline` draws."""
 
@@ -48,7 +48,7 @@ def draw_mode(frequencies: xr.Dataset, mode: int) -> Figure:
             frequencies,
             shown,
             levels,
-            np.where(dark, style.WHITE, style.BLACK),
+            np.where(dark, style.Colour.white, style.Colour.black),
             0.5,
         )
         panel.clabel(
@@ -89,12 +89,12 @@ def draw_sums(axes: Axes) -> None:
     """The exact lines of the separated state: det K = 0, and smallest |Z| for any stiffnesses."""
     along = np.array([-np.pi, 2 * np.pi])
     look: dict[str, Any] = {
-        "color": style.BLACK,
+        "color": style.Colour.black,
         "lw": 1.1,
         "scalex": False,
         "scaley": False,
     }
-    halo = [withStroke(linewidth=2.2, foreground=style.WHITE)]
+    halo = [withStroke(linewidth=2.2, foreground=style.Colour.white)]
     for odd, label, dash in (
         (0, "α₁ + α₂ = nπ", "--"),
         (1, "α₁ + α₂ = nπ/2, n odd", ":"),
@@ -125,4 +125,4 @@ def outline(axes: Axes, dataset: xr.Dataset, mask: np.ndarray) -> None:
     """Hatch the cells of a mask, with a line around them."""
     style.hatch(axes, dataset, mask)
     if mask.any():
-        isoline(axes, dataset, mask.astype(float), 0.5, style.RED)
+        isoline(axes, dataset, mask.astype(float), 0.5, style.Colour.red)

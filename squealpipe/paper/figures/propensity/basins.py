@@ -22,7 +22,7 @@ def draw(kept: xr.Dataset, growing: xr.Dataset) -> Figure:
     figure, axes = style.new_figure(style.PAGE, 3.5, ncols=2)
     shown: set[int] = set()
     names = str(kept.motion.attrs["flag_meanings"]).split()
-    colours = [style.REGIME_COLOURS.get(name, style.WHITE) for name in names]
+    colours = [style.REGIME_COLOURS.get(name, style.Colour.white) for name in names]
     titles = (scene_title("F2d"), scene_title("F3"))
     for letter, panel, basin, title in zip(
         "ab", axes[0], (kept, growing), titles, strict=True

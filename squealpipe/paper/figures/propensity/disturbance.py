@@ -29,7 +29,9 @@ def draw(found: Mapping[str, xr.Dataset]) -> Figure:
     scenes = sorted({name.split("/")[1].partition("_")[0] for name in found})
     # colour and marker of each scene
     marks = dict(
-        zip(scenes, list(zip(style.PALETTE, "osv^DP", strict=True)), strict=False)
+        zip(
+            scenes, list(zip(style.Colour.palette, "osv^DP", strict=True)), strict=False
+        )
     )
     handles = {}
     for letter, panel, goal, title in zip(
@@ -44,7 +46,7 @@ def draw(found: Mapping[str, xr.Dataset]) -> Figure:
             one = found.get(f"disturbance/{scene}_{goal}")
             if one is None or not np.isfinite(one.distance):
                 continue
-            colour, marker = marks.get(scene, (style.GREY, "."))
+            colour, marker = marks.get(scene, (style.Colour.grey, "."))
             (handles[scene],) = panel.plot(
                 number, one.distance_by_number, marker=marker, ms=3.5, color=colour
             )

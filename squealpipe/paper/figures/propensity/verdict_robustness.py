@@ -6,7 +6,7 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
 from squealpipe.paper.schema.inference import DAMPED_GRID, in_order, in_words
-from squealpipe.plotting.style import BLACK, BLUE, PAGE, RED, new_figure, write
+from squealpipe.plotting.style import PAGE, Colour, new_figure, write
 from squealpipe.study.figures.declared import report_figure
 
 
@@ -29,7 +29,9 @@ def draw(reach: xr.Dataset) -> Figure:
     figure, axes = new_figure(PAGE, 0.31 * len(share) + 2.4, text=1.36)
     panel = axes[0, 0]
     panel.set_facecolor("#E8E8E8")
-    colours = LinearSegmentedColormap.from_list("verdict", [RED, "#FFFFFF", BLUE])
+    colours = LinearSegmentedColormap.from_list(
+        "verdict", [Colour.red, "#FFFFFF", Colour.blue]
+    )
     panel.pcolormesh(
         share, cmap=colours, vmin=0.0, vmax=1.0, edgecolor="white", linewidth=1.5
     )
@@ -41,7 +43,7 @@ def draw(reach: xr.Dataset) -> Figure:
         if not single:
             text += f"\n±{100 * half[row, column]:.0f}"
         dark = abs(value - 0.5) > 0.3
-        look = {"fontsize": 9.5, "color": "white" if dark else BLACK}
+        look = {"fontsize": 9.5, "color": "white" if dark else Colour.black}
         write(panel, column + 0.5, row + 0.5, text, linespacing=0.85, **look)
     names = list(map(in_words, reach.statement.values.tolist()))
     rows = [

@@ -8,13 +8,8 @@ from matplotlib.figure import Figure
 
 from squealpipe.codes import Verdict
 from squealpipe.plotting.style import (
-    BLACK,
-    BLUE,
-    LIGHT,
-    ORANGE,
     PAGE,
-    RED,
-    WHITE,
+    Colour,
     category_colours,
     new_figure,
     patches,
@@ -39,10 +34,10 @@ def draw(verdicts: xr.Dataset, answers: Mapping[str, xr.Dataset]) -> Figure:
     panel = axes[0, 0]
     degrees = [np.degrees(verdicts[name].values) for name in ("alpha1", "alpha2")]
     tones = {
-        Verdict.quiet: (WHITE, "quiet"),
-        Verdict.squeals: (ORANGE, "squeals"),
-        Verdict.hammers: (RED, "hammers"),
-        Verdict.undetermined: (LIGHT, "undetermined"),
+        Verdict.quiet: (Colour.white, "quiet"),
+        Verdict.squeals: (Colour.orange, "squeals"),
+        Verdict.hammers: (Colour.red, "hammers"),
+        Verdict.undetermined: (Colour.light, "undetermined"),
     }
     panel.pcolormesh(
         *degrees,
@@ -72,7 +67,7 @@ def draw(verdicts: xr.Dataset, answers: Mapping[str, xr.Dataset]) -> Figure:
         if np.isfinite(to).all():
             look = {
                 "arrowstyle": "-|>",
-                "color": BLACK,
+                "color": Colour.black,
                 "lw": 1.2,
                 "shrinkA": 0,
                 "shrinkB": 0,
@@ -82,7 +77,7 @@ def draw(verdicts: xr.Dataset, answers: Mapping[str, xr.Dataset]) -> Figure:
             )
             arrow.arrow_patch.set_clip_path(panel.patch)  # it may lead out of the map
         panel.plot(*at, "x", color="white", markersize=8, markeredgewidth=3)
-        panel.plot(*at, "x", color=BLUE, markersize=6, markeredgewidth=1.5)
+        panel.plot(*at, "x", color=Colour.blue, markersize=6, markeredgewidth=1.5)
         is_right = 2.0 * at[0] > sum(ends[0])  # the name of the scene stays in the map
         panel.annotate(
             name.removeprefix("assess/"),
@@ -90,7 +85,7 @@ def draw(verdicts: xr.Dataset, answers: Mapping[str, xr.Dataset]) -> Figure:
             (-6 if is_right else 6, -10),
             textcoords="offset points",
             ha="right" if is_right else "left",
-            color=BLUE,
+            color=Colour.blue,
             path_effects=white_halo,
         )
     figure.legend(

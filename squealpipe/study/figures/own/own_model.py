@@ -12,7 +12,7 @@ from matplotlib.patches import Arc, Circle
 from squealpipe.parameters import direction_of, law_in_words
 from squealpipe.plotting.mechanism import SPRING_COLOURS, arrow, displaced_springs
 from squealpipe.plotting.origin import parameter
-from squealpipe.plotting.style import GREY, PAGE, RED, new_figure, panel_letters, write
+from squealpipe.plotting.style import PAGE, Colour, new_figure, panel_letters, write
 from squealpipe.study.figures.declared import report_figure
 from squealpipe.text import number
 from squealpipe.units import engineering
@@ -63,10 +63,10 @@ def _draw(panel: Axes, run: xr.Dataset) -> None:
         panel.text(0.0, (1.2 + 1.9 * index) * belt, words, color=colour, **below)
     _mark_angles(panel, (alpha1, alpha2), scale)
     panel.add_patch(Circle((0.0, 0.0), 0.05 * scale, fc="white", ec="black", zorder=4))
-    panel.plot([-scale, scale], [belt, belt], color=GREY, linewidth=2.0)
+    panel.plot([-scale, scale], [belt, belt], color=Colour.grey, linewidth=2.0)
     direction = direction_of(parameter(run, "belt_speed"))
     start, end = ((direction * share * scale, 2 * belt) for share in (0.4, 0.9))
-    arrow(panel, start, end, 9, RED)
+    arrow(panel, start, end, 9, Colour.red)
     law = law_in_words(parameter(run, "friction_law")).partition(",")[0]
     from_file = law in {"table", "Python file"}
     friction = f"$μ$: {law}" if from_file else f"$μ$ = {number(parameter(run, 'mu'))}"
@@ -91,7 +91,7 @@ def _draw(panel: Axes, run: xr.Dataset) -> None:
 
 def _mark_angles(panel: Axes, angles: tuple[float, float], scale: float) -> None:
     """Arcs from +x to spring 1 and from −x to spring 2, with the line that they start from."""
-    panel.plot([-0.5 * scale, 0.5 * scale], [0, 0], color=GREY, lw=0.6, ls=":")
+    panel.plot([-0.5 * scale, 0.5 * scale], [0, 0], color=Colour.grey, lw=0.6, ls=":")
     for index, (angle, colour) in enumerate(
         zip(angles, SPRING_COLOURS, strict=True), start=1
     ):
