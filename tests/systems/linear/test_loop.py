@@ -10,6 +10,7 @@ from scipy.integrate import solve_ivp
 from squealpipe import Contact, Structure
 from squealpipe.systems.linear.batch import numbers_of_runs
 from squealpipe.systems.linear.loop import functions
+from squealpipe.systems.linear.numbering import OF_CONTACT
 from squealpipe.systems.linear.plan import plan
 from tests.oracles.many_contacts import SAME, ManyContacts
 from tests.structures.test_many_contacts import instants
@@ -149,13 +150,14 @@ def test_friction_in_stick_is_of_the_least_norm(dependent):
     system = structure.with_(contacts=contacts).system()
     table = plan(system.matrices, system.numbering)
     values = {name: np.array([x]) for name, x in system.parameters.items()}
-    rows = np.zeros((4 + 3 * 6 + 6 * system.numbering.width, 16))
+    first = 4 + OF_CONTACT * 6
+    rows = np.zeros((first + 6 * system.numbering.width, 16))
     address = table.pointer.value
-    rows[:22, 0] = numbers_of_runs(
+    rows[:first, 0] = numbers_of_runs(
         system.matrices, system.coefficients, values, np.ones(1), address
     )[0]
     stick = [system.numbering.regime(i, "stick") for i in range(6)]
-    rows[22:, 0] = system.numbering.constants_of_regimes[stick].ravel()
+    rows[first:, 0] = system.numbering.constants_of_regimes[stick].ravel()
     functions()["settle"].ctypes(ctypes.c_ssize_t(rows.ctypes.data))
     truth = np.linalg.pinv(system.matrices.mobility, rcond=1e-12, hermitian=True)
     assert table.arrays["counts"][1] == dependent
