@@ -436,11 +436,6 @@ def _ratios(given: Any, size: int) -> np.ndarray:
         ratios = np.array([finite_number("modal_damping", one, "1") for one in several])
     else:
         ratios = np.array(finite_number("modal_damping", several, "1"))
-    if (ratios > 1).any():
-        raise ValueError(
-            f"modal_damping = {brief(given)}: ratios above 1 leave no mode that oscillates; 1 % is "
-            "0.01"
-        )
     if ratios.size > size or not (ratios >= 0).all():
         raise ValueError(
             f"modal_damping = {brief(given)}: a ratio of 0 or greater is needed, or at most {size} "

@@ -156,6 +156,12 @@ def _numbers(
         for name in (*SCALAR_KEYS, "modal_damping")
         if name in content
     }
+    damping: Any = arguments.get("modal_damping")
+    if is_finite_number(damping) and damping > 1:
+        raise ValueError(
+            f"modal_damping = {damping:g}: ratios above 1 leave no mode that oscillates; 1 % is "
+            "0.01"
+        )
     # the speed of what turns is an angular one
     turning = scales.speed if rotation is None else scales.rate
     for name, factor in (("friction_speed", scales.speed), ("belt_speed", turning)):
