@@ -93,11 +93,13 @@ def system(
             },
             time_scale=scale.time,
         )
+    matrices = matrices_of(structure, numbers, scale, [*shapes.values()])
+    _check_tables(matrices)
     return LinearSystem(
         title,
         states=states,
         parameters=_parameters(structure),
-        matrices=matrices_of(structure, numbers, scale, [*shapes.values()]),
+        matrices=matrices,
         contacts=[contact.name for contact in structure.contacts],
         coefficients=coefficient_names(structure),
         outputs=dict.fromkeys(shapes, "m"),
@@ -150,6 +152,19 @@ def _check_size(structure: ContactStructure, caps: Caps) -> None:
         raise ValueError(
             f"{count} contacts: a system can have {caps.contacts}, and of so many a run would take "
             f"{gigabytes:.1f} GB; merge neighbours. Complex modes take any number"
+        )
+
+
+def _check_tables(matrices: ContactMatrices) -> None:
+    """Raise if tables have so many points that lists of their regimes do not fit into memory."""
+    sizes = zip(matrices.pieces, matrices.presses, strict=True)
+    regimes = sum(len(press) * (2 * len(slip) + 1) + 1 for slip, press in sizes)
+    # of each regime 8 surfaces of each contact three times, and 13 constants
+    gigabytes = 8e-9 * regimes * matrices.n_contacts * (3 * 8 + 13)
+    if gigabytes > 4.0:
+        raise ValueError(
+            f"tables of {matrices.n_contacts} contacts have {regimes} regimes together, which "
+            f"would take {gigabytes:.0f} GB in a run; leave points out of the tables"
         )
 
 
@@ -214,8 +229,9 @@ def _laws(structure: ContactStructure) -> list[str]:
             name = law if law in friction_laws.LAWS else "a law in Python"
             raise ValueError(
                 f"contact {contact.name}: friction_law = {name}: runs of structures have "
-                f"{', '.join(LAW_NUMBERS)} and tables; give its values over the sliding speed as "
-                "a table (friction_law='FILE.csv')"
+                f"{', '.join(LAW_NUMBERS)} and tables; give its values over the sliding speed, "
+                "friction_law={'speed': [0, …], 'coefficient': [0.5, …], 'between': 'cubic'} with "
+                "mu=1, or as a table (friction_law='FILE.csv')"
             )
     return laws
 

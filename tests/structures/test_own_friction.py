@@ -252,6 +252,38 @@ def test_a_law_in_python_is_refused_by_runs():
         structure.system()
 
 
+def test_a_law_in_python_runs_by_its_values():
+    """The remedy of the refusal, against the law itself with DOP853."""
+    law = "def coefficient(speed, p):\n    return 0.3 + 0.2 / (1.0 + speed * speed)\n"
+    *matrices, preload = random_case(3, number=1)
+    case = (*matrices, 0.1 * preload)
+    structure = structure_of(
+        case, speeds=(1.0,), own=({},), names="a", friction_law=law, belt_speed=4.0
+    )
+    speeds = np.linspace(0.0, 10.0, 201)
+    values = structure.friction.coefficient(speeds)
+    table = {"speed": speeds, "coefficient": values, "between": "cubic"}
+    run = (
+        structure.with_(friction_law=table, mu=1.0).system().simulate(2.0, times=[2.0])
+    )
+    mass, damping, stiffness, normal, along, springs, preload = case
+
+    def rates(_, z):
+        q, v = np.split(z, 2)
+        slide = 4.0 - along[:, 0] @ v
+        pressed = preload[0] - springs[0] * normal[:, 0] @ q
+        force = -preload[0] * normal[:, 0] - stiffness @ q - damping @ v
+        force += pressed * normal[:, 0]
+        force += (0.3 + 0.2 / (1.0 + slide**2)) * pressed * along[:, 0]
+        assert pressed > 0 < slide
+        return [*v, *np.linalg.solve(mass, force)]
+
+    truth = solve_ivp(rates, (0.0, 2.0), np.zeros(14), "DOP853", rtol=1e-11, atol=1e-12)
+    names = [f"{kind}{place}" for kind in "qv" for place in range(1, 8)]
+    found = [float(run[name][-1]) for name in names]
+    assert found == pytest.approx(truth.y[:, -1], abs=3e-5)
+
+
 def test_a_reduced_structure_and_its_runs_have_them():
     """All modes kept, small motions grow as the complex modes do."""
     case = random_case(4, size=5, number=2)
