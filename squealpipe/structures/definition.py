@@ -372,7 +372,7 @@ class ContactStructure:
             content.update(np.ascontiguousarray(array).tobytes())
         contacts = {
             contact.name: {
-                "stiffness": contact.stiffness,
+                "stiffness": contact.stiffness_at_preload,
                 "preload": contact.preload,
                 "speed": contact.speed,
             }

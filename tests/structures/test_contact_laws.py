@@ -6,12 +6,15 @@ import numpy as np
 import pytest
 import scipy.io
 
-from squealpipe import Contact, Structure
+from squealpipe import Contact, Structure, squealing_modes
+from squealpipe.codes import Regime
 from squealpipe.structures.contact import PointOrigin
 from squealpipe.structures.contact_table import read_contacts
 from squealpipe.structures.fewer_points import _joined
 from squealpipe.structures.sliding import NoSlidingError, steady_sliding
+from squealpipe.structures.squeal.settled_run import squealing_run
 from squealpipe.structures.units import scales_of
+from squealpipe.study.report.structure import structure as structure_rows
 from tests.oracles.many_contacts import OPEN, SAME, ManyContacts
 from tests.structures.test_many_contacts import INSTANTS, SIDES, random_structure
 
@@ -270,3 +273,19 @@ def test_other_laws_are_refused_by_name(options, message):
     with pytest.raises(ValueError, match="contact c: ") as refused:
         Contact("c", {0: 1.0}, {1: 1.0}, preload=1.0, **options)
     assert message in str(refused.value)
+
+
+def test_squeal_over_a_table_is_told_with_its_forces_and_regimes():
+    structure = one_point(BENT, mu=0.9)
+    answer = squealing_modes(structure, samples=4)
+    assert float(answer.separated_fraction.max()) > 0.1
+    shown = squealing_run(structure, answer)
+    codes = {int(code) for code in np.unique(shown.regime)}
+    assert Regime.separated in codes
+    assert codes <= {*Regime}
+    lift = shown.displacement.values @ shown.mode_shape.values.T @ [0.0, -1.0]
+    knots, forces = _points(BENT)
+    expected = np.interp(0.4 + 0.8 / 1.8 - lift, knots, forces)
+    np.testing.assert_allclose(shown.normal_force[:, 0], expected, atol=1e-9)
+    contact = structure_rows(structure.complex_modes(), answer)["contacts"][0]
+    assert contact["stiffness"] == "1.8 N/m at the preload"

@@ -3,6 +3,7 @@
 from __future__ import annotations  # help shows Natural, not its checks
 
 import math
+import re
 from typing import Any
 
 import numpy as np
@@ -196,6 +197,8 @@ def _regimes(run: xr.Dataset, contacts: list[str]) -> np.ndarray:
     for value, name in flags.items():
         # of contacts c and c_2, regime c_2_stick is one of the latter
         owners = [contact for contact in contacts if name.startswith(f"{contact}_")]
-        codes[value] = Regime[name.removeprefix(f"{max(owners, key=len)}_")]
+        regime = name.removeprefix(f"{max(owners, key=len)}_")
+        # pieces of tables of friction and of contact have numbers
+        codes[value] = Regime[re.sub(r"(_\d+)?(_press_\d+)?$", "", regime)]
     # a single component has no dimension of its own
     return np.asarray(codes[run.regime.values].reshape(-1, len(contacts)))

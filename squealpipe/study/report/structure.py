@@ -300,7 +300,8 @@ def structure(modes: xr.Dataset, answer: xr.Dataset) -> dict[str, Any]:
         "contacts": [
             {
                 "name": name,
-                "stiffness": engineering(each["stiffness"], "N m-1"),
+                "stiffness": engineering(each["stiffness"], "N m-1")
+                + " at the preload" * ("law" in each),
                 "preload": engineering(each["preload"], "N"),
                 "speed": engineering(each["speed"], "m")
                 if "rotation" in whole
