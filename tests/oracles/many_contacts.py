@@ -26,7 +26,6 @@ class ManyContacts:
         self.stiffness = np.asarray(structure.stiffness.todense())
         self.damping = np.asarray(structure.damping.todense())
         self.n, self.t = structure.normals, structure.tangentials
-        self.k = np.array([each.stiffness for each in structure.contacts])
         self.tables = [table(each) for each in structure.contacts]
         self.preload = np.array([each.preload for each in structure.contacts])
         self.pressed = [

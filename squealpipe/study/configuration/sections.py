@@ -122,7 +122,7 @@ def _field_type(name: str, row: Row) -> Any:
                 f"{row.laws.own_law_rules.columns[0]}_column": {"type": "string"},
                 "value_column": {"type": "string"},
                 "python": {"type": "string"},
-                **{key: {"type": "array"} for key in row.laws.COLUMNS},
+                **{key: {"type": "array"} for key in row.laws.own_law_rules.columns},
             },
             "additionalProperties": False,
         }
