@@ -95,7 +95,7 @@ paper: false
 scenes: {mine: {alpha1: 30deg, alpha2: 140deg, start: {vx: 0.001}}}
 parameters:
   {mass: 0.5, k1: 1.0e+7, k2: 1.0e+7, k3: 7.0e+6, preload: 2.0e-5, length1: 0.02, length2: 0.02}
-dynamics: {validity_points: 13}
+dynamics: {validity_points: 13, hammering_points: 3}
 explorer: {points: 3}
 robustness: {samples: 64, critical_points: 7}
 """

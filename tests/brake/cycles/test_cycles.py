@@ -49,10 +49,11 @@ def test_stick_slip_cycle_of_a_published_oscillator(speed):
 
 
 @pytest.mark.release
-def test_trivial_multiplier_and_differences_of_the_return_map():
+@pytest.mark.parametrize("cycles", [3, pytest.param(8, marks=pytest.mark.long)])
+def test_trivial_multiplier_and_differences_of_the_return_map(cycles):
     generator = np.random.default_rng(5)
     checked = 0
-    while checked < 8:
+    while checked < cycles:
         params = FORMER.with_(
             k2=generator.uniform(0.6, 1.6),
             length2=generator.uniform(3.0, 8.0),
