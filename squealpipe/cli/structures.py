@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import json
 import math
 from functools import partial
 from pathlib import Path
@@ -220,6 +219,8 @@ def _values_of(mu: Any) -> list[Any]:
 
 def _line(mode: Any) -> str:
     """Describe a mode where it grows fastest, with its critical friction and speed."""
+    from squealpipe.plotting.origin import common_friction
+
     fastest = mode.growth_rate.where(mode.unstable).argmax(...)
     at = mode.isel(fastest)
     words = (
@@ -237,9 +238,8 @@ def _line(mode: Any) -> str:
         )
     scale = at.get("critical_scale")  # every contact has its own friction
     of_scale = ", from {:.6g} times every mu on"
-    own = {each["mu"] for each in _contacts_of(mode) if "mu" in each}
-    if scale is not None and len(own) == 1:
-        scale, of_scale = scale * own.pop(), ", from mu = {:.6g} on"
+    if scale is not None and (own := common_friction(mode)) is not None:
+        scale, of_scale = scale * own, ", from mu = {:.6g} on"
     onsets = [
         (at.critical_mu, f", from {name} = {{:.6g}} on"),
         (scale, of_scale),
@@ -247,11 +247,6 @@ def _line(mode: Any) -> str:
     ]
     located = [(each.item(), text) for each, text in onsets if each is not None]
     return words + "".join(text.format(x) for x, text in located if x == x)
-
-
-def _contacts_of(dataset: Any) -> list[dict[str, Any]]:
-    """Return the numbers of each contact that a dataset records."""
-    return list(json.loads(dataset.attrs["parameters"])["contacts"].values())
 
 
 def as_asked(structure: Any, options: dict[str, Any]) -> Any:

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
 from squealpipe.plotting.mesh_scene import Facets, projection
+from squealpipe.plotting.origin import common_friction
 from squealpipe.structures.meshes.datasets import mesh_of
 from squealpipe.text import number
 from squealpipe.units import engineering
@@ -143,6 +144,8 @@ def _friction(modes: xr.Dataset) -> str:
     if "critical_scale" not in modes:
         return f"mu = {at}"
     # every contact has a friction of its own, and what is varied is a factor of all
+    if (own := common_friction(modes)) is not None:
+        return f"mu = {number(own * float(modes.shape_mu))}"
     return "the friction of each contact" if at == "1" else f"{at} times every friction"
 
 

@@ -24,6 +24,13 @@ def parameter(dataset: xr.Dataset, name: str) -> Any:
     return value if isinstance(value, str) else float(value)
 
 
+def common_friction(modes: xr.Dataset) -> float | None:
+    """Return the coefficient that all contacts of a structure have of their own; None: several."""
+    contacts = json.loads(modes.attrs["parameters"])["contacts"].values()
+    own = {contact.get("mu") for contact in contacts}
+    return own.pop() if len(own) == 1 else None
+
+
 def time_unit(dataset: xr.Dataset) -> float:
     """√(m/k1) of the run, s."""
     return math.sqrt(parameter(dataset, "mass") / parameter(dataset, "k1"))

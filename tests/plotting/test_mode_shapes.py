@@ -1,5 +1,6 @@
 """Mode shapes: against an eigenproblem assembled here, as pictures, and for ParaView."""
 
+import json
 from dataclasses import replace
 
 import meshio
@@ -133,7 +134,11 @@ def test_titles_say_which_friction_and_a_bar_what_the_colours_mean(of_lining):
     over, own = of_lining
     mode = int(own.mode[0])
     made = figure_of_mode(own, mode)
-    assert made.get_suptitle().endswith("1/s at the friction of each contact")
+    assert made.get_suptitle().endswith("1/s at mu = 0.6")
+    numbers = json.loads(own.attrs["parameters"])
+    numbers["contacts"]["p1"]["mu"] = 0.5
+    several = own.assign_attrs(parameters=json.dumps(numbers))
+    assert title_of(several, mode).endswith("1/s at the friction of each contact")
     assert made.axes[-1].get_ylabel() == "amplitude over the largest"
     assert title_of(over, int(over.mode[0])).endswith("at mu of p2 = 0.6")
 
