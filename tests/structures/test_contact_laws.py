@@ -11,6 +11,7 @@ from squealpipe.codes import Regime
 from squealpipe.structures.contact import PointOrigin
 from squealpipe.structures.contact_table import read_contacts
 from squealpipe.structures.fewer_points import _joined
+from squealpipe.structures.meshes.face_entries import faces_in
 from squealpipe.structures.sliding import NoSlidingError, steady_sliding
 from squealpipe.structures.squeal.settled_run import squealing_run
 from squealpipe.structures.units import scales_of
@@ -289,3 +290,40 @@ def test_squeal_over_a_table_is_told_with_its_forces_and_regimes():
     np.testing.assert_allclose(shown.normal_force[:, 0], expected, atol=1e-9)
     contact = structure_rows(structure.complex_modes(), answer)["contacts"][0]
     assert contact["stiffness"] == "1.8 N/m at the preload"
+
+
+def test_a_law_of_a_face_is_shared_by_area(tmp_path):
+    """Uneven facets: the forces of all points together are the table's at every compression."""
+    corners = np.array(
+        [[0, 0, 0], [2, 0, 0], [2, 1, 0], [0, 1, 0], [3, 0, 0], [3, 1, 0]]
+    )
+    facets = {"foot": [[0, 3, 2, 1], [1, 2, 5, 4]]}
+    (tmp_path / "lining.csv").write_text(
+        "compression [um];force [kN]\n0;0\n10;1\n20;4\n"
+    )
+    law = faces_in(
+        {
+            "foot": {
+                "surface": "foot",
+                "force": 1.5e3,
+                "law": "lining.csv",
+                "direction": [1, 0, 0],
+            }
+        },
+        tmp_path,
+        scales_of("mm-t-s"),
+    )["foot"]
+    listed = {"compression": [0, 0.01, "20 um"], "force": [0, 1e3, 4e3]}
+    entry = {"surface": "foot", "force": 1.5e3, "law": listed, "direction": [1, 0, 0]}
+    again = faces_in({"foot": entry}, tmp_path, scales_of("mm-t-s"))["foot"]
+    assert law.law == again.law == "linear 0.0:0.0 1e-05:1000.0 2e-05:4000.0"
+    structure = Structure.from_mesh(
+        np.eye(18), np.eye(18), mesh=(0.01 * corners, facets), contacts={"foot": law}
+    )
+    area = np.array([each.origin.area for each in structure.contacts])
+    assert area.max() > 2 * area.min()
+    for lift in np.linspace(-2e-5, 1e-5, 7):
+        forces = [float(each.force(-lift)) for each in structure.contacts]
+        np.testing.assert_allclose(forces, area / area.sum() * sum(forces), rtol=1e-12)
+        whole = np.interp(1e-5 + 1e-5 / 6 - lift, [0, 1e-5, 1e-3], [0, 1e3, 298e3])
+        assert sum(forces) == pytest.approx(whole, rel=1e-12)
