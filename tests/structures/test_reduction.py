@@ -19,7 +19,7 @@ from squealpipe.structures.schema.squealing import Kind
 from squealpipe.structures.squeal import plant
 from squealpipe.structures.squeal.attractors import grouped
 from squealpipe.structures.squeal.squealing_modes import _verdict
-from squealpipe.study.report.squealing import headline, lines, outside
+from squealpipe.study.report.squealing import _of_contacts, headline, lines, outside
 from squealpipe.study.report.squealing import modes as lines_of_modes
 from squealpipe.systems.linear.matrices import Caps
 from tests.oracles.elastic_block import elastic_block
@@ -484,3 +484,15 @@ def test_a_number_of_modes_alone_is_refused_of_a_large_structure_with_a_band_tha
     whole = block.complex_modes(frequency_max=band, critical=False).frequency.values
     assert kept[: len(whole)] == pytest.approx(whole, rel=0.02)
     assert band < kept.max()
+
+
+def test_of_many_contacts_those_that_are_open_most_are_named():
+    """A line of the terminal named 18 contacts, 14 of them open 0 % of the time."""
+    names = [f"lining_{number}" for number in range(1, 19)]
+    shares = np.zeros(18)
+    shares[[8, 10, 16, 17]] = 0.01, 0.06, 0.06, 0.1
+    one = xr.Dataset({"separated_fraction": ("contact", shares)}, {"contact": names})
+    assert _of_contacts(one) == (
+        "lining_18 10 %, lining_11 6 %, lining_17 6 %, lining_9 1 %, 14 others at most 1 %"
+    )
+    assert _of_contacts(one.isel(contact=[0, 10])) == "lining_1 0 %, lining_11 6 %"

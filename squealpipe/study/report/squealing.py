@@ -447,9 +447,15 @@ def _end_of(one: xr.Dataset, critical: float) -> str:
 
 
 def _of_contacts(one: xr.Dataset) -> str:
-    """Share of time open, by contact."""
-    pairs = zip(one.contact.values, one.separated_fraction.values, strict=True)
-    return ", ".join(f"{name} {_percent(float(value))}" for name, value in pairs)
+    """Share of time open, by contact; of many those that are open most."""
+    pairs = list(zip(one.contact.values, one.separated_fraction.values, strict=True))
+    few = pairs
+    if len(pairs) > LISTED:
+        few = sorted(pairs, key=lambda pair: -pair[1])[: LISTED // 2]
+    told = [f"{name} {_percent(float(value))}" for name, value in few]
+    if rest := len(pairs) - len(few):
+        told.append(f"{rest} others at most {_percent(float(few[-1][1]))}")
+    return ", ".join(told)
 
 
 def _percent(share: float) -> str:
