@@ -87,7 +87,7 @@ NEEDED = {
 }
 """Valid values of the arguments that some function needs."""
 OF_ITS_OWN = {
-    "Contact": {"stiffness": 1.0},
+    "Contact": {"stiffness": 1.0, "preload": 1.0},
     "Face": {"stiffness": 1.0, "pressure": 1.0},
     "Switch": {"to": "a"},
     "System": {"parameters": {}},
@@ -148,7 +148,7 @@ def test_no_argument_drops_the_unit_of_a_quantity(name, argument):
         each.name: {**NEEDED, **OF_ITS_OWN.get(name, {})}[each.name]
         for each in inspect.signature(function).parameters.values()
         if each.default is each.empty and each.kind != each.VAR_KEYWORD
-    }
+    } | OF_ITS_OWN.get(name, {})
     for value in (QUANTITY(300.0, "K"), QUANTITY([300.0, 301.0, 302.0], "K")):
         with pytest.raises((ValueError, TypeError), match=argument):
             function(**given | {argument: value})
