@@ -147,6 +147,10 @@ squealing_schema = DatasetSchema(
         "degrees_of_freedom": count("of the whole structure", optional=True),
         **mesh_entries,
         "frequency_max": _of_whole("end of the band that was compared, NaN: all", "Hz"),
+        "damping_beyond_band": _of_whole(
+            "damping ratio that coordinates beyond the band were given, so that no mode grows "
+            "there; 0: none"
+        ),
         "ends_in": count(
             "attractor of a start of 1 % along this mode, -1: undetermined", "mode"
         ),

@@ -264,6 +264,7 @@ def _of_whole(plant: Plant) -> dict[str, Any]:
         "frequency_max": np.nan
         if origin is None or origin.frequency_max is None
         else origin.frequency_max,
+        "damping_beyond_band": plant.damping_beyond,
         "n_modes": plant.size,
         "static_responses": plant.structure.record.get("static_responses", 0),
         "frequency_error": agreement.errors.frequency,

@@ -24,12 +24,14 @@ LISTED = 8
 
 def lines(answer: xr.Dataset) -> list[str]:
     """The verdict, the modes, and what they end in."""
+    damped = damped_beyond(answer)
     return [
         headline(answer),
         *modes(answer),
         *missing(answer),
         *attractors(answer),
         *onset(answer),
+        *([damped] if damped else []),
     ]
 
 
@@ -153,6 +155,17 @@ def outside(answer: xr.Dataset) -> str | None:
     if end == NO_ATTRACTOR or not float(answer.dominant_frequency[end]) > limit:
         return None
     return f"Its frequency is {beyond_band(limit)}."
+
+
+def damped_beyond(answer: xr.Dataset) -> str | None:
+    """Say that coordinates beyond the band were damped for the runs, if they were."""
+    ratio = float(answer.get("damping_beyond_band", 0.0))
+    if not ratio > 0.0:
+        return None
+    return (
+        f"Above {engineering(frequency_max(answer), 'Hz')} modes would grow in the coordinates "
+        f"that were run; these were given a damping ratio of {number(ratio)} there."
+    )
 
 
 def _frequency_of(answer: xr.Dataset, motion: xr.Dataset) -> str:

@@ -364,9 +364,10 @@ def not_examined(answer: xr.Dataset) -> list[str]:
         above = engineering(squealing.frequency_max(answer), "Hz")
         rest.insert(
             1,
-            f"Modes of the whole structure above {above}, whether or not they grow: those that "
-            "would grow in a run are damped there.",
+            f"Modes of the whole structure above {above}, whether or not they grow.",
         )
+    if damped := squealing.damped_beyond(answer):
+        rest.insert(2, damped)
     if answer.attrs.get("not_run"):
         rest.insert(0, f"Runs: {answer.attrs['not_run']}.")
     if float(answer.share_undetermined) > 0:

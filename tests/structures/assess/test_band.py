@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 
+from squealpipe import squealing_modes
 from squealpipe.structures import elastic_pad
 from squealpipe.structures.assess.assess import judge_structure
 from squealpipe.structures.assess.designs import Design
 from squealpipe.structures.squeal.plant import Plant
+from squealpipe.study.report.squealing import damped_beyond, lines
 
 BAND = 20e3
 
@@ -48,6 +50,16 @@ def test_modes_beyond_the_band_decay_and_those_within_are_the_same(pad):
     # the same holds of what is changed, in coordinates of its own
     changed = Design.of(reduced).changed(Design.of(reduced).whole).structure
     assert _own_growth(changed, 2.0 * np.pi * BAND)[1].real.max() < 0.0
+
+
+def test_damping_beyond_the_band_is_told(pad):
+    reduced = pad.reduce(frequency_max=BAND)
+    period = 1.0 / Plant(reduced).slowest
+    answer = squealing_modes(reduced, samples=1, t_end=8 * period, tol=1e-9)
+    ratio = float(answer.damping_beyond_band)
+    assert ratio == Plant(reduced).damping_beyond > 0
+    assert f"damping ratio of {ratio:g} there" in lines(answer)[-1]
+    assert damped_beyond(answer.assign(damping_beyond_band=0.0)) is None
 
 
 def test_cause_and_frequency_lie_in_the_band(pad):
