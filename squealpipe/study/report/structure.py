@@ -363,8 +363,7 @@ def not_examined(answer: xr.Dataset) -> list[str]:
     if np.isfinite(squealing.frequency_max(answer)):
         above = engineering(squealing.frequency_max(answer), "Hz")
         rest.insert(
-            1,
-            f"Modes of the whole structure above {above}, whether or not they grow.",
+            1, f"Modes of the whole structure above {above}, whether or not they grow."
         )
     if damped := squealing.damped_beyond(answer):
         rest.insert(2, damped)

@@ -165,7 +165,7 @@ def content(section, modes, answer, tmp_path_factory):
     datasets = {
         "modes": modes,
         "squeal": answer,
-        "assess": answered(structure, section, answer, 1),
+        "assess": answered(structure, section, answer, {}, 1),
         "run": settled_motion(structure, section, answer),
         "fewer_points": fewer_points_of(
             {1: [], 2: [8.84, 91.6], 4: [55.48], 5: [24.9]}
