@@ -177,8 +177,12 @@ TWENTIETH = np.random.default_rng(42).choice(len(GRID), 9, replace=False)
 
 @pytest.mark.parametrize(
     "cases",
-    [[GRID[i] for i in TWENTIETH], pytest.param(GRID, marks=pytest.mark.release)],
-    ids=["a twentieth", "all"],
+    [
+        [GRID[i] for i in TWENTIETH],
+        pytest.param(GRID[::4], marks=pytest.mark.release),
+        pytest.param(GRID, marks=pytest.mark.long),
+    ],
+    ids=["a twentieth", "a quarter", "all"],
 )
 def test_forced_linear_oscillators_have_their_closed_form(cases):
     for omega, damping in cases:

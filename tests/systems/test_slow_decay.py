@@ -57,8 +57,12 @@ DRAWS = np.random.default_rng(67).uniform(size=(300, 6))
 
 @pytest.mark.parametrize(
     "draws",
-    [DRAWS[:4], pytest.param(DRAWS, marks=pytest.mark.release)],
-    ids=["four", "all"],
+    [
+        DRAWS[:4],
+        pytest.param(DRAWS[4:64], marks=pytest.mark.release),
+        pytest.param(DRAWS, marks=pytest.mark.long),
+    ],
+    ids=["four", "sixty", "all"],
 )
 def test_random_oscillators_have_the_label_of_their_later_energy(draws):
     """Energy decays at a rate between d and 4/3 d, as of the linear and the cubic spring.

@@ -241,7 +241,7 @@ def test_a_smooth_cycle_around_a_state_of_rest_is_found_from_any_phase(speed):
         np.testing.assert_allclose(again.period, cycle.period, rtol=1e-9)
 
 
-@pytest.mark.release
+@pytest.mark.long
 def test_a_stiff_dashpot_does_not_drive_the_search_for_rest_off():
     params = FORMER.with_(
         k1=0.65,
