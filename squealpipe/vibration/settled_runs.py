@@ -151,6 +151,7 @@ def settle(
     regimes: np.ndarray | None = None,
     told: Told | None = None,
     second: Callable[[int, Any], float] | None = None,
+    known: Sequence[SettledRun] = (),
 ) -> list[SettledRun]:
     """Run starts side by side until each has settled by the rules, or the time has passed.
 
@@ -159,6 +160,8 @@ def settle(
         told: takes what has settled so far and the times run, after each window.
         second: length of a start's second window by its number and its first window, s; None:
             that of the horizon.
+        known: irregular motions of the same subject that have settled. A start one of whose
+            windows has the statistics of such a motion has come to it, and is not run on.
     """
     count = len(starts)
     settled: dict[int, SettledRun] = {}
@@ -193,6 +196,7 @@ def settle(
                     rules,
                     grows_first=horizon.grows_first,
                     late=bool(elapsed[row] >= (1.0 - 1e-9) * horizon.most[row]),
+                    known=known,
                 )
                 windows[row].append(now)
                 if run is not None:
@@ -261,15 +265,19 @@ def _judged(
     *,
     grows_first: bool,
     late: bool,
+    known: Sequence[SettledRun],
 ) -> End | None:
     """Return what a start has settled to by its latest window; None if it runs on.
 
     Args:
         grows_first: whether the first window is compared with nothing.
         late: whether its time has passed.
+        known: irregular motions that it may have come to.
     """
     before = earlier[-1] if len(earlier) > int(grows_first) else None
     run = _settled(start, before, now, rules)
+    if run is None and len(earlier) >= int(grows_first):
+        run = _arrived(start, now, known, rules)
     if run is None and (late or not now.finished):
         run = _unsettled(start, before, now)
     return run
@@ -303,6 +311,24 @@ def _settled(
         return Verdict.quiet, *end[1:]
     is_shown = abs(start.rate) * float(now.length) >= Quietness.shown or now.switched
     return end if is_shown or start.rate == 0.0 else None
+
+
+def _arrived(
+    start: Start, now: Windows, known: Sequence[SettledRun], rules: Settling
+) -> End | None:
+    """Return the end of a start that has come to a known motion; None if it has not.
+
+    The windows have to agree whichever comes first: a component that still decays, and one that has
+    yet to grow, are both seen.
+    """
+    if not now.finished:
+        return None
+    for motion in known:
+        levels = motion.last.levels(start.period), now.levels(start.period)
+        ways = agreement(*levels, rules), agreement(*levels[::-1], rules)
+        if Agreement.none not in ways and heard(now.losses) is motion.verdict:
+            return motion.verdict, motion.irregular, difference(*levels)
+    return None
 
 
 def _unsettled(start: Start, before: Windows | None, now: Windows) -> End:

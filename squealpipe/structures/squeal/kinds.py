@@ -5,6 +5,7 @@ run away from it exponentially it is irregular. Where they do not, and it repeat
 closes it to a cycle, whose multipliers decide. What neither repeats nor runs away is a torus.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -103,39 +104,24 @@ def described(
         return Described(
             Kind.steady_sliding, np.nan, np.nan, np.nan, None, nothing, nothing
         )
-    length = max(KindRules.periods / plant.slowest, 0.5 * float(settled.last.length))
-    step = 1.0 / (KindRules.samples_per_period * plant.fastest)
-    count = int(min(np.ceil(length / step), KindRules.most_samples))
-    length = count * step
-    times = step * np.arange(1, count + 1)
-    rng = np.random.default_rng(how.seed)
-    base = settled.last.final
-    extent = float(plant.sizes(base - plant.sliding))
-    directions = rng.standard_normal((KindRules.neighbours, base.size)) * np.abs(
-        base - plant.sliding
-    )
-    directions *= KindRules.first_distance * extent / plant.sizes(directions)[:, None]
-    states = np.concatenate([base[None], base + directions])
-    # all start in the regimes of the motion, but for a contact that is just at a switch
-    regimes = np.tile(settled.last.regimes, (len(states), 1))
-    few = np.arange(len(times) // KindRules.early)
-    stopped, lost, apart = stop_is_asked(), False, _Apart()
+    beside = _beside(plant, settled, how)
+    times, stopped, lost, apart = beside.times, stop_is_asked(), False, _Apart()
     if stopped:  # a kind takes longer than somebody waits who has asked for an end
-        times = times[few]
+        times = beside.early
     else:
-        beside = run(plant, states[:4], times[few], how, regime=regimes[:4])["samples"]
-        apart = _apart(plant, beside, times[few], extent)
-        lost = apart.saturates and apart.grown >= KindRules.exponential_growth
+        apart = _early_apart(plant, beside, how)
+        lost = apart.loses_neighbours
     length = float(times[-1])
     room = int(2.0 * length * settled.last.events / settled.last.length) + 64
     logged = 0 if lost else room
+    states, regimes = beside.states, beside.regimes
     raw = run(plant, states[:1], times, how, regime=regimes[:1], log_events=logged)
     if not lost and not stopped:
         others = run(plant, states[1:], times, how, regime=regimes[1:])["samples"]
-        beside = np.concatenate([raw["samples"], others])
-        apart = _apart(plant, beside, times, extent)
+        apart = _apart(plant, [*raw["samples"], *others], times, beside.extent)
         lost = apart.grown >= KindRules.exponential_growth
     modal = plant.modal_velocities(raw["samples"][0])
+    step = float(times[0])
     omega, amplitude = amplitude_spectrum(modal.T, step)
     power = np.sqrt((amplitude**2).sum(axis=0))
     frequency = strongest_line(modal, step)
@@ -174,6 +160,49 @@ def described(
     )
 
 
+def is_irregular(plant: Plant, settled: SettledRun, how: Running) -> bool:
+    """Tell whether neighbours of a settled motion are lost soon, and not as it leaves a cycle."""
+    if settled.quiet or not settled.agrees:
+        return False
+    apart = _early_apart(plant, _beside(plant, settled, how), how)
+    stays = apart.exponent * float(settled.last.length) >= settling_of_numbers.irregular
+    return bool(apart.loses_neighbours and stays)
+
+
+class _Beside(NamedTuple):
+    """A motion and its neighbours: states (runs, 2 n) and regimes where they start, instants at
+    which they are looked at (s), and the size of the motion.
+    """
+
+    states: np.ndarray
+    regimes: np.ndarray
+    times: np.ndarray
+    extent: float
+
+    @property
+    def early(self) -> np.ndarray:
+        """Return the instants of the first part of the run."""
+        return self.times[: len(self.times) // KindRules.early]
+
+
+def _beside(plant: Plant, settled: SettledRun, how: Running) -> _Beside:
+    """Return where a motion goes on from its last window, and neighbours at random beside it."""
+    length = max(KindRules.periods / plant.slowest, 0.5 * float(settled.last.length))
+    step = 1.0 / (KindRules.samples_per_period * plant.fastest)
+    count = int(min(np.ceil(length / step), KindRules.most_samples))
+    rng = np.random.default_rng(how.seed)
+    base = settled.last.final
+    extent = float(plant.sizes(base - plant.sliding))
+    directions = rng.standard_normal((KindRules.neighbours, base.size)) * np.abs(
+        base - plant.sliding
+    )
+    directions *= KindRules.first_distance * extent / plant.sizes(directions)[:, None]
+    states = np.concatenate([base[None], base + directions])
+    # all start in the regimes of the motion, but for a contact that is just at a switch
+    regimes = np.tile(settled.last.regimes, (len(states), 1))
+    return _Beside(states, regimes, step * np.arange(1, count + 1), extent)
+
+
 class _Apart(NamedTuple):
     """Distance of neighbours: its largest growth, growth rate (1/s), the late growth of the area
     that they span (ln), and whether they have separated as far as they can.
@@ -184,15 +213,29 @@ class _Apart(NamedTuple):
     late_growth: float = 0.0
     saturates: bool = False
 
+    @property
+    def loses_neighbours(self) -> bool:
+        """Tell whether neighbours have run away exponentially, as far as they can."""
+        return self.saturates and self.grown >= KindRules.exponential_growth
+
+
+def _early_apart(plant: Plant, beside: _Beside, how: Running) -> _Apart:
+    """Look at three neighbours for the first part of the run."""
+    few, times = slice(4), beside.early
+    regimes = beside.regimes[few]
+    samples = run(plant, beside.states[few], times, how, regime=regimes)["samples"]
+    return _apart(plant, [*samples], times, beside.extent)
+
 
 def _apart(
-    plant: Plant, samples: np.ndarray, times: np.ndarray, extent: float
+    plant: Plant, runs: Sequence[np.ndarray], times: np.ndarray, extent: float
 ) -> _Apart:
     """Return how far neighbours have run away from the first run, and how fast.
 
     The distance is the median over all neighbours. Its part along the motion keeps its size, which
     hides what grows slowly beside it; an area spanned with that direction shows it at once.
     """
+    samples = np.asarray(runs)
     # many periods at once: distances swing within each
     blocks = np.array_split(np.arange(len(times)), 40)
     spread, areas = np.empty(len(blocks)), np.empty(len(blocks))

@@ -2,7 +2,8 @@
 
 Idea: a push gets as long as its own mode needs to grow from small to nonlinear, and a random start
 as long as the mode that grows fastest. Windows of statistics follow: so many periods of the motion,
-and long enough to see the slowest mode grow.
+and long enough to see the slowest mode grow. A start with the statistics of a motion that is known
+to be irregular has come to it.
 
 Invariant: another mode that takes over later is seen, at the latest by what starts beside the
 settled motion (:mod:`squealpipe.structures.squeal.kinds`), and such runs go on
@@ -14,10 +15,13 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 
 from squealpipe.codes import Verdict
+from squealpipe.structures.squeal.attractors import is_same
+from squealpipe.structures.squeal.kinds import is_irregular
 from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
 from squealpipe.structures.squeal.windows import (
     BLOCKS,
@@ -58,6 +62,9 @@ class RunLengths:
     a time, so that the first answers are seen early, and an interrupt is heard within a window."""
     side_by_side: int = 16
     """Starts that settle side by side then."""
+    first_starts: int = 4
+    """Starts that settle first, each by its own windows. Others that come to an irregular motion
+    among theirs need no second window that agrees. Twice as many: all such runs take longer."""
 
 
 def arrival(run: SettledRun) -> float:
@@ -175,22 +182,40 @@ def settle(
         return float(longest * 2.0 ** min(np.ceil(np.log2(wanted / longest)), 0.0))
 
     settled: list[SettledRun] = []
+    known: list[SettledRun] = []
     count = RunLengths.side_by_side if how.cost else len(starts)
-    for first in with_progress(range(0, len(starts), count)):
+    # the first few show to which irregular motions the others may come
+    few = min(RunLengths.first_starts, count, len(starts))
+    bounds = sorted({*range(0, len(starts), count), few, len(starts)})
+    for begin, end in with_progress(list(pairwise(bounds))):
         if stop_is_asked() and settled:
             break
-        batch = slice(first, first + count)
-        times = growing[batch], longest, most
         settled += _settle(
-            starts[batch],
-            times,
-            how.turn(1000 * first),
+            starts[begin:end],
+            (growing[begin:end], longest, most),
+            how,
             second=second,
+            known=known,
             before=settled,
             count=len(starts),
         )
+        if begin == 0 and not stop_is_asked():
+            known = _irregular(plant, settled, how)
     never_run = SettledRun(Verdict.undetermined, None, 0.0, change=np.inf)
     return settled + [never_run] * (len(starts) - len(settled))
+
+
+def _irregular(
+    plant: Plant, settled: Sequence[SettledRun], how: Running
+) -> list[SettledRun]:
+    """Return a run of each irregular motion that some starts have settled to, the longest first."""
+    known: list[SettledRun] = []
+    other: list[SettledRun] = []
+    for one in sorted(settled, key=lambda each: -each.elapsed):
+        if any(is_same(one, each) for each in (*known, *other) if one.agrees):
+            continue
+        (known if is_irregular(plant, one, how) else other).append(one)
+    return known
 
 
 def settle_on(
@@ -228,6 +253,7 @@ def _settle(
     regimes: np.ndarray | None = None,
     *,
     second: Callable[[int, StructureWindows], float] | None = None,
+    known: Sequence[SettledRun] = (),
     before: Sequence[SettledRun] = (),
     count: int | None = None,
 ) -> list[SettledRun]:
@@ -235,7 +261,7 @@ def _settle(
 
     Args:
         times: lengths of the run without statistics, of the first window, and of all, s.
-        second: see :func:`squealpipe.vibration.settled_runs.settle`.
+        second, known: see :func:`squealpipe.vibration.settled_runs.settle`.
         before: runs that have settled already, for partial answers.
         count: number of all starts; None: of these.
     """
@@ -265,6 +291,7 @@ def _settle(
         regimes=regimes,
         told=told,
         second=second,
+        known=known,
     )
 
 
