@@ -206,7 +206,8 @@ class _Log:
 
     def __init__(self, what: str) -> None:
         self.what = what
-        self.started = self.told = time.monotonic()
+        self.begun = self.started = self.told = time.monotonic()
+        self.said = False
         self.first: float | None = None
         self.later: threading.Timer | None = None
 
@@ -238,8 +239,9 @@ class _Log:
         self._print(f"{share:.0%} done, about {duration(left)} left")
 
     def say(self, line: str) -> None:
-        """Print a partial answer, if nothing was printed for a while."""
+        """Print a partial answer: one soon, and others if nothing was printed for a while."""
         now = time.monotonic()
-        if now - self.told >= LOG_EVERY:
-            self.told = now
+        soon = 3.0  # seconds, within which a quick command has ended
+        if now - self.told >= LOG_EVERY or (not self.said and now - self.begun >= soon):
+            self.told, self.said = now, True
             self._print(line)

@@ -327,7 +327,11 @@ def squeal(
         stopped = interrupted()
     answer(*map(in_options, lines(dataset)))
     if stopped:
-        say("interrupted: starts that had not settled by then count as not settled")
+        told = dataset.attrs.get("interrupted", "yes")
+        say(
+            "interrupted: starts that had not settled by then count as not settled"
+            + ("" if told == "yes" else f"; {told}")
+        )
         return ExitCodes.interrupted
     if run is not None:
         _write_run(reductions[0], dataset, run, tol)
