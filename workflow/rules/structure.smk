@@ -48,17 +48,35 @@ rule assess_structure:
 
 if STUDY.operating is not None:
     OPERATING = settings("structure", "operating")
+    number = min(PARTS, STUDY.operating.longest)
+    parts = f"{RESULTS}/parts/operating/{{scatteritem}}.nc"
+
+    scattergather:
+        operating=number,
 
     rule map_operating_points:
         input:
             files=sorted(set(files_named_in(OPERATING))),
         output:
-            data("structure/operating"),
+            data("structure/operating") if number == 1 else temp(parts),
         params:
             settings=OPERATING,
-        threads: workflow.cores
+        threads: workflow.cores if number == 1 else 1
         script:
             "../scripts/structure/map_operating_points.py"
+
+    if number > 1:
+
+        rule join_operating_points:
+            input:
+                files=sorted(set(files_named_in(OPERATING))),
+                parts=gather.operating(parts),
+            output:
+                data("structure/operating"),
+            params:
+                settings=OPERATING,
+            script:
+                "../scripts/structure/join_operating_points.py"
 
 
 _contacts = read_yaml(Path(STRUCTURE["structure"]["file"])).get("contacts")

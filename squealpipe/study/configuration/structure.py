@@ -49,6 +49,20 @@ class OperatingSection(Section):
     band_edges: Axis | None = None
     tol: Positive = 1e-9
 
+    @property
+    def longest(self) -> int:
+        """Number of values of the axis that has most, along which a map is split into jobs."""
+        axes = (self.pressure, self.speed, self.mu, self.temperature)
+        return max(_count(axis) for axis in axes)
+
+
+def _count(axis: Any) -> int:
+    """Return the number of values of an axis as it is written: first:last:count, or a list."""
+    if isinstance(axis, str):
+        _, *rest = axis.split(":")
+        return int(rest[1]) if len(rest) > 1 else 1 + axis.count(",")
+    return len(axis) if isinstance(axis, tuple) else 1
+
 
 def files_of_operating(
     content: Mapping[str, Any],
