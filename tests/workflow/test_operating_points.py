@@ -39,13 +39,13 @@ def test_a_map_in_parts_is_that_of_one_process_after_half_is_deleted(
     whole, _ = made("whole")
     scatter = ("--set-scatter", f"maps={PARTS}", "--notemp")
     first, said = made("parts", *scatter)
-    assert said.count("rule map_operating_points:") == PARTS
+    assert said.count(": map_operating_points →") == PARTS
     (tmp_path / "results/parts/data/structure/operating.nc").unlink()
     for number in (1, 3):
         folder = tmp_path / "results/parts/parts/operating"
         (folder / f"{number}-of-{PARTS}.nc").unlink()
     again, said = made("parts", *scatter)
-    assert said.count("rule map_operating_points:") == PARTS // 2
+    assert said.count(": map_operating_points →") == PARTS // 2
     assert whole.verdict.size == 24
     assert int(whole.hits) == 1
     for other in (first, again):
