@@ -320,6 +320,19 @@ def by_rows(contact: Contact, names: Sequence[str] | None) -> Contact:
     return replace(contact, **changed) if changed else contact
 
 
+def same_directions(before: Sequence[Contact], now: Sequence[Contact]) -> bool:
+    """Tell whether contacts are the same but for numbers: their names, and where they act."""
+    return len(before) == len(now) and all(
+        one.name == other.name
+        and one.transverse_damping == other.transverse_damping
+        and all(
+            getattr(one, which) is getattr(other, which)
+            for which in ("normal", "tangential", "across")
+        )
+        for one, other in zip(before, now, strict=True)
+    )
+
+
 def directions(contacts: Sequence[Contact], size: int) -> tuple[np.ndarray, np.ndarray]:
     """All normals and all tangentials, (n, contacts) each.
 

@@ -3,7 +3,7 @@
 import copy
 import dataclasses
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple, Self
 
@@ -11,9 +11,15 @@ import numpy as np
 import scipy.sparse as sp
 
 from squealpipe.parameters import finite_number
-from squealpipe.structures.contact import Contact, by_rows, directions, transversals
+from squealpipe.structures.contact import (
+    Contact,
+    by_rows,
+    directions,
+    same_directions,
+    transversals,
+)
 from squealpipe.structures.friction import Friction, default_mu, friction_of, has_own_mu
-from squealpipe.structures.matrices import checked_mass, real_square
+from squealpipe.structures.matrices import checked_mass, real_square, sum_of_products
 from squealpipe.structures.meshes.faces import Rotation
 from squealpipe.structures.meshes.structure_mesh import StructureMesh
 from squealpipe.structures.speed_terms import SpeedTerms
@@ -134,6 +140,39 @@ class ContactStructure:
         self.speed_terms = SpeedTerms.of(speed_terms, self.size, reference)
         """Parts of damping and stiffness that change with speed."""
         self.assemble()
+        self.take_contacts(
+            contacts,
+            friction_law=friction_law,
+            mu=mu,
+            mu_static=mu_static,
+            friction_speed=friction_speed,
+            load=load,
+        )
+        self.modes: np.ndarray | None = None
+        """Modes of a reduced structure, (n of the whole, n): amplitudes → displacements."""
+        self.record: dict[str, Any] = {}
+        """Record of a reduced structure: how many modes were kept, and their errors."""
+        self.reduced_from: ReducedFrom | None = None
+        """Origin of a reduced structure."""
+
+    def take_contacts(
+        self,
+        contacts: Sequence[Contact],
+        *,
+        friction_law: Any,
+        mu: float | None,
+        mu_static: float | None,
+        friction_speed: float,
+        load: Any,
+    ) -> None:
+        """Check and keep contacts, friction and load.
+
+        Directions of contacts are those of before where they stay: to check them takes as long as
+        everything else.
+        """
+        before = getattr(self, "contacts", None)
+        for name in ("preloads", "stiffnesses", "with_tables"):
+            vars(self).pop(name, None)  # of the contacts of before
         if not isinstance(contacts, Sequence):
             raise ValueError(  # noqa: TRY004 (of all arguments mistakes are values)
                 f"contacts = {brief(contacts)}: a list of Contact is needed"
@@ -143,8 +182,11 @@ class ContactStructure:
             if not isinstance(contact, Contact):
                 raise ValueError(f"contacts: {brief(contact)} is no Contact")  # noqa: TRY004
         self.contacts = tuple(by_rows(contact, self.names) for contact in self.contacts)
-        self.normals, self.tangentials = directions(self.contacts, self.size)
-        self.transversals = transversals(self.contacts, self.normals, self.tangentials)
+        if before is None or not same_directions(before, self.contacts):
+            self.normals, self.tangentials = directions(self.contacts, self.size)
+            self.transversals = transversals(
+                self.contacts, self.normals, self.tangentials
+            )
         self.friction = Friction(
             friction_law=friction_law,
             mu=default_mu(friction_law) if mu is None else finite_number("mu", mu, "1"),
@@ -161,12 +203,6 @@ class ContactStructure:
         """Friction of each contact: its own law and coefficients, or the structure's."""
         self.given_load = numbers_in_si("load", load, "N")
         self.load = self._load(self.given_load)
-        self.modes: np.ndarray | None = None
-        """Modes of a reduced structure, (n of the whole, n): amplitudes → displacements."""
-        self.record: dict[str, Any] = {}
-        """Record of a reduced structure: how many modes were kept, and their errors."""
-        self.reduced_from: ReducedFrom | None = None
-        """Origin of a reduced structure."""
 
     def _refuse_other_sizes(self) -> None:
         """Raise if mesh or names are of another number of degrees of freedom."""
@@ -297,9 +333,8 @@ class ContactStructure:
     @property
     def stiffness_at_rest(self) -> sp.csr_array:
         """K + Σ kᵢ nᵢnᵢᵀ without what changes with speed, the symmetric part."""
-        scaled = sp.csr_array(self.normals * self.stiffnesses)
-        whole = self.given_stiffness + scaled @ sp.csr_array(self.normals).T
-        whole = whole + self.speed_terms.still("stiffness")
+        springs = sum_of_products(self.normals * self.stiffnesses, self.normals)
+        whole = self.given_stiffness + springs + self.speed_terms.still("stiffness")
         return sp.csr_array(0.5 * (whole + whole.T))
 
     def _load(self, load: Any) -> np.ndarray:
@@ -329,15 +364,41 @@ class ContactStructure:
         A reduced structure keeps its origin if only friction or the belt changes; with other
         matrices, contacts or loads it has none.
         """
-        other = type(self)(**{**self.arguments, **changes})
         # these mean the same for a structure and for a reduced one; others belong to the matrices
         of_sliding = {"mu", "belt_speed", "friction_law", "mu_static", "friction_speed"}
+        if set(changes) <= of_sliding | {"contacts", "load", "modal_damping"}:
+            other = self._with_same_matrices(changes)
+        else:
+            other = type(self)(**{**self.arguments, **changes})
         if self.reduced_from is not None and set(changes) <= of_sliding:
             origin = self.reduced_from
             other.modes, other.mesh = self.modes, self.mesh
             other.reduced_from = origin._replace(
                 whole=origin.whole.with_(**changes), truth=None
             )
+        return other
+
+    def _with_same_matrices(self, changes: Mapping[str, Any]) -> Self:
+        """Return the structure with other contacts, friction or damping of modes.
+
+        Its matrices have been checked: doing so again takes most of the time in which a parameter
+        is varied.
+        """
+        other = copy.copy(self)
+        if self.modes is not None:  # mesh and names are those of the whole
+            other.mesh = other.names = None
+        given = {**self.arguments, **changes}
+        other.modal_damping = _ratios(given["modal_damping"], self.size)
+        if "belt_speed" in changes:
+            other.belt_speed = finite_number(
+                "belt_speed", given["belt_speed"], self.speed_unit
+            )
+            other.assemble()
+        of_contacts = ("friction_law", "mu", "mu_static", "friction_speed", "load")
+        other.take_contacts(
+            given["contacts"], **{name: given[name] for name in of_contacts}
+        )
+        other.modes, other.record, other.reduced_from = None, {}, None
         return other
 
     @property

@@ -60,6 +60,16 @@ def real_square(name: str, given: Any, size: int | None = None) -> sp.csr_array:
     return matrix
 
 
+def sum_of_products(left: np.ndarray, right: np.ndarray) -> sp.csr_array:
+    """Return Σ aᵢ bᵢᵀ of the columns of two arrays, (n, k) each, sparse."""
+    few = (
+        100  # rows of which an array is made in a tenth of the time of a sparse product
+    )
+    if len(left) <= few:
+        return sp.csr_array(left @ right.T)
+    return sp.csr_array(sp.csr_array(left) @ sp.csr_array(right).T)
+
+
 def checked_mass(
     mass: sp.csr_array, names: Sequence[str] | None = None
 ) -> sp.csr_array:

@@ -27,6 +27,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from squealpipe.structures.definition import ContactStructure
+from squealpipe.structures.matrices import sum_of_products
 from squealpipe.structures.pencil import DENSE, Extended
 
 
@@ -568,5 +569,4 @@ def contact_stiffness(
     structure: ContactStructure, springs: np.ndarray, acting: np.ndarray
 ) -> Any:
     """Σ k (n + σ μ t) nᵀ, sparse, with the stiffness of each contact, 0 of open ones."""
-    normals = sp.csr_array(structure.normals * springs)
-    return sp.csr_array(acting) @ normals.T
+    return sum_of_products(acting, structure.normals * springs)
