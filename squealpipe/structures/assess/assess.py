@@ -33,6 +33,7 @@ from squealpipe.vibration.boundaries import (
 from squealpipe.vibration.cures import Boundary, boundaries, by_change, cure_table
 from squealpipe.vibration.levels import unknown
 from squealpipe.vibration.schema import assess_schema
+from squealpipe.vibration.settled_runs import SettledRun
 from squealpipe.vibration.settling import settling_of_numbers
 
 
@@ -169,6 +170,7 @@ def judge_structure(
     assert push is not None and sudden is not None  # noqa: S101, PT018
     of_push, of_sudden = family.settled([push, sudden], settling_of_numbers)
     drawn = family.starts(design, 2, [])
+    partial_answer(partial(_first_verdicts, of_push, of_sudden, len(drawn)))
     others = family.settled(drawn) if drawn else []
     judged = judgement.judge(
         of_push,
@@ -185,6 +187,14 @@ def judge_structure(
     motions = [design.to_whole(run.last.final) for run in judged.lasting[:2]]
     searched = replace(family, tol=max(tol, Search.tol))
     return JudgedStructure(design, judged.verdict, motions, facts, searched, named)
+
+
+def _first_verdicts(push: SettledRun, sudden: SettledRun, drawn: int) -> str:
+    """Return a line that tells both verdicts before the random starts, which take longest."""
+    return (
+        f"  after a push: {push.verdict.name}; from rest under the whole load: "
+        f"{sudden.verdict.name}; {drawn} random starts follow"
+    )
 
 
 def _of_small_motions(design: Design, plant: Plant) -> dict[str, Any]:

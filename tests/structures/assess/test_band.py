@@ -9,6 +9,7 @@ from squealpipe.structures.assess.assess import judge_structure
 from squealpipe.structures.assess.designs import Design
 from squealpipe.structures.squeal.plant import Plant
 from squealpipe.study.report.squealing import damped_beyond, lines
+from squealpipe.systems.progress import shown
 
 BAND = 20e3
 
@@ -63,8 +64,12 @@ def test_damping_beyond_the_band_is_told(pad):
 
 
 def test_cause_and_frequency_lie_in_the_band(pad):
-    judged = judge_structure(
-        pad.reduce(frequency_max=BAND), samples=1, seed=0, tol=1e-9, workers=1
-    )
+    told = []
+    with shown(None, told.append):
+        judged = judge_structure(
+            pad.reduce(frequency_max=BAND), samples=1, seed=0, tol=1e-9, workers=1
+        )
+    # before the random starts, which take longest
+    assert told[0].startswith(f"  after a push: {judged.verdict.name}; from rest")
     assert judged.facts["leading_frequency"] < BAND
     assert judged.facts["frequency"] < BAND
