@@ -134,10 +134,20 @@ benchmark_schema = DatasetSchema(
             "solver",
             "tol",
         ),
-        "missed": count(f"events missed{_COUNT}", "problem", "solver", "tol"),
-        "spurious": count(f"events too many{_COUNT}", "problem", "solver", "tol"),
+        "missed": count(
+            f"events missed{'; -1 where no events are reported or judged'}",
+            "problem",
+            "solver",
+            "tol",
+        ),
+        "spurious": count(
+            f"events too many{'; -1 where no events are reported or judged'}",
+            "problem",
+            "solver",
+            "tol",
+        ),
         "out_of_order": count(
-            f"events found before one that they follow{_COUNT}",
+            "events found before one that they follow; -1 where no events are reported or judged",
             "problem",
             "solver",
             "tol",

@@ -290,14 +290,14 @@ class Files(Look):
     force: Force = False
 
 
-BRAKE, WRITTEN_OUTPUT, DRAWN, LOOK, STRUCTURE_FILES = (
+default_brake, written_output, drawn_output, default_look, structure_files = (
     Brake(),
     Written(),
     Drawn(),
     Look(),
     Files(),
 )
-FULL_RANGE = parse_range("0:pi:61", parse_angle)
+full_range = parse_range("0:pi:61", parse_angle)
 """Both spring angles from 0 to π."""
 
 

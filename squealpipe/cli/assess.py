@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from squealpipe.cli.arguments import (
-    DRAWN,
     Angle1OrFile,
     Drawn,
     Frequency,
@@ -16,6 +15,7 @@ from squealpipe.cli.arguments import (
     Texts,
     Tolerance,
     Whole,
+    drawn_output,
     modifications_of,
 )
 from squealpipe.cli.console import ExitCodes, answer, working
@@ -40,7 +40,7 @@ def assess(
     n_modes: Whole | None = None,
     frequency_max: Frequency = None,
     output: OutputElsewhere = None,
-    brake: Drawn = DRAWN,
+    brake: Drawn = drawn_output,
 ) -> int:
     """Say whether a brake squeals or hammers, at which frequency, how loud, why, what stops it.
 

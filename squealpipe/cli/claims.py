@@ -9,11 +9,12 @@ from typing import Any
 from squealpipe.cli.arguments import AsJson
 from squealpipe.cli.console import ExitCodes
 
-MADE = Path("results/data/claims.nc")
-
 
 def claims(
-    *ids: str, only: str | None = None, json_: AsJson = False, file: Path = MADE
+    *ids: str,
+    only: str | None = None,
+    json_: AsJson = False,
+    file: Path = Path("results/data/claims.nc"),
 ) -> int:
     """Print the paper's statements with their verdicts; those that are named, in full.
 

@@ -6,13 +6,13 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from squealpipe.cli.arguments import (
-    LOOK,
     Force,
     Look,
     Output,
     OutputElsewhere,
     Time,
     Whole,
+    default_look,
 )
 from squealpipe.cli.console import ExitCodes, answer, say
 from squealpipe.cli.output import PICTURES, check_output, draw, finish, write
@@ -26,7 +26,7 @@ def plot(
     output: OutputElsewhere = None,
     variable: str | None = None,
     mode: Whole | None = None,
-    look: Look = LOOK,
+    look: Look = default_look,
     force: Force = False,
 ) -> int:
     """Draw a dataset: a run, a map, a branch, a cycle, an ensemble of a system.
@@ -60,7 +60,7 @@ def spectrum(
         Path | None,
         Parameter(name=["--picture", "-p"], help="also draw it (png, svg or pdf)."),
     ] = None,
-    look: Look = LOOK,
+    look: Look = default_look,
     force: Force = False,
 ) -> int:
     """Write the spectrum of a run in Hz: velocities, contact force and its strongest lines.

@@ -6,8 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from squealpipe.cli.arguments import (
-    DRAWN,
-    FULL_RANGE,
     Angle1,
     Angle2,
     AngleRange,
@@ -20,6 +18,8 @@ from squealpipe.cli.arguments import (
     Tolerance,
     Whole,
     Workers,
+    drawn_output,
+    full_range,
 )
 from squealpipe.cli.console import ExitCodes, answer
 from squealpipe.cli.motions import Model
@@ -45,12 +45,12 @@ def map_angles(
     kind: Kind,
     /,
     *,
-    alpha1: AngleRange = FULL_RANGE,
-    alpha2: AngleRange = FULL_RANGE,
+    alpha1: AngleRange = full_range,
+    alpha2: AngleRange = full_range,
     t_end: Time | None,
     tol: Tolerance,
     output: Output = Path("map.nc"),
-    brake: Drawn = DRAWN,
+    brake: Drawn = drawn_output,
 ) -> int:
     """Compute a map over both spring angles; write a dataset and a picture.
 
@@ -85,7 +85,7 @@ def refine(
     tol: Tolerance,
     workers: Workers,
     output: Output = Path("refined.nc"),
-    brake: Drawn = DRAWN,
+    brake: Drawn = drawn_output,
 ) -> int:
     """Map at high resolution where contact is kept, with runs only along the boundaries.
 
@@ -132,7 +132,7 @@ def basin(
     tol: Tolerance,
     workers: Workers,
     output: Output = Path("basin.nc"),
-    brake: Drawn = DRAWN,
+    brake: Drawn = drawn_output,
 ) -> int:
     """Run A1 from a grid of starts; write the kind of motion of each and a picture.
 
@@ -190,7 +190,7 @@ def disturbance(
     tol: Tolerance,
     workers: Workers,
     output: Output = Path("disturbance.nc"),
-    brake: Drawn = DRAWN,
+    brake: Drawn = drawn_output,
 ) -> int:
     """Find the smallest disturbance of steady sliding that leads to contact loss or to the whirl.
 

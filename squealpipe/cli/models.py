@@ -8,9 +8,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Parameter
 
 from squealpipe.cli.arguments import (
-    BRAKE,
-    DRAWN,
-    WRITTEN_OUTPUT,
     Angle1,
     Angle1OrFile,
     Angle2,
@@ -26,8 +23,11 @@ from squealpipe.cli.arguments import (
     Whole,
     Workers,
     Written,
+    default_brake,
+    drawn_output,
     pairs_of,
     parse_share,
+    written_output,
 )
 from squealpipe.cli.console import ExitCodes, answer, current_session, working
 from squealpipe.cli.output import check_output, check_picture, compute, finish, write
@@ -51,7 +51,7 @@ def choose(
     /,
     *,
     t_end: Time | None,
-    brake: Brake = BRAKE,
+    brake: Brake = default_brake,
 ) -> int:
     """Print the cheapest model that answers a question as A1 does, its answer and the reason.
 
@@ -91,7 +91,7 @@ def infer(
     tol: Tolerance,
     workers: Workers,
     output: Output = Path("inference.nc"),
-    brake: Written = WRITTEN_OUTPUT,
+    brake: Written = written_output,
 ) -> int:
     """Judge parameter sets by the paper's statements, in each reading of the sign of friction.
 
@@ -148,7 +148,7 @@ def propensity(
     frequency_max: Frequency = None,
     workers: Workers = None,
     output: Output = Path("propensity.nc"),
-    brake: Drawn = DRAWN,
+    brake: Drawn = drawn_output,
 ) -> int:
     """Compute shares of verdicts over scattered parameters, and which parameter decides most.
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Parameter
 
 from squealpipe.cli.arguments import (
-    DRAWN,
     Angle1,
     Angle2,
     Drawn,
@@ -21,6 +20,7 @@ from squealpipe.cli.arguments import (
     Time,
     Tolerance,
     Whole,
+    drawn_output,
     parse_state,
 )
 from squealpipe.cli.console import ExitCodes, answer
@@ -59,7 +59,7 @@ def simulate(
     vx0: Speed = 0.0,
     vy0: Speed = 0.0,
     output: Output = Path("run.nc"),
-    brake: Drawn = DRAWN,
+    brake: Drawn = drawn_output,
 ) -> int:
     """Integrate one configuration, from rest unless given otherwise; write a dataset and a picture.
 
@@ -129,7 +129,7 @@ def backbone(
     x_amplitude_max: Length | None,
     n_harmonics: Whole,
     output: Output = Path("backbone.nc"),
-    brake: Drawn = DRAWN,
+    brake: Drawn = drawn_output,
 ) -> int:
     """Follow a family of free periodic motions of model A4; write a dataset and a picture.
 
@@ -177,7 +177,7 @@ def cycle(
     guess: State,
     t_settle: Time | None,
     output: Output = Path("cycle.nc"),
-    brake: Drawn = DRAWN,
+    brake: Drawn = drawn_output,
 ) -> int:
     """Find a periodic motion of A1, its events and its stability; write a dataset and a picture.
 
@@ -227,7 +227,7 @@ def branch(
     n_points: Whole,
     doubled: Switch,
     output: Output = Path("branch.nc"),
-    brake: Drawn = DRAWN,
+    brake: Drawn = drawn_output,
 ) -> int:
     """Follow periodic motions of A1 in a parameter, stable or not; write a dataset and a picture.
 

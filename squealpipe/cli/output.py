@@ -15,12 +15,15 @@ from squealpipe.cli.reservation import reserve
 if TYPE_CHECKING:
     import xarray as xr
 
-DATA = (".nc", ".csv")
 PICTURES = (".png", ".svg", ".pdf")
 
 
 def check_output(
-    path: Path, *, force: bool, kinds: tuple[str, ...] = DATA, option: str = "--output"
+    path: Path,
+    *,
+    force: bool,
+    kinds: tuple[str, ...] = (".nc", ".csv"),
+    option: str = "--output",
 ) -> None:
     """Refuse a name that cannot or must not be written, before anything is computed.
 

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from squealpipe.cli.arguments import (
-    STRUCTURE_FILES,
     Files,
     Frequency,
     Frictions,
@@ -25,6 +24,7 @@ from squealpipe.cli.arguments import (
     Whole,
     Workers,
     pairs_of,
+    structure_files,
 )
 from squealpipe.cli.console import (
     ExitCodes,
@@ -63,7 +63,7 @@ def modes(
     critical: bool = True,
     vary: Ranges | None = None,
     output: Output = Path("modes.nc"),
-    files: Files = STRUCTURE_FILES,
+    files: Files = structure_files,
 ) -> int:
     """Compute complex modes of a structure; write a dataset and a picture.
 
@@ -278,7 +278,7 @@ def squeal(
     onset: Switch,
     run: Annotated[Path | None, Parameter(negative="")] = None,
     output: Output = Path("squeal.nc"),
-    files: Files = STRUCTURE_FILES,
+    files: Files = structure_files,
 ) -> int:
     """Say which unstable modes of a structure squeal, how loud, and with how much contact loss.
 
@@ -366,7 +366,7 @@ def ladder(
     tol: Tolerance,
     repeats: Whole,
     output: Output = Path("ladder.nc"),
-    files: Files = STRUCTURE_FILES,
+    files: Files = structure_files,
 ) -> int:
     """Ask several methods which unstable modes of a structure squeal; chart accuracy and cost.
 
@@ -422,7 +422,7 @@ def operating(
     tol: Tolerance,
     workers: Workers,
     output: Output = Path("operating.nc"),
-    files: Files = STRUCTURE_FILES,
+    files: Files = structure_files,
 ) -> int:
     """Say at which pressures, speeds and frictions a structure is noisy, at which frequency.
 

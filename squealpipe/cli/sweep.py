@@ -8,7 +8,6 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from squealpipe.cli.arguments import (
-    WRITTEN_OUTPUT,
     Angle1,
     Angle2,
     Output,
@@ -16,6 +15,7 @@ from squealpipe.cli.arguments import (
     Workers,
     Written,
     pairs_of,
+    written_output,
 )
 from squealpipe.cli.console import ExitCodes, answer, current_session, say, working
 from squealpipe.cli.output import check_output, refuse_existing, write
@@ -34,7 +34,7 @@ def sweep(
     ] = None,
     workers: Workers = None,
     output: Output = Path("sweep.nc"),
-    brake: Written = WRITTEN_OUTPUT,
+    brake: Written = written_output,
 ) -> int:
     """Run a task at every combination of values; write one dataset with the names as dimensions.
 

@@ -14,8 +14,6 @@ from squealpipe.plotting.quantities import label
 from squealpipe.text import number
 from squealpipe.units import shown_in
 
-GROWTH_LABEL = "growth rate (1/s)"
-
 
 def draw_modes(axes: Axes, modes: xr.Dataset) -> None:
     """Growth over frequency of one spectrum; of several, frequency over the first factor."""
@@ -73,7 +71,7 @@ def _draw_spectrum(axes: Axes, modes: xr.Dataset) -> None:
             label=f"stable, below {number(lowest, 2)} 1/s",
         )
     axes.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
-    axes.set(xlabel=f"frequency ({unit})", ylabel=GROWTH_LABEL)
+    axes.set(xlabel=f"frequency ({unit})", ylabel="growth rate (1/s)")
     axes.legend()
 
 
@@ -126,7 +124,7 @@ def _draw_along(axes: Axes, modes: xr.Dataset, name: str, dim: str) -> None:
     if not np.isfinite(values).any():
         style.say_instead(axes, "no mode within the limits")
         return
-    words = GROWTH_LABEL
+    words = "growth rate (1/s)"
     if name == "frequency":
         factor, unit = frequency_unit(values)
         values, words = values * factor, f"frequency ({unit})"

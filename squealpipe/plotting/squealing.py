@@ -10,12 +10,7 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from squealpipe.plotting import style
 from squealpipe.plotting.hysteresis import draw_hysteresis, has_tracks
-from squealpipe.plotting.modes import (
-    GROWTH_LABEL,
-    draw_stability,
-    frequency_unit,
-    show_what_grows,
-)
+from squealpipe.plotting.modes import draw_stability, frequency_unit, show_what_grows
 from squealpipe.schema import meanings
 from squealpipe.text import number
 from squealpipe.units import engineering
@@ -125,7 +120,7 @@ def _poles(axes: Axes, answer: xr.Dataset) -> None:
     show_what_grows(axes, shown)
     axes.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
     axes.margins(x=0.08)
-    axes.set(xlabel=f"frequency ({unit})", ylabel=GROWTH_LABEL)
+    axes.set(xlabel=f"frequency ({unit})", ylabel="growth rate (1/s)")
 
 
 def _errors(axes: Axes, answer: xr.Dataset, factor: float) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, field
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy as np
 import xarray as xr
@@ -14,7 +14,6 @@ from squealpipe.structures.meshes.datasets import mesh_of
 from squealpipe.structures.meshes.structure_mesh import NO_NODE, StructureMesh
 
 SCHEMA = "structure_run"
-DIRECTION_NAMES = {1: "along x", 2: "along y", 3: "along z"}
 
 
 @dataclass(frozen=True)
@@ -34,6 +33,8 @@ class StructureMotion:
         contact_position: (contacts, 3), m; None likewise.
         belt_speed: m/s.
     """
+
+    direction_names: ClassVar = {1: "along x", 2: "along y", 3: "along z"}
 
     time: np.ndarray
     displacement: np.ndarray
@@ -123,7 +124,7 @@ class StructureMotion:
                 )
             return np.arange(len(self.shapes))
         node, direction = self.mesh.degree_of_freedom.T
-        moves = (node != NO_NODE) & (direction <= len(DIRECTION_NAMES))
+        moves = (node != NO_NODE) & (direction <= len(StructureMotion.direction_names))
         if at is not None:
             number, _, way = at.partition(".")
             numbers = np.where(node == NO_NODE, -1, self.mesh.numbers[node]).astype(str)
@@ -141,7 +142,7 @@ class StructureMotion:
         if self.mesh is None:
             return f"degree of freedom {row}, counted from 0"
         node, direction = self.mesh.degree_of_freedom[row]
-        return f"node {self.mesh.numbers[node]} {DIRECTION_NAMES[int(direction)]}"
+        return f"node {self.mesh.numbers[node]} {StructureMotion.direction_names[int(direction)]}"
 
     def nodes_at(self, frames: np.ndarray) -> np.ndarray:
         """Return displacements of the nodes from their means, (frames, nodes, 3), m."""

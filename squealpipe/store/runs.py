@@ -13,8 +13,6 @@ from squealpipe.store.checkout import ROOT as CHECKOUT
 from squealpipe.store.whole_files import ARCHIVES, MANIFEST, SEAL, StoreError, checksum
 
 RUN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
-LEFT_OUT = "left_out"
-"""Entry of a manifest with the patterns of what the archive deliberately does not hold."""
 
 
 @dataclass(frozen=True)

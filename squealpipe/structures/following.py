@@ -9,9 +9,6 @@ from scipy.optimize import linear_sum_assignment
 from squealpipe.structures.sliding import NoSlidingError
 from squealpipe.structures.spectrum import Spectrum
 
-FOLLOWING_HALVINGS = 4
-"""Number of times that a step in friction is halved where shapes change more."""
-
 
 def agreement(first: Spectrum, second: Spectrum) -> Any:
     """MAC |vᴴMv′|²/(vᴴMv · v′ᴴMv′) of all modes of two spectra, (first, second)."""
@@ -80,7 +77,7 @@ def followed(
     low: float,
     high: float,
     relevant: Callable[[Spectrum], np.ndarray],
-    halvings: int = FOLLOWING_HALVINGS,
+    halvings: int = 4,
 ) -> list[tuple[float, np.ndarray]]:
     """Frictions after ``low`` up to ``high`` with the places there of the modes at ``low``.
 

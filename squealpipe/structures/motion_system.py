@@ -40,8 +40,6 @@ LAW_NUMBERS = {
     "hyperbolic": friction_number.hyperbolic,
 }
 """Friction laws that the loop of linear structures has beside tables."""
-STICK_ROUND_OFF = 1e-14
-"""Force over a typical one: a contact sticks if friction lacks no more than this to hold it."""
 
 
 def system(
@@ -184,6 +182,9 @@ def matrices_of(
 ) -> ContactMatrices:
     """Return the matrices that the loop of linear structures runs."""
     laws = _laws(structure)
+    # Force over a typical one: a contact sticks if friction lacks no more than this to
+    # hold it.
+    stick_round_off = 1e-14
     return ContactMatrices(
         stiffness=diagonal_if_it_is(numbers.stiffness),
         damping=diagonal_if_it_is(numbers.damping),
@@ -201,7 +202,7 @@ def matrices_of(
         ),
         pieces=[_pieces(law) for law in laws],
         presses=[contact.lines for contact in structure.contacts],
-        hidden=STICK_ROUND_OFF * scale.force,
+        hidden=stick_round_off * scale.force,
         shapes=np.array(shapes).reshape(len(shapes), structure.size),
         by_speed=numbers.by_speed,
         reference=structure.speed_terms.reference,

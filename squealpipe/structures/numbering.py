@@ -22,9 +22,6 @@ from squealpipe.structures.sliding import NoSlidingError, changes
 from squealpipe.structures.spectrum import Solver, Spectrum
 from squealpipe.systems.progress import with_progress
 
-NUMBERING_HALVINGS = 4
-"""Number of times that a step in friction is halved where a mode that turns unstable is lost."""
-
 
 @dataclass(frozen=True)
 class Step:
@@ -127,9 +124,7 @@ class Way:
                 self._go_smoothly(low, station)
                 low = station
 
-    def _go_smoothly(
-        self, low: float, high: float, halvings: int = NUMBERING_HALVINGS
-    ) -> None:
+    def _go_smoothly(self, low: float, high: float, halvings: int = 4) -> None:
         start, top = self.steps[low], self.top
         passed = {low: start}
         for mu, places in followed(self.solver.at, low, high, self.solver.selected):

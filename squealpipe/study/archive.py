@@ -17,13 +17,7 @@ from squealpipe.store.checkout import commit
 from squealpipe.store.crate import describe
 from squealpipe.store.keys import refuse_misfits
 from squealpipe.store.rerun.key import files_named_in
-from squealpipe.store.runs import (
-    LEFT_OUT,
-    archive_folder,
-    matches_any,
-    regular_files,
-    seal_text,
-)
+from squealpipe.store.runs import archive_folder, matches_any, regular_files, seal_text
 from squealpipe.store.whole_files import MANIFEST, SEAL, checksum, not_written, sync
 from squealpipe.store.yaml_files import read_yaml
 from squealpipe.study.configuration.settings import Study, files_of_laws, read_study
@@ -89,7 +83,7 @@ def archive(
                 "name": name,
                 "frozen": frozen_at,
                 "commit": commit(),
-                LEFT_OUT: patterns,
+                "left_out": patterns,
                 "config": study.model_dump(mode="json"),
                 "files": _sums(draft),
             }

@@ -10,8 +10,6 @@ from squealpipe.structures.structure import Structure
 from squealpipe.study.chunks import Chunks
 from squealpipe.study.sweep_plan import SweepPlan
 
-SWEPT_OPTIONS = ("frequency_max", "n_modes")
-
 
 @dataclass(frozen=True, kw_only=True)
 class StructureSweep(SweepPlan):
@@ -27,6 +25,8 @@ class StructureSweep(SweepPlan):
         ValueError: a file, task or name that is wrong.
     """
 
+    swept_options = ("frequency_max", "n_modes")
+
     structure: Structure = field(init=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -38,7 +38,7 @@ class StructureSweep(SweepPlan):
             )
         object.__setattr__(self, "structure", Structure.read(file))
         for name in self.vary:
-            if name in SWEPT_OPTIONS:
+            if name in StructureSweep.swept_options:
                 raise ValueError(f"{name} cannot be varied; fix it")
         asked_of(self.structure, **self._arguments())
 
@@ -63,5 +63,9 @@ class StructureSweep(SweepPlan):
 
     def _arguments(self) -> dict[str, Any]:
         factors = {**self.fixed, **self.vary}
-        options = {name: factors.pop(name) for name in SWEPT_OPTIONS if name in factors}
+        options = {
+            name: factors.pop(name)
+            for name in StructureSweep.swept_options
+            if name in factors
+        }
         return {"factors": factors, **options}

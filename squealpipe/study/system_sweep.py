@@ -5,10 +5,10 @@ import math
 import runpy
 import time
 import traceback
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -26,7 +26,6 @@ from squealpipe.text import suggestion
 
 FIRST_BLOCK, LARGEST_BLOCK = LANES, 8192
 """Runs of the first block, and of the largest."""
-WAYS = {"ensemble": runs.ensemble, "basin": basin.basin}
 
 
 def is_system(task: str) -> bool:
@@ -85,17 +84,22 @@ class SystemSweep(SweepPlan):
             options.
     """
 
+    ways: ClassVar[Mapping[str, Callable[..., xr.Dataset]]] = {
+        "ensemble": runs.ensemble,
+        "basin": basin.basin,
+    }
+
     system: System = field(init=False, compare=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "system", find_system(self.task))
         way = self.fixed.get("run", "ensemble")
-        if way not in WAYS:
-            raise ValueError(f"run = {way!r}: {suggestion(way, WAYS)}")
+        if way not in SystemSweep.ways:
+            raise ValueError(f"run = {way!r}: {suggestion(way, SystemSweep.ways)}")
         known = [*self.system.start_names.values(), *self.system.parameters]
         options = [
             name
-            for name in inspect.signature(WAYS[way]).parameters
+            for name in inspect.signature(SystemSweep.ways[way]).parameters
             if name not in ("system", "start", "parameters", "workers")
         ]
         for name in (*self.vary, *(set(self.fixed) - {"run", *options})):
@@ -181,7 +185,7 @@ class SystemSweep(SweepPlan):
     ) -> xr.Dataset:
         """The runs with some of the values."""
         given = {**self.fixed, **self.vary, **some}
-        way = WAYS[given.pop("run", "ensemble")]
+        way = SystemSweep.ways[given.pop("run", "ensemble")]
         names = self.system.start_names.items()
         start = {state: given.pop(name) for state, name in names if name in given}
         return way(

@@ -14,9 +14,6 @@ from typing import Any
 
 import numpy as np
 
-UNITS_WITHOUT_SCALE = ("1", "rad")
-"""Units of numbers that have none."""
-
 
 @cache
 def powers_of(unit: str) -> tuple[tuple[str, int], ...]:
@@ -34,6 +31,9 @@ class Scales:
         known: unit → its scale, a number or an array (runs,).
     """
 
+    # Units of numbers that have none.
+    units_without_scale = ("1", "rad")
+
     def __init__(self, known: Mapping[str, Any]) -> None:
         self.known = dict(known)
 
@@ -43,13 +43,13 @@ class Scales:
         Raises:
             ValueError: no scale is known of a part of the unit.
         """
-        if unit in UNITS_WITHOUT_SCALE:
+        if unit in Scales.units_without_scale:
             return 1.0
         if unit not in self.known:
             parts = [
                 (base, n)
                 for base, n in powers_of(unit)
-                if base not in UNITS_WITHOUT_SCALE
+                if base not in Scales.units_without_scale
             ]
             if missing := [base for base, _ in parts if base not in self.known]:
                 raise ValueError(
@@ -75,7 +75,7 @@ class Scales:
         """
         return {
             name: value
-            if units.get(name, "1") in UNITS_WITHOUT_SCALE
+            if units.get(name, "1") in Scales.units_without_scale
             # adding 0 makes −0 to 0: equal values have equal bits
             else value / self.of(units[name]) + 0.0
             for name, value in values.items()

@@ -18,7 +18,7 @@ from squealpipe.schema import (
 
 LINES = 3200
 """Lines of its spectrum."""
-REGIME_NAMES = {**{int(each): each.name for each in Regime}, -1: "not_reached"}
+regime_meanings = {**{int(each): each.name for each in Regime}, -1: "not_reached"}
 """Meaning of regime."""
 
 
@@ -215,7 +215,7 @@ assess_schema = DatasetSchema(
         "path_y": _path("displacement across the belt", "m"),
         "path_force": _path("contact force over preload", "1"),
         "path_regime": flag(
-            "regime of the settled motion", REGIME_NAMES, "sample", volatile=True
+            "regime of the settled motion", regime_meanings, "sample", volatile=True
         ),
         "value": or_nan(
             "present value (for mu the friction coefficient at belt speed)",

@@ -7,7 +7,7 @@ from squealpipe import limit_cycle
 from squealpipe.functions import sin
 from squealpipe.parameters import Parameters
 from squealpipe.schema import meanings
-from squealpipe.systems.cycles.solution import CLOSING_TOLERANCE
+from squealpipe.systems.cycles.solution import CycleAccuracy
 from squealpipe.systems.motion import AT_REST, MotionKind
 from tests.systems.smooth_systems import elastic_ball, linear, oscillator, van_der_pol
 
@@ -23,7 +23,7 @@ spring = oscillator(
 
 def label(system, **options):
     cycle = system.limit_cycle(**options)
-    assert cycle.attrs["closing_tolerance"] == CLOSING_TOLERANCE
+    assert cycle.attrs["closing_tolerance"] == CycleAccuracy.closing
     return meanings(cycle.outcome)[int(cycle.outcome)]
 
 

@@ -22,8 +22,6 @@ from squealpipe.systems.taylor.layout import outcomes
 from squealpipe.systems.trace import TIME
 from squealpipe.validation import Seed, Workers, checked
 
-BLOCK = 2**17
-"""Runs of a map that are held in memory at once, about 1 kB each."""
 NEAR_PIVOT = 1e-3
 """Distance from a pivot, in free lengths, from which an overflow is its doing."""
 LARGEST_REACH, LARGEST_CONTACT_FORCE = f"{LARGEST}reach", f"{LARGEST}contact_force"
@@ -357,7 +355,7 @@ def run_map(
     alpha2: np.ndarray,
     results: Callable[[Ensemble], Mapping[str, np.ndarray]],
     *,
-    at_once: int = BLOCK,
+    at_once: int = 2**17,
     **options: Any,
 ) -> dict[str, np.ndarray]:
     """Results of runs over 1-D arrays of both angles, rad, made in blocks of rows.

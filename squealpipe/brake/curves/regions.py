@@ -15,8 +15,6 @@ import numpy as np
 from squealpipe.brake.curves.chords import Indices, Vector, cubic
 from squealpipe.brake.curves.zero_lines import ZeroLines
 
-FLAT = 1e-6
-"""Distance of a polygon from a line."""
 SQUARE_CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 
 
@@ -92,7 +90,7 @@ def gathered(loops: Sequence[Loop]) -> list[list[int]]:
     return list(regions.values())
 
 
-def loops_of(lines: ZeroLines, *, positive: bool, flat: float = FLAT) -> list[Loop]:
+def loops_of(lines: ZeroLines, *, positive: bool, flat: float = 1e-6) -> list[Loop]:
     """Closed lines around the regions in which the function is positive, or around others."""
     chord, left, slopes = lines.slopes(lines.chords)
     length = np.linalg.norm(chord, axis=1)

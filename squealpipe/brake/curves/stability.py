@@ -8,7 +8,7 @@ so that of two unstable regimes that meet both have it.
 
 from functools import partial
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -22,15 +22,16 @@ from squealpipe.codes import LinearRegime
 
 REGIME_GRID = 241
 """Points per side on which the regimes are seen."""
-EDGES = {
-    ChartLine.flutter: LinearRegime.flutter,
-    ChartLine.divergence: LinearRegime.divergence,
-}
-"""Lines of a chart that are the edge of a regime."""
 
 
 class Regimes:
     """Regime of A3 over a square of two parameters."""
+
+    # Lines of a chart that are the edge of a regime.
+    edges: ClassVar = {
+        ChartLine.flutter: LinearRegime.flutter,
+        ChartLine.divergence: LinearRegime.divergence,
+    }
 
     def __init__(self, square: Square) -> None:
         self.square = square
@@ -48,7 +49,7 @@ class Regimes:
                 jump=0.5,
                 touching=self.damped,
             )
-            for which in EDGES
+            for which in Regimes.edges
         }
 
     def beside(self, places: Vector) -> np.ndarray:
@@ -56,7 +57,7 @@ class Regimes:
         if not self.damped:
             return self.at(places)
         regimes = np.full(len(places), int(LinearRegime.stable))
-        for which, regime in EDGES.items():
+        for which, regime in Regimes.edges.items():
             regimes[self._edge(places, which) < 0.0] = regime
         return regimes
 

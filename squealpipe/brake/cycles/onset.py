@@ -11,7 +11,7 @@ from squealpipe.systems.continuation import ContinuationState
 from squealpipe.systems.cycles.event_map import EventMap
 from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.guess import eventless
-from squealpipe.systems.cycles.line import ALONG, branch_steps
+from squealpipe.systems.cycles.line import along_branch, branch_steps
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.trace import TIME
 
@@ -80,5 +80,5 @@ def find_onset(
     # the cycle of that amplitude: its parameter is an unknown
     direction = np.concatenate([shape / size, np.zeros(2)])
     normal = direction / np.linalg.norm(direction)
-    first = ALONG.solve(equations, guess, normal, branch_steps.first_step)
+    first = along_branch.solve(equations, guess, normal, branch_steps.first_step)
     return None if first is None else (first, Cycle.at(equations, first.point))

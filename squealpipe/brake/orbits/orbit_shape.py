@@ -17,14 +17,17 @@ from squealpipe.brake.orbits.modal_flow import (
     copy_state,
     propagator,
 )
-from squealpipe.brake.orbits.shooting import MAX_SEGMENTS, shoot
+from squealpipe.brake.orbits.shooting import shoot, shooting_limits
 from squealpipe.systems.compiled import compiled
 
 
 @compiled
 def waveform(rows: Any, point: Any, phases: Any, out: Any) -> None:
     """Fill ``out`` (n, 4) with (x, y, vx, vy) at ascending phases θ = 2π t/T in [0, π]."""
-    segments, switches = np.empty((MAX_SEGMENTS, 9)), np.empty(MAX_SEGMENTS)
+    segments, switches = (
+        np.empty((shooting_limits.segments, 9)),
+        np.empty(shooting_limits.segments),
+    )
     final, start, scratch = np.empty(4), np.empty(4), np.empty(8)
     count = shoot(rows, point[0], point[1], point[2], segments, switches, final)
     start[0], start[1], start[2], start[3] = point[0], point[1], 0.0, 0.0
@@ -57,7 +60,10 @@ def _rates(row: Any, state: Any, kind: int) -> tuple[float, float, float]:
 @compiled
 def extremes(rows: Any, point: Any, out: Any) -> None:
     """Fill ``out`` (6,) with the least and largest x, y and vx over half a period."""
-    segments, switches = np.empty((MAX_SEGMENTS, 9)), np.empty(MAX_SEGMENTS)
+    segments, switches = (
+        np.empty((shooting_limits.segments, 9)),
+        np.empty(shooting_limits.segments),
+    )
     final, start, state = np.empty(4), np.empty(4), np.empty(4)
     scratch = np.empty(8)
     count = shoot(rows, point[0], point[1], point[2], segments, switches, final)

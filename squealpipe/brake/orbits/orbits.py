@@ -13,10 +13,10 @@ from squealpipe.brake.orbits.modal_flow import propagator
 from squealpipe.brake.orbits.orbit_shape import extremes
 from squealpipe.brake.orbits.piecewise_linear import PiecewiseLinearSystem
 from squealpipe.brake.orbits.shooting import (
-    MAX_SEGMENTS,
     fastest,
     push,
     rest_conditions,
+    shooting_limits,
     solve_constrained,
     stability_index,
 )
@@ -131,8 +131,8 @@ class OrbitEquations:
                 z,
                 np.empty(2),
                 np.empty((2, 3)),
-                np.empty((MAX_SEGMENTS, 9)),
-                np.empty(MAX_SEGMENTS),
+                np.empty((shooting_limits.segments, 9)),
+                np.empty(shooting_limits.segments),
                 np.empty(4),
             )
             _, residual, gradients, segments, switches, final, _ = shot
@@ -153,7 +153,11 @@ class Across(PseudoArclength):
     ) -> tuple[Vector, Vector, int, float] | None:
         """Correct a guess as :class:`PseudoArclength` does, for :class:`OrbitEquations`."""
         point, tangent = np.array(guess, dtype=float), np.empty(3)
-        work = np.empty((MAX_SEGMENTS, 9)), np.empty(MAX_SEGMENTS), np.empty(4)
+        work = (
+            np.empty((shooting_limits.segments, 9)),
+            np.empty(shooting_limits.segments),
+            np.empty(4),
+        )
         unit = normal / np.linalg.norm(normal)
         count, iterations, residual = solve_constrained(
             problem.rows, point, unit, self.settings.tolerance, *work, tangent

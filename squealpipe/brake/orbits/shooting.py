@@ -5,18 +5,30 @@ rest again after T/2 closes after T. The flow between switches is exact, the fie
 across a switch, and the tangent map is therefore the plain product of the segments' maps.
 """
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from squealpipe.brake.orbits import modal_flow
 from squealpipe.systems.compiled import compiled
 
-MAX_SEGMENTS = 64
-"""Segments in half a period beyond which a shot is given up."""
-LONGEST_PHASE = 1e4
-"""Phase of the fastest mode within half a period beyond which a shot is given up, rad."""
-_COEFFICIENTS = 8
+
+class ShootingLimits(NamedTuple):
+    """Sizes beyond which a shot over half a period is given up.
+
+    Attributes:
+        segments: in half a period. Doubling it follows motions that switch more often.
+        phase: of the fastest mode within half a period, rad. Doubling it follows slower motions,
+            of which round-off hides twice as much.
+    """
+
+    segments: int = 64
+    phase: float = 1e4
+
+
+shooting_limits = ShootingLimits()
+# column of a segment, behind its eight coefficients, in which the side of the state stands
+_side_column = 8
 
 
 @compiled
@@ -52,18 +64,19 @@ def shoot(
     """Flow from rest at (x0, y0) over half a period.
 
     Args:
-        segments: (MAX_SEGMENTS, 9) filled with coefficients and the state of each segment.
-        switches: (MAX_SEGMENTS,) filled with the times of the switches.
+        segments: (``shooting_limits.segments``, 9) filled with the coefficients and the state of
+            each segment.
+        switches: (``shooting_limits.segments``,) filled with the times of the switches.
 
     Returns:
         The number of segments, or 0 if there were too many or the shot is too long.
     """
-    if not fastest(rows) * half_period < LONGEST_PHASE:
+    if not fastest(rows) * half_period < shooting_limits.phase:
         return 0
     final[0], final[1], final[2], final[3] = x0, y0, 0.0, 0.0
     side = 1 if y0 > rows[0].threshold else 0
     time = 0.0
-    for count in range(MAX_SEGMENTS):
+    for count in range(shooting_limits.segments):
         row = rows[side]
         crossing = modal_flow.next_crossing(
             row, final, 2.0 * side - 1.0, half_period - time
@@ -72,7 +85,7 @@ def shoot(
             return 0
         duration = half_period - time if crossing < 0.0 else crossing
         modal_flow.propagator(row, duration, segments[count])
-        segments[count, _COEFFICIENTS] = side
+        segments[count, _side_column] = side
         modal_flow.advance(row, segments[count], final)
         time += duration
         if crossing < 0.0:
@@ -88,7 +101,7 @@ def push(rows: Any, segments: Any, count: int, vector: Any) -> None:
     """Carry a tangent vector through the segments of a shot, in place."""
     for index in range(count):
         modal_flow.apply(
-            rows[int(segments[index, _COEFFICIENTS])], segments[index], vector
+            rows[int(segments[index, _side_column])], segments[index], vector
         )
 
 
@@ -103,7 +116,7 @@ def stability_index(rows: Any, segments: Any, count: int) -> float:
         push(rows, segments, count, vector)
         for index in range(count - 1, -1, -1):
             modal_flow.apply(
-                rows[int(segments[index, _COEFFICIENTS])], segments[index], vector
+                rows[int(segments[index, _side_column])], segments[index], vector
             )
         trace += vector[column]
     return trace - 2.0
@@ -133,7 +146,7 @@ def rest_conditions(
             vector[index] = 1.0 if index == column else 0.0
         push(rows, segments, count, vector)
         jacobian[0, column], jacobian[1, column] = vector[2], vector[3]
-    last = rows[int(segments[count - 1, _COEFFICIENTS])]
+    last = rows[int(segments[count - 1, _side_column])]
     jacobian[0, 2], jacobian[1, 2] = modal_flow.acceleration(last, final[0], final[1])
     return count
 

@@ -23,7 +23,7 @@ from squealpipe.brake.orbits.orbits import (
     to_round_off,
 )
 from squealpipe.brake.orbits.piecewise_linear import PiecewiseLinearSystem
-from squealpipe.brake.orbits.shooting import LONGEST_PHASE
+from squealpipe.brake.orbits.shooting import shooting_limits
 from squealpipe.brake.orbits.shorter_orbits import about_to_meet, shorter_orbit_between
 from squealpipe.systems.branch_line import Line
 from squealpipe.systems.continuation import ContinuationSettings, ContinuationState
@@ -152,7 +152,7 @@ class _Trace:
         for _ in range(settings.max_points):
             if self.equations.work > limits.most_work:
                 return
-            if not fastest * state.point[2] < LONGEST_PHASE:
+            if not fastest * state.point[2] < shooting_limits.phase:
                 return
             following = self.algorithm.advance(
                 self.equations, state, partial(self._accepts, here)

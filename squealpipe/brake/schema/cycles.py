@@ -2,7 +2,7 @@
 
 from enum import IntEnum
 
-from squealpipe.brake.schema.dynamics.runs import REGIME_MEANINGS, STATE_UNITS
+from squealpipe.brake.schema.dynamics.runs import STATE_UNITS
 from squealpipe.brake.schema.linear import angles_of_one_pair
 from squealpipe.codes import Event
 from squealpipe.parameters import Parameters
@@ -18,6 +18,7 @@ from squealpipe.schema import (
 )
 from squealpipe.systems.branch_labels import Label, Meeting
 from squealpipe.systems.datasets.agreement import ComparedAs, Listing, RoundOff
+from squealpipe.vibration.schema import regime_meanings
 
 
 class Stability(IntEnum):
@@ -89,7 +90,7 @@ a1_limit_cycle_schema = DatasetSchema(
             f"{name}_path": Variable(f"{words} along the cycle", units, ("sample",))
             for name, (units, words) in STATE_UNITS.items()
         },
-        "regime_path": flag("regime along the cycle", REGIME_MEANINGS, "sample"),
+        "regime_path": flag("regime along the cycle", regime_meanings, "sample"),
         **angles_of_one_pair,
     },
 )

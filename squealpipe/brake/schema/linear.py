@@ -30,10 +30,6 @@ angles_of_one_pair = {
 mode_coordinate = {"mode": count("mode, by ascending frequency", "mode")}
 
 
-ALIKE = 0.5
-"""Modal assurance criterion from which two shapes are nearer to one than to perpendicular ones."""
-
-
 linear_regime_of_map = flag("stability regime of model A3", LinearRegime, *MAP)
 
 stability_map_schema = DatasetSchema(

@@ -26,7 +26,6 @@ from squealpipe.brake.orbits.orbits import Orbit, solve_orbit
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 
-MODE = 1
 CORRECTED, AS_PRINTED = "paper, Eq. (34) corrected", "paper, Eq. (34) as printed"
 PAPER_SIGMA = 1e3
 
@@ -52,7 +51,7 @@ def work_precision(
     # y_peak over l_pre; none close to the period doubling at 3.9
     # the start of a solution is the orbit at a peak lower by 0.02, as along a backbone
     found = [
-        [find_orbit(scene, MODE, peak - d)[0] for d in (0.0, 0.02)]
+        [find_orbit(scene, 1, peak - d)[0] for d in (0.0, 0.02)]
         for peak in (1.25, 1.75, 2.25, 2.75, 3.5)
     ]
     pairs = [(orbit, start) for orbit, start in found if orbit and start]
@@ -145,7 +144,7 @@ def _paper(
     eta = balance.start_from_cosines(z[: count + 1], z[count + 1 : -1], float(z[-1]))
 
     def error_of(found: SampledSolution) -> float:
-        exact, _ = find_orbit(scene, MODE, max(balance.peak(found), 1.0 + 1e-6))
+        exact, _ = find_orbit(scene, 1, max(balance.peak(found), 1.0 + 1e-6))
         return (
             abs(found.omega / exact.omega - 1.0)
             if found.converged and exact

@@ -16,7 +16,6 @@ import numpy as np
 from squealpipe.brake.models import a2
 from squealpipe.brake.models.contact_system import contact_system
 from squealpipe.brake.models.damped import damped_system, is_undamped, stability
-from squealpipe.brake.schema.dynamics.runs import GROWTH_THRESHOLD
 from squealpipe.codes import LinearRegime
 from squealpipe.laws.dashpots import linear_damping
 from squealpipe.laws.springs import geometry
@@ -260,15 +259,17 @@ def _grows(candidates: Candidates) -> StatementMargin:
 @constrains(
     "F4",
     Stage.bound,
-    f"|x| stays below 2L and its second half below {GROWTH_THRESHOLD:g} times the first; "
-    f"margin min(ln(2L/|x|), ln({GROWTH_THRESHOLD:g}/growth)), none where starts 1e-9 l_pre apart "
+    f"|x| stays below 2L and its second half below "
+    f"{WordsInNumbers.growth_threshold:g} times the first; "
+    f"margin min(ln(2L/|x|), ln({WordsInNumbers.growth_threshold:g}/growth)), "
+    f"none where starts 1e-9 l_pre apart "
     "disagree",
 )
 @from_several_starts
 def _stays_bounded(candidates: Candidates) -> StatementMargin:
     growth, size, outcome = _growth_and_size(candidates, SCENES["F4"])
     return StatementMargin(
-        np.minimum(np.log(GROWTH_THRESHOLD) - growth, -size), outcome
+        np.minimum(np.log(WordsInNumbers.growth_threshold) - growth, -size), outcome
     )
 
 

@@ -15,10 +15,9 @@ import numpy as np
 from squealpipe.brake.models import a3
 from squealpipe.brake.models.contact_system import contact_system
 from squealpipe.brake.models.damped import damped_system, is_undamped, stability
-from squealpipe.brake.schema.linear import ALIKE
 from squealpipe.codes import LinearRegime
 from squealpipe.laws.springs import springs_alike
-from squealpipe.paper.schema.inference import DAMPED_GRID
+from squealpipe.paper.schema.inference import DAMPED_GRID, WordsInNumbers
 from squealpipe.parameters import Parameters
 
 INSIDE = 1.0 - 1e-6
@@ -91,7 +90,7 @@ def _on_grid(params: Parameters) -> Unstable:
     alpha1, alpha2 = midpoints(DAMPED_GRID)
     linear = stability(damped_system(params, alpha1, alpha2))
     couples = (linear.regime == LinearRegime.flutter) & (
-        linear.shape_similarity >= ALIKE
+        linear.shape_similarity >= WordsInNumbers.alike
     )
     return _where(linear.regime, alpha1, alpha2, couples)
 

@@ -83,6 +83,21 @@ class WordsInNumbers:
     springs."""
     large_region: float = 0.5
     """F7a: share of the angle map from which a region is called large."""
+    alone: float = 1e-9
+    """F10 to F13: amplitude over the other one's below which a direction takes no part."""
+    vanishing: float = 1e-6
+    """F8: share of the largest ω1 below which ω1 is zero."""
+    small_share: float = 0.1
+    """F8: share of the largest ω1 that bounds "the region where ω1 vanishes"."""
+    near_largest: float = 0.98
+    """F9: share of the largest ω2 that bounds the region where "ω2 is largest"."""
+    alike: float = 0.5
+    """Modal assurance criterion from which two shapes are nearer to one than to perpendicular
+    ones."""
+    growth_threshold: float = 2.0
+    """``response_growth`` from which a response that keeps contact grows. |x| ∝ t, the slowest
+    growth of an unstable linear system (at the onset of flutter), doubles from one half of a run to
+    the next; exponential growth exceeds that, and a bounded one falls short."""
 
 
 DAMPED_GRID = 181

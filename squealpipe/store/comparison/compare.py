@@ -24,13 +24,7 @@ from squealpipe.store.comparison.matching import Aligned, align, is_filler
 from squealpipe.store.comparison.statements import StatementChange, changed_statements
 from squealpipe.store.identity import VOLATILE_ATTRIBUTES
 from squealpipe.store.netcdf import load
-from squealpipe.store.runs import (
-    LEFT_OUT,
-    dataset_files,
-    locate,
-    matches_any,
-    read_manifest,
-)
+from squealpipe.store.runs import dataset_files, locate, matches_any, read_manifest
 from squealpipe.store.yaml_files import flat
 
 
@@ -122,7 +116,7 @@ def compare(
         absent = [
             pattern
             for place in places
-            for pattern in read_manifest(place).get(LEFT_OUT, [])
+            for pattern in read_manifest(place).get("left_out", [])
         ]
     except (FileNotFoundError, ValueError) as error:
         return Comparison(a=str(a), b=str(b), reason=str(error))

@@ -35,8 +35,6 @@ from squealpipe.vibration import sobol
 from squealpipe.vibration.shares import wilson_interval
 
 Change = Callable[[ContactStructure, float], ContactStructure]
-OF_CONTACTS = ("mu", "contact_stiffness", "preload")
-"""Quantities that scatter for a face or contact alone too, like ``mu_lining``."""
 
 
 @recorded(
@@ -157,10 +155,12 @@ def _changes(structure: ContactStructure, names: Any) -> dict[str, Change]:
             f"relative_std = {brief(names)}: {{'mu': 0.1}} or the like is needed"
         )
     known = known_inputs(structure)
+    # Quantities that scatter for a face or contact alone too, like ``mu_lining``.
+    of_contacts = ("mu", "contact_stiffness", "preload")
     for name in names:
         if name not in known:
             raise ValueError(f"relative_std: {name!r}: {suggestion(str(name), known)}")
-        for quantity in OF_CONTACTS:
+        for quantity in of_contacts:
             if name.startswith(f"{quantity}_") and quantity in names:
                 raise ValueError(
                     f"relative_std: {quantity} and {name} scatter the same; keep one"

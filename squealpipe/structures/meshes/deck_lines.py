@@ -8,10 +8,6 @@ from pathlib import Path
 
 from squealpipe.structures.packed import text_of
 
-_PARAMETER = re.compile(
-    r"""\s*([^=,"']+?)\s*(?:=\s*("[^"]*"|'[^']*'|[^,]*?)\s*)?(?:,|$)"""
-)
-
 
 @dataclass
 class Block:
@@ -116,7 +112,10 @@ def _block(text: str, path: Path, line: int) -> Block:
     first, _, rest = text[1:].partition(",")
     keyword = " ".join(first.upper().split())
     parameters = {}
-    for match in _PARAMETER.finditer(rest):
+    parameter = re.compile(
+        r"""\s*([^=,"']+?)\s*(?:=\s*("[^"]*"|'[^']*'|[^,]*?)\s*)?(?:,|$)"""
+    )
+    for match in parameter.finditer(rest):
         name = match[1].strip().upper()
         parameters[name] = (match[2] or "").strip("\"' ")
     return Block(keyword, parameters, path, line)

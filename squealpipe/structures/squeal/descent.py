@@ -39,7 +39,7 @@ class UnstableCycles(NamedTuple):
     speed: np.ndarray
 
 
-NONE_UNSTABLE = UnstableCycles(np.empty(0), np.empty(0))
+none_unstable = UnstableCycles(np.empty(0), np.empty(0))
 
 
 @dataclass
@@ -58,7 +58,7 @@ class Track:
     dies: float = np.nan
     narrow: bool = False
     fold: float = np.nan
-    unstable: UnstableCycles = NONE_UNSTABLE
+    unstable: UnstableCycles = none_unstable
 
     @property
     def lasts(self) -> TrackState:

@@ -24,8 +24,6 @@ NAMES = {
     "belt_speed": "belt speed",
 }
 """Words for what is changed of a pad."""
-NOT_FOUND = "none"
-"""Text in place of a value that was not found within the range searched."""
 CHEAPEST = 3
 """Cures that an answer names."""
 
@@ -261,7 +259,7 @@ def of_a_push(answer: xr.Dataset) -> list[CureWords]:
 
     names = sorted(_found(answer), key=order)
     table = [_words(answer, name) for name in names]
-    return [cure for cure in table if cure.quiet_from != NOT_FOUND]
+    return [cure for cure in table if cure.quiet_from != "none"]
 
 
 def stops(answer: xr.Dataset) -> str:
@@ -294,11 +292,11 @@ def cure_line(cure: CureWords, answer: xr.Dataset) -> str:
     safe = f"{cure.any_start} ({cure.change_any_start})"
     if bool(answer.quiet_unless_struck):
         told = f"a small push dies out up to {push}"
-        if cure.any_start != NOT_FOUND:
+        if cure.any_start != "none":
             told = f"{told}; quiet from any start at {safe}"
     elif cure.any_start == cure.quiet_from:
         told = f"quiet {word} {push}"
-    elif cure.any_start == NOT_FOUND:
+    elif cure.any_start == "none":
         told = f"quiet {word} {push} unless struck"
     else:
         told = f"quiet {word} {safe}; {word} {cure.quiet_from} unless struck"
@@ -413,7 +411,7 @@ def _words(answer: xr.Dataset, name: str) -> CureWords:
         _change(name, float(cure.change), float(cure.value)),
         _value(name, float(cure.quiet_from_any_start), unit),
         _change(name, float(cure.change_any_start), float(cure.value)),
-        "; ".join(_intervals(cure)) or NOT_FOUND,
+        "; ".join(_intervals(cure)) or "none",
         _range(cure),
     )
 
@@ -426,7 +424,7 @@ def _range(cure: xr.Dataset) -> str:
 
 def _value(name: str, value: float, unit: str) -> str:
     if not math.isfinite(value):
-        return NOT_FOUND
+        return "none"
     if name.startswith("alpha"):
         return f"{number(float(np.degrees(value)))}°"
     if name in ("damping", "modal_damping"):

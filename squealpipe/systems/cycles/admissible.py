@@ -16,9 +16,6 @@ from squealpipe.systems.branch_line import ZERO_ROUND_OFF
 from squealpipe.systems.cycles.event_map import FREE
 from squealpipe.systems.cycles.solution import Cycle
 
-MARGIN_ROUND_OFF = ZERO_ROUND_OFF
-"""Margin below zero that is round-off."""
-
 
 class MarginKind(IntEnum):
     """Quantity that a margin measures."""
@@ -141,4 +138,4 @@ def _conditions(cycle: Cycle, leg: int) -> dict[Margin, float]:
 
 def is_motion(cycle: Cycle) -> bool:
     """Return whether a solution is a motion of the system, to round-off."""
-    return all(value >= -MARGIN_ROUND_OFF for value in margins(cycle).values())
+    return all(value >= -ZERO_ROUND_OFF for value in margins(cycle).values())

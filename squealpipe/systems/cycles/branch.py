@@ -17,7 +17,7 @@ from squealpipe.systems.continuation import ContinuationState
 from squealpipe.systems.cycles.described import columns, describe_columns, outcome_of
 from squealpipe.systems.cycles.find import find_cycle
 from squealpipe.systems.cycles.following import Follower
-from squealpipe.systems.cycles.line import AT_SPECIAL_POINTS, branch_steps
+from squealpipe.systems.cycles.line import at_special_points, branch_steps
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.cycles.trail import BranchPoint
 from squealpipe.systems.datasets import Outcome, flag_table
@@ -107,7 +107,7 @@ def first_point(
     flow = cycle.map.flow.following(parameter)
     equations, guess = cycle.followed_in(flow, np.array([max(abs(begin), abs(to))]))
     normal = math.copysign(1.0, to - begin) * np.eye(len(guess))[-1]
-    state = AT_SPECIAL_POINTS.solve(equations, guess, normal, branch_steps.first_step)
+    state = at_special_points.solve(equations, guess, normal, branch_steps.first_step)
     return None if state is None else (state, Cycle.at(equations, state.point))
 
 

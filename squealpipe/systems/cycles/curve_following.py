@@ -19,14 +19,9 @@ from typing import NamedTuple
 import numpy as np
 
 from squealpipe.systems.branch_labels import Label, Meeting
-from squealpipe.systems.branch_line import Line
+from squealpipe.systems.branch_line import ZERO_ROUND_OFF, Line
 from squealpipe.systems.continuation import ContinuationState, PseudoArclength
-from squealpipe.systems.cycles.admissible import (
-    MARGIN_ROUND_OFF,
-    Margin,
-    MarginKind,
-    is_motion,
-)
+from squealpipe.systems.cycles.admissible import Margin, MarginKind, is_motion
 from squealpipe.systems.cycles.curve_equations import RETURNS, Curve, Test, curve_of
 from squealpipe.systems.cycles.event_order import label_of, order_of, run_of
 from squealpipe.systems.cycles.legs import Vector
@@ -129,7 +124,7 @@ class _Way:
         found: dict[float, Meeting] = {}
         first, last = (line.known[share][0].point for share in (0.0, 1.0))
         if self.curve.label in RETURNS and all(
-            abs(self.curve.least_margin(point)[0]) <= MARGIN_ROUND_OFF
+            abs(self.curve.least_margin(point)[0]) <= ZERO_ROUND_OFF
             for point in (first, last)
         ):
             # all along the curve the branch turns where the events change: the return map has no
@@ -198,7 +193,7 @@ class _Way:
                 why = "multipliers_are_real"
             ends.append(_End(share, met, why))
         least, key = self.curve.least_margin(point)
-        if least < -MARGIN_ROUND_OFF and key is not None:
+        if least < -ZERO_ROUND_OFF and key is not None:
             share = line.root(lambda there, _: self.curve.least_margin(there.point)[0])
             share = 0.0 if share is None else share
             state, cycle = line.at(share)

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.systems.cycles.event_map import FREE
-from squealpipe.systems.cycles.solution import CLOSING_TOLERANCE, Cycle
+from squealpipe.systems.cycles.solution import Cycle, CycleAccuracy
 from squealpipe.systems.datasets import Outcome, flag_table
 from squealpipe.systems.labels import (
     attributes_of,
@@ -178,5 +178,5 @@ def dataset(
         found,
         components_of(system),
         attributes_of(system, "limit cycle", values, 1e-14)
-        | {"closing_tolerance": CLOSING_TOLERANCE},
+        | {"closing_tolerance": CycleAccuracy.closing},
     )

@@ -8,7 +8,7 @@ import numpy as np
 
 from squealpipe.systems.continuation import ContinuationState
 from squealpipe.systems.cycles.event_map import FREE
-from squealpipe.systems.cycles.line import ALONG, branch_steps
+from squealpipe.systems.cycles.line import along_branch, branch_steps
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.cycles.trail import BranchPoint
 
@@ -62,7 +62,7 @@ def doubled_start(point: BranchPoint) -> tuple[ContinuationState, Cycle] | None:
         direction[:n] -= twice.section.normal * (twice.section.normal @ direction[:n])
     direction /= np.linalg.norm(direction)
     for length in (1e-3, 3e-3, 1e-2):
-        state = ALONG.solve(
+        state = along_branch.solve(
             twice, base + length * direction, direction, branch_steps.first_step
         )
         if state is not None:

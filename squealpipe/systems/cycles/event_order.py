@@ -16,15 +16,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squealpipe.systems.branch_labels import Label
-from squealpipe.systems.branch_line import Line
+from squealpipe.systems.branch_line import ZERO_ROUND_OFF, Line
 from squealpipe.systems.continuation import ContinuationState
-from squealpipe.systems.cycles.admissible import (
-    MARGIN_ROUND_OFF,
-    Margin,
-    MarginKind,
-    is_motion,
-    margins,
-)
+from squealpipe.systems.cycles.admissible import Margin, MarginKind, is_motion, margins
 from squealpipe.systems.cycles.event_map import EventMap
 from squealpipe.systems.cycles.guess import (
     Repeat,
@@ -34,7 +28,7 @@ from squealpipe.systems.cycles.guess import (
     without_brief_legs,
 )
 from squealpipe.systems.cycles.legs import LegEnd, Vector
-from squealpipe.systems.cycles.line import ALONG, branch_steps
+from squealpipe.systems.cycles.line import along_branch, branch_steps
 from squealpipe.systems.cycles.solution import Cycle
 
 if TYPE_CHECKING:
@@ -154,7 +148,9 @@ class NewOrder:
         # just begun
         most = 0.1 * min(1.0, usual)
         weak = {k: v for k, v in near.items() if k.kind in kinds and v < most}
-        algorithm = replace(ALONG, settings=replace(branch_steps, max_iterations=12))
+        algorithm = replace(
+            along_branch, settings=replace(branch_steps, max_iterations=12)
+        )
         normal = np.eye(len(guess))[-1]
         if weak:
             normal = _gradient(equations, guess, min(weak, key=lambda k: weak[k]))
@@ -172,11 +168,11 @@ class NewOrder:
         ways = []
         for sign in (1.0, -1.0):
             trial = replace(state, tangent=sign * state.tangent, step=1e-5)
-            ahead = ALONG.attempt(equations, trial)
+            ahead = along_branch.attempt(equations, trial)
             if ahead is not None:
                 beyond = Cycle.at(equations, ahead.point)
                 least = least_margin(None, beyond)
-                if least >= -MARGIN_ROUND_OFF:
+                if least >= -ZERO_ROUND_OFF:
                     ways.append((least, ahead, beyond))
         if not ways:
             return None

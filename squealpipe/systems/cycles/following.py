@@ -15,18 +15,18 @@ from functools import partial
 import numpy as np
 
 from squealpipe.systems.branch_labels import Label
-from squealpipe.systems.branch_line import Line
+from squealpipe.systems.branch_line import ZERO_ROUND_OFF, Line
 from squealpipe.systems.continuation import ContinuationState
-from squealpipe.systems.cycles.admissible import MARGIN_ROUND_OFF, margins
+from squealpipe.systems.cycles.admissible import margins
 from squealpipe.systems.cycles.event_map import PhaseCondition
 from squealpipe.systems.cycles.event_order import NewOrder, label_of, least_margin
 from squealpipe.systems.cycles.legs import Vector
 from squealpipe.systems.cycles.line import (
-    ALONG,
-    AT_SPECIAL_POINTS,
     TESTS,
     Test,
+    along_branch,
     at_edge,
+    at_special_points,
     branch_steps,
     branching_label,
     explains,
@@ -209,7 +209,7 @@ class Follower:
             trial = replace(state, step=step)
             following = at_edge(equations, trial, self.low, self.high)
             if following is None:
-                following = ALONG.attempt(equations, trial)
+                following = along_branch.attempt(equations, trial)
             if following is not None:
                 reached = Cycle.at(equations, following.point)
                 if not self._strays(trial, cycle, following, reached):
@@ -236,9 +236,9 @@ class Follower:
         if section is not None and float(section.normal @ reached.heading) <= 0.0:
             return True  # beyond a state of rest
         if (
-            not self.low - MARGIN_ROUND_OFF
+            not self.low - ZERO_ROUND_OFF
             <= reached.followed[-1]
-            <= self.high + MARGIN_ROUND_OFF
+            <= self.high + ZERO_ROUND_OFF
         ):
             return True
         if state.step < limits.finest_step:
@@ -261,19 +261,19 @@ class Follower:
     ) -> BranchStep | None:
         """A step with what lies in it; None where that is not clear."""
         line = Line(
-            AT_SPECIAL_POINTS,
+            at_special_points,
             cycle.map,
             (state, cycle),
             (following, reached),
             partial(Cycle.at, cycle.map),
         )
         before, after = (least_margin(None, each) for each in (cycle, reached))
-        last = 1.0 if after >= -MARGIN_ROUND_OFF else line.root(least_margin)
+        last = 1.0 if after >= -ZERO_ROUND_OFF else line.root(least_margin)
         found = None if last is None else self._smooth(line, last)
         if found is None or last is None:
             return None
         # a step that ends at the change to round-off may not lead past it
-        if last < 1.0 or after < MARGIN_ROUND_OFF < 0.5 * before:
+        if last < 1.0 or after < ZERO_ROUND_OFF < 0.5 * before:
             return self._changed(line, found, last)
         near, share = self._shorter(line, cycle, reached)
         if near and share is None and state.step > limits.finest_step:

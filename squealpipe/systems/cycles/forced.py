@@ -13,8 +13,8 @@ from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.guess import Repeat, as_motion, follow, guess_of
 from squealpipe.systems.cycles.legs import Vector
 from squealpipe.systems.cycles.settled import (
-    QUARTERS,
     Approach,
+    ApproachRules,
     approach,
     distances_in_step,
 )
@@ -150,8 +150,12 @@ class Watched:
             return Approach.settles
         clock = self.times - self.origin(periods)
         off = distances_in_step(cycle, clock[:-1], self.states[:-1])
-        quarters = np.array([_typical(part) for part in np.split(off, QUARTERS)])
-        return approach(cycle, quarters, search.watched_periods / QUARTERS / periods)
+        quarters = np.array(
+            [_typical(part) for part in np.split(off, ApproachRules.quarters)]
+        )
+        return approach(
+            cycle, quarters, search.watched_periods / ApproachRules.quarters / periods
+        )
 
 
 def _typical(distances: Vector) -> Vector:

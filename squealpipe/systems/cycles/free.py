@@ -29,9 +29,8 @@ from squealpipe.systems.cycles.guess import (
 )
 from squealpipe.systems.cycles.legs import LegEnd, Vector
 from squealpipe.systems.cycles.settled import (
-    ON_IT,
-    QUARTERS,
     Approach,
+    ApproachRules,
     approach,
     distances_from_orbit,
 )
@@ -146,15 +145,17 @@ class Stretch:
     def approach(self, cycle: Cycle) -> Approach:
         """Return how the run goes on next to a cycle: it settles, comes nearer, or leaves."""
         path = self.motion.path
-        quarter = len(path) // QUARTERS
+        quarter = len(path) // ApproachRules.quarters
         inside = np.linspace(
             0, quarter, search.compared_samples, endpoint=False, dtype=int
         )
-        places = (np.arange(QUARTERS)[:, None] * quarter + inside).ravel()
+        places = (np.arange(ApproachRules.quarters)[:, None] * quarter + inside).ravel()
         off = distances_from_orbit(cycle, path[places])
         # a sample next to an event may be measured poorly
-        distances = np.quantile(off.reshape(QUARTERS, -1), 0.75, axis=1)
-        return approach(cycle, distances, self.times[-1] / QUARTERS / cycle.period)
+        distances = np.quantile(off.reshape(ApproachRules.quarters, -1), 0.75, axis=1)
+        return approach(
+            cycle, distances, self.times[-1] / ApproachRules.quarters / cycle.period
+        )
 
 
 def settled_free(
@@ -358,7 +359,8 @@ def _returns(
             if (
                 settled
                 and not once
-                and off[again] > search.second_return * off[count] + ON_IT
+                and off[again]
+                > search.second_return * off[count] + ApproachRules.on_cycle
             ):
                 continue
             if (

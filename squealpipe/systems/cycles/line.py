@@ -25,7 +25,7 @@ branch_steps = ContinuationSettings(
     stagnant=1e-8,
 )
 precise_steps = replace(branch_steps, tolerance=3e-14, max_iterations=10)
-ALONG, AT_SPECIAL_POINTS = (
+along_branch, at_special_points = (
     PseudoArclength(steps, least_iterations=0, own_tangent=True)
     for steps in (branch_steps, precise_steps)
 )
@@ -156,7 +156,7 @@ def at_edge(
     guess = state.point + share * state.tangent
     guess[-1] = edge / unit
     normal = math.copysign(1.0, state.tangent[-1]) * np.eye(len(guess))[-1]
-    found = ALONG.solve(equations, guess, normal, state.step)
+    found = along_branch.solve(equations, guess, normal, state.step)
     if found is None or float(np.linalg.norm(found.point - guess)) > 0.3 * length:
         return None
     return found

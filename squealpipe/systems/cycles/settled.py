@@ -8,6 +8,7 @@ shrink from part to part towards a cycle that attracts.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
@@ -15,9 +16,19 @@ import numpy as np
 from squealpipe.systems.cycles.legs import Vector
 from squealpipe.systems.cycles.solution import Cycle
 
-QUARTERS = 4
-ON_IT = 1e-6
-"""Distance from a cycle, over its extent, of a motion that is on it."""
+
+@dataclass(frozen=True)
+class ApproachRules:
+    """Rules by which a motion counts as one that approaches a cycle.
+
+    Attributes:
+        quarters: parts of the watched time whose distances from the cycle are compared.
+        on_cycle: distance from a cycle, over its extent, of a motion that is on it. Doubling it
+            takes motions for arrived that still approach.
+    """
+
+    quarters: int = 4
+    on_cycle: float = 1e-6
 
 
 class Approach(IntEnum):
@@ -37,7 +48,7 @@ def approach(cycle: Cycle, distances: Vector, periods: float) -> Approach:
         distances: over the cycle's extent in each quarter, (4,).
         periods: of the cycle in a quarter.
     """
-    if distances[-1] <= ON_IT:
+    if distances[-1] <= ApproachRules.on_cycle:
         return Approach.settles
     # distance over the extent within which a shrinking motion has no other cycle to go to
     near = 0.05

@@ -18,10 +18,19 @@ from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.legs import LegEnd, Vector
 from squealpipe.systems.trace import TIME
 
-_FAMILY = 1e-6
-"""A second multiplier this close to 1 may belong to a family of cycles."""
-CLOSING_TOLERANCE = 2e-14
-"""Closing error, over the extent, that is always round-off; larger ones are checked."""
+
+@dataclass(frozen=True)
+class CycleAccuracy:
+    """Errors of a cycle that round-off explains.
+
+    Attributes:
+        family: a second multiplier this close to 1 may belong to a family of cycles. Doubling it
+            looks for families where a cycle is nearly at a fold.
+        closing: closing error, over the extent, that is always round-off; larger ones are checked.
+    """
+
+    family: float = 1e-6
+    closing: float = 2e-14
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,7 +162,7 @@ class Cycle:
         from a step along the direction that returns; in a family it stays.
         """
         off = np.abs(self.nontrivial - 1.0).min(initial=1.0)
-        if off >= _FAMILY or not self.keeps_its_direction:
+        if off >= CycleAccuracy.family or not self.keeps_its_direction:
             return False
         jacobian = self.map.evaluate(self.point)[1][:, : self.map.size]
         direction = np.linalg.svd(jacobian)[2][-1]
@@ -188,7 +197,7 @@ class Cycle:
             off = other - values - jacobian @ (moved - self.point)
             largest = max(largest, float(np.abs(off).max()))
         # round-off may be eight times what the neighbours show
-        return max(CLOSING_TOLERANCE, 8.0 * largest)
+        return max(CycleAccuracy.closing, 8.0 * largest)
 
     @cached_property
     def drifts(self) -> bool:
@@ -198,7 +207,9 @@ class Cycle:
         than a motion that does not quite close. What closes to round-off is a member of a family.
         """
         off = np.abs(self.nontrivial - 1.0).min(initial=1.0)
-        return bool(off < _FAMILY and self.residual > self.closing_round_off)
+        return bool(
+            off < CycleAccuracy.family and self.residual > self.closing_round_off
+        )
 
     def closed(self) -> Cycle:
         """Return the cycle closed as well as it can be.

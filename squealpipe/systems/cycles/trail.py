@@ -10,7 +10,7 @@ import scipy
 from squealpipe.systems.branch_labels import Label
 from squealpipe.systems.continuation import ContinuationState
 from squealpipe.systems.cycles.legs import Vector
-from squealpipe.systems.cycles.line import AT_SPECIAL_POINTS
+from squealpipe.systems.cycles.line import at_special_points
 from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.datasets import Outcome
 
@@ -143,7 +143,7 @@ class Trail:
         for state, equations in (
             (self.points[i].state, self.points[i].cycle.map) for i in fit
         ):
-            found = AT_SPECIAL_POINTS.solve(equations, state.point, state.tangent, 0.0)
+            found = at_special_points.solve(equations, state.point, state.tangent, 0.0)
             if found is not None:
                 shapes.append(self._shape(Cycle.at(equations, found.point), found))
         if len(shapes) < 3:

@@ -19,10 +19,6 @@ from squealpipe.systems.linear.plan import mode_row, parameter_row, plan_at, rec
 from squealpipe.systems.taylor.lanes import call, view
 from squealpipe.systems.taylor.simd import LANES
 
-EQUAL = 1e-15
-"""An equality holds within this of the size of what it is computed from, as of traced systems."""
-SWEEPS = 4
-"""Rounds over all contacts, for each of them, in which the others' regimes may still change."""
 FIRST = 1e150
 """Weight of what decides before anything else is asked."""
 
@@ -72,12 +68,15 @@ def _first_that_fits(settle: Any, k: Any, rows: Any, z: Any, i: int) -> Any:
     _put(settle, k, rows, i, last)
     state_forces(k, rows, z, pressing)
     press, speed = pressing[i], k.by_contact[contact_row.lags, i]
-    if abs(press) <= EQUAL * size_q and _rises(k, i, z) >= 0.0:
+    # An equality holds within this of the size of what it is computed from, as of
+    # traced systems.
+    equal = 1e-15
+    if abs(press) <= equal * size_q and _rises(k, i, z) >= 0.0:
         return last
     if -FIRST * press - 1e14 * k.hidden[0] >= 0.0:
         return last
     piece = press_of_force(k, i, press)
-    if abs(speed) <= reach * EQUAL * size_v:
+    if abs(speed) <= reach * equal * size_v:
         count = regimes_of_press(k, i)
         for kind in (count - 1, 0, 1):
             regime = piece * count + kind
@@ -103,6 +102,9 @@ def find_starts(address: int) -> None:
     opened = view(t.opened, (c,), np.int64)
     rows = view(t.scratch, (given + c * k.width, LANES), np.float64)
     settle = t.settle, t.scratch
+    # Rounds over all contacts, for each of them, in which the others' regimes may still
+    # change.
+    sweeps = 4
     for job in range(jobs):
         for parameter in range(given):
             rows[parameter, 0] = starts[job, parameter]
@@ -113,7 +115,7 @@ def find_starts(address: int) -> None:
             if opened[i]:
                 numbers[job, i] = 1
             _put(settle, k, rows, i, numbers[job, i])
-        for _ in range(SWEEPS * n_opened):
+        for _ in range(sweeps * n_opened):
             changed = False
             for i in range(c):
                 if opened[i]:

@@ -12,9 +12,6 @@ from squealpipe.systems.components import Component, Switch
 from squealpipe.systems.functions import cos
 from squealpipe.systems.system import System
 
-FLANKS = {"drive": 1.0, "coast": -1.0}
-"""The side of the gap that each flank is on."""
-
 
 def _approach(side: float, s: Any, p: Any) -> Any:
     """By how much a flank is pressed."""
@@ -49,7 +46,9 @@ gear_pair = System(
         "damping": 0.05,
         "gap": 1.0,
     },
-    components={name: _flank(side) for name, side in FLANKS.items()},
+    components={
+        name: _flank(side) for name, side in {"drive": 1.0, "coast": -1.0}.items()
+    },
     field=_field,
     start={"x": 1.1, "v": 0.0},
     period=lambda p: 2.0 * pi / p.omega,

@@ -8,7 +8,7 @@ import pytest
 
 from squealpipe.brake.a4.system import scaled_system
 from squealpipe.brake.orbits.orbits import solve_orbit
-from squealpipe.brake.orbits.shooting import MAX_SEGMENTS, rest_conditions, shoot
+from squealpipe.brake.orbits.shooting import rest_conditions, shoot, shooting_limits
 from tests.former import FORMER
 from tests.oracles.differences import assert_jacobian
 
@@ -21,7 +21,7 @@ SCENES = [
 
 def _conditions(rows, point):
     values, jacobian = np.empty(2), np.empty((2, 3))
-    work = np.empty((MAX_SEGMENTS, 9)), np.empty(MAX_SEGMENTS)
+    work = np.empty((shooting_limits.segments, 9)), np.empty(shooting_limits.segments)
     rest_conditions(rows, point.copy(), *work, values, jacobian, np.empty(4))
     return values, jacobian
 
@@ -39,7 +39,7 @@ def test_flow_runs_backwards_by_turning_velocities(scene):
     system = scaled_system(FORMER, scene[0] * math.pi, scene[1] * math.pi).system
     rows, found = system.rows, solve_orbit(system, np.array(scene[2:]))
     final, again = np.empty(4), np.empty(4)
-    work = np.empty((MAX_SEGMENTS, 9)), np.empty(MAX_SEGMENTS)
+    work = np.empty((shooting_limits.segments, 9)), np.empty(shooting_limits.segments)
     shoot(rows, *found.point, *work, final)
     shoot(rows, final[0], final[1], found.point[2], *work, again)
     np.testing.assert_allclose(again[:2], found.point[:2], atol=1e-13)

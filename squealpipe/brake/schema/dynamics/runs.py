@@ -11,7 +11,7 @@ from squealpipe.brake.schema.linear import (
     angles_of_one_pair,
     linear_regime_of_map,
 )
-from squealpipe.codes import Event, Regime
+from squealpipe.codes import Event
 from squealpipe.schema import (
     RUN_ENDS,
     DatasetSchema,
@@ -24,9 +24,7 @@ from squealpipe.schema import (
     whether,
 )
 from squealpipe.systems.datasets.agreement import ComparedAs, Listing, RoundOff
-
-REGIME_MEANINGS = {**{int(each): each.name for each in Regime}, -1: "not_reached"}
-"""Meaning of regime."""
+from squealpipe.vibration.schema import regime_meanings
 
 
 class MotionFlag(IntEnum):
@@ -114,7 +112,7 @@ simulation_schema = DatasetSchema(
         "normal_force": _series("N", "contact force"),
         "normalized_contact_force": _series("1", "contact force over k3 l_pre"),
         **_extremes_between(),
-        "regime": flag("regime", REGIME_MEANINGS, "time"),
+        "regime": flag("regime", regime_meanings, "time"),
         "event_time": Variable(
             "instant of a regime change", "s", ("event",), round_off=_grown_round_off
         ),
@@ -203,12 +201,6 @@ spectrum_schema = DatasetSchema(
     },
 )
 
-GROWTH_THRESHOLD = 2.0
-"""``response_growth`` from which a response that keeps contact grows.
-
-|x| ∝ t, the slowest growth of an unstable linear system (at the onset of flutter), doubles from
-one half of a run to the next; exponential growth exceeds that, and a bounded one falls short.
-"""
 
 validity_map_schema = DatasetSchema(
     name="validity_map",

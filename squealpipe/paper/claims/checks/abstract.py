@@ -1,12 +1,12 @@
 """Statements of the abstract and of Table 1: levels, hammering, earlier models, coupled modes."""
 
-from squealpipe.brake.schema.linear import ALIKE
 from squealpipe.codes import Event, LinearRegime
 from squealpipe.paper.claims.checks.motions import events, scene
 from squealpipe.paper.claims.evidence import Finding, finding
 from squealpipe.paper.claims.maps import share
 from squealpipe.paper.claims.statement import StatementRows
 from squealpipe.paper.schema.claims import ClaimVerdict
+from squealpipe.paper.schema.inference import WordsInNumbers
 from squealpipe.study.evidence import Evidence
 
 rows = StatementRows("abstract", "fig02")
@@ -107,7 +107,7 @@ def modes_couple(run: Evidence) -> Finding:
     similarity = stability.shape_similarity
     largest, usual = float(similarity.max()), float(similarity.median())
     return finding(
-        (largest, "≥", ALIKE),
+        (largest, "≥", WordsInNumbers.alike),
         f"{int(flutter.sum())} of {flutter.size} cells flutter ({100 * share(flutter):.2g} %). The "
         f"criterion reaches {largest:.3g} at most; its median over all cells is {usual:.2g}.",
         also=bool(flutter.any()),

@@ -5,13 +5,11 @@ import xarray as xr
 
 from squealpipe.paper.claims.evidence import Finding, finding
 from squealpipe.paper.claims.statement import Check, StatementRows
+from squealpipe.paper.schema.inference import WordsInNumbers
 from squealpipe.schema import Outcome
 from squealpipe.study.evidence import Evidence, MissingDataError
 
 rows = StatementRows("7", "fig10_to_12")
-
-ALONE = 1e-9
-"""Amplitude, as a share of the other one's, below which a direction takes no part."""
 
 
 def branch(run: Evidence, scene: str, mode: int) -> xr.Dataset:
@@ -40,7 +38,7 @@ def first_mode_is_isolated(run: Evidence) -> Finding:
     x, y = (amplitude / run.parameters.preload for amplitude in both)
     omega1, omega2 = (linear_omega(branch(run, "F10", mode)) for mode in (1, 2))
     return finding(
-        (alone[1] / alone[0], "≤", ALONE),
+        (alone[1] / alone[0], "≤", WordsInNumbers.alone),
         f"Near ω1 = {omega1:.4g} rad/s the y amplitude is {alone[1] / alone[0]:.1g} of that of x; "
         f"near ω2 = {omega2:.4g} rad/s the amplitude of x reaches {x:.3g} l_pre and that of y "
         f"{y:.3g} l_pre.",
@@ -122,7 +120,7 @@ def modes_are_switched(run: Evidence) -> Finding:
     x_amplitude, y_amplitude = _participation(second)
     reached = float(first.y_peak.max() / run.parameters.preload)
     return finding(
-        (y_amplitude / x_amplitude, "≤", ALONE),
+        (y_amplitude / x_amplitude, "≤", WordsInNumbers.alone),
         f"Mode 1 (ω = {linear_omega(first):.4g} rad/s) reaches y = {reached:.3g} l_pre; in mode 2 "
         f"(ω = {linear_omega(second):.4g} rad/s) the y amplitude is "
         f"{y_amplitude / x_amplitude:.1g} of that of x.",

@@ -3,7 +3,6 @@
 import numpy as np
 
 from squealpipe.brake.schema.dynamics.extremes import extremes, largest_size
-from squealpipe.brake.schema.dynamics.runs import GROWTH_THRESHOLD
 from squealpipe.codes import Event
 from squealpipe.paper.claims.checks.motions import (
     events,
@@ -137,12 +136,13 @@ def limit_cycle_is_bounded(run: Evidence) -> Finding:
     later = float(largest_size(longer, "x").max() / longest)
     bounded = (
         max(largest, later) < WordsInNumbers.bounded_within
-        and late < GROWTH_THRESHOLD * early
+        and late < WordsInNumbers.growth_threshold * early
     )
     evidence = (
         f"|x| reaches {largest:.3g} of the longer free length up to {until(run, motion)} "
         f"({early:.3g} l_pre in the first half, {late:.3g} l_pre in the second; "
-        f"{GROWTH_THRESHOLD:g} times as far counts as growth), and {later:.3g} of it up to "
+        f"{WordsInNumbers.growth_threshold:g} times as far counts as growth), and {later:.3g} "
+        f"of it up to "
         f"{until(run, longer)}: {'it is bounded' if bounded else 'it has no bound'}. "
     )
     change, apart, number = repetition(longer)

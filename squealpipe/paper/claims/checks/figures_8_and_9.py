@@ -14,17 +14,11 @@ from squealpipe.paper.claims.maps import (
 )
 from squealpipe.paper.claims.statement import StatementRows
 from squealpipe.paper.schema.claims import ClaimVerdict
+from squealpipe.paper.schema.inference import WordsInNumbers
 from squealpipe.schema import Outcome
 from squealpipe.study.evidence import Evidence, MissingDataError
 
 rows = StatementRows("7", "fig08")
-
-VANISHING = 1e-6
-"""ω1 below this share of its largest value is zero."""
-
-
-SMALL_SHARE, LARGE = 0.1, 0.98
-"""Shares of the largest value that bound "the region where ω1 vanishes" and "ω2 is largest"."""
 
 
 @rows.add("F8a", "in contact ω1 → 0 near α1 = α2 = π/2")
@@ -36,10 +30,10 @@ def first_vanishes_in_contact(run: Evidence) -> Finding:
         contact_state="contact"
     )
     relative = float(middle.sel(mode=1) / first.max())
-    zeros = (first <= VANISHING * first.max()).sum()
+    zeros = (first <= WordsInNumbers.vanishing * first.max()).sum()
     divergent = (contact.outcome.sel(mode=1) == Outcome.divergence).sum()
     return finding(
-        (relative, "≤", VANISHING),
+        (relative, "≤", WordsInNumbers.vanishing),
         f"ω1 at (0.5π, 0.5π) is {relative:.2g} of its largest value. In all, ω1 is zero in "
         f"{int(zeros)} cells, {int(divergent)} of them by divergence.",
     )
@@ -54,10 +48,10 @@ def first_vanishes_on_lines(run: Evidence) -> Finding:
     largest = float(first.where(on_line).max() / first.max())
     elsewhere = float(first.where(~on_line).min() / first.max())
     return finding(
-        (largest, "≤", VANISHING),
+        (largest, "≤", WordsInNumbers.vanishing),
         f"On the {int(on_line.sum())} cells with α1 + α2 = nπ, ω1 is at most {largest:.2g} of its "
         f"largest value; elsewhere at least {elsewhere:.2g} of it.",
-        also=elsewhere > VANISHING,
+        also=elsewhere > WordsInNumbers.vanishing,
     )
 
 
@@ -102,8 +96,8 @@ def vanishing_region_grows(run: Evidence) -> Finding:
     """Ratio of the areas where ω1 is small, separated to contact."""
     first = run["natural_frequencies"].omega.sel(mode=1)
     return _larger_when_separated(
-        first <= SMALL_SHARE * first.max(["alpha1", "alpha2"]),
-        f"ω1 is below {SMALL_SHARE:g}",
+        first <= WordsInNumbers.small_share * first.max(["alpha1", "alpha2"]),
+        f"ω1 is below {WordsInNumbers.small_share:g}",
     )
 
 
@@ -121,7 +115,7 @@ def second_is_largest_where_first_vanishes(run: Evidence) -> Finding:
     at_centre = float(middle.sel(mode=2) / in_contact.max())
     first_angle, second_angle = place(contact, in_contact)
     return finding(
-        (min(on_lines, at_centre), "≥", LARGE),
+        (min(on_lines, at_centre), "≥", WordsInNumbers.near_largest),
         f"Where ω1 = 0, ω2 is {on_lines:.4g} of its largest value when separated (α1 + α2 = nπ) "
         f"and {at_centre:.4g} in contact at (0.5π, 0.5π); there the largest is at "
         f"({first_angle:.3g}π, {second_angle:.3g}π).",
@@ -165,7 +159,8 @@ def largest_region_grows(run: Evidence) -> Finding:
     """Ratio of the areas where ω2 is near its largest value, separated to contact."""
     second = run["natural_frequencies"].omega.sel(mode=2)
     return _larger_when_separated(
-        second >= LARGE * second.max(["alpha1", "alpha2"]), f"ω2 is above {LARGE:g}"
+        second >= WordsInNumbers.near_largest * second.max(["alpha1", "alpha2"]),
+        f"ω2 is above {WordsInNumbers.near_largest:g}",
     )
 
 

@@ -3,7 +3,6 @@
 import numpy as np
 
 from squealpipe.brake.schema.backbones import Form
-from squealpipe.brake.schema.dynamics.runs import GROWTH_THRESHOLD
 from squealpipe.paper.claims.checks import figures_6_and_7, figures_8_and_9
 from squealpipe.paper.claims.checks.motions import scene
 from squealpipe.paper.claims.datasets import PRINTED_SCENE
@@ -11,6 +10,7 @@ from squealpipe.paper.claims.evidence import Finding, finding
 from squealpipe.paper.claims.maps import cell, coupling_is_negative, share, stiffness
 from squealpipe.paper.claims.statement import StatementRows
 from squealpipe.paper.schema.claims import ClaimVerdict
+from squealpipe.paper.schema.inference import WordsInNumbers
 from squealpipe.schema import Outcome
 from squealpipe.study.evidence import Evidence, MissingDataError
 
@@ -197,11 +197,14 @@ def black_region_is_there(run: Evidence) -> Finding:
     validity = run["validity_map"]
     unstable, kept = validity.regime_linear > 0, validity.separates == 0
     black = int((unstable & kept).sum())
-    growing = int((kept & (validity.response_growth >= GROWTH_THRESHOLD)).sum())
+    growing = int(
+        (kept & (validity.response_growth >= WordsInNumbers.growth_threshold)).sum()
+    )
     evidence = (
         f"Of the {int(unstable.sum())} cells that A3 calls unstable {black} keep contact in their "
         f"runs (the text's reading). Of the {int(kept.sum())} that keep it |x| grows as fast as "
-        f"time or faster, {GROWTH_THRESHOLD:g} times from the first half of the run to the second, "
+        f"time or faster, "
+        f"{WordsInNumbers.growth_threshold:g} times from the first half of the run to the second, "
         f"in {growing} (the caption's reading)."
     )
     if "validity_boundary" in run:

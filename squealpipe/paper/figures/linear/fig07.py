@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from squealpipe.brake.schema.dynamics.runs import GROWTH_THRESHOLD
 from squealpipe.paper.figures.linear.linear_overlay import mark_figure_3
+from squealpipe.paper.schema.inference import WordsInNumbers
 from squealpipe.plotting import style
 from squealpipe.study.figures.declared import report_figure
 
@@ -45,7 +45,8 @@ def caption(found: Mapping[str, xr.Dataset]) -> str:
         "started at rest, loses contact although A3 is stable; orange: it does and A3 is unstable. "
         "Grey: contact is kept and A3 is stable; black: kept and unstable by the eigenvalues of "
         "A3, as the paper's text says. By A1's own response, as its caption says (|x| grows "
-        f"{GROWTH_THRESHOLD:g} times or more from the first half of the run to the second), "
+        f"{WordsInNumbers.growth_threshold:g} times or more from the first half of the run to "
+        f"the second), "
         f"{growing} of the cells that keep contact are unstable. Numbers of cells, each judged by "
         f"its run, are in the titles and the key.{blue}"
     )
@@ -71,7 +72,9 @@ def kinds_of_cells(validity: xr.Dataset) -> np.ndarray:
 def grows(validity: xr.Dataset) -> np.ndarray:
     """Cells that keep contact and grow by A1's own response."""
     growth = np.nan_to_num(validity.response_growth.values)
-    return np.asarray((validity.separates.values == 0) & (growth >= GROWTH_THRESHOLD))
+    return np.asarray(
+        (validity.separates.values == 0) & (growth >= WordsInNumbers.growth_threshold)
+    )
 
 
 def draw_kinds(
