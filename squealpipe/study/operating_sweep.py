@@ -20,7 +20,14 @@ from squealpipe.text import suggestion
 
 TASK = operating_map.__name__
 REDUCTION = ("n_modes", "frequency_max")
-OPTIONS = ("mu_of", "measured", "frequency_band", "band_edges", "tol", *REDUCTION)
+OPERATING_OPTIONS = (
+    "mu_of",
+    "measured",
+    "frequency_band",
+    "band_edges",
+    "tol",
+    *REDUCTION,
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,7 +67,7 @@ class OperatingSweep(PointSweep):
                     f"{name} cannot be varied; {suggestion(name, QUANTITIES)}"
                 )
         for name in options:
-            known = [*QUANTITIES, *OPTIONS]
+            known = [*QUANTITIES, *OPERATING_OPTIONS]
             if name not in known:
                 raise ValueError(f"{name}: {suggestion(name, known)}")
         asked = {name: option for name, option in options.items() if option is not None}

@@ -27,7 +27,7 @@ from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.legs import LegEnd, Path, Vector
 from squealpipe.systems.linear.batch import coefficients_of_contacts, numbers_of_runs
 from squealpipe.systems.linear.forces import DEPENDENT, limit_left
-from squealpipe.systems.linear.legs import SIZES, TABLE, run_legs
+from squealpipe.systems.linear.legs import RUN_SIZES, RUN_TABLE, run_legs
 from squealpipe.systems.linear.matrices import (
     FIRST_OF_PRESS,
     ContactMatrices,
@@ -511,7 +511,9 @@ class LinearFlow(Flow):
                 *(len(states), terms, n_series, n_surfaces),
                 *(self._room, self.most_steps),
             )
-            work = Workspace(TABLE, arrays, dict(zip(SIZES, numbers, strict=True)))
+            work = Workspace(
+                RUN_TABLE, arrays, dict(zip(RUN_SIZES, numbers, strict=True))
+            )
             run_legs().ctypes(work.pointer.value or 0)
             if counts.max() > self.most_steps:
                 # a leg without end: one of no duration has a step

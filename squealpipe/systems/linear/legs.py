@@ -17,13 +17,21 @@ from squealpipe.systems.linear.loop import shorter_step, step_length
 from squealpipe.systems.linear.plan import n_parameters, plan_at
 from squealpipe.systems.taylor.lanes import compile_called, record_viewer, view
 
-ARRAYS = (
+RUN_ARRAYS = (
     "rows", "series", "units", "constants", "initial", "durations", "active", "kept", "steps",
     "counts",
 )  # fmt: skip
-SIZES = ("plan", "n_legs", "n_terms", "n_series", "n_surfaces", "n_room", "most_steps")
-TABLE = np.dtype([(name, "i8") for name in (*ARRAYS, *SIZES)])
-_record_at: Any = record_viewer(TABLE)
+RUN_SIZES = (
+    "plan",
+    "n_legs",
+    "n_terms",
+    "n_series",
+    "n_surfaces",
+    "n_room",
+    "most_steps",
+)
+RUN_TABLE = np.dtype([(name, "i8") for name in (*RUN_ARRAYS, *RUN_SIZES)])
+_record_at: Any = record_viewer(RUN_TABLE)
 
 
 class _Watched(NamedTuple):

@@ -74,8 +74,8 @@ SIZES = (
     "n", "c", "width", "n_sorts", "n_tables", "n_shapes", "n_regimes", "n_switches",
     "full_stiffness", "full_damping", "balanced", "curved", "n_jobs", "settle",
 )  # fmt: skip
-TABLE = np.dtype([(name, "i8") for name in (*ARRAYS, *SIZES)])
-record_at: Any = record_viewer(TABLE)
+PLAN_TABLE = np.dtype([(name, "i8") for name in (*ARRAYS, *SIZES)])
+record_at: Any = record_viewer(PLAN_TABLE)
 
 
 class Plan(NamedTuple):
@@ -293,4 +293,4 @@ def plan(
         name: each if each.size else np.zeros(1, each.dtype)
         for name, each in arrays.items()
     }
-    return Workspace(TABLE, arrays, sizes)
+    return Workspace(PLAN_TABLE, arrays, sizes)
