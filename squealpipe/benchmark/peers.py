@@ -29,10 +29,10 @@ def benchmark_beside_peers(
     """
     tolerances = sorted(tolerances, reverse=True)
     stored = {
-        name: found
+        name: answers
         for name in solvers
         if name != "squealpipe" and not run_peers
-        if (found := shipped_answers(name, tolerances)) is not None
+        if (answers := shipped_answers(name, tolerances)) is not None
     }
     scored = benchmark(
         installed(name for name in solvers if name not in stored),

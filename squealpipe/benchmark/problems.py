@@ -171,8 +171,8 @@ def references() -> dict[str, dict[str, Any]]:
 
     A copy, so that nothing that is done to it changes what answers are held against.
     """
-    found: dict[str, dict[str, Any]] = json.loads(_references())
-    return found
+    by_problem: dict[str, dict[str, Any]] = json.loads(_references())
+    return by_problem
 
 
 @cache

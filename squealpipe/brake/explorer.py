@@ -165,9 +165,9 @@ def _branch(
     if points:
         chosen = np.round(np.linspace(0, points - 1, min(points, wanted))).astype(int)
         chosen = np.concatenate([chosen, np.full(wanted - chosen.size, points - 1)])
-        found = exact_variables(
+        variables = exact_variables(
             scene, params, [orbits[i] for i in chosen], outcomes, end
         )
     for name in ORBITS:
-        arrays[name][place] = found[name] if points else np.nan
+        arrays[name][place] = variables[name] if points else np.nan
     arrays["end"][place] = int(end)

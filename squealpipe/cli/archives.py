@@ -79,9 +79,9 @@ def find(expression: str, /, *, json_: AsJson = False) -> int:
     """
     from squealpipe.study.catalogue import matching, runs
 
-    found = runs()
-    names = matching(expression, found)
-    _warn(found)
+    known_runs = runs()
+    names = matching(expression, known_runs)
+    _warn(known_runs)
     print(json.dumps(names) if json_ else "\n".join(names) or "no run fulfils it")
     return ExitCodes.done if names else ExitCodes.answer_is_no
 

@@ -310,7 +310,7 @@ def by_name(argument: str) -> str:
 
 def pairs_of(flag: str, texts: Sequence[str]) -> dict[str, str]:
     """Name → value of each NAME=VALUE."""
-    found: dict[str, str] = {}
+    pairs: dict[str, str] = {}
     for text in texts:
         name, equals, value = text.partition("=")
         if not (name and equals and value):
@@ -319,12 +319,12 @@ def pairs_of(flag: str, texts: Sequence[str]) -> dict[str, str]:
             )
         key = name.strip().replace("-", "_")
         key = SYMBOLS.get(key, key)
-        if key in found:
+        if key in pairs:
             raise ValueError(
                 f"{flag} {key} is a duplicate; keep one, with all its values"
             )
-        found[key] = value
-    return found
+        pairs[key] = value
+    return pairs
 
 
 def modifications_of(texts: Sequence[str]) -> dict[str, Any]:
@@ -332,7 +332,7 @@ def modifications_of(texts: Sequence[str]) -> dict[str, Any]:
     # the command starts without matrices
     from squealpipe.structures.assess.modifications import counted_from_zero
 
-    found: dict[str, Any] = {}
+    by_name: dict[str, Any] = {}
     for name, content in pairs_of("--modify", texts).items():
         kind, *words = content.split()
         if len(words) != 2 and not (kind == "patch" and len(words) == 3):
@@ -346,16 +346,16 @@ def modifications_of(texts: Sequence[str]) -> dict[str, Any]:
             amount if has_unit(amount) else as_number(amount) for amount in amounts
         ]
         if kind == "chamfer":
-            found[name] = {kind: {"face": place, "share": values[0]}}
+            by_name[name] = {kind: {"face": place, "share": values[0]}}
         elif kind == "patch":
             # 0: a patch of damping alone
             both = zip(("mass", "damping_ratio"), values, strict=False)
-            found[name] = {
+            by_name[name] = {
                 kind: {"nodes": _nodes(place)} | {k: v for k, v in both if v}
             }
         else:
-            found[name] = {kind: {place: values[0]}}
-    return counted_from_zero(found)
+            by_name[name] = {kind: {place: values[0]}}
+    return counted_from_zero(by_name)
 
 
 def _nodes(text: str) -> str | list[int]:

@@ -184,13 +184,15 @@ def compare(one: Path, other: Path, /) -> int:
             f"{one} was judged by version {versions[0]} of the benchmark, {other} by "
             f"{versions[1]}; run the older one again"
         )
-    found, others = xr.align(*pair, exclude="solver")
-    if not found.verdict.size:
+    aligned, others = xr.align(*pair, exclude="solver")
+    if not aligned.verdict.size:
         raise ValueError(f"{one} and {other} have no problem at the same tolerance")
-    print("tolerances: " + ", ".join(f"{tol:g}" for tol in found.tol.values))
+    print("tolerances: " + ", ".join(f"{tol:g}" for tol in aligned.tol.values))
     same = True
-    for problem in found.problem.values:
-        left, right = (verdicts(each.sel(problem=problem)) for each in (found, others))
+    for problem in aligned.problem.values:
+        left, right = (
+            verdicts(each.sel(problem=problem)) for each in (aligned, others)
+        )
         print(f"{problem}\n  {one.name}: {left}\n  {other.name}: {right}")
         same &= left.partition(": ")[2] == right.partition(": ")[2]
     return ExitCodes.done if same else ExitCodes.answer_is_no

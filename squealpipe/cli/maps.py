@@ -203,7 +203,7 @@ def disturbance(
         directions: random directions.
         seed: seed of the random directions.
     """
-    found = compute(
+    dataset = compute(
         "smallest_disturbance",
         brake,
         alpha1,
@@ -218,13 +218,13 @@ def disturbance(
         tol=tol,
         workers=workers,
     )
-    outcome, why = ending(found.outcome)
+    outcome, why = ending(dataset.outcome)
     if outcome != "converged":
         answer(f"no disturbance: {why}")
         return ExitCodes.answer_is_no
     answer(
-        f"smallest disturbance found: {float(found.distance):.6g}, in l_pre and l_pre ω",
-        f"by the linear motion: {float(found.linear_distance):.6g}; "
-        f"the start at rest: {float(found.rest_distance):.6g}",
+        f"smallest disturbance found: {float(dataset.distance):.6g}, in l_pre and l_pre ω",
+        f"by the linear motion: {float(dataset.linear_distance):.6g}; "
+        f"the start at rest: {float(dataset.rest_distance):.6g}",
     )
     return ExitCodes.done

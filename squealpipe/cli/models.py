@@ -257,7 +257,7 @@ def _of_structure(
     whole = squealpipe.Structure.read(file)
     say_doubts(whole)
     asked = {name: value for name, value in options.items() if value is not None}
-    stated = asked | {key: each for key, each in modes.items() if each is not None}
+    stated = asked | {key: mode for key, mode in modes.items() if mode is not None}
     stated.pop("workers", None)
     with errors_in_options():
         structure = as_asked(whole, modes)

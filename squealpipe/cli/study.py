@@ -128,9 +128,9 @@ def verify(name: str, /) -> int:
     from squealpipe.store.runs import verify as check
 
     with working("verify"):
-        found = check(name)
-    answer(*found.lines())
-    return ExitCodes.done if found.intact else ExitCodes.answer_is_no
+        faults = check(name)
+    answer(*faults.lines())
+    return ExitCodes.done if faults.intact else ExitCodes.answer_is_no
 
 
 def compare(

@@ -138,15 +138,15 @@ def scaled(text: str, knot: float, value: float) -> str:
 
 def functions_of(source: str) -> dict[str, Any]:
     """Run the source of a law in Python, and return what it defines."""
-    found: dict[str, Any] = {}
+    namespace: dict[str, Any] = {}
     try:
         with without_neighbours():
-            exec(compile(source, "<law>", "exec"), found)  # noqa: S102 (the user's own file)
+            exec(compile(source, "<law>", "exec"), namespace)  # noqa: S102 (the user's own file)
     except SyntaxError as error:
         raise ValueError(
             f"line {error.lineno} of the law is not Python: {error.msg}"
         ) from error
-    return found
+    return namespace
 
 
 def is_table(name: object) -> bool:

@@ -156,8 +156,8 @@ def _margins(
 ) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Statement → (holds, could be judged)."""
     return {
-        name: (found.margin > 0.0, np.isfinite(found.margin))
-        for name, found in measure(candidates, stages).items()
+        name: (measured.margin > 0.0, np.isfinite(measured.margin))
+        for name, measured in measure(candidates, stages).items()
     }
 
 

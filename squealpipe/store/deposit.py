@@ -26,9 +26,9 @@ def bundle(
 ) -> Path:
     """Write ``results/deposit/NAME.zip``; it appears whole or not at all."""
     archive, citation = locate(name).resolve(), Path("CITATION.cff")
-    found = verify(archive)
-    if not found.intact:
-        raise ValueError("\n".join(found.lines()))
+    faults = verify(archive)
+    if not faults.intact:
+        raise ValueError("\n".join(faults.lines()))
     if not citation.is_file():
         raise FileNotFoundError(f"{citation} is missing: it names authors and licence")
     target = Path(output) if output else Path(f"results/deposit/{archive.name}.zip")

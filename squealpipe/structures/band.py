@@ -200,10 +200,10 @@ def _matched(
     single = [*right, *left]
     for i, j in zip(*places, strict=True):
         if distance[i, j] <= SAME * abs(at_right[i]):
-            found = right[i]
-            assert found.factors is not None  # noqa: S101 (of right eigenvectors)
+            partner = right[i]
+            assert partner.factors is not None  # noqa: S101 (of right eigenvectors)
             pairs.append(
-                Estimate(found.value, found.vector, found.factors, left[j].vector)
+                Estimate(partner.value, partner.vector, partner.factors, left[j].vector)
             )
             single = [
                 each for each in single if each is not right[i] and each is not left[j]

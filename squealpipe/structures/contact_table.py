@@ -397,7 +397,7 @@ def _direction(
                 )
             if place not in labels:
                 node = place.partition(".")[0]
-                own = [each for each in labels if each.partition(".")[0] == node]
+                own = [label for label in labels if label.partition(".")[0] == node]
                 known = (
                     f"node {node} has {', '.join(own)}" if own else f"like {labels[0]}"
                 )

@@ -178,7 +178,7 @@ class Coordinates:
             whole,
             stiffness,
             self._projected(space.damping) + np.diag(2.0 * ratios * self.omega),
-            tuple(self.turn.T @ each for each in space.directions),
+            tuple(self.turn.T @ direction for direction in space.directions),
             None if whole.given_load is None else self.turn.T @ space.load,
             space.speed_terms.mapped(self._projected),
         )

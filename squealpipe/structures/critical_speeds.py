@@ -153,5 +153,5 @@ def _located(
     )
     if crossing is None:
         return CriticalSpeed(np.nan, SpeedOnset.not_followed)
-    found = SpeedOnset.turns_unstable if grows else SpeedOnset.turns_stable
-    return CriticalSpeed(sign * crossing.mu * unit, found)
+    turn = SpeedOnset.turns_unstable if grows else SpeedOnset.turns_stable
+    return CriticalSpeed(sign * crossing.mu * unit, turn)

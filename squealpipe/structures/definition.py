@@ -282,7 +282,7 @@ class ContactStructure:
     @cached_property
     def with_tables(self) -> list[int]:
         """Numbers of the contacts whose force is a table of several pieces."""
-        return [i for i, each in enumerate(self.contacts) if len(each.lines) > 1]
+        return [i for i, contact in enumerate(self.contacts) if len(contact.lines) > 1]
 
     def pressing(self, nearing: np.ndarray) -> np.ndarray:
         """Return the normal force of each contact as if it could pull, N.

@@ -242,15 +242,15 @@ def coefficient_names(structure: ContactStructure) -> list[tuple[str, str | None
 
     The speed is a number where no parameter is.
     """
-    found: list[tuple[str, str | None, Any]] = []
+    coefficients: list[tuple[str, str | None, Any]] = []
     for index, friction in enumerate(structure.frictions):
         names = [*coefficients_of(structure, index)]
         static = names[1] if len(names) > 1 else None
         fixed = friction.friction_speed
-        found.append(
+        coefficients.append(
             (names[0], static, "friction_speed" if reads_speed(friction) else fixed)
         )
-    return found
+    return coefficients
 
 
 def _parameters(structure: ContactStructure) -> dict[str, float]:

@@ -219,7 +219,7 @@ class _Search:
 
     def boundaries(self) -> list[float]:
         """Return the values at which the answer changes, and both ends of the range."""
-        found = [self.stations[0]]
+        passed = [self.stations[0]]
         steps = [*pairwise(self.stations)][::-1]
         while steps:
             a, b = steps.pop()
@@ -227,11 +227,11 @@ class _Search:
             is_finest = b - a <= Following.finest * self._first_step(b)
             if self._is_sure(a, b, changes) or is_finest:
                 if changes:
-                    found.append(self._located(a, b))
+                    passed.append(self._located(a, b))
                 continue
             middle = 0.5 * (a + b)
             steps += [(middle, b), (a, middle)]
-        return [*found, self.stations[-1]]
+        return [*passed, self.stations[-1]]
 
     def _located(self, a: float, b: float) -> float:
         """Return where the answer changes, by halving: growth may jump, or leave zero as a root."""

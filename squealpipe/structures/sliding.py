@@ -122,7 +122,7 @@ class _Laws:
 
     def __init__(self, structure: ContactStructure) -> None:
         contacts = structure.contacts
-        self.counts = np.array([len(each.lines) for each in contacts], int)
+        self.counts = np.array([len(contact.lines) for contact in contacts], int)
         shape = len(contacts), int(self.counts.max(initial=1))
         self.stiffness, self.at_rest, self.low, self.high = np.full((4, *shape), np.nan)
         self.stiffness[:, 0], self.at_rest[:, 0] = (

@@ -19,18 +19,18 @@ def is_structure(
     Raises:
         ValueError: it is neither, or an argument is one of the other.
     """
-    found = isinstance(params, ContactStructure)
-    if not found and not isinstance(params, Parameters):
+    holds = isinstance(params, ContactStructure)
+    if not holds and not isinstance(params, Parameters):
         raise ValueError(
             f"params = {brief(params)}: Parameters of a pad or a Structure is needed"
         )
-    for name, value in (of_pads if found else of_structures).items():
+    for name, value in (of_pads if holds else of_structures).items():
         if value is not None:
             raise ValueError(
                 f"{name} = {brief(value)}: a "
-                f"{'structure' if found else 'pad on two springs'} has none; leave it out"
+                f"{'structure' if holds else 'pad on two springs'} has none; leave it out"
             )
-    return found
+    return holds
 
 
 def refuse_missing(task: str, subject: str, arguments: Mapping[str, Any]) -> None:

@@ -41,13 +41,13 @@ def find_system(place: str) -> System:
             f"no file {file!r}; a system is named like impact.py:impact_oscillator"
         )
     defined = _run(file)
-    found = defined.get(name)
-    if not isinstance(found, System):
+    system = defined.get(name)
+    if not isinstance(system, System):
         known = [key for key, value in defined.items() if isinstance(value, System)]
         raise ValueError(  # noqa: TRY004
             f"{file} defines no system {name!r}; {suggestion(name, known)}"
         )
-    return found
+    return system
 
 
 def _run(file: str) -> dict[str, Any]:

@@ -57,14 +57,14 @@ class BeltContact:
 
     def regimes(self) -> dict[str, dict[str, float]]:
         """Regimes and their constants."""
-        found = {}
+        by_name = {}
         for kind, i, j in self.in_contact():
             terms = {"direction": SLIP.get(kind, 0.0), "stick": float(kind == "stick")}
             pieces = {**self.frictions[i], **self.presses[j]}
-            found[self.name(kind, i, j)] = {"contact": 1.0, **terms, **pieces}
+            by_name[self.name(kind, i, j)] = {"contact": 1.0, **terms, **pieces}
         terms = {"contact": 0.0, "direction": 0.0, "stick": 0.0}
         pieces = {**self.frictions[0], **self.presses[0]}
-        return found | {name: {**terms, **pieces} for name in self.apart}
+        return by_name | {name: {**terms, **pieces} for name in self.apart}
 
     def slips(self, speed: Surface) -> list[tuple[str, Surface]]:
         """Regimes of slip, the pieces of higher speeds first, and whether it slips so fast, ≥ 0."""

@@ -148,10 +148,10 @@ class PseudoArclength:
         self, problem: PathEquations, guess: Vector, normal: Vector, step: float
     ) -> ContinuationState | None:
         """The state that :meth:`correct` leads to, of no known curvature, with its next step."""
-        found = self.correct(problem, guess, normal)
-        if found is None:
+        correction = self.correct(problem, guess, normal)
+        if correction is None:
             return None
-        point, tangent, iterations, residual = found
+        point, tangent, iterations, residual = correction
         return ContinuationState(
             point, tangent, np.zeros_like(point), step, iterations, residual
         )

@@ -141,8 +141,8 @@ class Entries:
             values = self._after(switch.resets[regime], states)
             values |= constants_of(self.traced, regime)
             with np.errstate(all="ignore"):
-                found = function(*(values[argument] for argument in arguments))
-            for power, base in zip(powers, found, strict=True):
+                result = function(*(values[argument] for argument in arguments))
+            for power, base in zip(powers, result, strict=True):
                 if _vanishes(np.asarray(base)):
                     _refuse(name, self.tracer.regimes[regime], power)
 
@@ -160,10 +160,10 @@ class Entries:
         )
         ends = rng.uniform(-1.0, 1.0, (2, len(self.tracer.states), checks.samples))
         for reach in checks.reaches:
-            found = self._between(surface, known, reach * ends)
-            if _count(found, self.tracer):
+            root = self._between(surface, known, reach * ends)
+            if _count(root, self.tracer):
                 break
-        return found
+        return root
 
     def _between(self, surface: Symbol, known: Values, ends: np.ndarray) -> Values:
         """States of a surface on the lines between two states each."""

@@ -39,8 +39,8 @@ def _controls() -> list[Control]:
         sys.modules.get(name)
         for name in ("numpy.linalg._umath_linalg", "scipy.linalg._fblas")
     )
-    found = (_control(str(module.__file__)) for module in loaded if module)
-    return [control for control in found if control]
+    controls = (_control(str(module.__file__)) for module in loaded if module)
+    return [control for control in controls if control]
 
 
 @contextmanager

@@ -128,7 +128,7 @@ class Scales:
 
     def table(self, units: Sequence[str], size: int) -> np.ndarray:
         """Return the scales of some units in each of so many runs, (runs, units)."""
-        found = np.empty((size, len(units)))
+        factors = np.empty((size, len(units)))
         for index, unit in enumerate(units):
-            found[:, index] = self.of(unit)
-        return found
+            factors[:, index] = self.of(unit)
+        return factors

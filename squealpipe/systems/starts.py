@@ -45,10 +45,10 @@ class Starts:
 
         What is below zero on a clock is chosen only if no other regime fits: nothing is beyond it.
         """
-        found = self._entries_with(component, 1)
+        entries = self._entries_with(component, 1)
         if self.traced.clocks.any() and not self.traced.starts[component]:
-            found += self._entries_with(component, 0)
-        return found
+            entries += self._entries_with(component, 0)
+        return entries
 
     def _entries_with(
         self, component: int, with_clocks: int

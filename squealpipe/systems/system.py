@@ -59,8 +59,8 @@ class System(TracedSystem):  # noqa: D101 (that of the definition)
         from squealpipe.systems.cycles.cycle import limit_cycle
 
         options |= {"start": start, "guess": guess}
-        found = limit_cycle(self, periods=periods, t_settle=t_settle, **options)
-        return check(found)
+        solution = limit_cycle(self, periods=periods, t_settle=t_settle, **options)
+        return check(solution)
 
     def cycle_branch(self, parameter: str, to: float, **options: Any) -> xr.Dataset:
         """A branch of cycles; see :func:`squealpipe.systems.cycles.branch.cycle_branch`."""

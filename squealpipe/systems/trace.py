@@ -291,17 +291,17 @@ class Tracer:
 
     def _symbol(self, what: str, value: Any) -> Symbol:
         try:
-            found = symbol(value)
+            traced = symbol(value)
         except (TypeError, ValueError):
             raise TypeError(
                 f"{what} gives {value!r}; a number or an expression is needed"
             ) from None
-        for node in in_order([found]):
+        for node in in_order([traced]):
             if node.kind == "number" and not np.isfinite(node.arguments[0]):
                 raise ValueError(
                     f"{what} holds {node.arguments[0]}; finite numbers are needed"
                 )
-        return found
+        return traced
 
     def regime(self, what: str, name: Any) -> int:
         """The number of a regime."""

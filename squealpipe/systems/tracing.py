@@ -358,13 +358,13 @@ class TracedSystem(Definition):
     def exponents(self) -> tuple[str, ...]:
         """Parameters that something is raised to: x**a is exp(a log x), which has no value at 0."""
         t = self.traced
-        found = set()
+        powers = set()
         for node in in_order([*t.rates, *t.surfaces, *t.outputs]):
             if node.kind == "exp" and node.arguments[0].kind == "*":
                 a, b = node.arguments[0].arguments
                 if a.kind == "parameter" and b.kind == "log":
-                    found.add(a.arguments[0])
-        return tuple(sorted(found & set(self.parameters)))
+                    powers.add(a.arguments[0])
+        return tuple(sorted(powers & set(self.parameters)))
 
     def retrace(self) -> None:
         """Trace the functions again, with the parameters that are known as numbers."""

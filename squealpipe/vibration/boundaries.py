@@ -151,13 +151,13 @@ def _with_peaks(
         if max(three) > 0.0 or not three[1] > max(three[0], three[2]):
             continue
         low, high = values[place - 1], values[place + 1]
-        found = scipy.optimize.minimize_scalar(
+        extremum = scipy.optimize.minimize_scalar(
             lambda value: -at(float(value)),
             bounds=(low, high),
             method="bounded",
             options={"xatol": 0.02 * (high - low)},
         )
-        peak = float(found.x)
+        peak = float(extremum.x)
         if at(peak) > 0.0 and peak not in values:
             values, margins = [*values, peak], [*margins, at(peak)]
     order = np.argsort(values)

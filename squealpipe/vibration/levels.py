@@ -268,20 +268,20 @@ def _means(blocks: list[dict[str, float]]) -> dict[str, float]:
 
     Mean squares and shares are averaged, the largest of what is a largest value is kept.
     """
-    found = {}
+    means = {}
     for name in blocks[0]:
         values = np.array([block[name] for block in blocks])
         if name not in MEANS:
-            found[name] = float(np.fmax.reduce(values))
+            means[name] = float(np.fmax.reduce(values))
             continue
         power = 2 if name in MEAN_SQUARES else 1
         powers = values**power
         mean = float(np.mean(powers)) ** (1.0 / power)
-        found[name], found[error_of(name)] = mean, 0.0
+        means[name], means[error_of(name)] = mean, 0.0
         if values.size > 1 and mean > 0.0:
             error = error_of_mean(powers)
-            found[error_of(name)] = error / (power * mean ** (power - 1))
-    return found
+            means[error_of(name)] = error / (power * mean ** (power - 1))
+    return means
 
 
 def error_of_mean(values: np.ndarray) -> float:

@@ -112,7 +112,7 @@ def supported_indices(
         widest: largest half-width of an index that is given.
     """
     shape = (len(judged), len(judged[0]) - 2)
-    found = {key: np.full(shape, np.nan) for key in INDICES}
+    indices = {key: np.full(shape, np.nan) for key in INDICES}
     half_widths = np.full((len(judged), parts), np.nan)
     for row, flat in enumerate(judged):
         whole = flat.reshape(len(flat), SobolRules.replicates, -1)
@@ -133,10 +133,10 @@ def supported_indices(
                     ("_low", value - half),
                     ("_high", value + half),
                 ):
-                    found[name + end][row] = np.where(
+                    indices[name + end][row] = np.where(
                         failed[order], np.nan, limit[order]
                     )
-    return {**found, "half_width_by_size": half_widths}
+    return {**indices, "half_width_by_size": half_widths}
 
 
 def judged_matrices(

@@ -42,8 +42,8 @@ def _column(name: str, place: int | None = None) -> Any:
     """A column of the raw results, or all of them."""
 
     def values(self: Ensemble) -> np.ndarray:
-        found = self._raw[name] if place is None else self._raw[name][..., place]
-        return self._shaped(found)
+        column = self._raw[name] if place is None else self._raw[name][..., place]
+        return self._shaped(column)
 
     return property(values)
 
@@ -63,8 +63,10 @@ def _spent(regime: Regime, durations: str = "durations") -> Any:
     """Total time in a regime, s."""
 
     def time(self: Ensemble) -> np.ndarray:
-        found = self._raw[durations][..., self._regimes[:-1] == regime].sum(axis=-1)
-        return self._shaped(found)
+        time_spent = self._raw[durations][..., self._regimes[:-1] == regime].sum(
+            axis=-1
+        )
+        return self._shaped(time_spent)
 
     return property(time)
 
@@ -146,12 +148,12 @@ class Ensemble:
         if unknown.any():
             # a state that is lost next to a pivot is so by its doing, and so is the sight of it
             lost |= unknown & self._next_to_pivot()
-        found = np.where(lost, Outcome.singular_geometry, codes)
-        found[codes == outcomes.by_event] = Outcome.separated
-        found[codes == outcomes.by_turns] = Outcome.amplitude_reached
+        outcomes_of_runs = np.where(lost, Outcome.singular_geometry, codes)
+        outcomes_of_runs[codes == outcomes.by_event] = Outcome.separated
+        outcomes_of_runs[codes == outcomes.by_turns] = Outcome.amplitude_reached
         if self.jobs.stop_at_first_separation:
-            found[self._raw["starts_apart"]] = Outcome.separated
-        return self._shaped(found.astype(np.int8))
+            outcomes_of_runs[self._raw["starts_apart"]] = Outcome.separated
+        return self._shaped(outcomes_of_runs.astype(np.int8))
 
     def _next_to_pivot(self) -> np.ndarray:
         """Return whether each run ended next to the fixed end of a spring."""

@@ -87,8 +87,8 @@ def parameters_of_run(
     params: Parameters, alpha1: float, alpha2: float
 ) -> dict[str, float]:
     """Return the parameters of a run of :func:`brake`."""
-    found = {name: getattr(params, name) for name in NUMBERS_OF_A1}
-    return {**found, "alpha1": alpha1, "alpha2": alpha2}
+    numbers = {name: getattr(params, name) for name in NUMBERS_OF_A1}
+    return {**numbers, "alpha1": alpha1, "alpha2": alpha2}
 
 
 @cache
@@ -371,12 +371,12 @@ class _Laws:
         def above(t: Any, s: Any, p: Any, r: Any) -> Any:
             return DECIDES_FIRST * free(t, s, p, r) - p.preload
 
-        found: list[Any] = []
+        entries: list[Any] = []
         for i, name in enumerate(self.apart):
-            found += [(name, None)] if i else [(name, rises, free), (name, above)]
+            entries += [(name, None)] if i else [(name, rises, free), (name, above)]
         if not self.rules.reverses:
             return [
-                *found,
+                *entries,
                 ("slip_slower", lambda t, s, p, r: p.belt_speed),
                 "slip_faster",
             ]
@@ -389,9 +389,9 @@ class _Laws:
             return -pull(s, p, r) - (DECIDES_FIRST * limit(s, p, r) if sticks else 0.0)
 
         if not several:
-            found.append((self.belt.name("slip_slower"), falls_back, on_belt))
-        found += [(name, None, on_belt) for name in sticks]
+            entries.append((self.belt.name("slip_slower"), falls_back, on_belt))
+        entries += [(name, None, on_belt) for name in sticks]
         if not several:
             faster = self.belt.name("slip_faster")
-            found.append((faster, lambda t, s, p, r: pull(s, p, r), on_belt))
-        return [*found, *((name, None) for name in slips[:-1]), slips[-1]]
+            entries.append((faster, lambda t, s, p, r: pull(s, p, r), on_belt))
+        return [*entries, *((name, None) for name in slips[:-1]), slips[-1]]

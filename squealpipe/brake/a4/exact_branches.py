@@ -103,10 +103,10 @@ def decoupled_steps(
     count = max(8, math.ceil((y_max - 1.0) / 0.04))
     peaks = 1.0 + (y_max - 1.0) * np.linspace(0.0, 1.0, count + 1)[1:] ** 1.5
     first = pole_number(scene, math.pi / math.sqrt(scene.system.below.matrix[1][1]))
-    found: list[tuple[float, float]] = []
+    steps: list[tuple[float, float]] = []
     for peak in peaks.tolist():
         half_period = decoupled_half_period(scene.system, peak)
         if pole_number(scene, half_period) != first and not cross_poles:
-            return found, Outcome.pole
-        found.append((peak, half_period))
-    return found, Outcome.amplitude_reached
+            return steps, Outcome.pole
+        steps.append((peak, half_period))
+    return steps, Outcome.amplitude_reached

@@ -134,14 +134,14 @@ def _coupled_branch(
         return ended != Outcome.converged
 
     branch = Continuation(balance, start, direction, control, from_higher_end)
-    found = [state.point for state in branch.run(stop)]
+    points = [state.point for state in branch.run(stop)]
     if ended == Outcome.converged:
-        lost = len(found) < control.max_points
-        return found, Outcome.branch_lost if lost else Outcome.step_limit
+        lost = len(points) < control.max_points
+        return points, Outcome.branch_lost if lost else Outcome.step_limit
     if ended == Outcome.amplitude_reached:
-        last = balance.solve(found[-1], balance.peak_row, y_max)
-        found = found[:-1] + ([last[0]] if last else [])
-    return found, ended
+        last = balance.solve(points[-1], balance.peak_row, y_max)
+        points = points[:-1] + ([last[0]] if last else [])
+    return points, ended
 
 
 def _peak(balance: CosineBalance, z: Vector) -> float:
@@ -157,7 +157,7 @@ def _decoupled_branch(
     cross_poles: bool,
 ) -> tuple[list[Vector], Outcome]:
     """The y mode where K12 = 0, at given peaks, up to a pole of x."""
-    found: list[Vector] = []
+    points: list[Vector] = []
     guess = start
     steps, end = decoupled_steps(scene, y_max, cross_poles=cross_poles)
     for peak, half_period in steps:
@@ -166,8 +166,8 @@ def _decoupled_branch(
         solved = balance.solve(guess, balance.peak_row, peak)
         if solved is not None:
             guess = solved[0]
-            found.append(guess)
-    return found, end
+            points.append(guess)
+    return points, end
 
 
 def _judged(

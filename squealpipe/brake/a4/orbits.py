@@ -43,10 +43,10 @@ def find_orbit(
         guess = np.array(
             [scene.rest[0], y_peak, decoupled_half_period(scene.system, y_peak)]
         )
-        found = solve_orbit(scene.system, guess)
-        return found, Outcome.converged if found else Outcome.pole
+        orbit = solve_orbit(scene.system, guess)
+        return orbit, Outcome.converged if orbit else Outcome.pole
     seed = grazing_start(scene, mode)
-    found, end = orbit_on_branch(
+    orbit, end = orbit_on_branch(
         scene.system, seed.point, seed.direction, y_peak, seed.settings()
     )
     # these ends leave no doubt that the branch does not reach the peak
@@ -55,17 +55,17 @@ def find_orbit(
         if other is not None:
             return other, Outcome.other_branch
     reached = end is TraceEnd.amplitude_reached
-    return found, Outcome.converged if reached else Outcome[end.name]
+    return orbit, Outcome.converged if reached else Outcome[end.name]
 
 
 def orbit_across(scene: ScaledSystem, mode: int, y_peak: float) -> Orbit | None:
     """An orbit at a scaled peak by a trace that crosses the narrow resonances on its way."""
     seed = grazing_start(scene, mode)
     lenient = replace(seed.settings(), strict=False, max_points=80)
-    found, _ = orbit_on_branch(
+    orbit, _ = orbit_on_branch(
         scene.system, seed.point, seed.direction, y_peak, lenient
     )
-    return found if found is not None and is_primitive(scene.system, found) else None
+    return orbit if orbit is not None and is_primitive(scene.system, orbit) else None
 
 
 def check_peak(scene: ScaledSystem, name: str, y_peak: float) -> None:

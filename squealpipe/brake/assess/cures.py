@@ -91,7 +91,7 @@ def pad_boundaries(
     linear = {
         name: linear_intervals(cure, growth_margin) for name, cure in cures.items()
     }
-    found = boundaries(
+    by_cure = boundaries(
         {name: cures[name] for name in CURES},
         linear,
         Pads(tol),
@@ -99,8 +99,8 @@ def pad_boundaries(
         quiet=quiet,
         always=quiet and not motions and Sliding.of(design) is not None,
     )
-    nearest = {name: boundary.quiet_from for name, boundary in found.items()}
-    return by_change(found), snap_throughs(cures, nearest) if quiet else {}
+    nearest = {name: boundary.quiet_from for name, boundary in by_cure.items()}
+    return by_change(by_cure), snap_throughs(cures, nearest) if quiet else {}
 
 
 def nearest_angles(

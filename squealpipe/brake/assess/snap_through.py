@@ -36,7 +36,7 @@ def snap_throughs(
     Args:
         limits: value of each beyond which the brake is no longer quiet; NaN or none: its range.
     """
-    found = {}
+    by_angle = {}
     for name, cure in cures.items():
         limit = limits.get(name, math.nan)
         reach = math.inf if math.isnan(limit) else abs(limit - cure.value)
@@ -46,8 +46,8 @@ def snap_throughs(
             snap = _first_snap(cure, values)
             if not abs(nearest.value - cure.value) <= abs(snap.value - cure.value):
                 nearest = snap
-        found[name] = nearest
-    return found
+        by_angle[name] = nearest
+    return by_angle
 
 
 def _first_snap(cure: Cure, values: np.ndarray) -> SnapThrough:

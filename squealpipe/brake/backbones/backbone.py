@@ -148,8 +148,8 @@ def with_orbits(
         if scene.rest[1] >= min(peaks):
             reasons.append(f"{name}: equilibrium above the peak")
             continue
-        found = [find_orbit(scene, mode, peak) for peak in peaks]
-        missing = [outcome.name for orbit, outcome in found if orbit is None]
+        orbits = [find_orbit(scene, mode, peak) for peak in peaks]
+        missing = [outcome.name for orbit, outcome in orbits if orbit is None]
         if missing:
             reasons.append(f"{name}: {missing[0]}")
         else:

@@ -58,13 +58,15 @@ def doubled_branch(
     peak = y_max / scene.length
     simple, outcomes, end = exact_branch(scene, mode, peak, peak)
     special = special_beyond_contact(scene, simple, outcomes)
-    found = [orbit for kind, orbit in special if kind is SpecialPoint.period_doubling]
+    doublings = [
+        orbit for kind, orbit in special if kind is SpecialPoint.period_doubling
+    ]
     attrs = {"alpha1": alpha1, "alpha2": alpha2, "mode": mode, "doubling": doubling}
-    if len(found) < doubling:
+    if len(doublings) < doubling:
         return _dataset(
             scene, params, [], None, Outcome.no_doubling if simple else end, attrs
         )
-    start = found[doubling - 1]
+    start = doublings[doubling - 1]
     orbits, why = doubled_branch_from(scene, start, peak)
     return _dataset(scene, params, orbits, start, Outcome[why.name], attrs)
 

@@ -44,7 +44,7 @@ def periodic_orbit(
     """
     check_length("y_peak", y_peak, params.preload)
     scene = scaled_system(params, alpha1, alpha2)
-    found, outcome = find_orbit(scene, mode, y_peak / scene.length, across=True)
+    orbit, outcome = find_orbit(scene, mode, y_peak / scene.length, across=True)
     values: dict[str, Any] = {
         **blank(periodic_orbit_schema),
         "sliding_assumption": Assumption.holds,
@@ -52,12 +52,12 @@ def periodic_orbit(
     switches, path = np.empty(0), np.empty((0, 4))
     # phases at which the path of the orbit is kept
     path_phases = np.linspace(0.0, math.pi, 201)
-    if found is not None:
-        values |= orbit_values(scene, params, found.point)
-        values["stability_index"] = found.stability_index
-        values["residual"] = found.residual
-        switches = found.switches / scene.frequency
-        path = sample(scene.system.rows, found.point, path_phases) * scene.length
+    if orbit is not None:
+        values |= orbit_values(scene, params, orbit.point)
+        values["stability_index"] = orbit.stability_index
+        values["residual"] = orbit.residual
+        switches = orbit.switches / scene.frequency
+        path = sample(scene.system.rows, orbit.point, path_phases) * scene.length
     return build(
         periodic_orbit_schema,
         {

@@ -28,7 +28,7 @@ def contact_angles(
     gap = threshold - table @ cosine
     above = gap > 0.0
     edges = np.flatnonzero(above[1:] != above[:-1])
-    found = np.stack([grid[edges], grid[edges + 1], gap[edges], gap[edges + 1]])
+    brackets = np.stack([grid[edges], grid[edges + 1], gap[edges], gap[edges + 1]])
     dips = _hidden_dips(gap, above, grid)
     if dips.size:
         bottom = threshold - np.cos(np.outer(dips, np.arange(len(cosine)))) @ cosine
@@ -37,8 +37,8 @@ def contact_angles(
         dips, bottom, after = dips[deep], bottom[deep], after[deep]
         before = np.stack([grid[after - 1], dips, gap[after - 1], bottom])
         beyond = np.stack([dips, grid[after], bottom, gap[after]])
-        found = np.concatenate([found, before, beyond], axis=1)
-        found = found[:, np.argsort(found[0])]
+        brackets = np.concatenate([brackets, before, beyond], axis=1)
+        brackets = brackets[:, np.argsort(brackets[0])]
     order = np.arange(len(cosine))
     rate = order * cosine
 
@@ -46,7 +46,7 @@ def contact_angles(
         phase = np.outer(theta, order)
         return threshold - np.cos(phase) @ cosine, np.sin(phase) @ rate
 
-    left, right, first, last = found
+    left, right, first, last = brackets
     # the square of Newton's last step, the error that is left, is below round-off
     return bracketed(gap_at, (left, right), (first, last), 1e-9)
 

@@ -107,10 +107,10 @@ class CosineBalance:
         settings = ContinuationSettings(
             max_iterations=25, easy_iterations=1, tolerance=2e-13
         )
-        found = PseudoArclength(settings).correct(
+        solution = PseudoArclength(settings).correct(
             self, start, row / np.linalg.norm(row)
         )
-        return None if found is None else (found[0], found[3])
+        return None if solution is None else (solution[0], solution[3])
 
 
 def cosines_of(samples: Vector) -> Vector:

@@ -134,7 +134,7 @@ def _improve(
         works = happens((below[:, None, None] * tried).reshape(-1, unit.shape[1]))
         works = works.reshape(len(unit), effort.tries)
         owner, which = np.nonzero(works & (np.cumsum(works, axis=1) <= effort.followed))
-        found = _bisect(
+        bisected = _bisect(
             happens,
             tried[owner, which],
             0.5 * below[owner],
@@ -144,8 +144,8 @@ def _improve(
         for row in range(len(unit)):
             mine = np.flatnonzero(owner == row)
             if mine.size:
-                best = mine[np.argmin(found[mine])]
-                unit[row], radius[row] = tried[row, which[best]], found[best]
+                best = mine[np.argmin(bisected[mine])]
+                unit[row], radius[row] = tried[row, which[best]], bisected[best]
             else:
                 step[row] *= effort.shrink
     return unit, radius

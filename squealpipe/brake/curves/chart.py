@@ -178,13 +178,15 @@ def _smooth(line: Vector, width: Vector, label: Vector) -> Vector:
     """There and back along a curve by splines, which end where something else happens."""
     steps = np.linalg.norm(np.diff(line, axis=0) / width, axis=1)
     way = np.append(0.0, np.cumsum(np.maximum(steps, 1e-12)))
-    found = [line[:1]]
+    points = [line[:1]]
     for i, j in pairwise(np.unique([0, *np.flatnonzero(label), len(line) - 1])):
         at = np.interp(
             np.arange(0.0, j - i + 1e-9, 0.01), np.arange(j - i + 1), way[i : j + 1]
         )
-        found.append(scipy.interpolate.CubicSpline(way[i : j + 1], line[i : j + 1])(at))
-    there = np.concatenate(found)
+        points.append(
+            scipy.interpolate.CubicSpline(way[i : j + 1], line[i : j + 1])(at)
+        )
+    there = np.concatenate(points)
     return np.concatenate([there, there[::-1]])
 
 

@@ -34,14 +34,14 @@ class Loop(NamedTuple):
 def chains_of(pairs: Indices) -> list[list[int]]:
     """Pairs (before, after) of points as lines; of a closed one the first point comes again."""
     after = dict(pairs.tolist())
-    found = []
+    chains = []
     for first in [*(set(after) - set(after.values())), *after]:
         if first in after:
             chain = [first]
             while chain[-1] in after:
                 chain.append(after.pop(chain[-1]))
-            found.append(chain)
-    return found
+            chains.append(chain)
+    return chains
 
 
 def inside(loops: Sequence[Vector], x: Vector, y: Vector) -> np.ndarray:
@@ -107,7 +107,7 @@ def loops_of(lines: ZeroLines, *, positive: bool, flat: float = 1e-6) -> list[Lo
     place = np.concatenate([lines.place, SQUARE_CORNERS])
     sign = -1.0 if positive else 1.0
     number = {(i, j): k for k, (i, j) in enumerate(chords)}
-    found = []
+    loops = []
     for chain in chains_of(np.concatenate([chords, _border(lines, positive)])):
         pairs = list(pairwise(chain))
         on = [number[pair] for pair in pairs if pair in number]
@@ -117,10 +117,10 @@ def loops_of(lines: ZeroLines, *, positive: bool, flat: float = 1e-6) -> list[Lo
         ]
         x, y = place[chain].T
         area = 0.5 * np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]) + sign * bulge[on].sum()
-        found.append(
+        loops.append(
             Loop(np.concatenate(line), float(area), float(lines.error[on].sum()))
         )
-    return found
+    return loops
 
 
 def holds(lines: ZeroLines, x: Vector, y: Vector) -> np.ndarray:

@@ -175,9 +175,13 @@ class ZeroLines(Chords):
                 beyond = (places.sum(axis=1) > size - 1)[:, None]
                 places = np.where(beyond, size - 1 - places[:, ::-1], places)
                 places, back = np.unique(places, axis=0, return_inverse=True)
-            found = self.value(places / (size - 1))[back]
-            known[rows, columns] = found
-            return found > 0.0, np.zeros(found.shape, bool), np.abs(found)
+            values_on_grid = self.value(places / (size - 1))[back]
+            known[rows, columns] = values_on_grid
+            return (
+                values_on_grid > 0.0,
+                np.zeros(values_on_grid.shape, bool),
+                np.abs(values_on_grid),
+            )
 
         positive = refine_grid(look, size, coarse).labels
         self.positive = bool(positive[0, 0])
@@ -463,12 +467,12 @@ class ZeroLines(Chords):
         signs = self.value(places.reshape(-1, 2)).reshape(-1, ladder.size) > 0.0
         middle = 0.5 * np.abs(ladder[1:] + ladder[:-1])
         far = np.where(signs[:, 1:] & ~signs[:, :-1], middle, np.inf)
-        rung, found = far.argmin(axis=1), np.isfinite(far.min(axis=1))
+        rung, is_reached = far.argmin(axis=1), np.isfinite(far.min(axis=1))
         start = foot + ladder[rung + 1, None] * left
         way = (ladder[rung] - ladder[rung + 1])[:, None] * left
         unknown = np.full(len(foot), np.nan)
         share, *there = self._roots(start, way, np.full(len(foot), 0.5), unknown)
-        return start, way, np.where(found, share, np.nan), *there
+        return start, way, np.where(is_reached, share, np.nan), *there
 
     def _roots(
         self,
@@ -489,7 +493,7 @@ class ZeroLines(Chords):
             between: the signs at both ends differ, so that a zero may be at an end.
         """
         low, high, now = np.zeros(len(start)), np.ones(len(start)), share.copy()
-        found, last, slope = np.full((3, len(start)), np.nan)
+        roots, last, slope = np.full((3, len(start)), np.nan)
         old = now.copy()
         before = np.full(len(start), np.nan)
         left = np.arange(len(start))
@@ -516,8 +520,8 @@ class ZeroLines(Chords):
             enclosed = (low[left] > 0.0) & (high[left] < 1.0)
             closed = high[left] - low[left] < settings.closed
             zero = (np.abs(here) <= self.most) | (closed & (enclosed | between))
-            found[left[zero]], last[left[zero]] = at[zero], here[zero]
+            roots[left[zero]], last[left[zero]] = at[zero], here[zero]
             good = zero & (step > settings.secant[0]) & (step < settings.secant[1])
             slope[left[good]] = secant[good]
             left = left[~zero & ~closed]
-        return found, last, slope
+        return roots, last, slope

@@ -65,7 +65,7 @@ def limit_cycle(
     """
     design = Design(params, alpha1, alpha2)
     cycle, outcome = cycle_from(design, guess, t_settle, max_steps)
-    found = (
+    solution = (
         blank(a1_limit_cycle_schema, multiplier=4)
         if cycle is None
         else _described(cycle)
@@ -73,7 +73,7 @@ def limit_cycle(
     angles = {"alpha1": alpha1, "alpha2": alpha2}
     multiplier = {"multiplier": np.arange(1, 5)}
     return build(
-        a1_limit_cycle_schema, {**found, **angles, "outcome": outcome}, multiplier
+        a1_limit_cycle_schema, {**solution, **angles, "outcome": outcome}, multiplier
     )
 
 

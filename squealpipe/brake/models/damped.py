@@ -158,23 +158,25 @@ class LinearStability(NamedTuple):
 
 def stability(s: DampedSystem) -> LinearStability:
     """Return how small motions grow: flutter where the fastest growing pair is complex."""
-    found = eigenvalues(s)
+    growth_and_frequency = eigenvalues(s)
     leading = np.take_along_axis(
-        found, np.argmax(found.real, axis=-1)[..., None], axis=-1
+        growth_and_frequency,
+        np.argmax(growth_and_frequency.real, axis=-1)[..., None],
+        axis=-1,
     )[..., 0]
     # growth below a thousand units of round-off, over |s|, is that of a mode that is not damped
-    marginal = 1e3 * np.finfo(found.real.dtype).eps
-    unstable = leading.real > marginal * np.abs(found).max(axis=-1)
+    marginal = 1e3 * np.finfo(growth_and_frequency.real.dtype).eps
+    unstable = leading.real > marginal * np.abs(growth_and_frequency).max(axis=-1)
     oscillates = np.abs(leading.imag) > np.sqrt(marginal) * np.abs(leading)
     return LinearStability(
         leading.real.astype(float),
-        np.maximum(found.imag[..., 1::-1], 0.0).astype(float),
+        np.maximum(growth_and_frequency.imag[..., 1::-1], 0.0).astype(float),
         np.where(
             unstable,
             np.where(oscillates, LinearRegime.flutter, LinearRegime.divergence),
             LinearRegime.stable,
         ),
-        shape_similarity(s, found[..., 0], found[..., 1]),
+        shape_similarity(s, growth_and_frequency[..., 0], growth_and_frequency[..., 1]),
     )
 
 
@@ -210,9 +212,9 @@ def regime(s: DampedSystem) -> np.ndarray:
     for coefficient in p:
         decided &= coefficient > clear
     left = DampedSystem._make(entry[~decided] for entry in s)
-    found = np.full(decided.shape, LinearRegime.stable)
-    found[~decided] = stability(left).regime
-    return found
+    regimes = np.full(decided.shape, LinearRegime.stable)
+    regimes[~decided] = stability(left).regime
+    return regimes
 
 
 def critical_friction(

@@ -177,8 +177,8 @@ def orbit_across(
 ) -> Orbit | None:
     """The orbit on the plane through a guess across a normal, or None where Newton fails."""
     equations = OrbitEquations(system)
-    found = to_round_off.correct(equations, guess[:3], normal)
-    return None if found is None else equations.orbit(found[0])
+    correction = to_round_off.correct(equations, guess[:3], normal)
+    return None if correction is None else equations.orbit(correction[0])
 
 
 def solve_orbit(system: PiecewiseLinearSystem, guess: Vector) -> Orbit | None:

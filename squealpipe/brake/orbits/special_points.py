@@ -26,7 +26,7 @@ def special_points(
             down to round-off, and looked for in pairs where the bend of what changes its sign
             leaves room for them.
     """
-    equations, found = OrbitEquations(system), []
+    equations, specials = OrbitEquations(system), []
     for first, second in pairwise(orbits):
         line = _between(equations, first, second)
         if line is None:
@@ -40,8 +40,8 @@ def special_points(
                     share = line.root(partial(_measure, kind), right, left)
                     if share is not None:
                         orbit = line.at(share)[1]
-                        found.append((kind, orbit.from_higher_rest()))
-    return found
+                        specials.append((kind, orbit.from_higher_rest()))
+    return specials
 
 
 def _between(

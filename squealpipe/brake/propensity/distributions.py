@@ -113,7 +113,7 @@ def centred(
     third and three times its own, angles within 0.05 rad; what a table stands for is not spread.
     """
     normal = {"distribution": "normal"}
-    found: dict[str, dict[str, Any]] = {
+    by_parameter: dict[str, dict[str, Any]] = {
         "k1": {**normal, "mean": params.k1, "std": 0.05 * params.k1},
         "k2": {**normal, "mean": params.k2, "std": 0.05 * params.k2},
         "k3": {"distribution": "lognormal", "median": params.k3, "log_std": 0.1},
@@ -125,4 +125,8 @@ def centred(
         "alpha1": {**normal, "mean": alpha1, "std": 0.05},
         "alpha2": {**normal, "mean": alpha2, "std": 0.05},
     }
-    return {name: given for name, given in found.items() if name not in params.in_laws}
+    return {
+        name: given
+        for name, given in by_parameter.items()
+        if name not in params.in_laws
+    }

@@ -137,13 +137,13 @@ def _own(name: str) -> FrictionLaw | None:
     if "\n" not in name:
         return None
     with _faults_named("the file of the law"):
-        found = functions_of(name)
-    if "coefficient" not in found:
+        functions = functions_of(name)
+    if "coefficient" not in functions:
         raise ValueError("the file has no function coefficient(speed, p)")
 
     def coefficient(speed: Any, p: Any) -> Any:
         with _faults_named("coefficient(speed, p)"):
-            return found["coefficient"](
+            return functions["coefficient"](
                 speed * p.friction_speed**-1.0, SimpleNamespace(mu=p.mu)
             )
 

@@ -59,9 +59,11 @@ def table(path: str | os.PathLike[str]) -> tuple[list[dict[str, Any]], int]:
         else 0. A run with other parameters only reports: its code is 0.
     """
     claims = load(path, schema="claims")
-    found = rows(claims)
+    table_rows = rows(claims)
     shipped = bool(claims.attrs["shipped"])
-    return found, int(shipped and not all(row["as_recorded"] for row in found))
+    return table_rows, int(
+        shipped and not all(row["as_recorded"] for row in table_rows)
+    )
 
 
 def _plain(variable: xr.DataArray) -> Any:

@@ -324,8 +324,8 @@ def _period_doubling() -> HardScene:
     balance = CosineBalance(scene.system, contact_of(hill_harmonics, None, None))
 
     def ours() -> Answer:
-        found = periodic_orbit(BASE_PARAMETERS, *angles, mode=mode, y_peak=y_peak)
-        return Answer(float(abs(float(found.stability_index)) > 2.0))
+        orbit = periodic_orbit(BASE_PARAMETERS, *angles, mode=mode, y_peak=y_peak)
+        return Answer(float(abs(float(orbit.stability_index)) > 2.0))
 
     def series() -> Answer:
         branch = _series(angles, mode, y_peak)
@@ -363,8 +363,8 @@ def _singular_static_state() -> HardScene:
     angle = np.array([0.5 * math.pi])
 
     def ours() -> Answer:
-        found = quasi_static_map(BASE_PARAMETERS, angle, angle).squeeze()
-        return Answer(float(found.x_static), _flag(found.outcome))
+        static_state = quasi_static_map(BASE_PARAMETERS, angle, angle).squeeze()
+        return Answer(float(static_state.x_static), _flag(static_state.outcome))
 
     def numeric() -> Answer:
         stiffness = linear_stiffness(BASE_PARAMETERS, geometry(angle[0], angle[0]))

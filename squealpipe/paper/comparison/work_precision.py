@@ -50,11 +50,11 @@ def work_precision(
     scene = scaled_system(params, 0.3 * math.pi, 0.9 * math.pi)
     # y_peak over l_pre; none close to the period doubling at 3.9
     # the start of a solution is the orbit at a peak lower by 0.02, as along a backbone
-    found = [
+    solutions = [
         [find_orbit(scene, 1, peak - d)[0] for d in (0.0, 0.02)]
         for peak in (1.25, 1.75, 2.25, 2.75, 3.5)
     ]
-    pairs = [(orbit, start) for orbit, start in found if orbit and start]
+    pairs = [(orbit, start) for orbit, start in solutions if orbit and start]
     rows = []
     for *names, method in _methods(scene, harmonics, sigmas, oversampling):
         errors, seconds = [], []

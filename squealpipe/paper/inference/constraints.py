@@ -120,10 +120,10 @@ def _linearly_stable(candidates: Candidates) -> StatementMargin:
     for i, params in enumerate(candidates.extended):
         if is_undamped(params):
             continue
-        found = stability(damped_system(params, *scene))
-        decay = -found.growth_rate[0] * params.time_unit
+        linear = stability(damped_system(params, *scene))
+        decay = -linear.growth_rate[0] * params.time_unit
         # what decays or grows by no more than round-off is as without damping
-        if found.regime[0] != LinearRegime.stable or decay > a2.FEW_ULPS:
+        if linear.regime[0] != LinearRegime.stable or decay > a2.FEW_ULPS:
             margin[i] = decay
     return _closed(margin)
 
@@ -185,12 +185,12 @@ def _agreed(
     if not rows.size:
         return first
     some, margin = candidates.subset(rows), first.margin.copy()
-    found = [
+    answers = [
         verdicts(check(SeveralStarts().moved(some, number)))
         for number in range(len(SeveralStarts.directions))
     ]
     mine = verdicts(StatementMargin(margin[rows], first.outcome[rows]))
-    margin[rows[(np.array(found) != mine).any(axis=0)]] = np.nan
+    margin[rows[(np.array(answers) != mine).any(axis=0)]] = np.nan
     return StatementMargin(margin, first.outcome)
 
 

@@ -90,9 +90,9 @@ def infer_parameters(
     groups = _sample(samples, seed, ranges)
     sets = sets_of(groups, tol=tol, workers=workers)
     own = Candidates.of(params, tol=tol)
-    found = [_over_samples(sets.read(name)) for name in READINGS]
+    by_reading = [_over_samples(sets.read(name)) for name in READINGS]
     joined: dict[str, Any] = {
-        name: np.stack([each[name] for each in found]) for name in found[0]
+        name: np.stack([each[name] for each in by_reading]) for name in by_reading[0]
     }
     for name in ("holds", "feasible", "outcome"):
         joined[name] = joined[name].swapaxes(0, 1)

@@ -58,7 +58,7 @@ def unstable_along_edges(
     Args:
         fields: parameters by name, and ``drag``, (sets,).
     """
-    found: list[Unstable] = []
+    cells: list[Unstable] = []
     # sets whose cells are looked for at once: half a megabyte an array
     at_once = 256
     for first in range(0, len(fields["mass"]), at_once):
@@ -70,7 +70,7 @@ def unstable_along_edges(
         mirrored = springs_alike({n: v[rows] for n, v in fields.items()})
         alpha1, alpha2, there = _along_edges(p, mirrored, inside)
         regime = np.asarray(a3.regime(contact_system(p, alpha1, alpha2).invariants))
-        found += [
+        cells += [
             _where(
                 kind[known],
                 first[known],
@@ -81,7 +81,7 @@ def unstable_along_edges(
                 regime, alpha1, alpha2, there, strict=True
             )
         ]
-    return found
+    return cells
 
 
 @lru_cache(maxsize=4)

@@ -195,10 +195,12 @@ def compare_datasets(name: str, a: xr.Dataset, b: xr.Dataset) -> DatasetDifferen
             continue
         values += 0 if entry.volatile else max(sizes)
         if all(sides):
-            found = _judged(variable, aligned, entry)
-            variables.append(found)
+            difference_of_variable = _judged(variable, aligned, entry)
+            variables.append(difference_of_variable)
             shared = aligned.a[variable].size
-            compared += 0 if entry.volatile or not found.compared else shared
+            compared += (
+                0 if entry.volatile or not difference_of_variable.compared else shared
+            )
         else:
             reason = f"only in the {'first' if sides[0] else 'second'}"
             alone = _differs(variable, reason)

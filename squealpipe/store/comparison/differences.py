@@ -185,14 +185,14 @@ def _beyond_horizon(
     """Cells that are predictable on both sides one by one, the others as one sample."""
     lost = sum(side[how.by].values == Outcome.beyond_horizon for side in (a, b)) > 0
     left, right = a[name].values, b[name].values
-    found = difference(
+    late_difference = difference(
         name, a[name], b[name].copy(data=np.where(lost, left, right)), entry
     )
     samples = [
         np.nan_to_num(side[lost].astype(float), nan=np.inf) for side in (left, right)
     ]
     if np.array_equal(*samples):
-        return found
+        return late_difference
     chance = float(scipy.stats.ks_2samp(*samples, method="asymp").pvalue)
     verdict = (
         Agreement.different if chance <= SMALLEST_CHANCE else Agreement.within_tolerance
@@ -202,10 +202,10 @@ def _beyond_horizon(
         f"horizon differ; chance that both are of one distribution {chance:.2g}"
     )
     return replace(
-        found,
-        verdict=max(found.verdict, verdict),
+        late_difference,
+        verdict=max(late_difference.verdict, verdict),
         compared_as=how.compared.value,
-        reason="; ".join(filter(None, (found.reason, stated))),
+        reason="; ".join(filter(None, (late_difference.reason, stated))),
     )
 
 

@@ -68,8 +68,8 @@ def sources(*scripts: Path) -> list[Path]:
         if folder.is_relative_to(PACKAGE) and (folder / "__init__.py").is_file()
     ]
     imported = [path for script in scripts for path in closure(script)]
-    found = dict.fromkeys([*scripts, *packages, *imported])
-    return [path for path in found if path.name not in WATCHERS]
+    files = dict.fromkeys([*scripts, *packages, *imported])
+    return [path for path in files if path.name not in WATCHERS]
 
 
 def used(part: Mapping[str, Any], code: Iterable[Path]) -> list[Path]:

@@ -122,8 +122,8 @@ def _remembered() -> dict[str, _Module]:
     with suppress(OSError):
         for line in _memory().read_text(encoding="utf-8").splitlines():
             with suppress(ValueError, TypeError):  # torn by another process
-                key, found = json.loads(line)
-                known[key] = _Module(*found)
+                key, source = json.loads(line)
+                known[key] = _Module(*source)
     return known
 
 

@@ -184,7 +184,7 @@ def known_inputs(structure: ContactStructure) -> dict[str, Change]:
         )
     if not own.all():
         known["mu"] = lambda each, factor: each.with_(mu=factor * each.mu)
-    names = [face_of(each.name) or each.name for each in structure.contacts]
+    names = [face_of(contact.name) or contact.name for contact in structure.contacts]
     for group in dict.fromkeys(names):
         chosen = [name == group for name in names]
         known[f"contact_stiffness_{group}"] = partial(
@@ -202,12 +202,12 @@ def _with_contacts(
     """Multiply a number of all contacts, or of some of them."""
     contacts = [
         (
-            replace(each, mu=factor * structure.frictions[place].mu)
+            replace(contact, mu=factor * structure.frictions[index].mu)
             if key == "mu"
-            else each.scaled(**{key: factor})
+            else contact.scaled(**{key: factor})
         )
-        if chosen is None or chosen[place]
-        else each
-        for place, each in enumerate(structure.contacts)
+        if chosen is None or chosen[index]
+        else contact
+        for index, contact in enumerate(structure.contacts)
     ]
     return structure.with_(contacts=contacts)

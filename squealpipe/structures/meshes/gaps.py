@@ -67,7 +67,7 @@ def gaps_of(contacts: Sequence[Contact]) -> Iterator[FaceGaps]:
         if contact.origin is not None and contact.origin.against:
             faces.setdefault(face_of(contact.name) or contact.name, []).append(contact)
     for face, members in faces.items():
-        origins = [each.origin for each in members if each.origin is not None]
+        origins = [member.origin for member in members if member.origin is not None]
         gaps = np.abs([origin.gap for origin in origins])
         areas = np.array([origin.area for origin in origins])
         # the first of equal ones, however they are rounded

@@ -72,12 +72,12 @@ class SweepSection(Section):
         if not isinstance(given, Mapping):
             return given
         read = read_values if info.field_name == "vary" else read_fixed
-        found, faults = {}, []
+        forms, faults = {}, []
         for name, value in given.items():
             try:
-                found[name] = read(name, value, info.data.get("task", ""))
+                forms[name] = read(name, value, info.data.get("task", ""))
             except ValueError as error:
                 faults.append(f"{name}: {error}")
         if faults:
             raise ValueError("; ".join(faults))
-        return found
+        return forms

@@ -273,11 +273,11 @@ def stops(answer: xr.Dataset) -> str:
 
 def not_cures(answer: xr.Dataset) -> list[tuple[str, str]]:
     """Return the changes that cure nothing, each with the range that was searched."""
-    found = _found(answer)
+    tried = _found(answer)
     return [
         (words_of(answer, str(name)), _range(answer.sel(cure=name)))
         for name in answer.cure.values
-        if str(name) not in found
+        if str(name) not in tried
     ]
 
 

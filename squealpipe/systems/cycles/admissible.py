@@ -46,7 +46,7 @@ def margins(cycle: Cycle) -> dict[Margin, float]:
     system, events = cycle.map.flow.system, cycle.map.events
     t, path, parts = system.traced, cycle.parts.path, cycle.parts
     first, count = len(t.variables), len(t.surfaces)
-    found: dict[Margin, float] = {}
+    by_margin: dict[Margin, float] = {}
     surfaces = path.series[:, first : first + count, 0]
     size = np.maximum(np.abs(surfaces).max(axis=0, initial=0.0), 1e-300)
     bounds = [path.ends_of(first + s) for s in range(count)]
@@ -55,16 +55,16 @@ def margins(cycle: Cycle) -> dict[Margin, float]:
         entry, duration = events[leg - 1], float(parts.durations[leg])
         if event.at_once:
             height = -event.sign * bounds[event.surface][0][leg]
-            found[Margin(MarginKind.edge, leg, event.surface)] = (
+            by_margin[Margin(MarginKind.edge, leg, event.surface)] = (
                 height / size[event.surface]
             )
-            found |= _conditions(cycle, leg)
+            by_margin |= _conditions(cycle, leg)
             continue
         held = joint.holds(entry.before)
         for watched, sign in ((joint.falls, 1.0), (joint.rises, -1.0)):
             for s in np.flatnonzero(watched(event.before) >= 0):
                 if t.clocks[s]:
-                    found |= _next_tick(cycle, leg, int(s), sign)
+                    by_margin |= _next_tick(cycle, leg, int(s), sign)
                     continue
                 fresh = entry.surface == s or held[s]
                 # a surface that a leg starts from is watched after the leg's first millionth
@@ -77,26 +77,26 @@ def margins(cycle: Cycle) -> dict[Margin, float]:
                     and turn.is_minimum == (sign > 0)
                     and turn.time > begin
                 ]
-                found[Margin(MarginKind.touch, leg, int(s))] = (
+                by_margin[Margin(MarginKind.touch, leg, int(s))] = (
                     min(inside, default=np.inf) / size[s]
                 )
                 ends = [] if fresh else [sign * bounds[s][0][leg]]
                 if s != event.surface:
                     ends.append(sign * bounds[s][1][leg])
                 if ends and event.surface != FREE:
-                    found[Margin(MarginKind.edge, leg, int(s))] = (
+                    by_margin[Margin(MarginKind.edge, leg, int(s))] = (
                         float(min(ends)) / size[s]
                     )
         if event.surface == FREE:
             continue
         crossing = parts.crossings[leg]
         # a switch's own surface falls, whatever the sign of the one that is shared
-        found[Margin(MarginKind.speed, leg, event.surface)] = (
+        by_margin[Margin(MarginKind.speed, leg, event.surface)] = (
             -crossing.speed * cycle.period / size[event.surface]
         )
-        found[Margin(MarginKind.length, leg, FREE)] = duration / cycle.period
-        found |= _conditions(cycle, leg)
-    return found
+        by_margin[Margin(MarginKind.length, leg, FREE)] = duration / cycle.period
+        by_margin |= _conditions(cycle, leg)
+    return by_margin
 
 
 def _next_tick(
@@ -117,7 +117,7 @@ def _next_tick(
 
 def _conditions(cycle: Cycle, leg: int) -> dict[Margin, float]:
     """Return the conditions that chose the regime that a leg's event leads to."""
-    event, found, number = cycle.map.events[leg], {}, 0
+    event, conditions, number = cycle.map.events[leg], {}, 0
     if event.switch == FREE:
         return {}
     system = cycle.map.flow.system
@@ -127,13 +127,13 @@ def _conditions(cycle: Cycle, leg: int) -> dict[Margin, float]:
         if condition is not None:
             if condition.varies:
                 value = cycle.parts.crossings[leg].conditions[number]
-                found[Margin(MarginKind.condition, leg, number)] = (
+                conditions[Margin(MarginKind.condition, leg, number)] = (
                     value if chosen else -value
                 )
             number += 1
         if chosen:
             break
-    return found
+    return conditions
 
 
 def is_motion(cycle: Cycle) -> bool:

@@ -139,15 +139,19 @@ def dataset(
 ) -> xr.Dataset:
     """A branch as a dataset."""
     rows = in_rows(points, lambda cycle: columns(cycle, system))
-    found: dict[str, Any] = describe_columns(system, rows, "point")
+    variables: dict[str, Any] = describe_columns(system, rows, "point")
     values = points[0].cycle.parameters if points else {}
     followed = [p.parameter * p.cycle.scale_of(parameter) for p in points]
-    found[parameter] = ("point", followed, labels(f"{parameter} along the branch", "1"))
+    variables[parameter] = (
+        "point",
+        followed,
+        labels(f"{parameter} along the branch", "1"),
+    )
     special = [point.label for point in points]
-    found["label"] = flag(
+    variables["label"] = flag(
         "what is special about the point", "point", special, flag_table(Label)
     )
-    found["events"] = (
+    variables["events"] = (
         "point",
         [len(p.cycle.events) for p in points],
         labels("events of the cycle", "1"),
@@ -157,19 +161,19 @@ def dataset(
         unit = points[0].cycle.scale_of(name) if points else 1.0
         first = np.array([state[i] * unit for state, _ in starts])
         label = labels(f"{name} at t = 0 of the cycle", system.units[name])
-        found[f"{name}_start"] = ("point", first, label)
+        variables[f"{name}_start"] = ("point", first, label)
     regimes = np.array([system.joint.regimes(regime) for _, regime in starts], int)
-    found["start_regime"] = regime_flag(
+    variables["start_regime"] = regime_flag(
         system,
         "regime at t = 0 of the cycle",
         ("point",),
         regimes.reshape(len(starts), system.traced.n_components),
     )
     periods = points[0].cycle.map.periods or 1 if points else 1
-    found["periods"] = ((), periods, labels("forcing periods", "1"))
-    found["outcome"] = outcome_of(system, "point", np.zeros(len(points), int))
-    found["end"] = outcome_of(system, (), int(end))
+    variables["periods"] = ((), periods, labels("forcing periods", "1"))
+    variables["outcome"] = outcome_of(system, "point", np.zeros(len(points), int))
+    variables["end"] = outcome_of(system, (), int(end))
     attributes = attributes_of(system, "cycle branch", values, 1e-14)
     return xr.Dataset(
-        found, components_of(system), attributes | {"parameter": parameter}
+        variables, components_of(system), attributes | {"parameter": parameter}
     )

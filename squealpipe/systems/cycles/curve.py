@@ -105,23 +105,23 @@ def _dataset(
     parameters: Sequence[str],
     ends: list[str],
 ) -> xr.Dataset:
-    found: dict[str, Any] = {}
+    variables: dict[str, Any] = {}
     cycles = [point.cycle for point in points]
     for name in parameters:
         values = [cycle.parameters[name] for cycle in cycles]
-        found[name] = ("point", values, labels(f"{name} along the curve", "1"))
+        variables[name] = ("point", values, labels(f"{name} along the curve", "1"))
     periods = [cycle.period * cycle.second for cycle in cycles]
     events = [len(cycle.events) for cycle in cycles]
-    found["period"] = ("point", periods, labels("period", "s"))
-    found["events"] = ("point", events, labels("events of the cycle", "1"))
+    variables["period"] = ("point", periods, labels("period", "s"))
+    variables["events"] = ("point", events, labels("events of the cycle", "1"))
     text = "largest residual of the equations, without units"
     residuals = [point.residual for point in points]
-    found["residual"] = ("point", residuals, labels(text, "1"))
+    variables["residual"] = ("point", residuals, labels(text, "1"))
     text = "what else happens at the point"
     meetings = [point.label for point in points]
-    found["label"] = flag(text, "point", meetings, flag_table(Meeting))
+    variables["label"] = flag(text, "point", meetings, flag_table(Meeting))
     names = [*ENDS, *sorted(set(ends) - set(ENDS))]
-    found["outcome"] = flag(
+    variables["outcome"] = flag(
         "why the curve ended",
         "side",
         [names.index(end) for end in ends],
@@ -129,7 +129,7 @@ def _dataset(
     )
     attributes = attributes_of(system, "cycle curve", cycles[0].parameters, 1e-14)
     return xr.Dataset(
-        found,
+        variables,
         attrs=attributes
         | {"curve": label, "parameters_followed": " ".join(parameters)},
     )

@@ -59,12 +59,12 @@ class Curve:
     def returning(self, jacobian: Vector, factor: complex) -> Vector:
         """The derivative by the unknowns for disturbances that a period multiplies by a factor."""
         n, size = self.map.flow.size, self.map.size
-        found = jacobian[:, :size].astype(type(factor))
+        matrix = jacobian[:, :size].astype(type(factor))
         last = (self.map.legs - 1) * n
-        found[last : last + n, :n] += (1.0 - factor) * np.eye(n)
+        matrix[last : last + n, :n] += (1.0 - factor) * np.eye(n)
         if self.map.periods:
-            found[-1, -1] += 1.0 - factor
-        return found
+            matrix[-1, -1] += 1.0 - factor
+        return matrix
 
     def factor(self, point: Vector) -> complex:
         """Return the factor by which a disturbance is multiplied in a period."""
@@ -201,9 +201,9 @@ class Curve:
 
     def least_margin(self, point: Vector) -> tuple[float, Margin | None]:
         """The margin next to zero that is not the curve's own."""
-        found = {k: v for k, v in margins(self.cycle(point)).items() if k != self.own}
-        key = min(found, key=lambda k: found[k], default=None)
-        return (np.inf, None) if key is None else (found[key], key)
+        others = {k: v for k, v in margins(self.cycle(point)).items() if k != self.own}
+        key = min(others, key=lambda k: others[k], default=None)
+        return (np.inf, None) if key is None else (others[key], key)
 
 
 def _real(vector: Vector) -> Vector:

@@ -71,7 +71,7 @@ class _Way:
             zip(equations.flow.followed, point[equations.size :], strict=False)
         )
         units = dict(zip(equations.flow.followed, equations.units, strict=True))
-        found = [
+        inner = [
             side
             for name, (low, high) in self.limits.items()
             for side in (
@@ -79,7 +79,7 @@ class _Way:
                 high / units[name] - values[name],
             )
         ]
-        return float(min([*found, self._turns(point)]))
+        return float(min([*inner, self._turns(point)]))
 
     def _turns(self, point: Vector) -> float:
         angle = point[-1] if self.curve.label == Label.torus else np.nan
@@ -100,11 +100,11 @@ class _Way:
                 (following, self._cycle(following)),
                 self.curve.cycle,
             )
-            found = self._met(line)
+            meetings = self._met(line)
             end = self._end(line)
-            for share in sorted(found):
+            for share in sorted(meetings):
                 if end is None or share < end.share - 1e-6:
-                    yield self._point(line.at(share)[0], found[share])
+                    yield self._point(line.at(share)[0], meetings[share])
             if end is not None:
                 changed = self._point(line.at(end.share)[0], end.label)
                 following = (
@@ -121,7 +121,7 @@ class _Way:
 
     def _met(self, line: Line[Cycle]) -> dict[float, Meeting]:
         """Shares of a step at which something else happens."""
-        found: dict[float, Meeting] = {}
+        by_share: dict[float, Meeting] = {}
         first, last = (line.known[share][0].point for share in (0.0, 1.0))
         if self.curve.label in RETURNS and all(
             abs(self.curve.least_margin(point)[0]) <= ZERO_ROUND_OFF
@@ -129,16 +129,16 @@ class _Way:
         ):
             # all along the curve the branch turns where the events change: the return map has no
             # derivative there, and round-off would decide its multipliers
-            return found
+            return by_share
         for label, test in self.curve.tests().items():
             if test(first) * test(last) < 0.0:
                 share = line.root(partial(_at_point, test))
                 # with two states folds and period doublings meet a grazing at the same point
                 if share is not None and all(
-                    abs(share - other) > 1e-6 for other in found
+                    abs(share - other) > 1e-6 for other in by_share
                 ):
-                    found[share] = label
-        return found
+                    by_share[share] = label
+        return by_share
 
     def _goes_on(self, line: Line[Cycle], share: float) -> ContinuationState | None:
         """The curve's next point with the events that motions have beyond where these change."""
@@ -148,14 +148,16 @@ class _Way:
                 state, cycle = line.at(share + beyond)
             except ArithmeticError:
                 continue
-            found = run_of(cycle)
-            if found is None or order_of(found[0].events) == order_of(cycle.map.events):
+            continued = run_of(cycle)
+            if continued is None or order_of(continued[0].events) == order_of(
+                cycle.map.events
+            ):
                 continue
-            self.curve = replace(old, map=found[0])
+            self.curve = replace(old, map=continued[0])
             angle = state.point[len(old.known(state.point)) :]
-            guess = np.append(found[1], angle)
-            normal = np.zeros(len(found[1]) + len(angle))
-            size = found[0].size
+            guess = np.append(continued[1], angle)
+            normal = np.zeros(len(continued[1]) + len(angle))
+            size = continued[0].size
             normal[size : size + 2] = state.tangent[old.map.size : old.map.size + 2]
             self.curve.renew(guess)
             algorithm = replace(
@@ -269,15 +271,15 @@ def follow_curve(
         way.points(replace(first, tangent=sign * first.tangent))
         for way, sign in zip(ways, (-1.0, 1.0), strict=True)
     ]
-    found: list[list[CurvePoint]] = [[], []]
+    sides: list[list[CurvePoint]] = [[], []]
     open_ways, count = [0, 1], 1
     while open_ways and count < n_points:
         for side in list(open_ways):
             point = next(runs_of[side], None) if count < n_points else None
             if point is not None:
-                found[side].append(point)
+                sides[side].append(point)
                 count += 1
             elif count < n_points:
                 open_ways.remove(side)
     middle = CurvePoint(curve.cycle(first.point), first.residual)
-    return [*found[0][::-1], middle, *found[1]], [way.end for way in ways]
+    return [*sides[0][::-1], middle, *sides[1]], [way.end for way in ways]

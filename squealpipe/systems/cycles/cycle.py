@@ -74,11 +74,13 @@ def given(
     system: System, start: Mapping[str, Any] | None, parameters: Mapping[str, Any]
 ) -> tuple[dict[str, float], Vector]:
     """Parameters and the start of a call, checked."""
-    found = {n: scalar(n, v) for n, v in call_values(system, start, parameters).items()}
+    numbers = {
+        n: scalar(n, v) for n, v in call_values(system, start, parameters).items()
+    }
     if len(system.traced.variables) > system.traced.size and system.period is None:
         raise ValueError(
             f"{system.name} depends on the time but has no period; give `period`"
         )
-    return {n: found[n] for n in system.parameters}, np.array(
-        [found[n] for n in system.states]
+    return {n: numbers[n] for n in system.parameters}, np.array(
+        [numbers[n] for n in system.states]
     )

@@ -38,16 +38,16 @@ def columns(cycle: Cycle | None, system: System) -> dict[str, Any]:
         return bare | dict.fromkeys(
             ("multiplier_real", "multiplier_imag"), np.full(n, np.nan)
         )
-    found: dict[str, Any] = {
+    cells: dict[str, Any] = {
         "period": cycle.period * cycle.second,
         "residual": cycle.residual,
     }
     extremes = cycle.extremes * cycle.map.flow.scale_of(*names)
     for name, (low, high) in zip(names, extremes.T, strict=True):
-        found |= {f"{name}_min": low, f"{name}_max": high}
-    found["stable"] = int(cycle.is_stable)
+        cells |= {f"{name}_min": low, f"{name}_max": high}
+    cells["stable"] = int(cycle.is_stable)
     multipliers = cycle.multipliers
-    return found | {
+    return cells | {
         "multiplier_real": multipliers.real,
         "multiplier_imag": multipliers.imag,
     }
@@ -94,18 +94,20 @@ def describe_columns(
     system: System, rows: Sequence[Mapping[str, Any]], dim: str | None = None
 ) -> dict[str, Any]:
     """Numbers of some cycles as variables, over a dimension if there is one."""
-    found: dict[str, Any] = {}
+    variables: dict[str, Any] = {}
     over = (dim,) if dim else ()
     for name, bare in (rows[0] if rows else columns(None, system)).items():
         stacked = np.array([row[name] for row in rows]).reshape(-1, *np.shape(bare))
         values = stacked if dim else stacked[0]
         if name == "stable":
             table = {0: "no", 1: "yes"}
-            found[name] = flag("whether small disturbances decay", over, values, table)
+            variables[name] = flag(
+                "whether small disturbances decay", over, values, table
+            )
         else:
             dims = (*over, "multiplier") if np.ndim(bare) else over
-            found[name] = dims, values, described(name, system)
-    return found
+            variables[name] = dims, values, described(name, system)
+    return variables
 
 
 def dataset(
@@ -116,10 +118,10 @@ def dataset(
     periods: int,
 ) -> xr.Dataset:
     """A cycle, or the reason why there is none, as a dataset."""
-    found = describe_columns(system, [columns(cycle, system)])
+    variables = describe_columns(system, [columns(cycle, system)])
     number = outcome - SETTLED_ON if outcome > SETTLED_ON else periods
     label = labels("forcing periods, or returns to the section", "1")
-    found["periods"] = ((), number, label)
+    variables["periods"] = ((), number, label)
     times, order = np.empty(0), []
     instants, path, regime = np.empty(0), np.empty((0, len(system.states))), 0
     units = np.ones(len(system.states))
@@ -141,11 +143,11 @@ def dataset(
     states = states.reshape(-1, len(system.states)) * units
     kinds, names = dict(enumerate(system.traced.kinds)), dict(enumerate(system.regimes))
     joint = system.joint
-    found["event_time"] = ("event", times, labels("time of the event", "s"))
-    found["event_kind"] = named(
+    variables["event_time"] = ("event", times, labels("time of the event", "s"))
+    variables["event_kind"] = named(
         "kind of the event", "event", [e.kind for e in chosen], kinds
     )
-    found["event_regime"] = named(
+    variables["event_regime"] = named(
         "regime entered",
         "event",
         [joint.entered_by(e.after, e.switch) for e in chosen],
@@ -153,29 +155,29 @@ def dataset(
     )
     for i, name in enumerate(system.states):
         unit = system.units[name]
-        found[f"event_{name}"] = (
+        variables[f"event_{name}"] = (
             "event",
             states[:, i],
             labels(f"{name} after it", unit),
         )
-        found[f"{name}_path"] = (
+        variables[f"{name}_path"] = (
             "sample",
             path[:, i],
             labels(f"{name} along the cycle", unit),
         )
         first = path[0, i] if len(path) else np.nan
-        found[f"{name}_start"] = (
+        variables[f"{name}_start"] = (
             (),
             first,
             labels(f"{name} at t = 0 of the cycle", unit),
         )
-    found["start_regime"] = regime_flag(
+    variables["start_regime"] = regime_flag(
         system, "regime at t = 0 of the cycle", (), np.array(joint.regimes(regime))
     )
-    found["time"] = ("sample", instants, labels("time", "s"))
-    found["outcome"] = outcome_of(system, (), outcome)
+    variables["time"] = ("sample", instants, labels("time", "s"))
+    variables["outcome"] = outcome_of(system, (), outcome)
     return xr.Dataset(
-        found,
+        variables,
         components_of(system),
         attributes_of(system, "limit cycle", values, 1e-14)
         | {"closing_tolerance": CycleAccuracy.closing},

@@ -100,8 +100,8 @@ class EventMap:
         durations = z[m * n : m * (n + 1)] * self.time
         start = float(z[m * (n + 1)] * self.time) if self.periods else 0.0
         followed = z[self.size :] * self.units
-        found = dict(zip(self.flow.followed, map(float, followed), strict=True))
-        return states, durations, start, {**self.values, **found}
+        numbers = dict(zip(self.flow.followed, map(float, followed), strict=True))
+        return states, durations, start, {**self.values, **numbers}
 
     def parts(self, z: Vector) -> Parts:
         """The legs at some unknowns."""

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 def label_of(cycle: Cycle, zero: dict[Margin, float]) -> Label:
     """Return the label of a change of the events, from the margins that vanish."""
     system = cycle.map.flow.system
-    joint, found = system.joint, Label.regular
+    joint, label = system.joint, Label.regular
     for margin in zero:
         event = cycle.map.events[margin.leg]
         held = bool(joint.holds(event.before).any())
@@ -54,8 +54,8 @@ def label_of(cycle: Cycle, zero: dict[Margin, float]) -> Label:
         ):
             return Label.stick_onset
         if crosses:
-            found = Label.grazing
-    return found
+            label = Label.grazing
+    return label
 
 
 def _of_hold(system: System, switch: int, among: int) -> bool:
@@ -92,9 +92,9 @@ class NewOrder:
     def way_on(self) -> tuple[ContinuationState, Cycle] | None:
         """The first point beyond, with a tangent that leads away."""
         for equations, guess in (*self._runs(), *self._without()):
-            found = self._started(equations, guess)
-            if found is not None and not self._jumps(found[1]):
-                return found
+            started = self._started(equations, guess)
+            if started is not None and not self._jumps(started[1]):
+                return started
         return None
 
     def _jumps(self, cycle: Cycle) -> bool:
@@ -117,13 +117,13 @@ class NewOrder:
                 cycle = self.line.at(self.share + beyond)[1]
             except ArithmeticError:
                 continue
-            found = run_of(cycle)
-            if found is None:
+            continued = run_of(cycle)
+            if continued is None:
                 continue
-            order = order_of(found[0].events)
+            order = order_of(continued[0].events)
             if order != old and order not in seen:
                 seen.add(order)
-                yield found
+                yield continued
 
     def _without(self) -> Iterator[tuple[EventMap, Vector]]:
         """Return the same motion without events that have vanished, one or two at once."""
@@ -195,11 +195,11 @@ def run_of(cycle: Cycle) -> tuple[EventMap, Vector] | None:
     if run.outcome or len(run.times) > 4 * equations.legs + 8:
         return None
     repeat = Repeat(cycle.period, equations.periods, equations.scale)
-    found = guess_of(flow, parts.values, run, state, repeat)
-    if found is None:
+    guess = guess_of(flow, parts.values, run, state, repeat)
+    if guess is None:
         return None
-    made = replace(found[0], time=equations.time, units=equations.units)
-    return made, made.pack(*found[0].unpack(found[1])[:3], cycle.followed)
+    made = replace(guess[0], time=equations.time, units=equations.units)
+    return made, made.pack(*guess[0].unpack(guess[1])[:3], cycle.followed)
 
 
 def _gradient(equations: EventMap, point: Vector, margin: Margin) -> Vector:
@@ -212,5 +212,5 @@ def _gradient(equations: EventMap, point: Vector, margin: Margin) -> Vector:
     time = parts.start + float(parts.durations[: leg + 1].sum())
     slopes = equations.flow.quantity(parts.values, event, None, end, time)[1 : n + 1]
     by_end, _ = equations.by_unknowns(parts, leg)
-    found = -slopes @ by_end * equations.column_units
-    return np.asarray(found / np.linalg.norm(found))
+    gradient = -slopes @ by_end * equations.column_units
+    return np.asarray(gradient / np.linalg.norm(gradient))

@@ -50,12 +50,12 @@ def find_cycle(
     forced = system.period is not None and flow.timed
     unit = flow.unit(values) if unit is None else unit / second
     if not guess:
-        found = (
+        solution = (
             settled_forced(flow, values, state, periods, t_settle, most_steps)
             if forced
             else settled_free(flow, values, state, periods, t_settle, unit, most_steps)
         )
-        return labelled(*found)
+        return labelled(*solution)
 
     def near(at: Mapping[str, float]) -> tuple[Cycle | None, int]:
         if forced:

@@ -255,8 +255,8 @@ class TracedFlow(Flow):
                 if not (e[2].kind == "number" and not e[2].arguments[0])
             ]
 
-        found: list[tuple[int, int, Any]] = self._made("entries", entries)
-        return found
+        pieces: list[tuple[int, int, Any]] = self._made("entries", entries)
+        return pieces
 
     @cached_property
     def slopes(self) -> Any:
@@ -295,8 +295,8 @@ class TracedFlow(Flow):
     def forcing(self, values: Mapping[str, float]) -> tuple[float, Vector]:
         """The forcing's period, s, and its derivatives."""
         blank = [np.float64(0.0)] * len(self.system.traced.variables)
-        found = self.period(*blank, *self.numbers(values, 0))
-        return float(found[0]), np.array(found[1:], float)
+        period = self.period(*blank, *self.numbers(values, 0))
+        return float(period[0]), np.array(period[1:], float)
 
     def field(
         self, values: Mapping[str, float], regime: int, state: Vector, time: float
@@ -320,11 +320,11 @@ class TracedFlow(Flow):
         self, values: Mapping[str, float], regime: int, state: Vector, time: float = 0.0
     ) -> Vector:
         """∂f/∂(states, followed parameters, time), (n, n + p)."""
-        found = np.zeros((self.size, self.columns))
+        matrix = np.zeros((self.size, self.columns))
         entries = self._at(self.slopes, values, regime, state, time)
         for (i, j, _), value in zip(self.entries, entries, strict=True):
-            found[i, j] = value
-        return found
+            matrix[i, j] = value
+        return matrix
 
     def affine_at(self, values: Mapping[str, float], regime: int) -> Affine:
         """Return the rates as a matrix and a constant, where they are affine in the states."""
@@ -335,9 +335,11 @@ class TracedFlow(Flow):
 
         def parts(function: Any) -> tuple[Vector, Vector]:
             rows = function(*places, *numbers)
-            found = np.array([np.broadcast_to(row, n + 1) for row in rows])
-            found = found.reshape(-1, n + 1)
-            return (found[:, 1:] - found[:, :1]) / sizes, found[:, 0]
+            coefficients = np.array([np.broadcast_to(row, n + 1) for row in rows])
+            coefficients = coefficients.reshape(-1, n + 1)
+            return (coefficients[:, 1:] - coefficients[:, :1]) / sizes, coefficients[
+                :, 0
+            ]
 
         matrix, constant = parts(self.rates)
         by_matrix, by_constant = parts(self.rates_by)
@@ -356,11 +358,11 @@ class TracedFlow(Flow):
         known = {regime: joint.constants(regime) for regime in set(regimes.tolist())}
         constants = np.array([known[regime] for regime in regimes.tolist()]).T
         numbers = self.numbers(values, 0)[:given]
-        found = np.zeros((self.size, self.columns, *states.shape[1:]))
+        slopes = np.zeros((self.size, self.columns, *states.shape[1:]))
         entries = self.slopes(*states, *numbers, *constants)
         for (i, j, _), value in zip(self.entries, entries, strict=True):
-            found[i, j] = value
-        return found
+            slopes[i, j] = value
+        return slopes
 
     def crossing(
         self,

@@ -149,17 +149,17 @@ class Follower:
             return Outcome.family_member  # the start is in the family
         while len(self.points) < self.most:
             show(self._share())
-            found = self._advance(state, cycle)
-            if found is None:
+            advance = self._advance(state, cycle)
+            if advance is None:
                 return self.trail.reason()
-            for point in found.special[: self.most - len(self.points)]:
+            for point in advance.special[: self.most - len(self.points)]:
                 self.trail.add(point)
-            state, cycle = found.state, found.cycle
+            state, cycle = advance.state, advance.cycle
             if len(self.points) >= self.most:
                 break
-            if found.end is not None:
-                return found.end
-            if found.shows:
+            if advance.end is not None:
+                return advance.end
+            if advance.shows:
                 self.trail.add(BranchPoint(state, cycle))
             end = self._end_at(state, cycle)
             if end is not None:
@@ -213,9 +213,9 @@ class Follower:
             if following is not None:
                 reached = Cycle.at(equations, following.point)
                 if not self._strays(trial, cycle, following, reached):
-                    found = self._examined(trial, cycle, following, reached)
-                    if found is not None:
-                        return found
+                    examined = self._examined(trial, cycle, following, reached)
+                    if examined is not None:
+                        return examined
             step *= 0.5
         return None
 
@@ -269,26 +269,26 @@ class Follower:
         )
         before, after = (least_margin(None, each) for each in (cycle, reached))
         last = 1.0 if after >= -ZERO_ROUND_OFF else line.root(least_margin)
-        found = None if last is None else self._smooth(line, last)
-        if found is None or last is None:
+        smooth = None if last is None else self._smooth(line, last)
+        if smooth is None or last is None:
             return None
         # a step that ends at the change to round-off may not lead past it
         if last < 1.0 or after < ZERO_ROUND_OFF < 0.5 * before:
-            return self._changed(line, found, last)
+            return self._changed(line, smooth, last)
         near, share = self._shorter(line, cycle, reached)
         if near and share is None and state.step > limits.finest_step:
             return None
         if share is not None:
             special = [
                 BranchPoint(*line.at(at), label)
-                for at, label in found
+                for at, label in smooth
                 if at < share - limits.fold_at_change
             ]
             there = line.at(share)
             return BranchStep(
                 [*special, BranchPoint(*there)], *there, end=Outcome.tongue_end
             )
-        special = [BranchPoint(*line.at(share), label) for share, label in found]
+        special = [BranchPoint(*line.at(share), label) for share, label in smooth]
         following = replace(following, step=next_length(state, following))
         return BranchStep(special, *renewed(following, reached))
 
@@ -296,7 +296,7 @@ class Follower:
         self, line: Line[Cycle], last: float
     ) -> list[tuple[float, Label]] | None:
         """Shares and labels of what happens in a step, in order; None where one is not found."""
-        first, reached, found = line.known[0.0], line.known[1.0], []
+        first, reached, specials = line.known[0.0], line.known[1.0], []
         if self.trail.has_shrunk(reached[1]):
             return []
         # a grazing takes multipliers through infinity: they are followed up to it alone
@@ -321,8 +321,8 @@ class Follower:
             if share < last - limits.fold_at_change * (
                 label == Label.fold and last < 1.0
             ):
-                found.append((share, label))
-        return sorted(found) if self._explains(line, before, found) else None
+                specials.append((share, label))
+        return sorted(specials) if self._explains(line, before, specials) else None
 
     def _is_new(self, label: Label, line: Line[Cycle], end: float) -> bool:
         """Return whether a sign change is neither a fold nor the noise of a family of cycles."""

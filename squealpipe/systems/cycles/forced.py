@@ -109,15 +109,15 @@ class Watched:
         """Numbers of periods after which all states of the second half may have come back."""
         half = search.watched_periods // 2 * search.samples
         late = self.states[half:-1]
-        found = np.empty(search.most_periods)
+        distances = np.empty(search.most_periods)
         for lag in range(1, search.most_periods + 1):
             before = self.states[
                 half - lag * search.samples : -1 - lag * search.samples
             ]
             off = np.abs((late - before) / self.extent).max(axis=1)
-            found[lag - 1] = _typical(off)[()]
-        near = np.flatnonzero(found < search.far_return) + 1
-        best = near[np.argsort(found[near - 1], kind="stable")][: search.tries]
+            distances[lag - 1] = _typical(off)[()]
+        near = np.flatnonzero(distances < search.far_return) + 1
+        best = near[np.argsort(distances[near - 1], kind="stable")][: search.tries]
         # at first the distance may be less after several periods: one is always tried
         return sorted({1, *near[: search.tries].tolist(), *best.tolist()})
 
@@ -130,10 +130,10 @@ class Watched:
             return None
         scale = scale_of(path, self.flow.sizes(self.values))
         repeat = Repeat(duration, periods, scale, first, count, origin)
-        found = guess_of(self.flow, self.values, self.motion, path[0], repeat)
-        point = None if found is None else found[0].solve(found[1])
-        if found is not None and point is not None:
-            return as_motion(Cycle.at(found[0], point), tries=search.legs_left_out)
+        guess = guess_of(self.flow, self.values, self.motion, path[0], repeat)
+        point = None if guess is None else guess[0].solve(guess[1])
+        if guess is not None and point is not None:
+            return as_motion(Cycle.at(guess[0], point), tries=search.legs_left_out)
         if periods > 1:
             return None
         at = np.searchsorted(self.motion.times, origin, side="right")
@@ -261,13 +261,13 @@ def near_forced(
         passed = run.states[first : first + count]
         scale = scale_of(np.concatenate([path, passed]), flow.sizes(values))
         repeat = Repeat(duration, periods, scale, first, count)
-        found = guess_of(flow, values, run, state, repeat)
-        point = None if found is None else found[0].solve(found[1])
-        if found is None or point is None:
+        guess = guess_of(flow, values, run, state, repeat)
+        point = None if guess is None else guess[0].solve(guess[1])
+        if guess is None or point is None:
             # perhaps other events are those of the cycle: nearer to it once more
             state, regime = after, int(run.regimes[first + count])
             continue
-        cycle = Cycle.at(found[0], point)
+        cycle = Cycle.at(guess[0], point)
         motion = as_motion(cycle)
         if motion is not None:
             return motion, Outcome.converged

@@ -293,8 +293,8 @@ def _cycles(
         if not count:
             period = _exact_return(stretch, state, period)
         repeat = Repeat(period, 0, stretch.scale, events=count)
-        found = guess_of(flow, values, stretch.motion, state, repeat)
-        cycle = None if found is None else solved(*found)
+        guess = guess_of(flow, values, stretch.motion, state, repeat)
+        cycle = None if guess is None else solved(*guess)
         if (
             cycle is not None
             and abs(cycle.period - period) <= search.far_return * period
@@ -332,8 +332,8 @@ def _exact_return(stretch: Stretch, state: Vector, time: float) -> float:
     for _ in range(3):
         times = np.linspace(max(time - width, 0.0), time + width, 9)
         run = follow(flow, values, state, times[-1], regime=regime, times=times)
-        found, _ = crossings(times, run.path, section.state, section.normal)
-        time = min(found.tolist(), key=lambda at: abs(at - time), default=time)
+        returns, _ = crossings(times, run.path, section.state, section.normal)
+        time = min(returns.tolist(), key=lambda at: abs(at - time), default=time)
         width /= 200.0
     return time
 
@@ -349,7 +349,7 @@ def _returns(
             Newton's method on hundreds of legs takes a minute.
     """
     run, times, scale = stretch.motion, stretch.times, stretch.scale
-    found: list[tuple[int, float, float]] = []
+    returns: list[tuple[int, float, float]] = []
     if len(run.times):
         keys = np.column_stack([run.kinds, run.regimes[:-1], run.regimes[1:]])
         off = np.abs((run.states - run.states[0]) / scale).max(axis=1)
@@ -369,7 +369,7 @@ def _returns(
                 and (once or off[count] > search.close_return)
             ):
                 continue
-            found.append(
+            returns.append(
                 (count, float(run.times[count] - run.times[0]), float(off[count]))
             )
     else:
@@ -377,12 +377,12 @@ def _returns(
         section = PhaseCondition(state, rate / scale**2)
         instants, there = crossings(times, run.path, state, section.normal)
         distances = np.abs((there - state) / scale).max(axis=1, initial=0.0)
-        found += [
+        returns += [
             (0, *each)
             for each in zip(instants.tolist(), distances.tolist(), strict=True)
         ]
-    nearest = 3.0 * min((each[2] for each in found), default=0.0) + 1e-4
-    found.sort(
+    nearest = 3.0 * min((each[2] for each in returns), default=0.0) + 1e-4
+    returns.sort(
         key=lambda each: (each[2] >= nearest, each[1] if each[2] < nearest else each[2])
     )
-    yield from found[: search.tries]
+    yield from returns[: search.tries]

@@ -70,7 +70,7 @@ def events_of(
 ) -> tuple[LegEnd, ...]:
     """Some events of a run, each with its switch."""
     t, joint = system.traced, system.joint
-    found: list[LegEnd] = []
+    ends_of_legs: list[LegEnd] = []
     for i in range(first, first + count):
         before, after, kind, entered = (
             int(v)
@@ -89,8 +89,8 @@ def events_of(
                 for to, _, name in t.switches[switch].targets
             )
         )
-        found += islice(fitting, 1)
-    return tuple(found)
+        ends_of_legs += islice(fitting, 1)
+    return tuple(ends_of_legs)
 
 
 def marked_at_once(
@@ -104,7 +104,7 @@ def marked_at_once(
 
     The first of a run has none before it, by which its regime would be entered.
     """
-    found = []
+    marked = []
     for number, event in enumerate(events, first):
         if number and motion.times[number] == motion.times[number - 1]:
             state, time = motion.states[number - 1], float(motion.times[number])
@@ -115,8 +115,8 @@ def marked_at_once(
             beyond = there.is_beyond(state, flow.sizes(values))
             is_clock = flow.system.traced.clocks[event.surface] != 0
             event = event._replace(at_once=beyond and not is_clock)
-        found.append(event)
-    return tuple(found)
+        marked.append(event)
+    return tuple(marked)
 
 
 class Repeat(NamedTuple):

@@ -128,10 +128,10 @@ class Path:
         rates = scaled[..., 1:] * orders
         places = np.linspace(0.0, 1.0, 9)
         values = rates @ places ** (orders[:, None] - 1)
-        found: list[list[Turn]] = [[] for _ in range(scaled.shape[1])]
+        by_quantity: list[list[Turn]] = [[] for _ in range(scaled.shape[1])]
         hits = np.nonzero(values[..., :-1] * values[..., 1:] < 0.0)
         if not len(hits[0]):
-            return found
+            return by_quantity
         step, series, left = hits
         first, last = values[hits], values[step, series, left + 1]
         slopes = rates[step, series]
@@ -150,5 +150,5 @@ class Path:
         time = (self.offsets[step] + place * self.steps[step]) * self.unit
         each = (series, self.leg[step], time, height, first < 0)
         for number, *turn in zip(*(values.tolist() for values in each), strict=True):
-            found[number].append(Turn(*turn))
-        return found
+            by_quantity[number].append(Turn(*turn))
+        return by_quantity

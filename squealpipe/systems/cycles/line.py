@@ -156,7 +156,10 @@ def at_edge(
     guess = state.point + share * state.tangent
     guess[-1] = edge / unit
     normal = math.copysign(1.0, state.tangent[-1]) * np.eye(len(guess))[-1]
-    found = along_branch.solve(equations, guess, normal, state.step)
-    if found is None or float(np.linalg.norm(found.point - guess)) > 0.3 * length:
+    edge_point = along_branch.solve(equations, guess, normal, state.step)
+    if (
+        edge_point is None
+        or float(np.linalg.norm(edge_point.point - guess)) > 0.3 * length
+    ):
         return None
-    return found
+    return edge_point

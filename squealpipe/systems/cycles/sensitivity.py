@@ -57,16 +57,16 @@ def sensitivities(
             delays[i] = late
         else:
             by_time[i] = total
-    found: dict[str, Any] = {}
+    variables: dict[str, Any] = {}
     for j, name in enumerate(names):
         for k, state in enumerate(system.states):
             label = labels(
                 f"derivative of {state} by {name}", f"{system.units[state]} / {name}"
             )
-            found[f"{state}_by_{name}"] = ("time", by_time[:, k, j], label)
+            variables[f"{state}_by_{name}"] = ("time", by_time[:, k, j], label)
         label = labels(f"derivative of the time of the event by {name}", f"s / {name}")
-        found[f"event_time_by_{name}"] = ("event", delays[:, j], label)
-    return found
+        variables[f"event_time_by_{name}"] = ("event", delays[:, j], label)
+    return variables
 
 
 def growth(

@@ -242,12 +242,12 @@ class Cycle:
         n, path = self.map.flow.size, self.parts.path
         first = path.series.shape[1] - len(self.map.flow.system.traced.outputs)
         which = [*range(n), *range(first, path.series.shape[1])]
-        found = []
+        pairs = []
         for number in which:
             values = np.concatenate(path.ends_of(number)).tolist()
             values += [turn.value for turn in path.turns[number]]
-            found.append((min(values), max(values)))
-        return np.array(found).T
+            pairs.append((min(values), max(values)))
+        return np.array(pairs).T
 
     @property
     def closing_error(self) -> float:

@@ -143,9 +143,13 @@ class Trail:
         for state, equations in (
             (self.points[i].state, self.points[i].cycle.map) for i in fit
         ):
-            found = at_special_points.solve(equations, state.point, state.tangent, 0.0)
-            if found is not None:
-                shapes.append(self._shape(Cycle.at(equations, found.point), found))
+            correction = at_special_points.solve(
+                equations, state.point, state.tangent, 0.0
+            )
+            if correction is not None:
+                shapes.append(
+                    self._shape(Cycle.at(equations, correction.point), correction)
+                )
         if len(shapes) < 3:
             return None
         squares = (_sizes_of(shapes) / sizes.max()) ** 2

@@ -27,8 +27,8 @@ def leg_derivatives(flow: Flow, values: Mapping[str, float], path: Path) -> Vect
     """
     if flow.is_affine:
         return _affine(flow, values, path)
-    found = np.zeros((len(path.regimes), flow.columns, flow.columns))
-    found[:] = np.eye(flow.columns)
+    matrices = np.zeros((len(path.regimes), flow.columns, flow.columns))
+    matrices[:] = np.eye(flow.columns)
     steps, first = len(path.steps), 0
     # of the variational equations, times a bound of its rate
     longest_step = 1.0
@@ -57,9 +57,9 @@ def leg_derivatives(flow: Flow, values: Mapping[str, float], path: Path) -> Vect
             if pieces > 1:
                 slopes, lengths = _slopes_along(flow, values, path, part, pieces)
             legs = np.repeat(path.leg[part], pieces)
-            transfer(slopes, lengths, legs, _UP_TO, _WEIGHTS, found)
+            transfer(slopes, lengths, legs, _UP_TO, _WEIGHTS, matrices)
         first = block.stop
-    return found[:, : flow.size]
+    return matrices[:, : flow.size]
 
 
 def _largest_rate(slopes: Vector) -> Vector:
@@ -75,16 +75,16 @@ def _affine(flow: Flow, values: Mapping[str, float], path: Path) -> Vector:
     starts = path.series[first, : flow.size, 0]
     followed = np.array([values[name] for name in flow.followed])
     units = np.where(followed == 0.0, 1.0, np.abs(followed))
-    found = np.empty((len(starts), flow.size, flow.columns))
+    matrices = np.empty((len(starts), flow.size, flow.columns))
     for leg, regime in enumerate(path.regimes.tolist()):
-        found[leg] = affine_derivatives(
+        matrices[leg] = affine_derivatives(
             flow.affine_at(values, regime),
             flow.sizes(values),
             units,
             starts[leg],
             float(path.durations[leg]),
         )
-    return found
+    return matrices
 
 
 def _slopes_along(
@@ -102,5 +102,5 @@ def _slopes_along(
     states = (scaled[:, :variables] @ powers).reshape(steps, variables, count, pieces)
     flat = states.transpose(1, 2, 0, 3).reshape(variables, count, -1)
     with np.errstate(all="ignore"):
-        found = flow.slopes_along(values, np.repeat(path.regimes[leg], pieces), flat)
-    return found, np.repeat(lengths, pieces) * path.unit / pieces
+        slopes = flow.slopes_along(values, np.repeat(path.regimes[leg], pieces), flat)
+    return slopes, np.repeat(lengths, pieces) * path.unit / pieces

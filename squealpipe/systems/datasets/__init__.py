@@ -382,8 +382,8 @@ def faults_of_values(
             return [f"{name} holds NaN; give the reason in an outcome variable"]
     if entry.flags is not None:
         values = np.asarray(given)
-        found = np.unique(values).tolist() if values.ndim else [values.item()]
-        strangers = set(found) - entry.meanings.keys()
+        distinct = np.unique(values).tolist() if values.ndim else [values.item()]
+        strangers = set(distinct) - entry.meanings.keys()
         if strangers:
             return [f"{name} holds flags {sorted(strangers)} that have no meaning"]
     return []

@@ -61,17 +61,17 @@ def _of_verdicts(verdicts: xr.Dataset | None) -> dict[str, Layer]:
 def _of_contact(
     validity: xr.Dataset | None, stability: xr.Dataset | None
 ) -> dict[str, Layer]:
-    found = {}
+    layers = {}
     regimes = validity if stability is None else stability
     if regimes is not None:
-        found["stability"] = _regimes("linear stability (A3)", regimes.regime_linear)
+        layers["stability"] = _regimes("linear stability (A3)", regimes.regime_linear)
     if validity is not None:
-        found["first_separation"] = Layer(
+        layers["first_separation"] = Layer(
             "first separation",
             validity.first_separation_time,
             "blank: contact is kept to the end of the run",
         )
-    return found
+    return layers
 
 
 def layers(
