@@ -5,6 +5,10 @@ of their eigenvalues have the smallest sum. An unstable mode of the whole whose 
 grow, or has another frequency, is missing in the reduced one; a growth rate that differs from its
 partner's by more than its own size has no known sign. Where either occurs, runs of the reduced
 structure say nothing about the whole.
+
+Modal damping of a large structure is computed for its modes up to a frequency, and a reduced one
+has damping beyond. What the modes beyond would change in a growth rate is bounded and counted as an
+error of it: with a mode's part x beyond those damped, xᴴ C x is at most 2 ζ √(xᴴ K x · xᴴ M x).
 """
 
 from collections.abc import Callable
@@ -40,12 +44,14 @@ class Truth:
         grows: which grow beyond their own error.
         limit: end of the band, rad/s; infinite without one.
         spectrum: the spectrum that holds them, whose pencil refines others.
+        undamped: bounds of what damping of modes beyond those damped changes in each, 1/s.
     """
 
     values: np.ndarray
     grows: np.ndarray
     limit: float
     spectrum: Spectrum
+    undamped: np.ndarray
 
     @classmethod
     def of(cls, whole: ContactStructure, frequency_max: float | None) -> Self:
@@ -57,14 +63,9 @@ class Truth:
         # a mode just beyond the band may be the partner of one within it
         reach = None if frequency_max is None else 1.1 * frequency_max
         spectrum = Solver(whole, Limits(reach), whole.belt_speed).at(whole.mu)
-        return cls.from_spectrum(spectrum, frequency_max)
-
-    @classmethod
-    def from_spectrum(cls, spectrum: Spectrum, frequency_max: float | None) -> Self:
-        """Take the modes from a spectrum that is known already."""
         limit = np.inf if frequency_max is None else 2.0 * np.pi * frequency_max
         grows = spectrum.values.real > spectrum.growth_errors
-        return cls(spectrum.values, grows, limit, spectrum)
+        return cls(spectrum.values, grows, limit, spectrum, _undamped(whole, spectrum))
 
     @property
     def within(self) -> np.ndarray:
@@ -140,6 +141,7 @@ def compared(
     values: np.ndarray,
     grows: np.ndarray,
     refine: Callable[[int], complex | None] | None = None,
+    undamped: np.ndarray | None = None,
 ) -> Agreement:
     """Pair the modes of a reduced structure with those of the whole.
 
@@ -148,7 +150,11 @@ def compared(
         grows: which of them grow.
         refine: from the place of a mode beyond the band to the eigenvalue of the whole that it
             stands for. Without it modes beyond the band of a large structure are not judged.
+        undamped: further errors of the growth rates of the whole's modes, 1/s; None: none.
     """
+    if undamped is None:
+        undamped = np.zeros(len(truth.values))
+    further = np.zeros(len(values))
     partners = np.full(len(values), np.nan, complex)
     stands_for = np.full(len(truth.values), -1)
     if len(values) and len(truth.values):
@@ -158,6 +164,7 @@ def compared(
         rows, columns = linear_sum_assignment(away)
         partners[rows] = truth.values[columns]
         stands_for[columns] = rows
+        further[rows] = undamped[columns]
     judged = np.ones(len(values), bool)
     if not truth.is_all:  # beyond the band there was nothing to choose from
         partners[_far(partners, values)] = np.nan
@@ -168,7 +175,7 @@ def compared(
                 found = refine(int(place))
                 partners[place] = np.nan if found is None else found
     off = partners - values
-    growth = np.abs(off.real)
+    growth = np.abs(off.real) + further
     elsewhere = _far(partners, values)
     unsure = judged & grows & ~((growth < values.real) & ~elsewhere)
     missing, errors = [], Errors(0.0, 0.0)
@@ -182,9 +189,10 @@ def compared(
         )
         # a tiny growth rate is judged by the frequency
         scale = max(abs(value.real), 0.01 * size)
+        apart = abs(nearest.real - value.real) + undamped[column]
         errors = Errors(
             max(errors.frequency, float(abs(nearest.imag - value.imag) / size)),
-            max(errors.growth, float(abs(nearest.real - value.real) / scale)),
+            max(errors.growth, float(apart / scale)),
         )
     lost, places = np.array(missing, complex), np.flatnonzero(unsure)
     return Agreement(
@@ -196,6 +204,30 @@ def compared(
         errors,
         truth.decays,
     )
+
+
+def _undamped(whole: ContactStructure, spectrum: Spectrum) -> np.ndarray:
+    """Return how much modal damping of the modes beyond those damped changes each, at most, 1/s."""
+    pencil, ratios = spectrum.pencil, whole.modal_damping
+    if pencil.is_dense or pencil.modal is None or ratios.ndim:
+        return np.zeros(len(spectrum.values))
+    ratio = float(ratios)
+    omega = pencil.modal.weights / (2.0 * ratio)
+    at_rest = whole.stiffness_at_rest
+
+    def beyond(vector: np.ndarray) -> float:
+        inside = np.abs(pencil.modal.columns.T @ vector) ** 2
+        kinetic = (vector.conj() @ (pencil.mass @ vector)).real - inside.sum()
+        elastic = (vector.conj() @ (at_rest @ vector)).real - omega**2 @ inside
+        return 2.0 * ratio * np.sqrt(max(kinetic, 0.0) * max(elastic, 0.0))
+
+    bounds = []
+    for s, right, left, *_ in spectrum.pairs:
+        slope = 2.0 * s * (pencil.mass @ right) + pencil.damping @ right
+        slope = slope + pencil.modal.product(right)
+        size = abs(left.conj() @ slope)
+        bounds.append(abs(s) * np.sqrt(beyond(right) * beyond(left)) / size)
+    return np.array(bounds)
 
 
 def _far(partners: np.ndarray, values: np.ndarray) -> np.ndarray:

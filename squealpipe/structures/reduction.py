@@ -352,7 +352,8 @@ def agreement_of(truth: Truth, spectrum: Any, modes: np.ndarray) -> Agreement:
         modes: (n of the whole, n), amplitudes → displacements.
     """
     grows = spectrum.values.real > spectrum.growth_errors
-    return compared(truth, spectrum.values, grows, refined(truth, spectrum, modes))
+    refine = refined(truth, spectrum, modes)
+    return compared(truth, spectrum.values, grows, refine, truth.undamped)
 
 
 def modes_that_would_do(
