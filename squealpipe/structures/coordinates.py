@@ -129,8 +129,12 @@ class Coordinates:
         if responses.size:
             squares, turn = la.eigh(responses.T @ space.at_rest @ responses)
             self.turn = responses @ turn
-            peaks = self.turn[np.abs(self.turn).argmax(axis=0), np.arange(len(squares))]
-            self.turn *= np.sign(peaks)  # the same signs on every machine
+            # signs that depend neither on the machine nor on further modes in the space: the first
+            # of the largest parts in the responses is positive
+            parts = space.responses.T @ self.turn
+            sizes = np.abs(parts)
+            first = (sizes >= (1.0 - 1e-6) * sizes.max(axis=0)).argmax(axis=0)
+            self.turn *= np.sign(parts[first, np.arange(len(squares))])
         modes = np.eye(len(space.at_rest), self.n_modes)
         self.turn = np.hstack([modes, self.turn[:, : number - self.n_modes]])
         """(space, number): coordinates → coordinates of the space."""

@@ -38,7 +38,8 @@ class ReductionSearch:
     and_larger: int = 3
     """Larger numbers of modes that must do as well: convergence is not monotonic."""
     first_modes: int = 64
-    """Modes computed at first of a large structure; up to here every number is tried."""
+    """Modes computed at first of a large structure, if it has no more contacts; up to here every
+    number is tried."""
 
 
 def band_needed(structure: ContactStructure, n_modes: int | None) -> str:
@@ -145,9 +146,9 @@ class Search:
         self, structure: ContactStructure, truth: Truth, frequency_max: float | None
     ) -> None:
         self.whole, self.truth, self.frequency_max = structure, truth, frequency_max
-        self.space = StaticSpace(
-            structure, min(ReductionSearch.first_modes, structure.size)
-        )
+        rules = ReductionSearch
+        first = max(rules.first_modes, fewest_modes(structure) + rules.and_larger)
+        self.space = StaticSpace(structure, min(first, structure.size))
         self._agreements: dict[tuple[int, int], Agreement | None] = {}
 
     def smallest(

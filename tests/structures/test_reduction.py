@@ -14,6 +14,7 @@ from squealpipe.cli.signatures import in_options
 from squealpipe.codes import Verdict
 from squealpipe.structures import disc_brake, elastic_pad
 from squealpipe.structures.agreement import Truth
+from squealpipe.structures.coordinates import Coordinates, StaticSpace
 from squealpipe.structures.reduction import Search, fewest_modes
 from squealpipe.structures.schema.squealing import Kind
 from squealpipe.structures.squeal import plant
@@ -162,6 +163,15 @@ def test_with_static_responses_contact_forces_of_sliding_are_those_of_the_whole(
     squares = shapes.T @ at_rest @ shapes
     scale = np.sqrt(np.outer(np.diag(squares), np.diag(squares)))
     assert squares / scale == pytest.approx(np.eye(9), abs=1e-9)
+
+
+def test_coordinates_do_not_depend_on_how_many_modes_were_computed():
+    """States of a stored answer are in these coordinates, which are computed again."""
+    pad = elastic_pad(elements=(10, 3), contacts=5, modal_damping=0.01)
+    few, many = (Coordinates(StaticSpace(pad, n_modes), 14, 2) for n_modes in (20, 80))
+    assert few.n_modes == many.n_modes == 4
+    assert few.omega == pytest.approx(many.omega, rel=1e-9)
+    assert few.modes == pytest.approx(many.modes, abs=1e-6 * np.abs(many.modes).max())
 
 
 def tilt(size):
