@@ -209,22 +209,23 @@ def compared(
 def _undamped(whole: ContactStructure, spectrum: Spectrum) -> np.ndarray:
     """Return how much modal damping of the modes beyond those damped changes each, at most, 1/s."""
     pencil, ratios = spectrum.pencil, whole.modal_damping
-    if pencil.is_dense or pencil.modal is None or ratios.ndim:
+    modal = pencil.modal
+    if pencil.is_dense or modal is None or ratios.ndim:
         return np.zeros(len(spectrum.values))
     ratio = float(ratios)
-    omega = pencil.modal.weights / (2.0 * ratio)
+    omega = modal.weights / (2.0 * ratio)
     at_rest = whole.stiffness_at_rest
 
     def beyond(vector: np.ndarray) -> float:
-        inside = np.abs(pencil.modal.columns.T @ vector) ** 2
+        inside = np.abs(modal.columns.T @ vector) ** 2
         kinetic = (vector.conj() @ (pencil.mass @ vector)).real - inside.sum()
         elastic = (vector.conj() @ (at_rest @ vector)).real - omega**2 @ inside
-        return 2.0 * ratio * np.sqrt(max(kinetic, 0.0) * max(elastic, 0.0))
+        return float(2.0 * ratio * np.sqrt(max(kinetic, 0.0) * max(elastic, 0.0)))
 
     bounds = []
     for s, right, left, *_ in spectrum.pairs:
         slope = 2.0 * s * (pencil.mass @ right) + pencil.damping @ right
-        slope = slope + pencil.modal.product(right)
+        slope = slope + modal.product(right)
         size = abs(left.conj() @ slope)
         bounds.append(abs(s) * np.sqrt(beyond(right) * beyond(left)) / size)
     return np.array(bounds)
