@@ -8,6 +8,7 @@ import scipy.io
 
 from squealpipe import Contact, Structure, squealing_modes
 from squealpipe.codes import Regime
+from squealpipe.store.rerun.key import files_named_in
 from squealpipe.structures.contact import PointOrigin
 from squealpipe.structures.contact_table import read_contacts
 from squealpipe.structures.fewer_points import _joined
@@ -253,6 +254,9 @@ def test_tables_are_read_from_files_and_written_back(tmp_path, monkeypatch):
     rows = ["name,normal,tangential,preload,law"]
     rows += ["a,1:1,2:1,100,lining.csv", "b,1:1,2:1,100,0:0 0.01:90 0.02:240"]
     (tmp_path / "by_hand.csv").write_text("\n".join(rows))
+    # an edit of the table of force reruns what depends on it, and archives hold it
+    (tmp_path / "by_hand.yaml").write_text("contacts: by_hand.csv\n")
+    assert f"{tmp_path}/lining.csv" in files_named_in([f"{tmp_path}/by_hand.yaml"])
     read = read_contacts(tmp_path / "by_hand.csv", None, 2, scales_of("mm-t-s"))
     for each in read:
         assert each.compression == pytest.approx(1e-5 + 1e-5 * 10 / 150)
