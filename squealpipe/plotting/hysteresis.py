@@ -38,8 +38,8 @@ def draw_hysteresis(axes: Axes, answer: xr.Dataset) -> None:
     attractor_colours = (style.Colour.blue, style.Colour.orange, style.Colour.purple)
     colours = cycle(attractor_colours)
     unstable: str | None = "unstable cycle"
-    for place in range(answer.sizes["track"]):
-        one = answer.isel(track=place)
+    for index in range(answer.sizes["track"]):
+        one = answer.isel(track=index)
         above = int(one.track_attractor) == JUST_ABOVE
         colour = style.Colour.light if above else next(colours)
         label = "from just above the onset" if above else _named(answer, one)

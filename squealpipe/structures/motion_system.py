@@ -258,8 +258,8 @@ def _parameters(structure: ContactStructure) -> dict[str, float]:
     parameters = {"mu": friction.mu, "belt_speed": structure.belt_speed, "preload": 1.0}
     if friction.mu_static is not None:
         parameters["mu_static"] = friction.mu_static
-    for place in range(len(structure.contacts)):
-        parameters |= coefficients_of(structure, place)
+    for index in range(len(structure.contacts)):
+        parameters |= coefficients_of(structure, index)
     if any(map(reads_speed, (friction, *structure.frictions))):
         parameters["friction_speed"] = friction.friction_speed
     return parameters

@@ -182,11 +182,11 @@ def growing_first(pairs: Sequence[Eigenpair]) -> list[Eigenpair]:
     A limit on the number of modes would else cut it off.
     """
     ordered = sorted(pairs, key=lambda each: (each.value.imag, -each.value.real))
-    for place in range(1, len(ordered)):
-        first, second = ordered[place - 1].value, ordered[place].value
+    for index in range(1, len(ordered)):
+        first, second = ordered[index - 1].value, ordered[index].value
         # the frequencies of both differ by round-off
         if second.imag - first.imag <= 1e-9 * second.imag and second.real > first.real:
-            ordered[place - 1 : place + 1] = ordered[place], ordered[place - 1]
+            ordered[index - 1 : index + 1] = ordered[index], ordered[index - 1]
     return ordered
 
 

@@ -47,12 +47,12 @@ def stiff_degrees(
     ratios = np.abs(stiffness.diagonal()) / mass.diagonal()
     order = np.argsort(ratios, kind="stable")
     ascending = ratios[order]
-    for place in range(1, size):
-        below, above = ascending[place - 1], ascending[place]
+    for index in range(1, size):
+        below, above = ascending[index - 1], ascending[index]
         if not below > 0 or not above > Gap.least * below:
             continue
         stiff = none.copy()
-        stiff[order[place:]] = True
+        stiff[order[index:]] = True
         held = above >= Gap.mechanical or (
             above > Gap.alone * below and _is_apart(stiffness, stiff)
         )

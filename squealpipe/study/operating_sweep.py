@@ -86,7 +86,7 @@ class OperatingSweep(PointSweep):
     @property
     def points(self) -> Sequence[Sequence[float]]:
         """The index of each point in the map, as a tuple of one."""
-        return [(place,) for place in range(self.operating.count)]
+        return [(index,) for index in range(self.operating.count)]
 
     def scattered(self, item: str) -> Self:
         """Return one part of a scattered sweep, ``i-of-n`` along its longest dimension."""
@@ -135,8 +135,8 @@ class OperatingSweep(PointSweep):
             name: whole[name].transpose(*self.vary).values.ravel() for name in names
         }
         rows = [
-            {name: column[place] for name, column in columns.items()}
-            for place in range(self.operating.count)
+            {name: column[index] for name, column in columns.items()}
+            for index in range(self.operating.count)
         ]
         return self.merged(lambda: iter(rows))
 

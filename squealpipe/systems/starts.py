@@ -60,11 +60,11 @@ class Starts:
         entries = starts or tuple(
             (int(i), None, None) for i in self.composition.regimes_of(component)
         )
-        for place, (regime, condition, equality) in enumerate(entries):
+        for position, (regime, condition, equality) in enumerate(entries):
             asked = [] if equality is None else [(equality, 0.0)]
             if condition is not None:
                 asked.append((condition, 1.0))
-            elif place != len(starts) - 1:
+            elif position != len(starts) - 1:
                 for table, sign in (
                     (traced.falls[regime], 1.0),
                     (traced.rises[regime], -1.0),

@@ -146,11 +146,11 @@ def _with_peaks(
     at: Callable[[float], float], values: list[float], margins: list[float]
 ) -> tuple[list[float], list[float]]:
     """Return values and margins, with those at which growth crosses zero twice between two."""
-    for place in range(len(values) - 2, 0, -1):
-        three = margins[place - 1 : place + 2]
+    for index in range(len(values) - 2, 0, -1):
+        three = margins[index - 1 : index + 2]
         if max(three) > 0.0 or not three[1] > max(three[0], three[2]):
             continue
-        low, high = values[place - 1], values[place + 1]
+        low, high = values[index - 1], values[index + 1]
         extremum = scipy.optimize.minimize_scalar(
             lambda value: -at(float(value)),
             bounds=(low, high),

@@ -85,8 +85,8 @@ def _record(
         chosen = codes == regime
         return np.stack(
             [
-                row["sample_durations"][:, chosen & (owners == place)].sum(axis=1)
-                for place in range(len(plant.contacts))
+                row["sample_durations"][:, chosen & (owners == index)].sum(axis=1)
+                for index in range(len(plant.contacts))
             ],
             axis=1,
         )

@@ -98,10 +98,10 @@ class ElementMesh:
         return joined(
             _used_once(
                 [
-                    faces_of(self, name, np.arange(len(block.numbers)), place)
+                    faces_of(self, name, np.arange(len(block.numbers)), index)
                     for name, block in self.elements.items()
                     if not ELEMENTS[name].is_shell
-                    for place in range(len(ELEMENTS[name].faces))
+                    for index in range(len(ELEMENTS[name].faces))
                 ]
             )
         )

@@ -20,15 +20,15 @@ def lines(ladder: xr.Dataset) -> list[str]:
     truth = ladder.isel(run=finest)
     told = [f"Finest: exact events in {truth.setting.item()}."]
     told += [f"A push along {line}." for line in _pushes(truth)]
-    for place in range(ladder.sizes["run"]):
-        if place != finest:
-            told.append(method_line(ladder.isel(run=place)))
+    for index in range(ladder.sizes["run"]):
+        if index != finest:
+            told.append(method_line(ladder.isel(run=index)))
     return told
 
 
 def _pushes(one: xr.Dataset) -> Iterator[str]:
-    for place in range(one.sizes["mode"]):
-        end = one.isel(mode=place)
+    for index in range(one.sizes["mode"]):
+        end = one.isel(mode=index)
         yield f"mode {int(end.mode)} {rings(end)}"
 
 
@@ -54,8 +54,8 @@ def method_line(one: xr.Dataset) -> str:
         PushAnswer.rings_instead: "which is wrong",
         PushAnswer.not_known: "of which the finest run says nothing",
     }
-    for place in range(one.sizes["mode"]):
-        end = one.isel(mode=place)
+    for index in range(one.sizes["mode"]):
+        end = one.isel(mode=index)
         answer = PushAnswer(int(end.answer))
         said = f"mode {int(end.mode)} {rings(end)}"
         if answer in words_of:

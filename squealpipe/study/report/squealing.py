@@ -251,8 +251,8 @@ def _what_would_do(answer: xr.Dataset) -> str:
 
 def missing(answer: xr.Dataset) -> Iterator[str]:
     """Unstable modes of the whole structure that are not among the modes kept."""
-    for place in range(min(answer.sizes.get("missing", 0), LISTED)):
-        lost = answer.isel(missing=place)
+    for index in range(min(answer.sizes.get("missing", 0), LISTED)):
+        lost = answer.isel(missing=index)
         yield f"Not in the modes kept: {_named(lost, 'missing_')} (of the whole structure)."
     if answer.sizes.get("missing", 0) > LISTED:
         yield f"{answer.sizes['missing'] - LISTED} more of these grow more slowly."
@@ -300,9 +300,9 @@ def beside(answer: xr.Dataset) -> str | None:
     end = _end(answer)
     others = [
         one
-        for place in range(answer.sizes["attractor"])
-        for one in [answer.isel(attractor=place)]
-        if place != end
+        for index in range(answer.sizes["attractor"])
+        for one in [answer.isel(attractor=index)]
+        if index != end
         and int(one["count"])
         and Verdict(int(one.motion)) is not Verdict.quiet
     ]
@@ -321,8 +321,8 @@ def modes(answer: xr.Dataset) -> Iterator[str]:
     if not answer.sizes["mode"]:
         kept = "" if agrees(answer) else f" in the {int(answer.n_modes)} modes kept"
         yield f"No mode of steady sliding is unstable{kept}."
-    for place in range(min(answer.sizes["mode"], LISTED)):
-        mode = answer.isel(mode=place)
+    for index in range(min(answer.sizes["mode"], LISTED)):
+        mode = answer.isel(mode=index)
         named = f"The mode at {_named(mode)}{_beyond(answer, float(mode.frequency))},"
         if not bool(mode.get("mode_is_sure", True)):
             named += " whose sign of growth is not known,"
@@ -332,7 +332,7 @@ def modes(answer: xr.Dataset) -> Iterator[str]:
         end = int(mode.ends_in)
         if end == NO_ATTRACTOR:
             # only the fastest of them is pushed, and only where no mode within the band grows
-            if place and float(mode.frequency) > frequency_max(answer):
+            if index and float(mode.frequency) > frequency_max(answer):
                 yield f"{named} is unstable; it was not pushed."
             else:
                 yield f"{named} ends in a motion that is undetermined."
@@ -353,8 +353,8 @@ def attractors(answer: xr.Dataset) -> Iterator[str]:
     if answer.attrs.get("not_run"):
         return
     size = answer.sizes["sample"]
-    for place in range(min(answer.sizes["attractor"], LISTED)):
-        one = answer.isel(attractor=place)
+    for index in range(min(answer.sizes["attractor"], LISTED)):
+        one = answer.isel(attractor=index)
         share = (
             f"{int(one['count'])} of {size} random starts ({_percent(float(one.share_low))} to "
             f"{_percent(float(one.share_high))} of all) end in"
@@ -410,8 +410,8 @@ def onset(answer: xr.Dataset, of_whole: float | None = None) -> Iterator[str]:
         told = critical if of_whole is None or not of_whole > 0 else of_whole
         begins = f"Steady sliding turns unstable at mu = {number(told, 4)} ({at})."
         yield f"{begins} {_kind(answer)}"
-    for place in range(answer.sizes["track"]):
-        one = answer.isel(track=place)
+    for index in range(answer.sizes["track"]):
+        one = answer.isel(track=index)
         if int(one.track_attractor) != JUST_ABOVE:
             motion = answer.isel(attractor=int(one.track_attractor))
             at = engineering(float(motion.dominant_frequency), "Hz")

@@ -235,8 +235,8 @@ def _partner(modes: xr.Dataset, number_: int) -> str:
 def contacts(answer: xr.Dataset) -> list[dict[str, Any]]:
     """Tables of the contacts, one for each motion that lasts."""
     tables: list[dict[str, Any]] = []
-    for place in range(min(answer.sizes["attractor"], squealing.LISTED)):
-        one = answer.isel(attractor=place)
+    for index in range(min(answer.sizes["attractor"], squealing.LISTED)):
+        one = answer.isel(attractor=index)
         if Verdict(int(one.motion)) is Verdict.quiet:
             continue
         rows = [
