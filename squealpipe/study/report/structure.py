@@ -358,7 +358,8 @@ def not_examined(answer: xr.Dataset) -> list[str]:
             1,
             f"What the {int(answer.n_modes)} modes leave out: of the unstable ones frequencies "
             f"are within {percent(errors[0])}, growth rates within {percent(errors[1])} of "
-            "the larger of themselves and 1 % of the angular frequency.",
+            "the larger of themselves and 1 % of the angular frequency. These errors do not "
+            "bound levels: run more modes to see how far a level changes.",
         )
     if np.isfinite(squealing.frequency_max(answer)):
         above = engineering(squealing.frequency_max(answer), "Hz")
