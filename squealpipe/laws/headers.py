@@ -1,7 +1,8 @@
 """Headers of tables: where the columns of knots and values stand, and their units.
 
 A unit stands behind a name in many ways, in a row of its own, or only in a comment, which is no
-place to guess from.
+place to guess from. :mod:`squealpipe.laws.table_files` converts the numbers, and refuses a unit
+that does not fit its column.
 """
 
 import re

@@ -1,4 +1,4 @@
-"""Complex modes: growth over frequency, or frequency and growth over friction or a factor."""
+"""Complex modes: growth or damping ratio over frequency, or how they change with a parameter."""
 
 from textwrap import fill
 

@@ -1,4 +1,7 @@
-"""Draw the frames of a film: what moves, and beside it force and path of a contact."""
+"""Draw the frames of a film: what moves, and beside it force and path of a contact.
+
+Colours of a contact that slips, sticks or is open, in films of pads and structures, stand here.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""One look for every figure: sizes, colours, angle axes, and how files are written."""
+"""One look for every figure: sizes, colours, angle axes, and how files are written.
+
+The states of a contact in films have their colours in :mod:`squealpipe.plotting.motion_panels`.
+"""
 
 import io
 import math

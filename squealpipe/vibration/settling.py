@@ -7,7 +7,8 @@ Where it keeps its size the motion is regular, and everything that is stated, th
 among it, has to agree closely. Where it grows from round-off to the size of the motion within each
 window the motion is irregular, and only its statistics have to agree. Where it grows, but by less,
 the motion is leaving a place that repels it, as a cycle that a second mode destabilizes: that is
-not settled, however equal two windows look.
+not settled, however equal two windows look. What has died out is decided by the thresholds of
+quiet in :mod:`squealpipe.vibration.settled_runs`.
 
 Source: the largest Lyapunov exponent by a renormalized tangent vector (Benettin, Galgani, Giorgilli
 and Strelcyn, Meccanica 15 (1980) 9-30). Cost: the perturbation adds a quarter to that of a run.

@@ -1,4 +1,7 @@
-"""Verdict on a settled motion: quiet, squeals or hammers."""
+"""Verdict on a settled motion: quiet, squeals or hammers.
+
+Whether it is small enough to be quiet is decided in :mod:`squealpipe.vibration.settled_runs`.
+"""
 
 from squealpipe.codes import Verdict
 

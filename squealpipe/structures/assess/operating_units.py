@@ -1,4 +1,7 @@
-"""Pressures, speeds and temperatures of operating points, as people and instruments write them."""
+"""Pressures, speeds and temperatures of operating points, as people and instruments write them.
+
+Units stand behind a number, or in the header of a column of a file.
+"""
 
 from __future__ import annotations
 

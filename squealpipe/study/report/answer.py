@@ -1,4 +1,4 @@
-"""The answer of a dataset ``assess`` in words that need no handbook."""
+"""The answer of a dataset ``assess``, of a pad or structure, in words that need no handbook."""
 
 import math
 from collections.abc import Iterator

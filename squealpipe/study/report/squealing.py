@@ -1,4 +1,7 @@
-"""The answer of a dataset ``squealing_modes`` in the words of a brake's report."""
+"""The answer of a dataset ``squealing_modes`` in the words of a brake's report.
+
+Structures are also assessed as pads are; those words are in :mod:`squealpipe.study.report.answer`.
+"""
 
 import math
 from collections.abc import Iterator
