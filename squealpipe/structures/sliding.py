@@ -8,17 +8,19 @@ A contact whose law is a table is closed in one of its pieces, Nᵢ = Nᵢⱼ �
 Idea: for given closed contacts and pieces this is linear, so it is computed for contacts that are
 all closed, in the pieces of their preloads, and the first contact that pulls, overlaps or is beyond
 its piece is changed until none is. Such pivoting ends or comes back; where it comes back, all
-combinations of up to 16 contacts are tried. With tables several states may fit: of up to 4096
-combinations all are tried, of more it starts again from the first and the last pieces, and where a
-second state is found there is no answer. One factorization of the structure with all contacts
-closed serves every set and every friction, since each differs from it by as many columns as there
-are contacts (Woodbury's identity). The last correction is computed with a residual that is rounded
-once. Invariant: an answer fits its own inequalities. Cost: a factorization, and a small dense
-system for each set.
+combinations of up to 16 contacts are tried. With tables pivoting passes many pieces, and first does
+so in a small system of the contacts alone. Several states may fit then: of up to 4096 combinations
+all are tried, of more it starts again from the first and the last pieces, and where a second state
+is found there is no answer. One factorization of the structure with all contacts closed serves
+every set and every friction, since each differs from it by as many columns as there are contacts
+(Woodbury's identity). The last correction is computed with a residual that is rounded once.
+Invariant: an answer fits its own inequalities. Cost: a factorization, and a small dense system for
+each set.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -178,8 +180,8 @@ def steady_sliding(
         mu: coefficient of the contacts that have none of their own, or of each, (contacts,).
 
     Raises:
-        NoSlidingError: a belt at rest; a structure that nothing holds; or contacts of which none
-            can be open or closed (as where friction jams).
+        NoSlidingError: a belt at rest; a structure that nothing holds; contacts that can be neither
+            open nor closed together (as where friction jams); or with tables, in two ways.
     """
     structure = structure.at_speed(belt_speed)
     if not np.ndim(mu):
@@ -201,7 +203,9 @@ def steady_sliding(
         [float(law.slope(size)) for law, size in zip(laws, sizes, strict=True)]
     )
     pivoting = _Pivoting(structure, _Laws(structure), drag)
-    state = pivoting.state(pivoting.laws.start)
+    start = pivoting.laws.start
+    near = pivoting.ended(start) if pivoting.laws.has_tables else None
+    state = pivoting.state(start if near is None else near)
     names = [contact.name for contact in structure.contacts]
     where = f"at mu = {_range(mu)}, belt_speed = {belt_speed:g}"
     if state is None:
@@ -214,7 +218,10 @@ def steady_sliding(
             f"no steady sliding {where}: {reason}; check preloads and load"
         )
     piece, displacement, force, force_error = state
-    if pivoting.laws.has_tables and (other := pivoting.another(force)) is not None:
+    if (
+        pivoting.laws.has_tables
+        and (other := pivoting.another(piece, force)) is not None
+    ):
         raise NoSlidingError(
             f"steady sliding {where} is not unique: the contacts {', '.join(names)} can have the "
             f"forces {_listed(force)} N, or {_listed(other)} N; such friction jams. Choose a "
@@ -274,41 +281,75 @@ class _Pivoting:
                 piece = fitting[0][0] if fitting else None
         return None
 
-    def another(self, force: np.ndarray) -> np.ndarray | None:
-        """Return the forces of another state, if one is found."""
+    def another(self, piece: np.ndarray, force: np.ndarray) -> np.ndarray | None:
+        """Return the forces of another state than one in these pieces, if one is found."""
         laws, same = self.laws, SlidingBalance.one_state * float(force.max(initial=0.0))
         if laws.combinations <= SlidingBalance.most_compared:
             fitting = [each for _, each in self._sought(SlidingBalance.most_compared)]
         else:
-            states = (self.state(each) for each in (0 * laws.counts, laws.counts - 1))
+            ends = [self.ended(each) for each in (0 * laws.counts, laws.counts - 1)]
+            others = [
+                each for each in ends if each is not None and (each != piece).any()
+            ]
+            states = map(self.state, others)
             fitting = [state[2] for state in states if state is not None]
-        others = (each for each in fitting if abs(each - force).max() > same)
-        return next(others, None)
+        return next((each for each in fitting if abs(each - force).max() > same), None)
+
+    def ended(self, start: np.ndarray) -> np.ndarray | None:
+        """Return the pieces in which pivoting from others ends, by the contacts alone."""
+        if self._of_contacts is None:
+            return None
+        by_load, by_force, by_springs = self._of_contacts
+        piece, seen = start.copy(), set()
+        while piece.tobytes() not in seen:
+            seen.add(piece.tobytes())
+            line = self.laws.line(piece)
+            right = by_load + by_force @ (line.closed * line.at_rest)
+            try:
+                nearing = np.linalg.solve(by_springs + by_force * line.springs, right)
+            except np.linalg.LinAlgError:  # nothing holds the structure then
+                return None
+            following = self.laws.next(piece, line.at_rest - line.stiffness * nearing)
+            wrong = np.flatnonzero(piece != following)
+            if not wrong.size:
+                return piece
+            piece[wrong[0]] = following[wrong[0]]
+        return None
+
+    @cached_property
+    def _of_contacts(self) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+        """Matrices of nᵢᵀq by the load, by forces of contacts and by their springs, which hold it.
+
+        None where the structure is singular although springs are at all contacts.
+        """
+        structure = self.structure
+        try:
+            held = _held(structure)
+        except RuntimeError:
+            return None
+        normals = structure.normals
+        return (
+            normals.T @ held.factors.solve(structure.load),
+            normals.T @ (held.of_normals + held.of_tangentials * self.drag),
+            np.eye(len(self.drag))
+            - (normals.T @ held.of_normals) * structure.stiffnesses,
+        )
 
     def _sought(
         self, most: int, *, first: bool = False
     ) -> list[tuple[np.ndarray, np.ndarray]]:
         """Return pieces that fit, and forces in them, of all combinations; none of too many.
 
-        With springs kᵢ at all contacts the nearing uᵢ = nᵢᵀq is linear in u itself and in the
-        forces of the closed contacts, so that each combination is a small system.
+        With springs kᵢ at all contacts uᵢ = nᵢᵀq is linear in u itself and in the forces of the
+        closed contacts, so that each combination is a small system.
 
         Args:
             first: whether one is enough.
         """
-        structure, laws, number = self.structure, self.laws, len(self.drag)
-        if laws.combinations > most:
+        laws = self.laws
+        if laws.combinations > most or self._of_contacts is None:
             return []
-        normals, stiffnesses = structure.normals, structure.stiffnesses
-        held = structure.stiffness + contact_stiffness(structure, stiffnesses, normals)
-        try:
-            factors = splu(sp.csc_array(held))
-        except RuntimeError:  # exactly singular
-            return []
-        acting = acting_directions(structure, np.ones(number, bool), self.drag)
-        by_load = normals.T @ factors.solve(structure.load)
-        by_force = normals.T @ factors.solve(acting)
-        by_springs = np.eye(number) - normals.T @ factors.solve(normals * stiffnesses)
+        by_load, by_force, by_springs = self._of_contacts
         radix = np.concatenate([[1], np.cumprod(laws.counts + 1)]).astype(int)
         pieces = np.arange(radix[-1])[:, None] // radix[:-1] % (laws.counts + 1) - 1
         # most of them closed first

@@ -187,6 +187,41 @@ def test_steady_sliding_that_is_not_unique_is_refused():
     assert steady_sliding(structure, 0.1, 1.0).force[0] > 0
 
 
+def test_of_many_contacts_steady_sliding_is_found_and_a_second_one_refused():
+    # eight times the contact of before: more combinations of pieces than are all tried
+    number = 8
+    block = np.array([[1.0, -0.9], [-0.9, 1.0]])
+    contacts = [
+        Contact(
+            f"c{i}",
+            {2 * i: 1.0},
+            {2 * i + 1: -1.0},
+            preload=1.0 + 0.1 * i,
+            law="linear 0:0 1:0.1 2:20",
+        )
+        for i in range(number)
+    ]
+    structure = Structure(
+        np.eye(2 * number),
+        np.kron(np.eye(number), block),
+        contacts=contacts,
+        mu=1.5,
+        belt_speed=1.0,
+        load=np.tile([0.12, 0.0], number),
+    )
+    with pytest.raises(NoSlidingError, match="is not unique"):
+        steady_sliding(structure, 1.5, 1.0)
+    state = steady_sliding(structure, 0.1, 1.0)
+    forces = [
+        contact.force(-displacement)
+        for contact, displacement in zip(contacts, state.displacement[::2], strict=True)
+    ]
+    np.testing.assert_allclose(state.force, forces, rtol=1e-12)
+    drag = np.stack([forces, -0.1 * np.array(forces)], axis=1).ravel()
+    balance = structure.stiffness @ state.displacement - structure.load - drag
+    np.testing.assert_allclose(balance, 0.0, atol=1e-12)
+
+
 def test_the_factor_of_preload_moves_along_the_table():
     start = {"q1": 0.3, "v2": -0.8}
     scaled = one_point(BENT).system().simulate(9.0, start=start, preload=1.7)
