@@ -98,7 +98,7 @@ structure:
 # modifications: # tried as cures beside friction, preload, damping and the like
 #   weight: {{patch: {{nodes: [5080], mass: 0.1 kg}}}} # up to 0.1 kg at a node
 #   shim: {{patch: {{nodes: BACK, mass: 50 g, damping_ratio: 0.05}}}} # a node set, a face or a list
-#   edge: {{chamfer: {{face: lining, share: 0.2}}}} # lost at its leading end
+#   edge: {{chamfer: {{face: lining, share: 0.2}}}} # up to so much lost, from its leading end
 """
 DISC = """\
 # A disc, a lining and a back plate. `ccx brake` writes the matrices and the order of their rows

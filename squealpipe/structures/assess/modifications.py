@@ -79,7 +79,7 @@ def read_modification(
         )
     ((kind, entries),) = content.items()
     if kind not in FORMS:
-        raise ValueError(f"{title}: {suggestion(str(kind), list(FORMS))}")
+        raise ValueError(f"{title}: {kind!r}: {suggestion(str(kind), list(FORMS))}")
     if not isinstance(entries, Mapping) or not entries:
         raise ValueError(f"{title}: {kind} = {brief(entries)}: {FORMS[kind]} is needed")
     title = f"{title}: {kind}"
@@ -426,7 +426,8 @@ def freedoms_of(title: str, place: Any, structure: ContactStructure) -> list[int
     if is_whole_number(place):
         if not 0 <= place < structure.size:
             raise ValueError(
-                f"{title}[{place!r}]: degrees of freedom are 0 to {structure.size - 1}"
+                f"{title}[{place!r}]: degrees of freedom are 0 to {structure.size - 1}; in "
+                f"files and commands, which count from 1, it is {place + 1}"
             )
         return [int(place)]
     node, _, direction = str(place).partition(".")

@@ -312,6 +312,6 @@ def so_far(
     told = ", ".join(f"{number} {where}" for where, number in ends.most_common())
     done = sum(motion.agrees for motion in settled)
     return (
-        f"after {engineering(elapsed, 's')}: {done} of {count} starts have settled"
+        f"after {engineering(elapsed, 's')} of motion: {done} of {count} starts have settled"
         + (f" ({told})" if told else "")
     )

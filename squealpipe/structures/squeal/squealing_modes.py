@@ -57,12 +57,13 @@ def squealing_modes(
     """Find the unstable modes that squeal: run from small pushes and random starts until they
     settle.
 
-    A start of 1 % is pushed along each unstable mode of steady sliding (its energy is 1e-4 of what
-    the preload stores in the contacts). ``samples`` more are uniform in the ball of that energy.
-    All are run together, with every event located: at first for as long as the slowest of these
-    modes needs to grow beyond small motions, then in windows that double in length, until the
-    statistics of two agree. Motions with the same statistics are one attractor. Each is then run
-    on: neighbours that run away show irregular motion, and the exact map closes cycles.
+    A start of 1 % is pushed along each unstable mode of steady sliding, in a reduced structure up
+    to its ``frequency_max`` (its energy is 1e-4 of what the preload stores in the contacts).
+    ``samples`` more are uniform in the ball of that energy. Every event is located. At first a push
+    runs for as long as its own mode needs to grow beyond small motions, a random start for as long
+    as the fastest mode does; windows of growing length follow, until the statistics of two agree.
+    Motions with the same statistics are one attractor. Each is then run on: neighbours that run
+    away show irregular motion, and the exact map closes cycles.
 
     Args:
         structure: a :class:`squealpipe.Structure`; one of more than 32 degrees of freedom is
