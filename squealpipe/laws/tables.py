@@ -2,7 +2,8 @@
 
 ``linear 0:0.5 0.1:0.4 1:0.3`` holds pairs of knot and value, ``cubic …`` the same, joined by the
 monotone cubics of Fritsch and Carlson. The content is the law: it stands in parameters, keys and
-datasets as the name of a formula does, so nothing depends on a file that was read once.
+datasets as the name of a formula does, so nothing depends on a file that was read once. A value is
+found by bisection among the knots; it is constant before the first one.
 """
 
 import math
@@ -23,15 +24,15 @@ BETWEEN = ("linear", "cubic")
 
 
 class OwnLawRules(NamedTuple):
-    """Rules for laws of the user's own, in place of those of a package of laws.
+    """Rules that a package of laws sets for laws of the user's own.
 
     Attributes:
-        columns: of a table, (abscissa, value).
-        units: of these columns.
-        files: which files are read, as an error says it.
-        refused: names of laws that cannot be carried, with the reason.
-        in_table: parameters that a table stands in for.
-        in_source: those that a Python file stands in for.
+        columns: names of a table's columns, (abscissa, value).
+        units: units of these columns.
+        files: kinds of files that are read, in the words of an error.
+        refused: names of laws that are refused, with the reason.
+        in_table: names of the parameters that a table replaces.
+        in_source: names of those that a Python file replaces.
     """
 
     columns: tuple[str, str]
@@ -54,9 +55,10 @@ class Pieces(NamedTuple):
     coefficients: Any
 
     def value(self, at: Any, *, derivative: bool = False) -> Any:
-        """The value at floats or arrays, or the rate; complex ones count by their real part.
+        """Return the value at a float or an array, or the derivative there.
 
-        A knot belongs to the piece that begins there.
+        The piece is chosen by the real part, so that complex steps give derivatives. A knot belongs
+        to the piece that begins there.
         """
         import numpy as np
 
@@ -66,7 +68,10 @@ class Pieces(NamedTuple):
         return polynomial(rows, at - self.starts[piece], derivative)
 
     def constants(self, prefix: str) -> list[dict[str, float]]:
-        """Start, end and coefficients of each piece by name; the last ends nowhere."""
+        """Return start, end and coefficients of each piece by name.
+
+        The last piece has no end; its start stands in that place.
+        """
         ends = [*self.starts[1:], self.starts[-1]]
         names = [
             f"{prefix}_{what}" for what in ("start", "end", "c0", "c1", "c2", "c3")
@@ -79,7 +84,7 @@ class Pieces(NamedTuple):
 
 
 def polynomial(coefficients: Any, distance: Any, derivative: bool = False) -> Any:
-    """c0 + c1 d + c2 d² + c3 d³ in nested form, or its derivative."""
+    """Return c0 + c1 d + c2 d² + c3 d³, or its derivative by the distance d."""
     c0, c1, c2, c3 = coefficients
     if derivative:
         return c1 + distance * (2.0 * c2 + distance * (3.0 * c3))
@@ -92,11 +97,12 @@ def read_table(
     between: str = "linear",
     chosen: tuple[str | None, str | None] = (None, None),
 ) -> str:
-    """The text of a table in a file (:mod:`squealpipe.laws.table_files`).
+    """Return the text of a table that a file holds (:mod:`squealpipe.laws.table_files`), in SI.
 
     Args:
-        columns: those of knots and values; of two columns that of values may have any name.
-        chosen: names of columns to take instead.
+        columns: names of the columns of knots and values; where there are only two columns, that of
+            values may have any name.
+        chosen: names of the columns to take instead.
     """
     if between not in BETWEEN:
         raise ValueError(f"between = {between!r}: choose from {', '.join(BETWEEN)}")
@@ -106,7 +112,11 @@ def read_table(
 
 @lru_cache(maxsize=64)
 def knots_of(text: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Knots and values of the text of a table."""
+    """Return the knots, ascending, and the values of the text of a table.
+
+    Raises:
+        ValueError: it is no table, has a negative or infinite number, or does not ascend.
+    """
     try:
         pairs = [tuple(map(as_number, pair.split(":"))) for pair in text.split()[1:]]
         knots, values = (tuple(each) for each in zip(*pairs, strict=True))
@@ -129,7 +139,7 @@ def knots_of(text: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
 
 
 def scaled(text: str, knot: float, value: float) -> str:
-    """The text of a table with knots and values in other units."""
+    """Return the text of a table with its knots, and its values, divided by a unit."""
     pairs = zip(*knots_of(text), strict=True)
     return text.split(maxsplit=1)[0] + "".join(
         f" {k / knot!r}:{v / value!r}" for k, v in pairs
@@ -155,7 +165,7 @@ def is_table(name: object) -> bool:
 
 
 def stood_for(law: Any, laws: Any) -> tuple[str, ...]:
-    """Parameters in whose place a law of a package of laws stands."""
+    """Return the names of the parameters that a law of the user's own replaces."""
     if is_table(law):
         return tuple(laws.own_law_rules.in_table)
     return tuple(laws.own_law_rules.in_source) if "\n" in str(law) else ()
@@ -163,10 +173,10 @@ def stood_for(law: Any, laws: Any) -> tuple[str, ...]:
 
 @lru_cache(maxsize=64)
 def pieces_of(text: str, *, goes_on: bool = False) -> Pieces:
-    """The pieces of a table, from 0 on.
+    """Return the pieces of a table from 0 on, constant before the first knot.
 
     Args:
-        goes_on: beyond the last knot with the slope there, not constant.
+        goes_on: whether it goes on beyond the last knot with the slope there; else it is constant.
     """
     import numpy as np
 
@@ -190,7 +200,7 @@ def pieces_of(text: str, *, goes_on: bool = False) -> Pieces:
 
 
 def _listed(given: Mapping[str, Any], columns: tuple[str, str]) -> str:
-    """The text of a table from lists of its knots and values."""
+    """Return the text of a table from lists of its knots and values."""
     if not set(columns) <= set(given) <= {*columns, "between"}:
         raise ValueError(
             f"write both lists, {columns[0]} and {columns[1]}, and if wanted `between: cubic`"
@@ -215,7 +225,7 @@ def _listed(given: Mapping[str, Any], columns: tuple[str, str]) -> str:
 
 
 def named(given: Any, columns: tuple[str, str], folder: Path = Path()) -> Any:
-    """The name of a law from what a user writes: a file becomes its content.
+    """Return the name of a law from what a user writes: a file becomes its content.
 
     Args:
         given: a name; the path of a table or Python file; or ``{"table": path, "between":

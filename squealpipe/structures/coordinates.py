@@ -107,10 +107,10 @@ def static_responses(
 
 
 class Coordinates:
-    """Some modes at rest and static responses of a structure, and what it is in them.
+    """Coordinates of some modes at rest and static responses, and the structure in them.
 
     Args:
-        number: of coordinates.
+        number: number of coordinates.
         directions: static responses of each contact: 0 none, 1 the normal one, 2 both.
     """
 
@@ -144,7 +144,7 @@ class Coordinates:
 
     @property
     def modes(self) -> np.ndarray:
-        """Amplitudes → displacements, (n, number)."""
+        """Displacements of the structure at unit amplitude of each coordinate, (n, number)."""
         return np.asarray(self.space.basis @ self.turn)
 
     @cached_property
@@ -153,7 +153,7 @@ class Coordinates:
         return np.asarray(self.turn.T @ self.space.directions[1])
 
     def parallel_contact(self) -> str | None:
-        """Name the first contact whose two directions are one in these coordinates."""
+        """Name the first contact whose normal and tangent are parallel here; None if none are."""
         normals = self.turn.T @ self.space.directions[0]
         for index, contact in enumerate(self.space.whole.contacts):
             normal, along = normals[:, index], self.tangentials[:, index]
@@ -188,7 +188,7 @@ class Coordinates:
         )
 
     def values(self) -> np.ndarray:
-        """Eigenvalues of the reduced structure about its own steady sliding."""
+        """Return the eigenvalues of the reduced structure about its own steady sliding, 1/s."""
         reduced = self.reduced()
         state = steady_sliding(reduced, reduced.mu, reduced.belt_speed)
         pairs = all_modes(pencil_about(reduced, state, None))

@@ -2,7 +2,9 @@
 
 The reader of scipy skips what it does not know: a comma in a number, the exponent of ``1.5D+03``,
 what stands behind an entry, and in integers all that follows the first sign that is no digit
-(``3e2`` is 3). If a file says ``symmetric`` but holds both triangles, it adds them up.
+(``3e2`` is 3). If a file says ``symmetric`` but holds both triangles, it adds them up. Here all of
+these are refused, but for integers, which are read as floats (``3e2`` is 300). Plain files are
+checked by a fast reader of tables; only others line by line.
 """
 
 import io
@@ -19,10 +21,11 @@ UNENDED = "its last line has no end; add one if the file is whole"
 
 
 def read_matrix_market(path: Path) -> Any:
-    """A matrix from a Matrix Market file; integers are read as the numbers that they are.
+    """Return the matrix of a Matrix Market file, dense (``array``) or sparse (``coordinate``).
 
     Raises:
-        ValueError: it is cut off, or has lines that are no entries.
+        ValueError: it is cut off, has lines that are no entries, states positions without values
+            (``pattern``), or says that it is symmetric and holds both triangles.
     """
     banner, body = _parted(path.read_bytes())
     content = banner + body
@@ -47,17 +50,18 @@ def read_matrix_market(path: Path) -> Any:
 
 
 def _parted(content: bytes) -> tuple[bytes, bytes]:
-    """Return the first line as scipy reads it, with integers called real, and the rest."""
+    """Return the first line in words that scipy knows, with integers called real; and the rest."""
     first, end, body = content.lstrip().partition(b"\n")
     first = re.sub(rb"(?i)^%%matrixmarket", b"%%MatrixMarket", first)
     return re.sub(rb"(?i)\b(unsigned-)?integer\b", b"real", first) + end, body
 
 
 def _check_entries(content: bytes, stated: int, form: str, field: str) -> None:
-    """Count the entries: an array that is cut off is filled with zeros when read.
+    """Check that there are as many entries as stated; scipy fills what is cut off with zeros.
 
     Raises:
-        ValueError: a line is no entry, or there are others than the sizes say.
+        ValueError: a line is no entry, there are more or fewer than stated, or the last line has no
+            end.
     """
     width = 2 * (form == "coordinate") + (2 if field == "complex" else 1)
     if _is_table(content, stated, width, places=form == "coordinate"):

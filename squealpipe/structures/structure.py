@@ -1,4 +1,4 @@
-"""A structure with all that can be done with one: the verbs are bound to it here, once."""
+"""Class ``Structure``: a structure's definition, with what can be computed of it as methods."""
 
 from __future__ import annotations
 
@@ -52,14 +52,14 @@ class Structure(ContactStructure):  # noqa: D101 (that of the definition)
                 outside.
             contacts: faces by name; the contacts of ``"lining"`` are ``lining_1``, ``lining_2``, …,
                 in ascending order of their nodes.
-            rotation: of the body that faces are against, about an axis; without one each face has
-                its ``direction``.
-            degrees_of_freedom: names ``"12.1"`` (node.direction) or pairs (12, 1) of the rows of
-                the matrices, or a ``.dof`` file. None: as the matrix files have them; or 3 rows
-                for each node of arrays.
-            units: of the matrices and the mesh, like ``"mm-t-s"``; SI by default. Numbers of faces
-                and of the rotation are SI or texts with a unit.
-            arguments: further ones of :class:`Structure`.
+            rotation: rotation about an axis of the body that the faces press on; without it each
+                face states its ``direction``.
+            degrees_of_freedom: node and direction of each row of the matrices, as names ``"12.1"``,
+                pairs (12, 1) or a ``.dof`` file. None: as the matrix files have them; arrays have 3
+                rows for each node.
+            units: units of the matrices and the mesh, like ``"mm-t-s"``; SI by default. Numbers of
+                faces and of the rotation are SI or texts with a unit.
+            arguments: further arguments of :class:`Structure`.
 
         Raises:
             FileNotFoundError: a file that does not exist.
@@ -77,10 +77,10 @@ class Structure(ContactStructure):  # noqa: D101 (that of the definition)
         )
 
     def with_points(self, points: int) -> Self:
-        """Return the structure with at most so many contacts for each face of a mesh.
+        """Return the structure with at most ``points`` contacts for each face of a mesh.
 
-        Neighbours are merged; stiffness, force and first moments of a face stay. So what changes in
-        an answer is the effect of how the pressure is spread; see
+        Neighbours are merged; stiffness, force and first moments of a face stay. Any change of an
+        answer is therefore due to how the pressure is spread; see
         :func:`squealpipe.structures.fewer_points.with_points`.
         """
         from squealpipe.structures.fewer_points import with_points

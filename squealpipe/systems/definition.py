@@ -1,4 +1,8 @@
-"""Piecewise-smooth systems: their definition, checked; the verbs stand elsewhere."""
+"""Define a piecewise-smooth system, and check the definition.
+
+:mod:`squealpipe.systems.tracing` turns its functions into symbols, and
+:mod:`squealpipe.systems.system` binds runs and cycles to it as methods.
+"""
 
 from __future__ import annotations  # help shows Angle, not its checks
 
@@ -67,27 +71,30 @@ class Definition:
 
     Args:
         name: for titles and files.
-        states: name → unit, or (unit, typical size), a number or a function of the parameters;
-            error control and round-off are relative to the size, 1 if none is given.
+        states: name → unit, or name → (unit, typical size). The size is a number or a function of
+            the parameters, 1 if none is given; error control and round-off are relative to it.
         parameters: name → default, or (default, unit).
-        regimes: name → constants ``r`` that field and surfaces read; the same names in each.
-        components: in place of ``regimes``, ``switches`` and ``starts_in``: name → what has regimes
-            of its own beside the others; see :class:`squealpipe.Component`.
+        regimes: name → {constant: value}: the constants ``r`` that field and surfaces read. All
+            regimes have constants of the same names.
+        components: name → :class:`squealpipe.Component`, for a system of several parts each of
+            which has its own regimes; given in place of ``regimes``, ``switches`` and
+            ``starts_in``.
         field: (t, s, p, r) → rates of all states, or one such function for each regime.
         start: state → value, and ``regime`` if it is to be given, with components as
             {component: regime}.
-        starts_in: [(regime, condition) or (regime, condition, equality), …, regime], the first
-            whose condition is ≥ 0 and whose equality is 0; a condition of None, as one left out,
-            stands for that regime's surfaces being all ≥ 0.
+        starts_in: [(regime, condition) or (regime, condition, equality), …, regime]. A run begins
+            in the first regime whose condition is ≥ 0 and whose equality is 0, else in the last
+            one. Where a condition is None, all surfaces of that regime have to be ≥ 0; where
+            ``starts_in`` is left out, those of each regime, in the order of ``regimes``.
         period: of the forcing, a function of the parameters; left out, the system is autonomous.
-        outputs: name → (unit, function (t, s, p, r)): quantities told along runs, and
-            whose extremes are kept.
+        outputs: name → (unit, function (t, s, p, r)): quantities that runs give beside the states,
+            with their extremes.
         stops: outcome → function (t, s, p, r): ends a run where it falls through zero.
         time_scale: typical time, a number or a function of the parameters.
-        scales: function of the parameters: unit → size of a run's typical quantity of that unit,
-            for every part of the states', parameters' and outputs' units, "s" among them. Runs
-            are then made in numbers without units, so that they do not depend on the units of
-            what they are given; typical sizes and time are these scales.
+        scales: function of the parameters that gives {unit: typical size of a quantity of that
+            unit}, for "s" and every other unit of which those of states, parameters and outputs are
+            made. Runs are then made in numbers without units, so that they do not depend on the
+            units of what they are given; typical sizes and time are these scales.
 
     Raises:
         ValueError: a name is unknown, missing or taken, a surface is constant in a regime, a ``to``
@@ -174,11 +181,11 @@ class Definition:
         self.check_scales()
 
     def _trace(self) -> Traced:
-        """Call the functions with symbols, and return what they become."""
+        """Call the functions with symbols, and return what they become; a subclass does this."""
         raise NotImplementedError
 
     def check_scales(self) -> None:
-        """Raise if the functions do not agree with the units that the scales are of."""
+        """Raise if the functions do not agree with the scales' units; a subclass does this."""
         raise NotImplementedError
 
     @property
@@ -218,8 +225,9 @@ class Definition:
 
     @cached_property
     def start_names(self) -> dict[str, str]:
-        """Return the names of starts: ``x0``, or ``x_0`` of every state where a
-        state is named so.
+        """Map each state to the name of its start: ``x0``.
+
+        Where some state is itself named like that, the starts of all are named ``x_0``.
         """
         mark = ""
         while any(f"{name}{mark}0" in self.units for name in self.units):
@@ -309,7 +317,7 @@ class Definition:
                 )
 
     def name_of(self, regime: int) -> str:
-        """The name of a regime, with its component's."""
+        """Return the name of the regime of a number, with its component's."""
         return list(self.regimes)[regime]
 
 
@@ -330,7 +338,7 @@ def in_unit_of_state(units: Mapping[str, str], name: str, value: Any) -> Any:
 def _components(
     regimes: Any, switches: Any, starts_in: Any, components: Any
 ) -> Mapping[str, Component]:
-    """The components of a system, from what it is given."""
+    """Return the components that are given, or the regimes that are given as the only one."""
     if components is None:
         if regimes is None:
             raise TypeError("System: regimes, or components, are needed")

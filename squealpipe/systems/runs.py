@@ -46,12 +46,13 @@ def simulate(
     sensitivity: Sequence[str] = (),
     **parameters: Any,
 ) -> xr.Dataset:
-    """One run of a system, with every switch located.
+    """Run a system once, and locate every switch.
 
     Args:
-        t_end: when it ends.
-        t_start: when it begins.
-        times: instants, ascending; by default four a step of the integrator, evenly spaced.
+        t_end: time at which it ends, s.
+        t_start: time at which it begins, s.
+        times: instants of the answer, ascending, s; by default evenly spaced, about four for each
+            step of the integrator.
         start: states that differ from the system's start, and ``regime`` if it is to be given.
         tol: tolerance of the Taylor integrator, relative to the states' sizes.
         max_steps: steps of the integrator in a run, after which its outcome is ``step_limit``.
@@ -61,8 +62,9 @@ def simulate(
 
     Returns:
         Dataset over ``time`` and ``event``: each state and output, ``regime``, ``event_time``,
-        ``event_kind``, ``event_regime`` (entered), ``outcome``; ``<state>_by_<name>`` (at fixed
-        instants) and ``event_time_by_<name>``. Instants that the run did not reach hold NaN.
+        ``event_kind``, ``event_regime`` (entered), ``end_time`` and ``outcome``; with
+        ``sensitivity`` also ``<state>_by_<name>`` (at fixed instants) and ``event_time_by_<name>``.
+        Instants that the run did not reach hold NaN.
     """
     values = {
         n: scalar(n, v) for n, v in call_values(system, start, parameters).items()
@@ -112,7 +114,7 @@ def simulate(
 def _outputs_along(
     system: Any, values: Mapping[str, float], times: np.ndarray, run: RunRecord
 ) -> dict[str, Any]:
-    """Each output at the instants of a run, with the constants of its regimes there."""
+    """Return each output at the instants of a run, with the constants of the regime there."""
     along = system.outputs_along(values, times, run.path, run.path_regimes)
     reached = np.where(run.path_regimes[:, 0] >= 0, 0.0, np.nan)
     return {
@@ -135,16 +137,18 @@ def ensemble(
     workers: Workers = None,
     **parameters: Any,
 ) -> xr.Dataset:
-    """Many runs: an outer product over all starts and parameters that are given as 1-D arrays.
+    """Run a system for all combinations of the starts and parameters that are 1-D arrays.
 
     Args:
-        t_end: when they end.
-        t_start: when they begin.
+        t_end: time at which they end, s.
+        t_start: time at which they begin, s.
         start: states that differ from the system's start, and ``regime`` if it is to be given; an
             array of ``x`` has dimension ``x0``.
-        t_late: from when the ``late_…`` extremes are kept; after four fifths by default.
+        t_late: time from which the ``late_…`` extremes count, s; by default after four fifths of
+            the run.
         max_steps: steps of the integrator in a run, after which its outcome is ``step_limit``.
-        horizon: with the growth of a perturbation and the horizon of predictability.
+        horizon: whether ``lyapunov_exponent``, the growth rate of a perturbation, 1/s, and
+            ``predictability_horizon``, s, are wanted.
         workers: processes; None takes all cores. The result is the same bit for bit.
         parameters: those that differ from the system's.
 

@@ -1,4 +1,4 @@
-"""Datasets of systems, whose variables are named after what each system has.
+"""Schemas for datasets of systems, whose variables are named after what each system has.
 
 A name in angle brackets stands for one of the system's own: ``late_<name>_min`` for the late
 minimum of each state and output. The dimension ``<grid>`` stands for those of the starts and
@@ -130,7 +130,7 @@ basin_schema = DatasetSchema(
 
 
 def _of_cycles(*dims: str) -> dict[str, Variable]:
-    """Numbers of a cycle, the exact names."""
+    """Return the variables of a cycle that have the same names in every system."""
     multipliers = {
         f"multiplier_{name}": or_nan(
             f"{part} part of the Floquet multipliers, the trivial one first without forcing",
@@ -231,7 +231,14 @@ def build(
     coordinates: Mapping[str, Any],
     attributes: Mapping[str, Any],
 ) -> xr.Dataset:
-    """The dataset of a system of one of the kinds above, validated."""
+    """Return a dataset of one of the kinds above, made and checked.
+
+    Args:
+        what: its kind, as "simulate".
+
+    Raises:
+        SchemaError: as of :func:`check`, or ``attributes`` are those of another kind.
+    """
     dataset = xr.Dataset(variables, coordinates, attributes)
     check(dataset)
     if dataset.attrs["schema"] != SYSTEM + what:
@@ -240,7 +247,7 @@ def build(
 
 
 def check(dataset: xr.Dataset) -> xr.Dataset:
-    """Return the dataset of a system if every variable is one that its table has, as it says.
+    """Return the dataset itself if each variable is in the table of its kind and as stated there.
 
     Raises:
         SchemaError: with all faults: a variable that has no place, is missing, or has other
@@ -274,7 +281,7 @@ def check(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def of_dataset(dataset: xr.Dataset) -> DatasetSchema:
-    """The schema of one dataset of a system: its own names, with the tolerances of its table."""
+    """Return the schema of one dataset: its own names, with the tolerances of the table."""
     name = str(dataset.attrs.get("schema"))
     lists = system_schemas[name].lists if name in system_schemas else {}
     described = {
@@ -294,7 +301,7 @@ def of_dataset(dataset: xr.Dataset) -> DatasetSchema:
 
 @cache
 def entry_of(table: str, name: str) -> Variable | None:
-    """The first entry of a table that a variable of a system fits."""
+    """Return the first entry of a table that the name of a variable fits; None if none does."""
     if table not in system_schemas:
         return None
     if (exact := system_schemas[table].lookup(name)) is not None:
@@ -304,7 +311,7 @@ def entry_of(table: str, name: str) -> Variable | None:
 
 
 def names_in_results(own: Mapping[str, Iterable[str]]) -> set[str]:
-    """Dimensions and variables of all results of a system.
+    """Return the names of dimensions and variables in all results of a system.
 
     Args:
         own: the word between brackets → the system's names that it stands for.
@@ -333,7 +340,7 @@ def _patterns(table: str) -> list[tuple[re.Pattern[str], Variable]]:
 
 
 def _described(table: str, name: str, variable: xr.Variable) -> Variable:
-    """Return what a variable's own attributes say, compared as its table says."""
+    """Return an entry with a variable's own name and units and its table's tolerances."""
     texts = variable.dtype.kind in "UO"
     entry = entry_of(table, name) or Variable(nan_allowed=True)
     return Variable(

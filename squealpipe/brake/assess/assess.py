@@ -1,4 +1,12 @@
-"""The answer for one brake: verdict, cause, frequency, level, and what stops it."""
+"""Answer for one brake: verdict, cause, frequency, level, and what stops it.
+
+Idea: steady sliding, pushed in the direction in which small motions grow fastest, is run until it
+has settled; the verdict is what it ends in. The sudden start, from rest at r = 0, decides in its
+place where there is no steady sliding. Three strikes of steady sliding look for other motions that
+last. Then each parameter alone, and both angles together, are changed until the verdict changes
+(:mod:`squealpipe.brake.assess.cures`). Invariant: the search does not alter the verdict. Cost: five
+runs to the verdict; the search takes most of the time.
+"""
 
 from __future__ import annotations
 
@@ -42,9 +50,9 @@ class Judged:
     """Verdict on a brake and its motions, before the search for what stops it.
 
     Attributes:
-        verdict: what the start that decides ends in.
-        motions: states of other motions that last.
-        facts: variables of the dataset that are known already.
+        verdict: what pushed steady sliding ends in, or the sudden start where there is none.
+        motions: final states (4,) of the first two runs that have not died out, m and m/s.
+        facts: variables of the dataset that are known before the search.
         tol: tolerance of the runs.
     """
 
@@ -55,11 +63,11 @@ class Judged:
     tol: float
 
     def without_cures(self) -> xr.Dataset:
-        """The answer so far: verdict, cause, frequency and level."""
+        """Return the dataset with verdict, cause, frequency and level, but without cures."""
         return self._answer({}, {}, (np.nan, np.nan))
 
     def with_cures(self) -> xr.Dataset:
-        """The whole answer; the search takes most of its time."""
+        """Return the whole dataset; the search for cures takes most of the time."""
         coarse = max(self.tol, Search.tol)
         cures, snaps = pad_boundaries(
             self.design, self.verdict, self.motions, tol=coarse
@@ -89,7 +97,12 @@ class Judged:
 
 
 def judge(params: Parameters, alpha1: float, alpha2: float, *, tol: float) -> Judged:
-    """Run both starts of a brake, and three strikes, until their motions have settled."""
+    """Judge a brake by runs that have settled: pushed steady sliding, the sudden start, strikes.
+
+    Args:
+        alpha1, alpha2: spring angles, rad.
+        tol: tolerance of the runs.
+    """
     design = Design(params, alpha1, alpha2)
     sliding = Sliding.of(design)
     sudden = start_at(design, sliding, np.zeros(4))

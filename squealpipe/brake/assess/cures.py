@@ -1,4 +1,12 @@
-"""Boundaries of quiet: for each change alone, the nearest value at which the verdict changes."""
+"""Boundaries of quiet: for each change alone, the nearest value at which the verdict changes.
+
+Idea: a cure is one parameter that is changed while the others keep their values. The search of
+:mod:`squealpipe.vibration.cures` does the work: growth of small motions splits the range of a cure
+without a run, runs of pushed steady sliding bisect for the boundary, and motions that last beside
+steady sliding are followed to where the last of them ends. The two angles are searched together in
+the same way, along rays. Invariant: a boundary is NaN where none was found in the range. Cost: that
+of the runs.
+"""
 
 import math
 from collections.abc import Sequence
@@ -30,14 +38,17 @@ from squealpipe.vibration.settled_runs import SettledRun, Start
 
 
 def growth_margin(design: Design) -> float:
-    """Growth of small motions beyond round-off, 1/s; positive without any sliding."""
+    """Return by how much small motions grow faster than round-off, 1/s.
+
+    A design that has no steady sliding gets a positive number.
+    """
     sliding = Sliding.of(design)
     return design.rate if sliding is None else sliding.margin
 
 
 @dataclass(frozen=True)
 class Pads:
-    """Pads as the search for other motions sees them.
+    """Answers for pads to :class:`squealpipe.vibration.any_start.Subjects`.
 
     Attributes:
         tol: tolerance of the runs.
@@ -50,13 +61,16 @@ class Pads:
         return growth_margin(subject) <= 0.0
 
     def push(self, subject: Design) -> Start:
-        """Return steady sliding, pushed."""
+        """Return steady sliding, pushed in the direction in which small motions grow fastest."""
         sliding = Sliding.of(subject)
         assert sliding is not None  # noqa: S101 (it is quiet linearly)
         return pushed(subject, sliding)
 
     def fading(self, subject: Design) -> float:
-        """Return ln of the decay of small motions within the longest run; NaN where they grow."""
+        """Return ln of the factor by which small motions shrink within the longest run.
+
+        It is NaN where they grow or there is no steady sliding.
+        """
         sliding = Sliding.of(subject)
         if sliding is None or sliding.is_unstable:
             return math.nan
@@ -65,7 +79,13 @@ class Pads:
     def starts(
         self, subject: Design, number: int, motions: Sequence[np.ndarray]
     ) -> list[Start]:
-        """Return one kind of starts: states of motions, rest under the preload, or strikes."""
+        """Return the starts of one kind.
+
+        Args:
+            number: 0 for the states of ``motions``, 1 for rest at r = 0, 2 for strikes of steady
+                sliding.
+            motions: states (4,), m and m/s.
+        """
         sliding = Sliding.of(subject)
         if number == 2:
             return [] if sliding is None else strikes(subject, sliding)
@@ -73,18 +93,21 @@ class Pads:
         return [start_at(subject, sliding, state) for state in states]
 
     def settle(self, starts: Sequence[Start]) -> list[SettledRun]:
-        """Run starts until they have settled."""
+        """Run each start until it has settled, and return the runs in the order of the starts."""
         return settle(starts, tol=self.tol)
 
 
 def pad_boundaries(
     design: Design, verdict: Verdict, motions: Sequence[np.ndarray], *, tol: float
 ) -> tuple[dict[str, Boundary], dict[str, SnapThrough]]:
-    """Return what all cures of a design reach, by ascending change, and where the pad snaps.
+    """Return the boundary of each cure of a design, and where a quiet pad snaps along it.
+
+    The cure with the smallest change comes first; those without a boundary come last.
 
     Args:
-        verdict: of its steady sliding, pushed.
-        motions: states of its settled motions that are not quiet.
+        verdict: verdict on the design as it is.
+        motions: states (4,) of its settled motions that are not quiet, m and m/s.
+        tol: tolerance of the runs.
     """
     cures = cures_of(design)
     quiet = verdict is Verdict.quiet
@@ -106,10 +129,10 @@ def pad_boundaries(
 def nearest_angles(
     design: Design, verdict: Verdict, *, tol: float
 ) -> tuple[float, float]:
-    """The nearest pair of angles at which the verdict changes, along rays; NaN: none.
+    """Return the nearest pair of angles found at which the verdict changes, rad; NaN if none is.
 
-    Along each ray it is located as a cure is; the nearest lies between two rays, a few per cent
-    nearer.
+    The boundary is located along rays from the present pair, as for a cure. Between two rays
+    another pair may be nearer by a few per cent.
     """
     steps = CureRanges.angle_step * np.arange(
         1, 1 + round(CureRanges.farthest_angle / CureRanges.angle_step)

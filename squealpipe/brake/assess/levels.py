@@ -1,4 +1,4 @@
-"""Record a pad's settled motion and measure it."""
+"""Measure a pad's settled motion: it is run on from its end, recorded, and described by numbers."""
 
 from functools import partial
 from typing import Any
@@ -18,7 +18,12 @@ from squealpipe.vibration.settled_runs import SettledRun
 def levels(
     design: Design, sliding: Sliding | None, settled: SettledRun, *, tol: float
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return scalars of a settled motion, and its spectrum and path."""
+    """Return the scalars of a settled motion; and its spectrum and path.
+
+    Both are variables of the dataset of :func:`squealpipe.assess` by name, as
+    :func:`squealpipe.vibration.levels.levels` defines them. A pad has one contact, so the values by
+    contact are left out.
+    """
     params = design.params
     scalars, pictured = measured.levels(
         partial(_record, design, tol=tol),
@@ -33,6 +38,7 @@ def levels(
 
 
 def _record(design: Design, state: np.ndarray, *, tol: float) -> Record:
+    """Return samples of a run from a state (4,), over the length of one record."""
     params = design.params
     length = Measurement.periods * design.period
     count = int(Measurement.periods * Measurement.fine)

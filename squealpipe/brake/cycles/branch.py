@@ -1,4 +1,11 @@
-"""Branches of periodic motions of model A1 in a parameter or an angle."""
+"""Follow branches of periodic motions of model A1 in a parameter or an angle.
+
+Idea: the first cycle comes from a settled run, a given state or the onset of steady sliding's
+instability; the branch is then followed by the pseudo-arclength continuation of systems
+(:mod:`squealpipe.systems.cycles.following`). Source: H. B. Keller, in Applications of Bifurcation
+Theory (1977). Invariant: every point is a motion of A1 with its events located, and ``end`` says
+why there are no more. Cost: that of the points, and of a settled run if no start is given.
+"""
 
 from __future__ import annotations
 
@@ -62,9 +69,9 @@ def cycle_branch(
     n_points: Annotated[Whole, Ge(2)] = 200,
     doubled: bool = False,
 ) -> xr.Dataset:
-    """The branch of cycles through a start, in one parameter, stable and unstable parts.
+    """Return the branch of cycles through a start in one parameter, stable and unstable parts.
 
-    Pseudo-arclength continuation that goes round folds and corners. A step holds at most one
+    Pseudo-arclength continuation goes round folds and corners. A step holds at most one
     change of the events; folds, period doublings, torus bifurcations, grazings, and stick that
     just begins, ends or is interrupted, are located and become points of their own. Events that
     coincide, as where contact is lost at belt speed, make no special point.

@@ -1,4 +1,11 @@
-"""Exact symmetric periodic orbits, from compiled kernels."""
+"""Symmetric periodic orbits of a piecewise-linear system, exact to round-off.
+
+Idea: an orbit that is at rest at (x0, y0) and again after T/2 is periodic, so z = (x0, y0, T/2) has
+to fulfil two equations: both velocities vanish after half a period. A plane in z, given or chosen
+by pseudo-arclength, is the third for Newton's method; the compiled kernels of
+:mod:`squealpipe.brake.orbits.shooting` do the work. Invariant: an orbit states its ``residual``,
+the largest velocity at the second rest. Cost: one shot over half a period for each Newton step.
+"""
 
 from __future__ import annotations
 
@@ -34,9 +41,12 @@ class Orbit:
     """A symmetric periodic orbit in the units of its system.
 
     Attributes:
-        point: (3,) x0, y0, T/2 from an instant of rest, that with the larger y if not said.
+        point: (3,) x0 and y0 at an instant of rest, and T/2; of both instants the one with the
+            larger y unless said otherwise.
         rest: (2,) x and y at the other instant of rest.
+        switches: times at which y crosses the threshold within the half period after ``point``.
         stability_index: trace of the monodromy matrix − 2.
+        residual: largest velocity at ``rest``.
     """
 
     point: Vector
@@ -47,7 +57,7 @@ class Orbit:
 
     @property
     def omega(self) -> float:
-        """Angular frequency 2π/T."""
+        """Angular frequency 2π/T, in radians per unit of time."""
         return float(math.pi / self.point[2])
 
     def from_higher_rest(self) -> Orbit:
@@ -86,8 +96,9 @@ class OrbitEquations:
     """Rest at both ends of half a period: two equations for z = (x0, y0, T/2).
 
     Attributes:
-        fastest: frequency of the fastest mode of either state.
-        work: its phase in all shots of Newton's method, rad.
+        fastest: angular frequency of the fastest mode of either linear state.
+        work: phase through which that mode has run in all shots of Newton's method, rad; a measure
+            of cost.
     """
 
     def __init__(self, system: PiecewiseLinearSystem) -> None:
@@ -97,12 +108,12 @@ class OrbitEquations:
         self._latest = _Shot(nothing, nothing, nothing, nothing, nothing, nothing)
 
     def evaluate(self, z: Vector) -> tuple[Vector, Vector]:
-        """Velocities after half a period and their derivatives, (2,) and (2, 3)."""
+        """Return the velocities after half a period, (2,), and their derivatives by z, (2, 3)."""
         shot = self._shot(z)
         return shot.velocities, shot.gradients
 
     def orbit(self, z: Vector) -> Orbit:
-        """The orbit that a solution is."""
+        """Return the orbit of a solution z."""
         shot = self._shot(z)
         return Orbit(
             z,
@@ -113,14 +124,12 @@ class OrbitEquations:
         )
 
     def sense(self, state: ContinuationState) -> float:
-        """Return whether a branch runs along the vector across both gradients, 1, or against it,
-        −1.
-        """
+        """Return 1 where a branch runs along the cross product of both gradients, else −1."""
         gradients = self._shot(state.point).gradients
         return float(np.sign(np.linalg.det([*gradients, state.tangent])))
 
     def at_other_rest(self, z: Vector, direction: Vector) -> Vector:
-        """A direction of a branch, described from the other instant of rest."""
+        """Return a direction of a branch, (3,), as it is at the other instant of rest."""
         shot, vector = self._shot(z), np.array([*direction[:2], 0.0, 0.0])
         push(self.rows, shot.segments, shot.legs, vector)
         return np.array([*vector[:2], direction[2]])
@@ -146,7 +155,7 @@ class OrbitEquations:
 
 @dataclass(frozen=True)
 class Across(PseudoArclength):
-    """Pseudo-arclength whose corrector is in closed form; its tolerance is of end velocities."""
+    """Pseudo-arclength with a compiled corrector; its tolerance is of end velocities."""
 
     def correct(
         self, problem: Any, guess: Vector, normal: Vector
@@ -175,19 +184,28 @@ to_round_off = Across(ContinuationSettings(tolerance=1e-300))
 def orbit_across(
     system: PiecewiseLinearSystem, guess: Vector, normal: Vector
 ) -> Orbit | None:
-    """The orbit on the plane through a guess across a normal, or None where Newton fails."""
+    """Return the orbit on the plane through a guess, or None where Newton's method fails.
+
+    Args:
+        guess: x0, y0, T/2; what follows is not read.
+        normal: (3,) normal of the plane.
+    """
     equations = OrbitEquations(system)
     correction = to_round_off.correct(equations, guess[:3], normal)
     return None if correction is None else equations.orbit(correction[0])
 
 
 def solve_orbit(system: PiecewiseLinearSystem, guess: Vector) -> Orbit | None:
-    """The orbit with the y0 of a guess (x0, y0, T/2), or None where Newton's method fails."""
+    """Return the orbit with the y0 of a guess (x0, y0, T/2); None where Newton's method fails."""
     return orbit_across(system, guess, np.array([0.0, 1.0, 0.0]))
 
 
 def decoupled_half_period(system: PiecewiseLinearSystem, y_peak: float) -> float:
-    """T/2 of a y motion that does not feel x: one spring above the threshold, another below."""
+    """Return T/2 of a motion in y alone, on one spring above the threshold and another below.
+
+    Args:
+        y_peak: its largest y.
+    """
     above, below = system.above, system.below
     frequency = math.sqrt(above.matrix[1][1])
     centre = above.load[1] / above.matrix[1][1]
@@ -201,7 +219,7 @@ def decoupled_half_period(system: PiecewiseLinearSystem, y_peak: float) -> float
 def shape(
     system: PiecewiseLinearSystem, point: NDArray[np.float64]
 ) -> tuple[float, float, float]:
-    """(x amplitude, y amplitude, largest |vx|) over a period; amplitudes are half peak-to-peak."""
+    """Return x amplitude, y amplitude (half peak-to-peak) and the largest of |vx| over a period."""
     out = np.empty(6)
     extremes(system.rows, np.ascontiguousarray(point[:3], dtype=float), out)
     return (

@@ -1,9 +1,12 @@
 """Estimate propensities over distributed parameters, and Sobol indices of what they depend on.
 
 Idea: samples are scrambled Sobol sequences, in several independent replicates, so that the scatter
-between replicates states the error. First and total indices use Saltelli's matrices: two samples,
-and one more for each input. Source: Saltelli et al., Comput. Phys. Commun. 181 (2010) 259-270.
-Cost: (2 + inputs) runs a sample; flutter needs none, and gets a larger sample.
+between replicates states the error. The events are flutter, by the linear model, and what runs of
+A1 show: contact loss, irregular hammering, the whirl. First and total indices use Saltelli's
+matrices: two samples, and one more for each input. Source: Saltelli et al., Comput. Phys. Commun.
+181 (2010) 259-270. Invariant: an index that the sample cannot support is NaN, as are all where the
+springs are correlated. Cost: (3 + inputs) runs for each of the ``samples``, one without indices;
+flutter needs none, and its indices have a larger sample.
 """
 
 from __future__ import annotations
@@ -146,7 +149,7 @@ def propensity(
 def _correlate(
     points: np.ndarray, first: int, second: int, correlation: float
 ) -> np.ndarray:
-    """Two columns of a uniform sample joined by a Gaussian copula."""
+    """Return a uniform sample, (size, inputs), with two columns joined by a Gaussian copula."""
     normal = scipy.stats.norm.ppf(points[:, [first, second]])
     mixed = correlation * normal[:, 0] + np.sqrt(1.0 - correlation**2) * normal[:, 1]
     joined = points.copy()
@@ -162,7 +165,7 @@ def _events(
     tol: float,
     workers: int | None,
 ) -> np.ndarray:
-    """Return whether each quantity that needs a run occurs, (quantities − 1, size)."""
+    """Return whether contact loss, irregular hammering and the whirl occur, (3, size)."""
     run = run_ensemble(
         fields,
         alpha1,

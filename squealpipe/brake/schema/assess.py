@@ -1,4 +1,8 @@
-"""Datasets of verdicts over angles and over scattered parameters, and what is changed of a pad."""
+"""Schemas of verdicts over the angles (``verdict_map``) and over a sample (``verdict_shares``).
+
+``CURES`` and ``KICKS`` state which quantities of a pad are changed to stop the noise, and by which
+strikes other motions are sought.
+"""
 
 from squealpipe.brake.schema.linear import MAP, angle_coordinates, angles_of_one_pair
 from squealpipe.codes import Verdict

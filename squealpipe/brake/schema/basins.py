@@ -1,4 +1,4 @@
-"""Datasets of runs from other starts than rest."""
+"""Schemas of A1 from other starts than rest: ``basin_map_…`` and ``smallest_disturbance``."""
 
 from dataclasses import replace
 from enum import IntEnum
@@ -25,7 +25,7 @@ start_variables = {
 
 
 def basin_schema(swept: tuple[str, ...]) -> DatasetSchema:
-    """The schema of a basin map whose dimensions are the ``swept`` ones of start_variables."""
+    """Return the schema of a basin map whose dimensions are the ``swept`` names, as x0 and vx0."""
 
     def real(units: str, long_name: str) -> Variable:
         return or_nan(long_name, units, swept, **IN_MAP)
@@ -83,7 +83,7 @@ basin_map_schemas = tuple(
 
 
 class LeadsTo(IntEnum):
-    """Result of a disturbance."""
+    """Result that a disturbance of steady sliding leads to."""
 
     contact_lost = 0
     whirl = 1

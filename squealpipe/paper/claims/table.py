@@ -13,7 +13,7 @@ from squealpipe.store import load
 
 
 def rows(claims: xr.Dataset) -> list[dict[str, Any]]:
-    """One mapping per statement: its id and the variables of dataset ``claims``, flags in words.
+    """Return for each statement its id and the variables of dataset ``claims``, flags in words.
 
     Numbers that do not exist are None. ``changes``: the sign of friction changes the verdict;
     ``as_recorded``: the verdict here is the recorded one; ``unmet``: the statement fails here
@@ -40,7 +40,7 @@ def rows(claims: xr.Dataset) -> list[dict[str, Any]]:
 
 
 def tally(statements: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Numbers of verdicts, those of fitted statements apart from those of tests."""
+    """Count the verdicts, those of fitted statements apart from those of tests."""
     words = {"predicted": "tests", "fitted": "fitted", "unknown": "not told apart"}
     tallies = []
     for basis, name in words.items():
@@ -52,7 +52,7 @@ def tally(statements: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
 
 
 def table(path: str | os.PathLike[str]) -> tuple[list[dict[str, Any]], int]:
-    """The judged statements of a run and the exit code for a command line.
+    """Return the judged statements of a run and the exit code for a command line.
 
     Returns:
         The rows, and 1 if a verdict differs from the one recorded for the shipped baseline,

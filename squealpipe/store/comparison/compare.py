@@ -53,7 +53,7 @@ class DatasetDifference:
 
     @property
     def severity(self) -> tuple[int, float, float]:
-        """That of the worst variable."""
+        """Severity of the worst variable; the larger, the worse."""
         if self.verdict == Agreement.not_comparable or not self.differences:
             return self.verdict, 0.0, 0.0
         return self.differences[0].severity
@@ -95,7 +95,7 @@ class Comparison:
         )
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain values for JSON: no NaN, no infinity."""
+        """Return plain values for JSON; NaN and infinity become None."""
         whole = {**asdict(self), "verdict": self.verdict, "exit_code": self.exit_code}
         return _plain(whole)  # type: ignore[no-any-return]
 
@@ -217,7 +217,7 @@ def compare_datasets(name: str, a: xr.Dataset, b: xr.Dataset) -> DatasetDifferen
 
 
 def _judged(name: str, aligned: Aligned, entry: Variable) -> VariableDifference:
-    """One variable of both sides: its numbers, if these mean the same."""
+    """Compare one variable of both sides, if its dimensions, units, flags and type are the same."""
     pair = aligned.a[name], aligned.b[name]
     for what, (left, right) in (
         ("dimensions", [each.dims for each in pair]),
@@ -272,7 +272,7 @@ def _refused(name: str, reason: str) -> DatasetDifference:
 
 
 def configuration(dataset: xr.Dataset) -> dict[str, Any]:
-    """Dotted key → value of what made a dataset: of the study's slice, else of the call."""
+    """Return the configuration that made a dataset, by dotted key: the study's, else the call's."""
     stated = dataset.attrs
     if "config" in stated:
         return flat(json.loads(stated["config"]))
@@ -280,7 +280,7 @@ def configuration(dataset: xr.Dataset) -> dict[str, Any]:
 
 
 def _environment(dataset: xr.Dataset) -> dict[str, Any]:
-    """Commit, platform and the versions of the libraries one by one."""
+    """Return commit and platform by name, and the version of each library."""
     left_out = {"history", "wall_time_s", "inputs", "libraries", "key_content"}
     shown = VOLATILE_ATTRIBUTES - left_out
     stated = {key: dataset.attrs[key] for key in shown if key in dataset.attrs}
@@ -298,7 +298,7 @@ def _changes(a: dict[str, Any], b: dict[str, Any]) -> dict[str, tuple[Any, Any]]
 
 
 def _plain(value: Any) -> Any:
-    """A value as JSON takes it."""
+    """Return a value as JSON takes it."""
     if isinstance(value, Agreement):
         return value.name
     if isinstance(value, dict):

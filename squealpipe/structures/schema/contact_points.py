@@ -1,4 +1,9 @@
-"""An elastic pad on one, two and more contact points of equal total stiffness and preload."""
+"""Schema of ``contact_points``: an elastic pad on one, two and more contact points.
+
+Total stiffness and preload are the same in all; a stiff pad stands beside them. Each design has
+its onset and unstable modes, the motion that pushed steady sliding ends in, and what each contact
+point does in that motion.
+"""
 
 from squealpipe.codes import Verdict
 from squealpipe.schema import (

@@ -16,13 +16,13 @@ from squealpipe.structures.squeal.plant import Plant
 
 @dataclass(frozen=True)
 class Samples:
-    """A run at the instants asked for.
+    """Samples of a run at the instants asked for, without the start.
 
     Attributes:
-        states: (instants, 2 n).
+        states: (instants, 2 n), displacements and velocities.
         pressing: p of each contact, (instants, contacts), N.
-        forces: N of each.
-        sliding: speed w of each, m/s.
+        forces: normal force N of each, likewise, N.
+        sliding: sliding speed w of each, likewise, m/s.
         evaluations: calls of the field.
         finished: whether the solver reached the end.
     """
@@ -56,21 +56,21 @@ class Smoothed:
         self.contact_width = contact_width
 
     def pressing(self, q: np.ndarray) -> np.ndarray:
-        """p of displacements (…, n), N."""
+        """Return p of each contact at displacements (…, n), N."""
         return self.plant.structure.pressing(q @ self.numbers.normals)
 
     def sliding(self, v: np.ndarray) -> np.ndarray:
-        """w of velocities (…, n), m/s."""
+        """Return the sliding speed w of each contact at velocities (…, n), m/s."""
         return np.asarray(self.belt - v @ self.numbers.tangentials)
 
     def forces(self, pressing: np.ndarray) -> np.ndarray:
-        """Normal forces, N."""
+        """Return the normal force of each contact from its p, N."""
         if not self.contact_width.any():
             return np.asarray(np.maximum(pressing, 0.0))
         return np.asarray(0.5 * (pressing + np.hypot(pressing, self.contact_width)))
 
     def rates(self, _: float, state: np.ndarray) -> np.ndarray:
-        """ẋ of x = (q, v)."""
+        """Return ẋ of x = (q, v), (2 n,)."""
         numbers, q, v = self.numbers, state[: self.size], state[self.size :]
         pressing, speed = self.pressing(q), self.sliding(v)
         normal = self.forces(pressing)
@@ -90,8 +90,9 @@ class Smoothed:
         """Integrate by LSODA (ODEPACK), which changes between methods for stiff and other systems.
 
         Args:
-            times: instants, the first of which is the start, s.
-            tol: relative, and absolute over the sizes of the coordinates.
+            start: state (2 n,) at the first of the times.
+            times: that of the start, and then the instants of the samples, s.
+            tol: tolerance, relative and over the sizes of the coordinates.
         """
         # random states whose spread is the size of each coordinate
         spread = self.plant.random_states(64, 0) - self.plant.sliding

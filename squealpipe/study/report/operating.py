@@ -1,4 +1,4 @@
-"""Say what a map of operating points tells."""
+"""Describe a map of operating points in lines of text."""
 
 from collections.abc import Iterator
 
@@ -12,7 +12,11 @@ from squealpipe.units import engineering
 
 
 def lines(dataset: xr.Dataset) -> Iterator[str]:
-    """Yield how many points are noisy, the loudest of them, and how often each band is heard."""
+    """Yield how many points are noisy, the loudest of them, and how often each band is heard.
+
+    Where the map was compared with a list of measured noises, their hits, misses and false alarms
+    follow. The last line counts the points that are undetermined, if there are any.
+    """
     verdicts = dataset.verdict.values
     noisy = np.isin(verdicts, (Verdict.squeals, Verdict.hammers))
     total = verdicts.size

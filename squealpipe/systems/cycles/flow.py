@@ -1,8 +1,12 @@
-"""Motion along legs of one regime each: a system's switches and fields as functions.
+"""Motion of a system along legs of one regime each, with the derivatives that cycles need.
 
-Cycles are solved from a :class:`Flow`, whatever the system is made of: symbols, whose derivatives
-are symbols (:class:`TracedFlow`), or matrices (:mod:`squealpipe.systems.linear.flow`). The
-legs' Taylor series are the integrator's.
+Idea: a leg is a piece of a motion in one regime. Newton's method for a cycle needs the end of each
+leg, the switch there, and derivatives of both. :class:`Flow` says what a system has to answer;
+:class:`TracedFlow` answers from symbols, whose derivatives are symbols, and
+:mod:`squealpipe.systems.linear.flow` from matrices. Legs are run by the integrator's Taylor series,
+to round-off. Invariant: where a leg takes too many steps all ends are NaN, so that Newton's method
+gives up. Cost: functions are made of symbols once for each system and each choice of followed
+parameters.
 """
 
 from __future__ import annotations
@@ -56,10 +60,11 @@ class Flow(ABC):
 
     Attributes:
         system, followed: the system, and the parameters by which derivatives are taken.
-        scales: of a system that states them, those in which states, times and parameters are
-            numbers here; None: all are in the system's own units.
-        size, columns: number of states; with the followed parameters and explicit time.
-        timed: whether the time is explicit.
+        scales: scales, if the system states them, by which states, times and parameters are divided
+            here; None where all are in the system's own units.
+        size: number of states.
+        columns: number of states, of followed parameters and, if time is explicit, of one more.
+        timed: whether the system's functions depend on time explicitly.
     """
 
     def __init__(
@@ -75,7 +80,7 @@ class Flow(ABC):
         self._sizes: tuple[Any, Vector] | None = None
 
     def sizes(self, values: Mapping[str, float]) -> Vector:
-        """Return the typical sizes of the states."""
+        """Return the typical sizes of the states, (size,)."""
         key = tuple(values[name] for name in self.system.parameters)
         if self._sizes is None or self._sizes[0] != key:
             self._sizes = key, self.system.sizes_in(values)
@@ -85,7 +90,7 @@ class Flow(ABC):
     def of(
         system: System, values: Mapping[str, Any], followed: Sequence[str] = ()
     ) -> tuple[Flow, dict[str, Any]]:
-        """Return a flow in the scales that a system states, and parameters as numbers in them."""
+        """Return a flow in the scales that a system states, and the parameters divided by them."""
         flow = system.flow(followed, system.scales_in(values))
         if flow.scales is None:
             return flow, dict(values)
@@ -97,7 +102,7 @@ class Flow(ABC):
         return flow
 
     def scale_of(self, *names: str) -> Vector:
-        """Return what 1 is here of states, parameters, outputs or ``time``, in their own units."""
+        """Return the scales of states, parameters, outputs or ``time``, in their own units."""
         if self.scales is None:
             return np.ones(len(names))
         units = {
@@ -108,7 +113,7 @@ class Flow(ABC):
         return np.array([float(self.scales.of(units[name])) for name in names])
 
     def unit(self, values: Mapping[str, float]) -> float:
-        """The system's unit of time, s."""
+        """Return the system's typical time, which is 1 in the Taylor series, s."""
         scale = self.system.time_scale
         return float(scale(Names("the system", values)) if callable(scale) else scale)
 
@@ -119,19 +124,19 @@ class Flow(ABC):
 
     @abstractmethod
     def forcing(self, values: Mapping[str, float]) -> tuple[float, Vector]:
-        """The forcing's period, s, and its derivatives."""
+        """Return the forcing's period, s, and its derivatives by the followed parameters."""
 
     @abstractmethod
     def field(
         self, values: Mapping[str, float], regime: int, state: Vector, time: float
     ) -> Vector:
-        """Rates of the states."""
+        """Return the rates of the states, (size,)."""
 
     @abstractmethod
     def jacobian(
         self, values: Mapping[str, float], regime: int, state: Vector, time: float = 0.0
     ) -> Vector:
-        """∂f/∂(states, followed parameters, time), (n, n + p)."""
+        """Return ∂f/∂(states, followed parameters, time), (size, columns)."""
 
     @abstractmethod
     def affine_at(self, values: Mapping[str, float], regime: int) -> Affine:
@@ -141,11 +146,11 @@ class Flow(ABC):
     def slopes_along(
         self, values: Mapping[str, float], regimes: NDArray[np.int64], states: Vector
     ) -> Vector:
-        """Return ∂f/∂(states, followed parameters, time) at many states, (n, n + p, nodes, many).
+        """Return :meth:`jacobian` at many states, (size, columns, nodes, many).
 
         Args:
             regimes: (many,).
-            states: (states and time, nodes, many).
+            states: (states, and time if it is explicit; nodes; many).
         """
 
     @abstractmethod
@@ -158,9 +163,12 @@ class Flow(ABC):
         state: Vector,
         time: float,
     ) -> Crossing:
-        """A switch from one regime to another at a state.
+        """Return a switch at a state: its surface, its reset, and their derivatives.
 
-        Of a surface alone with −1 as ``switch``; of neither with −1 as ``surface``, too.
+        Args:
+            switch: its number; −1 for a surface that is crossed without a switch.
+            surface: number of that surface; −1 for an end of a leg that is on no surface.
+            regimes: before and after it.
         """
 
     @abstractmethod
@@ -172,9 +180,13 @@ class Flow(ABC):
         state: Vector,
         time: float,
     ) -> Vector:
-        """Return the rate of an event's surface before it, or a condition of its switch.
+        """Return a number that decides on an event, followed by its derivatives.
 
-        With its derivatives by the states, the time if it is explicit, and the followed parameters.
+        They are by the states, the time if it is explicit, and the followed parameters.
+
+        Args:
+            condition: number of the condition of the event's switch that is asked for; None asks
+                for the rate of its surface just before the event.
         """
 
     @abstractmethod
@@ -186,7 +198,12 @@ class Flow(ABC):
         starts: Vector,
         durations: Vector,
     ) -> Path:
-        """Run legs from states (legs, n), each in its regime for its duration."""
+        """Run legs side by side, each in its regime, and return their series and ends.
+
+        Args:
+            states: (legs, size), at the beginning of each.
+            starts, durations: (legs,), in the flow's unit of time.
+        """
 
 
 class TracedFlow(Flow):
@@ -215,14 +232,14 @@ class TracedFlow(Flow):
         self._numbers: tuple[Any, list[Any]] | None = None
 
     def _made(self, what: str, make: Callable[[], Any]) -> Any:
-        """Return what is made of the symbols once for all flows."""
+        """Return what is made of the symbols at the first call, for all flows of the system."""
         if what not in self._functions:
             self._functions[what] = make()
         return self._functions[what]
 
     @cached_property
     def is_affine(self) -> bool:
-        """True if the rates are linear functions of the states, and constants."""
+        """True if each rate is a constant plus a linear function of the states, without time."""
         rates = self.system.traced.rates[: self.size]
         return bool(not self.timed and self._made("affine", lambda: is_affine(rates)))
 
@@ -241,7 +258,7 @@ class TracedFlow(Flow):
 
     @cached_property
     def entries(self) -> list[tuple[int, int, Any]]:
-        """∂f/∂(states, followed parameters, time) that are not zero: row, column, symbol."""
+        """Nonzero ∂f/∂(states, followed parameters, time), each as (row, column, symbol)."""
 
         def entries() -> list[tuple[int, int, Any]]:
             every = [
@@ -266,7 +283,7 @@ class TracedFlow(Flow):
 
     @cached_property
     def rates_by(self) -> Any:
-        """∂f/∂(followed parameters), those of a state side by side."""
+        """The function that gives ∂f/∂(followed parameters), state by state."""
         rates = self.system.traced.rates[: self.size]
 
         def function() -> Any:
@@ -285,7 +302,7 @@ class TracedFlow(Flow):
         return python_function(roots, self.arguments, np)
 
     def numbers(self, values: Mapping[str, float], regime: int) -> list[Any]:
-        """Parameters and the regimes' constants, as the functions take them; the time unit is 1."""
+        """Return the functions' arguments: parameters, 1 as unit of time, a regime's constants."""
         key = regime, *(values[name] for name in self.system.parameters)
         if self._numbers is None or self._numbers[0] != key:
             given = [*map(np.float64, key[1:]), np.float64(1.0)]
@@ -293,7 +310,7 @@ class TracedFlow(Flow):
         return self._numbers[1]
 
     def forcing(self, values: Mapping[str, float]) -> tuple[float, Vector]:
-        """The forcing's period, s, and its derivatives."""
+        """Return the forcing's period, s, and its derivatives by the followed parameters."""
         blank = [np.float64(0.0)] * len(self.system.traced.variables)
         period = self.period(*blank, *self.numbers(values, 0))
         return float(period[0]), np.array(period[1:], float)
@@ -301,7 +318,7 @@ class TracedFlow(Flow):
     def field(
         self, values: Mapping[str, float], regime: int, state: Vector, time: float
     ) -> Vector:
-        """Rates of the states."""
+        """Return the rates of the states, (size,)."""
         return self._at(self.rates, values, regime, state, time)
 
     def _at(
@@ -319,7 +336,7 @@ class TracedFlow(Flow):
     def jacobian(
         self, values: Mapping[str, float], regime: int, state: Vector, time: float = 0.0
     ) -> Vector:
-        """∂f/∂(states, followed parameters, time), (n, n + p)."""
+        """Return ∂f/∂(states, followed parameters, time), (size, columns)."""
         matrix = np.zeros((self.size, self.columns))
         entries = self._at(self.slopes, values, regime, state, time)
         for (i, j, _), value in zip(self.entries, entries, strict=True):
@@ -496,7 +513,7 @@ class TracedFlow(Flow):
         starts: Vector,
         durations: Vector,
     ) -> Path:
-        """Run legs from states (legs, n), each in its regime for its duration."""
+        """Run legs side by side, each in its regime; see :meth:`Flow.run`."""
         if self._legs != len(states):
             self._prepare(len(states))
         key = tuple(values[name] for name in self.system.parameters)
@@ -544,7 +561,7 @@ class TracedFlow(Flow):
         return path
 
     def _constants_of(self, regime: int, parameters: Vector) -> Vector:
-        """The regimes' constants and what is computed from them, as the series take them."""
+        """Return a regime's constants and what is computed from them, as the series take them."""
         t, constants = self.system.integrated, self.system.joint.constants(regime)
         known = dict(zip(t.parameters, parameters, strict=True))
         known |= dict(zip(t.constants, constants, strict=True))

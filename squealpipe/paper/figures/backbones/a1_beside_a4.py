@@ -1,4 +1,4 @@
-"""Model A1 in time, started on periodic motions of A4."""
+"""Model A1 started on periodic motions of A4: y over time and its spectrum, beside those of A4."""
 
 from itertools import cycle
 
@@ -21,7 +21,7 @@ from squealpipe.study.figures.declared import report_figure
     alt="Rows of two panels: time histories of y of both models, and their spectra.",
 )
 def draw(beside: xr.Dataset) -> Figure:
-    """One row for each scene, from dataset ``a1_beside_a4``."""
+    """Draw one row for each scene: y over time, and its spectrum, for several spring lengths."""
     scenes = beside.scene.values
     figure, axes = style.new_figure(
         style.PAGE, 0.5 + 1.4 * len(scenes), text=1.36, nrows=len(scenes), ncols=2

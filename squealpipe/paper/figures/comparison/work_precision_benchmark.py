@@ -1,4 +1,7 @@
-"""Work–precision of integrators with events, two panels for each class of problems."""
+"""Work–precision of integrators with events.
+
+Each class of problems has two panels: evaluations of the field, and CPU time, against the error.
+"""
 
 import json
 
@@ -15,7 +18,7 @@ COST_NAMES = {"evaluations": "evaluations", "cpu_ratio": "CPU time"}
 
 
 def caption(benchmark: xr.Dataset) -> str:
-    """Caption: what is shown, where each solver ran, and which were left out."""
+    """Describe what is shown, where each solver ran, and which were left out."""
     missing = left_out(benchmark)
     shown = (
         "Error of the final state and of event times, over the growth of a perturbation, against "
@@ -56,14 +59,14 @@ def where_solvers_ran(benchmark: xr.Dataset) -> str:
 
 
 def left_out(benchmark: xr.Dataset) -> list[str]:
-    """Solvers that the configuration names and that were not installed."""
+    """Names of the solvers that the configuration asks for and that were not installed."""
     config = json.loads(benchmark.attrs.get("config", "{}"))
     asked = config.get("comparison.benchmark", {}).get("solvers", [])
     return [name for name in asked if name not in benchmark.solver]
 
 
 def knowable(benchmark: xr.Dataset) -> xr.DataArray:
-    """Problems that have an answer: of the others no error is known."""
+    """Tell for each problem whether the error of any answer to it is known, (problems,)."""
     known: xr.DataArray = benchmark.error.notnull().any(["solver", "tol"])
     return known
 
@@ -74,7 +77,7 @@ def knowable(benchmark: xr.Dataset) -> xr.DataArray:
     alt="Small charts of error against evaluations and CPU time, two for each class of problems.",
 )
 def draw(benchmark: xr.Dataset) -> Figure:
-    """The charts, from dataset ``benchmark``."""
+    """Draw evaluations and CPU time against the error, for each class of problems."""
     known = benchmark.isel(problem=knowable(benchmark).values)
     groups = list(dict.fromkeys(known.group.values.tolist()))
     classes_in_a_row = 2
@@ -109,7 +112,10 @@ def draw(benchmark: xr.Dataset) -> Figure:
 
 
 def medians(benchmark: xr.Dataset) -> xr.Dataset:
-    """Medians over problems and the worst verdict, a run for each solver and tolerance."""
+    """Return medians of error and costs over the problems, and the worst verdict.
+
+    The dataset returned is over ``run``, one for each pair of solver and tolerance.
+    """
     asked = benchmark[["error", *COST_NAMES]].where(benchmark.error.notnull())
     asked["error"] = asked.error.clip(max=1.0)  # above, an answer says nothing
     runs = asked.median("problem")

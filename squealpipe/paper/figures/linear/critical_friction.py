@@ -1,4 +1,4 @@
-"""Critical friction over the angles, what dashpots change of it, and over both dashpots."""
+"""Maps of the critical friction: over both angles, its change by dashpots, over both dashpots."""
 
 import numpy as np
 import xarray as xr
@@ -34,7 +34,7 @@ def caption(angles: xr.Dataset, dashpots: xr.Dataset) -> str:
     alt="Two maps over both spring angles and one over both dashpots, of the critical friction.",
 )
 def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:
-    """Three maps."""
+    """Draw the three maps side by side."""
     figure, axes = style.new_figure(style.PAGE, 3.1, ncols=3)
     without, change, plane = axes[0]
     undamped, damped = angles.critical_mu_undamped.values, angles.critical_mu.values
@@ -72,7 +72,7 @@ def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:
 
 
 def _draw_plane(figure: Figure, plane: Axes, dashpots: xr.Dataset) -> None:
-    """The critical friction over both dashpots, or that none is reached."""
+    """Draw the critical friction over both dashpots, or write that it is too high or constant."""
     c1, c2 = dashpots.damping1.values, dashpots.damping2.values
     values = dashpots.critical_mu.values
     # no brake has a friction coefficient of 10; beyond it round-off decides the digits
