@@ -50,11 +50,8 @@ def growing(case, mu):
 
 
 # a contact opens at 1.372 and frees a mode that grows; modes are stable again from 0.70008 to
-# 0.70809 alone; a third eigenvalue lies between two that merge, part and merge again at 0.46487:
-# which of the three is the third there, and so whether it has its own, is a matter of round-off
-@pytest.mark.parametrize(
-    ("seed", "located"), [(17, {4}), (70, {4}), (77, {4, 5})], ids=["17", "70", "77"]
-)
+# 0.70809 alone; a third eigenvalue lies between two that merge
+@pytest.mark.parametrize(("seed", "located"), [(17, 4), (70, 4), (77, 4)])
 def test_a_critical_friction_that_is_stated_is_one(seed, located):
     case = undamped(seed)
     mass, stiffness, *_, side = case
@@ -68,7 +65,7 @@ def test_a_critical_friction_that_is_stated_is_one(seed, located):
         mu=np.linspace(0, 1.5, 16)
     )
     critical = modes.critical_mu.values[np.isfinite(modes.critical_mu)]
-    assert len(critical) in located
+    assert len(critical) == located
     assert Onset.not_followed not in modes.onset
     for mu in critical:
         assert growing(case, mu * (1 - 1e-9)) < growing(case, mu * (1 + 1e-9))
