@@ -29,6 +29,7 @@ from squealpipe.codes import Verdict
 from squealpipe.parameters import Parameters
 from squealpipe.schema import build
 from squealpipe.schema.origin import recorded
+from squealpipe.systems.one_thread import one_thread
 from squealpipe.validation import Angle, Tolerance
 from squealpipe.vibration import judgement
 from squealpipe.vibration.boundaries import Search
@@ -66,6 +67,7 @@ class Judged:
         """Return the dataset with verdict, cause, frequency and level, but without cures."""
         return self._answer({}, {}, (np.nan, np.nan))
 
+    @one_thread()
     def with_cures(self) -> xr.Dataset:
         """Return the whole dataset; the search for cures takes most of the time."""
         coarse = max(self.tol, Search.tol)
@@ -96,6 +98,7 @@ class Judged:
         )
 
 
+@one_thread()
 def judge(params: Parameters, alpha1: float, alpha2: float, *, tol: float) -> Judged:
     """Judge a brake by runs that have settled: pushed steady sliding, the sudden start, strikes.
 

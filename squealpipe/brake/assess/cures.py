@@ -137,32 +137,52 @@ def nearest_angles(
     steps = CureRanges.angle_step * np.arange(
         1, 1 + round(CureRanges.farthest_angle / CureRanges.angle_step)
     )
-    rays = {}
     # directions in which the nearest quiet pair of angles is sought
-    for turn in np.linspace(0.0, 2.0 * math.pi, 24, endpoint=False):
-        along, across = math.cos(turn), math.sin(turn)
-
-        def apply(
-            distance: float, along: float = along, across: float = across
-        ) -> Design:
-            return design._replace(
-                alpha1=design.alpha1 + distance * along,
-                alpha2=design.alpha2 + distance * across,
-            )
-
-        rays[f"{turn}"] = Cure(0.0, apply, np.zeros(0), steps, is_angle=True)
+    rays = [
+        Cure(0.0, partial(_turned, design, turn), np.zeros(0), steps, is_angle=True)
+        for turn in np.linspace(0.0, 2.0 * math.pi, 24, endpoint=False)
+    ]
     quiet = verdict is Verdict.quiet
+    # no noisy pair turns quiet before small motions die out, so that a boundary up to the first
+    # step at which they do along any ray is the nearest
+    first = len(steps)
+    if not quiet:
+        stable = (
+            number
+            for number, step in enumerate(steps.tolist(), 1)
+            if any(growth_margin(ray.apply(step)) <= 0.0 for ray in rays)
+        )
+        first = next(stable, first)
+    for count in dict.fromkeys((first, len(steps))):
+        cut = [ray._replace(above=steps[:count]) for ray in rays]
+        distance, ray = _nearest_boundary(cut, quiet=quiet, tol=tol)
+        if not math.isnan(distance):
+            nearest = ray.apply(distance)
+            return nearest.alpha1, nearest.alpha2
+    return math.nan, math.nan
+
+
+def _turned(design: Design, turn: float, distance: float) -> Design:
+    """Return the design with angles at a distance in a direction, rad."""
+    return design._replace(
+        alpha1=design.alpha1 + distance * math.cos(turn),
+        alpha2=design.alpha2 + distance * math.sin(turn),
+    )
+
+
+def _nearest_boundary(
+    rays: Sequence[Cure], *, quiet: bool, tol: float
+) -> tuple[float, Cure]:
+    """Return the nearest boundary along rays from 0, NaN if there is none, and its ray."""
+    named = {str(number): ray for number, ray in enumerate(rays)}
     linear = {
-        name: linear_intervals(ray, growth_margin)[:1] for name, ray in rays.items()
+        name: linear_intervals(ray, growth_margin)[:1] for name, ray in named.items()
     }
     dies_out = partial(pushes_die_out, subjects=Pads(tol))
-    intervals = quiet_intervals(rays, linear, dies_out, quiet=quiet)
+    intervals = quiet_intervals(named, linear, dies_out, quiet=quiet)
     known = {
         name: nearest_boundary(those, 0.0, quiet=quiet)
         for name, those in intervals.items()
     }
     best = min(known, key=lambda name: known[name] if known[name] > 0 else math.inf)
-    if not known[best] >= 0.0:
-        return math.nan, math.nan
-    there = rays[best].apply(known[best])
-    return there.alpha1, there.alpha2
+    return (known[best] if known[best] >= 0.0 else math.nan), named[best]

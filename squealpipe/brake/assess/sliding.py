@@ -7,7 +7,7 @@ every law and without a compiled system, so that thousands of designs cost a sec
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from types import SimpleNamespace
 from typing import Any, NamedTuple, Self
 
@@ -98,6 +98,7 @@ class Sliding:
     jacobian: np.ndarray
 
     @classmethod
+    @lru_cache(maxsize=4096)  # a search asks several times for the same design
     def of(cls, design: Design) -> Self | None:
         """The one that slowly raised friction leads to from r = 0; None where there is none.
 
