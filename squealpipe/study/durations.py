@@ -27,11 +27,12 @@ class JobCost(NamedTuple):
     clock: float | None = None
 
 
-def record_cost(rule: str, item: str) -> None:
-    """Write down the CPU time of this process, which is a job of Snakemake, and of its children.
+def record_cost(rule: str, item: str, cpu: float | None = None) -> None:
+    """Write down the CPU time of a job of Snakemake.
 
     Args:
         item: part of what is scattered, "i-of-n".
+        cpu: s; None takes that of this process and of its children.
     """
     if not COSTS_FOLDER.parents[1].is_dir():
         return  # a script that was not started by Snakemake
@@ -40,7 +41,7 @@ def record_cost(rule: str, item: str) -> None:
     known: dict[str, Any] = {
         "rule": rule,
         "item": item,
-        "cpu": cpu_time(),
+        "cpu": cpu_time() if cpu is None else cpu,
         "compiling": compiled.compile_time() if compiled else 0.0,
     }
     COSTS_FOLDER.mkdir(parents=True, exist_ok=True)

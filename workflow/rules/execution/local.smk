@@ -1,9 +1,11 @@
-"""Jobs of seconds stay on the head node of a cluster, where starting them costs nothing.
+"""How jobs of this machine start; those of seconds stay on the head node of a cluster.
 
 Included last, when all rules are known.
 """
 
 import re
+
+from squealpipe.study.forked_jobs import start_server
 
 QUICK = ("draw_", "judge_", "write_")
 
@@ -12,6 +14,10 @@ workflow.localrules(*[known.name for known in workflow.rules if known.name.start
 
 # One line a job in the log of a run. A dry run lists the files of each.
 onstart:
+    # where jobs are forked, their commands are put to the process that forks them
+    before_commands = start_server()
+    if before_commands:
+        shell.prefix(before_commands.replace("{", "{{").replace("}", "}}"))
     for known in workflow.rules:
         known.message = known.name
         if known.output:

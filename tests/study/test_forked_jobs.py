@@ -1,0 +1,134 @@
+"""Jobs forked from one process: each sees, and ends like, a process of its own."""
+
+import os
+import shlex
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from squealpipe.study import forked_jobs
+
+pytestmark = pytest.mark.release  # the libraries take 2 s to import
+
+
+@pytest.fixture(scope="module")
+def prefix():
+    """What is put before commands; the process behind it ends with this one."""
+    found = forked_jobs.start_server()
+    assert found
+    return found
+
+
+@pytest.fixture
+def job(prefix, tmp_path):
+    """Start a script as a job, as Snakemake does: by a shell, in a folder, with an environment."""
+
+    def start(text, before=prefix, **environment):
+        script = tmp_path / "script of a job.py"
+        script.write_text(text)
+        return subprocess.Popen(
+            before + shlex.join([sys.executable, str(script)]),
+            shell=True,
+            cwd=tmp_path,
+            env={**os.environ, **environment},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+
+    return start
+
+
+ABOUT = """
+import os, signal, sys
+print(os.getcwd(), os.environ["WORD"], sys.argv, __name__, __file__, sys.stdin.read() == "")
+print(signal.getsignal(signal.SIGINT) is signal.default_int_handler, signal.getsignal(signal.SIGCHLD))
+print("beside", file=sys.stderr)
+"""
+
+
+def test_job_is_told_what_a_process_of_its_own_is_told(job):
+    answers = [job(ABOUT, WORD="a{b}").communicate(timeout=60) for _ in range(2)]
+    alone = job(ABOUT, before="", WORD="a{b}").communicate(timeout=60)
+    assert answers == [alone, alone]
+    assert alone[1] == "beside\n"
+
+
+def test_job_finds_libraries_imported_but_no_module_of_this_package(job):
+    text = "import sys; print('xarray' in sys.modules, [m for m in sys.modules if m.startswith('squealpipe')])"
+    assert job(text).communicate(timeout=60)[0] == "True []\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("import sys; sys.exit(7)", 7),
+        ("import os, signal; os.kill(os.getpid(), signal.SIGKILL)", -signal.SIGKILL),
+        ("raise KeyboardInterrupt", -signal.SIGINT),
+        ("def fails():\n    raise ValueError('what')\nfails()", 1),
+    ],
+)
+def test_command_ends_as_its_job_ends(job, text, code):
+    forked, alone = job(text), job(text, before="exec ")
+    told, told_alone = (each.communicate(timeout=60)[1] for each in (forked, alone))
+    assert forked.returncode == alone.returncode == code
+    if code == 1:
+        assert told == told_alone
+        assert "ValueError: what" in told
+
+
+def is_running(process):
+    """Whether a process exists that has not ended."""
+    try:
+        with open(f"/proc/{process}/stat") as status:  # noqa: PTH123
+            return status.read().rpartition(")")[2].split()[0] != "Z"
+    except FileNotFoundError:
+        return False
+
+
+def test_job_ends_when_its_command_is_killed_and_others_go_on(job):
+    text = "import os, time; print(os.getpid(), flush=True); time.sleep(100)"
+    first, second = job(text), job(text)
+    numbers = [int(each.stdout.readline()) for each in (first, second)]
+    first.kill()
+    while is_running(numbers[0]):
+        time.sleep(0.05)
+    assert is_running(numbers[1])
+    os.kill(numbers[1], signal.SIGTERM)
+    assert second.wait() == -signal.SIGTERM
+    for each in (first, second):
+        each.communicate()
+
+
+WORKFLOW = """
+import subprocess, sys
+from squealpipe.study.forked_jobs import start_server
+job = "import os, time; print(os.getpid(), flush=True); time.sleep(100)"
+open("job.py", "w").write(job)
+made = subprocess.Popen(start_server() + sys.executable + " job.py", shell=True)
+made.wait()
+"""
+
+
+def test_jobs_end_with_a_workflow_that_is_killed(tmp_path):
+    workflow = subprocess.Popen(
+        [sys.executable, "-c", WORKFLOW],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    number = int(workflow.stdout.readline())
+    assert is_running(number)
+    workflow.kill()
+    while is_running(number):
+        time.sleep(0.05)
+    workflow.communicate()
+
+
+def test_command_without_a_server_is_the_job_itself(job, prefix, tmp_path):
+    nowhere = prefix.replace(shlex.split(prefix)[-1], str(tmp_path / "none"))
+    assert job("print(1 + 1)", before=nowhere).communicate(timeout=60) == ("2\n", "")
