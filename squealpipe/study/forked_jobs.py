@@ -1,9 +1,9 @@
 """Start the jobs of a study from one process that has imported the libraries.
 
-Idea: NumPy, SciPy, xarray, numba and Matplotlib take 1.5 s of CPU time to import, and a study has forty
-jobs. One process imports them once, and each job is a fork of it. Snakemake starts jobs as before, by
-a command; a prefix of the command hands it to that process, lends it the job's streams and
-environment, and ends as the job ends.
+Idea: NumPy, SciPy, xarray, numba and Matplotlib take 1.5 s of CPU time to import, and a study has
+forty jobs. One process imports them once, and each job is a fork of it. Snakemake starts jobs as
+before, by a command; a prefix of the command hands it to that process, lends it the streams and the
+environment of the command, and ends as the job ends.
 
 Source: the fork server of Python's ``multiprocessing``, which takes no commands of other processes.
 
@@ -77,7 +77,7 @@ def run(address: str, *command: str) -> None:
     try:
         server.connect(address)
     except OSError:
-        os.execv(command[0], command)
+        os.execv(command[0], command)  # noqa: S606 (it has come from a shell)
     signal.signal(
         signal.SIGINT, signal.SIG_IGN
     )  # the job gets it, too, and says how it ends
@@ -270,4 +270,4 @@ def _become(job: dict[str, Any], server: int) -> None:
 
 
 if __name__ == "__main__":
-    {"run": run, "serve": serve}[sys.argv[1]](*sys.argv[2:])
+    (run if sys.argv[1] == "run" else serve)(*sys.argv[2:])
