@@ -24,7 +24,7 @@ import hashlib
 import os
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from functools import cache, partial
 from pathlib import Path
 from types import FunctionType
@@ -32,6 +32,8 @@ from typing import Any, TypeVar, cast
 
 import numba
 from numba.core import event
+
+from squealpipe.systems.progress import stage
 
 _numba: Any = numba
 _settings: Any = numba.config  # untyped, the home of CACHE_DIR
@@ -56,19 +58,26 @@ polynomial = _numba.njit(fastmath={"contract"}, **_PART)
 
 
 class _CompilerClock(event.Listener):  # type: ignore[misc]
-    """CPU time of this process while something is being compiled, s; inner parts count once."""
+    """CPU time of this process while something is being compiled, s; inner parts count once.
+
+    Meanwhile those who wait are told so.
+    """
 
     def __init__(self) -> None:
         self.total, self._since, self._depth = 0.0, 0.0, 0
+        self._told = ExitStack()
 
     def on_start(self, event: Any) -> None:  # noqa: ARG002 (numba's signature)
-        self._since = time.process_time() if self._depth == 0 else self._since
+        if self._depth == 0:
+            self._since = time.process_time()
+            self._told.enter_context(stage("compiling, once on this machine"))
         self._depth += 1
 
     def on_end(self, event: Any) -> None:  # noqa: ARG002
         self._depth -= 1
         if self._depth == 0:
             self.total += time.process_time() - self._since
+            self._told.close()
 
 
 _compiler_clock = _CompilerClock()

@@ -14,6 +14,7 @@ class _Progress:
     show: Callable[[float], None] | None = None
     say: Callable[[str], None] | None = None
     name: Callable[[str], None] | None = None
+    stage = ""
     stops = False
 
 
@@ -37,15 +38,16 @@ def partial_answer(line: Callable[[], str]) -> None:
 @contextmanager
 def stage(name: str) -> Iterator[None]:
     """Name the stage that runs within the block; its progress counts from 0 to 1."""
+    around = _progress.stage
     with shown(_progress.show, _progress.say, _progress.name):
-        _progress.low, _progress.size = 0.0, 1.0
+        _progress.low, _progress.size, _progress.stage = 0.0, 1.0, name
         if _progress.name is not None:
             _progress.name(name)
         try:
             yield
         finally:
             if _progress.name is not None:
-                _progress.name("")
+                _progress.name(around)
 
 
 def ask_to_stop(*, stops: bool = True) -> None:
@@ -99,7 +101,8 @@ def shown(
 
     Args:
         say: takes lines of partial answers.
-        name: takes the name of each stage as it begins, and an empty one at its end.
+        name: takes the name of each stage as it begins, and at its end that of the one around it,
+            which may be empty.
     """
     before = dict(vars(_progress))
     before.pop("stops", None)

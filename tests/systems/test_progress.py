@@ -17,7 +17,8 @@ from squealpipe import (
     limit_cycle,
     propensity,
 )
-from squealpipe.systems.progress import alone, report, shown, with_progress
+from squealpipe.systems.compiled import timed_compilation
+from squealpipe.systems.progress import alone, report, shown, stage, with_progress
 
 STICK_SLIP = Parameters(
     friction_law="exponential",
@@ -68,6 +69,14 @@ def test_parts_share_the_whole_and_who_works_alone_shows_for_all():
             show(1.0)
     report(lambda: 0.2)
     assert shares == [0.0, 0.25, 0.5, 0.75, 1.0]
+
+
+def test_who_waits_for_the_compiler_is_told_and_then_where_the_work_stands():
+    names, once = [], "compiling, once on this machine"
+    with shown(None, None, names.append), stage("runs"):
+        with timed_compilation(), timed_compilation():
+            pass
+    assert names == ["runs", once, "runs", ""]
 
 
 COMMAND = [

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.stats import binomtest
 
 from squealpipe.vibration.shares import wilson_interval
 from squealpipe.vibration.sobol import (
@@ -97,6 +98,13 @@ def test_intervals_of_shares_hold_them_as_often_as_they_claim(corner, most):
     exact = np.prod(corner)
     assert 0.92 < np.mean((low < exact) & (exact < high)) <= most
     assert np.mean(high - low) < 0.7 * np.mean(wilson_high - wilson_low)
+
+
+@pytest.mark.parametrize(("count", "size"), [(0, 7), (3, 8), (50, 1000), (9, 9)])
+def test_wilsons_interval_is_that_of_scipy(count, size):
+    """scipy.stats takes a second to import, so ours stands in its place."""
+    exact = binomtest(count, size).proportion_ci(0.95, method="wilson")
+    assert wilson_interval(count, size) == pytest.approx(exact, abs=1e-12)
 
 
 def test_rare_shares_have_an_interval_of_some_width():

@@ -72,6 +72,10 @@ def test_a_pad_that_hammers(hammering):
     truth = Pad(NUMBERS, *HAMMER).run((0, 0, 0, 0), 0.4, 0.2)
     assert int(hammering.verdict) == int(hammering.sudden_verdict) == Verdict.hammers
     assert int(hammering.mechanism) == Mechanism.flutter
+    linear = stability_map(PAD, *([angle] for angle in HAMMER))
+    assert hammering.mode_frequency.values * 2.0 * np.pi == pytest.approx(
+        linear.frequency.values[0, 0], rel=1e-14
+    )
     line = strongest_line(truth.velocity[1], truth.step)
     assert float(hammering.frequency) == pytest.approx(line, abs=1.0)
     assert float(hammering.frequency) == pytest.approx(830.0, abs=2.0)
