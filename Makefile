@@ -22,11 +22,12 @@ endif
 reproduce: env  ## the whole study: datasets, figures, report
 	$(BIN)/snakemake
 
-test: dev  ## the tests of each change, minutes
-	$(TESTS)
+test: dev  ## the tests of each change, minutes; and whether they cost more CPU time than tests/costs.json allows
+	$(TESTS) -p tests.cost
 
-test-release: dev  ## the rest: whole studies, cluster, faults, browser, recipes, large samples
+test-release: dev  ## the rest: whole studies, cluster, faults, browser, recipes, large samples; the study's cost
 	$(TESTS) -m "release and not long" --timeout 3000
+	$(MAKE) cost
 
 test-long: dev  ## samples that take minutes each, of which test-release has a part; outside .ci/run
 	SQUEALPIPE_SAMPLES=all $(TESTS) -m long --timeout 3000
@@ -36,9 +37,9 @@ TINY := -q all --cores 2 --configfile workflow/config/tiny.yaml
 HERE := $(if $(SQUEALPIPE_TINY),$(SQUEALPIPE_TINY)/study/squealpipe/results/tiny,results/tiny)
 AVX2 := tests/processors avx2
 
-cost: dev  ## CPU time of the study that was made here, and of the tests, beside an earlier commit
-	PYTHONPATH=. $(BIN)/python tests/cost.py study .
-	PYTHONPATH=. $(BIN)/python tests/cost.py tests $(TESTS)
+cost: env  ## the paper's study, as far as it is not made here yet, and its CPU time beside an earlier commit
+	$(BIN)/snakemake -q all
+	$(BIN)/python -m tests.cost .
 
 # On any x86-64 the C library's fma is software, a hundred times slower: there tests/generic.txt: laws, models,
 # orbits, series, linear maps and at least one test of every other folder.

@@ -1,25 +1,28 @@
 """CPU time of the study or of the tests beside that of commit 5a1acd4c, on any machine.
 
-    python tests/cost.py study FOLDER          of the jobs that have run in FOLDER
-    python tests/cost.py tests COMMAND …       of a command and all that it starts
+    python tests/cost.py FOLDER               of the jobs of the paper's study that ran in FOLDER
+    python -m pytest … -p tests.cost          of the tests, told before pytest's closing line
 
 Times of machines differ, and so do those of one machine under load: each is divided by that of a
-fixed loop, run right before. Exit code 1: more than ``costs.json`` allows.
+fixed loop, run right before or after. What compiling took does not count. More than ``costs.json``
+allows is a failure, exit code 1, and so is a study of which jobs are missing.
 """
 
 import json
 import os
-import subprocess
 import sys
 import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 
 from squealpipe.study.durations import job_costs
 
 STORED = Path(__file__).with_name("costs.json")
+TIMES = "cpu_times"
+"""Key of what a process of the tests tells of its CPU time, without compiling, s."""
 
 
 def calibration() -> float:
@@ -38,52 +41,90 @@ def _loop() -> float:
     return time.process_time() - started
 
 
-def study_time(folder: Path) -> float:
+def study_time(folder: Path, needed: list[str]) -> float:
     """CPU time of all jobs that have run in a folder, s, without what compiling took.
 
+    Args:
+        needed: rules of which each has to have run there.
+
     Raises:
-        SystemExit: none has.
+        SystemExit: one has not.
     """
-    costs = job_costs(folder).values()
-    if not costs:
-        raise SystemExit(f"{folder}: no job has run here; run `snakemake` first")
-    return sum(cost.cpu - cost.compiling for cost in costs)
+    costs = job_costs(folder)
+    if missing := [rule for rule in needed if rule not in costs]:
+        raise SystemExit(
+            f"{folder}: {', '.join(missing)} did not run here; run `snakemake` first"
+        )
+    return sum(cost.cpu - cost.compiling for cost in costs.values())
 
 
-def command_time(command: list[str]) -> float:
-    """CPU time of a command and of all processes that it waits for, s."""
-    before = os.times()
-    subprocess.run(command, check=True)
-    after = os.times()
-    return (
-        after.children_user
-        + after.children_system
-        - before.children_user
-        - before.children_system
-    )
-
-
-def verdict(what: str, seconds: float, loop: float, stored: dict[str, Any]) -> bool:
-    """Print the ratio to the stored commit, and return whether it is allowed."""
+def verdict(
+    what: str, seconds: float, loop: float, stored: dict[str, Any]
+) -> tuple[bool, str]:
+    """Return whether the ratio to the stored commit is allowed, and a line that says so."""
     ratio = seconds / loop / (stored[what] / stored["calibration"])
     limit = stored["limits"][what]
-    print(
-        f"{what}: {seconds:.0f} s of CPU with a loop of {loop:.2f} s, {ratio:.2f} of "
+    return ratio <= limit, (
+        f"{what}: {seconds:.3g} s of CPU with a loop of {loop:.2f} s, {ratio:.2f} of "
         f"{stored['commit']} ({stored[what]} s, {stored['calibration']} s); at most {limit}"
     )
-    return ratio <= limit
 
 
-def main(what: str, *arguments: str) -> int:
-    """Measure and judge."""
-    stored = json.loads(STORED.read_text(encoding="utf-8"))
-    loop = calibration()
-    measures = {
-        "study": lambda: study_time(Path(*arguments)),
-        "tests": lambda: command_time(list(arguments)),
-    }
-    seconds = measures[what]()
-    return 0 if verdict(what, seconds, loop, stored) else 1
+def stored_costs() -> dict[str, Any]:
+    """Return the times of the stored commit, and the limits."""
+    return dict(json.loads(STORED.read_text(encoding="utf-8")))
+
+
+def main(folder: str) -> int:
+    """Judge the study in a folder."""
+    stored = stored_costs()
+    seconds = study_time(Path(folder), stored["rules"])
+    is_allowed, line = verdict("study", seconds, calibration(), stored)
+    print(line)
+    return 0 if is_allowed else 1
+
+
+def own_time() -> float:
+    """CPU time of this process and of all that it has waited for, s, without compiling."""
+    times = os.times()
+    compiled = sys.modules.get("squealpipe.systems.compiled")
+    return sum(times[:4]) - (compiled.compile_time() if compiled else 0.0)
+
+
+class _Tier:
+    """CPU times of the processes of the tests that have ended, s."""
+
+    def __init__(self) -> None:
+        self.times: list[float] = []
+
+
+_tier = _Tier()
+
+
+def pytest_testnodedown(node: Any) -> None:
+    """Note the time of a process of the tests that has ended."""
+    # one that crashed, which fails the tests, has told nothing
+    _tier.times.append(getattr(node, "workeroutput", {}).get(TIMES, 0.0))
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_sessionfinish(session: Any) -> None:
+    """Have the process tell its time, or judge those of all."""
+    output = getattr(session.config, "workeroutput", None)
+    if output is not None:
+        output[TIMES] = own_time()
+        return
+    seconds = own_time() + sum(_tier.times)
+    is_allowed, session.config.cost_line = verdict(
+        "tests", seconds, calibration(), stored_costs()
+    )
+    if not is_allowed and session.exitstatus == pytest.ExitCode.OK:
+        session.exitstatus = pytest.ExitCode.TESTS_FAILED
+
+
+def pytest_terminal_summary(terminalreporter: Any, config: Any) -> None:
+    """Say what the tests cost."""
+    terminalreporter.write_line(config.cost_line)
 
 
 if __name__ == "__main__":

@@ -73,9 +73,13 @@ def test_parts_share_the_whole_and_who_works_alone_shows_for_all():
 
 def test_who_waits_for_the_compiler_is_told_and_then_where_the_work_stands():
     names, once = [], "compiling, once on this machine"
-    with shown(None, None, names.append), stage("runs"):
-        with timed_compilation(), timed_compilation():
-            pass
+    with (
+        shown(None, None, names.append),
+        stage("runs"),
+        timed_compilation(),
+        timed_compilation(),
+    ):
+        pass
     assert names == ["runs", once, "runs", ""]
 
 
