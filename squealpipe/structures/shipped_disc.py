@@ -79,6 +79,11 @@ class BrakeMesh:
         }
         return [[rows[n][i] for i in SIDES[side]] for n, side in self.faces[name]]
 
+    def back(self) -> list[int]:
+        """Return the nodes of the plate's back, where a shim lies."""
+        top = max(z for *_, z in self.nodes.values())
+        return [n for n, (*_, z) in self.nodes.items() if z == top]
+
     def skin(self) -> list[list[int]]:
         """Return the facets of single elements that no surface has."""
         named = {tuple(sorted(f)) for name in self.faces for f in self.facets(name)}
@@ -156,7 +161,8 @@ def disc_brake(
 
     Trilinear hexahedra (2 × 2 × 2 points, consistent mass), 1,536 degrees of freedom. The back
     plate hangs on springs at its four corners. The 20 contacts ``lining_1``… are those of the face
-    ``lining``, one at each node of the lining above a node of the disc.
+    ``lining``, one at each node of the lining above a node of the disc. ``BACK`` is the back of the
+    plate, where a shim lies.
 
     Args:
         stiffness: of the contact over the whole face, N/m.
@@ -172,7 +178,11 @@ def disc_brake(
     mesh = brake_mesh()
     mass, springs, names = brake_matrices(mesh)
     to_metres = {n: tuple(1e-3 * x for x in node) for n, node in mesh.nodes.items()}
-    faces = {name: mesh.facets(name) for name in mesh.faces} | {"SKIN": mesh.skin()}
+    back, skin = set(mesh.back()), mesh.skin()
+    faces = {name: mesh.facets(name) for name in mesh.faces} | {
+        "BACK": [facet for facet in skin if back.issuperset(facet)],
+        "SKIN": [facet for facet in skin if not back.issuperset(facet)],
+    }
     return Structure.from_mesh(
         mass * 1e3,  # t
         springs * 1e3,  # N/mm
@@ -230,9 +240,7 @@ def deck(mesh: BrakeMesh) -> str:
     for name, sides in mesh.faces.items():
         lines.append(f"*SURFACE, NAME={name}, TYPE=ELEMENT")
         lines += [f"{n}, S{side + 1}" for n, side in sides]
-    top = max(z for *_, z in mesh.nodes.values())
-    lines.append("*NSET, NSET=BACK")  # of the plate, where a shim lies
-    lines += [f"{n}" for n, (*_, z) in mesh.nodes.items() if z == top]
+    lines += ["*NSET, NSET=BACK", *map(str, mesh.back())]
     for body in BODIES:
         lines += [
             f"*MATERIAL, NAME={body.material}",

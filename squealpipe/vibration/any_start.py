@@ -46,8 +46,11 @@ class Subjects(Protocol):
     def is_quiet_linearly(self, subject: Any) -> bool:
         """Tell whether steady sliding exists, and small motions about it do not grow."""
 
-    def push(self, subject: Any) -> Start:
-        """Return steady sliding, pushed in the direction in which small motions grow fastest."""
+    def push(self, subject: Any) -> Start | None:
+        """Return steady sliding, pushed in the direction in which small motions grow fastest.
+
+        None where that surely dies out, and need not be run.
+        """
 
     def fading(self, subject: Any) -> float:
         """Return ln of the decay of small motions within the longest run; NaN where they grow."""
@@ -130,7 +133,7 @@ def any_start(
     always: bool,
     subjects: Subjects,
     test: Test,
-    follow: Test,
+    follow: Test | None,
 ) -> dict[str, float]:
     """Return where the verdict from any start changes: at ``quiet_from``, beyond or before it.
 
@@ -140,7 +143,8 @@ def any_start(
         quiet: whether a push dies out now.
         always: whether any start does.
         test: whether all starts die out.
-        follow: whether the motions that are followed do.
+        follow: whether the motions that are followed do; None: the answer is the nearest value
+            tried, and no motion is followed to it.
     """
     sides = []
     for side in every:
@@ -184,7 +188,7 @@ def _shown(side: Side, subjects: Subjects) -> list[float]:
 
 
 def _climb(
-    sides: list[Side], *, quiet: bool, always: bool, test: Test, follow: Test
+    sides: list[Side], *, quiet: bool, always: bool, test: Test, follow: Test | None
 ) -> list[Side]:
     """Test the rungs of each side outward, and bisect where the answer changes."""
     waiting = [side for side in sides if side.rungs]
@@ -200,9 +204,11 @@ def _climb(
                 side.outer, side.rungs = rung, []
         waiting = [side for side in waiting if side.rungs]
     open_sides = [side for side in sides if math.isnan(side.answer)]
-    bisect(open_sides, always, test, Following.located)
+    located = math.inf if follow is None else Following.located
+    bisect(open_sides, always, test, located)
     brackets = [side for side in open_sides if not math.isnan(side.outer)]
-    _follow(brackets, always, follow, test)
+    if follow is not None:
+        _follow(brackets, always, follow, test)
     if always:
         for side in sides:
             if math.isnan(side.answer):

@@ -37,12 +37,14 @@ class Boundary(NamedTuple):
 
     Attributes:
         intervals: all quiet ones, the nearest first.
+        is_run: whether other starts than pushes were run.
     """
 
     cure: Cure
     quiet_from: float
     quiet_from_any_start: float
     intervals: Sequence[QuietInterval]
+    is_run: bool = True
 
     @property
     def change(self) -> float:
@@ -72,16 +74,53 @@ def boundaries(
         quiet: whether a push dies out now.
         always: whether any start does.
     """
+    found = of_pushes(cures, linear, subjects, quiet=quiet)
+    return of_any_start(found, subjects, motions, quiet=quiet, always=always)
+
+
+def of_pushes(
+    cures: Mapping[str, Cure],
+    linear: Mapping[str, Sequence[QuietInterval]],
+    subjects: Subjects,
+    *,
+    quiet: bool,
+) -> dict[str, Boundary]:
+    """Return what each cure reaches after a push alone, see :func:`boundaries`."""
     dies_out = partial(pushes_die_out, subjects=subjects)
     intervals = quiet_intervals(cures, linear, dies_out, quiet=quiet)
-    nearest = {
-        name: nearest_boundary(intervals[name], cure.value, quiet=quiet)
+    return {
+        name: Boundary(
+            cure,
+            nearest_boundary(intervals[name], cure.value, quiet=quiet),
+            math.nan,
+            intervals[name],
+            is_run=False,
+        )
         for name, cure in cures.items()
     }
+
+
+def of_any_start(
+    found: Mapping[str, Boundary],
+    subjects: Subjects,
+    motions: Sequence[np.ndarray],
+    *,
+    quiet: bool,
+    always: bool,
+    closely: bool = True,
+) -> dict[str, Boundary]:
+    """Return what cures reach from any start, where it is known what they do after a push.
+
+    Args:
+        closely: whether motions are followed in small steps to where they end. Otherwise they are
+            put at the values tried, and the nearest at which all starts die out is the answer.
+    """
+    cures = {name: boundary.cure for name, boundary in found.items()}
+    nearest = {name: boundary.quiet_from for name, boundary in found.items()}
     sides = sides_of(cures)
     for side in sides:
         side.motions = list(motions)
-    if not quiet:
+    if closely and not quiet:
         lead(sides, nearest, subjects)
     anywhere = any_start(
         cures,
@@ -91,13 +130,13 @@ def boundaries(
         always,
         subjects,
         partial(dies_out_always, subjects=subjects),
-        partial(dies_out_always, subjects=subjects, kinds=1),
+        partial(dies_out_always, subjects=subjects, kinds=1) if closely else None,
     )
     return {
-        name: Boundary(
-            cure, nearest[name], anywhere.get(name, math.nan), intervals[name]
+        name: boundary._replace(
+            quiet_from_any_start=anywhere.get(name, math.nan), is_run=True
         )
-        for name, cure in cures.items()
+        for name, boundary in found.items()
     }
 
 
@@ -125,6 +164,7 @@ def cure_table(
     columns["highest_tried"] = [row.cure.grid.max() for row in rows]
     return {
         **{name: np.array(values, float) for name, values in columns.items()},
+        "cure_is_run": np.array([row.is_run for row in rows], bool),
         **interval_table([row.intervals for row in rows]),
         "unit": np.array([units[name] for name in found], str),
     }
@@ -135,12 +175,17 @@ def pushes_die_out(
 ) -> list[bool]:
     """Tell whether pushed steady sliding ends quiet; False if there is no steady sliding."""
     rows, starts = [], []
+    answers = [False] * len(cures)
     for row, (cure, value) in enumerate(zip(cures, values, strict=True)):
         subject = cure.apply(value)
-        if subjects.is_quiet_linearly(subject):
+        if not subjects.is_quiet_linearly(subject):
+            continue
+        start = subjects.push(subject)
+        if start is None:
+            answers[row] = True
+        else:
             rows.append(row)
-            starts.append(subjects.push(subject))
-    answers = [False] * len(cures)
+            starts.append(start)
     ends = subjects.settle(starts) if starts else []
     for row, run in zip(rows, ends, strict=True):
         answers[row] = run.quiet

@@ -131,6 +131,7 @@ _structure_variables = {
     ),
     "random_starts_noisy": count("how many of them end in a vibration", optional=True),
     "degrees_of_freedom": count("of the whole structure", optional=True),
+    "is_undamped": whether("whether nothing damps the structure", optional=True),
     "n_modes": count("modes in which it was run", optional=True),
 }
 """Variables of structures alone."""
@@ -252,6 +253,12 @@ assess_schema = DatasetSchema(
             "change from the present value to quiet_from_any_start",
             dims=("cure",),
             rtol=5e-2,
+        ),
+        "cure_is_run": whether(
+            "whether runs from other starts than a push tell where its verdict changes; where they "
+            "would take long only those of the smallest changes do",
+            "cure",
+            optional=True,
         ),
         "lowest_tried": or_nan(
             "lower end of the range that was searched", dims=("cure",)

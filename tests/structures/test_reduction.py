@@ -354,10 +354,15 @@ def test_a_motion_beyond_the_band_is_marked_and_modes_are_named_by_frequency():
     )
     assert [*lines_of_modes(told)] == [
         (
-            "The mode at 810 Hz, growth rate 3 1/s, does not squeal: the motion ends after 100 ms "
-            f"at 8.5 kHz, {beyond}."
+            "The mode at 810 Hz, growth rate 3 1/s, grows within 100 ms into the vibration "
+            f"at 8.5 kHz, {beyond}, 949 % above its frequency in small motions; the nearest "
+            "unstable mode is at 8.9 kHz."
         ),
-        f"The mode at 8.9 kHz, growth rate 2 1/s, {beyond}, squeals after 100 ms.",
+        (
+            f"The mode at 8.9 kHz, growth rate 2 1/s, {beyond}, squeals: it grows within "
+            f"100 ms into the vibration at 8.5 kHz, {beyond}, 4 % below its frequency in small "
+            "motions."
+        ),
     ]
     assert outside(told) == f"Its frequency is {beyond}."
     assert outside(told.assign(frequency_max=9e3)) is None

@@ -19,22 +19,49 @@ from squealpipe.structures.assess.designs import Design, Structures, pushed, sta
 from squealpipe.structures.assess.records import levels
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.quiet_intervals import linear_intervals
+from squealpipe.structures.schema.squealing import GIVE_DAMPING
 from squealpipe.structures.squeal.plant import Plant
 from squealpipe.structures.squeal.windows import Running
-from squealpipe.systems.progress import partial_answer, with_progress
+from squealpipe.systems.processes import available_cores
+from squealpipe.systems.progress import (
+    partial_answer,
+    stage,
+    stop_is_asked,
+    with_progress,
+)
 from squealpipe.validation import Natural, Seed, Tolerance, Workers
 from squealpipe.vibration import judgement
-from squealpipe.vibration.boundaries import (
-    Cure,
-    QuietInterval,
-    Search,
-    nearest_boundary,
+from squealpipe.vibration.boundaries import Cure, QuietInterval, Search
+from squealpipe.vibration.cures import (
+    Boundary,
+    by_change,
+    cure_table,
+    of_any_start,
+    of_pushes,
 )
-from squealpipe.vibration.cures import Boundary, boundaries, by_change, cure_table
 from squealpipe.vibration.levels import unknown
 from squealpipe.vibration.schema import assess_schema
 from squealpipe.vibration.settled_runs import SettledRun
 from squealpipe.vibration.settling import settling_of_numbers
+
+
+@dataclass(frozen=True)
+class LongRuns:
+    """Which structures have long runs, and what is left out then."""
+
+    work: int = 256
+    """Coordinates times contacts from which runs are long: a step takes about as many operations,
+    on any machine. Twice as many: a disc brake merged to 12 contacts is searched for an hour."""
+    cures: int = 3
+    """Cures whose verdict from other starts than a push is found by runs."""
+    motions: int = 1
+    """Motions of the present design that are tried at each value of these cures."""
+
+    @classmethod
+    def has(cls, design: Design) -> bool:
+        """Tell whether the runs of a design are long."""
+        structure = design.structure
+        return structure.size * len(structure.contacts) >= cls.work
 
 
 @dataclass(frozen=True)
@@ -63,25 +90,27 @@ class JudgedStructure:
     def with_cures(self) -> xr.Dataset:
         """Return the whole answer; the search takes most of its time, and tells each cure."""
         cures, units = cures_of(self.design, self.modifications)
-        quiet = self.verdict is Verdict.quiet
-        linear = {name: _linear_intervals(cure) for name, cure in cures.items()}
-
-        def nearness(name: str) -> float:
-            nearest = nearest_boundary(linear[name], cures[name].value, quiet=quiet)
-            change = abs(cures[name].change(nearest))
-            return math.inf if math.isnan(change) else change
-
-        found: dict[str, Boundary] = {}
-        for name in with_progress(sorted(cures, key=nearness)):
-            found |= boundaries(
-                {name: cures[name]},
-                linear,
-                self.family,
-                self.motions,
-                quiet=quiet,
-                always=quiet and not self.motions,
-            )
-            partial_answer(partial(_in_short, name, found[name]))
+        quiet, is_long = self.verdict is Verdict.quiet, LongRuns.has(self.design)
+        with stage("eigenvalues over what may stop it"):
+            linear = {
+                name: _linear_intervals(cures[name]) for name in with_progress([*cures])
+            }
+        found = of_pushes(cures, linear, self.family, quiet=quiet)
+        partial_answer(partial(_after_a_push, found))
+        chosen = [*by_change(found)][: LongRuns.cures if is_long else None]
+        with stage("runs of what may stop it"):
+            for name in with_progress(chosen):
+                if stop_is_asked():
+                    break
+                found |= of_any_start(
+                    {name: found[name]},
+                    self.family,
+                    self.motions[: LongRuns.motions if is_long else None],
+                    quiet=quiet,
+                    always=quiet and not self.motions,
+                    closely=not is_long,
+                )
+                partial_answer(partial(_in_short, name, found[name]))
         return self._answer(by_change(found), units)
 
     def _answer(
@@ -110,6 +139,20 @@ def _in_short(name: str, boundary: Boundary) -> str:
     if math.isnan(nearest):
         return f"  {name} (now {boundary.cure.value:.4g}): no change of the verdict"
     return f"  {name} (now {boundary.cure.value:.4g}): changes the verdict at {nearest:.4g}"
+
+
+def _after_a_push(found: Mapping[str, Boundary]) -> str:
+    """Return a line on the smallest changes after which a push dies out, or no longer does."""
+    told = [
+        f"{name} {boundary.quiet_from:.4g} (now {boundary.cure.value:.4g})"
+        for name, boundary in by_change(found).items()
+        if not math.isnan(boundary.quiet_from)
+    ]
+    if not told:
+        return "  after a push: no single change alters the verdict"
+    return (
+        f"  after a push the verdict changes at {', '.join(told)}; other starts follow"
+    )
 
 
 def _linear_intervals(cure: Cure) -> list[QuietInterval]:
@@ -164,11 +207,21 @@ def judge_structure(
         raise ValueError(f"the structure cannot be run: {design.obstacle}")
     named = dict(modifications or {})
     cures_of(design, named)  # mistakes are told before the runs
+    is_long = LongRuns.has(design)
+    if is_long and workers is None:
+        workers = available_cores()  # of two long runs each has its own
     family = Structures(tol, samples, seed, workers)
+    if plant.is_undamped and plant.unstable.size:
+        partial_answer(lambda: GIVE_DAMPING)
     push = pushed(design)
     sudden = start_at(design, np.zeros(2 * plant.size))
     assert push is not None and sudden is not None  # noqa: S101, PT018
-    of_push, of_sudden = family.settled([push, sudden], settling_of_numbers)
+    with stage(f"a push and a sudden start in {plant.size} modes"):
+        of_push, of_sudden = family.settled(
+            [push, sudden], settling_of_numbers, is_told=is_long
+        )
+    if of_push.lasts and is_long:
+        family = replace(family, samples=0)  # the verdict is known without them
     drawn = family.starts(design, 2, [])
     partial_answer(partial(_first_verdicts, of_push, of_sudden, len(drawn)))
     others = family.settled(drawn) if drawn else []
@@ -193,8 +246,8 @@ def _first_verdicts(push: SettledRun, sudden: SettledRun, drawn: int) -> str:
     """Return a line that tells both verdicts before the random starts, which take longest."""
     return (
         f"  after a push: {push.verdict.name}; from rest under the whole load: "
-        f"{sudden.verdict.name}; {drawn} random starts follow"
-    )
+        f"{sudden.verdict.name}"
+    ) + (f"; {drawn} random starts follow" if drawn else "")
 
 
 def _of_small_motions(design: Design, plant: Plant) -> dict[str, Any]:
@@ -207,6 +260,7 @@ def _of_small_motions(design: Design, plant: Plant) -> dict[str, Any]:
         "leading_frequency": float(plant.frequencies[growth.argmax()]),
         "contact_sliding_force": plant.spectrum.state.force,
         "degrees_of_freedom": design.given.size,
+        "is_undamped": plant.is_undamped,
         "n_modes": plant.size,
     }
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, Self
 
 import numpy as np
@@ -14,8 +14,10 @@ from squealpipe.structures.coordinates import Coordinates, StaticSpace
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.sliding import NoSlidingError
 from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant, damped_beyond
+from squealpipe.structures.squeal.settling import so_far
 from squealpipe.structures.squeal.windows import Running, followed_windows, run_windows
 from squealpipe.structures.subspace import projected, subspace, with_answers
+from squealpipe.systems.progress import partial_answer
 from squealpipe.vibration.schema import Mechanism
 from squealpipe.vibration.settled_runs import Horizon, Quietness, SettledRun, Start
 from squealpipe.vibration.settled_runs import settle as settle_runs
@@ -205,11 +207,15 @@ def pushed(design: Design) -> Start | None:
     plant = design.plant
     if plant is None:
         return None
+    return _start(design, plant, plant.pushed(_fastest(plant), PUSH_OF_A_MODE))
+
+
+def _fastest(plant: Plant) -> int:
+    """Return the place of the mode that grows fastest; of several alike the slowest one's."""
     values = plant.spectrum.values
     slack = 1e-9 * np.abs(values).max() + plant.spectrum.growth_errors.max()
     leading = np.flatnonzero(values.real >= values.real.max() - slack)
-    place = int(leading[np.argmin(np.abs(values[leading]))])
-    return _start(design, plant, plant.pushed(place, PUSH_OF_A_MODE))
+    return int(leading[np.argmin(np.abs(values[leading]))])
 
 
 def start_at(design: Design, state: np.ndarray) -> Start | None:
@@ -271,11 +277,13 @@ class Structures:
         """Tell whether steady sliding exists, and small motions about it do not grow."""
         return subject.margin <= 0.0
 
-    def push(self, subject: Design) -> Start:
-        """Return steady sliding, pushed."""
-        start = pushed(subject)
-        assert start is not None  # noqa: S101 (it is quiet linearly)
-        return start
+    def push(self, subject: Design) -> Start | None:
+        """Return steady sliding, pushed; None where no contact would switch as that dies out."""
+        plant = subject.plant
+        assert plant is not None  # noqa: S101 (it is quiet linearly)
+        if plant.push_switches_nothing(_fastest(plant), PUSH_OF_A_MODE):
+            return None
+        return pushed(subject)
 
     def fading(self, subject: Design) -> float:
         """Return ln of the decay of small motions within the longest run; NaN where they grow."""
@@ -313,14 +321,30 @@ class Structures:
         ]
 
     def settled(
-        self, starts: Sequence[Start], rules: Settling = settling_of_verdicts
+        self,
+        starts: Sequence[Start],
+        rules: Settling = settling_of_verdicts,
+        *,
+        is_told: bool = False,
     ) -> list[SettledRun]:
-        """Run starts until they have settled by the rules."""
+        """Run starts until they have settled by the rules.
+
+        Args:
+            is_told: whether a line after each window tells what has settled.
+        """
         period = np.array([start.period for start in starts])
         first = np.array([_first_window(start) for start in starts]) * period
         advance = _Advance(starts, Running(self.tol, self.seed, self.workers), rules)
+        horizon = Horizon(first, first, MOST_PERIODS * period)
+
+        def told(settled: dict[int, SettledRun], elapsed: np.ndarray) -> None:
+            plant, done = starts[0].subject.plant, [*settled.values()]
+            partial_answer(
+                partial(so_far, plant, done, len(starts), float(elapsed.max()))
+            )
+
         return settle_runs(
-            starts, advance, Horizon(first, first, MOST_PERIODS * period), rules
+            starts, advance, horizon, rules, told=told if is_told else None
         )
 
 

@@ -20,6 +20,11 @@ from squealpipe.schema.meshes import mesh_coordinates, mesh_entries
 from squealpipe.systems.datasets.agreement import Listing
 
 NO_ATTRACTOR = -1
+GIVE_DAMPING = (
+    "nothing damps the structure, so that a vibration gains energy for long before it settles; "
+    "give it the damping that it has, like modal_damping: 0.001 in its file (a ratio, of all modes)"
+)
+"""Advice on a structure without damping."""
 
 
 @dataclass(frozen=True)
@@ -145,6 +150,7 @@ squealing_schema = DatasetSchema(
             optional=True,
         ),
         "degrees_of_freedom": count("of the whole structure", optional=True),
+        "is_undamped": whether("whether nothing damps the structure", optional=True),
         **mesh_entries,
         "frequency_max": _of_whole("end of the band that was compared, NaN: all", "Hz"),
         "damping_beyond_band": _of_whole(

@@ -171,6 +171,13 @@ class Plant:
         )
 
     @property
+    def is_undamped(self) -> bool:
+        """True if nothing damps the structure itself, whatever its reduction was given."""
+        origin = self.structure.reduced_from
+        whole = self.structure if origin is None else origin.whole
+        return not whole.damping.nnz and not whole.modal_damping.any()
+
+    @property
     def _grows_beyond(self) -> bool:
         """Tell whether a mode beyond the band grows."""
         beyond = self.spectrum.values.imag > self.band
@@ -427,10 +434,39 @@ class Plant:
 
     def pushed(self, place: int, share: float) -> np.ndarray:
         """Steady sliding pushed along a mode of the spectrum, by a share of √energy."""
+        shape = self._push(place, share)
+        velocity = self.spectrum.pairs[place].value * shape
+        return np.asarray(self.sliding + np.concatenate([shape.real, velocity.real]))
+
+    def push_switches_nothing(self, place: int, share: float) -> bool:
+        """Tell whether such a push surely dies out with every contact as it is in steady sliding.
+
+        The motion is then the decaying mode itself, and its first amplitude bounds it. False where
+        the mode does not decay or a law of contact or friction is not linear.
+        """
+        structure, pair = self.structure, self.spectrum.pairs[place]
+        is_plain = all(
+            contact.law is None
+            and getattr(contact, "tangential_stiffness", None) is None
+            for contact in structure.contacts
+        )
+        error = float(self.spectrum.growth_errors[place])
+        if not (is_plain and self.is_linear and pair.value.real < -error):
+            return False
+        shape = self._push(place, share)
+        nearing = self.sliding[: self.size] @ structure.normals
+        presses = np.abs(structure.preloads - structure.stiffnesses * nearing)
+        normal = structure.stiffnesses * np.abs(shape @ structure.normals)
+        along = np.abs(pair.value) * np.abs(shape @ structure.tangentials)
+        belt = np.abs(structure.speeds * structure.belt_speed)
+        # round-off must not decide
+        return bool((normal < 0.99 * presses).all() and (along < 0.99 * belt).all())
+
+    def _push(self, place: int, share: float) -> np.ndarray:
+        """Return the complex amplitudes of a push along a mode: its displacement is largest now."""
         pair = self.spectrum.pairs[place]
         shape = pair.right
-        # the phase at which the displacement is largest
         turned = shape * np.exp(-0.5j * np.angle((shape**2).sum()))
         state = np.concatenate([turned.real, (pair.value * turned).real])
         size = share * np.sqrt(self.energy) / float(self.sizes(state))
-        return np.asarray(self.sliding + state * size)
+        return np.asarray(turned * size)

@@ -18,7 +18,12 @@ from squealpipe.codes import Verdict
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
 from squealpipe.structures.meshes.datasets import mesh_variables
-from squealpipe.structures.schema.squealing import NO_ATTRACTOR, Kind, squealing_schema
+from squealpipe.structures.schema.squealing import (
+    GIVE_DAMPING,
+    NO_ATTRACTOR,
+    Kind,
+    squealing_schema,
+)
 from squealpipe.structures.squeal.attractors import grouped, is_same
 from squealpipe.structures.squeal.hysteresis import hysteresis
 from squealpipe.structures.squeal.kinds import Described, described
@@ -139,6 +144,8 @@ def squealing_of(
     rates = np.concatenate([growth[places], np.full(samples, growth.max())])
     settled = []
     if not plant.obstacle:
+        if plant.is_undamped and plant.unstable.size:
+            partial_answer(lambda: GIVE_DAMPING)
         how, seconds = settings_of(plant, starts[-1], rates, t_end, how)
         with stage(_told_before(plant, len(starts), seconds, how)):
             settled = settle(plant, starts, rates, t_end, how)
@@ -266,6 +273,7 @@ def _of_whole(plant: Plant) -> dict[str, Any]:
         if origin is None or origin.frequency_max is None
         else origin.frequency_max,
         "damping_beyond_band": plant.damping_beyond,
+        "is_undamped": plant.is_undamped,
         "n_modes": plant.size,
         "static_responses": plant.structure.record.get("static_responses", 0),
         "frequency_error": agreement.errors.frequency,

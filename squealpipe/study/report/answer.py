@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.codes import Verdict
+from squealpipe.structures.schema.squealing import GIVE_DAMPING
 from squealpipe.text import number, percent
 from squealpipe.units import engineering
 from squealpipe.vibration.schema import Mechanism, error_of
@@ -26,6 +27,8 @@ NAMES = {
 """Words for what is changed of a pad."""
 CHEAPEST = 3
 """Cures that an answer names."""
+NOT_RUN = "not run"
+"""Words for what no run has told."""
 
 
 class CureWords(NamedTuple):
@@ -107,7 +110,15 @@ def headline(answer: xr.Dataset, prefix: str = "") -> str:
     return (
         f"Undetermined: after {engineering(value('settled_by'), 's')} the motion had not settled; "
         f"at the end its strongest line was at {at}, contact lost {lost} of the time."
+        f"{damping_advice(answer)}"
     )
+
+
+def damping_advice(answer: xr.Dataset) -> str:
+    """Say what to do about a motion that has not settled, if nothing damps the structure."""
+    if not bool(answer.get("is_undamped", False)):
+        return ""
+    return f" {GIVE_DAMPING[0].upper()}{GIVE_DAMPING[1:]}."
 
 
 def cause(answer: xr.Dataset) -> str:
@@ -137,7 +148,7 @@ def _cause(answer: xr.Dataset) -> str:
             merged = f"two modes into one near {engineering(modes[0], 'Hz')}"
         return (
             f"Cause: friction couples {merged} (flutter), and the vibration doubles every {time} "
-            "at first."
+            f"at first.{_shift(answer, modes)}"
         )
     if mechanism is Mechanism.divergence:
         return (
@@ -157,6 +168,17 @@ def _cause(answer: xr.Dataset) -> str:
     return (
         f"Steady sliding is stable, but another motion exists beside it, which a {push} push "
         f"reaches; the {of} {frequencies}."
+    )
+
+
+def _shift(answer: xr.Dataset, modes: list[float]) -> str:
+    """Say why the noise is not at the frequency of the mode that grows, if it is far from it."""
+    apart = float(answer.frequency) / modes[0] - 1.0
+    if len(modes) > 1 or not abs(apart) > 0.02 or not answer.separated_fraction > 0.0:
+        return ""
+    side = "above" if apart > 0 else "below"
+    return (
+        f" The noise is {percent(abs(apart))} {side} that, since contact is lost in it."
     )
 
 
@@ -292,8 +314,10 @@ def cure_line(cure: CureWords, answer: xr.Dataset) -> str:
     safe = f"{cure.any_start} ({cure.change_any_start})"
     if bool(answer.quiet_unless_struck):
         told = f"a small push dies out up to {push}"
-        if cure.any_start != "none":
+        if cure.any_start not in ("none", NOT_RUN):
             told = f"{told}; quiet from any start at {safe}"
+    elif cure.any_start == NOT_RUN:
+        told = f"{word} {push} a small push dies out; other starts were not run"
     elif cure.any_start == cure.quiet_from:
         told = f"quiet {word} {push}"
     elif cure.any_start == "none":
@@ -409,7 +433,9 @@ def _words(answer: xr.Dataset, name: str) -> CureWords:
         if is_none
         else _value(name, float(cure.quiet_from), unit),
         _change(name, float(cure.change), float(cure.value)),
-        _value(name, float(cure.quiet_from_any_start), unit),
+        _value(name, float(cure.quiet_from_any_start), unit)
+        if bool(cure.get("cure_is_run", True))
+        else NOT_RUN,
         _change(name, float(cure.change_any_start), float(cure.value)),
         "; ".join(_intervals(cure)) or "none",
         _range(cure),

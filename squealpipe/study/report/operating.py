@@ -40,7 +40,7 @@ def lines(dataset: xr.Dataset) -> Iterator[str]:
             dataset.band.values, dataset.occurrence.values, strict=True
         ):
             if share > 0:
-                middle = engineering(float(band), "Hz")
+                middle = engineering(float(band), "Hz", 2)  # as third octaves are named
                 yield f"  band at {middle}: {percent(float(share))} of all points"
     if "hits" in dataset:
         yield (
@@ -49,6 +49,7 @@ def lines(dataset: xr.Dataset) -> Iterator[str]:
             f"of the points measured quiet, {int(dataset.quiet_agreed)} are predicted quiet and "
             f"{int(dataset.false_alarms)} noisy (false alarms)."
         )
+        yield from _lines_of_the_list(dataset)
         outside = int((dataset.match == Match.outside).sum())
         if outside:
             yield f"  Lines of the list outside the range of the map: {outside}."
@@ -60,6 +61,31 @@ def lines(dataset: xr.Dataset) -> Iterator[str]:
             f"Undetermined at {unknown} of {total} operating points: not settled in time, or no "
             "steady sliding."
         )
+
+
+def _lines_of_the_list(dataset: xr.Dataset) -> Iterator[str]:
+    """Yield how far hits are off, and a line for each miss or false alarm, eight at most."""
+    measured, predicted = (
+        dataset[f"{name}_frequency"].values for name in ("measured", "predicted")
+    )
+    off = predicted / measured - 1.0
+    match = dataset.match.values
+    if hits := off[match == Match.hit].tolist():
+        yield f"  Frequencies of the hits are at most {percent(max(map(abs, hits)))} apart."
+    wrong = np.flatnonzero(np.isin(match, (Match.miss, Match.false_alarm)))
+    for noise in wrong[:8].tolist():
+        said = "quiet"
+        if np.isfinite(predicted[noise]):
+            said = engineering(float(predicted[noise]), "Hz")
+        heard, apart = "quiet", ""
+        if np.isfinite(measured[noise]):
+            heard = engineering(float(measured[noise]), "Hz")
+            if said != "quiet":
+                side = "above" if off[noise] > 0 else "below"
+                apart = f" ({percent(abs(off[noise]))} {side})"
+        yield f"  Line {noise + 1} of the list: measured {heard}, predicted {said}{apart}."
+    if len(wrong) > 8:
+        yield f"  {len(wrong) - 8} more lines differ: variable match of the dataset."
 
 
 def _place(point: xr.Dataset) -> str:

@@ -18,6 +18,7 @@ from squealpipe.structures.schema.squealing import (
     Kind,
     OnsetKind,
 )
+from squealpipe.study.report.answer import damping_advice
 from squealpipe.text import number
 from squealpipe.units import engineering
 
@@ -76,7 +77,7 @@ def headline(answer: xr.Dataset) -> str:
             return beyond
         return (
             "Undetermined: the motion after a small push did not settle, or its kind is "
-            "not clear."
+            f"not clear.{damping_advice(answer)}"
         )
     first = answer.isel(attractor=_end(answer))
     at = _frequency_of(answer, first) + _near(answer, first)
@@ -341,14 +342,44 @@ def modes(answer: xr.Dataset) -> Iterator[str]:
                 yield f"{named} ends in a motion that is undetermined."
             continue
         time = float(mode.time_to_squeal)
-        after = f" after {engineering(time, 's')}" if np.isfinite(time) else ""
-        if bool(mode.squeals):
-            yield f"{named} squeals{after}."
-        elif bool(np.isfinite(answer.dominant_frequency[end])):
-            at = _frequency_of(answer, answer.isel(attractor=end))
-            yield f"{named} does not squeal: the motion ends{after} at {at}."
+        within = f" within {engineering(time, 's')}" if np.isfinite(time) else ""
+        if np.isfinite(answer.dominant_frequency[end]):
+            yield f"{named} {_fate(answer, mode, within)}"
         else:
             yield f"{named} dies out in the end."
+
+
+def _fate(answer: xr.Dataset, mode: xr.Dataset, within: str) -> str:
+    """Say which vibration a push along a mode grows into, and how far that is from the mode.
+
+    Args:
+        within: words for the time that it takes.
+    """
+    motion = answer.isel(attractor=int(mode.ends_in))
+    frequency = float(motion.dominant_frequency)
+    grows = f"grows{within} into the vibration at {_frequency_of(answer, motion)}"
+    shift = frequency / float(mode.frequency) - 1.0
+    told = f"squeals: it {grows}" if bool(mode.squeals) else grows
+    if abs(shift) > 0.02:  # less is what a rounded frequency hides
+        side = "above" if shift > 0 else "below"
+        told += f", {_percent(abs(shift))} {side} its frequency in small motions"
+        told += _reason_of_shift(motion)
+    if not bool(mode.squeals):
+        away = np.abs(answer.frequency.values - frequency)
+        nearest = answer.isel(mode=int(away.argmin()))
+        at = engineering(float(nearest.frequency), "Hz", 4)
+        told += f"; the nearest unstable mode is at {at}"
+    return f"{told}."
+
+
+def _reason_of_shift(motion: xr.Dataset) -> str:
+    """Say what contacts do that they do not do in small motions."""
+    done = [
+        word
+        for name, word in (("separated_fraction", "open"), ("stick_fraction", "stick"))
+        if name in motion and (motion[name] > 0.0).any()
+    ]
+    return f", since contacts then {' and '.join(done)}" if done else ""
 
 
 def attractors(answer: xr.Dataset) -> Iterator[str]:

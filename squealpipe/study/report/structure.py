@@ -48,7 +48,7 @@ def gather_structure(
         "headline": told["headline"] if is_known else squealing.headline(answer),
         "lines": [line for line in said if line],
         "run": was_run,
-        "random": int(run["structure/assess"].random_starts),
+        "starts": starts_tried(run["structure/assess"]),
         "moves": bool(run["structure/run"].sizes["time"]),
         "fates": [*squealing.modes(answer), *squealing.missing(answer)],
         "ends": list(squealing.attractors(answer)),
@@ -60,6 +60,23 @@ def gather_structure(
         "rest": not_examined(answer),
         "figures": pictures(STRUCTURE, figures, run),
     }
+
+
+def starts_tried(answer: xr.Dataset) -> str:
+    """Say which starts were tried at other values of what is changed."""
+    is_run = answer.get("cure_is_run")
+    if is_run is None or is_run.all():
+        return (
+            "the push, the structure pressed on suddenly, "
+            f"{int(answer.random_starts)} random starts, and the vibrations that are there now, "
+            "followed while the value changes in small steps."
+        )
+    return (
+        "the push, the structure pressed on suddenly, and the vibration that is there now, at the "
+        "nearest quiet value and, where one of them lasts, at values beyond. Runs of this "
+        f"structure are long, so that the {int(is_run.sum())} smallest changes alone were run; "
+        "those of the others after a push follow from eigenvalues."
+    )
 
 
 def operating(points: xr.Dataset | None) -> list[str]:

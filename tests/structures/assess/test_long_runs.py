@@ -1,0 +1,64 @@
+"""What a structure with long runs is spared, against runs and eigenvalues."""
+
+import numpy as np
+import pytest
+
+from squealpipe import Contact, Structure, assess
+from squealpipe.codes import Verdict
+from squealpipe.structures.assess.assess import LongRuns
+from squealpipe.structures.assess.designs import Design, Structures, pushed
+from squealpipe.study.report.answer import cure_lines, cures
+
+ROD = np.array([[1.2e7, -1.0e6], [-1.0e6, 8.0e6]])
+
+
+def pad(**changes):
+    """Flutter from mu = 0.26 on: along and across the belt are coupled by the rod and friction."""
+    contact = Contact("pad", {1: 1.0}, {0: 1.0}, 6e6, 3000.0)
+    arguments = {"damping": 8.0 * np.eye(2), "contacts": [contact], "load": 0}
+    return Structure(0.5 * np.eye(2), ROD, **arguments | changes)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_push_that_is_not_run_switches_nothing_and_dies_out(seed):
+    """Slow belts make a push stick; there it has to be run."""
+    random = np.random.default_rng(seed)
+    belt = 10.0 ** random.uniform(-4.0, 1.0) * random.choice([-1.0, 1.0])
+    design = Design.of(pad(mu=0.2 * random.random(), belt_speed=belt))
+    family = Structures(1e-9, 0, 0, 1)
+    assert family.is_quiet_linearly(design)
+    (run,) = family.settle([pushed(design)])
+    if family.push(design) is None:
+        assert run.quiet
+        assert not run.last.switched
+    if run.last.switched:
+        assert family.push(design) is not None
+    # a belt of half the push's own speed
+    plant = design.plant
+    state = pushed(design).state
+    fastest = np.abs(state[2:] @ plant.structure.tangentials).max()
+    slow = design.slid(belt_speed=0.5 * fastest)
+    assert family.push(slow) is not None
+
+
+@pytest.mark.release
+def test_long_searches_say_what_was_run_and_end_on_the_quiet_side(monkeypatch):
+    whole = assess(pad(mu=0.5), samples=2, workers=1)
+    monkeypatch.setattr(LongRuns, "work", 0)
+    monkeypatch.setattr(LongRuns, "cures", 1)
+    short = assess(pad(mu=0.5), samples=2, workers=1)
+    assert int(short.verdict) == int(whole.verdict) != Verdict.quiet
+    assert short.quiet_from.sortby("cure").values == pytest.approx(
+        whole.quiet_from.sortby("cure").values, rel=2e-3, nan_ok=True
+    )
+    assert whole.cure_is_run.all()
+    assert short.cure_is_run.values.tolist() == [True, *[False] * 4]
+    nearest = short.isel(cure=0)
+    thorough = whole.sel(cure=nearest.cure).quiet_from_any_start
+    away = abs(nearest.quiet_from_any_start - nearest.value)
+    assert float(away) >= 0.98 * float(abs(thorough - nearest.value))
+    told = "\n".join(cure_lines(short))
+    assert told.count("other starts were not run") == int(
+        np.isfinite(short.quiet_from[1:3]).sum()
+    )
+    assert {each.any_start for each in cures(short)[1:]} == {"not run"}
