@@ -217,6 +217,21 @@ squealing_schema = DatasetSchema(
             volatile=True,
         ),
         "velocity_rms": _level("rms speed of vibration, all contacts", "m s-1"),
+        "refined_n_modes": count(
+            "modes in which the motions were run on, to see how their level changes; 0: none",
+            optional=True,
+        ),
+        "refined_velocity_rms": or_nan(
+            "rms speed of vibration, all contacts, in these; NaN: not known",
+            "m s-1",
+            ("attractor",),
+            optional=True,
+            rtol=0.05,
+            atol=1e-3,
+        ),
+        "refined_motion": flag(
+            "what is heard in these", Verdict, "attractor", optional=True
+        ),
         "velocity_peak": _level("largest speed of vibration of a contact", "m s-1"),
         "kinetic_energy": _level("mean kinetic energy of vibration", "J", rtol=0.1),
         "contact_velocity_rms": _of_contact("rms speed of vibration", "m s-1"),

@@ -28,6 +28,7 @@ from squealpipe.structures.squeal.attractors import grouped, is_same
 from squealpipe.structures.squeal.hysteresis import hysteresis
 from squealpipe.structures.squeal.kinds import Described, described
 from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
+from squealpipe.structures.squeal.refined_levels import refined_levels
 from squealpipe.structures.squeal.remedies import added_damping
 from squealpipe.structures.squeal.settling import (
     arrival,
@@ -89,12 +90,13 @@ def squealing_modes(
         in, with the errors of the reduction; over ``missing`` unstable modes of the whole structure
         that the reduced one lacks; over ``attractor`` kind, frequency, level, and by contact the
         shares of time separated and in stick; ``share`` of the random starts with its interval;
-        ``verdict``. It is undetermined where an unstable mode is missing or the sign of a growth
-        rate is within its error (``modes_that_would_do`` would decide; nothing is run), and where
-        nothing could be run: the attribute ``not_run`` says why. With
-        ``onset`` also ``onset_kind`` (supercritical, or subcritical: squeal lasts below the
-        critical friction), ``mu_dies`` of each motion that was followed, over ``track``,
-        ``squeals_below_critical`` and ``hysteresis``.
+        ``refined_velocity_rms`` of each in ``refined_n_modes``, twice as many (64 at least), where
+        it is run on; ``verdict``. It is undetermined where an unstable mode is missing or the sign
+        of a growth rate is within its error (``modes_that_would_do`` would decide; nothing is run),
+        and where nothing could be run: the attribute ``not_run`` says why. With ``onset`` also
+        ``onset_kind`` (supercritical, or subcritical: squeal lasts below the critical friction),
+        ``mu_dies`` of each motion that was followed, over ``track``, ``squeals_below_critical`` and
+        ``hysteresis``.
 
     Raises:
         ValueError: there is no steady sliding; no contact; a structure that is too large; or
@@ -112,6 +114,7 @@ def squealing_modes(
         t_end=t_end,
         seed=seed,
         onset=onset,
+        refines=True,
         tol=tol,
         workers=workers,
     )
@@ -125,12 +128,16 @@ def squealing_of(
     t_end: Positive | None,
     seed: Seed = 0,
     onset: bool = False,
+    refines: bool = False,
     tol: Tolerance,
     workers: Workers,
 ) -> xr.Dataset:
     """Return what :func:`squealing_modes` does, of a plant whose system the caller goes on using.
 
     Tracing its system and writing its code takes seconds with eight contacts.
+
+    Args:
+        refines: whether motions are run on in more coordinates, for how far their level is right.
     """
     growth = plant.spectrum.values.real
     places = plant.asked
@@ -157,6 +164,15 @@ def squealing_of(
     of_mode = _of_modes(plant, settled[: len(pushes)], numbers, modes)
     of_attractor = _of_attractors(plant, members, modes)
     shares = _shares(numbers[len(pushes) :], len(members))
+    if refines and not plant.obstacle:
+        with stage("levels in more modes"):
+            motions = [runs[0] for runs in members]
+            refined = refined_levels(plant, motions, t_end, how)
+            of_attractor |= {
+                "refined_n_modes": refined.n_modes,
+                "refined_velocity_rms": refined.speeds,
+                "refined_motion": refined.verdicts,
+            }
     below = {}
     if onset and not plant.obstacle and not stop_is_asked():
         with stage("the friction at which the squeal dies"):

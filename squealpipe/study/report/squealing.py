@@ -26,14 +26,22 @@ LISTED = 8
 """Attractors and modes that are told."""
 
 
+_DOES = {
+    Verdict.quiet: "dies out",
+    Verdict.squeals: "squeals",
+    Verdict.hammers: "hammers",
+}
+
+
 def lines(answer: xr.Dataset) -> list[str]:
     """The verdict, the modes, and what they end in."""
-    damped = damped_beyond(answer)
+    changed, damped = level_in_more_modes(answer), damped_beyond(answer)
     return [
         headline(answer),
         *modes(answer),
         *missing(answer),
         *attractors(answer),
+        *([changed] if changed else []),
         *onset(answer),
         *([damped] if damped else []),
     ]
@@ -297,6 +305,33 @@ def level(answer: xr.Dataset) -> str:
         f"contacts, at most {engineering(float(one.velocity_peak), 'm s-1')}; open "
         f"{_of_contacts(one)} of the time."
     )
+
+
+def level_in_more_modes(answer: xr.Dataset) -> str | None:
+    """Say how the level of what a small push ends in changes in more modes, if that was run."""
+    end, size = _end(answer), int(answer.get("refined_n_modes", 0))
+    if answer.attrs.get("not_run") or end == NO_ATTRACTOR or not size:
+        return None
+    one = answer.isel(attractor=end)
+    level, refined = float(one.velocity_rms), float(one.refined_velocity_rms)
+    if Verdict(int(one.motion)) is Verdict.quiet:
+        return None
+    more = (
+        ""
+        if size == int(answer.degrees_of_freedom)
+        else f": see what more modes change (n_modes={size} and above)"
+    )
+    if not np.isfinite(refined):
+        return f"Level not determined{more}; run on in {size} modes the motion did not settle."
+    told = f"{engineering(level, 'm s-1')} (rms) in {int(answer.n_modes)} modes"
+    becomes = f"{engineering(refined, 'm s-1')} in {size}"
+    verdict = Verdict(int(one.refined_motion))
+    if verdict is not Verdict(int(one.motion)):
+        becomes += f", where it {_DOES[verdict]}"
+    # what two windows of an irregular motion may differ by is no reason to doubt a level
+    elif abs(refined - level) <= 0.1 * level:
+        return f"Its level is {told}, and {becomes}."
+    return f"Level not determined: {told}, but {becomes}{more}."
 
 
 def beside(answer: xr.Dataset) -> str | None:

@@ -37,6 +37,7 @@ def gather_structure(
         squealing.outside(answer) if is_known else None,
         cause(modes, answer),
         told["level"] if is_known else squealing.level(answer),
+        squealing.level_in_more_modes(answer),
         told["sudden"] if is_known else None,
         squealing.beside(answer),
         *squealing.onset(answer, _critical(modes)),

@@ -1,0 +1,108 @@
+"""Levels of settled motions in a refined reduction: more coordinates of the same structure.
+
+Idea: errors of eigenvalues do not bound a level, since impacts excite modes far beyond those that
+grow. So each motion that lasts is carried over into twice as many coordinates, 64 at least, and run
+on until it has settled there; by how much its level differs is told beside it. Invariant: where the
+structure has no more coordinates the refined reduction is the whole, and the level is its own.
+A small difference is no bound: motions of a hammering pad change again with many more modes. Cost:
+some hundred periods of each motion, at about eight times the cost of a period.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from squealpipe.codes import Verdict
+from squealpipe.structures.agreement import Truth
+from squealpipe.structures.definition import ContactStructure
+from squealpipe.structures.reduction import Search
+from squealpipe.structures.squeal.plant import Plant
+from squealpipe.structures.squeal.settling import settings_of, settle
+from squealpipe.structures.squeal.windows import Running
+from squealpipe.systems.linear.matrices import Caps
+from squealpipe.systems.progress import stop_is_asked
+from squealpipe.vibration.settled_runs import SettledRun
+from squealpipe.vibration.verdicts import heard
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """Number of coordinates of the refined reduction."""
+
+    factor: int = 2
+    """Coordinates over those that were run. Twice as many: eight times the cost or more."""
+    fewest: int = 64
+    """Fewest coordinates. With half as many a pad with eight points, run in 12, looks as if its
+    level was right within a third."""
+
+
+class RefinedLevels(NamedTuple):
+    """What motions become in the refined reduction.
+
+    Attributes:
+        n_modes: its coordinates; 0: there is none.
+        speeds: rms speed of vibration of all contacts, (motions,), m/s; NaN where the motion has
+            died out before, or has not settled.
+        verdicts: what is heard then, (motions,).
+    """
+
+    n_modes: int
+    speeds: np.ndarray
+    verdicts: np.ndarray
+
+
+def refined_levels(
+    plant: Plant, motions: list[SettledRun], t_end: float | None, how: Running
+) -> RefinedLevels:
+    """Run motions on in a refined reduction until they have settled.
+
+    Args:
+        motions: runs that have settled, one of each attractor.
+        t_end: longest time of a run, s; None as in :func:`squealpipe.squealing_modes`.
+    """
+    speeds = np.full(len(motions), np.nan)
+    verdicts = np.full(len(motions), int(Verdict.undetermined))
+    lasting = [index for index, run in enumerate(motions) if not run.quiet]
+    refined = _refined(plant) if lasting and not stop_is_asked() else None
+    if refined is None:
+        return RefinedLevels(0, speeds, verdicts)
+    lift = _lift(plant.structure, refined.structure)
+    away = np.array([motions[index].last.final for index in lasting]) - plant.sliding
+    states = refined.sliding + np.hstack(
+        [away[:, : plant.size] @ lift.T, away[:, plant.size :] @ lift.T]
+    )
+    # nothing has to grow from a small push first
+    rates = np.full(len(states), np.inf)
+    how, _ = settings_of(refined, states[-1], rates, t_end, how)
+    for index, run in zip(
+        lasting, settle(refined, states, rates, t_end, how), strict=True
+    ):
+        if run.agrees:
+            speeds[index] = np.sqrt((run.last.speed**2).mean())
+            verdicts[index] = heard(run.last.losses, quiet=run.quiet)
+    return RefinedLevels(refined.size, speeds, verdicts)
+
+
+def _refined(plant: Plant) -> Plant | None:
+    """Return the structure in more coordinates; None if it has no more, or they cannot be run."""
+    origin = plant.structure.reduced_from
+    if origin is None or plant.structure.modes is None:
+        return None
+    whole = origin.whole
+    number = max(Refinement.factor * plant.size, Refinement.fewest)
+    number = min(number, whole.size, Caps().modes)
+    if number <= plant.size:
+        return None
+    truth = origin.truth or Truth.of(whole, origin.frequency_max)
+    search = Search(whole, truth, origin.frequency_max)
+    refined = Plant(search.structure(number), is_ready=True)
+    return None if refined.obstacle else refined
+
+
+def _lift(structure: ContactStructure, refined: ContactStructure) -> np.ndarray:
+    """Return the matrix that turns coordinates of a reduction into those of a refined one."""
+    origin = refined.reduced_from
+    assert origin is not None  # noqa: S101 (both are reductions of it)
+    assert structure.modes is not None and refined.modes is not None  # noqa: S101, PT018
+    return np.asarray(refined.modes.T @ (origin.whole.mass @ structure.modes))
