@@ -45,3 +45,29 @@ class Verdict(IntEnum):
     squeals = 1
     hammers = 2
     undetermined = 3
+
+    @property
+    def words(self) -> str:
+        """The verdict as people read it, everywhere; datasets and tables keep its name."""
+        return {
+            Verdict.quiet: "quiet",
+            Verdict.squeals: "squeals",
+            Verdict.hammers: "hammers",
+            Verdict.undetermined: "undetermined",
+        }[self]
+
+    @property
+    def opening(self) -> str:
+        """The same at the beginning of a sentence."""
+        return self.words.capitalize()
+
+
+def flag_words(name: str) -> str:
+    """Return a flag's name, as datasets store it, as people write it."""
+    if name in Verdict.__members__:
+        return Verdict[name].words
+    return (
+        name.replace("quasi_", "quasi-")
+        .replace("stick_slip", "stick–slip")
+        .replace("_", " ")
+    )

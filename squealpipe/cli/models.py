@@ -32,6 +32,7 @@ from squealpipe.cli.arguments import (
 from squealpipe.cli.console import ExitCodes, answer, current_session, working
 from squealpipe.cli.output import check_output, check_picture, compute, finish, write
 from squealpipe.cli.signatures import errors_in_options, options_of
+from squealpipe.codes import flag_words
 from squealpipe.inputs import parse_number, reader
 from squealpipe.parameters import HORIZON, Parameters
 
@@ -283,7 +284,7 @@ def _say_shares(shares: xr.Dataset, dim: str) -> None:
             place = int(total.fillna(-1.0).argmax())
             decides = f"; most influential: {total.input.values[place]}"
         answer(
-            f"{str(name).replace('_', ' '):<20} {share:8.2%}  (95 %: {low:.2%} to {high:.2%})"
+            f"{flag_words(str(name)):<20} {share:8.2%}  (95 %: {low:.2%} to {high:.2%})"
             f"{decides}"
         )
 

@@ -5,7 +5,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from squealpipe.codes import Verdict
+from squealpipe.codes import Verdict, flag_words
 from squealpipe.plotting import style
 from squealpipe.plotting.cycles import joined
 from squealpipe.schema import meanings
@@ -46,7 +46,7 @@ def draw_settled_orbit(axes: Axes, answer: xr.Dataset) -> None:
             factor * shown,
             color=style.REGIME_COLOURS[name],
             linewidth=0.7,
-            label=style.flag_words(name).replace("slip slower", "slip"),
+            label=flag_words(name).replace("slip slower", "slip"),
         )
     # a structure's contacts are closed up to a displacement of their own
     limit = float(answer.preload) if "preload" in answer else np.inf

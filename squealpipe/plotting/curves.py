@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
+from squealpipe.codes import flag_words
 from squealpipe.plotting import style
 from squealpipe.plotting.quantities import label
 from squealpipe.schema import meanings
@@ -31,7 +32,7 @@ def draw_curves(axes: Axes, curves: xr.Dataset) -> None:
         on = kind.values == code
         lines = (x.values[on], y.values[on])
         style.draw_lines(
-            axes, lines, number[on], color=colour, label=style.flag_words(words[code])
+            axes, lines, number[on], color=colour, label=flag_words(words[code])
         )
     if "design" in curves:
         axes.plot(*curves.design.values.T, "x", color=style.Colour.red, label="design")

@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
+from squealpipe.codes import flag_words
 from squealpipe.parameters import TABLE
 from squealpipe.plotting import style
 from squealpipe.plotting.origin import parameter
@@ -158,6 +159,6 @@ def say_why_empty(axes: Axes, motions: xr.Dataset) -> bool:
     if motions.sizes["point" if branch else "sample"]:
         return False
     why = motions.end if branch else motions.outcome
-    reason = style.flag_words(meanings(why)[int(why)])
+    reason = flag_words(meanings(why)[int(why)])
     style.say_instead(axes, f"no periodic motion:\n{reason}")
     return True

@@ -1,7 +1,4 @@
-"""Draw the frames of a film: what moves, and beside it force and path of a contact.
-
-Colours of a contact that slips, sticks or is open, in films of pads and structures, stand here.
-"""
+"""Draw the frames of a film: what moves, and beside it force and path of a contact."""
 
 from __future__ import annotations
 
@@ -22,13 +19,19 @@ from squealpipe.text import number
 from squealpipe.units import engineering, shown_in
 
 CONTACT_LOOKS = {
-    Regime.slip_slower: ("slip", style.Colour.blue),
-    Regime.slip_faster: ("slip", style.Colour.blue),
-    Regime.stick: ("stick", style.Colour.orange),
-    Regime.separated: ("open", style.Colour.red),
+    regime: (words, style.REGIME_COLOURS[regime.name])
+    for regime, words in {
+        Regime.slip_slower: "slip",
+        Regime.slip_faster: "faster than the belt",
+        Regime.stick: "stick",
+        Regime.separated: "open",
+    }.items()
 }
-"""State of a contact in a word, and its colour."""
-COLOURS_IN_WORDS = "Blue: the contact slips; orange: it sticks; red: it is open."
+"""State of a contact in words, and its colour."""
+COLOURS_IN_WORDS = (
+    "Blue: the contact slips; green: it is faster than the belt; orange: it sticks; red: it is "
+    "open."
+)
 
 
 @dataclass(frozen=True)
@@ -111,9 +114,8 @@ class Panels:
     def _draw_path(self, axes: Axes, motion: Traces) -> Line2D:
         self.unit_factor, unit = shown_in(float(np.abs(motion.place).max()), "m")
         x, y = self.unit_factor * motion.place.T
-        for word, colour in dict(CONTACT_LOOKS.values()).items():
-            codes = [code for code, (name, _) in CONTACT_LOOKS.items() if name == word]
-            shown = np.where(joined(np.isin(motion.regimes, codes)), y, np.nan)
+        for regime, (_, colour) in CONTACT_LOOKS.items():
+            shown = np.where(joined(motion.regimes == regime), y, np.nan)
             axes.plot(x, shown, color=colour, lw=0.7)
         limit = self.unit_factor * motion.limit
         if y.min() < limit < 1.2 * max(y.max(), 0.0):
@@ -182,12 +184,15 @@ class FilmScene:
         self.figure, self.caption, self.alt = figure, caption, alt
         self.drawn, self.shown = drawn, shown
         left, right = axes
-        words = dict(CONTACT_LOOKS.values())
         left.legend(
-            handles=[Patch(color=colour, label=word) for word, colour in words.items()],
+            handles=[
+                Patch(color=colour, label=word)
+                for word, colour in CONTACT_LOOKS.values()
+            ],
             loc="lower center",
             bbox_to_anchor=(0.5, -0.02),
-            ncols=3,
+            ncols=4,
+            columnspacing=1.0,
             title="contact",
         )
         left.set_title(title, fontsize=8)

@@ -16,12 +16,12 @@ from squealpipe.text import number
 from squealpipe.units import shown_in
 
 MARKS = {
-    Verdict.quiet: (".", "quiet"),
-    Verdict.squeals: ("o", "squeals"),
-    Verdict.hammers: ("D", "hammers"),
-    Verdict.undetermined: ("x", "undetermined"),
+    Verdict.quiet: ".",
+    Verdict.squeals: "o",
+    Verdict.hammers: "D",
+    Verdict.undetermined: "x",
 }
-"""Mark and words of each verdict."""
+"""Mark of each verdict."""
 
 
 def draw_points(axes: Axes, dataset: xr.Dataset) -> None:
@@ -85,7 +85,7 @@ def _draw(axes: Axes, points: xr.Dataset, scale: LogNorm) -> None:
     speeds, pressures = np.meshgrid(points.speed.values, pressure)
     # marks touch on a fine grid, and are no larger than is pretty on a coarse one
     size = min(60.0, 5e3 / max(points.verdict.size, 1))
-    for verdict, (mark, _) in MARKS.items():
+    for verdict, mark in MARKS.items():
         chosen = points.verdict.values == verdict
         if not chosen.any():
             continue
@@ -116,9 +116,14 @@ def _legend(axes: Axes, dataset: xr.Dataset, drawn: Figure | None = None) -> Non
     """Draw the legend of the verdicts that occur, above the map or, for a figure, above all."""
     handles = [
         mpl.lines.Line2D(
-            [], [], marker=mark, color=style.Colour.grey, linestyle="none", label=words
+            [],
+            [],
+            marker=mark,
+            color=style.Colour.grey,
+            linestyle="none",
+            label=verdict.words,
         )
-        for verdict, (mark, words) in MARKS.items()
+        for verdict, mark in MARKS.items()
         if (dataset.verdict.values == verdict).any()
     ]
     look = {"handles": handles, "fontsize": 7, "ncols": len(handles)}

@@ -5,6 +5,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from squealpipe.codes import flag_words
 from squealpipe.plotting import style
 from squealpipe.vibration.sobol import SobolRules
 
@@ -21,7 +22,7 @@ def figure(spread: xr.Dataset) -> Figure:
     """Four panels."""
     drawn, axes = style.new_figure(style.PAGE, 4.8, nrows=2, ncols=2)
     (bars, sizes), (indices, widths) = axes
-    names = [style.flag_words(name) for name in spread.quantity.values.tolist()]
+    names = [flag_words(name) for name in spread.quantity.values.tolist()]
     draw_shares(bars, spread)
     for row, colour in zip(spread.share_by_size.values, COLOURS, strict=False):
         sizes.plot(spread["size"], row, ".-", color=colour)
@@ -130,7 +131,7 @@ def _ends(axes: Axes, numbers: np.ndarray) -> None:
 
 def draw_shares(axes: Axes, spread: xr.Dataset) -> None:
     """Share of the sample in which each quantity occurs, with its 95 % interval."""
-    names = [style.flag_words(name) for name in spread.quantity.values.tolist()]
+    names = [flag_words(name) for name in spread.quantity.values.tolist()]
     place = np.arange(len(names))
     share = spread.share.values
     error = np.abs(

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
+from squealpipe.codes import flag_words
 from squealpipe.parameters import TABLE
 from squealpipe.plotting import style
 from squealpipe.schema import SYSTEM, meanings
@@ -65,8 +66,7 @@ def counts(dataset: xr.Dataset) -> list[str]:
     if table := meanings(variable):
         codes, numbers = np.unique(variable.values, return_counts=True)
         rows = [
-            (n, style.flag_words(table[code]))
-            for code, n in zip(codes, numbers, strict=True)
+            (n, flag_words(table[code])) for code, n in zip(codes, numbers, strict=True)
         ]
         if "motion_changed" in dataset:
             rows.append(
@@ -128,7 +128,7 @@ def draw_quantity(axes: Axes, variable: xr.DataArray) -> None:
         )
         axes.set_ylabel(label(variable))
         if names:
-            axes.set_yticks(range(len(names)), list(map(style.flag_words, names)))
+            axes.set_yticks(range(len(names)), list(map(flag_words, names)))
         return
     _draw_map(axes, variable, values, names)
 
@@ -170,9 +170,7 @@ def _draw_map(
         return
     axes.set_title(fill(_words(variable), 32), loc="left")
     bar = figure.colorbar(mesh, ax=axes, ticks=range(len(names)), shrink=0.85)
-    bar.ax.set_yticklabels(
-        [style.flag_words(name).replace(" ", "\n", 1) for name in names]
-    )
+    bar.ax.set_yticklabels([flag_words(name).replace(" ", "\n", 1) for name in names])
 
 
 def _words(variable: xr.DataArray) -> str:

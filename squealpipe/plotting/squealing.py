@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
+from squealpipe.codes import flag_words
 from squealpipe.plotting import style
 from squealpipe.plotting.hysteresis import draw_hysteresis, has_tracks
 from squealpipe.plotting.modes import draw_stability, frequency_unit, show_what_grows
@@ -154,7 +155,7 @@ def draw_shares(axes: Axes, answer: xr.Dataset) -> None:
 def _names(answer: xr.Dataset) -> list[str]:
     """Each attractor by its frequency and kind."""
     kinds = meanings(answer.kind)
-    words = [style.flag_words(kinds[int(value)]) for value in answer.kind.values]
+    words = [flag_words(kinds[int(value)]) for value in answer.kind.values]
     return [
         word.replace(" ", "\n")
         if np.isnan(frequency)

@@ -1,7 +1,4 @@
-"""One look for every figure: sizes, colours, angle axes, and how files are written.
-
-The states of a contact in films have their colours in :mod:`squealpipe.plotting.motion_panels`.
-"""
+"""One look for every figure: sizes, colours, angle axes, and how files are written."""
 
 import io
 import math
@@ -213,15 +210,6 @@ def category_colours(colours: Sequence[Any]) -> dict[str, Any]:
         "cmap": ListedColormap(list(colours)),
         "norm": BoundaryNorm(bounds, len(colours)),
     }
-
-
-def flag_words(name: str) -> str:
-    """A flag's meaning as people write it."""
-    return (
-        name.replace("quasi_", "quasi-")
-        .replace("stick_slip", "stick–slip")
-        .replace("_", " ")
-    )
 
 
 def panel_letter(axes: Axes, letter: str, text: str = "") -> None:

@@ -11,10 +11,17 @@ def sequence(intervals, kinds, repeats):
 
 
 @pytest.mark.parametrize("lag", [1, 2, 5])
-def test_the_smallest_period_is_found(lag):
+@pytest.mark.parametrize("repeats", [3, 12])
+def test_the_smallest_period_is_found(lag, repeats):
+    """Three whole periods suffice: as many intervals, and an event more."""
     rng = np.random.default_rng(lag)
-    times, kinds = sequence(rng.uniform(0.5, 2.0, lag), rng.integers(0, 5, lag), 12)
-    assert repeats_after(times, kinds, 1e-6) == lag
+    times, kinds = sequence(
+        rng.uniform(0.5, 2.0, lag), rng.integers(0, 5, lag), repeats + 1
+    )
+    events = slice(lag * repeats + 1)
+    assert repeats_after(times[events], kinds[events], 1e-6) == lag
+    if repeats == 3:
+        assert repeats_after(times[events][:-1], kinds[events][:-1], 1e-6) == 0
 
 
 def test_what_has_no_period_within_the_tolerance_does_not_repeat():

@@ -245,8 +245,8 @@ def judge_structure(
 def _first_verdicts(push: SettledRun, sudden: SettledRun, drawn: int) -> str:
     """Return a line that tells both verdicts before the random starts, which take longest."""
     return (
-        f"  after a push: {push.verdict.name}; from rest under the whole load: "
-        f"{sudden.verdict.name}"
+        f"  after a push: {push.verdict.words}; from rest under the whole load: "
+        f"{sudden.verdict.words}"
     ) + (f"; {drawn} random starts follow" if drawn else "")
 
 

@@ -79,24 +79,25 @@ def headline(answer: xr.Dataset, prefix: str = "") -> str:
         return float(answer[f"{prefix}{name}"])
 
     verdict = verdict_of(answer, prefix)
+    said = verdict.opening
     if verdict is Verdict.quiet:
         if not prefix and bool(answer.quiet_unless_struck):
             also = verdict_of(answer, "sudden_") is not Verdict.quiet
             return (
-                "Quiet unless struck: small motions die out, but a hard enough blow"
+                f"{said} unless struck: small motions die out, but a hard enough blow"
                 f"{' or a sudden start' * also} leaves a vibration that lasts."
             )
         if _is_neutral(answer):
             return (
-                "Quiet: nothing damps the vibration after a push, but it stays small."
+                f"{said}: nothing damps the vibration after a push, but it stays small."
             )
-        return "Quiet: the vibration dies out."
+        return f"{said}: the vibration dies out."
     at = engineering(value("frequency"), "Hz")
     force = number(value("peak_contact_force_over_preload"))
     lost = percent(value("separated_fraction"))
     if verdict is Verdict.hammers:
         return (
-            f"Hammers at {at}: contact is lost {lost} of the time, the peak force is {force} "
+            f"{said} at {at}: contact is lost {lost} of the time, the peak force is {force} "
             "times the preload force."
         )
     if verdict is Verdict.squeals:
@@ -106,9 +107,9 @@ def headline(answer: xr.Dataset, prefix: str = "") -> str:
             if stuck > 0
             else "without sticking"
         )
-        return f"Squeals at {at} {how}; contact is kept."
+        return f"{said} at {at} {how}; contact is kept."
     return (
-        f"Undetermined: after {engineering(value('settled_by'), 's')} the motion had not settled; "
+        f"{said}: after {engineering(value('settled_by'), 's')} the motion had not settled; "
         f"at the end its strongest line was at {at}, contact lost {lost} of the time."
         f"{damping_advice(answer)}"
     )

@@ -10,7 +10,7 @@ import xarray as xr
 
 from squealpipe.brake.schema.assess import KICKS
 from squealpipe.brake.schema.dynamics.intervals import intervals
-from squealpipe.codes import Regime, Verdict
+from squealpipe.codes import Regime, Verdict, flag_words
 from squealpipe.parameters import Parameters
 from squealpipe.store import load
 from squealpipe.study.evidence import Evidence
@@ -44,6 +44,7 @@ def gather_own(
     ]
     return {
         "title": "Does it squeal? Report of a brake",
+        "words": {each.name: each.words for each in Verdict},
         "changed": changed_rows(changed),
         "left_out": list(left_out),
         "became": list(became),
@@ -136,7 +137,7 @@ def _scatter(run: Evidence) -> dict[str, Any] | None:
         ],
         "shares": [
             {
-                "what": str(value),
+                "what": flag_words(str(value)),
                 "share": percent(float(of_kind.share)),
                 "interval": f"{percent(float(of_kind.share_low))} to "
                 f"{percent(float(of_kind.share_high))}",

@@ -50,27 +50,28 @@ def lines(answer: xr.Dataset) -> list[str]:
 def headline(answer: xr.Dataset) -> str:
     """The verdict in one sentence."""
     verdict = Verdict(int(answer.verdict))
+    said, unknown = verdict.opening, Verdict.undetermined.opening
     not_run = answer.attrs.get("not_run")
     if not agrees(answer):
         so = ", so nothing was run" if not_run else ""
-        return f"Undetermined: {_disagreement(answer)}{so}. {_what_would_do(answer)}"
+        return f"{unknown}: {_disagreement(answer)}{so}. {_what_would_do(answer)}"
     if not_run:
-        return f"Undetermined: nothing was run, because {not_run}."
+        return f"{unknown}: nothing was run, because {not_run}."
     if verdict is Verdict.quiet:
         if bool(answer.quiet_unless_struck):
             lasting = answer.share.values[answer.motion.values != Verdict.quiet].sum()
             return (
-                "Quiet unless struck: small motions die out, but a vibration that lasts exists "
+                f"{said} unless struck: small motions die out, but a vibration that lasts exists "
                 f"beside steady sliding; {_percent(lasting)} of random starts end in it."
                 f"{_within(answer)}"
             )
         if _lasts(answer):
             return (
-                "Quiet from rest: every start that settled came back to steady sliding, but "
+                f"{said} from rest: every start that settled came back to steady sliding, but "
                 f"squeal that has begun at more friction lasts at this one.{_within(answer)}"
             )
         return (
-            "Quiet: steady sliding is stable, and every start that settled came back to it."
+            f"{said}: steady sliding is stable, and every start that settled came back to it."
             f"{_within(answer)}"
         )
     if verdict is Verdict.undetermined:
@@ -78,23 +79,23 @@ def headline(answer: xr.Dataset) -> str:
         fades = bool(answer.get("whole_decays", True))
         if not answer.sizes["mode"] and (largest >= 0 or not fades):
             return (
-                "Undetermined: small motions about steady sliding neither grow nor die out; give "
+                f"{said}: small motions about steady sliding neither grow nor die out; give "
                 "the structure damping."
             )
         if beyond := _ends_beyond(answer):
             return beyond
         return (
-            "Undetermined: the motion after a small push did not settle, or its kind is "
+            f"{said}: the motion after a small push did not settle, or its kind is "
             f"not clear.{damping_advice(answer)}"
         )
     first = answer.isel(attractor=_end(answer))
     at = _frequency_of(answer, first) + _near(answer, first)
     if verdict is Verdict.squeals:
-        return f"Squeals at {at}; contact is kept."
+        return f"{said} at {at}; contact is kept."
     worst = int(first.separated_fraction.values.argmax())
     loses = first.isel(contact=worst)
     return (
-        f"Hammers at {at}: contact {loses.contact.item()} is open "
+        f"{said} at {at}: contact {loses.contact.item()} is open "
         f"{_percent(float(loses.separated_fraction))} of the time, {_peak_force(first)}."
     )
 
@@ -111,8 +112,9 @@ def _ends_beyond(answer: xr.Dataset) -> str | None:
         return None
     reach = math.ceil(1.1 * float(mode.frequency))
     return (
-        f"Undetermined: a small push ends at {engineering(at, 'Hz')}, beyond the band, and the "
-        f"errors leave open whether {_mode_at(mode)} grows: frequency_max={reach} includes it."
+        f"{Verdict.undetermined.opening}: a small push ends at {engineering(at, 'Hz')}, beyond "
+        f"the band, and the errors leave open whether {_mode_at(mode)} grows: "
+        f"frequency_max={reach} includes it."
     )
 
 

@@ -45,6 +45,7 @@ def gather_structure(
     return {
         **told,
         "title": "Which mode squeals? Report of a structure",
+        "words": {each.name: each.words for each in Verdict},
         "set": f"mu = {_frictions(numbers)}, {_speed_words(numbers)}",
         "headline": told["headline"] if is_known else squealing.headline(answer),
         "lines": [line for line in said if line],

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from squealpipe.codes import flag_words
 from squealpipe.plotting import style
 from squealpipe.schema import meanings
 from squealpipe.study.figures.declared import report_figure
@@ -45,7 +46,7 @@ def draw(hammering: xr.Dataset) -> Figure:
     dashes = ("-", (0, (5, 1)), (0, (1, 1)), "-.", (0, (3, 1, 1, 1, 1, 1)))
     for code, dash in zip(np.unique(hammering.motion.values).tolist(), cycle(dashes)):
         chosen = growth[hammering.motion.values == code]
-        label = f"{style.flag_words(names[code])} ({chosen.size})"
+        label = f"{flag_words(names[code])} ({chosen.size})"
         panel.ecdf(
             chosen,
             color=style.REGIME_COLOURS[names[code]],

@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from squealpipe.brake.schema.dynamics.extremes import largest_size
+from squealpipe.codes import flag_words
 from squealpipe.parameters import SCENES
 from squealpipe.plotting import style
 from squealpipe.plotting.origin import time_unit
@@ -72,7 +73,7 @@ def _sizes(axes: Axes, sizes: xr.Dataset) -> None:
             sizes.motion.values == k,
             "o" if name == "whirl" else "s",
             style.REGIME_COLOURS[name],
-            style.flag_words(name),
+            flag_words(name),
         )
         for k, name in meanings(sizes.motion).items()
     ]

@@ -3,6 +3,7 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
+from squealpipe.codes import flag_words
 from squealpipe.plotting import style
 from squealpipe.plotting.origin import scene_title
 from squealpipe.study.figures.declared import report_figure
@@ -39,9 +40,7 @@ def draw(kept: xr.Dataset, growing: xr.Dataset) -> Figure:
         panel.set(xlabel="velocity along the belt (m/s)", aspect="equal")
         style.panel_letter(panel, letter, title)
     axes[0, 0].set_ylabel("velocity away from the belt (m/s)")
-    handles = style.patches(
-        (colours[k], style.flag_words(names[k])) for k in sorted(shown)
-    )
+    handles = style.patches((colours[k], flag_words(names[k])) for k in sorted(shown))
     figure.legend(
         handles=handles, loc="outside lower center", ncols=min(len(handles), 4)
     )

@@ -34,17 +34,17 @@ def draw(verdicts: xr.Dataset, answers: Mapping[str, xr.Dataset]) -> Figure:
     panel = axes[0, 0]
     degrees = [np.degrees(verdicts[name].values) for name in ("alpha1", "alpha2")]
     tones = {
-        Verdict.quiet: (Colour.white, "quiet"),
-        Verdict.squeals: (Colour.orange, "squeals"),
-        Verdict.hammers: (Colour.red, "hammers"),
-        Verdict.undetermined: (Colour.light, "undetermined"),
+        Verdict.quiet: Colour.white,
+        Verdict.squeals: Colour.orange,
+        Verdict.hammers: Colour.red,
+        Verdict.undetermined: Colour.light,
     }
     panel.pcolormesh(
         *degrees,
         verdicts.verdict.values.T,
         shading="nearest",
         rasterized=True,
-        **category_colours([tone for tone, _ in tones.values()]),
+        **category_colours(list(tones.values())),
     )
     ends = [(axis[0], axis[-1]) for axis in degrees]
     panel.set(
@@ -89,6 +89,8 @@ def draw(verdicts: xr.Dataset, answers: Mapping[str, xr.Dataset]) -> Figure:
             path_effects=white_halo,
         )
     figure.legend(
-        handles=patches(tones.values()), loc="outside lower center", ncols=len(tones)
+        handles=patches((tone, each.words) for each, tone in tones.items()),
+        loc="outside lower center",
+        ncols=len(tones),
     )
     return figure

@@ -7,7 +7,8 @@ import xarray as xr
 
 from squealpipe.brake.schema.dynamics.runs import MotionFlag
 from squealpipe.brake.schema.ladder import Level
-from squealpipe.plotting.style import REGIME_COLOURS, colour_of, flag_words
+from squealpipe.codes import flag_words
+from squealpipe.plotting.style import REGIME_COLOURS, colour_of
 from squealpipe.schema import meanings
 
 
