@@ -5,7 +5,8 @@ time, until two in succession show the same verdict and agree by the rules of
 :mod:`squealpipe.vibration.settling`. Near an onset motions grow or decay slowly: a window that is
 too short to show this settles nothing. A motion is quiet only where it has become small, or decays
 as fast as small motions do; where forces are linear, a window in which no contact switches is such
-a decay at any size.
+a decay at any size. An irregular motion that other starts have settled to is known again as soon as
+the last windows together have its statistics.
 
 Invariant: what moves does not matter here. Pads and structures hand over starts with the growth
 rate of their small motions, and a callable that integrates some of them on for a length of time.
@@ -15,7 +16,7 @@ Cost: that of the runs; a motion that takes n periods to settle is run for 2 n a
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -89,6 +90,8 @@ class SettledRun:
         change: largest difference of the last window to the one before; infinite where they do not
             agree.
         windows: all of them.
+        arrived: whether it has come to a known motion. Its last window, of several merged, may
+            begin with the end of a transient.
     """
 
     verdict: Verdict
@@ -97,6 +100,7 @@ class SettledRun:
     irregular: bool = False
     change: float = 0.0
     windows: Sequence[Any] = ()
+    arrived: bool = False
 
     @property
     def quiet(self) -> bool:
@@ -126,14 +130,14 @@ class Horizon:
     Attributes:
         first, second: lengths of the first two windows; later ones double.
         most: time after which a motion that has not settled is undetermined.
-        grows_first: whether the first window is but the time in which a push grows, so that no
-            statistics of it are compared.
+        growth_windows: number of first windows, of equal length, in which a push grows: no
+            statistics of them are compared with each other.
     """
 
     first: np.ndarray
     second: np.ndarray
     most: np.ndarray
-    grows_first: bool = False
+    growth_windows: int = 0
 
 
 Advance = Callable[[list[int], np.ndarray, "np.ndarray | None", np.ndarray, int], Any]
@@ -152,16 +156,18 @@ def settle(
     told: Told | None = None,
     second: Callable[[int, Any], float] | None = None,
     known: Sequence[SettledRun] = (),
+    merged: Callable[[Sequence[Any]], Any] | None = None,
 ) -> list[SettledRun]:
     """Run starts side by side until each has settled by the rules, or the time has passed.
 
     Args:
         regimes: those in which they start, (runs, components); None: what fits.
         told: takes what has settled so far and the times run, after each window.
-        second: length of a start's second window by its number and its first window, s; None:
-            that of the horizon.
-        known: irregular motions of the same subject that have settled. A start one of whose
-            windows has the statistics of such a motion has come to it, and is not run on.
+        second: length of a start's second window, or of the first one in which nothing grows any
+            more, by its number and the window before, s; None: that of the horizon.
+        known: irregular motions of the same subject that have settled. A start whose last windows
+            together have the statistics of such a motion has come to it, and is not run on.
+        merged: merges windows of one run that follow one another; needed where motions are known.
     """
     count = len(starts)
     settled: dict[int, SettledRun] = {}
@@ -191,46 +197,41 @@ def settle(
                     windows[row].append(now)  # cut short: shown, not judged
                     elapsed[row] += float(now.length) - length[row]
                     continue
-                run = _judged(
-                    starts[row],
-                    windows[row],
-                    now,
-                    rules,
-                    grows_first=horizon.grows_first,
-                    late=bool(elapsed[row] >= (1.0 - 1e-9) * horizon.most[row]),
-                    known=known,
-                )
                 windows[row].append(now)
+                late = bool(elapsed[row] >= (1.0 - 1e-9) * horizon.most[row])
+                growing = horizon.growth_windows
+                run = _judged(starts[row], windows[row], rules, growing)
+                run = run or _arrived(starts[row], windows[row], known, rules, merged)
+                if run is None and (late or not now.finished):
+                    run = _unsettled(starts[row], windows[row], growing)
                 if run is not None:
-                    verdict, irregular, change = run
-                    settled[row] = SettledRun(
-                        verdict,
-                        now,
-                        float(elapsed[row]),
-                        irregular,
-                        change,
-                        windows[row],
+                    settled[row] = replace(
+                        run, elapsed=float(elapsed[row]), windows=windows[row]
                     )
                 states[row], regimes[row] = now.final, now.regimes
-            length = 2.0 * length
-            if turn == 0:
-                length = _second_lengths(windows, horizon, second)
-            length = np.minimum(length, horizon.most - elapsed)
             turn += 1
+            length = _next_lengths(length, turn, windows, horizon, second)
+            length = np.minimum(length, horizon.most - elapsed)
             if told is not None:
                 told(settled, elapsed)
     return [settled[row] for row in range(count)]
 
 
-def _second_lengths(
+def _next_lengths(
+    lengths: np.ndarray,
+    turn: int,
     windows: list[list[Any]],
     horizon: Horizon,
     second: Callable[[int, Any], float] | None,
 ) -> np.ndarray:
-    """Return the lengths of the second windows, by the first ones where a rule is given."""
+    """Return the lengths of the windows of a turn, by those of the turn before."""
+    if turn < horizon.growth_windows:
+        return lengths
+    if turn > max(horizon.growth_windows, 1):
+        return 2.0 * lengths
     if second is None:
         return horizon.second.astype(float)
-    return np.array([second(row, firsts[0]) for row, firsts in enumerate(windows)])
+    return np.array([second(row, ran[-1]) for row, ran in enumerate(windows)])
 
 
 def _stopped(
@@ -255,89 +256,82 @@ def _stopped(
     }
 
 
-End = tuple[Verdict, bool, float]
-"""Verdict, whether the motion is irregular, and its largest change."""
-
-
 def _judged(
-    start: Start,
-    earlier: list[Windows],
-    now: Windows,
-    rules: Settling,
-    *,
-    grows_first: bool,
-    late: bool,
-    known: Sequence[SettledRun],
-) -> End | None:
-    """Return what a start has settled to by its latest window; None if it runs on.
+    start: Start, windows: list[Any], rules: Settling, growth_windows: int
+) -> SettledRun | None:
+    """Return what two windows in succession show; None if they show nothing yet.
 
     Args:
-        grows_first: whether the first window is compared with nothing.
-        late: whether its time has passed.
-        known: irregular motions that it may have come to.
+        growth_windows: number of the first windows, which are compared with nothing.
     """
-    before = earlier[-1] if len(earlier) > int(grows_first) else None
-    run = _settled(start, before, now, rules)
-    if run is None and len(earlier) >= int(grows_first):
-        run = _arrived(start, now, known, rules)
-    if run is None and (late or not now.finished):
-        run = _unsettled(start, before, now)
-    return run
-
-
-def _settled(
-    start: Start, before: Windows | None, now: Windows, rules: Settling
-) -> End | None:
-    """Return what two windows in succession show; None if they show nothing yet."""
+    now = windows[-1]
+    before = windows[-2] if len(windows) > growth_windows + 1 else None
     if not now.finished:
         return None
+    quiet = SettledRun(Verdict.quiet, now, 0.0)
     if start.is_linear and start.rate < 0.0 and not now.switched:
-        return Verdict.quiet, False, 0.0
+        return quiet
     if before is None:
         return None
     fades = not now.switched and start.rate <= 0.0
     if fades and _dies_out(start, before, now):
-        return Verdict.quiet, False, 0.0
+        return quiet
     levels = before.levels(start.period), now.levels(start.period)
     shown = agreement(*levels, rules)
     verdict = heard(now.losses)
     if heard(before.losses) is not verdict or shown is Agreement.none:
         return None
-    end = verdict, shown is Agreement.irregular, difference(*levels)
+    run = SettledRun(
+        verdict, now, 0.0, shown is Agreement.irregular, difference(*levels)
+    )
     if verdict is Verdict.hammers:
-        return end
+        return run
     if _lost_in_part(now):
         return None
     faded = Quietness.faded * start.speed
     if start.sliding is None and now.total < faded:
-        return Verdict.quiet, *end[1:]
+        return replace(run, verdict=Verdict.quiet)
     is_shown = abs(start.rate) * float(now.length) >= Quietness.shown or now.switched
-    return end if is_shown or start.rate == 0.0 else None
+    return run if is_shown or start.rate == 0.0 else None
 
 
 def _arrived(
-    start: Start, now: Windows, known: Sequence[SettledRun], rules: Settling
-) -> End | None:
+    start: Start,
+    windows: list[Any],
+    known: Sequence[SettledRun],
+    rules: Settling,
+    merged: Callable[[Sequence[Any]], Any] | None,
+) -> SettledRun | None:
     """Return the end of a start that has come to a known motion; None if it has not.
 
-    The windows have to agree whichever comes first: a component that still decays, and one that has
-    yet to grow, are both seen.
+    The last windows are merged, up to the length of the known motion's. They have to agree
+    whichever comes first: a component that still decays, and one that has yet to grow, are both
+    seen.
     """
-    if not now.finished:
+    if merged is None or not windows[-1].finished:
         return None
     for motion in known:
-        levels = motion.last.levels(start.period), now.levels(start.period)
-        ways = agreement(*levels, rules), agreement(*levels[::-1], rules)
-        if Agreement.none not in ways and heard(now.losses) is motion.verdict:
-            return motion.verdict, motion.irregular, difference(*levels)
+        then = motion.last.levels(start.period)
+        for count in range(1, len(windows) + 1):
+            last = merged(windows[-count:])
+            levels = last.levels(start.period)
+            ways = agreement(then, levels, rules), agreement(levels, then, rules)
+            if Agreement.none not in ways and heard(last.losses) is motion.verdict:
+                change = difference(then, levels)
+                return SettledRun(
+                    motion.verdict, last, 0.0, motion.irregular, change, arrived=True
+                )
+            if last.length >= motion.last.length:
+                break
     return None
 
 
-def _unsettled(start: Start, before: Windows | None, now: Windows) -> End:
+def _unsettled(start: Start, windows: list[Any], growth_windows: int) -> SettledRun:
     """Return what a motion is that has not settled within its horizon."""
-    if now.finished and before is not None and _decays(start, before, now):
-        return Verdict.quiet, False, 0.0  # too slowly to become small
-    return Verdict.undetermined, False, np.inf
+    now, compared = windows[-1], len(windows) > growth_windows + 1
+    if now.finished and compared and _decays(start, windows[-2], now):
+        return SettledRun(Verdict.quiet, now, 0.0)  # too slowly to become small
+    return SettledRun(Verdict.undetermined, now, 0.0, change=np.inf)
 
 
 def _lost_in_part(now: Windows) -> bool:

@@ -42,6 +42,36 @@ def window(velocities, length=1.0, *, losses=5, switched=True):
     )
 
 
+def merged(parts):
+    """The mean of windows of equal length."""
+    values = {
+        name: np.mean([getattr(part, name) for part in parts], axis=0)
+        for name in vars(parts[-1])
+    }
+    return Windows(**{**values, "length": sum(part.length for part in parts)})
+
+
+def settled(velocities_of_turns, length_of_known=1.0, **horizon):
+    """Settle a start whose windows have these velocities, beside a known motion."""
+    turns = []
+
+    def advance(_rows, _states, _begun, seconds, turn):
+        turns.append(turn)
+        return window(velocities_of_turns(turn), seconds[0])
+
+    last = window([1.0, 0.01], length_of_known).row(0)
+    lengths = Horizon(np.ones(1), np.ones(1), np.full(1, 100.0), **horizon)
+    (run,) = settle(
+        [START],
+        advance,
+        lengths,
+        settling_of_verdicts,
+        known=[SettledRun(Verdict.hammers, last, 10.0)],
+        merged=merged,
+    )
+    return run, len(turns)
+
+
 @pytest.mark.parametrize(
     ("velocities", "windows"),
     [
@@ -54,18 +84,28 @@ def window(velocities, length=1.0, *, losses=5, switched=True):
     ],
 )
 def test_one_window_shows_that_a_start_has_come_to_a_known_motion(velocities, windows):
-    turns = []
+    def of(turn):
+        return velocities if turn else [0.1, 0.01]
 
-    def advance(_rows, _states, _begun, seconds, turn):
-        turns.append(turn)
-        # what the push grows through agrees with the known motion, and is not looked at
-        return window(velocities if turn else [1.0, 0.01], seconds[0])
-
-    known = SettledRun(Verdict.hammers, window([1.0, 0.01]).row(0), 10.0)
-    lengths = Horizon(np.ones(1), np.ones(1), np.full(1, 100.0), grows_first=True)
-    (run,) = settle([START], advance, lengths, settling_of_verdicts, known=[known])
+    run, count = settled(of, growth_windows=1)
     assert run.verdict is Verdict.hammers
-    assert len(turns) == windows
+    assert count == windows
+    assert run.arrived == (windows == 2)
+
+
+def test_last_windows_together_show_it_before_a_push_has_grown_for_its_time():
+    """Windows that swing by 8 % about the known motion agree with it by their mean alone."""
+
+    def of(turn):
+        return [0.1, 0.1] if turn < 5 else [1.08 if turn % 2 else 0.92, 0.01]
+
+    run, count = settled(of, growth_windows=50, length_of_known=4.0)
+    assert run.arrived
+    assert count == 7  # the two after those of the transient
+    assert run.last.length == 2.0
+    # beside a shorter known motion no two windows are merged: they settle by themselves
+    run, count = settled(of, growth_windows=10, length_of_known=1.0)
+    assert not run.arrived
 
 
 STEADY = {"losses": 0, "switched": False}

@@ -35,7 +35,7 @@ def test_a_stop_keeps_the_windows_that_have_ended_and_runs_no_more():
             regimes=np.zeros((len(rows), 1), int), row=lambda _: window
         )
 
-    horizon = Horizon(np.ones(3), np.ones(3), np.full(3, 1e3), grows_first=True)
+    horizon = Horizon(np.ones(3), np.ones(3), np.full(3, 1e3), growth_windows=1)
     starts = [start() for _ in range(3)]
     try:
         runs = settle(

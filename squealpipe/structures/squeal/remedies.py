@@ -30,8 +30,9 @@ def added_damping(plant: Plant) -> tuple[float, Outcome]:
 
     Damping may destabilize before it stabilizes: from this ratio to the largest tried nothing
     grows. It is found in the modes that are run, and confirmed in the whole structure: there modes
-    grow with 1 % less, and none with 1 % more. Where that fails, the whole structure is searched if
-    its matrices are dense and no band limits its modes.
+    grow with 1 % less, and none with 1 % more. Where that fails, the whole structure is searched:
+    all of it if its matrices are dense and no band limits its modes, else by secants from the ratio
+    of the reduced one.
 
     Returns:
         The ratio and its outcome: 0 where nothing grows without it, NaN where the largest does not
@@ -44,8 +45,10 @@ def added_damping(plant: Plant) -> tuple[float, Outcome]:
     if origin is not None and truth is not None:
         grows_now = bool(truth.unstable.size)
         if origin.whole.size > DENSE or origin.frequency_max is not None:
-            if not _confirmed_in_band(plant, ratio, grows_now):
+            located = _located_in_band(plant, ratio, grows_now)
+            if located is None:
                 return np.nan, Outcome.unresolved
+            ratio = located
         elif not grows_now:
             ratio = 0.0
         else:
@@ -63,21 +66,53 @@ def _confirmed(grows: Callable[[float], bool], ratio: float) -> bool:
     return not grows(1.01 * ratio) and grows(0.99 * ratio)
 
 
-def _confirmed_in_band(plant: Plant, ratio: float, grows_now: bool) -> bool:
-    """Tell the same where modes are computed up to a frequency alone."""
-    origin = plant.structure.reduced_from
-    assert origin is not None  # noqa: S101
-    if ratio == 0.0 or not grows_now:
-        return grows_now == (ratio != 0.0)
+def _located_in_band(plant: Plant, ratio: float, grows_now: bool) -> float | None:
+    """Return the ratio where modes of the whole are computed up to a frequency alone.
 
-    def grows(added: float) -> bool:
+    Secants of the fastest growth begin without added damping and at the ratio of the modes that are
+    run, from which growth rates of the whole differ by some per cent.
+
+    Returns:
+        NaN where the largest does not suffice, None where the search has come to no ratio.
+    """
+    origin, truth = plant.structure.reduced_from, plant.truth
+    assert origin is not None  # noqa: S101
+    assert truth is not None  # noqa: S101
+    if ratio == 0.0 or not grows_now:
+        return ratio if grows_now == (ratio != 0.0) else None
+
+    def damped(added: float) -> Truth:
         ratios = origin.whole.modal_damping
         if ratios.ndim and origin.whole.size <= DENSE:  # those without a ratio have 0
             ratios = np.pad(ratios, (0, origin.whole.size - len(ratios)))
-        damped = origin.whole.with_(modal_damping=ratios + added)
-        return bool(Truth.of(damped, origin.frequency_max).unstable.size)
+        whole = origin.whole.with_(modal_damping=ratios + added)
+        return Truth.of(whole, origin.frequency_max)
 
-    return _confirmed(grows, ratio)
+    def grows(added: float) -> bool:
+        return bool(damped(added).unstable.size)
+
+    if not math.isfinite(ratio):
+        return ratio if grows(SquealLimits.most_damping) else None
+    before, growth = 0.0, _fastest(truth)
+    for _ in range(5):
+        if _confirmed(grows, ratio):
+            return ratio
+        now = _fastest(damped(ratio))
+        if now >= growth:  # more damping destabilizes
+            return None
+        before, ratio, growth = (
+            ratio,
+            ratio - now * (ratio - before) / (now - growth),
+            now,
+        )
+        if not 0.0 < ratio <= SquealLimits.most_damping:
+            return None
+    return None
+
+
+def _fastest(truth: Truth) -> float:
+    """Return the fastest growth within the band, 1/s; negative where all modes decay."""
+    return float(truth.values[truth.within].real.max())
 
 
 class _Damped:

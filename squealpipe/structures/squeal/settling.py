@@ -2,8 +2,8 @@
 
 Idea: a push gets as long as its own mode needs to grow from small to nonlinear, and a random start
 as long as the mode that grows fastest. Windows of statistics follow: so many periods of the motion,
-and long enough to see the slowest mode grow. A start with the statistics of a motion that is known
-to be irregular has come to it.
+and long enough to see the slowest mode grow. A start whose last windows have the statistics of a
+motion that is known to be irregular has come to it, also before the end of that growth.
 
 Invariant: another mode that takes over later is seen, at the latest by what starts beside the
 settled motion (:mod:`squealpipe.structures.squeal.kinds`), and such runs go on
@@ -27,6 +27,7 @@ from squealpipe.structures.squeal.windows import (
     BLOCKS,
     Running,
     StructureWindows,
+    merged,
     run,
     run_windows,
 )
@@ -64,7 +65,7 @@ class RunLengths:
     """Starts that settle side by side then."""
     first_starts: int = 4
     """Starts that settle first, each by its own windows. Others that come to an irregular motion
-    among theirs need no second window that agrees. Twice as many: all such runs take longer."""
+    among theirs are compared with all of its windows. Twice as many: these runs take longer."""
 
 
 def arrival(run: SettledRun) -> float:
@@ -190,10 +191,12 @@ def settle(
     for begin, end in with_progress(list(pairwise(bounds))):
         if stop_is_asked() and settled:
             break
+        several = int(growing[begin:end].min() // longest) if known else 1
         settled += _settle(
             starts[begin:end],
             (growing[begin:end], longest, most),
             how,
+            growth_windows=several,
             second=second,
             known=known,
             before=settled,
@@ -208,14 +211,20 @@ def settle(
 def _irregular(
     plant: Plant, settled: Sequence[SettledRun], how: Running
 ) -> list[SettledRun]:
-    """Return a run of each irregular motion that some starts have settled to, the longest first."""
+    """Return a run of each irregular motion that some starts have settled to, the longest first.
+
+    Its last window is those of all these starts, merged.
+    """
     known: list[SettledRun] = []
     other: list[SettledRun] = []
     for one in sorted(settled, key=lambda each: -each.elapsed):
         if any(is_same(one, each) for each in (*known, *other) if one.agrees):
             continue
         (known if is_irregular(plant, one, how) else other).append(one)
-    return known
+    return [
+        replace(one, last=merged([run.last for run in settled if is_same(run, one)]))
+        for one in known
+    ]
 
 
 def settle_on(
@@ -252,6 +261,7 @@ def _settle(
     how: Running,
     regimes: np.ndarray | None = None,
     *,
+    growth_windows: int = 1,
     second: Callable[[int, StructureWindows], float] | None = None,
     known: Sequence[SettledRun] = (),
     before: Sequence[SettledRun] = (),
@@ -260,7 +270,8 @@ def _settle(
     """Run starts of one structure until each has settled.
 
     Args:
-        times: lengths of the run without statistics, of the first window, and of all, s.
+        times: lengths of the run in which a push grows, of the first window, and of all, s.
+        growth_windows: number of equal windows of that run.
         second, known: see :func:`squealpipe.vibration.settled_runs.settle`.
         before: runs that have settled already, for partial answers.
         count: number of all starts; None: of these.
@@ -277,7 +288,7 @@ def _settle(
         return run_windows(plant, states, seconds, how.turn(turn), begun)
 
     growing, first, most = (np.zeros(len(starts)) + time for time in times)
-    lengths = Horizon(growing, first, most, grows_first=True)
+    lengths = Horizon(growing / growth_windows, first, most, growth_windows)
 
     def told(settled: dict[int, SettledRun], elapsed: np.ndarray) -> None:
         done, number = [*before, *settled.values()], count or len(starts)
@@ -292,6 +303,7 @@ def _settle(
         told=told,
         second=second,
         known=known,
+        merged=merged,
     )
 
 

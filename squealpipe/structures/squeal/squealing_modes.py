@@ -37,7 +37,12 @@ from squealpipe.structures.squeal.settling import (
     settle_on,
     so_far,
 )
-from squealpipe.structures.squeal.windows import Running, StructureWindows, still
+from squealpipe.structures.squeal.windows import (
+    Running,
+    StructureWindows,
+    merged,
+    still,
+)
 from squealpipe.systems.inputs.words import duration
 from squealpipe.systems.progress import partial_answer, stage, stop_is_asked
 from squealpipe.validation import Natural, Positive, Seed, Tolerance, Workers, checked
@@ -465,16 +470,14 @@ def _window(plant: Plant, runs: list[SettledRun], found: Described) -> Structure
     """Return the window of an attractor: of one run after settling, or of all irregular ones.
 
     The last window of a run may begin with the end of a transient. Only in an irregular motion does
-    scatter hide that.
+    scatter hide that, but for runs that were ended as soon as they had come to it.
     """
     if found.window is None:
         return still(plant)
     if found.kind in (Kind.cycle, Kind.torus):
         return found.window
-    parts = [vars(run.last) for run in runs]
-    return StructureWindows(
-        **{name: np.stack([part[name] for part in parts]) for name in parts[0]}
-    ).mean()
+    settled = [run.last for run in runs if not run.arrived]
+    return merged(settled[::-1] or [found.window])
 
 
 def _table(

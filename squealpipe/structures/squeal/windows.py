@@ -4,8 +4,9 @@ Instants at which a motion is looked at are drawn at random, one in each of many
 window, so that none of its statistics depends on a step that is in time with its period.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, Self
 
 import numpy as np
@@ -65,20 +66,6 @@ class StructureWindows(Windows):
     steps: np.ndarray
     kinetic: np.ndarray
     block_ends: np.ndarray
-
-    def mean(self) -> Self:
-        """Merge runs of one motion into one: means, and the largest of largest values."""
-        means = "velocities", "speed", "separated", "stuck", "landings", "separations"
-        largest = "forces", "peak_speed", "largest_velocity"
-        values = {
-            name: value.mean(axis=0, dtype=float)
-            if name in means
-            else value.max(axis=0)
-            if name in largest
-            else value[0]
-            for name, value in vars(self).items()
-        }
-        return type(self)(**values)
 
 
 def still(plant: Plant) -> StructureWindows:
@@ -176,7 +163,7 @@ def run_windows(
         states, regimes = parts[-1].final, parts[-1].regimes
         if stop_is_asked():
             break
-    return in_succession(parts)
+    return merged(parts)
 
 
 def _pieces(numbers: int, seconds: float, how: Running) -> int:
@@ -193,38 +180,48 @@ def _pieces(numbers: int, seconds: float, how: Running) -> int:
     return int(min(2 ** np.ceil(np.log2(needed)), BLOCKS))
 
 
-def in_succession(parts: Sequence[StructureWindows]) -> StructureWindows:
-    """Return windows whose equal parts follow one another."""
+def merged(parts: Sequence[StructureWindows]) -> StructureWindows:
+    """Return one window of several of one motion, which ends as the last of them does."""
     if len(parts) == 1:
         return parts[0]
     last = parts[-1]
     values = {
-        name: np.stack([getattr(part, name) for part in parts]) for name in vars(last)
+        name: np.stack([getattr(part, name) for part in parts])
+        for name in vars(last)
+        if name not in ("kinetic", "block_ends")
     }
-    ways: dict[str, Any] = {
-        "velocities": _root_mean_square,
-        "speed": _root_mean_square,
-        "separated": np.mean,
-        "stuck": np.mean,
-        "switched": np.any,
-        "finished": np.all,
+    lengths = values["length"]
+    shares = lengths / lengths.sum(axis=0)
+
+    def mean(values: np.ndarray) -> Any:
+        extra = (1,) * (values.ndim - shares.ndim)
+        return (values * shares.reshape(*shares.shape, *extra)).sum(axis=0)
+
+    ways: dict[str, Callable[[np.ndarray], Any]] = {
+        **dict.fromkeys(("velocities", "speed"), lambda v: np.sqrt(mean(v**2))),
+        **dict.fromkeys(("separated", "stuck"), mean),
+        "switched": partial(np.any, axis=0),
+        "finished": partial(np.all, axis=0),
         **dict.fromkeys(
-            ("separations", "landings", "events", "steps", "length"), np.sum
+            ("separations", "landings", "events", "steps", "length"),
+            partial(np.sum, axis=0),
         ),
-        **dict.fromkeys(("forces", "peak_speed", "largest_velocity"), np.max),
+        **dict.fromkeys(
+            ("forces", "peak_speed", "largest_velocity"), partial(np.max, axis=0)
+        ),
     }
-    joined = {name: way(values[name], axis=0) for name, way in ways.items()}
-    begins = np.cumsum(values["length"], axis=0) - values["length"]
+    joined = {name: way(values[name]) for name, way in ways.items()}
+    begins = np.cumsum(lengths, axis=0) - lengths
+    ends = [
+        part.block_ends + begin[..., None]
+        for part, begin in zip(parts, begins, strict=True)
+    ]
     return replace(
         last,
-        kinetic=np.concatenate(values["kinetic"], axis=-1),
-        block_ends=np.concatenate(values["block_ends"] + begins[..., None], axis=-1),
+        kinetic=np.concatenate([part.kinetic for part in parts], axis=-1),
+        block_ends=np.concatenate(ends, axis=-1),
         **joined,
     )
-
-
-def _root_mean_square(values: np.ndarray, axis: int) -> np.ndarray:
-    return np.asarray(np.sqrt((values**2).mean(axis=axis)))
 
 
 def followed_windows(
