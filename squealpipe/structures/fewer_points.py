@@ -62,7 +62,7 @@ def with_points(structure: Any, points: int) -> Any:
 
 
 def fewer_points(structure: Any, *, frequency_max: float | None = None) -> xr.Dataset:
-    """Unstable modes with one, two, four, … and all contact points of each face of a mesh.
+    """Unstable modes with 1, 2, 3, 4, 6, 8, 12, … and all contact points of each face of a mesh.
 
     Args:
         structure: a :class:`squealpipe.Structure` with contacts from faces, not reduced.
@@ -87,7 +87,10 @@ def fewer_points(structure: Any, *, frequency_max: float | None = None) -> xr.Da
             "`contacts:`, or use Structure.from_mesh"
         )
     most = max(of_faces.values())
-    points = [2**power for power in range((most - 1).bit_length())] + [most]
+    # growth does not change steadily with the number of points: steps of a half and a third
+    powers = [2**power for power in range((most - 1).bit_length())]
+    between = [3 * power // 2 for power in powers if power > 1]
+    points = sorted({*powers, *between, most} - {*range(most + 1, 2 * most)})
     rows = [_growing(structure.with_points(point), frequency_max) for point in points]
     return build(
         fewer_points_schema,

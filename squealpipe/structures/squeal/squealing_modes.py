@@ -235,7 +235,8 @@ def _told_before(plant: Plant, count: int, seconds: float, how: Running) -> str:
     told += f": about {duration(seconds / workers)}{processes}"
     of_face = any(contact.origin is not None for contact in plant.structure.contacts)
     fewer = "fewer samples" + (
-        ", or fewer contacts of a face (points: 6 in its YAML, points=6 in Python)"
+        ", or fewer contacts of a face (points: 12 in its YAML, points=12 in Python) if "
+        "complex modes then grow as fast"
         if of_face
         else ""
     )

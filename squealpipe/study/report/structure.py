@@ -208,35 +208,46 @@ def points(fewer: xr.Dataset | None) -> dict[str, Any]:
 
 
 def _needed_points(fewer: xr.Dataset) -> str:
-    """Tell from which number of points on as many modes grow as with all."""
+    """Tell from which number of points on the same modes grow as fast as with all."""
     most = int(fewer.points[-1])
     each = "" if int(fewer.contacts[-1]) == most else " for each face"
     if int(fewer.outcome[-1]) != Outcome.converged:
         return f"With all {most} points{each}: {_reason(fewer.outcome[-1])}."
-    number_of_all = int(fewer.unstable_modes[-1])
+    number_of_all, growth = int(fewer.unstable_modes[-1]), float(fewer.growth_rate[-1])
     same = (fewer.outcome == Outcome.converged) & (
         fewer.unstable_modes == number_of_all
     )
-    # the run of equal numbers that ends with all points: one match among others is chance
+    if number_of_all:
+        same &= abs(fewer.growth_rate / growth - 1.0) <= 0.1
+    # the run of equal answers that ends with all points: one match among others is chance
     first = fewer.sizes["points"] - int(np.argmin([*same.values[::-1], False]))
-    if first == fewer.sizes["points"] - 1:
-        one = fewer.isel(points=first - 1)
-        told = (
-            f"the number of unstable modes is {int(one.unstable_modes)} instead of "
-            f"{number_of_all}"
-            if int(one.outcome) == Outcome.converged
-            else _reason(one.outcome)
-        )
-        return f"With {int(one.points)} points{each} instead of {most}: {told}."
-    one = fewer.isel(points=first)
-    count = int(one.points)
+    below = fewer.isel(points=max(first - 1, 0))
+    count = int(below.points)
     several = f"{count} point{'s' if count > 1 else ''}"
+    told = f"with {several}{each} {_instead(below, number_of_all, growth)}"
+    if first == fewer.sizes["points"] - 1:
+        return f"All {most} points{each} are needed: {told}."
+    needed = int(fewer.points[first])
+    start = f"From {needed} point{'s' if needed > 1 else ''}{each} on"
     if not number_of_all:
-        return f"From {several}{each} on no mode grows, as with all {most}."
-    growths = (number(float(one.growth_rate)), number(float(fewer.growth_rate[-1])))
+        start = f"{start} no mode grows, as with all {most}"
+    else:
+        start = (
+            f"{start} as many modes grow as with all {most}, and the largest growth rate is within "
+            "10 % of theirs"
+        )
+    return f"{start}; {told}." if first else f"{start}."
+
+
+def _instead(fewer: xr.Dataset, number_of_all: int, growth: float) -> str:
+    """Say what fewer points give instead of the unstable modes and growth rate of all."""
+    if int(fewer.outcome) != Outcome.converged:
+        return f"it is not known ({_reason(fewer.outcome)})"
+    if int(fewer.unstable_modes) != number_of_all:
+        return f"{int(fewer.unstable_modes)} modes grow instead of {number_of_all}"
     return (
-        f"From {several}{each} on as many modes grow as with all. With {several} instead of "
-        f"{most} the largest growth rate is {growths[0]} instead of {growths[1]} 1/s."
+        f"the largest growth rate is {number(float(fewer.growth_rate))} instead of "
+        f"{number(growth)} 1/s"
     )
 
 

@@ -122,20 +122,28 @@ def fewer_points_of(growths, faces=1):
         (
             {1: [], 2: [8.84, 91.6], 4: [], 8: [55.48], 16: [41.68], 20: [24.94]},
             (
-                "From 8 points on as many modes grow as with all. "
-                "With 8 points instead of 20 the largest growth rate is 55.5 instead of 24.9 1/s."
+                "All 20 points are needed: "
+                "with 16 points the largest growth rate is 41.7 instead of 24.9 1/s."
             ),
         ),
         # one match among others is chance
         (
             {1: [3.0], 2: [], 4: [2.0, 1.0], 5: [7.0]},
-            (
-                "With 4 points instead of 5: "
-                "the number of unstable modes is 2 instead of 1."
-            ),
+            ("All 5 points are needed: with 4 points 2 modes grow instead of 1."),
         ),
         ({1: [], 2: [], 3: []}, "From 1 point on no mode grows, as with all 3."),
-        ({1: [2.0], 2: None, 3: []}, "With 2 points instead of 3: no sliding state."),
+        (
+            {1: [2.0], 2: None, 3: []},
+            "All 3 points are needed: with 2 points it is not known (no sliding state).",
+        ),
+        (
+            {1: [], 2: [30.0], 4: [21.0], 5: [20.0]},
+            (
+                "From 4 points on as many modes grow as with all 5, and the largest growth rate "
+                "is within 10 % of theirs; with 2 points the largest growth rate is 30 instead "
+                "of 20 1/s."
+            ),
+        ),
         ({1: [2.0], 2: [1.0], 3: None}, "With all 3 points: no sliding state."),
     ],
 )
