@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 
-from squealpipe import Contact, Structure, assess
+from squealpipe import Contact, Structure, assess, squealing_modes
 from squealpipe.codes import Verdict
 from squealpipe.structures.assess.assess import LongRuns
 from squealpipe.structures.assess.designs import Design, Structures, pushed
 from squealpipe.study.report.answer import cure_lines, cures
+from squealpipe.study.report.squealing import headline
+from squealpipe.systems.progress import shown
 
 ROD = np.array([[1.2e7, -1.0e6], [-1.0e6, 8.0e6]])
 
@@ -62,3 +64,17 @@ def test_long_searches_say_what_was_run_and_end_on_the_quiet_side(monkeypatch):
         np.isfinite(short.quiet_from[1:3]).sum()
     )
     assert {each.any_start for each in cures(short)[1:]} == {"not run"}
+
+
+def test_an_undamped_structure_that_does_not_settle_is_told_to_have_damping():
+    said = []
+    with shown(None, said.append):
+        answer = squealing_modes(
+            pad(mu=0.5, damping=None), samples=1, t_end=0.01, workers=1
+        )
+    assert int(answer.verdict) == Verdict.undetermined
+    advice = "give it the damping that it has, like modal_damping: 0.001"
+    assert advice in said[0]
+    assert advice in headline(answer)
+    damped = squealing_modes(pad(mu=0.5), samples=1, t_end=0.01, workers=1)
+    assert advice not in headline(damped)
