@@ -63,7 +63,8 @@ class ContactStructure:
             with a table a factor of it, 1 by default.
         belt_speed: V, m/s, 2 by default; its sign is the direction. With a rotation it is Ω, rad/s,
             that of the rotation by default, and ``speed`` of a contact is its radius in m.
-        friction_law, mu_static, friction_speed: as in ``Parameters``.
+        friction_law, mu_static, friction_speed: as in ``Parameters``; speeds of a table are in m/s,
+            whatever ``friction_speed`` is.
         load: f, (n,), N; None: −Σ nᵢ preloadᵢ, which balances the preloads at rest; 0: none.
         mesh: nodes, facets and what each degree of freedom is, for names and pictures.
         names: of the degrees of freedom, ``"12.1"`` (node.direction) each, which contacts may then

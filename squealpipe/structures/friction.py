@@ -95,17 +95,15 @@ def friction_of(contact: "Contact", common: Friction) -> Friction:
             f"contact {contact.name}: friction_law = {law!r} needs a mu of its own, since the "
             "structure's mu is a factor of a table"
         )
-    if mu is None and law is None and mu_static is None:
-        return common
+    is_common = mu is None and law is None and mu_static is None
+    law = common.friction_law if law is None else law
     try:
         return Friction(
-            friction_law=common.friction_law if law is None else law,
+            friction_law=law,
             mu=common.mu if mu is None else mu,
-            mu_static=mu_static,
+            mu_static=common.mu_static if is_common else mu_static,
             # the speeds of a table or of a law in Python are in m/s
-            friction_speed=1.0
-            if law is not None and law not in LAWS
-            else common.friction_speed,
+            friction_speed=common.friction_speed if law in LAWS else 1.0,
         )
     except ValueError as error:
         raise ValueError(f"contact {contact.name}: {error}") from None

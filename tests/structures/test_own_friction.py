@@ -9,6 +9,8 @@ from scipy.integrate import solve_ivp
 
 from squealpipe import Contact, Structure, load, squealing_modes
 from squealpipe.cli import run
+from squealpipe.structures.assess.cures import cures_of
+from squealpipe.structures.assess.designs import Design
 from squealpipe.structures.files import read
 from squealpipe.structures.schema.structures import Onset
 
@@ -83,6 +85,39 @@ def test_each_contact_has_its_own_law(seed, belt_speed):
     assert abs(modes.growth_rate.max() - fastest) < 1e-9
     limits = [friction.static_mu for friction in structure.frictions]
     assert np.allclose(limits, [0.15, 0.2, 0.3])
+
+
+def test_speeds_of_the_structures_table_are_in_metres_per_second():
+    """``friction_speed``, which is that of formulas, had stretched the table of a structure."""
+    case = random_case(1)
+    structure = structure_of(case, friction_law=TABLE, mu=0.4, friction_speed=5.0)
+    drag = 0.4 * (0.5 - 0.05 * 2.0 * np.array([1.0, 1.0, 2.0]))
+    slope = np.array([-0.02, -0.02, -0.01])  # the last one is at a knot, flat beyond
+    fastest, force = growth(case, drag * SIGNS, slope)
+    modes = structure.complex_modes(critical=False)
+    assert np.allclose(modes.normal_force, force, rtol=1e-10)
+    assert abs(modes.growth_rate.max() - fastest) < 1e-9
+
+
+def test_friction_of_a_face_is_changed_in_its_law_and_up_to_its_limit_of_stick():
+    """It had lost the fall of the structure's law, and a limit of its own ended ``assess``."""
+    case = random_case(1)
+    falls = {"friction_law": "exponential", "mu_static": 0.3, "friction_speed": 2.0}
+    own = ({}, {}, {"mu": 0.2, "mu_static": 0.35, "friction_law": "coulomb"})
+    names = ("lining_1", "lining_2", "back")
+    structure = structure_of(case, own=own, names=names, mu=0.2, **falls)
+    cures, _ = cures_of(Design.of(structure), {})
+    for name, limit, factors in (
+        ("mu_lining", 0.3, [1, 1, 0]),
+        ("mu_back", 0.35, [0, 0, 1]),
+    ):
+        assert cures[name].grid.max() <= limit
+        for value in (0.2, 0.15, limit):
+            mu = np.where(factors, value, 0.2)
+            excess = np.array([0.3, 0.3, 0.2]) - np.where([1, 1, 0], mu, 0.2)
+            fall = excess * np.exp(-np.array([1.0, 1.0, 2.0]))
+            fastest, _ = growth(case, (mu + fall) * SIGNS, -fall / 2.0)
+            assert abs(cures[name].apply(value).margin - fastest) < 1e-9, name
 
 
 def critical_by_hand(case, drag_at, high):

@@ -194,15 +194,26 @@ def _frictions(design: Design) -> dict[str, Cure]:
             structure: ContactStructure, value: float, varied: VariedFriction = varied
         ) -> ContactStructure:
             contacts = [
-                replace(contact, mu=value) if chosen else contact
-                for contact, chosen in zip(
-                    structure.contacts, varied.contacts, strict=True
+                # its limit of stick stays, also where it is the structure's
+                replace(contact, mu=value, mu_static=friction.mu_static)
+                if chosen
+                else contact
+                for contact, friction, chosen in zip(
+                    structure.contacts,
+                    structure.frictions,
+                    varied.contacts,
+                    strict=True,
                 )
             ]
             return structure.with_(contacts=contacts)
 
+        limits = [
+            friction.largest_mu
+            for friction, chosen in zip(whole.frictions, varied.contacts, strict=True)
+            if chosen
+        ]
         cures[f"mu_{name}"] = _friction(
-            float(values[0]), _whole(design, change), np.inf
+            float(values[0]), _whole(design, change), min(limits)
         )
     return cures
 

@@ -183,7 +183,7 @@ def known_inputs(structure: ContactStructure) -> dict[str, Change]:
             modal_damping=(factor * np.asarray(each.modal_damping)).tolist()
         )
     if not own.all():
-        known["mu"] = lambda each, factor: each.with_(mu=factor * each.mu)
+        known["mu"] = _with_friction
     names = [face_of(contact.name) or contact.name for contact in structure.contacts]
     for group in dict.fromkeys(names):
         chosen = [name == group for name in names]
@@ -192,8 +192,44 @@ def known_inputs(structure: ContactStructure) -> dict[str, Change]:
         )
         known[f"preload_{group}"] = partial(_with_contacts, "preload", chosen)
         if own[chosen].all():
-            known[f"mu_{group}"] = partial(_with_contacts, "mu", chosen)
+            known[f"mu_{group}"] = partial(_with_friction, chosen=chosen)
     return known
+
+
+def _with_friction(
+    structure: ContactStructure, factor: float, chosen: list[bool] | None = None
+) -> ContactStructure:
+    """Multiply the friction of some contacts by a factor, or that which the structure has itself.
+
+    A limit of stick, which friction must not exceed, is multiplied with it.
+    """
+
+    def scaled(value: float | None) -> float | None:
+        return None if value is None else factor * value
+
+    if chosen is None:
+        changes = {
+            "mu": factor * structure.mu,
+            "mu_static": scaled(structure.mu_static),
+        }
+        scattered = ~structure.has_own_mu
+    else:
+        changes, scattered = {}, np.array(chosen)
+    contacts = [
+        (
+            replace(
+                contact,
+                mu=None if chosen is None else factor * friction.mu,
+                mu_static=scaled(contact.mu_static),
+            )
+            if scatters
+            else contact
+        )
+        for contact, friction, scatters in zip(
+            structure.contacts, structure.frictions, scattered, strict=True
+        )
+    ]
+    return structure.with_(contacts=contacts, **changes)
 
 
 def _with_contacts(
@@ -201,13 +237,7 @@ def _with_contacts(
 ) -> ContactStructure:
     """Multiply a number of all contacts, or of some of them."""
     contacts = [
-        (
-            replace(contact, mu=factor * structure.frictions[index].mu)
-            if key == "mu"
-            else contact.scaled(**{key: factor})
-        )
-        if chosen is None or chosen[index]
-        else contact
+        contact.scaled(**{key: factor}) if chosen is None or chosen[index] else contact
         for index, contact in enumerate(structure.contacts)
     ]
     return structure.with_(contacts=contacts)

@@ -85,6 +85,22 @@ def test_each_parameter_changes_what_its_name_says():
         ] in ([name], [name, f"{name}_pad"], [name.removesuffix("_pad"), name])
 
 
+def test_scattered_friction_takes_its_limit_of_stick_along():
+    """A limit that stayed was exceeded by some samples, which ended the whole computation."""
+    contacts = [
+        Contact("a", {1: 1.0}, {0: 1.0}, STIFFNESS, 3000.0),
+        Contact("b", {1: 1.0}, {0: 2.0}, STIFFNESS, 3000.0, mu=0.3, mu_static=0.4),
+    ]
+    pad = structure(contacts=contacts, mu_static=0.25, friction_law="exponential")
+    known = known_inputs(pad)
+    for name, truth in (
+        ("mu", [(0.4, 0.5), (0.3, 0.4)]),
+        ("mu_b", [(0.2, 0.25), (0.6, 0.8)]),
+    ):
+        frictions = known[name](pad, 2.0).frictions
+        assert [(each.mu, each.static_mu) for each in frictions] == truth
+
+
 SPREAD_OF_PAD = {"mu": {"distribution": "uniform", "low": 0.1, "high": 0.9}}
 
 
