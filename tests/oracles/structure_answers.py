@@ -188,6 +188,10 @@ class Motion(ManyContacts):
         seen["samples"] = np.concatenate(samples) if samples else None
         return seen
 
+    def dies_out(self, _, length):
+        """Tell whether small motions, which are linear until a contact switches, stay so."""
+        return not self.run(length)["events"]
+
     def answer(self, most=3000.0):
         """Verdict on a push, with frequency, levels and the differences of two halves."""
         steady = self.steady()
@@ -207,8 +211,7 @@ class Motion(ManyContacts):
         if growth <= 0.0:
             # linear until a contact switches, and smaller after each e-folding
             length = min(max(3.0 / -growth, 30.0 * period), most * period)
-            seen = self.run(length)
-            if not seen["events"]:
+            if self.dies_out(steady[0], length):
                 return {"verdict": QUIET, "growth": growth}
         else:
             self.run(min(np.log(300.0) / growth, most * period) + 600.0 * period)
