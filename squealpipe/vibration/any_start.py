@@ -76,7 +76,7 @@ class Side:
         values: outward.
         inner: the last value known to be like the present one, in what is tested.
         exact: the linear boundary, if the answer may be that.
-        rungs: values to run, outward.
+        trial_values: those to run, outward.
         answer: what was found; NaN: nothing.
         motions: states of motions that last at the value tried last at which any does.
     """
@@ -86,7 +86,7 @@ class Side:
     values: np.ndarray
     inner: float
     exact: float = math.nan
-    rungs: list[float] = field(default_factory=list)
+    trial_values: list[float] = field(default_factory=list)
     answer: float = math.nan
     outer: float = math.nan
     motions: list[np.ndarray] = field(default_factory=list)
@@ -167,11 +167,14 @@ def any_start(
             side.inner - side.cure.value
         )
         outer = side.values[beyond]
-        side.rungs = thinned(outer)
+        side.trial_values = thinned(outer)
         if not quiet:
-            side.rungs = [side.beyond(side.inner, Following.located), *side.rungs[1:]]
+            side.trial_values = [
+                side.beyond(side.inner, Following.located),
+                *side.trial_values[1:],
+            ]
         elif math.isnan(side.exact):
-            side.rungs = _shown(side, subjects)
+            side.trial_values = _shown(side, subjects)
     climbed = _climb(sides, quiet=quiet, always=always, test=test, follow=follow)
     return nearer(cures, climbed)
 
@@ -183,26 +186,26 @@ def _shown(side: Side, subjects: Subjects) -> list[float]:
         return subjects.fading(side.cure.apply(value)) > -Following.fades
 
     if is_slow(side.cure.value):
-        return side.rungs
-    return list(takewhile(lambda value: not is_slow(value), side.rungs))
+        return side.trial_values
+    return list(takewhile(lambda value: not is_slow(value), side.trial_values))
 
 
 def _climb(
     sides: list[Side], *, quiet: bool, always: bool, test: Test, follow: Test | None
 ) -> list[Side]:
-    """Test the rungs of each side outward, and bisect where the answer changes."""
-    waiting = [side for side in sides if side.rungs]
+    """Test the trial values of each side outward, and bisect where the answer changes."""
+    waiting = [side for side in sides if side.trial_values]
     while waiting:
-        answers = test(waiting, [side.rungs[0] for side in waiting])
+        answers = test(waiting, [side.trial_values[0] for side in waiting])
         for side, dies in zip(waiting, answers, strict=True):
-            rung = side.rungs.pop(0)
+            trial = side.trial_values.pop(0)
             if dies == always:
-                side.inner = rung
+                side.inner = trial
             elif not quiet and side.inner == side.exact:
-                side.answer, side.rungs = side.exact, []
+                side.answer, side.trial_values = side.exact, []
             else:
-                side.outer, side.rungs = rung, []
-        waiting = [side for side in waiting if side.rungs]
+                side.outer, side.trial_values = trial, []
+        waiting = [side for side in waiting if side.trial_values]
     open_sides = [side for side in sides if math.isnan(side.answer)]
     located = math.inf if follow is None else Following.located
     bisect(open_sides, always, test, located)
@@ -227,13 +230,17 @@ def _follow(sides: Sequence[Side], always: bool, follow: Test, test: Test) -> No
     while open_ones:
         at = [step.next for step in open_ones]
         dies = follow([step.side for step in open_ones], at)
-        ends = [
+        last_steps = [
             step
             for step, gone in zip(open_ones, dies, strict=True)
             if gone and step.is_small
         ]
-        dies_always = test([step.side for step in ends], [step.next for step in ends])
-        left = [step for step, gone in zip(ends, dies_always, strict=True) if not gone]
+        dies_always = test(
+            [step.side for step in last_steps], [step.next for step in last_steps]
+        )
+        left = [
+            step for step, gone in zip(last_steps, dies_always, strict=True) if not gone
+        ]
         open_ones = [
             step
             for step, gone in zip(open_ones, dies, strict=True)
@@ -268,8 +275,8 @@ class _Step:
     @property
     def next(self) -> float:
         """Return where the step leads, within the range."""
-        ends = (self.lasting + self.size, self.end)
-        return min(ends, key=lambda value: abs(value - self.lasting))
+        reach = (self.lasting + self.size, self.end)
+        return min(reach, key=lambda value: abs(value - self.lasting))
 
     @property
     def is_small(self) -> bool:
@@ -316,9 +323,9 @@ def lead(
             cure = sides[row].cure
             subject = cure.apply(cure.value + (1.0 - left) * way)
             starts += subjects.starts(subject, 0, sides[row].motions)
-        ends = iter(subjects.settle(starts))
+        runs = iter(subjects.settle(starts))
         for row in list(ways):
-            settled = [next(ends) for _ in sides[row].motions]
+            settled = [next(runs) for _ in sides[row].motions]
             lasting = [each.last.final for each in settled if each.lasts]
             quiet_from = nearest[sides[row].name]
             near = sides[row].scale(Following.located, quiet_from)
@@ -356,8 +363,8 @@ def dies_out_always(
             starts += made
             owners += [row] * len(made)
         lasting: dict[int, list[np.ndarray]] = {}
-        ends = subjects.settle(starts) if starts else []
-        for row, settled in zip(owners, ends, strict=True):
+        runs = subjects.settle(starts) if starts else []
+        for row, settled in zip(owners, runs, strict=True):
             if settled.lasts:
                 lasting.setdefault(row, []).append(settled.last.final)
         for row, states in lasting.items():

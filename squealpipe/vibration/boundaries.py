@@ -33,7 +33,7 @@ class Search:
     least: float = 1e-3
     """Values below this, over the present one, are located as if they were this. Half as much: one
     run more where a boundary lies near 0."""
-    rungs: int = 8
+    most_trials: int = 8
     """Most values within a stretch that are run. Twice as many: shorter noise within quiet is
     seen, at twice the cost."""
     tol: float = 1e-9
@@ -123,21 +123,21 @@ def linear_intervals(cure: Cure, margin: Margin) -> list[QuietInterval]:
     margins = [at(value) for value in values]
     values, margins = _with_peaks(at, values, margins)
     intervals: list[QuietInterval] = []
-    for place, value in enumerate(values):
-        if margins[place] > 0.0:
+    for index, value in enumerate(values):
+        if margins[index] > 0.0:
             continue
-        if place and margins[place - 1] <= 0.0:
+        if index and margins[index - 1] <= 0.0:
             intervals[-1].high = value
             continue
         begins = QuietInterval(value, value, low_open=True, high_open=True)
-        if place:
-            begins.low, begins.low_open = _zero(at, value, values[place - 1]), False
+        if index:
+            begins.low, begins.low_open = _zero(at, value, values[index - 1]), False
         intervals.append(begins)
     # where each ends
     for interval in intervals:
-        place = values.index(interval.high)
-        if place + 1 < len(values):
-            interval.high = _zero(at, values[place], values[place + 1])
+        last = values.index(interval.high)
+        if last + 1 < len(values):
+            interval.high = _zero(at, values[last], values[last + 1])
             interval.high_open = False
     return intervals
 
@@ -185,8 +185,9 @@ def thinned(values: np.ndarray) -> list[float]:
     """Return some of the values, dense at first, the last among them."""
     if not values.size:
         return []
-    places = np.geomspace(1, values.size, min(Search.rungs, values.size)).astype(int)
-    return [float(value) for value in values[np.unique(places) - 1]]
+    count = min(Search.most_trials, values.size)
+    numbers = np.unique(np.geomspace(1, values.size, count).astype(int))
+    return [float(value) for value in values[numbers - 1]]
 
 
 @dataclass

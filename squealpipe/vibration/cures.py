@@ -74,8 +74,8 @@ def boundaries(
         quiet: whether a push dies out now.
         always: whether any start does.
     """
-    found = of_pushes(cures, linear, subjects, quiet=quiet)
-    return of_any_start(found, subjects, motions, quiet=quiet, always=always)
+    by_cure = of_pushes(cures, linear, subjects, quiet=quiet)
+    return of_any_start(by_cure, subjects, motions, quiet=quiet, always=always)
 
 
 def of_pushes(
@@ -101,7 +101,7 @@ def of_pushes(
 
 
 def of_any_start(
-    found: Mapping[str, Boundary],
+    by_cure: Mapping[str, Boundary],
     subjects: Subjects,
     motions: Sequence[np.ndarray],
     *,
@@ -115,8 +115,8 @@ def of_any_start(
         closely: whether motions are followed in small steps to where they end. Otherwise they are
             put at the values tried, and the nearest at which all starts die out is the answer.
     """
-    cures = {name: boundary.cure for name, boundary in found.items()}
-    nearest = {name: boundary.quiet_from for name, boundary in found.items()}
+    cures = {name: boundary.cure for name, boundary in by_cure.items()}
+    nearest = {name: boundary.quiet_from for name, boundary in by_cure.items()}
     sides = sides_of(cures)
     for side in sides:
         side.motions = list(motions)
@@ -136,25 +136,25 @@ def of_any_start(
         name: boundary._replace(
             quiet_from_any_start=anywhere.get(name, math.nan), is_run=True
         )
-        for name, boundary in found.items()
+        for name, boundary in by_cure.items()
     }
 
 
-def by_change(found: Mapping[str, Boundary]) -> dict[str, Boundary]:
+def by_change(by_cure: Mapping[str, Boundary]) -> dict[str, Boundary]:
     """Return the boundaries by ascending change; those that were not found come last."""
 
     def size(name: str) -> float:
-        change = abs(found[name].change)
+        change = abs(by_cure[name].change)
         return math.inf if math.isnan(change) else change
 
-    return {name: found[name] for name in sorted(found, key=size)}
+    return {name: by_cure[name] for name in sorted(by_cure, key=size)}
 
 
 def cure_table(
-    found: Mapping[str, Boundary], units: Mapping[str, str]
+    by_cure: Mapping[str, Boundary], units: Mapping[str, str]
 ) -> dict[str, np.ndarray]:
     """Return the variables of the dataset over ``cure``."""
-    rows = list(found.values())
+    rows = list(by_cure.values())
     columns = {
         name: [getattr(row, name) for row in rows]
         for name in ("quiet_from", "quiet_from_any_start", "change", "change_any_start")
@@ -166,7 +166,7 @@ def cure_table(
         **{name: np.array(values, float) for name, values in columns.items()},
         "cure_is_run": np.array([row.is_run for row in rows], bool),
         **interval_table([row.intervals for row in rows]),
-        "unit": np.array([units[name] for name in found], str),
+        "unit": np.array([units[name] for name in by_cure], str),
     }
 
 
@@ -186,7 +186,7 @@ def pushes_die_out(
         else:
             rows.append(row)
             starts.append(start)
-    ends = subjects.settle(starts) if starts else []
-    for row, run in zip(rows, ends, strict=True):
+    runs = subjects.settle(starts) if starts else []
+    for row, run in zip(rows, runs, strict=True):
         answers[row] = run.quiet
     return answers

@@ -211,10 +211,10 @@ def _scalars(record: Record, loads: np.ndarray) -> dict[str, Any]:
         return dict.fromkeys(still(), np.nan) | dict.fromkeys(
             ("peak_contact_force", "peak_contact_force_over_preload"), np.nan
         )
-    place, velocity = record.displacements[known], record.velocities[known]
+    displacement, velocity = record.displacements[known], record.velocities[known]
     along, across = np.sqrt(tapered(velocity**2).mean(axis=0))
     rates = _rates(record, known, count)
-    away = np.hypot(*np.moveaxis(place - tapered(place), -1, 0))
+    away = np.hypot(*np.moveaxis(displacement - tapered(displacement), -1, 0))
     return {
         "velocity_rms_along": float(along),
         "velocity_rms_across": float(across),
@@ -335,13 +335,13 @@ def _spectrum(blocks: Sequence[Record]) -> dict[str, Any]:
     lines[:, :count] = (
         amplitude[:, : count * merged].reshape(3, count, merged).max(axis=2)
     )
-    places = np.full(LINES, np.nan)
-    places[:count] = frequency[: count * merged : merged]
+    line_frequencies = np.full(LINES, np.nan)
+    line_frequencies[:count] = frequency[: count * merged : merged]
     return {
         "frequency_resolution": resolution,
         "harmonic_frequency": multiples,
         "harmonic_velocity": np.where(np.isfinite(multiples), heights, np.nan),
-        "line_frequency": places,
+        "line_frequency": line_frequencies,
         "velocity_spectrum_along": lines[0],
         "velocity_spectrum_across": lines[1],
         "force_spectrum": lines[2],

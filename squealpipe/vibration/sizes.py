@@ -16,9 +16,9 @@ def is_real(dataset: xr.Dataset) -> bool:
     text = dataset.attrs.get("parameters")
     if not isinstance(text, str):
         return False
-    given = json.loads(text)
-    if not {"preload", "mass", "k1"} <= set(given):
+    parameters = json.loads(text)
+    if not {"preload", "mass", "k1"} <= set(parameters):
         return False
-    time = math.sqrt(given["mass"] / given["k1"])
+    time = math.sqrt(parameters["mass"] / parameters["k1"])
     # m and s: the sizes of a brake that one can hold; scaled numbers have 1 for both
-    return float(given["preload"]) < 0.01 and time < 0.01
+    return float(parameters["preload"]) < 0.01 and time < 0.01

@@ -87,15 +87,15 @@ def strongest_lines(
     # periods in a signal from which it oscillates
     fewest_periods = 3.0
     fast = np.where(frequency >= fewest_periods * resolution, amplitude, 0.0)
-    places, heights = highest_peaks(frequency, fast, len(frequency))
+    lines, heights = highest_peaks(frequency, fast, len(frequency))
     kept: list[int] = []
-    for i, place in enumerate(places):
+    for i, line in enumerate(lines):
         # neither the cut through a drift's flank nor its side lobes are lines
         # over 2π/T: from here the window's side lobes are small
-        lobe = place < 12.0 * resolution and heights[i] < 0.1 * amplitude.max()
-        is_line = place > (fewest_periods + 0.25) * resolution and not lobe
+        lobe = line < 12.0 * resolution and heights[i] < 0.1 * amplitude.max()
+        is_line = line > (fewest_periods + 0.25) * resolution and not lobe
         # over 2π/T: half the main lobe of a Hann window
-        apart = all(abs(place - places[k]) > 2.0 * resolution for k in kept)
+        apart = all(abs(line - lines[k]) > 2.0 * resolution for k in kept)
         if is_line and apart and len(kept) < count:
             kept.append(i)
-    return places[kept], heights[kept]
+    return lines[kept], heights[kept]

@@ -366,3 +366,14 @@ def test_a_law_of_a_face_is_shared_by_area(tmp_path):
         np.testing.assert_allclose(forces, area / area.sum() * sum(forces), rtol=1e-12)
         whole = np.interp(1e-5 + 1e-5 / 6 - lift, [0, 1e-5, 1e-3], [0, 1e3, 298e3])
         assert sum(forces) == pytest.approx(whole, rel=1e-12)
+
+
+@pytest.mark.parametrize("preload", [0.1, 0.2, 0.8, 7.0])
+def test_the_energy_of_the_preload_is_the_integral_of_the_force(preload):
+    """In the first piece of a table, at its end, in the second and beyond the last point."""
+    contact = Contact("p", {0: 1.0}, {1: 1.0}, None, preload, law=BENT)
+    compression = np.linspace(0.0, contact.compression, 200_001)
+    force = contact.force(compression - contact.compression)
+    assert force[-1] == pytest.approx(preload)
+    energy = np.trapezoid(force, compression)
+    assert contact.energy_at_preload == pytest.approx(energy, rel=1e-8)

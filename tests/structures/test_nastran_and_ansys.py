@@ -11,6 +11,7 @@ import scipy.io
 import scipy.sparse as sp
 
 from squealpipe import Structure
+from squealpipe.structures.harwell_boeing import read_mapping
 from squealpipe.structures.readers import read_matrix
 
 with np.printoptions():  # pyyeti sets other ones
@@ -127,6 +128,13 @@ def test_triangles_of_ansys_are_completed_and_its_mapping_names_rows(tmp_path):
     (tmp_path / "K.mapping").write_text(mapping([NAMES[place] for place in order]))
     read = structure(tmp_path, "M.matrix", "K.matrix")
     np.testing.assert_allclose(read.stiffness.toarray(), K, rtol=1e-15)
+
+
+def test_all_directions_of_ansys_have_their_numbers(tmp_path):
+    words = ["UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ"]  # translations, then rotations
+    lines = [f"{row} 9 {word}\n" for row, word in enumerate(words, 1)]
+    (tmp_path / "K.mapping").write_text("".join(lines))
+    assert read_mapping(tmp_path / "K.mapping") == [f"9.{axis}" for axis in range(1, 7)]
 
 
 def test_whole_matrices_of_scipy_are_read_as_they_are(tmp_path):

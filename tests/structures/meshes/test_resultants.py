@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from squealpipe import Face, Structure
+from squealpipe.structures.meshes.face_entries import read_pressures
+from squealpipe.structures.units import scales_of
 
 PRESSURE = 7e5
 DIRECTION = np.array([0.8, 0.6, 0.0])
@@ -155,3 +157,11 @@ def test_pressure_by_node_presses_each_node_by_its_own(tmp_path):
     for each in built:
         areas = np.array([contact.origin.area for contact in each.contacts])
         np.testing.assert_allclose(each.preloads, areas * list(values.values()))
+
+
+def test_pressures_of_a_file_are_in_the_units_of_the_structure(tmp_path):
+    """MPa with mm, t and s; µN/mm² = Pa with mm, g and s."""
+    (tmp_path / "p.txt").write_text("5001 0.5\n5002 2\n")
+    for units, pascal in (("mm-t-s", 1e6), ("mm-g-s", 1.0), ("m-kg-ms", 1e6)):
+        read = read_pressures(tmp_path / "p.txt", scales_of(units))
+        assert read == pytest.approx({5001: 0.5 * pascal, 5002: 2.0 * pascal})
