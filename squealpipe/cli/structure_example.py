@@ -114,6 +114,7 @@ contacts:
     surface: PAD_FACE
     against: DISC_FACE
     stiffness: 2.5e6 N/mm # of the whole face
+    # tangential_stiffness: 2e6 N/mm # of springs in series with friction: stick gives way
     pressure: 0.5 MPa
     mu: 0.6
 rotation: {axis: [0, 0, 1], through: [0, 0, 0], speed: 20 rad/s, body: DISC_FACE}

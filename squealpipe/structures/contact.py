@@ -106,6 +106,10 @@ class Contact:
             texts with units, or ``"linear 0:0 1e-5:90 …"``. It begins with 0, 0 and rises; the
             slope of the last two points goes on. Where nᵀq = 0 the compression is that at which the
             force is the preload.
+        tangential_stiffness: stiffness of a spring in series with friction (Jenkins' element), N/m,
+            or a text with a unit: in stick the contact gives way elastically, and slips where the
+            spring reaches the limit of friction. None: a rigid one. Its friction has one
+            coefficient at all speeds, and may have a ``mu_static``.
 
     Raises:
         ValueError: names the contact and the argument.
@@ -124,6 +128,7 @@ class Contact:
     mu_static: float | None = None
     origin: PointOrigin | None = None
     law: Any = None
+    tangential_stiffness: float | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not self.name.isidentifier():
@@ -167,6 +172,16 @@ class Contact:
             object.__setattr__(self, key, value)
         if self.stiffness is not None and not self.stiffness > 0:
             raise self._refusal("stiffness", self.stiffness, "must be greater than 0")
+        if (spring := self.tangential_stiffness) is not None:
+            name = f"contact {self.name}: tangential_stiffness"
+            spring = finite_number(name, spring, "N m-1")
+            if not spring > 0:
+                raise self._refusal(
+                    "tangential_stiffness",
+                    spring,
+                    "must be greater than 0; leave it out for a contact that sticks rigidly",
+                )
+            object.__setattr__(self, "tangential_stiffness", spring)
         if self.speed == 0:
             raise self._refusal(
                 "speed", self.speed, "the belt must move here; leave the contact out"
@@ -360,12 +375,17 @@ def are_parallel(one: np.ndarray, other: np.ndarray) -> bool:
     return _dependent(np.stack([one, other], axis=1)) is not None
 
 
-def dependent_contacts(names: Sequence[str], tangentials: np.ndarray) -> list[str]:
+def dependent_contacts(
+    contacts: Sequence[Contact], tangentials: np.ndarray
+) -> list[str]:
     """Name contacts whose sliding directions, (n, contacts), are linearly dependent.
 
-    If they all stick at once, their friction forces cannot be told apart.
+    If they all stick at once, their friction forces cannot be told apart. Those with a tangential
+    stiffness have friction by its stretch, and are not among them.
     """
-    if (share := _dependent(tangentials)) is None:
+    rigid = [contact.tangential_stiffness is None for contact in contacts]
+    names = [contact.name for contact in contacts if not contact.tangential_stiffness]
+    if (share := _dependent(tangentials[:, rigid])) is None:
         return []
     return [name for name, part in zip(names, share, strict=True) if abs(part) > 1e-6]
 

@@ -30,7 +30,7 @@ ORIGIN_COLUMNS = ("nodes", "against", "area", "gap", "facet", "x", "y", "z")
 """Columns that say where a contact of a mesh comes from."""
 KNOWN = (
     *CONTACT_COLUMNS,
-    *("law", "speed", "mu", "mu_static", "across"),
+    *("law", "speed", "mu", "mu_static", "tangential_stiffness", "across"),
     *ORIGIN_COLUMNS,
 )
 
@@ -138,6 +138,7 @@ class _Line(NamedTuple):
     def _values(self, sign: str, scales: Scales) -> dict[str, float]:
         factors = {
             "stiffness": scales.stiffness,
+            "tangential_stiffness": scales.stiffness,
             "preload": scales.force,
             "area": scales.length**2,
             **dict.fromkeys(("gap", "facet", "x", "y", "z"), scales.length),
@@ -187,6 +188,7 @@ CONTACT_UNITS = {
     "speed": "1",
     "mu": "1",
     "mu_static": "1",
+    "tangential_stiffness": "N m-1",
     "area": "m2",
     **dict.fromkeys(("gap", "facet", "x", "y", "z"), "m"),
 }
@@ -294,6 +296,8 @@ def write_contacts(
         for key in ("mu", "mu_static"):
             if getattr(contact, key) is not None:
                 row[key] = repr(getattr(contact, key))
+        if contact.tangential_stiffness is not None:
+            row["tangential_stiffness"] = f"{contact.tangential_stiffness!r} N/m"
         if (origin := contact.origin) is not None:
             row |= {
                 "nodes": " ".join(map(str, origin.nodes)),

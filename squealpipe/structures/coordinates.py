@@ -163,8 +163,7 @@ class Coordinates:
 
     def dependent(self) -> list[str]:
         """Name the contacts whose sliding directions are dependent in these coordinates."""
-        names = [contact.name for contact in self.space.whole.contacts]
-        return dependent_contacts(names, self.tangentials)
+        return dependent_contacts(self.space.whole.contacts, self.tangentials)
 
     def _projected(self, matrix: np.ndarray) -> np.ndarray:
         return np.asarray(self.turn.T @ (matrix @ self.turn))

@@ -297,6 +297,12 @@ class ContactStructure:
         return np.asarray(force)
 
     @property
+    def tangential_stiffnesses(self) -> np.ndarray:
+        """Stiffness of each contact's spring in series with friction, N/m; 0 without one."""
+        springs = [contact.tangential_stiffness or 0.0 for contact in self.contacts]
+        return np.array(springs)
+
+    @property
     def speeds(self) -> np.ndarray:
         """Belt speed at each contact over ``belt_speed``."""
         return np.array([contact.speed for contact in self.contacts])
@@ -441,7 +447,10 @@ class ContactStructure:
             | ({} if contact.origin is None else contact.origin.as_dict())
             | {
                 key: getattr(contact, key)
-                for key in ("mu", "friction_law", "mu_static", "law")
+                for key in (
+                    *("mu", "friction_law", "mu_static", "law"),
+                    "tangential_stiffness",
+                )
                 if getattr(contact, key) is not None
             }
             for contact in self.contacts

@@ -160,6 +160,7 @@ def _joined(name: str, members: list[Contact], size: int) -> Contact:
         tangential=directions["tangential"],
         stiffness=float(stiffnesses.sum()) if law is None else None,
         law=law,
+        tangential_stiffness=_joined_springs(members),
         preload=float(forces.sum()),
         speed=float(weights @ [member.speed for member in members]),
         origin=PointOrigin(
@@ -171,6 +172,14 @@ def _joined(name: str, members: list[Contact], size: int) -> Contact:
             widest.facet,
         ),
     )
+
+
+def _joined_springs(members: list[Contact]) -> float | None:
+    """Return the tangential stiffness of several contacts that move together; None: rigid."""
+    springs = [member.tangential_stiffness for member in members]
+    if None in springs:
+        return None
+    return float(sum(spring for spring in springs if spring is not None))
 
 
 def _joined_law(members: list[Contact]) -> str | None:

@@ -46,7 +46,8 @@ def read(path: str | PathLike[str], form: type[Form]) -> Form:
     that are added times factor (1 without it) and a power of the speed; ``contacts``, a table (text
     or .xlsx) with the columns name, normal, tangential, stiffness, preload and optionally speed,
     ``mu`` and ``mu_static`` (of that contact; an empty cell leaves it to the structure) and ``law``
-    (in place of a stiffness: a file of a table, or ``0:0 0.01mm:90N``…), where a
+    (in place of a stiffness: a file of a table, or ``0:0 0.01mm:90N``…) and
+    ``tangential_stiffness`` (of a spring in series with friction), where a
     direction is ``12:1 40:-1``, degrees of freedom counted from 1, or ``31.2:1``, node and
     direction, where the matrix file has them; ``mu``, ``belt_speed``, ``friction_law``,
     ``mu_static``, ``friction_speed``, ``modal_damping`` and ``load`` (a file with one number a

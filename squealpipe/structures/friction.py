@@ -4,9 +4,10 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from squealpipe.laws.friction_laws import LAWS, coefficient, slope
+from squealpipe.laws.friction_laws import COULOMB, LAWS, coefficient, slope
 from squealpipe.laws.tables import is_table
 from squealpipe.parameters import TABLE
+from squealpipe.systems.inputs.values import brief
 
 if TYPE_CHECKING:
     from squealpipe.structures.contact import Contact
@@ -86,6 +87,19 @@ def friction_of(contact: "Contact", common: Friction) -> Friction:
     Raises:
         ValueError: names the contact and the argument.
     """
+    friction = _friction_of(contact, common)
+    if contact.tangential_stiffness is not None and friction.friction_law != COULOMB:
+        # a slider without mass has no motion of its own where friction falls with its speed: it
+        # would jump
+        raise ValueError(
+            f"contact {contact.name}: friction_law = {brief(friction.friction_law)}: with a "
+            "tangential_stiffness friction has one coefficient at all speeds; take coulomb, with a "
+            "mu_static for a higher limit of stick, or leave the tangential_stiffness out"
+        )
+    return friction
+
+
+def _friction_of(contact: "Contact", common: Friction) -> Friction:
     law = contact.friction_law
     mu, mu_static = contact.mu, contact.mu_static
     if mu is None and is_table(law):

@@ -55,6 +55,10 @@ def system(
     friction or the normal force is a table; its outputs are ``<contact>_normal_force``, N, and
     ``<contact>_speed``, the speed of sliding, m/s.
 
+    A contact with a tangential stiffness has a state more, ``<contact>_stretch``, m: friction over
+    the stiffness of its spring. A spring is relaxed where no stretch is given, so that the contact
+    starts in stick.
+
     One compiled loop runs all structures (:mod:`squealpipe.systems.linear`). Where sticking
     contacts have dependent sliding directions their motion is unique, and of their friction forces
     those of the least norm are taken.
@@ -167,11 +171,18 @@ def _check_tables(matrices: ContactMatrices) -> None:
 
 
 def _states(structure: ContactStructure, scale: "Scale") -> dict[str, Any]:
-    """Displacements, then velocities, with units and typical sizes."""
+    """Displacements, velocities, and stretches of tangential springs, with units and typical
+    sizes.
+    """
     unit = "m" if structure.modes is None else "kg^0.5 m"
     places = range(1, structure.size + 1)
     states: dict[str, Any] = {f"q{i}": (unit, scale.displacement) for i in places}
-    return states | {f"v{i}": (f"{unit} s-1", scale.velocity) for i in places}
+    states |= {f"v{i}": (f"{unit} s-1", scale.velocity) for i in places}
+    return states | {
+        f"{contact.name}_stretch": ("m", scale.force / contact.tangential_stiffness)
+        for contact in structure.contacts
+        if contact.tangential_stiffness is not None
+    }
 
 
 def matrices_of(
@@ -204,6 +215,7 @@ def matrices_of(
         presses=[contact.lines for contact in structure.contacts],
         hidden=stick_round_off * scale.force,
         shapes=np.array(shapes).reshape(len(shapes), structure.size),
+        tangential_springs=structure.tangential_stiffnesses,
         by_speed=numbers.by_speed,
         reference=structure.speed_terms.reference,
         speed=structure.belt_speed,

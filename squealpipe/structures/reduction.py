@@ -341,8 +341,7 @@ def quick_values(stiffness: np.ndarray, damping: np.ndarray) -> np.ndarray:
 
 def dependent_of(structure: ContactStructure) -> list[str]:
     """Name the contacts of a structure that cannot all stick at once."""
-    names = [contact.name for contact in structure.contacts]
-    return dependent_contacts(names, structure.tangentials)
+    return dependent_contacts(structure.contacts, structure.tangentials)
 
 
 def agreement_of(truth: Truth, spectrum: Any, modes: np.ndarray) -> Agreement:

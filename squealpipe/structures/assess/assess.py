@@ -214,7 +214,7 @@ def judge_structure(
     if plant.is_undamped and plant.unstable.size:
         partial_answer(lambda: GIVE_DAMPING)
     push = pushed(design)
-    sudden = start_at(design, np.zeros(2 * plant.size))
+    sudden = start_at(design, plant.with_stretches(np.zeros(2 * plant.size)))
     assert push is not None and sudden is not None  # noqa: S101, PT018
     with stage(f"a push and a sudden start in {plant.size} modes"):
         of_push, of_sudden = family.settled(

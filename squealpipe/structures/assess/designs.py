@@ -161,10 +161,10 @@ class Design:
 
     def to_whole(self, state: np.ndarray) -> np.ndarray:
         """Return displacements and velocities of the whole, (2 n,), of a state that is run."""
-        modes = self.structure.modes
+        modes, n = self.structure.modes, self.structure.size
         if modes is None:
-            return state
-        q, v = np.split(state, 2)
+            return state[: 2 * n]
+        q, v = state[:n], state[n : 2 * n]
         return np.concatenate([modes @ q, modes @ v])
 
     def from_whole(self, state: np.ndarray) -> np.ndarray:
@@ -302,9 +302,11 @@ class Structures:
         plant = subject.plant
         if plant is None:
             return []
-        states: Sequence[np.ndarray] = [np.zeros(2 * plant.size)]
+        states = [plant.with_stretches(np.zeros(2 * plant.size))]
         if number == 0:
-            states = [subject.from_whole(state) for state in motions]
+            states = [
+                plant.with_stretches(subject.from_whole(state)) for state in motions
+            ]
         elif number == 2:
             states = list(plant.random_states(self.samples, self.seed))
         return [_start(subject, plant, state) for state in states]

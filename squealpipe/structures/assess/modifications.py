@@ -338,7 +338,12 @@ class Chamfer:
         before, after = structure.preloads[of_face].sum(), preloads[of_face].sum()
         preloads[of_face] *= before / after if after else 1.0
         contacts = [
-            replace(contact.scaled(stiffness=share), preload=float(preload))
+            replace(
+                contact.scaled(stiffness=share),
+                preload=float(preload),
+                tangential_stiffness=contact.tangential_stiffness
+                and share * contact.tangential_stiffness,
+            )
             for contact, share, preload in zip(
                 structure.contacts, kept.tolist(), preloads, strict=True
             )

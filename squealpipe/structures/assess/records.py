@@ -53,7 +53,7 @@ def _record(
         Measurement.fine,
         int(np.ceil(samples_per_period * plant.fastest / plant.slowest)),
     )
-    held = 2 * plant.size + len(regimes) + len(traced.kinds)
+    held = len(plant.sliding) + len(regimes) + len(traced.kinds)
     most_samples = 2**16
     # doubles, 270 MB
     most_numbers = 2**25
@@ -96,7 +96,7 @@ def _record(
         times=times,
         states=samples,
         displacements=plant.contact_motions(samples[:, : plant.size]),
-        velocities=plant.contact_motions(samples[:, plant.size :]),
+        velocities=plant.contact_motions(samples[:, plant.size : 2 * plant.size]),
         forces=np.where(now == Regime.separated, 0.0, forces) / plant.pressed,
         regimes=now,
         open_time=spent(Regime.separated),
@@ -125,7 +125,7 @@ def _impact_speed(
 ) -> float:
     """Return the largest speed towards the belt at a return, m/s; NaN without any."""
     kinds = row["event_kinds"][:logged]
-    velocities = row["event_states"][:logged, plant.size :]
+    velocities = row["event_states"][:logged, plant.size : 2 * plant.size]
     speeds = [
         -(velocities[kinds == kind] @ plant.structure.normals[:, index])
         for index, kind in enumerate(landing)

@@ -141,6 +141,8 @@ def contacts_of(
                 mu=face.mu,
                 origin=_origin(members, shared, weights, mesh),
                 law=face.law and scaled(face.law, 1.0, area / float(shared.sum())),
+                tangential_stiffness=face.tangential_stiffness
+                and face.tangential_stiffness * float(shared.sum()) / area,
             )
         )
     return contacts

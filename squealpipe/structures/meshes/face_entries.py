@@ -51,9 +51,15 @@ def _face(entry: Any, folder: Path, scales: Scales) -> Face:
     if "surface" not in entry:
         raise ValueError("surface is missing; name one of the mesh")
     arguments = dict(entry)
-    for key in ("stiffness", "stiffness_per_area", "pressure", "force"):
+    for key, factor in (
+        ("stiffness", scales.stiffness),
+        ("tangential_stiffness", scales.stiffness),
+        ("stiffness_per_area", scales.stiffness_per_area),
+        ("pressure", scales.pressure),
+        ("force", scales.force),
+    ):
         if is_finite_number(arguments.get(key)):
-            arguments[key] = float(arguments[key]) * getattr(scales, key)
+            arguments[key] = float(arguments[key]) * factor
     if isinstance(arguments.get("pressures"), str):
         path = folder / arguments["pressures"]
         arguments["pressures"] = read_pressures(path, scales)

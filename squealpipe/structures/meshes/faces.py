@@ -35,6 +35,8 @@ class Face:
         mu: its own coefficient of friction; None: the structure's.
         direction: direction in which ``against`` moves, three numbers; None: that of the rotation.
         points: number of contacts to which neighbours are merged; None: one for each node.
+        tangential_stiffness: of the springs in series with friction of the whole face, N/m, shared
+            among the nodes by their areas, as of :class:`Contact`; None: rigid.
 
     Raises:
         ValueError: names the argument, its value and what is needed.
@@ -51,6 +53,7 @@ class Face:
     direction: Sequence[float] | None = None
     points: int | None = None
     law: Any = None
+    tangential_stiffness: float | None = None
 
     def __post_init__(self) -> None:
         for key in ("surface", "against"):
@@ -62,6 +65,7 @@ class Face:
             )
         for key, units in {
             "stiffness": "N m-1",
+            "tangential_stiffness": "N m-1",
             "stiffness_per_area": "N m-3",
             "pressure": "Pa",
             "force": "N",

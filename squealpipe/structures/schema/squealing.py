@@ -314,6 +314,13 @@ squealing_schema = DatasetSchema(
                 ("velocity", "velocities", "m s-1"),
             )
         },
+        "stretch": or_nan(
+            "stretch of the tangential spring at the end of the runs, 0 without one",
+            "m",
+            ("attractor", "contact"),
+            volatile=True,
+            optional=True,
+        ),
         "line_frequency": or_nan(
             "frequency of the spectrum", "Hz", ("line",), volatile=True
         ),

@@ -96,6 +96,13 @@ def squeal_ladder(
     Raises:
         ValueError: there is no steady sliding; no contact; no number of modes that fits.
     """
+    sprung = [each.name for each in structure.contacts if each.tangential_stiffness]
+    if sprung:
+        raise ValueError(
+            f"contact {sprung[0]}: tangential_stiffness: runs with smoothed friction, with which "
+            "exact ones are compared, have no tangential springs; leave it out, or see "
+            "squealing_modes for what runs with exact events say"
+        )
     sizes = _sizes(structure, n_modes)
     plants = [_plant(structure, size, frequency_max) for size in sizes]
     finest = plants[-1]

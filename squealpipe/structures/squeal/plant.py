@@ -130,8 +130,8 @@ def _spectrum(structure: ContactStructure) -> Spectrum:
 class Plant:
     """A structure of few degrees of freedom, about its steady sliding.
 
-    States are (q, v) side by side, (2 n,). Their size is √E of the deviation from steady sliding,
-    E = ½ vᵀ M v + ½ qᵀ (K + Σ kᵢ nᵢnᵢᵀ) q.
+    States are (q, v) side by side, (2 n,), and the stretches of tangential springs. Their size is
+    √E of the deviation from steady sliding, E = ½ vᵀ M v + ½ qᵀ (K + Σ kᵢ nᵢnᵢᵀ) q.
 
     Modes beyond the band that a reduced structure was made for are no answer, since truncated
     coordinates make some grow that decay in the whole. Where one grows, coordinates beyond the band
@@ -166,8 +166,8 @@ class Plant:
             self.damping_beyond = ratio
             self.structure = damped_beyond(reduced, self.band, ratio)
             self.spectrum = _spectrum(self.structure)
-        self.sliding = np.concatenate(
-            [self.spectrum.state.displacement, np.zeros(self.size)]
+        self.sliding = self.with_stretches(
+            np.concatenate([self.spectrum.state.displacement, np.zeros(self.size)])
         )
 
     @property
@@ -249,7 +249,7 @@ class Plant:
 
     @cached_property
     def system(self) -> System:
-        """Return the structure as a system, whose states are displacements, then velocities."""
+        """Return the structure as a system, whose states are those of the plant."""
         return system(self.structure)
 
     @cached_property
@@ -342,7 +342,7 @@ class Plant:
     def coordinates(self, deviation: np.ndarray) -> np.ndarray:
         """Coordinates of deviations (…, 2 n) whose squares sum to E, √J."""
         kinetic, elastic = self._roots
-        q, v = deviation[..., : self.size], deviation[..., self.size :]
+        q, v = deviation[..., : self.size], self._velocities(deviation)
         return np.concatenate([v @ kinetic.T, q @ elastic.T], axis=-1)
 
     def sizes(self, deviation: np.ndarray) -> np.ndarray:
@@ -352,11 +352,32 @@ class Plant:
     def modal_velocities(self, states: np.ndarray) -> np.ndarray:
         """Velocities of the modes at rest, (…, n); half their squares sum to kinetic energy."""
         kinetic, _ = self._roots
-        return np.asarray(states[..., self.size :] @ kinetic.T * np.sqrt(2.0))
+        return np.asarray(self._velocities(states) @ kinetic.T * np.sqrt(2.0))
+
+    def _velocities(self, states: np.ndarray) -> np.ndarray:
+        return states[..., self.size : 2 * self.size]
+
+    def with_stretches(self, motion: np.ndarray) -> np.ndarray:
+        """Return states whose tangential springs are as slip would stretch them.
+
+        Args:
+            motion: displacements and velocities, (…, 2 n).
+        """
+        structure = self.structure
+        springs = structure.tangential_stiffnesses
+        if not springs.any():
+            return motion
+        nearing = motion[..., : self.size] @ structure.normals
+        force = np.maximum(structure.pressing(nearing), 0.0)
+        direction = np.sign(structure.speeds * structure.belt_speed)
+        friction = direction * structure.mu_of_contacts * force
+        chosen = springs > 0.0
+        stretches = friction[..., chosen] / springs[chosen]
+        return np.concatenate([motion, stretches], axis=-1)
 
     def contact_speeds(self, states: np.ndarray) -> np.ndarray:
         """Speed of vibration of each contact point, (…, contacts), m/s."""
-        v = states[..., self.size :]
+        v = self._velocities(states)
         along, across = v @ self.structure.tangentials, v @ self.structure.normals
         return np.asarray(np.hypot(along, across))
 
@@ -422,7 +443,8 @@ class Plant:
         direction = rng.standard_normal((number, dims))
         direction /= np.linalg.norm(direction, axis=1, keepdims=True)
         radius = np.sqrt(self.energy) * rng.random((number, 1)) ** (1.0 / dims)
-        return self.sliding + (direction * radius) @ self._from_ball.T
+        deviation = (direction * radius) @ self._from_ball.T
+        return self.with_stretches(self.sliding[:dims] + deviation)
 
     @cached_property
     def _from_ball(self) -> np.ndarray:
@@ -436,7 +458,8 @@ class Plant:
         """Steady sliding pushed along a mode of the spectrum, by a share of √energy."""
         shape = self._push(place, share)
         velocity = self.spectrum.pairs[place].value * shape
-        return np.asarray(self.sliding + np.concatenate([shape.real, velocity.real]))
+        away = np.concatenate([shape.real, velocity.real])
+        return self.with_stretches(self.sliding[: 2 * self.size] + away)
 
     def push_switches_nothing(self, place: int, share: float) -> bool:
         """Tell whether such a push surely dies out with every contact as it is in steady sliding.
@@ -446,8 +469,7 @@ class Plant:
         """
         structure, pair = self.structure, self.spectrum.pairs[place]
         is_plain = all(
-            contact.law is None
-            and getattr(contact, "tangential_stiffness", None) is None
+            contact.law is None and contact.tangential_stiffness is None
             for contact in structure.contacts
         )
         error = float(self.spectrum.growth_errors[place])

@@ -66,6 +66,11 @@ def squealing_run(
         for name, values in (("q", motion.displacement), ("v", motion.velocity))
         for place in range(size)
     }
+    start |= {
+        f"{contact.name}_stretch": float(motion.stretch[place])
+        for place, contact in enumerate(reduced.contacts)
+        if contact.tangential_stiffness is not None
+    }
     system = reduced.system()
     run = system.simulate(float(times[-1]), times=times, start=start, tol=tol)
     if int(run.outcome) != Outcome.converged:

@@ -401,7 +401,7 @@ def _of_attractors(
     rows = [_window(plant, *each) for each in zip(members, found, strict=True)]
     frequency = np.array([each.frequency for each in found])
     near = [nearest(plant, each) for each in frequency]
-    multipliers = np.full((count, 2 * plant.size), np.nan, complex)
+    multipliers = np.full((count, len(plant.sliding)), np.nan, complex)
     largest = np.full(count, np.nan)
     for index, each in enumerate(found):
         if each.cycle is not None:
@@ -416,7 +416,10 @@ def _of_attractors(
     landings = landings / np.array([row.length for row in rows]).reshape(-1, 1)
     lines, spectra = _spectra(found)
     states = np.array([row.final for row in rows], float)
-    states = states.reshape(count, 2 * plant.size)
+    states = states.reshape(count, len(plant.sliding))
+    sprung = plant.structure.tangential_stiffnesses > 0
+    stretch = np.zeros(shape)
+    stretch[:, sprung] = states[:, 2 * plant.size :]
     motion = [
         heard(row.losses, quiet=runs[0].quiet)
         for runs, row in zip(members, rows, strict=True)
@@ -452,7 +455,8 @@ def _of_attractors(
         "impacts_per_period": landings
         / np.where(np.isfinite(frequency), frequency, np.inf)[:, None],
         "displacement": states[:, : plant.size],
-        "velocity": states[:, plant.size :],
+        "velocity": states[:, plant.size : 2 * plant.size],
+        **({"stretch": stretch} if sprung.any() else {}),
         "line_frequency": lines,
         "spectrum": spectra,
         "outcome": np.array(

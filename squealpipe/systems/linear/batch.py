@@ -126,14 +126,15 @@ class LinearBatch(Batch):
         }
         # in the place of what limits the steps of traced systems
         self.code["longest"] = called["take"].address
-        n, c = matrices.n_modes, matrices.n_contacts
+        c, n_states = matrices.n_contacts, numbering.size
         events = len(numbering.surfaces) + len(numbering.outputs)
-        self.n_series = 2 * n + events
+        self.n_series = n_states + events
         smooth = np.isin(
             matrices.laws, [friction_number.coulomb, friction_number.table]
         ).all()
         # rates that are no polynomials, and friction in stick beside them or beside cubics
-        self.steep = np.repeat([0, int(not smooth)], n)
+        self.steep = np.zeros(n_states, np.int64)
+        self.steep[matrices.n_modes : 2 * matrices.n_modes] = not smooth
         self.bent = np.zeros(events, np.int64)
         self.bent[surface_number.margin * c : (surface_number.margin + 2) * c] = (
             matrices.curved

@@ -54,8 +54,9 @@ class Forces:
         press: preload − stiffness · nᵀq, the normal force in contact, N, (c,).
         speed: of sliding w, m/s, (c,).
         coefficient, falls_by: μ and dμ/d|w| of contacts that slip, (c,).
-        slip, stick: friction of contacts that slip and stick, N, (c,).
-        rates: of the state, (2 n,).
+        slip, stick: friction of contacts that slip and stick, N, (c,); that of a tangential spring
+            is ``slip``.
+        rates: of the state, (size,).
     """
 
     def __init__(
@@ -74,11 +75,14 @@ class Forces:
             coefficients: μ, static limit, reference speed and compression at rest, (4, c).
             constants: of the contacts' regimes, (c, constants).
             belt_speed, preload: m/s; a factor of all preloads.
-            state: (2 n,), or (2 n, many).
+            state: (size,), or (size, many).
         """
         m = self.matrices = matrices
         self.constants = constants
-        self.stuck = np.flatnonzero(constants[:, regime_constant.is_stuck])
+        sticks = constants[:, regime_constant.is_stuck] > 0.0
+        has_spring = m.tangential_springs > 0.0
+        self.stuck = np.flatnonzero(sticks & ~has_spring)
+        self.stretched = np.flatnonzero(sticks[m.sliders])
 
         def along(values: Vector) -> Vector:
             return values.reshape(-1, *(1,) * (state.ndim - 1))
@@ -87,12 +91,19 @@ class Forces:
         self.closed = along(constants[:, regime_constant.is_closed])
         self.side = along(constants[:, regime_constant.direction])
         self.springs, pressed = map(along, m.lines(constants, preload))
-        q, v = np.split(state, 2)
+        q, v, stretch = np.split(state, [m.n_modes, 2 * m.n_modes])
         lift = m.normals.T @ q
         self.press = pressed - self.springs * lift
         self.speed = along(m.speeds) * belt_speed - m.tangentials.T @ v
         self.coefficient, self.falls_by = self._friction_law()
         self.slip = self.side * self.press * self.coefficient
+        springs = along(m.tangential_springs)[m.sliders]
+        held = m.sliders[self.stretched]
+        self.slip[held] = (springs * stretch)[self.stretched]
+        self.rate_of_press = -self.springs * (m.normals.T @ v)
+        slides = self.spring_per_force * self.rate_of_press
+        lengthens = self.side * slides + 0.0 * self.speed  # complex where either is
+        lengthens[held] = self.speed[held]
         relieved = self.closed * pressed + self._beyond_stiffness * lift
         self.base = (
             along(m.load) * (preload if m.balanced else 1.0)
@@ -103,7 +114,15 @@ class Forces:
         )
         self.stick = np.zeros_like(self.slip)
         self.stick[self.stuck] = self.held @ self.base
-        self.rates = np.concatenate([v, self.base + m.drags @ self.stick])
+        rates = self.base + m.drags @ self.stick
+        self.rates = np.concatenate([v, rates, lengthens[m.sliders]])
+
+    @cached_property
+    def spring_per_force(self) -> Vector:
+        """Stretch of each tangential spring in slip for each newton, m/N; 0 without one."""
+        springs = self.matrices.tangential_springs
+        stiff = np.where(springs > 0.0, springs, np.inf)
+        return np.asarray(self.mu / stiff.reshape(self.mu.shape))
 
     @property
     def _beyond_stiffness(self) -> Vector:
@@ -152,7 +171,9 @@ class Forces:
         return np.asarray(la.pinvh(mobility, rtol=DEPENDENT))
 
     def _by_states(self, of_q: Any, of_v: Any) -> Vector:
-        return np.hstack([of_q, of_v])
+        return np.hstack(
+            [of_q, of_v, np.zeros((len(of_q), len(self.matrices.sliders)))]
+        )
 
     @cached_property
     def press_by(self) -> Vector:
@@ -181,7 +202,11 @@ class Forces:
     def slip_by(self) -> Vector:
         """Derivative of ``slip`` by the state, (c, 2 n)."""
         by_press = self.slip_by_press[:, None] * self.press_by
-        return np.asarray(by_press + self.slip_by_speed[:, None] * self.speed_by)
+        found = np.asarray(by_press + self.slip_by_speed[:, None] * self.speed_by)
+        m = self.matrices
+        held = m.sliders[self.stretched]
+        found[held, 2 * m.n_modes + self.stretched] = m.tangential_springs[held]
+        return found
 
     @cached_property
     def base_by(self) -> Vector:
@@ -204,13 +229,27 @@ class Forces:
         """Derivative of the rates, (2 n, 2 n)."""
         n = self.matrices.n_modes
         rows = self.base_by + self.matrices.drags @ self.stick_by
-        return np.vstack([np.eye(n, 2 * n, n), rows])
+        lengthens = (self.side * self.spring_per_force)[:, None] * self.rate_of_press_by
+        held = self.matrices.sliders[self.stretched]
+        lengthens[held] = self.speed_by[held]
+        places = np.eye(n, rows.shape[1], n)
+        return np.vstack([places, rows, lengthens[self.matrices.sliders]])
+
+    @property
+    def rate_of_press_by(self) -> Vector:
+        """Derivative of ``rate_of_press`` by the state, (c, size)."""
+        across = self.matrices.normals.T
+        return self._by_states(0.0 * across, -self.springs.reshape(-1, 1) * across)
 
     def surface(self, kind: int, i: int) -> tuple[Any, Vector]:
         """Return a surface of a contact and its derivative by the state."""
         if kind == surface_number.pressing:
             return self.press[i], self.press_by[i]
         lag, lag_by = self.side[i] * self.speed[i], self.side[i] * self.speed_by[i]
+        # where it slips the slider of a tangential spring follows the normal force
+        if (per_force := self.spring_per_force[i]) and self.side[i]:
+            lag = lag - per_force * self.rate_of_press[i]
+            lag_by = lag_by - per_force * self.rate_of_press_by[i]
         if kind == surface_number.lag:
             return lag, lag_by
         if kind in {surface_number.before_end, surface_number.after_start}:
@@ -223,9 +262,12 @@ class Forces:
             knot = c0 + c1 * (end - start) * (kind == surface_number.press_end)
             return self.press[i] - knot, self.press_by[i]
         sign = 1.0 if kind == surface_number.margin else -1.0
+        friction, friction_by = self.stick[i], self.stick_by[i]
+        if i in self.matrices.sliders:
+            friction, friction_by = self.slip[i], self.slip_by[i]
         return (
-            self.static[i] * self.press[i] - sign * self.stick[i],
-            self.static[i] * self.press_by[i] - sign * self.stick_by[i],
+            self.static[i] * self.press[i] - sign * friction,
+            self.static[i] * self.press_by[i] - sign * friction_by,
         )
 
     def holding(self, i: int) -> Any:
@@ -237,12 +279,16 @@ class Forces:
         if i in stuck or left <= DEPENDENT * whole:
             return friction
         n = m.n_modes
-        return friction - m.tangentials[:, i] @ self.rates[n:] / left
+        return friction - m.tangentials[:, i] @ self.rates[n : 2 * n] / left
 
     def condition(self, i: int, knot: float | None, direction: float) -> Any:
         """Return what decides which regime a contact enters; see :class:`.numbering.Condition`."""
         if knot is not None:
             return direction * self.speed[i] - knot * self.reference[i]
+        if spring := self.matrices.tangential_springs[i]:
+            # of a landing, just after which forces grow in proportion to the time
+            limit = self.static[i] * self.rate_of_press[i]
+            return limit**2 - (spring * self.speed[i]) ** 2
         limit, hidden = self.static[i] * self.press[i], self.matrices.hidden
         return limit_left.py_func(limit, self.holding(i), hidden)
 
@@ -361,7 +407,8 @@ class LinearFlow(Flow):
         )
         found = np.empty((self.size, self.columns, flat.shape[1]))
         found[:, : self.size] = still.rates_by[:, :, None]
-        found[self.size // 2 :, : self.size] += (drags @ rows).transpose(1, 2, 0)
+        modes = slice(m.n_modes, 2 * m.n_modes)
+        found[modes, : self.size] += (drags @ rows).transpose(1, 2, 0)
         for column, other in enumerate(self._beside(values, regime, flat), self.size):
             found[:, column] = other.rates.imag / TINY
         return found.reshape(self.size, self.columns, *states.shape[1:])
@@ -393,10 +440,9 @@ class LinearFlow(Flow):
         conditions: list[float] = []
         if each:
             i, m = each.contact, here.matrices
-            if each.what == switch_number.reversal:
-                push = np.concatenate(
-                    [np.zeros(n // 2), m.drags[:, i] / m.mobility[i, i]]
-                )
+            if each.what == switch_number.reversal and i not in m.sliders:
+                push = np.zeros(n)
+                push[m.n_modes : 2 * m.n_modes] = m.drags[:, i] / m.mobility[i, i]
                 moved = state + push * here.speed[i]
                 moved_by = moved_by + np.outer(push, here.speed_by[i])
                 for column, other in enumerate(beside):
@@ -406,6 +452,11 @@ class LinearFlow(Flow):
                 for _, condition, _ in each.targets
                 if condition is not None
             ]
+        if len(here.matrices.sliders):
+            moved, moved_by = moved.copy(), moved_by.copy()
+            self._reset_stretches(
+                regimes, here, beside, moved, moved_by, moved_by_parameter
+            )
         return Crossing(
             height=float(sign * height),
             height_by_state=sign * by_state,
@@ -419,6 +470,45 @@ class LinearFlow(Flow):
             rate_after=self.field(values, after, moved, 0.0),
             conditions=np.array(conditions),
         )
+
+    def _reset_stretches(
+        self,
+        regimes: tuple[int, int],
+        here: Forces,
+        beside: Sequence[Forces],
+        after: Vector,
+        by_state: Vector,
+        by_parameter: Vector,
+    ) -> None:
+        """Write the stretches after a switch, but for those of sliders that go on to stick.
+
+        While one slips, or is open, its stretch follows from the state, so that a perturbation of
+        it alone is none.
+
+        Args:
+            regimes: of all contacts, before and after.
+            here, beside: forces before, and at each followed parameter with an imaginary part.
+            after, by_state, by_parameter: state after the switch and its derivatives, changed here.
+        """
+        m = here.matrices
+        before, entered = (
+            self.numbering.constants_of_regimes[list(self.system.joint.regimes(each))]
+            for each in regimes
+        )
+        for place, i in enumerate(m.sliders, 2 * m.n_modes):
+            sticks = before[i, regime_constant.is_stuck] > 0.0
+            if sticks and entered[i, regime_constant.is_stuck] > 0.0:
+                continue
+            # one that comes to stick keeps the stretch of its slip
+            slipping = entered if entered[i, regime_constant.direction] else before
+            leaves = not entered[i, regime_constant.is_closed]
+            side = 0.0 if leaves else slipping[i, regime_constant.direction]
+            share = side * here.spring_per_force[i]
+            after[place] = share * here.press[i]
+            by_state[place] = share * here.press_by[i]
+            for column, other in enumerate(beside):
+                stretch = side * other.spring_per_force[i] * other.press[i]
+                by_parameter[place, column] = stretch.imag / TINY
 
     def quantity(
         self,

@@ -3,7 +3,10 @@
 Idea: in every regime the motion is M⁻¹ times matrices that do not change, so the orders of its
 series are matrix products: lifts nᵀq and sliding speeds tᵀq̇ of all contacts, forces by their
 regimes, and back. Friction in stick is T_S = −(t_Sᵀ M⁻¹ t_S)⁺ t_Sᵀ M⁻¹ (all other forces); the
-inverse over the contacts S that stick is computed where a regime is entered.
+inverse over the contacts S that stick is computed where a regime is entered. A contact with a
+tangential spring (Jenkins) has a massless slider in series: the spring's stretch is a state, which
+grows at the sliding speed while the slider sticks, is μN over its stiffness while it slips, and 0
+while the contact is open. Its slider sticks and slips by itself, so that nothing is factorized.
 
 Invariant: the sticking points move with the belt to round-off, whatever S is. Where directions are
 dependent the motion is still unique, and the forces are those of the least norm.
@@ -45,6 +48,7 @@ class ContactRows(NamedTuple):
     limit: int = 9
     drag: int = 10
     press: int = 11
+    spring: int = 12
 
 
 contact_row = ContactRows()
@@ -62,6 +66,12 @@ def _constant(k: Any, rows: Any, contact: int, which: int) -> Any:
     return rows[
         parameter_row.coefficients + OF_CONTACT * k.c + 1 + contact * k.width + which, 0
     ]
+
+
+@inline
+def is_stuck(k: Any, rows: Any, contact: int) -> Any:
+    """Tell whether a contact, or the slider of its tangential spring, moves with the belt."""
+    return _constant(k, rows, contact, regime_constant.is_stuck) > 0.0
 
 
 @part
@@ -267,11 +277,53 @@ def coefficient(k: Any, rows: Any, i: int, speed: float) -> Any:
 
 
 @part
+def _stiffness(k: Any, rows: Any, i: int) -> Any:
+    """Return the stiffness of a contact in its piece of a table."""
+    stiffness = k.springs[i]
+    if k.n_tables and k.press_counts[i] > 1:
+        stiffness, _ = _line(k, rows, i)
+    return stiffness
+
+
+@part
+def _spring_per_force(k: Any, rows: Any, i: int) -> Any:
+    """Return by how much slip stretches a tangential spring for each newton of normal force."""
+    mu, _, _ = _coefficients(k, rows, i)
+    return mu / k.tangential_springs[i]
+
+
+@part
+def rate_of_force(k: Any, rows: Any, i: int, v: Any) -> Any:
+    """Return the rate of the normal force of a contact that is closed, N/s."""
+    return -_stiffness(k, rows, i) * dot(k.normal_rows[i], v)
+
+
+@part
+def slider_lag(k: Any, rows: Any, i: int, lag: float, v: Any) -> Any:
+    """Return by how much the slider of a tangential spring lags behind the belt where it slips.
+
+    The spring follows its force μN, so that the slider is faster than the contact by μṄ/k.
+
+    Args:
+        lag: that of the contact.
+    """
+    return lag - _spring_per_force(k, rows, i) * rate_of_force(k, rows, i, v)
+
+
+@part
+def _sticking_friction(k: Any, rows: Any, i: int) -> Any:
+    """Return the friction of a contact that sticks: what holds it, or its tangential spring."""
+    if k.sliders[i] >= 0 and is_stuck(k, rows, i):
+        return k.by_contact[contact_row.slip, i]
+    return k.by_contact[contact_row.stick, i]
+
+
+@part
 def settle_stick(k: Any, rows: Any) -> None:
     """Factorize the mobility of the contacts that stick, where they are others than before."""
     count, same = 0, True
     for i in range(k.c):
-        if _constant(k, rows, i, regime_constant.is_stuck) > 0.0:
+        if k.sliders[i] < 0 and is_stuck(k, rows, i):
             same = same and count < k.counts[0] and k.stuck[count] == i
             k.stuck[count] = i
             count += 1
@@ -409,6 +461,8 @@ def state_forces(k: Any, rows: Any, z: Any, pressing: Any) -> None:
         direction, slip[i] = _constant(k, rows, i, regime_constant.direction), 0.0
         if closed and direction != 0.0:
             slip[i] = direction * pressing[i] * coefficient(k, rows, i, lags[i])
+        if k.sliders[i] >= 0 and is_stuck(k, rows, i):
+            slip[i] = k.tangential_springs[i] * z[k.sliders[i]]
     _add_columns(k.push_rows, relieved, base)
     _add_columns(k.drag_rows, slip, base)
     _stick_forces(k, base)
@@ -511,6 +565,13 @@ def _sizes_of_contacts(
         else:
             press[i] = abs(k.preloads[i]) * preload + k.springs[i] * press[i]
         lag[i] += abs(k.speeds[i]) * belt
+    for a in range(k.n_sliders):
+        i = k.with_sliders[a]
+        if _constant(k, rows, i, regime_constant.direction) != 0.0:
+            size = 0.0
+            for j in range(k.n):
+                size += abs(k.normal_rows[i, j]) * of_v[j]
+            lag[i] += _spring_per_force(k, rows, i) * _stiffness(k, rows, i) * size
 
 
 @part
@@ -552,6 +613,7 @@ def _sizes_of_rates(
         mu, static, _ = _coefficients(k, rows, i)
         slips = _constant(k, rows, i, regime_constant.direction) != 0.0
         force[i] = max(abs(mu), abs(static)) * press[i] if slips else 0.0
+        force[i] += k.by_contact[contact_row.spring, i]
     _add_sizes(k.drag_rows, force, scale)
     count, pulls, stick = (
         k.counts[0],
@@ -577,22 +639,25 @@ def _values(k: Any, rows: Any, z: Any, out: Any) -> None:
     state_forces(k, rows, z, k.by_contact[contact_row.press])
     for i in range(c):
         _, static, reference = _coefficients(k, rows, i)
-        pressing, lag = (
-            k.by_contact[contact_row.press, i],
-            _constant(k, rows, i, regime_constant.direction) * lags[i],
-        )
+        direction = _constant(k, rows, i, regime_constant.direction)
+        pressing, lag = (k.by_contact[contact_row.press, i], direction * lags[i])
         of_press, of_lag = (
             k.by_contact[contact_row.of_press, i],
             k.by_contact[contact_row.of_lag, i],
         )
+        if k.sliders[i] >= 0 and direction != 0.0:
+            lag = slider_lag(k, rows, i, lag, z[k.n : 2 * k.n])
         at = 3 * (surface_number.pressing * c + i)
         out[at], out[at + 1] = pressing, of_press
         at = 3 * (surface_number.lag * c + i)
         out[at], out[at + 1] = lag, of_lag
+        friction = _sticking_friction(k, rows, i)
+        of_friction = k.by_contact[contact_row.of_stick, i]
+        of_friction += k.by_contact[contact_row.spring, i]
         for which in range(2):
             at, sign = 3 * ((surface_number.margin + which) * c + i), 1.0 - 2.0 * which
-            out[at] = static * pressing - sign * k.by_contact[contact_row.stick, i]
-            out[at + 1] = abs(static) * of_press + k.by_contact[contact_row.of_stick, i]
+            out[at] = static * pressing - sign * friction
+            out[at + 1] = abs(static) * of_press + of_friction
             if k.n_sorts > surface_number.before_end:
                 knot = reference * _constant(
                     k, rows, i, regime_constant.first_of_piece + 1 - which
@@ -627,12 +692,29 @@ def _output_values(k: Any, rows: Any, z: Any, sizes: Any, out: Any) -> None:
 
 
 @part
+def _sizes_of_springs(k: Any, rows: Any, sizes: Any, of_rates: bool) -> None:
+    """Compute the sizes of friction by tangential springs in stick, or of its rates.
+
+    Args:
+        sizes: of the states.
+    """
+    for a in range(k.n_sliders):
+        i = k.with_sliders[a]
+        size = sizes[2 * k.n + a]
+        if of_rates:
+            size = _unit(k, rows) * k.by_contact[contact_row.of_lag, i]
+        size *= k.tangential_springs[i]
+        k.by_contact[contact_row.spring, i] = size if is_stuck(k, rows, i) else 0.0
+
+
+@part
 def gauge_state(k: Any, rows: Any, z: Any, sizes: Any, out: Any) -> None:
     """Write value, size of terms, and that of the rate's terms of each surface, then of outputs."""
     n, c, unit = k.n, k.c, _unit(k, rows)
     n_surfaces = k.n_sorts * c
     of_q, of_v = sizes[:n], sizes[n : 2 * n]
     _sizes_of_contacts(k, rows, of_q, of_v, 1.0)
+    _sizes_of_springs(k, rows, sizes, False)
     _sizes_of_rates(k, rows, of_q, of_v, 1.0, k.by_mode[mode_row.scale])
     _values(k, rows, z, out)
     _output_values(k, rows, z, sizes, out[3 * n_surfaces :])
@@ -643,6 +725,7 @@ def gauge_state(k: Any, rows: Any, z: Any, sizes: Any, out: Any) -> None:
             scale[j] += abs(k.drag_rows[i, j]) * k.by_contact[contact_row.of_stick, i]
     for j in range(n):
         rate[j], scale[j] = unit * of_v[j], unit * scale[j]
+    _sizes_of_springs(k, rows, sizes, True)
     _sizes_of_contacts(k, rows, rate, scale, 0.0)
     if k.counts[0]:
         _sizes_of_rates(k, rows, rate, scale, 0.0, k.by_mode[mode_row.base])
@@ -658,6 +741,7 @@ def gauge_state(k: Any, rows: Any, z: Any, sizes: Any, out: Any) -> None:
         ) = of_press, of_lag
         for which in range(2):
             of_margin = abs(static) * of_press + k.by_contact[contact_row.of_stick, i]
+            of_margin += k.by_contact[contact_row.spring, i]
             out[3 * ((surface_number.margin + which) * c + i) + 2] = of_margin
             if k.n_sorts > surface_number.before_end:
                 out[3 * ((surface_number.before_end + which) * c + i) + 2] = of_lag
@@ -687,15 +771,48 @@ def slip_regime(k: Any, rows: Any, i: int, speed: float, press: int) -> Any:
 
 
 @part
+def _change_slider(k: Any, rows: Any, which: int, z: Any, block: int) -> Any:
+    """Return regime, kind of the event, and stretch after a switch of a contact with a slider.
+
+    What slips has a spring at its limit of friction, what lands has a relaxed one.
+
+    Args:
+        block: first regime of the contact's piece of its table of contact.
+    """
+    what, i = k.switches[which, 0], k.switches[which, 1]
+    spring, stick = k.tangential_springs[i], regimes_of_press(k, i) - 1
+    if what == switch_number.separation:
+        return k.first[0, i + 1] - k.first[0, i] - 1, event_number.separates, 0.0
+    if what == switch_number.reversal:
+        return block + stick, event_number.sticks, z[k.sliders[i]]
+    pressing, v = k.by_contact[contact_row.of_press], z[k.n : 2 * k.n]
+    state_forces(k, rows, z, pressing)
+    if what == switch_number.contact:
+        # just after, forces grow in proportion to the time; the static limit is not passed before
+        lag = k.by_contact[contact_row.lags, i]
+        _, static, _ = _coefficients(k, rows, i)
+        if spring * abs(lag) <= static * rate_of_force(k, rows, i, v):
+            return stick, event_number.lands, 0.0
+        return slip_regime(k, rows, i, lag, 0), event_number.lands, 0.0
+    back = what == switch_number.slips_back
+    limit = _spring_per_force(k, rows, i) * pressing[i]
+    return block + back, event_number.slips_away, -limit if back else limit
+
+
+@part
 def change_state(k: Any, rows: Any, which: int, z: Any, out: Any) -> None:
     """Write the regime that a switch enters, the kind of the event, and the state after it."""
     what, i, target = k.switches[which, 0], k.switches[which, 1], k.switches[which, 2]
     n, first = k.n, k.first[0, i]
     count = regimes_of_press(k, i)
     block = count * _press_of_regime(k, rows, i)
-    after = out[2 : 2 + 2 * n]
-    for j in range(2 * n):
+    after = out[2 : 2 + k.n_states]
+    for j in range(k.n_states):
         after[j] = z[j]
+    if k.sliders[i] >= 0 and what != switch_number.knot:
+        regime, kind, after[k.sliders[i]] = _change_slider(k, rows, which, z, block)
+        out[0], out[1] = float(first + regime), float(k.first[1, i] + kind)
+        return
     regime, kind = 0, event_number.lands
     if what == switch_number.separation:
         regime, kind = k.first[0, i + 1] - first - 1, event_number.separates
@@ -751,7 +868,7 @@ def _list_forces(k: Any, rows: Any) -> None:
             if k.n_tables and k.press_counts[i] > 1:
                 k.lists[0, opened] = i
                 opened += 1
-            if direction != 0.0:
+            if direction != 0.0 or k.sliders[i] >= 0:
                 k.lists[1, slipping] = i
                 slipping += 1
     k.counts[2], k.counts[3] = opened, slipping
@@ -790,7 +907,7 @@ def _contacts_at_order(k: Any, rows: Any, mem: Any, order: int, q: Any, v: Any) 
         q, v: this order of displacements and velocities.
     """
     n, c, row = k.n, k.c, mem[order]
-    first_output = 2 * n + k.n_sorts * c
+    first_output = k.n_states + k.n_sorts * c
     pressing, slides = k.by_contact[contact_row.press], k.by_contact[contact_row.lags]
     lags, closed = k.by_contact[contact_row.of_lag], k.by_contact[contact_row.closed]
     _write_columns(k.normals, q, pressing)
@@ -807,13 +924,14 @@ def _contacts_at_order(k: Any, rows: Any, mem: Any, order: int, q: Any, v: Any) 
     )
     if k.n_tables:
         _tables_at_order(k, rows, order)
-    at = 2 * n
+    at = k.n_states
     for i in range(c):
         row[at + i] = pressing[i]
     for i in range(c):
         row[at + c + i] = lags[i]
     for i in range(2 * c):
         row[at + 2 * c + i] = 0.0
+    _sliders_at_order(k, rows, mem, order, v)
     for i in range(c):
         at = first_output + 2 * i
         row[at], row[at + 1] = closed[i] * pressing[i], slides[i]
@@ -843,6 +961,34 @@ def _tables_at_order(k: Any, rows: Any, order: int) -> None:
 
 
 @part
+def _sliders_at_order(k: Any, rows: Any, mem: Any, order: int, v: Any) -> None:
+    """Compute an order of stretches, forces and surfaces of contacts with tangential springs.
+
+    A slider that sticks is carried by the belt, so that the spring stretches at the sliding speed;
+    one that slips keeps its spring at μN.
+    """
+    c, first, row = k.c, k.n_states, mem[order]
+    for a in range(k.n_sliders):
+        i = k.with_sliders[a]
+        place, spring = k.sliders[i], k.tangential_springs[i]
+        if is_stuck(k, rows, i):
+            if order:
+                lag = mem[order - 1, first + k.n_sorts * c + 2 * i + 1]
+                row[place] = _unit(k, rows) / order * lag
+            friction = spring * row[place]
+            k.by_contact[contact_row.slip, i] = friction
+            _, static, _ = _coefficients(k, rows, i)
+            limit = static * k.by_contact[contact_row.press, i]
+            row[first + surface_number.margin * c + i] = limit - friction
+            row[first + surface_number.margin_back * c + i] = limit + friction
+        else:
+            row[place] = k.by_contact[contact_row.slip, i] / spring
+            if k.by_contact[contact_row.side, i] != 0.0:
+                at = first + surface_number.lag * c + i
+                row[at] = slider_lag(k, rows, i, row[at], v)
+
+
+@part
 def _curved_slip_at_order(k: Any, rows: Any, mem: Any, order: int) -> None:
     """Compute an order of the friction in slip of contacts whose law depends on the speed."""
     for a in range(k.counts[3]):
@@ -855,20 +1001,20 @@ def _curved_slip_at_order(k: Any, rows: Any, mem: Any, order: int) -> None:
 @part
 def _knots_at_order(k: Any, rows: Any, row: Any, order: int) -> None:
     """Compute an order of how far speeds and forces are from the ends of their pieces."""
-    n, c = k.n, k.c
+    c = k.c
     for i in range(c):
         _, _, reference = _coefficients(k, rows, i)
         for which in range(2):
             knot = reference * _constant(
                 k, rows, i, regime_constant.first_of_piece + 1 - which
             )
-            place = 2 * n + (surface_number.before_end + which) * c + i
-            row[place] = row[2 * n + surface_number.lag * c + i] - (
+            place = k.n_states + (surface_number.before_end + which) * c + i
+            row[place] = row[k.n_states + surface_number.lag * c + i] - (
                 knot if order == 0 else 0.0
             )
             if k.n_sorts > surface_number.press_end:
-                place = 2 * n + (surface_number.press_end + which) * c + i
-                row[place] = row[2 * n + surface_number.pressing * c + i]
+                place = k.n_states + (surface_number.press_end + which) * c + i
+                row[place] = row[k.n_states + surface_number.pressing * c + i]
                 if order == 0:
                     row[place] -= _press_knot(k, rows, i, which)
 
@@ -876,19 +1022,19 @@ def _knots_at_order(k: Any, rows: Any, row: Any, order: int) -> None:
 @inline
 def _stick_at_order(k: Any, row: Any) -> None:
     """Compute an order of the friction of the contacts that stick, and what it lacks to slip."""
-    n, c = k.n, k.c
+    first, c = k.n_states, k.c
     _stick_forces(k, k.by_mode[mode_row.base])
     add_stick(k, k.by_mode[mode_row.base])
     for a in range(k.counts[0]):
         i = k.stuck[a]
         limit = (
             k.by_contact[contact_row.limit, i]
-            * row[2 * n + surface_number.pressing * c + i]
+            * row[first + surface_number.pressing * c + i]
         )
-        row[2 * n + surface_number.margin * c + i] = (
+        row[first + surface_number.margin * c + i] = (
             limit - k.by_contact[contact_row.stick, i]
         )
-        row[2 * n + surface_number.margin_back * c + i] = (
+        row[first + surface_number.margin_back * c + i] = (
             limit + k.by_contact[contact_row.stick, i]
         )
 
@@ -973,7 +1119,7 @@ def series(k: Any, rows: Any, mem: Any) -> None:
 def _slip_order(k: Any, rows: Any, mem: Any, i: int, order: int) -> Any:
     """Return an order of μ(|w|) N, of a law that depends on the speed."""
     mu, static, reference = _coefficients(k, rows, i)
-    lag, press, law = 2 * k.n + k.c + i, 2 * k.n + i, k.laws[i]
+    lag, press, law = k.n_states + k.c + i, k.n_states + i, k.laws[i]
     s, inner = k.law_series[0], k.law_series[1]
     if law == friction_number.table:
         _cubic_order(k, rows, i, order, mem[order, lag] / reference)
@@ -1030,9 +1176,9 @@ def exact_ends(k: Any, rows: Any, z: Any, exact: Any) -> None:
     state_forces(k, rows, z, pressing)
     for i in range(c):
         _, static, _ = _coefficients(k, rows, i)
-        limit, friction = static * pressing[i], k.by_contact[contact_row.stick, i]
-        exact[2 * n + surface_number.margin * c + i, 0] = limit - friction
-        exact[2 * n + surface_number.margin_back * c + i, 0] = limit + friction
+        limit, friction = static * pressing[i], _sticking_friction(k, rows, i)
+        exact[k.n_states + surface_number.margin * c + i, 0] = limit - friction
+        exact[k.n_states + surface_number.margin_back * c + i, 0] = limit + friction
     add_stick(k, k.by_mode[mode_row.base])
     for j in range(n):
         exact[n + j, 0] = unit * k.by_mode[mode_row.base, j]

@@ -57,7 +57,7 @@ def _run(address: int) -> None:
     """
     t = _record_at(address)
     k = plan_at(t.plan)
-    n, given, constants = 2 * k.n, n_parameters(k), k.c * k.width
+    n, given, constants = k.n_states, n_parameters(k), k.c * k.width
     rows = view(t.rows, (given + constants, 1), np.float64)
     mem = view(t.series, (t.n_terms, t.n_series), np.float64)
     units = view(t.units, (n, 1), np.float64)

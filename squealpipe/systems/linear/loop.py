@@ -119,10 +119,10 @@ def shorter_step(m: Any, k: Any, rows: Any, mem: Any, step: float) -> Any:
     Far from where it acts an exponential has coefficients that round to nothing: its argument
     changes by 2, or by a share of what lies beyond, at most (as ``series.shorten_source``).
     """
-    terms, n, c = mem.shape[0], k.n, k.c
+    terms, c = mem.shape[0], k.c
     for surface in range(surface_number.margin * c, (surface_number.margin + 2) * c):
         if m.active[surface] & 1:
-            step = _has_converged(mem, 2 * n + surface, step)
+            step = _has_converged(mem, k.n_states + surface, step)
     for i in range(c):
         if (
             k.laws[i] != friction_number.exponential
@@ -130,7 +130,7 @@ def shorter_step(m: Any, k: Any, rows: Any, mem: Any, step: float) -> Any:
         ):
             continue
         reference = rows[parameter_row.coefficients + OF_CONTACT * i + 2, 0]
-        place = 2 * n + surface_number.lag * c + i
+        place = k.n_states + surface_number.lag * c + i
         most = max(0.3 * (abs(mem[0, place]) / reference - 20.0), 2.0) * reference
         low, x = step * 1e-12, step
         for _ in range(6):
@@ -403,7 +403,7 @@ def _series(parameters: int, orders: int, terms: int) -> None:
     """Call :func:`.forces.series` by addresses."""
     k = plan_of(parameters)
     # after those of the states, surfaces and outputs come
-    width = 2 * k.n + k.n_sorts * k.c + 2 * k.c + k.n_shapes
+    width = k.n_states + k.n_sorts * k.c + 2 * k.c + k.n_shapes
     mem = view(orders, (terms, width), np.float64)
     series(k, numbers_of(k, parameters), mem)
 
@@ -411,9 +411,8 @@ def _series(parameters: int, orders: int, terms: int) -> None:
 def _gauge(z: int, sizes: int, parameters: int, out: int) -> None:
     """Call :func:`.forces.gauge_state` by addresses."""
     k = plan_of(parameters)
-    n, c = k.n, k.c
-    count = 3 * (k.n_sorts * c + 2 * c + k.n_shapes)
-    state, of_state = view(z, (2 * n,), np.float64), view(sizes, (2 * n,), np.float64)
+    count, n = 3 * (k.n_sorts * k.c + 2 * k.c + k.n_shapes), k.n_states
+    state, of_state = view(z, (n,), np.float64), view(sizes, (n,), np.float64)
     found = view(out, (count,), np.float64)
     gauge_state(k, numbers_of(k, parameters), state, of_state, found)
 
@@ -421,8 +420,8 @@ def _gauge(z: int, sizes: int, parameters: int, out: int) -> None:
 def _change(which: int, z: int, parameters: int, out: int) -> None:
     """Call :func:`.forces.change_state` by addresses."""
     k = plan_of(parameters)
-    n = k.n
-    state, found = view(z, (2 * n,), np.float64), view(out, (2 * n + 2,), np.float64)
+    n = k.n_states
+    state, found = view(z, (n,), np.float64), view(out, (n + 2,), np.float64)
     change_state(k, numbers_of(k, parameters), which, state, found)
 
 

@@ -70,6 +70,7 @@ class ContactMatrices:
             forces rise; one row without: the force is preload − stiffness · nᵀq.
         hidden: friction force that round-off hides, N.
         shapes: (outputs, n) further outputs: displacements as combinations of the states.
+        tangential_springs: (c,) stiffness of the spring in series with the slider, N/m; 0: none.
         by_speed: of each part of ``stiffness`` or ``damping`` that is proportional to a power of
             the belt's speed: which of both, the part at the speed ``reference``, (n, n), and its
             power.
@@ -92,6 +93,7 @@ class ContactMatrices:
     presses: Sequence[np.ndarray]
     hidden: float
     shapes: np.ndarray
+    tangential_springs: np.ndarray
     by_speed: Sequence[tuple[str, np.ndarray, int]] = ()
     reference: float = 1.0
     speed: float = 1.0
@@ -128,6 +130,11 @@ class ContactMatrices:
     def n_contacts(self) -> int:
         """Number of contacts c."""
         return len(self.springs)
+
+    @property
+    def sliders(self) -> np.ndarray:
+        """Numbers of the contacts with a tangential spring: the stretch of each is a state."""
+        return np.flatnonzero(self.tangential_springs)
 
     @property
     def with_tables(self) -> np.ndarray:

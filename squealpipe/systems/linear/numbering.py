@@ -132,6 +132,7 @@ class Numbering:
         pieces: (pieces, 6) of the table of friction of each contact, or one row.
         presses: (pieces, 4) of its table of contact, or one row.
         shapes: number of further outputs.
+        sliders: contacts with a tangential spring, by number.
     """
 
     names: Sequence[str]
@@ -139,6 +140,7 @@ class Numbering:
     pieces: Sequence[np.ndarray]
     presses: Sequence[np.ndarray]
     n_shapes: int = 0
+    sliders: Sequence[int] = ()
 
     @cached_property
     def belts(self) -> list[BeltContact]:
@@ -254,6 +256,11 @@ class Numbering:
             for kind, side in SLIP.items()
             for i in reversed(range(len(belt.frictions)))
         ]
+        # a slider takes the speed of the belt wherever its own speed vanishes, and may land with it
+        is_slider = contact in self.sliders
+        if is_slider:
+            stays = number("stick"), Condition(None, 0.0), event_number.lands
+            landings = [stays, *landings]
         closed = [number(*each) for each in belt.in_contact() if each[2] == 0]
         # what falls for the leaving side rises for the side that is entered
         found = [
@@ -281,6 +288,8 @@ class Numbering:
                 (faster, Condition(0.0, 0.0), event_number.reverses),
                 (slower, None, event_number.reverses),
             ]
+            if is_slider:
+                reverses = [(stuck, None, event_number.sticks)]
             away = (
                 [(slower, None, event_number.slips_away)],
                 [(faster, None, event_number.slips_away)],
@@ -374,7 +383,7 @@ class Numbering:
     @property
     def size(self) -> int:
         """Number of states."""
-        return 2 * self.n_modes
+        return 2 * self.n_modes + len(self.sliders)
 
     @property
     def parameters(self) -> range:

@@ -40,7 +40,7 @@ class ParameterRows(NamedTuple):
 
 parameter_row = ParameterRows()
 
-WORK = 12
+WORK = 13
 """Rows of work by contact."""
 
 
@@ -69,10 +69,11 @@ ARRAYS = (
     "tangent_rows", "mobility", "springs", "preloads", "speeds", "laws", "shapes", "table",
     "first", "switches", "by_contact", "by_mode", "law_series", "held", "factor", "stuck", "counts",
     "lists", "hidden", "starts", "numbers", "opened", "scratch", "press_counts", "with_tables",
+    "sliders", "with_sliders", "tangential_springs", "normal_rows",
 )  # fmt: skip
 SIZES = (
     "n", "c", "width", "n_sorts", "n_tables", "n_shapes", "n_regimes", "n_switches",
-    "full_stiffness", "full_damping", "balanced", "curved", "n_jobs", "settle",
+    "full_stiffness", "full_damping", "balanced", "curved", "n_jobs", "settle", "n_sliders",
 )  # fmt: skip
 PLAN_TABLE = np.dtype([(name, "i8") for name in (*ARRAYS, *SIZES)])
 record_at: Any = record_viewer(PLAN_TABLE)
@@ -98,6 +99,10 @@ class Plan(NamedTuple):
         lists: (2, c) contacts that push by what the stiffness does not hold, and those that slip.
         press_counts: (c,) number of pieces of each contact's table of contact, or 1.
         with_tables: (n_tables,) contacts whose force is a table.
+        n_states: number of displacements, velocities and stretches.
+        sliders: (c,) place of the stretch of each contact's tangential spring; −1 without one.
+        with_sliders: (n_sliders,) contacts that have one.
+        normal_rows: (c, n).
     """
 
     n: Any
@@ -105,6 +110,8 @@ class Plan(NamedTuple):
     width: Any
     n_sorts: Any
     n_tables: Any
+    n_sliders: Any
+    n_states: Any
     n_shapes: Any
     n_regimes: Any
     full_stiffness: Any
@@ -139,6 +146,10 @@ class Plan(NamedTuple):
     hidden: Any
     press_counts: Any
     with_tables: Any
+    sliders: Any
+    with_sliders: Any
+    tangential_springs: Any
+    normal_rows: Any
 
 
 @inline_views
@@ -154,6 +165,8 @@ def plan_at(address: int) -> Any:
         width=t.width,
         n_sorts=t.n_sorts,
         n_tables=t.n_tables,
+        n_sliders=t.n_sliders,
+        n_states=2 * n + t.n_sliders,
         n_shapes=t.n_shapes,
         n_regimes=t.n_regimes,
         full_stiffness=t.full_stiffness,
@@ -188,6 +201,10 @@ def plan_at(address: int) -> Any:
         hidden=view(t.hidden, (1,), np.float64),
         press_counts=view(t.press_counts, (c,), np.int64),
         with_tables=view(t.with_tables, (t.n_tables,), np.int64),
+        sliders=view(t.sliders, (c,), np.int64),
+        with_sliders=view(t.with_sliders, (t.n_sliders,), np.int64),
+        tangential_springs=view(t.tangential_springs, (c,), np.float64),
+        normal_rows=view(t.normal_rows, (c, n), np.float64),
     )
 
 
@@ -234,10 +251,12 @@ def plan(
         settle: address of the function that is called where regimes have changed.
     """
     n, c = matrices.n_modes, matrices.n_contacts
+    places = np.full(c, -1)
+    places[matrices.sliders] = 2 * n + np.arange(len(matrices.sliders))
     switches = [(each.what, each.contact, each.target) for each in numbering.switches]
     arrays = {
         name: np.ascontiguousarray(getattr(matrices, name), float)
-        for name in ("load", "mobility")
+        for name in ("load", "mobility", "tangential_springs")
     }
     arrays |= {
         name: _padded(getattr(matrices, name))
@@ -251,6 +270,7 @@ def plan(
         "push_rows": _padded(matrices.pushes.T),
         "drag_rows": _padded(matrices.drags.T),
         "tangent_rows": np.ascontiguousarray(matrices.tangentials.T),
+        "normal_rows": np.ascontiguousarray(matrices.normals.T),
         "laws": np.ascontiguousarray(matrices.laws, np.int64),
         "shapes": np.ascontiguousarray(matrices.shapes, float),
         "table": numbering.constants_of_regimes,
@@ -268,6 +288,8 @@ def plan(
         "opened": np.zeros(c, np.int64),
         "press_counts": np.array([len(rows) for rows in matrices.presses], np.int64),
         "with_tables": matrices.with_tables,
+        "sliders": places,
+        "with_sliders": matrices.sliders,
         "scratch": np.zeros((len(numbering.parameters) + c * numbering.width, LANES)),
         "starts": np.zeros(1) if starts is None else np.ascontiguousarray(starts),
         "numbers": np.zeros(1, np.int64) if numbers is None else numbers,
@@ -278,6 +300,7 @@ def plan(
         "width": numbering.width,
         "n_sorts": numbering.surfaces_of_a_contact,
         "n_tables": len(matrices.with_tables),
+        "n_sliders": len(matrices.sliders),
         "n_shapes": len(matrices.shapes),
         "n_regimes": len(numbering.component_of),
         "n_switches": len(switches),

@@ -11,6 +11,7 @@ from squealpipe.systems.linear.forces import (
     holds,
     press_of_force,
     regimes_of_press,
+    slider_lag,
     slip_regime,
     state_forces,
 )
@@ -50,6 +51,55 @@ def _rises(k: Any, i: int, z: Any) -> Any:
 
 
 @part
+def _first_of_slider(settle: Any, k: Any, rows: Any, z: Any, i: int, piece: int) -> Any:
+    """Return the regime of a contact in whose tangential spring the stretch is a state.
+
+    It slips where the spring is at its limit and the slider is not carried back from it.
+
+    Args:
+        piece: of its table of contact.
+    """
+    pressing, count = k.by_contact[contact_row.of_press], regimes_of_press(k, i)
+    friction = k.tangential_springs[i] * z[k.sliders[i]]
+    towards = friction if friction != 0.0 else k.by_contact[contact_row.lags, i]
+    back = 1 if towards < 0.0 else 0
+    regime = piece * count + back
+    _put(settle, k, rows, i, regime)
+    state_forces(k, rows, z, pressing)
+    lag = (1.0 - 2.0 * back) * k.by_contact[contact_row.lags, i]
+    mu = rows[parameter_row.coefficients + OF_CONTACT * i, 0]
+    # within round-off of its limit a spring is at it
+    size = max(pressing[i], k.preloads[i] * rows[parameter_row.preload, 0])
+    at_limit = abs(friction) >= mu * (pressing[i] - 1e-12 * size)
+    if at_limit and slider_lag(k, rows, i, lag, z[k.n : 2 * k.n]) > 0.0:
+        return regime
+    return piece * count + count - 1
+
+
+@part
+def _first_at_belt_speed(
+    settle: Any, k: Any, rows: Any, z: Any, i: int, piece: int
+) -> Any:
+    """Return the first regime that fits a contact as fast as the belt; −1 where none does.
+
+    Args:
+        piece: of its table of contact.
+    """
+    pressing, count = k.by_contact[contact_row.of_press], regimes_of_press(k, i)
+    for kind in (count - 1, 0, 1):
+        regime = piece * count + kind
+        _put(settle, k, rows, i, regime)
+        state_forces(k, rows, z, pressing)
+        if kind == count - 1:
+            fits = holds(k, rows, i, pressing[i])
+        else:
+            fits = (1.0 - 2.0 * kind) * holding(k, i) >= 0.0
+        if fits:
+            return regime
+    return -1
+
+
+@part
 def _first_that_fits(settle: Any, k: Any, rows: Any, z: Any, i: int) -> Any:
     """Return the first regime of a contact that fits the state, the others' being as they are."""
     n, pressing = k.n, k.by_contact[contact_row.of_press]
@@ -76,18 +126,12 @@ def _first_that_fits(settle: Any, k: Any, rows: Any, z: Any, i: int) -> Any:
     if -FIRST * press - 1e14 * k.hidden[0] >= 0.0:
         return last
     piece = press_of_force(k, i, press)
+    if k.sliders[i] >= 0:
+        return _first_of_slider(settle, k, rows, z, i, piece)
     if abs(speed) <= reach * equal * size_v:
-        count = regimes_of_press(k, i)
-        for kind in (count - 1, 0, 1):
-            regime = piece * count + kind
-            _put(settle, k, rows, i, regime)
-            state_forces(k, rows, z, pressing)
-            if kind == count - 1:
-                fits = holds(k, rows, i, pressing[i])
-            else:
-                fits = (1.0 - 2.0 * kind) * holding(k, i) >= 0.0
-            if fits:
-                return regime
+        regime = _first_at_belt_speed(settle, k, rows, z, i, piece)
+        if regime >= 0:
+            return regime
     return slip_regime(k, rows, i, speed, piece)
 
 
@@ -95,9 +139,9 @@ def find_starts(address: int) -> None:
     """Find the regimes in which the runs of a plan start; those that are given stay."""
     k = plan_at(address)
     t = record_at(address)
-    n, c, jobs = k.n, k.c, t.n_jobs
+    c, jobs = k.c, t.n_jobs
     given = parameter_row.coefficients + OF_CONTACT * c + 1
-    starts = view(t.starts, (jobs, given + 2 * n), np.float64)
+    starts = view(t.starts, (jobs, given + k.n_states), np.float64)
     numbers = view(t.numbers, (jobs, c), np.int64)
     opened = view(t.opened, (c,), np.int64)
     rows = view(t.scratch, (given + c * k.width, LANES), np.float64)

@@ -34,6 +34,8 @@ class ContactJoint(Joint):
         held[surface_number.lag] = (
             self.numbering.constants_of_regimes[own, regime_constant.is_stuck] > 0.0
         )
+        # a tangential spring lets the contact move while its slider sticks
+        held[surface_number.lag, [*self.numbering.sliders]] = False
         return held.ravel()
 
 
@@ -42,7 +44,8 @@ class LinearSystem(System):
 
     Args:
         name: for titles and files.
-        states: name → (unit, typical size): n displacements, then their velocities.
+        states: name → (unit, typical size): n displacements, their velocities, and the stretch of
+            each tangential spring.
         parameters: name → default: ``mu``, ``belt_speed``, ``preload`` and what the law reads.
         matrices: of the equations of motion.
         contacts: names.
@@ -76,6 +79,7 @@ class LinearSystem(System):
             matrices.pieces,
             matrices.presses,
             len(outputs),
+            tuple(matrices.sliders),
         )
         self.name, self.matrices = name, matrices
         self.units = {key: unit for key, (unit, _) in states.items()}
@@ -150,6 +154,12 @@ class LinearSystem(System):
                 "(d - start) of the row in which the compression d = d_i - normal_i.q is, with "
                 "d_i where N = preload_i preload, P = N + spring_i normal_i.q"
             )
+        if self.numbering.sliders:
+            written["equations"] += (
+                "; where tangential_springs is not 0, T = tangential_springs s of the stretch s: "
+                "ds/dt = w in stick, s = mu N sgn(w') / tangential_springs in slip with the "
+                "slider's w' = w - ds/dt, s = 0 out of contact"
+            )
         for name in (
             *(
                 "stiffness",
@@ -162,6 +172,7 @@ class LinearSystem(System):
             ),
             *("springs", "preloads", "speeds", "laws", "pieces"),
             *["presses"] * self.numbering.has_presses,
+            *["tangential_springs"] * bool(self.numbering.sliders),
         ):
             array = getattr(matrices, name)
             of_pieces = name in {"pieces", "presses"}
@@ -172,9 +183,11 @@ class LinearSystem(System):
         written["balanced"] = str(matrices.balanced)
         n = matrices.n_modes
         for place, (q, v) in enumerate(
-            zip(self.states[:n], self.states[n:], strict=True), 1
+            zip(self.states[:n], self.states[n : 2 * n], strict=True), 1
         ):
             written |= {f"d{q}/dt": v, f"d{v}/dt": f"row {place} of the equations"}
+        stretches = (f"d{name}/dt" for name in self.states[2 * n :])
+        written |= dict.fromkeys(stretches, "see the equations")
         written |= dict.fromkeys(self.outputs, "see the equations")
         for name, constants in self.regimes.items():
             pairs = (f"{key}={value:g}" for key, value in constants.items())
@@ -208,7 +221,7 @@ class LinearSystem(System):
     ) -> Sequence[Any]:
         """Return each output at the instants of a run; see :meth:`TracedSystem.outputs_along`."""
         m = self.matrices
-        q, v = path[:, : m.n_modes], path[:, m.n_modes :]
+        q, v = np.split(path, [m.n_modes, 2 * m.n_modes], axis=1)[:2]
         constants = self.numbering.constants_of_regimes[np.maximum(regimes, 0)]
         stiffness, at_rest = m.lines(constants, values["preload"])
         force = constants[..., regime_constant.is_closed] * (
