@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from squealpipe import Contact, Structure
-from squealpipe.structures import Face, elastic_pad, squeal_ladder, squealing_modes
+from squealpipe import Contact, Structure, squeal_ladder, squealing_modes
+from squealpipe.structures import Face, elastic_pad
 from squealpipe.structures.reduction import dependent_of
 from tests.oracles.elastic_contacts import ElasticContacts
 
@@ -46,7 +46,7 @@ def test_a_block_sticks_and_slips_as_in_closed_form():
     def at(t):
         return share * (t - np.sin(omega * t) / omega)
 
-    slips = brentq(lambda t: spring * (belt * t - at(t)) - limit, 0.0, 0.5, xtol=1e-15)
+    slips = brentq(lambda t: spring * (belt * t - at(t)) - limit, 0.0, 0.25, xtol=1e-15)
     # then it swings about μN/4 until it is as fast as the belt
     speed, apart = share * (1.0 - np.cos(omega * slips)), at(slips) - 0.25
     amplitude, phase = np.hypot(apart, speed / 2), np.arctan2(-speed / 2, apart)
@@ -249,33 +249,28 @@ def test_a_static_start_of_steady_sliding_slips_on():
     assert answer.stretch.shape == (answer.sizes["attractor"], 2)
 
 
-def test_cycles_of_sprung_contacts_have_the_derivatives_of_runs():
+def test_derivatives_go_through_switches_of_sprung_contacts():
     system = block(30.0, mu_static=0.7).system()
-    run = system.simulate(60.0)
-    start = {name: float(run[name][-1]) for name in system.states}
 
     def end(**changed):
-        known = {name: value for name, value in changed.items() if name in start}
-        others = {name: value for name, value in changed.items() if name not in start}
-        ran = system.simulate(5.0, start={**start, **known}, times=[5.0], **others)
-        return states(system, ran)[0]
+        start = {"q1": changed.pop("q1", 0.1)}
+        return states(system, system.simulate(5.0, start=start, times=[5.0], **changed))
 
     told = system.simulate(
-        5.0, start=start, times=[5.0], sensitivity=["mu", "belt_speed", "q10"]
+        5.0, start={"q1": 0.1}, times=[5.0], sensitivity=["mu", "belt_speed", "q10"]
     )
+    assert told.sizes["event"] > 2
     for name, key, value in (
         ("mu", "mu", 0.5),
         ("belt_speed", "belt_speed", 0.3),
-        ("q1", "q10", start["q1"]),
+        ("q1", "q10", 0.1),
     ):
         step = 1e-6
-        slope = (end(**{name: value + step}) - end(**{name: value - step})) / (2 * step)
+        apart = end(**{name: value + step}) - end(**{name: value - step})
         found = [float(told[f"{state}_by_{key}"][0]) for state in system.states]
-        assert found == pytest.approx(slope.tolist(), rel=1e-5, abs=1e-6)
-    cycle = system.limit_cycle(start=start)
-    assert float(cycle.period) == pytest.approx(
-        np.diff(run.event_time.values[-6:][::2]).mean(), rel=1e-8
-    )
+        assert found == pytest.approx(
+            (apart[0] / (2 * step)).tolist(), rel=1e-5, abs=1e-6
+        )
 
 
 def test_a_face_shares_its_springs_and_a_table_keeps_them(tmp_path):
@@ -300,7 +295,7 @@ def test_a_face_shares_its_springs_and_a_table_keeps_them(tmp_path):
     for name in ("mass", "stiffness"):
         lines = (f"{i} {i} {value}" for i, value in enumerate([1.0] * 12, 1))
         text = "%%MatrixMarket matrix coordinate real symmetric\n12 12 12\n"
-        (tmp_path / f"{name}.mtx").write_text(text + "\n".join(lines))
+        (tmp_path / f"{name}.mtx").write_text(text + "\n".join(lines) + "\n")
     text = "".join(f"{name}: {name}.mtx\n" for name in ("mass", "stiffness"))
     names = (tmp_path / "contacts.csv").read_text()
     for row, (node, axis) in enumerate(
