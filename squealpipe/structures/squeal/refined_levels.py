@@ -69,9 +69,9 @@ def refined_levels(
         return RefinedLevels(0, speeds, verdicts)
     lift = _lift(plant.structure, refined.structure)
     away = np.array([motions[index].last.final for index in lasting]) - plant.sliding
-    states = refined.sliding + np.hstack(
-        [away[:, : plant.size] @ lift.T, away[:, plant.size :] @ lift.T]
-    )
+    # stretches of tangential springs are those of the same contacts
+    q, v, stretches = np.split(away, [plant.size, 2 * plant.size], axis=1)
+    states = refined.sliding + np.hstack([q @ lift.T, v @ lift.T, stretches])
     # nothing has to grow from a small push first
     rates = np.full(len(states), np.inf)
     how, _ = settings_of(refined, states[-1], rates, t_end, how)
