@@ -606,3 +606,21 @@ def test_of_modes_that_have_met_the_one_that_grows_is_first(rounding):
     solver = SimpleNamespace(selected=lambda _: np.ones(4, bool))
     way = SimpleNamespace(steps={0.5: step}, solver=solver)
     assert _numbers([way], [0.5]) == [2, 0, 1, 3]
+
+
+def test_modal_damping_gives_each_mode_its_ratio_of_its_own_frequency():
+    """Without friction the modes at rest stay, whatever the mass, and each decays by itself."""
+    rng = np.random.default_rng(5)
+    mass, stiffness = (
+        factor @ factor.T + 0.5 * np.eye(6) for factor in rng.normal(size=(2, 6, 6))
+    )
+    ratios = np.array([0.003, 0.0, 0.4, 0.02])  # the others have none
+    modes = Structure(mass, stiffness, modal_damping=ratios).complex_modes()
+    omega = np.sqrt(scipy.linalg.eigh(stiffness, mass, eigvals_only=True))
+    every = np.append(ratios, [0.0, 0.0])
+    order = np.argsort(np.hypot(2 * np.pi * modes.frequency, modes.growth_rate).values)
+    np.testing.assert_allclose(
+        modes.growth_rate.values[order], -every * omega, atol=1e-9
+    )
+    damped = omega * np.sqrt(1.0 - every**2) / (2.0 * np.pi)
+    np.testing.assert_allclose(modes.frequency.values[order], damped, rtol=1e-10)
