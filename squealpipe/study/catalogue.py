@@ -87,13 +87,13 @@ def matching(expression: str, found: list[StoredRun]) -> list[str]:
 
 def _row(config: dict[str, Any]) -> dict[str, Any]:
     """A run's values by the names that a condition may use, defaults where it states none."""
-    given = {**flat(Study().model_dump(mode="json")), **config}
+    values = {**flat(Study().model_dump(mode="json")), **config}
     row = _as_computed(
-        {name: given.get(f"parameters.{name}", DEFAULTS[name]) for name in TABLE}
+        {name: values.get(f"parameters.{name}", DEFAULTS[name]) for name in TABLE}
     )
     row |= {symbol: row[name] for symbol, name in SYMBOLS.items() if symbol not in row}
     return row | {
-        key: value for key, value in given.items() if "parameters." not in key
+        key: value for key, value in values.items() if "parameters." not in key
     }
 
 

@@ -30,10 +30,12 @@ class Evidence(Mapping[str, xr.Dataset]):
 
     def __getitem__(self, name: str) -> xr.Dataset:
         if name not in self.sources:
-            given = [key for key in self.parameters.as_dict() if TABLE[key].extension]
+            extensions = [
+                key for key in self.parameters.as_dict() if TABLE[key].extension
+            ]
             why = (
-                f"the study leaves out what cannot carry {', '.join(given)}"
-                if given
+                f"the study leaves out what cannot carry {', '.join(extensions)}"
+                if extensions
                 else "it is not part of this study, or not computed yet"
             )
             raise MissingDataError(f"the run has no dataset {name}: {why}")

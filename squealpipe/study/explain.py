@@ -184,9 +184,9 @@ def snakemake_command(
     A quick study goes beside the full one: ``results/mine-quick`` beside ``results/mine``.
     """
     refuse_other_package(Path(directory))
-    given = [Path(path).absolute() for path in configs]
-    full = read_study(PAPER, *given)
-    paths = [*([PAPER.with_name("quick.yaml")] if quick else []), *given]
+    own_files = [Path(path).absolute() for path in configs]
+    full = read_study(PAPER, *own_files)
+    paths = [*([PAPER.with_name("quick.yaml")] if quick else []), *own_files]
     changes = {}
     if quick:
         beside = full.results == Study().results

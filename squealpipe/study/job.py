@@ -44,12 +44,12 @@ class Job:
 
     def angles(self, scene: str) -> dict[str, float]:
         """Angles of a scene, of the paper or of a study of one's own."""
-        given = (
+        scene_angles = (
             self.settings["scenes"][scene]
             if "scenes" in self.settings
             else vars(SCENES[scene])
         )
-        return {name: given[name] for name in ("alpha1", "alpha2")}
+        return {name: scene_angles[name] for name in ("alpha1", "alpha2")}
 
     @property
     def model(self) -> str:

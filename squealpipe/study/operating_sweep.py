@@ -121,9 +121,9 @@ class OperatingSweep(PointSweep):
         dataset = self.operating.dataset(columns)
         facts = dict(self.facts)
         numbers = facts.pop("structure")
-        given = {name: facts[name] for name in facts if name not in dataset.coords}
-        given["tol"] = self.operating.tol
-        dataset.attrs.update(origin(TASK, {"structure": _Numbers(numbers), **given}))
+        recorded = {name: facts[name] for name in facts if name not in dataset.coords}
+        recorded["tol"] = self.operating.tol
+        dataset.attrs.update(origin(TASK, {"structure": _Numbers(numbers), **recorded}))
         return dataset
 
     def joined(self, parts: Sequence[xr.Dataset]) -> xr.Dataset:

@@ -124,14 +124,14 @@ class Sweep(PointSweep):
             object.__setattr__(self, "vary", plain)
             object.__setattr__(self, "fixed", fixed)
 
-    def _with(self, given: Mapping[str, Any]) -> tuple[Parameters, dict[str, Any]]:
-        """The parameters with what is given of them, and the rest: angles and options."""
+    def _with(self, values: Mapping[str, Any]) -> tuple[Parameters, dict[str, Any]]:
+        """The parameters with what is values of them, and the rest: angles and options."""
         options = options_of(self.task)
         physical = {
-            name for name in given if name in PARAMETER_NAMES and name not in options
+            name for name in values if name in PARAMETER_NAMES and name not in options
         }
-        params = self.params.with_(**{name: given[name] for name in physical})
-        return params, {name: given[name] for name in given if name not in physical}
+        params = self.params.with_(**{name: values[name] for name in physical})
+        return params, {name: values[name] for name in values if name not in physical}
 
     def _refuse_other_times(self) -> None:
         """Raise if runs end at other times, before any is made; one name is changed at a time."""
@@ -145,8 +145,8 @@ class Sweep(PointSweep):
         ]
         first = None
         for point in points:
-            params, given = self._with({**self.fixed, **point})
-            times = default_times(params, given["t_end"])
+            params, options = self._with({**self.fixed, **point})
+            times = default_times(params, options["t_end"])
             first = times if first is None else first
             _refuse_other("time", times, first)
 
@@ -169,14 +169,14 @@ class Sweep(PointSweep):
     def run(self, point: Sequence[float], workers: int | None = None) -> xr.Dataset:
         """The task at one point, in so many processes where it can use several."""
         point_by_name = dict(zip(self.names, point, strict=True))
-        params, given = self._with({**self.fixed, **self.vary, **point_by_name})
-        angles = [given.pop(name) for name in ANGLES]
+        params, options = self._with({**self.fixed, **self.vary, **point_by_name})
+        angles = [options.pop(name) for name in ANGLES]
         task = TASKS[self.task]
         if "workers" in inspect.signature(task).parameters:
-            given["workers"] = workers
+            options["workers"] = workers
         if task in MAPS:
             angles = [np.atleast_1d(angle) for angle in angles]
-        return task(params, *angles, **given)
+        return task(params, *angles, **options)
 
     def arrays(self, point: Sequence[float], workers: int | None) -> Run:
         """A run as arrays, and its lengths along dimensions that differ from run to run."""
@@ -196,20 +196,22 @@ class Sweep(PointSweep):
     @property
     def origin(self) -> dict[str, Any]:
         """Attributes that record what makes the result; swept parameters are its coordinates."""
-        params, given = self._with({**options_of(self.task), **self.fixed})
-        fixed = {name: value for name, value in given.items() if name not in self.vary}
+        params, options = self._with({**options_of(self.task), **self.fixed})
+        fixed = {
+            name: value for name, value in options.items() if name not in self.vary
+        }
         return origin(self.task, {"params": params, **fixed})
 
 
 def planned(config: Mapping[str, Any]) -> SweepPlan:
     """The sweep of a configuration as :func:`squealpipe.ranges.sweep_config` makes it."""
-    given = {key: config[key] for key in ("task", "vary", "fixed")}
+    entries = {key: config[key] for key in ("task", "vary", "fixed")}
     if is_structure(config["task"]):
         of_points = config["task"].endswith(f":{OPERATING_MAP}")
-        return (OperatingSweep if of_points else StructureSweep)(**given)
+        return (OperatingSweep if of_points else StructureSweep)(**entries)
     if is_system(config["task"]):
-        return SystemSweep(**given)
-    return Sweep(**given, params=parameters_of(config))
+        return SystemSweep(**entries)
+    return Sweep(**entries, params=parameters_of(config))
 
 
 @checked

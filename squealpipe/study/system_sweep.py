@@ -184,12 +184,12 @@ class SystemSweep(SweepPlan):
         self, some: Mapping[str, Sequence[float]], workers: int | None
     ) -> xr.Dataset:
         """The runs with some of the values."""
-        given = {**self.fixed, **self.vary, **some}
-        way = SystemSweep.ways[given.pop("run", "ensemble")]
+        options = {**self.fixed, **self.vary, **some}
+        way = SystemSweep.ways[options.pop("run", "ensemble")]
         names = self.system.start_names.items()
-        start = {state: given.pop(name) for state, name in names if name in given}
+        start = {state: options.pop(name) for state, name in names if name in options}
         return way(
-            self.system, given.pop("t_end"), start=start, workers=workers, **given
+            self.system, options.pop("t_end"), start=start, workers=workers, **options
         )
 
 

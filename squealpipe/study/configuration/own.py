@@ -38,9 +38,9 @@ class OwnScene(Section):
 
     @field_validator("alpha1", "alpha2", mode="before")
     @classmethod
-    def _as_people_write(cls, given: Any) -> Any:
+    def _as_people_write(cls, angle: Any) -> Any:
         return (
-            parse_angle(str(given)) if isinstance(given, str | int | float) else given
+            parse_angle(str(angle)) if isinstance(angle, str | int | float) else angle
         )
 
 
@@ -67,13 +67,13 @@ class SweepSection(Section):
 
     @field_validator("vary", "fixed", mode="before")
     @classmethod
-    def _written_forms(cls, given: Any, info: ValidationInfo) -> Any:
+    def _written_forms(cls, entries: Any, info: ValidationInfo) -> Any:
         """Ranges and angles as numbers, so that each way to write them is the same."""
-        if not isinstance(given, Mapping):
-            return given
+        if not isinstance(entries, Mapping):
+            return entries
         read = read_values if info.field_name == "vary" else read_fixed
         forms, faults = {}, []
-        for name, value in given.items():
+        for name, value in entries.items():
             try:
                 forms[name] = read(name, value, info.data.get("task", ""))
             except ValueError as error:

@@ -173,9 +173,9 @@ def _lay_over(base: dict[str, Any], top: Mapping[str, Any]) -> Iterator[str]:
 def _read_laws(path: Path, content: dict[str, Any]) -> Iterator[str]:
     """Replace the files that a configuration names as laws by their content; yield faults."""
     section = content.get("parameters") or {}
-    for name, given, row in laws_in(section):
+    for name, law, row in laws_in(section):
         try:
-            section[name] = named(given, row.laws.own_law_rules.columns, path.parent)
+            section[name] = named(law, row.laws.own_law_rules.columns, path.parent)
         except (OSError, ValueError) as error:
             yield f"parameters.{name}: {error}"
             del section[name]
@@ -183,7 +183,7 @@ def _read_laws(path: Path, content: dict[str, Any]) -> Iterator[str]:
         taken = ", ".join(
             other for other in stood_for(section[name], row.laws) if other in section
         )
-        if section[name] != given and taken:
+        if section[name] != law and taken:
             yield f"parameters.{name}: the file stands for {taken}; leave that out"
 
 
@@ -196,7 +196,7 @@ def laws_in(section: Any) -> Iterator[tuple[str, Any, Row]]:
 
 def files_of_laws(path: Path) -> list[Path]:
     """Return the files that a configuration names as laws, unresolved."""
-    entries = [given for _, given, _ in laws_in(read_yaml(path).get("parameters"))]
+    entries = [law for _, law, _ in laws_in(read_yaml(path).get("parameters"))]
     return [
         Path(file)
         for entry in entries
@@ -251,12 +251,12 @@ def parse_study(content: Mapping[str, Any], faults: Sequence[str] = ()) -> Study
     """
     try:
         known = Study.model_fields  # a section without keys is the default one
-        given = {
+        filled = {
             k: value
             for k, value in content.items()
             if value is not None or k not in known
         }
-        plain = _plain(given)
+        plain = _plain(filled)
         study = Study.model_validate(plain, context=_complete(plain))
     except ValidationError as error:
         raise ConfigError([*faults, *mistakes(error, Study)]) from error

@@ -129,11 +129,12 @@ def _scatter(run: Evidence) -> dict[str, Any] | None:
     if "verdict_shares" not in run:
         return None
     shares = run["verdict_shares"]
-    given = json.loads(shares.attrs["arguments"])["distributions"]
+    distributions = json.loads(shares.attrs["arguments"])["distributions"]
     return {
         "samples": int(shares.samples),
         "distributions": [
-            {"name": name, "words": _distribution(each)} for name, each in given.items()
+            {"name": name, "words": _distribution(each)}
+            for name, each in distributions.items()
         ],
         "shares": [
             {
@@ -148,10 +149,10 @@ def _scatter(run: Evidence) -> dict[str, Any] | None:
     }
 
 
-def _distribution(given: Mapping[str, Any]) -> str:
+def _distribution(entry: Mapping[str, Any]) -> str:
     numbers = [
         f"{key.replace('_', ' ')} {number(value)}"
-        for key, value in given.items()
+        for key, value in entry.items()
         if key != "distribution"
     ]
-    return ", ".join([str(given["distribution"]), *numbers])
+    return ", ".join([str(entry["distribution"]), *numbers])
