@@ -23,6 +23,7 @@ import signal
 import socket
 import sys
 import time
+from importlib import import_module
 from typing import Any
 
 HEAD = 8
@@ -96,28 +97,37 @@ def run(address: str, *command: str) -> None:
 
 
 def _import_libraries() -> None:
-    """Import what most jobs import, and have numba set up what it sets up when it is first used."""
+    """Import what most jobs import, and have libraries set up what they set up at first use."""
     for name in (
+        "lazy_loader",
         "matplotlib.backends.backend_agg",
         "matplotlib.backends.backend_svg",
+        "matplotlib.patheffects",
         "matplotlib.pyplot",
         "netCDF4",
-        "numba",
         "pandas",
         "pint",
-        "pydantic",
+        "pydantic.functional_validators",
+        "pydantic.validate_call_decorator",
         "scipy.interpolate",
+        "scipy.io",
         "scipy.optimize",
         "scipy.sparse.linalg",
         "scipy.stats",
         "snakemake.iocontainers",
         "snakemake.logging",
         "snakemake.shell",
-        "xarray",
         "yaml",
     ):
         with contextlib.suppress(ImportError):  # of a library that is left out
-            __import__(name)
+            import_module(name)
+    import matplotlib.mathtext
+    import numba
+    import xarray
+
+    xarray.backends.list_engines()
+    matplotlib.mathtext.MathTextParser("path").parse("$x$")
+    numba.cfunc("float64(float64)")(lambda x: x)
 
 
 class _Server:

@@ -20,25 +20,16 @@ def separating_share(
     """Share of the angle map on which A1, from rest, loses contact within ``HORIZON``.
 
     Midpoint rule; a parameter set goes on to the next number of ``angles`` while its share is
-    within ``CLEAR``/angles of one half. Unless margins are wanted, short runs come first: where
-    more cells than that have lost contact by their end, their share is the result.
+    within ``CLEAR``/angles of one half.
     """
     shares = np.full(candidates.size, 0.5)
-    # in √(m/k1): by then contact is lost in nearly all cells in which it ever is; cells that keep
-    # it until the horizon take nearly all steps
-    early_horizon = 25.0
     for number in angles:
-        clear = CLEAR / number
-        left = np.flatnonzero(np.abs(shares - 0.5) < clear)
-        enough = 0.5 if number == angles[-1] else 0.5 + clear
-        for horizon in (HORIZON,) if candidates.exact else (early_horizon, HORIZON):
-            shares[left] = _share(candidates.subset(left), number, horizon)
-            # what has separated stays separated, so that a later share is not smaller
-            left = left[shares[left] <= enough]
+        left = np.flatnonzero(np.abs(shares - 0.5) < CLEAR / number)
+        shares[left] = _share(candidates.subset(left), number)
     return shares
 
 
-def _share(candidates: Candidates, number: int, horizon: float) -> np.ndarray:
+def _share(candidates: Candidates, number: int) -> np.ndarray:
     """Share of the midpoints, ``number`` an axis, at which contact is lost."""
     alpha1, alpha2 = midpoints(number)
     weight = np.ones(alpha1.size)
@@ -48,7 +39,7 @@ def _share(candidates: Candidates, number: int, horizon: float) -> np.ndarray:
         weight = np.where(middle, 1.0, 2.0)[below]
         alpha1, alpha2 = alpha1[below], alpha2[below]
     rows = np.arange(candidates.size)[:, None]
-    outcome = _outcome(candidates.subset(rows), alpha1, alpha2, horizon)
+    outcome = _outcome(candidates.subset(rows), alpha1, alpha2)
     return np.asarray((outcome == Outcome.separated) @ weight / number**2)
 
 
@@ -84,16 +75,13 @@ def keeping_share(candidates: Candidates) -> np.ndarray:
 
 
 def _outcome(
-    candidates: Candidates,
-    alpha1: np.ndarray,
-    alpha2: np.ndarray,
-    horizon: float = HORIZON,
+    candidates: Candidates, alpha1: np.ndarray, alpha2: np.ndarray
 ) -> np.ndarray:
-    """``separated`` where A1 loses contact from rest within the horizon, else how its run ended."""
+    """``separated`` where A1 loses contact from rest by ``HORIZON``, else how its run ended."""
     shape = np.broadcast_shapes(candidates.fields["mu"].shape, alpha1.shape)
     if 0 in shape:
         return np.zeros(shape, np.int8)
-    t_end = horizon * candidates.time_unit
+    t_end = HORIZON * candidates.time_unit
     return candidates.ensemble(
         alpha1, alpha2, t_end=t_end, stop_at_first_separation=True, tracked=()
     ).outcome

@@ -157,11 +157,12 @@ def from_several_starts(check: Check) -> Check:
         first = check(candidates)
         if candidates.sampled:
             return first
-        margins = [first.margin, check(SeveralStarts().moved(candidates, 0)).margin]
+        second = check(SeveralStarts().moved(candidates, 0))
+        margins = [first.margin, second.margin]
         with np.errstate(invalid="ignore"):
             change = np.abs(margins[1] - margins[0])
             regular = change <= SeveralStarts.alike * np.min(np.abs(margins), axis=0)
-        return _agreed(check, candidates, first, np.flatnonzero(~regular))
+        return _agreed(check, candidates, first, np.flatnonzero(~regular), second)
 
     return judged
 
@@ -179,18 +180,29 @@ def compared_near_the_threshold(check: Check) -> Check:
 
 
 def _agreed(
-    check: Check, candidates: Candidates, first: StatementMargin, rows: np.ndarray
+    check: Check,
+    candidates: Candidates,
+    first: StatementMargin,
+    rows: np.ndarray,
+    second: StatementMargin | None = None,
 ) -> StatementMargin:
-    """Return the margins of the first start, NaN where other starts of these rows disagree."""
-    if not rows.size:
-        return first
-    some, margin = candidates.subset(rows), first.margin.copy()
-    answers = [
-        verdicts(check(SeveralStarts().moved(some, number)))
-        for number in range(len(SeveralStarts.directions))
-    ]
-    mine = verdicts(StatementMargin(margin[rows], first.outcome[rows]))
-    margin[rows[(np.array(answers) != mine).any(axis=0)]] = np.nan
+    """Return the margins of the first start, NaN where other starts of these rows disagree.
+
+    Args:
+        second: of the first of the other starts, of all rows, if it is known.
+    """
+    margin, mine = first.margin.copy(), verdicts(first)
+    for number in range(len(SeveralStarts.directions)):
+        if not rows.size:  # one start that disagrees says enough
+            break
+        if number == 0 and second is not None:
+            answer = verdicts(second)[rows]
+        else:
+            some = candidates.subset(rows)
+            answer = verdicts(check(SeveralStarts().moved(some, number)))
+        agree = answer == mine[rows]
+        margin[rows[~agree]] = np.nan
+        rows = rows[agree]
     return StatementMargin(margin, first.outcome)
 
 

@@ -124,23 +124,20 @@ def file_key(key: str, path: str | os.PathLike[str]) -> str:
 def refuse_edited(output: str | os.PathLike[str]) -> None:
     """Raise if a module that this process has loaded is younger than the workflow's reading."""
     started = float(os.environ.get(STARTED, "inf"))
-    own_files: set[Path] = set()
+    # texts are compared: Paths of all modules take 20 ms, for each of many results
+    inside = f"{PACKAGE}{os.sep}"
+    own_files: set[str] = set()
     for module in list(sys.modules.values()):
-        file = Path(str(getattr(module, "__file__", "")))
-        if file.is_relative_to(PACKAGE):
-            own_files |= {
-                file,
-                *(
-                    read
-                    for each in getattr(module, DECLARED_BY, ())
-                    for read in file.parent.glob(each)
-                ),
-            }
+        file = str(getattr(module, "__file__", ""))
+        if file.startswith(inside):
+            declared = getattr(module, DECLARED_BY, ())
+            read = (path for each in declared for path in Path(file).parent.glob(each))
+            own_files |= {file, *map(str, read)}
     now = time.time()  # a file dated later has another clock's date, not one of an edit
     edited = [
-        path.relative_to(PACKAGE.parent).as_posix()
-        for path in sorted(own_files)
-        if not path.exists() or started < path.stat().st_mtime <= now
+        Path(file).relative_to(PACKAGE.parent).as_posix()
+        for file in sorted(own_files)
+        if _is_edited(file, started, now)
     ]
     shown = 3
     if edited:
@@ -150,6 +147,14 @@ def refuse_edited(output: str | os.PathLike[str]) -> None:
             f"{PACKAGE.parent} while it was computed, by an edit or a new installation; "
             "run the same command again"
         )
+
+
+def _is_edited(file: str, started: float, now: float) -> bool:
+    """Tell whether a file was changed between two times, s since 1970, or is gone."""
+    try:
+        return started < os.stat(file).st_mtime <= now  # noqa: PTH116
+    except FileNotFoundError:
+        return True
 
 
 def state_key(path: str | Path, key: str) -> None:
