@@ -88,7 +88,7 @@ def is_running(process):
     try:
         with open(f"/proc/{process}/stat") as status:  # noqa: PTH123
             return status.read().rpartition(")")[2].split()[0] != "Z"
-    except FileNotFoundError:
+    except (FileNotFoundError, ProcessLookupError):  # it ends while it is looked at
         return False
 
 
