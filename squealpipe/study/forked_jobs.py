@@ -121,13 +121,9 @@ def _import_libraries() -> None:
     ):
         with contextlib.suppress(ImportError):  # of a library that is left out
             import_module(name)
-    import matplotlib.mathtext
-    import numba
-    import xarray
-
-    xarray.backends.list_engines()
-    matplotlib.mathtext.MathTextParser("path").parse("$x$")
-    numba.cfunc("float64(float64)")(lambda x: x)
+    import_module("xarray").backends.list_engines()
+    import_module("numba").cfunc("float64(float64)")(lambda x: x)
+    import_module("matplotlib.mathtext").MathTextParser("path").parse("$x$")
 
 
 class _Server:
