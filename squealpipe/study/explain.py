@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from squealpipe.store.keys import misfits
-from squealpipe.store.rerun.key import PLAN_VARIABLE
+from squealpipe.store.rerun.key import PLAN_VARIABLE, files_named_in
 from squealpipe.store.rerun.sources import PACKAGE, WORKFLOW
 from squealpipe.store.sealed import attributes
 from squealpipe.store.whole_files import StoreError
@@ -152,7 +152,7 @@ def explain(
             [f"missing: {_some(missing)}"] if missing else list(dict.fromkeys(changes))
         )
         if not reasons and not follows:
-            reasons = [_changed_code(there / outputs[0], first["sources"])]
+            reasons = [_changed_content(there / outputs[0], first)]
         seconds = times.get(rule)
         jobs.append(
             PlannedJob(
@@ -269,12 +269,17 @@ def _changing(
     return sorted(changing) or None
 
 
-def _changed_code(output: Path, sources: list[str]) -> str:
+def _changed_content(output: Path, made: Mapping[str, Any]) -> str:
+    """Say which files are younger than an output: those that its settings name, or modules."""
     written = output.stat().st_mtime
-    newer = [
-        Path(path).name for path in sources if Path(path).stat().st_mtime > written
-    ]
-    return f"code changed{f', of {_some(newer)}' if newer else ''}"
+
+    def newer(paths: Iterable[str]) -> list[str]:
+        return [path for path in paths if Path(path).stat().st_mtime > written]
+
+    if edited := newer(dict.fromkeys(files_named_in(made["settings"]))):
+        return f"changed: {_some(edited)}"
+    modules = [Path(path).name for path in newer(made["sources"])]
+    return f"code changed{f', of {_some(modules)}' if modules else ''}"
 
 
 def _some(files: list[str]) -> str:

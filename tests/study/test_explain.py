@@ -15,6 +15,7 @@ from squealpipe.study.explain import (
     Explanation,
     PlannedJob,
     WorkflowError,
+    _changed_content,
     _changing,
     explain,
     snakemake_command,
@@ -175,3 +176,16 @@ def test_a_checkout_with_a_package_of_its_own_says_which_was_imported(ask, tmp_p
         ask(directory=tmp_path)
     assert f"imported from {PACKAGE}, but" in str(caught.value)
     assert f"PYTHONPATH={tmp_path} before the command" in str(caught.value)
+
+
+def test_an_edited_file_that_the_settings_name_is_the_reason(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    output, table = tmp_path / "answer.nc", tmp_path / "brake.yaml"
+    module = tmp_path / "module.py"
+    for age, path in enumerate((output, table, module)):
+        path.write_text("mu: 0.5\n")
+        os.utime(path, (1e9 + age, 1e9 + age))
+    made = {"settings": {"structure": {"file": "brake.yaml"}}, "sources": [str(module)]}
+    assert _changed_content(output, made) == "changed: brake.yaml"
+    os.utime(table, (1e9 - 1.0, 1e9 - 1.0))
+    assert _changed_content(output, made) == "code changed, of module.py"

@@ -124,7 +124,7 @@ def damping_advice(answer: xr.Dataset) -> str:
 
 def cause(answer: xr.Dataset) -> str:
     """Say why, in one sentence, and where the mass slides if that is far away."""
-    return " ".join(filter(None, (_cause(answer), _far(answer))))
+    return " ".join(filter(None, (_cause(answer), shift(answer), _far(answer))))
 
 
 def _cause(answer: xr.Dataset) -> str:
@@ -149,7 +149,7 @@ def _cause(answer: xr.Dataset) -> str:
             merged = f"two modes into one near {engineering(modes[0], 'Hz')}"
         return (
             f"Cause: friction couples {merged} (flutter), and the vibration doubles every {time} "
-            f"at first.{_shift(answer, modes)}"
+            "at first."
         )
     if mechanism is Mechanism.divergence:
         return (
@@ -172,14 +172,18 @@ def _cause(answer: xr.Dataset) -> str:
     )
 
 
-def _shift(answer: xr.Dataset, modes: list[float]) -> str:
-    """Say why the noise is not at the frequency of the mode that grows, if it is far from it."""
-    apart = float(answer.frequency) / modes[0] - 1.0
-    if len(modes) > 1 or not abs(apart) > 0.02 or not answer.separated_fraction > 0.0:
+def shift(answer: xr.Dataset) -> str:
+    """Say how far contact loss shifts the noise of a structure from the mode that grows."""
+    noise, mode = float(answer.frequency), float(answer.get("leading_frequency", 0.0))
+    if not (mode > 0.0 and float(answer.separated_fraction) > 0.0):
+        return ""
+    apart = noise / mode - 1.0
+    if not abs(apart) > 0.02:  # less is what a rounded frequency hides
         return ""
     side = "above" if apart > 0 else "below"
     return (
-        f" The noise is {percent(abs(apart))} {side} that, since contact is lost in it."
+        f"The noise is {percent(abs(apart))} {side} the mode that grows fastest "
+        f"({engineering(mode, 'Hz')}), since contact is lost in it."
     )
 
 

@@ -1,5 +1,6 @@
 """Describe a map of operating points in lines of text."""
 
+import json
 from collections.abc import Iterator
 
 import numpy as np
@@ -96,7 +97,9 @@ def _place(point: xr.Dataset) -> str:
         if np.isfinite(mean)
         else f"{number(float(point.pressure))} times the preload"
     ]
-    words.append(f"speed {number(float(point.speed))}")
+    is_rotation = "rotation" in json.loads(point.attrs.get("parameters", "{}"))
+    unit = "rad s-1" if is_rotation else "m s-1"
+    words.append(f"speed {engineering(float(point.speed), unit)}")
     if "temperature" in point.coords:
         words.append(f"{number(float(point.temperature))} °C")
     if np.isfinite(point.friction):

@@ -14,6 +14,7 @@ from squealpipe.store import load
 from squealpipe.structures.schema.squealing import NO_ATTRACTOR
 from squealpipe.structures.schema.structures import Onset
 from squealpipe.study.report import squealing
+from squealpipe.study.report.answer import shift
 from squealpipe.study.report.answer_content import answer_content
 from squealpipe.study.report.media import media_of
 from squealpipe.study.report.operating import lines
@@ -30,12 +31,14 @@ def gather_structure(
     run = {name: load(made.path) for name, made in datasets.items()}
     modes, answer = run["structure/modes"], run["structure/squeal"]
     told = answer_content(run["structure/assess"])
+    told_shift = shift(run["structure/assess"])
     numbers = json.loads(modes.attrs["parameters"])
     was_run = not answer.attrs.get("not_run")
     is_known = was_run and squealing.agrees(answer)
     said = (
         squealing.outside(answer) if is_known else None,
         cause(modes, answer),
+        told_shift if is_known else None,
         told["level"] if is_known else squealing.level(answer),
         squealing.level_in_more_modes(answer),
         told["sudden"] if is_known else None,
