@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.fft import next_fast_len
 
 from squealpipe.schema import Outcome
 from squealpipe.structures.schema.squealing import Kind
@@ -46,8 +47,9 @@ class KindRules:
     most_samples: int = 2**16
     """Most samples of the run; a longer one is cut off there."""
     early: int = 8
-    """Neighbours of an irregular motion that are lost within this part of the run are followed no
-    longer. Twice as many: more of them are followed for all of it, at eight times the cost."""
+    """First part of the run for which three neighbours are followed; then for twice as long each
+    time, as long as they separate fast enough to be lost within the run. Twice as many: motions
+    whose neighbours are lost late are looked at once more."""
     exponential_growth: float = 1e3
     """Growth of the distance from which it is exponential and the motion irregular."""
     saturation: float = 1e-2
@@ -109,7 +111,7 @@ def described(
     if stopped:  # a kind takes longer than somebody waits who has asked for an end
         times = beside.early
     else:
-        apart = _early_apart(plant, beside, how)
+        apart = _early_apart(plant, settled, beside, how)
         lost = apart.loses_neighbours
     length = float(times[-1])
     room = int(2.0 * length * settled.last.events / settled.last.length) + 64
@@ -164,7 +166,7 @@ def is_irregular(plant: Plant, settled: SettledRun, how: Running) -> bool:
     """Tell whether neighbours of a settled motion are lost soon, and not as it leaves a cycle."""
     if settled.quiet or not settled.agrees:
         return False
-    apart = _early_apart(plant, _beside(plant, settled, how), how)
+    apart = _early_apart(plant, settled, _beside(plant, settled, how), how)
     stays = apart.exponent * float(settled.last.length) >= settling_of_numbers.irregular
     return bool(apart.loses_neighbours and stays)
 
@@ -189,7 +191,8 @@ def _beside(plant: Plant, settled: SettledRun, how: Running) -> _Beside:
     """Return where a motion goes on from its last window, and neighbours at random beside it."""
     length = max(KindRules.periods / plant.slowest, 0.5 * float(settled.last.length))
     step = 1.0 / (KindRules.samples_per_period * plant.fastest)
-    count = int(min(np.ceil(length / step), KindRules.most_samples))
+    # a number of instants whose spectrum is computed fast
+    count = min(next_fast_len(int(np.ceil(length / step))), KindRules.most_samples)
     rng = np.random.default_rng(how.seed)
     base = settled.last.final
     extent = float(plant.sizes(base - plant.sliding))
@@ -219,12 +222,28 @@ class _Apart(NamedTuple):
         return self.saturates and self.grown >= KindRules.exponential_growth
 
 
-def _early_apart(plant: Plant, beside: _Beside, how: Running) -> _Apart:
-    """Look at three neighbours for the first part of the run."""
-    few, times = slice(4), beside.early
-    regimes = beside.regimes[few]
-    samples = run(plant, beside.states[few], times, how, regime=regimes)["samples"]
-    return _apart(plant, [*samples], times, beside.extent)
+def _early_apart(
+    plant: Plant, settled: SettledRun, beside: _Beside, how: Running
+) -> _Apart:
+    """Look at three neighbours until they are lost, or seem not to be within the run."""
+    for one, known in plant.neighbours:
+        if one is settled:
+            return _Apart(*known)
+    states, regimes, times = beside.states[:4], beside.regimes[:4], beside.times
+    parts, begin, end = [], 0, len(beside.early)
+    while True:
+        instants = times[begin:end] - (times[begin - 1] if begin else 0.0)
+        raw = run(plant, states, instants, how, regime=regimes)
+        parts.append(raw["samples"])
+        states, regimes = raw["final"], raw["sample_regimes"][:, -1].copy()
+        samples = np.concatenate(parts, axis=1)
+        apart = _apart(plant, [*samples], times[:end], beside.extent)
+        lost = KindRules.saturation / KindRules.first_distance
+        is_soon = apart.grown ** (len(times) / end) >= lost
+        if apart.loses_neighbours or not is_soon or 2 * end > len(times) // 2:
+            plant.neighbours.append((settled, apart))
+            return apart
+        begin, end = end, 2 * end
 
 
 def _apart(

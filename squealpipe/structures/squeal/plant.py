@@ -144,6 +144,7 @@ class Plant:
     Attributes:
         band: end of the band, rad/s; infinite without one.
         damping_beyond: damping ratio that coordinates beyond the band have been given.
+        neighbours: settled runs, each with how far its neighbours separate: see :mod:`.kinds`.
 
     Raises:
         NoSlidingError: there is no steady sliding.
@@ -157,6 +158,7 @@ class Plant:
         self.band = np.inf if limit is None else 2.0 * np.pi * limit
         self.size = self.structure.size
         self.damping_beyond = 0.0
+        self.neighbours: list[tuple[Any, Any]] = []
         self.spectrum = _spectrum(self.structure)
         reduced = self.structure
         # the first that suffices: more would reach into the band

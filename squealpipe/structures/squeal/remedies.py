@@ -9,7 +9,7 @@ Cost: one problem of all eigenvalues for each ratio tried, and two systems a ste
 """
 
 import math
-from collections.abc import Callable
+from typing import Self
 
 import numpy as np
 import scipy.linalg as la
@@ -29,18 +29,16 @@ def added_damping(plant: Plant) -> tuple[float, Outcome]:
     """Return the smallest ratio of damping, added to every mode at rest, from which no mode grows.
 
     Damping may destabilize before it stabilizes: from this ratio to the largest tried nothing
-    grows. It is found in the modes that are run, and confirmed in the whole structure: there modes
-    grow with 1 % less, and none with 1 % more. Where that fails, the whole structure is searched:
-    all of it if its matrices are dense and no band limits its modes, else by secants from the ratio
-    of the reduced one.
+    grows. It is found in the modes that are run, and located from there in the whole structure: by
+    Newton's method if its matrices are dense and no band limits its modes, else by secants.
 
     Returns:
         The ratio and its outcome: 0 where nothing grows without it, NaN where the largest does not
         suffice (``not_reached``) or where it is not known (``unresolved``).
     """
-    ratio = 0.0
+    ratio, reduced = 0.0, _Damped(plant.structure)
     if plant.unstable.size:
-        ratio = _Damped(plant.structure).boundary()
+        ratio = reduced.boundary()
     origin, truth = plant.structure.reduced_from, plant.truth
     if origin is not None and truth is not None:
         grows_now = bool(truth.unstable.size)
@@ -53,17 +51,10 @@ def added_damping(plant: Plant) -> tuple[float, Outcome]:
             ratio = 0.0
         else:
             damped = _Damped(origin.whole)
-            if ratio == 0.0 or not _confirmed(damped.grows, ratio):
-                ratio = damped.boundary(near=ratio)
+            located = damped.located(reduced, ratio)
+            ratio = damped.boundary(near=ratio) if located is None else located
     known = math.isfinite(ratio)
     return ratio, Outcome.converged if known else Outcome.not_reached
-
-
-def _confirmed(grows: Callable[[float], bool], ratio: float) -> bool:
-    """Tell whether modes of the whole grow with 1 % less damping, and none with 1 % more."""
-    if not math.isfinite(ratio):
-        return grows(SquealLimits.most_damping)
-    return not grows(1.01 * ratio) and grows(0.99 * ratio)
 
 
 def _located_in_band(plant: Plant, ratio: float, grows_now: bool) -> float | None:
@@ -95,7 +86,7 @@ def _located_in_band(plant: Plant, ratio: float, grows_now: bool) -> float | Non
         return ratio if grows(SquealLimits.most_damping) else None
     before, growth = 0.0, _fastest(truth)
     for _ in range(5):
-        if _confirmed(grows, ratio):
+        if not grows(1.01 * ratio) and grows(0.99 * ratio):
             return ratio
         now = _fastest(damped(ratio))
         if now >= growth:  # more damping destabilizes
@@ -132,6 +123,20 @@ class _Damped:
         """Tell whether a mode grows by more than round-off."""
         values = self.values(ratio)
         return bool((values.real > 1e-9 * np.abs(values)).any())
+
+    def located(self, reduced: Self, ratio: float) -> float | None:
+        """Return the ratio near that of a reduction, in which all larger ones were tried.
+
+        Returns:
+            NaN where the largest ratio does not suffice in either, None where there is none near.
+        """
+        if math.isnan(ratio):
+            return math.nan if self.grows(SquealLimits.most_damping) else None
+        values = reduced.values(ratio)
+        ends = self._followed(complex(values[values.real.argmax()]), ratio)
+        if ends is None or not 0.8 * ratio < ends < 1.25 * ratio:
+            return None
+        return None if self.grows(ends * (1.0 + 1e-6)) else ends
 
     def boundary(self, near: float = 0.0) -> float:
         """Return the ratio from which nothing grows, NaN if the largest does not suffice.

@@ -64,8 +64,9 @@ class RunLengths:
     side_by_side: int = 16
     """Starts that settle side by side then."""
     first_starts: int = 4
-    """Starts that settle first, each by its own windows. Others that come to an irregular motion
-    among theirs are compared with all of its windows. Twice as many: these runs take longer."""
+    """Starts that settle first. What comes to an irregular motion that another start has settled to
+    needs no second window that agrees: it is compared with all windows of what has. Twice as many:
+    more windows are run before one is known."""
 
 
 def arrival(run: SettledRun) -> float:
@@ -183,7 +184,23 @@ def settle(
         return float(longest * 2.0 ** min(np.ceil(np.log2(wanted / longest)), 0.0))
 
     settled: list[SettledRun] = []
+    seen: list[SettledRun] = []
+    irregular: list[SettledRun] = []
     known: list[SettledRun] = []
+
+    def learn(runs: Sequence[SettledRun]) -> None:
+        """Note the irregular motions, to which other starts may come, with all their windows."""
+        for one in sorted(runs, key=lambda each: -each.elapsed):
+            if one.agrees and not any(is_same(one, each) for each in seen):
+                seen.append(one)
+                if is_irregular(plant, one, how):
+                    irregular.append(one)
+        own = [run for run in runs if run.agrees and not run.arrived]
+        known[:] = [
+            replace(one, last=merged([run.last for run in own if is_same(run, one)]))
+            for one in irregular
+        ]
+
     count = RunLengths.side_by_side if how.cost else len(starts)
     # the first few show to which irregular motions the others may come
     few = min(RunLengths.first_starts, count, len(starts))
@@ -199,32 +216,12 @@ def settle(
             growth_windows=several,
             second=second,
             known=known,
+            learn=learn,
             before=settled,
             count=len(starts),
         )
-        if begin == 0 and not stop_is_asked():
-            known = _irregular(plant, settled, how)
     never_run = SettledRun(Verdict.undetermined, None, 0.0, change=np.inf)
     return settled + [never_run] * (len(starts) - len(settled))
-
-
-def _irregular(
-    plant: Plant, settled: Sequence[SettledRun], how: Running
-) -> list[SettledRun]:
-    """Return a run of each irregular motion that some starts have settled to, the longest first.
-
-    Its last window is those of all these starts, merged.
-    """
-    known: list[SettledRun] = []
-    other: list[SettledRun] = []
-    for one in sorted(settled, key=lambda each: -each.elapsed):
-        if any(is_same(one, each) for each in (*known, *other) if one.agrees):
-            continue
-        (known if is_irregular(plant, one, how) else other).append(one)
-    return [
-        replace(one, last=merged([run.last for run in settled if is_same(run, one)]))
-        for one in known
-    ]
 
 
 def settle_on(
@@ -264,6 +261,7 @@ def _settle(
     growth_windows: int = 1,
     second: Callable[[int, StructureWindows], float] | None = None,
     known: Sequence[SettledRun] = (),
+    learn: Callable[[Sequence[SettledRun]], None] | None = None,
     before: Sequence[SettledRun] = (),
     count: int | None = None,
 ) -> list[SettledRun]:
@@ -273,6 +271,7 @@ def _settle(
         times: lengths of the run in which a push grows, of the first window, and of all, s.
         growth_windows: number of equal windows of that run.
         second, known: see :func:`squealpipe.vibration.settled_runs.settle`.
+        learn: takes the runs that have settled, while others have not; it may add to ``known``.
         before: runs that have settled already, for partial answers.
         count: number of all starts; None: of these.
     """
@@ -293,6 +292,8 @@ def _settle(
     def told(settled: dict[int, SettledRun], elapsed: np.ndarray) -> None:
         done, number = [*before, *settled.values()], count or len(starts)
         partial_answer(partial(so_far, plant, done, number, float(elapsed.max())))
+        if learn is not None and len(done) < number and not stop_is_asked():
+            learn(done)
 
     return settle_runs(
         starts,
