@@ -40,7 +40,7 @@ class TimeStepping:
         square, self.shapes = la.eigh(at_rest, mass)
         self.omega = np.sqrt(square)
         damping = self.shapes.T @ structure.damping.toarray() @ self.shapes
-        self.ratio = np.diag(damping) / (2.0 * self.omega)
+        self.ratio = structure.modal_damping + np.diag(damping) / (2.0 * self.omega)
         assert np.allclose(
             damping, np.diag(np.diag(damping)), atol=1e-9 * damping.max()
         )
