@@ -6,6 +6,7 @@ every law and without a compiled system, so that thousands of designs cost a sec
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from types import SimpleNamespace
@@ -111,11 +112,11 @@ class Sliding:
             place = looked_for(design)
             if place is None:
                 continue
-            normal = float(normal_force(float(place[1]), 0.0, design.params))
+            normal = float(normal_force(place[1], 0.0, design.params))
             if place[1] < design.params.preload and normal > 0.0:
-                _, slopes = _linearized(_acceleration(design), place, design)
+                jacobian = _jacobian(design, place, _acceleration(design))
                 state = np.array([*place, 0.0, 0.0])
-                return cls(design, state, normal, _jacobian(slopes))
+                return cls(design, state, normal, jacobian)
         return None
 
     @cached_property
@@ -144,8 +145,7 @@ class Sliding:
         if not self.is_unstable:
             return Mechanism.none
         level = _acceleration(self.design, 1.0)
-        _, slopes = _linearized(level, self.state[:2], self.design)
-        if excess_growth(_jacobian(slopes)) <= 0.0:
+        if excess_growth(_jacobian(self.design, self.state[:2], level)) <= 0.0:
             return Mechanism.falling_friction
         leading = self._roots[np.argmax(self._roots.real)]
         oscillates = abs(leading.imag) > np.sqrt(SlidingSearch.grows) * abs(leading)
@@ -172,7 +172,7 @@ class Sliding:
         return np.asarray(np.linalg.eigvals(self.jacobian))
 
 
-def _balanced(design: Design) -> np.ndarray | None:
+def _balanced(design: Design) -> tuple[float, float] | None:
     """Return the place of steady sliding, m, by Newton's method from r = 0.
 
     At the whole friction at once it would jump to another branch where springs are soft.
@@ -186,7 +186,7 @@ def _balanced(design: Design) -> np.ndarray | None:
     )
 
 
-def _followed(design: Design) -> np.ndarray | None:
+def _followed(design: Design) -> tuple[float, float] | None:
     """Return where an overdamped mass comes to rest, m, while friction is raised slowly from none.
 
     Pseudo-transient continuation (Kelley and Keyes, SIAM Journal on Numerical Analysis 35 (1998)):
@@ -205,49 +205,69 @@ def _followed(design: Design) -> np.ndarray | None:
     return _approach(design, raised + settles + ends)
 
 
-def _approach(design: Design, steps: list[tuple[float, float]]) -> np.ndarray | None:
-    """A place in balance after steps with a share of friction and a time over 1/rate each."""
-    params, stiffness = design.params, np.eye(2) * design.rate**2
-    balance = params.k3 * params.preload / params.mass
+def _approach(
+    design: Design, steps: list[tuple[float, float]]
+) -> tuple[float, float] | None:
+    """A place in balance after steps with a share of friction and a time over 1/rate each.
+
+    Numbers of Python are several times as fast as arrays of two.
+    """
+    params, stiffness = design.params, design.rate**2
+    balance = SlidingSearch.balance * params.k3 * params.preload / params.mass
     longest = SlidingSearch.longest_step * min(params.length1, params.length2)
-    place, acceleration, last = np.zeros(2), _acceleration(design), 1.0
+    farthest = 1e3 * (params.length1 + params.length2)
+    x, y, acceleration, last = 0.0, 0.0, _acceleration(design), 1.0
     for share, time in steps:
         if share != last:
             acceleration, last = _acceleration(design, share), share
         try:
-            force, slopes = _linearized(acceleration, place, design, count=2)
-        except (OverflowError, ZeroDivisionError):
+            (fx, fy), slopes = _linearized(acceleration, (x, y), (params.preload,) * 2)
+            if not (math.isfinite(fx) and math.isfinite(fy)):
+                return None
+            if share == 1.0 and max(abs(fx), abs(fy)) < balance:
+                return x, y
+            dx, dy = _step((fx, fy), slopes, stiffness, time, longest)
+        except (OverflowError, ZeroDivisionError):  # at a pivot; a singular matrix
             return None
-        if not np.isfinite(force).all():
-            return None
-        if share == 1.0 and np.abs(force).max() < SlidingSearch.balance * balance:
-            return place
-        try:
-            place = place + _step(force, slopes, stiffness, time, longest)
-        except np.linalg.LinAlgError:
-            return None
-        if not np.abs(place).max() < 1e3 * (params.length1 + params.length2):
+        x, y = x + dx, y + dy
+        if not max(abs(x), abs(y)) < farthest:
             return None
     return None
 
 
 def _step(
-    force: np.ndarray,
-    slopes: np.ndarray,
-    stiffness: np.ndarray,
+    force: tuple[float, float],
+    slopes: list[tuple[float, float]],
+    stiffness: float,
     time: float,
     longest: float,
-) -> np.ndarray:
+) -> tuple[float, float]:
     """An implicit Euler step, of less time where it would go far or against the force.
 
     Against the force it goes where the time is too long for a place the mass is driven away from.
+
+    Raises:
+        ZeroDivisionError: the matrix of the step is singular.
     """
+    (fx, fy), ((xx, yx), (xy, yy)) = force, slopes
     while True:
-        step = np.asarray(np.linalg.solve(stiffness / time - slopes, force))
-        too_long = np.abs(step).max() > longest or step @ force < 0.0
+        held = stiffness / time
+        dx, dy = _solved(held - xx, -xy, -yx, held - yy, fx, fy)
+        too_long = max(abs(dx), abs(dy)) > longest or dx * fx + dy * fy < 0.0
         if math.isinf(time) or not too_long:
-            return step
+            return dx, dy
         time *= 0.5
+
+
+def _solved(
+    a: float, b: float, c: float, d: float, first: float, second: float
+) -> tuple[float, float]:
+    """Return the solution of a x + b y = first, c x + d y = second, with pivoting."""
+    if abs(c) > abs(a):
+        a, b, first, c, d, second = c, d, second, a, b, first
+    share = c / a
+    y = (second - share * first) / (d - share * b)
+    return (first - b * y) / a, y
 
 
 def _acceleration(design: Design, share: float | None = None) -> Any:
@@ -280,31 +300,30 @@ def _acceleration(design: Design, share: float | None = None) -> Any:
 
 
 def _linearized(
-    acceleration: Any, place: np.ndarray, design: Design, count: int = 4
-) -> tuple[np.ndarray, np.ndarray]:
-    """Acceleration of the mass at rest in some place, (2,), and its slopes by the state.
+    acceleration: Any, place: Any, units: Sequence[float]
+) -> tuple[tuple[float, float], list[tuple[float, float]]]:
+    """Acceleration of the mass at rest in some place, and its slopes by the first of x, y, ẋ, ẏ.
 
-    The slopes, (2, count), are those by the first of x, y, ẋ, ẏ. Numbers of Python are several
-    times as fast as arrays of so few.
+    Args:
+        units: sizes of so many of these, m and m/s.
     """
+    rest = (float(place[0]), float(place[1]), 0.0, 0.0)
+    ax, ay, slopes = 0j, 0j, []
+    for column, unit in enumerate(units):
+        step = SlidingSearch.complex_step * unit
+        state: list[complex] = [*rest]
+        state[column] += 1j * step
+        ax, ay = acceleration(state)
+        slopes.append((ax.imag / step, ay.imag / step))
+    return (ax.real, ay.real), slopes
+
+
+def _jacobian(design: Design, place: Any, acceleration: Any) -> np.ndarray:
+    """(4, 4) derivative of the velocities and accelerations by the state, at rest in some place."""
     length = design.params.preload
     speed = length * design.rate
-    steps = [
-        SlidingSearch.complex_step * unit for unit in (length, length, speed, speed)
-    ]
-    rest = [float(each) for each in (*place, 0.0, 0.0)]
-    values, slopes = (0j, 0j), np.empty((2, count))
-    for column in range(count):
-        state: list[complex] = [*rest]
-        state[column] += 1j * steps[column]
-        values = acceleration(state)
-        slopes[:, column] = [value.imag / steps[column] for value in values]
-    return np.array([value.real for value in values]), slopes
-
-
-def _jacobian(slopes: np.ndarray) -> np.ndarray:
-    """(4, 4) derivative of the velocities and accelerations by the state."""
-    return np.vstack([np.eye(4)[2:], slopes])
+    _, slopes = _linearized(acceleration, place, (length, length, speed, speed))
+    return np.vstack([np.eye(4)[2:], np.transpose(slopes)])
 
 
 def excess_growth(jacobian: np.ndarray) -> float:
