@@ -234,6 +234,9 @@ def test_a_start_is_of_the_energy_that_is_stated():
     assert (v**2).sum(axis=1).mean() / 2 == pytest.approx(
         plant.energy * share.mean() / 2, rel=0.05
     )
+    again, other = (plant.random_states(4000, seed) - plant.sliding for seed in (1, 2))
+    assert (again == drawn).all()
+    assert (other != drawn).any(axis=1).all()
 
 
 @pytest.mark.release

@@ -7,7 +7,11 @@ import pytest
 from scipy import stats
 
 from squealpipe import critical_friction_map, stability_map
-from squealpipe.brake.propensity.distributions import centred, distribution
+from squealpipe.brake.propensity.distributions import (
+    DISTRIBUTIONS,
+    centred,
+    distribution,
+)
 from squealpipe.brake.propensity.propensity import propensity
 from squealpipe.codes import LinearRegime
 from squealpipe.paper import robustness
@@ -253,3 +257,20 @@ def test_statements_without_a_motion_are_no_sample_of_starts(monkeypatch):
     judged = found.judged.sel(statement=["F2a", "F3", "F6d", "F13"])
     np.testing.assert_array_equal(judged, [[4, 4, 1, 1]] * 2)
     assert (found.share.sel(statement="F6d") == 1.0).all()
+
+
+def test_distributions_have_the_numbers_that_they_are_given():
+    uniform, normal, lognormal = (
+        distribution(
+            "k1", {"distribution": kind, **dict(zip(names, pair, strict=True))}
+        )
+        for (kind, names), pair in zip(
+            DISTRIBUTIONS.items(), [(2.0, 5.0), (3.0, 0.5), (3.0, 0.2)], strict=True
+        )
+    )
+    assert uniform.support() == (2.0, 5.0)
+    assert uniform.mean() == pytest.approx(3.5)
+    assert (normal.mean(), normal.std()) == pytest.approx((3.0, 0.5), rel=1e-3)
+    # the quantile one standard deviation of the logarithm above the median
+    quantiles = lognormal.ppf([0.5, stats.norm.cdf(1.0)])
+    assert quantiles == pytest.approx([3.0, 3.0 * np.exp(0.2)])
