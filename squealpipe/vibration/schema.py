@@ -133,6 +133,16 @@ _structure_variables = {
     "degrees_of_freedom": count("of the whole structure", optional=True),
     "is_undamped": whether("whether nothing damps the structure", optional=True),
     "n_modes": count("modes in which it was run", optional=True),
+    "refined_n_modes": count(
+        "modes in which it was run on, to see how its level changes; 0: none",
+        optional=True,
+    ),
+    "refined_velocity_rms": _optional(
+        "rms speed of vibration of all contacts in these; NaN: not known",
+        "m s-1",
+        rtol=_LEVEL,
+    ),
+    "refined_verdict": flag("what is heard in these", Verdict, optional=True),
 }
 """Variables of structures alone."""
 

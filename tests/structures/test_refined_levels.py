@@ -7,6 +7,8 @@ import xarray as xr
 from squealpipe import labels, squealing_modes
 from squealpipe.codes import Verdict
 from squealpipe.structures import elastic_pad
+from squealpipe.structures.assess.assess import judge_structure
+from squealpipe.study.report.answer import level
 from squealpipe.study.report.squealing import level_in_more_modes, lines
 from squealpipe.vibration.settling import settling_of_verdicts
 from tests.structures.test_runs_of_the_whole import settled
@@ -30,14 +32,14 @@ def test_a_level_that_more_modes_change_is_not_told_as_if_it_was_known(answer):
     """Eigenvalues agreed within 1 %, and the level was a third too high without a word."""
     assert int(answer.refined_n_modes) == 36
     assert labels(answer.refined_motion)[0] == "hammers"
-    level, refined = (
+    first, refined = (
         float(answer.velocity_rms[0]),
         float(answer.refined_velocity_rms[0]),
     )
-    assert level > 1.25 * refined
+    assert first > 1.25 * refined
     (told,) = [line for line in lines(answer) if line.startswith("Level")]
     assert told == (
-        f"Level not determined: {1e3 * level:.3g} mm/s (rms) in 9 modes, but "
+        f"Level not determined: {1e3 * first:.3g} mm/s (rms) in 9 modes, but "
         f"{1e3 * refined:.3g} mm/s in 36."
     )
 
@@ -55,6 +57,17 @@ def test_the_level_in_all_modes_is_that_of_a_run_of_the_whole_from_its_own_push(
     )
 
 
+def test_assess_tells_the_same_level_in_all_modes(pad, answer):
+    """Its runs have coordinates of their own, from which the motion is carried over."""
+    told = judge_structure(pad, samples=1, seed=0, tol=1e-12, workers=1).without_cures()
+    assert int(told.refined_n_modes) == 36
+    assert float(told.refined_velocity_rms) == pytest.approx(
+        float(answer.refined_velocity_rms[0]), rel=settling_of_verdicts.agreement
+    )
+    assert "Level not determined: " in level(told)
+    assert "(rms) in 9 modes, but " in level(told)
+
+
 @pytest.mark.release
 def test_the_level_in_all_modes_is_that_of_exponentials(pad, answer):
     """The whole is run by code that shares nothing with the package."""
@@ -65,14 +78,14 @@ def test_the_level_in_all_modes_is_that_of_exponentials(pad, answer):
     assert ours == pytest.approx(level, rel=0.03)
 
 
-def told(level, refined, motion=Verdict.hammers, size=64, whole=350):
+def told(first, refined, motion=Verdict.hammers, size=64, whole=350):
     """The sentence on a motion that hammers with a level in 12 modes, m/s."""
     return level_in_more_modes(
         xr.Dataset(
             {
                 "ends_in": ("mode", [0]),
                 "motion": ("attractor", [int(Verdict.hammers)]),
-                "velocity_rms": ("attractor", [level]),
+                "velocity_rms": ("attractor", [first]),
                 "refined_velocity_rms": ("attractor", [refined]),
                 "refined_motion": ("attractor", [int(motion)]),
                 "refined_n_modes": size,

@@ -21,6 +21,7 @@ from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.quiet_intervals import linear_intervals
 from squealpipe.structures.schema.squealing import GIVE_DAMPING
 from squealpipe.structures.squeal.plant import Plant
+from squealpipe.structures.squeal.refined_levels import refined_levels
 from squealpipe.structures.squeal.windows import Running
 from squealpipe.systems.processes import available_cores
 from squealpipe.systems.progress import (
@@ -237,9 +238,34 @@ def judge_structure(
         "random_starts": len(others),
         "random_starts_noisy": sum(run.lasts for run in others),
     }
+    if not is_long:  # in more modes a run takes eight times as long or more
+        facts |= _in_more_modes(design, plant, of_push, Running(tol, seed, workers))
     motions = [design.to_whole(run.last.final) for run in judged.lasting[:2]]
     searched = replace(family, tol=max(tol, Search.tol))
     return JudgedStructure(design, judged.verdict, motions, facts, searched, named)
+
+
+def _in_more_modes(
+    design: Design, plant: Plant, push: SettledRun, how: Running
+) -> dict[str, Any]:
+    """Return the level of what a push ends in, where it is run on in more modes."""
+    reduction, modes = design.reduction, design.structure.modes
+    if reduction is None or design.coordinates is None or modes is None:
+        return {}
+    with stage("the level in more modes"):
+        refined = refined_levels(
+            plant,
+            [push],
+            None,
+            how,
+            reduction=reduction,
+            modes=design.coordinates @ modes,
+        )
+    return {
+        "refined_n_modes": refined.n_modes,
+        "refined_velocity_rms": float(refined.speeds[0]),
+        "refined_verdict": int(refined.verdicts[0]),
+    }
 
 
 def _first_verdicts(push: SettledRun, sudden: SettledRun, drawn: int) -> str:

@@ -44,6 +44,7 @@ class Design:
         directions: static responses of each contact among these: 0 none, 1 the normal one, 2 both.
         origin: large structure of all degrees of freedom; None where that is ``whole``.
         coordinates: (n of the origin, n of the whole), amplitudes → displacements.
+        reduction: the structure as it was reduced to be run; None where it is not reduced.
         running: the structure that is run, where it is known.
         obstacle: reason why runs would tell nothing about the structure; None if there is none.
     """
@@ -52,6 +53,7 @@ class Design:
     n_modes: int | None = None
     origin: ContactStructure | None = None
     coordinates: np.ndarray | None = None
+    reduction: ContactStructure | None = None
     running: ContactStructure | None = None
     obstacle: str | None = None
     directions: int = 0
@@ -78,6 +80,7 @@ class Design:
             running.size,
             origin,
             coordinates,
+            running,
             obstacle=plant.obstacle,
             directions=running.reduced_from.directions,
             band=plant.band,

@@ -53,21 +53,34 @@ class RefinedLevels(NamedTuple):
 
 
 def refined_levels(
-    plant: Plant, motions: list[SettledRun], t_end: float | None, how: Running
+    plant: Plant,
+    motions: list[SettledRun],
+    t_end: float | None,
+    how: Running,
+    *,
+    reduction: ContactStructure | None = None,
+    modes: np.ndarray | None = None,
 ) -> RefinedLevels:
     """Run motions on in a refined reduction until they have settled.
 
     Args:
+        plant: in which the motions were run.
         motions: runs that have settled, one of each attractor.
         t_end: longest time of a run, s; None as in :func:`squealpipe.squealing_modes`.
+        reduction: reduced structure that is refined; None: that of the plant.
+        modes: (n of the whole, n of the plant), amplitudes → displacements; None: the reduction's.
     """
+    reduction = plant.structure if reduction is None else reduction
+    modes = reduction.modes if modes is None else modes
     speeds = np.full(len(motions), np.nan)
     verdicts = np.full(len(motions), int(Verdict.undetermined))
     lasting = [index for index, run in enumerate(motions) if not run.quiet]
-    refined = _refined(plant) if lasting and not stop_is_asked() else None
-    if refined is None:
+    refined = None
+    if lasting and modes is not None and not stop_is_asked():
+        refined = _refined(reduction)
+    if refined is None or modes is None:
         return RefinedLevels(0, speeds, verdicts)
-    lift = _lift(plant.structure, refined.structure)
+    lift = _lift(modes, refined.structure)
     away = np.array([motions[index].last.final for index in lasting]) - plant.sliding
     # stretches of tangential springs are those of the same contacts
     q, v, stretches = np.split(away, [plant.size, 2 * plant.size], axis=1)
@@ -84,15 +97,15 @@ def refined_levels(
     return RefinedLevels(refined.size, speeds, verdicts)
 
 
-def _refined(plant: Plant) -> Plant | None:
+def _refined(reduction: ContactStructure) -> Plant | None:
     """Return the structure in more coordinates; None if it has no more, or they cannot be run."""
-    origin = plant.structure.reduced_from
-    if origin is None or plant.structure.modes is None:
+    origin = reduction.reduced_from
+    if origin is None:
         return None
     whole = origin.whole
-    number = max(Refinement.factor * plant.size, Refinement.fewest)
+    number = max(Refinement.factor * reduction.size, Refinement.fewest)
     number = min(number, whole.size, Caps().modes)
-    if number <= plant.size:
+    if number <= reduction.size:
         return None
     truth = origin.truth or Truth.of(whole, origin.frequency_max)
     search = Search(whole, truth, origin.frequency_max)
@@ -100,9 +113,8 @@ def _refined(plant: Plant) -> Plant | None:
     return None if refined.obstacle else refined
 
 
-def _lift(structure: ContactStructure, refined: ContactStructure) -> np.ndarray:
-    """Return the matrix that turns coordinates of a reduction into those of a refined one."""
+def _lift(modes: np.ndarray, refined: ContactStructure) -> np.ndarray:
+    """Return the matrix that turns amplitudes of some modes into coordinates of a reduction."""
     origin = refined.reduced_from
-    assert origin is not None  # noqa: S101 (both are reductions of it)
-    assert structure.modes is not None and refined.modes is not None  # noqa: S101, PT018
-    return np.asarray(refined.modes.T @ (origin.whole.mass @ structure.modes))
+    assert origin is not None and refined.modes is not None  # noqa: S101, PT018
+    return np.asarray(refined.modes.T @ (origin.whole.mass @ modes))

@@ -217,10 +217,62 @@ def level(answer: xr.Dataset) -> str:
         for way in ("along", "across")
     )
     peak = engineering(float(answer.displacement_peak), "m")
-    return (
+    told = (
         f"Level{when}: {along} rms along the belt and {across} across it{_scatter(answer)}; "
         f"displacement up to {peak}, contact force up to {_force(answer)}."
     )
+    return f"{told} {in_more_modes(answer)}".rstrip()
+
+
+def in_more_modes(answer: xr.Dataset) -> str:
+    """Say how the level changes in more modes, in one sentence; nothing where that is not known."""
+    size = int(answer.get("refined_n_modes", 0))
+    if not size or verdict_of(answer) in (Verdict.quiet, Verdict.undetermined):
+        return ""
+    level = math.hypot(
+        *(float(answer[f"velocity_rms_{way}"]) for way in ("along", "across"))
+    )
+    return level_change(
+        (level, float(answer.refined_velocity_rms)),
+        (int(answer.n_modes), size, int(answer.degrees_of_freedom)),
+        (verdict_of(answer), verdict_of(answer, "refined_")),
+    )
+
+
+def level_change(
+    levels: tuple[float, float],
+    sizes: tuple[int, int, int],
+    verdicts: tuple[Verdict, Verdict],
+) -> str:
+    """Say how a level changes in more modes, in one sentence.
+
+    Args:
+        levels: rms speed of vibration, m/s, in the modes that were run and in more of them; NaN if
+            the motion has not settled there.
+        sizes: numbers of both, and of all degrees of freedom.
+        verdicts: what is heard in both.
+    """
+    (level, refined), (few, many, all_modes) = levels, sizes
+    more = ""
+    if many < all_modes:
+        more = f": see what more modes change (n_modes={many} and above)"
+    if not np.isfinite(refined):
+        return (
+            f"Level not determined: run on in {many} modes the motion did not settle."
+        )
+    told = f"{engineering(level, 'm s-1')} (rms) in {few} modes"
+    becomes = f"{engineering(refined, 'm s-1')} in {many}"
+    if verdicts[0] is not verdicts[1]:
+        does = {
+            Verdict.quiet: "dies out",
+            Verdict.squeals: "squeals",
+            Verdict.hammers: "hammers",
+        }
+        becomes += f", where it {does[verdicts[1]]}"
+    # what two windows of an irregular motion may differ by is no reason to doubt a level
+    elif abs(refined - level) <= 0.1 * level:
+        return f"Its level is {told}, and {becomes}."
+    return f"Level not determined: {told}, but {becomes}{more}."
 
 
 def _scatter(answer: xr.Dataset) -> str:

@@ -18,19 +18,12 @@ from squealpipe.structures.schema.squealing import (
     Kind,
     OnsetKind,
 )
-from squealpipe.study.report.answer import damping_advice
+from squealpipe.study.report.answer import damping_advice, level_change
 from squealpipe.text import number
 from squealpipe.units import engineering
 
 LISTED = 8
 """Attractors and modes that are told."""
-
-
-_DOES = {
-    Verdict.quiet: "dies out",
-    Verdict.squeals: "squeals",
-    Verdict.hammers: "hammers",
-}
 
 
 def lines(answer: xr.Dataset) -> list[str]:
@@ -315,25 +308,13 @@ def level_in_more_modes(answer: xr.Dataset) -> str | None:
     if answer.attrs.get("not_run") or end == NO_ATTRACTOR or not size:
         return None
     one = answer.isel(attractor=end)
-    level, refined = float(one.velocity_rms), float(one.refined_velocity_rms)
     if Verdict(int(one.motion)) is Verdict.quiet:
         return None
-    more = (
-        ""
-        if size == int(answer.degrees_of_freedom)
-        else f": see what more modes change (n_modes={size} and above)"
+    return level_change(
+        (float(one.velocity_rms), float(one.refined_velocity_rms)),
+        (int(answer.n_modes), size, int(answer.degrees_of_freedom)),
+        (Verdict(int(one.motion)), Verdict(int(one.refined_motion))),
     )
-    if not np.isfinite(refined):
-        return f"Level not determined{more}; run on in {size} modes the motion did not settle."
-    told = f"{engineering(level, 'm s-1')} (rms) in {int(answer.n_modes)} modes"
-    becomes = f"{engineering(refined, 'm s-1')} in {size}"
-    verdict = Verdict(int(one.refined_motion))
-    if verdict is not Verdict(int(one.motion)):
-        becomes += f", where it {_DOES[verdict]}"
-    # what two windows of an irregular motion may differ by is no reason to doubt a level
-    elif abs(refined - level) <= 0.1 * level:
-        return f"Its level is {told}, and {becomes}."
-    return f"Level not determined: {told}, but {becomes}{more}."
 
 
 def beside(answer: xr.Dataset) -> str | None:

@@ -40,7 +40,6 @@ def gather_structure(
         cause(modes, answer),
         told_shift if is_known else None,
         told["level"] if is_known else squealing.level(answer),
-        squealing.level_in_more_modes(answer),
         told["sudden"] if is_known else None,
         squealing.beside(answer),
         *squealing.onset(answer, _critical(modes)),
