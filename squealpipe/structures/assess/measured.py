@@ -38,7 +38,8 @@ def read_noises(path: str | PathLike[str], units: OperatingUnits) -> list[Noise]
 
     Columns are ``pressure`` (factor of the preloads, or with a unit that of the faces), ``speed
     [km/h]``, ``temperature [°C]``, ``mu``, ``frequency [Hz]`` and ``level [dB]`` by name, with
-    their unit in brackets; an empty frequency is a quiet point.
+    their unit in brackets; an empty frequency is a quiet point, and another empty quantity is not
+    known there.
 
     Raises:
         FileNotFoundError: no such file.
@@ -63,10 +64,10 @@ def read_noises(path: str | PathLike[str], units: OperatingUnits) -> list[Noise]
 
 
 def _noise(where: str, row: dict[str, float]) -> Noise:
-    point = {name: row[name] for name in QUANTITIES if name in row}
-    for name, value in point.items():
-        if math.isnan(value):
-            raise ValueError(f"{where}: {name} is missing")
+    listed = [name for name in QUANTITIES if name in row]
+    point = {name: row[name] for name in listed if not math.isnan(row[name])}
+    if not point:
+        raise ValueError(f"{where}: {' and '.join(listed)} is missing")
     return Noise(point, row["frequency"], row.get("level", math.nan))
 
 
@@ -126,7 +127,7 @@ def _nearest(values: np.ndarray, at: float) -> int | None:
 def _judged(points: xr.Dataset, frequency: float, band: float) -> tuple[float, Match]:
     """Return the predicted frequency that is nearest, and how it agrees with the measured one.
 
-    Several points belong to a noise if the list leaves a quantity out, such as friction.
+    Several points belong to a noise if its line leaves a quantity out, such as friction.
     """
     verdicts = np.ravel(points.verdict.values)
     predicted = np.ravel(points.frequency.values)

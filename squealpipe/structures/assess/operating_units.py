@@ -106,11 +106,13 @@ class OperatingUnits:
 
 def column_of(source: Path, cell: str, names: Sequence[str]) -> tuple[str, str]:
     """Return the name of a column and its unit, of a header like ``speed [km/h]``."""
-    match = re.fullmatch(r"\s*(\w+)\s*(?:[\[(]\s*([^\])]*?)\s*[\])])?\s*", cell)
+    # a unit like dB(A) has parentheses of its own
+    unit = r"(?:\[\s*(.*?)\s*\]|\(\s*(.*?)\s*\))?"
+    match = re.fullmatch(rf"\s*(\w+)\s*{unit}\s*", cell)
     name = match[1].lower() if match else cell
     if name not in names:
         raise ValueError(f"{source}: column {cell!r}: {suggestion(name, list(names))}")
-    return name, (match[2] or "") if match else ""
+    return name, (match[2] or match[3] or "") if match else ""
 
 
 def read_rows(

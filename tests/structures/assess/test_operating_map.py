@@ -121,6 +121,18 @@ def test_a_list_with_known_hits_misses_and_false_alarms_is_matched_so(points, tm
     assert only.frequency == pytest.approx(noisy)
 
 
+def test_an_empty_cell_is_not_known_and_levels_may_be_weighted(points, tmp_path):
+    noisy = float(points.frequency.sel(pressure=1.0, speed=2.0, mu=0.6))
+    path = tmp_path / "noises.csv"
+    lines = ["speed,mu,frequency [Hz],level [dB(A)]", f"2,0.6,{noisy},80"]
+    lines += [f"2,,{noisy},81", "2,,,", "2,0.05,,"]
+    path.write_text("\n".join(lines), encoding="utf-8")
+    compared = matched(points, read_noises(path, UNITS), 0.05)
+    names = [Match(each).name for each in compared["match"]]
+    assert names == ["hit", "hit", "false_alarm", "both_quiet"]
+    assert compared["measured_level"][:2].tolist() == [80.0, 81.0]
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
