@@ -475,14 +475,20 @@ def _window(plant: Plant, runs: list[SettledRun], found: Described) -> Structure
     """Return the window of an attractor: of one run after settling, or of all irregular ones.
 
     The last window of a run may begin with the end of a transient. Only in an irregular motion does
-    scatter hide that, but for runs that were ended as soon as they had come to it.
+    scatter hide that. A run that was ended as soon as it had come to such a motion counts with the
+    last of the windows by which that was seen, if there were several.
     """
     if found.window is None:
         return still(plant)
     if found.kind in (Kind.cycle, Kind.torus):
         return found.window
-    settled = [run.last for run in runs if not run.arrived]
-    return merged(settled[::-1] or [found.window])
+    parts = [run.last for run in runs if not run.arrived]
+    parts += [
+        run.windows[-1]
+        for run in runs
+        if run.arrived and run.last.length > run.windows[-1].length
+    ]
+    return merged([found.window, *parts[::-1]])
 
 
 def _table(
