@@ -58,7 +58,7 @@ def runs(root: str | os.PathLike[str] = ".") -> list[StoredRun]:
     return [*map(_archived, frozen), *(_results(at, base) for at in made)]
 
 
-def matching(expression: str, found: list[StoredRun]) -> list[str]:
+def matching(expression: str, stored_runs: list[StoredRun]) -> list[str]:
     """Names of the runs whose parameters fulfil a condition, as pandas reads it.
 
     Names are parameters (``mu``, ``length1``), the paper's symbols (``L1``), or keys of the
@@ -67,7 +67,7 @@ def matching(expression: str, found: list[StoredRun]) -> list[str]:
     """
     import pandas as pd  # half of the time of a list, which needs no condition
 
-    known = [run for run in found if run.config]
+    known = [run for run in stored_runs if run.config]
     rows = [_row(run.config) for run in known] or [_row({})]
     text = re.sub(r"\b[a-z]\w*(\.\w+)+", lambda key: f"`{key[0]}`", expression)
     example = "write for instance 'mu == 0.25 and L1 > 4'"

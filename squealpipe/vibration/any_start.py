@@ -355,11 +355,11 @@ def dies_out_always(
         subject = side.cure.apply(value)
         if subjects.is_quiet_linearly(subject):
             answers[row], open_rows[row] = True, subject
-    for kind in range(kinds):
+    for number in range(kinds):
         owners: list[int] = []
         starts: list[Start] = []
         for row, subject in open_rows.items():
-            made = subjects.starts(subject, kind, sides[row].motions)
+            made = subjects.starts(subject, number, sides[row].motions)
             starts += made
             owners += [row] * len(made)
         lasting: dict[int, list[np.ndarray]] = {}

@@ -411,15 +411,15 @@ def attractors(answer: xr.Dataset) -> Iterator[str]:
             f"{int(one['count'])} of {size} random starts ({_percent(float(one.share_low))} to "
             f"{_percent(float(one.share_high))} of all) end in"
         )
-        kind = Kind(int(one.kind))
-        if kind is Kind.steady_sliding:
+        attractor_kind = Kind(int(one.kind))
+        if attractor_kind is Kind.steady_sliding:
             yield f"{share} steady sliding."
             continue
         words = {
             Kind.cycle: "a cycle",
             Kind.torus: "a quasi-periodic motion",
             Kind.irregular: "an irregular motion",
-        }.get(kind, "a motion of undetermined kind")
+        }.get(attractor_kind, "a motion of undetermined kind")
         shift = engineering(abs(float(one.frequency_shift)), "Hz")
         side = "above" if float(one.frequency_shift) > 0 else "below"
         yield (

@@ -46,10 +46,10 @@ def draw(verdicts: xr.Dataset, answers: Mapping[str, xr.Dataset]) -> Figure:
         rasterized=True,
         **category_colours(list(tones.values())),
     )
-    ends = [(axis[0], axis[-1]) for axis in degrees]
+    limits = [(axis[0], axis[-1]) for axis in degrees]
     panel.set(
-        xlim=ends[0],
-        ylim=ends[1],
+        xlim=limits[0],
+        ylim=limits[1],
         aspect="equal",
         xlabel="alpha1 (degrees)",
         ylabel="alpha2 (degrees)",
@@ -60,7 +60,7 @@ def draw(verdicts: xr.Dataset, answers: Mapping[str, xr.Dataset]) -> Figure:
     for name, answer in answers.items():
         at = [float(np.degrees(answer[key])) for key in ("alpha1", "alpha2")]
         if not all(
-            low <= here <= high for here, (low, high) in zip(at, ends, strict=True)
+            low <= here <= high for here, (low, high) in zip(at, limits, strict=True)
         ):
             continue
         to = [float(np.degrees(answer[f"quiet_{key}"])) for key in ("alpha1", "alpha2")]
@@ -78,7 +78,9 @@ def draw(verdicts: xr.Dataset, answers: Mapping[str, xr.Dataset]) -> Figure:
             arrow.arrow_patch.set_clip_path(panel.patch)  # it may lead out of the map
         panel.plot(*at, "x", color="white", markersize=8, markeredgewidth=3)
         panel.plot(*at, "x", color=Colour.blue, markersize=6, markeredgewidth=1.5)
-        is_right = 2.0 * at[0] > sum(ends[0])  # the name of the scene stays in the map
+        is_right = 2.0 * at[0] > sum(
+            limits[0]
+        )  # the name of the scene stays in the map
         panel.annotate(
             name.removeprefix("assess/"),
             at,

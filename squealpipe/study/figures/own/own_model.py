@@ -96,13 +96,11 @@ def _mark_angles(panel: Axes, angles: tuple[float, float], scale: float) -> None
         zip(angles, SPRING_COLOURS, strict=True), start=1
     ):
         first, last = sorted((0.0, float(np.degrees(angle))))
-        ends = (first, last) if index == 1 else (180.0 - last, 180.0 - first)
+        arc = (first, last) if index == 1 else (180.0 - last, 180.0 - first)
         size = 0.7 * scale
         panel.add_patch(
-            Arc(
-                (0, 0), size, size, theta1=ends[0], theta2=ends[1], color=colour, lw=0.8
-            )
+            Arc((0, 0), size, size, theta1=arc[0], theta2=arc[1], color=colour, lw=0.8)
         )
-        middle = np.radians(0.5 * (ends[0] + ends[1]))
+        middle = np.radians(0.5 * (arc[0] + arc[1]))
         x, y = (0.44 * scale * part for part in (np.cos(middle), np.sin(middle)))
         write(panel, x, y, f"$α_{index}$", color=colour, fontsize=7)
