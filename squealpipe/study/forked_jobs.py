@@ -236,7 +236,8 @@ def serve(listening: str) -> None:
     import gc
 
     server = _Server(socket.socket(fileno=int(listening)))
-    _import_libraries()
+    with contextlib.suppress(Exception):  # jobs tell what is wrong with a library
+        _import_libraries()
     gc.collect()
     gc.freeze()  # a job need not look through all that is loaded
     parent = os.getpid()
