@@ -243,8 +243,13 @@ def serve(listening: str) -> None:
     parent = os.getpid()
     job = server.serve()
     if job is None:
+        import shutil
+        from pathlib import Path
+
         from squealpipe.study.durations import record_cost
 
+        # a Snakemake that was killed has not done so
+        shutil.rmtree(Path(server.listening.getsockname()).parent, ignore_errors=True)
         record_cost("imports", "1-of-1", time.process_time())
     else:
         _become(job, parent)
