@@ -25,6 +25,7 @@ def test_a_ratio_is_that_of_two_machines_and_fails_above_its_limit():
     assert not verdict("study", 400.0, 1.0, stored)[0]
 
 
+@pytest.mark.release
 def test_tests_that_cost_more_than_is_stored_fail(tmp_path):
     """0.2 s in a process of the tests, and 0.2 s in a child of it."""
     busy = "import time\nwhile time.process_time() < 0.2: pass"

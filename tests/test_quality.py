@@ -71,6 +71,7 @@ def _imports_inside(function):
         yield from (n for n in names if n.partition(".")[0] == "squealpipe")
 
 
+@pytest.mark.release
 def test_no_import_hides_from_the_contracts():
     inside, by_name = set(), set()
     for path in sorted((ROOT / "squealpipe").rglob("*.py")):

@@ -67,12 +67,17 @@ def without_curves(*charts):
     return [chart.drop_dims("point").drop_vars("runs") for chart in charts]
 
 
+COSTLY = {
+    "assess": pytest.mark.long,
+    "limit_cycle": pytest.mark.release,
+    "contact_boundary": pytest.mark.release,
+    "smallest_disturbance": pytest.mark.release,
+}
+"""Marks of what takes 20 s, and of what takes more than a second."""
+
+
 @pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(name, marks=[pytest.mark.long] * (name == "assess"))  # 20 s
-        for name in CALLS
-    ],
+    "name", [pytest.param(name, marks=COSTLY.get(name, [])) for name in CALLS]
 )
 def test_answers_scale(name):
     """As long as no chaos magnifies the last digits, which these horizons leave no time for."""
@@ -124,6 +129,7 @@ def typed(params):
     ]
 
 
+@pytest.mark.release
 def test_simulate_prints_the_frequency_of_the_motion(capsys, tmp_path, monkeypatch):
     """Without options: no beat of samples a thousand periods apart."""
     monkeypatch.chdir(tmp_path)

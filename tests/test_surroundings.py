@@ -29,6 +29,7 @@ def test_a_checkout_path_with_a_space_is_refused_with_the_reason(tmp_path):
     assert not (place / ".venv").exists()
 
 
+@pytest.mark.release
 def test_commands_need_no_home(tmp_path):
     command = [
         sys.executable,

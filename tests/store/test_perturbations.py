@@ -92,6 +92,7 @@ CHANGES = {
 """Change → whether it is a difference."""
 
 
+@pytest.mark.release
 def test_random_changes_are_told_right_in_both_directions(datasets):
     rng = np.random.default_rng(11)
     for _ in range(NUMBER):

@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 import squealpipe.systems
 
 ROOM = Path(squealpipe.systems.__file__).parent
@@ -20,6 +22,7 @@ print(*sorted(n for n in package if not n.startswith("squealpipe.systems")))
 """
 
 
+@pytest.mark.release
 def test_a_copy_without_the_rest_of_the_package_runs(tmp_path):
     copy = tmp_path / "squealpipe"
     shutil.copytree(ROOM, copy / "systems")

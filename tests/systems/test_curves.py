@@ -173,6 +173,7 @@ def test_the_onset_of_stick_is_followed_in_belt_speed_and_damping():
         )
 
 
+@pytest.mark.release
 def test_folds_of_a_hardening_spring_are_born_in_the_cusp():
     """On this side of it a branch has no fold, on the other two."""
     system = System(

@@ -311,6 +311,7 @@ def test_relaxation_oscillations_settle(mu, period):
     assert float(cycle.x_max) == pytest.approx(2.0, abs=0.02)
 
 
+@pytest.mark.release
 def test_the_step_limit_is_an_argument():
     """mu = 300 with t_settle = 2430 ended as step_limit with nothing to raise."""
     assert outcome(van_der_pol.limit_cycle(mu=300.0, t_settle=2430.0)) == "converged"
@@ -411,7 +412,9 @@ def test_a_vertical_branch_ends_as_a_family():
 
 
 @pytest.mark.parametrize(
-    "place", [{"x": 0.1}, {"x": 0.3, "y": -0.1}], ids=["near rest", "farther"]
+    "place",
+    [{"x": 0.1}, pytest.param({"x": 0.3, "y": -0.1}, marks=pytest.mark.release)],
+    ids=["near rest", "farther"],
 )
 def test_chaos_is_told_without_newtons_method_on_its_near_returns(place, monkeypatch):
     """2,000 s of settling took 70 s: returns of hundreds of events that are met only once."""
@@ -429,6 +432,7 @@ def test_chaos_is_told_without_newtons_method_on_its_near_returns(place, monkeyp
     assert sum(size for size in sizes if size > 100) <= 300
 
 
+@pytest.mark.release
 def test_a_homoclinic_end_has_a_name():
     """x″ = x − x² + μ x′ + x x′ (Kuznetsov, Elements of Applied Bifurcation Theory, ch. 6)."""
     system = oscillator(

@@ -69,6 +69,7 @@ def hertz(force):
     )
 
 
+@pytest.mark.release
 def test_a_power_whose_base_vanishes_at_entry_is_refused_and_its_remedy_runs():
     with pytest.raises(ValueError, match="'hit' enters regime 'contact'") as refusal:
         hertz(lambda x: (x - 0.5) ** 1.5)

@@ -28,6 +28,7 @@ from squealpipe.systems.shipped.rigid_pad import (
 ROOT = Path(__file__).resolve().parents[2]
 
 
+@pytest.mark.release
 def test_the_page_on_systems_runs(capsys):
     page = (ROOT / "docs/systems.md").read_text(encoding="utf-8")
     blocks = re.findall(r"^```python\n(.*?)^```", page, flags=re.MULTILINE | re.DOTALL)

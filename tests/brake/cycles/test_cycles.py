@@ -141,7 +141,8 @@ REST = FORMER.with_(
 
 
 @pytest.mark.parametrize(
-    "settle", [1000.0, pytest.param(1500.0, marks=pytest.mark.release), 5000.0]
+    "settle",
+    [*(pytest.param(t, marks=pytest.mark.release) for t in (1000.0, 1500.0)), 5000.0],
 )
 def test_rest_is_rest_in_any_units_and_mirrored(settle):
     """Round-off decides neither whether the place of rest is found nor whether a motion shrinks."""
