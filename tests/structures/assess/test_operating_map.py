@@ -14,6 +14,7 @@ from squealpipe.structures.assess.operating_units import OperatingUnits
 from squealpipe.structures.contact import PointOrigin
 from squealpipe.structures.schema.operating_map import Match
 from squealpipe.study.chunks import Chunks
+from squealpipe.study.report.operating import lines as words
 from squealpipe.study.sweep import joined, planned, run_sweep
 
 STIFFNESS = 6e6
@@ -111,6 +112,19 @@ def test_a_list_with_known_hits_misses_and_false_alarms_is_matched_so(points, tm
     assert counts == {"hits": 1, "misses": 2, "false_alarms": 1}
     assert beside["measured_frequency"][0] == pytest.approx(1.03 * noisy, rel=1e-6)
     assert beside["measured_level"][0] == 80.5
+    told = points.assign(
+        {
+            name: (("noise",) if np.ndim(value) else (), value)
+            for name, value in beside.items()
+            if name != "measured_occurrence"
+        }
+    ).assign(frequency_band=0.05)
+    said = [line for line in words(told) if line.startswith("  Line ")]
+    assert "  Frequencies of the hits are at most 2.9 % apart." in words(told)
+    assert [line.split(" ")[3] for line in said] == ["2", "3", "4"]
+    assert "(17 % below)" in said[0]
+    assert said[1].endswith("predicted quiet.")
+    assert "measured quiet, predicted" in said[2]
     excel = tmp_path / "noises.xlsx"
     table = pd.DataFrame(
         [[1.0, 7.2, 0.6, noisy / 1e3, 80.5]], columns=lines[0].split(";")
