@@ -84,8 +84,10 @@ class _Node:
         slopes: by the parameter.
     """
 
-    def __init__(self, at: float, linear: _Linear, slopes_of_parts: np.ndarray) -> None:
-        self.at, self.closed = at, linear.closed
+    def __init__(
+        self, at: float, linear: _Linear, slopes_of_parts: np.ndarray, band: float
+    ) -> None:
+        self.at, self.closed, self.band = at, linear.closed, band
         mass, damping, stiffness = linear.parts
         size = len(mass)
         # in units in which frequencies are about 1, so that both halves of a vector count alike
@@ -117,8 +119,9 @@ class _Node:
 
     @property
     def grows(self) -> bool:
-        """Tell whether any mode grows."""
-        return bool(self.values.real.max() > self.limit)
+        """Tell whether any mode within the band grows."""
+        within = np.abs(self.values.imag) <= self.band
+        return bool((self.values.real[within] > self.limit).any())
 
 
 def _quadratic(parts: np.ndarray, s: np.ndarray) -> np.ndarray:
@@ -132,6 +135,7 @@ def linear_intervals(
     structure_at: Callable[[float], ContactStructure],
     values: Sequence[float],
     now: float,
+    band: float = np.inf,
 ) -> list[QuietInterval]:
     """Return all stretches of a parameter in which steady sliding exists and no mode grows.
 
@@ -140,12 +144,14 @@ def linear_intervals(
         values: ends of the steps that are looked at first, ascending: the first and the last are
             the range; contacts that open and close again within a step may be missed.
         now: present value.
+        band: angular frequency up to which modes count, rad/s: truncated coordinates make modes
+            beyond it grow that decay in the whole.
 
     Returns:
         Intervals, the nearest to the present value first. Ends at which the range ends, and not
         the quiet, are open.
     """
-    search = _Search(structure_at, values)
+    search = _Search(structure_at, values, band)
     low, high = values[0], values[-1]
     intervals = [
         QuietInterval(begin, end, low_open=begin == low, high_open=end == high)
@@ -159,12 +165,13 @@ class _Search:
     """Search of one range for the values where the first mode begins to grow or the last stops."""
 
     def __init__(
-        self, structure_at: Callable[[float], ContactStructure], values: Sequence[float]
+        self,
+        structure_at: Callable[[float], ContactStructure],
+        values: Sequence[float],
+        band: float,
     ) -> None:
-        self.structure_at, self.stations = (
-            structure_at,
-            [float(value) for value in values],
-        )
+        self.structure_at, self.band = structure_at, band
+        self.stations = [float(value) for value in values]
         if len(values) < 2 or not (np.diff(values) > 0).all():
             raise ValueError(
                 f"values = {brief(values)}: at least two, ascending, are needed"
@@ -185,7 +192,7 @@ class _Search:
         linear = self.linear(at)
         if linear is None:
             return None
-        return _Node(at, linear, self._slopes(at, linear))
+        return _Node(at, linear, self._slopes(at, linear), self.band)
 
     def _first_step(self, at: float) -> float:
         """Return the length of the first step in which a value lies."""
@@ -253,7 +260,7 @@ class _Search:
         if linear is None:
             return True
         none = np.zeros_like(linear.parts)
-        return _Node(at, linear, none).grows
+        return _Node(at, linear, none, self.band).grows
 
     def _is_sure(self, a: float, b: float, changes: bool) -> bool:
         """Tell whether the answer is that of both ends all along, or changes once."""
@@ -277,11 +284,14 @@ class _Paths:
         values: at places of the step, both ends included.
         off: bound of the distance from the true path, (modes,).
         limit: growth that is round-off.
+        is_within: mask of the modes that are within the band all along; those that never are do not
+            count and are left out.
     """
 
     values: np.ndarray
     off: np.ndarray
     limit: float
+    is_within: np.ndarray
 
     @classmethod
     def between(cls, one: _Node, other: _Node) -> _Paths:
@@ -307,7 +317,10 @@ class _Paths:
             - last * t**2 * (1 - t)
         )
         off = Following.doubt * apart[rows, columns]
-        return cls(cubic, off, max(one.limit, other.limit))
+        counts = (np.abs(cubic.imag) - off <= one.band).any(axis=0)
+        cubic, off = cubic[:, counts], off[counts]
+        is_within = (np.abs(cubic.imag) + off <= one.band).all(axis=0)
+        return cls(cubic, off, max(one.limit, other.limit), is_within)
 
     @property
     def growth(self) -> Any:
@@ -317,7 +330,8 @@ class _Paths:
     @property
     def some_grows(self) -> bool:
         """Tell whether one mode surely grows all along."""
-        return bool((self.growth.min(axis=0) - self.off > self.limit).any())
+        grows = self.growth.min(axis=0) - self.off > self.limit
+        return bool((grows & self.is_within).any())
 
     @property
     def _stays(self) -> np.ndarray:

@@ -94,7 +94,8 @@ class JudgedStructure:
         quiet, is_long = self.verdict is Verdict.quiet, LongRuns.has(self.design)
         with stage("eigenvalues over what may stop it"):
             linear = {
-                name: _linear_intervals(cures[name]) for name in with_progress([*cures])
+                name: _linear_intervals(cures[name], self.design.band)
+                for name in with_progress([*cures])
             }
         found = of_pushes(cures, linear, self.family, quiet=quiet)
         partial_answer(partial(_after_a_push, found))
@@ -156,9 +157,9 @@ def _after_a_push(found: Mapping[str, Boundary]) -> str:
     )
 
 
-def _linear_intervals(cure: Cure) -> list[QuietInterval]:
+def _linear_intervals(cure: Cure, band: float) -> list[QuietInterval]:
     return linear_intervals(
-        lambda value: cure.apply(value).structure, cure.grid.tolist(), cure.value
+        lambda value: cure.apply(value).structure, cure.grid.tolist(), cure.value, band
     )
 
 

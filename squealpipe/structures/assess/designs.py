@@ -96,7 +96,7 @@ class Design:
     def plant(self) -> Plant | None:
         """The structure about its steady sliding; None where there is none."""
         try:
-            return Plant(self.structure, is_ready=True)
+            return Plant(self.structure, is_ready=True, band=self.band)
         except NoSlidingError:
             return None
 

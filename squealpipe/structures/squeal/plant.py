@@ -140,6 +140,7 @@ class Plant:
     Args:
         structure: of any size; one that is larger than a system can carry is reduced.
         is_ready: whether it is run as it is, whatever its size.
+        band: end of the band, rad/s; None: that for which it was reduced.
 
     Attributes:
         band: end of the band, rad/s; infinite without one.
@@ -151,11 +152,19 @@ class Plant:
         ValueError: no contact; or beyond 1000 degrees of freedom, which are to be reduced by hand.
     """
 
-    def __init__(self, structure: ContactStructure, *, is_ready: bool = False) -> None:
+    def __init__(
+        self,
+        structure: ContactStructure,
+        *,
+        is_ready: bool = False,
+        band: float | None = None,
+    ) -> None:
         self.structure = structure if is_ready else carried(structure)
         origin = self.structure.reduced_from
         limit = None if origin is None else origin.frequency_max
         self.band = np.inf if limit is None else 2.0 * np.pi * limit
+        if band is not None:
+            self.band = band
         self.size = self.structure.size
         self.damping_beyond = 0.0
         self.neighbours: list[tuple[Any, Any]] = []

@@ -8,7 +8,11 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as sla
 
 from squealpipe.structures import disc_brake
+from squealpipe.structures.assess.cures import cures_of
+from squealpipe.structures.assess.designs import Design
 from squealpipe.structures.assess.modifications import read_modification
+from squealpipe.structures.quiet_intervals import linear_intervals
+from squealpipe.structures.squeal.plant import in_modes
 
 MU, SHIM, RATIO = 0.6, 0.05, 0.03
 AT = 2853.365890
@@ -100,12 +104,14 @@ def test_the_unchanged_brake_has_the_published_mode():
     assert value == pytest.approx(98.243300 + 2j * np.pi * AT, rel=1e-8)
 
 
-@pytest.mark.release
-def test_a_shim_adds_its_mass_to_the_back_and_damps_how_it_bends():
+SHIM_ON_BACK = {"patch": {"nodes": "BACK", "mass": SHIM, "damping_ratio": RATIO}}
+
+
+def own_shim(frequency):
+    """Mass (n,) and damping (n, n) of the whole shim."""
     rows, places = back()
-    assert len(rows) == 60
     mass = np.zeros(brake().size)
-    mass[rows] = SHIM / 20.0
+    mass[rows] = SHIM / len(places)
     # rigid motions of the shim: three shifts, three turns
     arms = places - places.mean(axis=0)
     rigid = np.vstack(
@@ -115,16 +121,44 @@ def test_a_shim_adds_its_mass_to_the_back_and_damps_how_it_bends():
         ]
     )
     basis, _ = np.linalg.qr(rigid)
-    bends = np.eye(60) - basis @ basis.T
+    bends = np.eye(len(rows)) - basis @ basis.T
     block = brake().given_stiffness.toarray()[np.ix_(rows, rows)]
     damping = sp.lil_array((brake().size, brake().size))
-    damping[np.ix_(rows, rows)] = RATIO / (np.pi * AT) * (bends @ block @ bends)
-    content = {"patch": {"nodes": "BACK", "mass": SHIM, "damping_ratio": RATIO}}
-    shim = read_modification("shim", content, brake(), AT)
+    damping[np.ix_(rows, rows)] = RATIO / (np.pi * frequency) * (bends @ block @ bends)
+    return mass, sp.csr_array(damping)
+
+
+@pytest.mark.release
+def test_a_shim_adds_its_mass_to_the_back_and_damps_how_it_bends():
+    rows, _ = back()
+    assert len(rows) == 60
+    mass, damping = own_shim(AT)
+    shim = read_modification("shim", SHIM_ON_BACK, brake(), AT)
     for part in (0.5, 1.0):
         patched = shim.of(brake(), part * SHIM)
         value = assert_same(patched, added_mass=part * mass, damping=part * damping)
         assert value.real < 95.0
+
+
+@pytest.mark.release
+def test_a_shim_is_quiet_from_where_the_mode_of_the_whole_brake_ceases_to_grow():
+    """Modes beyond the band grow in the coordinates that are run: they had put it at 4.4 g."""
+    design = Design.of(in_modes(brake().with_common_mu(), None, 4000.0))
+    cures, _ = cures_of(design, {"shim": SHIM_ON_BACK})
+    (interval,) = linear_intervals(
+        lambda amount: cures["shim"].apply(amount).structure,
+        [0.0, 0.05 * SHIM, SHIM],
+        0.0,
+        design.band,
+    )
+    assert interval.high_open
+    mass, damping = own_shim(design.plant.frequencies[design.plant.unstable[0]])
+    near = own_value(100.0 + 2j * np.pi * AT)
+    for share, grows in ((0.98, True), (1.02, False)):
+        part = share * interval.low / SHIM
+        for step in (0.5 * part, part):  # the mode moves: it is followed
+            near = own_value(near, step * mass, step * damping)
+        assert (near.real > 0.0) == grows
 
 
 @pytest.mark.release
