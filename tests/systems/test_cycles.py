@@ -1,15 +1,18 @@
 """Cycles, branches and derivatives of systems against closed forms and differences."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import scipy.linalg
 
 from squealpipe import Switch, System, labels
 from squealpipe.functions import cos
 from squealpipe.schema import Outcome, meanings
 from squealpipe.systems.branch_labels import Label
 from squealpipe.systems.cycles import following
+from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.shipped.belt_friction import (
     exponential_oscillator,
     leine_oscillator,
@@ -465,3 +468,13 @@ def test_a_cycle_passes_through_a_regime_that_it_is_entered_beyond():
         # the highest y is that after the reset: y = g(y) + kick
         level = highest
         assert after(level) - 1.0 + kick == pytest.approx(level, rel=1e-9)
+
+
+def test_multipliers_come_by_falling_magnitude_the_upper_of_a_pair_first():
+    turned = 0.5 * np.array([[0.6, -0.8], [0.8, 0.6]])
+    matrix = scipy.linalg.block_diag(0.1, turned, -0.9)
+    forced = SimpleNamespace(
+        monodromy=matrix, keeps_its_direction=True, map=SimpleNamespace(periods=1)
+    )
+    expected = [-0.9, 0.3 + 0.4j, 0.3 - 0.4j, 0.1]
+    np.testing.assert_allclose(Cycle.multipliers.func(forced), expected, atol=1e-15)
