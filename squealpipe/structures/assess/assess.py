@@ -59,9 +59,8 @@ class LongRuns:
     """Motions of the present design that are tried at each value of these cures."""
 
     @classmethod
-    def has(cls, design: Design) -> bool:
-        """Tell whether the runs of a design are long."""
-        structure = design.structure
+    def has(cls, structure: ContactStructure) -> bool:
+        """Tell whether the runs of a structure are long, in the coordinates in which it is run."""
         return structure.size * len(structure.contacts) >= cls.work
 
 
@@ -91,7 +90,10 @@ class JudgedStructure:
     def with_cures(self) -> xr.Dataset:
         """Return the whole answer; the search takes most of its time, and tells each cure."""
         cures, units = cures_of(self.design, self.modifications)
-        quiet, is_long = self.verdict is Verdict.quiet, LongRuns.has(self.design)
+        quiet, is_long = (
+            self.verdict is Verdict.quiet,
+            LongRuns.has(self.design.structure),
+        )
         with stage("eigenvalues over what may stop it"):
             linear = {
                 name: _linear_intervals(cures[name], self.design.band)
@@ -209,7 +211,7 @@ def judge_structure(
         raise ValueError(f"the structure cannot be run: {design.obstacle}")
     named = dict(modifications or {})
     cures_of(design, named)  # mistakes are told before the runs
-    is_long = LongRuns.has(design)
+    is_long = LongRuns.has(design.structure)
     if is_long and workers is None:
         workers = available_cores()  # of two long runs each has its own
     family = Structures(tol, samples, seed, workers)

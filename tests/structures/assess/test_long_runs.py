@@ -9,6 +9,8 @@ from squealpipe.structures.assess.assess import LongRuns
 from squealpipe.structures.assess.designs import Design, Structures, pushed
 from squealpipe.study.report.answer import cure_lines, cures
 from squealpipe.study.report.squealing import headline
+from squealpipe.study.report.structure import not_examined
+from squealpipe.study.structure_study import squealing
 from squealpipe.systems.progress import shown
 
 ROD = np.array([[1.2e7, -1.0e6], [-1.0e6, 8.0e6]])
@@ -78,3 +80,18 @@ def test_an_undamped_structure_that_does_not_settle_is_told_to_have_damping():
     assert advice in headline(answer)
     damped = squealing_modes(pad(mu=0.5), samples=1, t_end=0.01, workers=1)
     assert advice not in headline(damped)
+
+
+@pytest.mark.parametrize("work", [0, 256])
+def test_a_study_follows_squeal_down_in_friction_where_runs_are_short(
+    work, monkeypatch
+):
+    monkeypatch.setattr(LongRuns, "work", work)
+    section = {"n_modes": None, "frequency_max": None}
+    section |= {"samples": 1, "seed": 0, "t_end": None}
+    answer = squealing(pad(mu=0.5).with_common_mu(), section, 1)
+    assert ("onset_kind" in answer) == (work > 0)
+    told = any(
+        "as friction falls in small steps" in one for one in not_examined(answer)
+    )
+    assert told == (work == 0)
