@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from squealpipe.laws import springs
+from squealpipe.laws.dashpots import damping_force
 from squealpipe.parameters import Parameters
 from tests import symbols
 
@@ -128,3 +129,18 @@ def test_both_forms_agree_where_one_takes_over():
     for flags in ((True, False), (False, True), (True, True)):
         found = springs.elastic_force(0.3, -0.8, params, g, flags)
         np.testing.assert_allclose(found, usual, atol=2e-12)
+
+
+def test_dashpots_take_the_power_of_their_stretching_along_themselves():
+    """Force −c ḋ along each spring: −Σ c ḋ² of power, and none of a motion across."""
+    params = Parameters(length1=1.3, length2=0.8, damping1=0.7, damping2=1.9)
+    dashpots, step = np.array([params.damping1, params.damping2]), 1e-30
+    for x, y, vx, vy, a1, a2 in np.random.default_rng(8).uniform(0.2, 2.5, (20, 6)):
+        g = springs.geometry(a1, a2)
+        away = np.array([x, y]) - np.reshape(springs.fixed_ends(params, g), (2, 2))
+        # the imaginary part over a tiny step is the exact derivative
+        moved = away + 1j * step * np.array([vx, vy])
+        rates = np.sqrt((moved**2).sum(axis=1)).imag / step
+        along = away / np.linalg.norm(away, axis=1)[:, None]
+        force = damping_force(x, y, vx, vy, params, g)
+        np.testing.assert_allclose(force, -(dashpots * rates) @ along, rtol=1e-11)
