@@ -22,7 +22,7 @@ endif
 reproduce: env  ## the whole study: datasets, figures, report
 	$(BIN)/snakemake
 
-test: dev  ## the tests of each change, minutes; and whether they cost more CPU time than tests/costs.json allows
+test: dev  ## the tests of each change, minutes; and what they cost beside an earlier commit
 	$(TESTS) -p tests.cost
 
 test-release: dev  ## the rest: whole studies, cluster, faults, browser, recipes, large samples; the study's cost

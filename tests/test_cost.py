@@ -26,7 +26,7 @@ def test_a_ratio_is_that_of_two_machines_and_fails_above_its_limit():
 
 
 @pytest.mark.release
-def test_tests_that_cost_more_than_is_stored_fail(tmp_path):
+def test_what_tests_cost_is_told_whether_or_not_it_is_too_much(tmp_path):
     """0.2 s in a process of the tests, and 0.2 s in a child of it."""
     busy = "import time\nwhile time.process_time() < 0.2: pass"
     (tmp_path / "test_busy.py").write_text(
@@ -53,11 +53,12 @@ def test_tests_that_cost_more_than_is_stored_fail(tmp_path):
         text=True,
         check=False,
     )
-    assert run.returncode == 1
+    assert run.returncode == 0
     told, closing = run.stdout.splitlines()[-2:]
     assert closing.startswith("1 passed")
     seconds = float(told.partition(": ")[2].partition(" s")[0])
     assert told.startswith("tests: ")
+    assert told.endswith("at most 1e-06")
     assert seconds >= 0.4
 
 
