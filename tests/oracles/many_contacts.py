@@ -16,6 +16,8 @@ SAME = 1e-9
 """Heights and speeds below this are one event."""
 NOTHING = 1e-13
 """Round-off of heights and slopes."""
+SIDES = {"slip_slower": 1, "slip_faster": -1, "stick": 0, "separated": OPEN}
+"""Side of a contact by the name of its regime."""
 
 
 class ManyContacts:
@@ -186,6 +188,65 @@ class ManyContacts:
                 > self.mu_static * self.normal(self.state)[i]
             ):
                 self.side[i] = -before
+
+
+def instants(run):
+    """(time, sides and pieces after it) where the regimes change, from the events of a run."""
+    names = run.event_regime.attrs["flag_meanings"].split()
+
+    def of(name, component):
+        regime, _, piece = name.removeprefix(f"{component}_").partition("_press_")
+        return SIDES[regime], int(piece or 1) - 1 if regime != "separated" else 0
+
+    components = list(run.component.values)
+    now = {
+        c: of(names[int(k)], c)
+        for c, k in zip(components, run.regime.values[0], strict=True)
+    }
+    found = [(0.0, tuple(now.values()))]
+    for time, number in zip(
+        run.event_time.values, run.event_regime.values, strict=True
+    ):
+        component = names[int(number)].partition("_")[0]
+        now[component] = of(names[int(number)], component)
+        if time - found[-1][0] < SAME and len(found) > 1:
+            found[-1] = (found[-1][0], tuple(now.values()))
+        else:
+            found.append((float(time), tuple(now.values())))
+    return found
+
+
+def compare(structure, q, v, most=30):
+    """ok, refused (the run says why), or what is wrong in the first instants of events."""
+    truth = ManyContacts(structure, q, v)
+
+    def sides():
+        return tuple(
+            (side, 0 if side == OPEN else piece)
+            for side, piece in zip(truth.side, truth.piece, strict=True)
+        )
+
+    expected = [(0.0, sides())]
+    while len(expected) <= most:
+        wait = truth.next_event(0.05, most=50.0)
+        if wait is None:
+            break
+        expected.append((expected[-1][0] + wait, sides()))
+    end = expected[-1][0]
+    system = structure.system()
+    start = dict(zip(system.states, [*q, *v], strict=True))
+    run = system.simulate(end + SAME, start=start, times=np.array([0.0, end]))
+    if int(run.outcome):
+        return f"refused: outcome {int(run.outcome)}"
+    found = instants(run)[: len(expected)]
+    for place, (a, b) in enumerate(zip(expected, found, strict=False)):
+        if abs(a[0] - b[0]) > 1e-8 or a[1] != b[1]:
+            return f"wrong at {place}: {a} for {b}"
+    if len(found) < len(expected):
+        return f"wrong: {len(found)} instants for {len(expected)}"
+    final = np.array([float(run[name][-1]) for name in system.states])
+    error = abs(final - truth.state).max()
+    return "ok" if error < 1e-8 else f"wrong: state by {error:.1e}"
 
 
 def table(contact):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy.io
 
-from squealpipe import Contact, Structure, squealing_modes
+from squealpipe import Contact, Structure, labels, squealing_modes
 from squealpipe.codes import Regime
 from squealpipe.store.rerun.key import files_named_in
 from squealpipe.structures.contact import PointOrigin
@@ -17,8 +17,8 @@ from squealpipe.structures.sliding import NoSlidingError, steady_sliding
 from squealpipe.structures.squeal.settled_run import squealing_run
 from squealpipe.structures.units import scales_of
 from squealpipe.study.report.structure import structure as structure_rows
-from tests.oracles.many_contacts import OPEN, SAME, ManyContacts
-from tests.structures.test_many_contacts import INSTANTS, SIDES, random_structure
+from tests.oracles.many_contacts import compare
+from tests.structures.test_many_contacts import random_structure
 
 
 def with_tables(structure, seed):
@@ -39,73 +39,13 @@ def with_tables(structure, seed):
     return structure.with_(contacts=contacts)
 
 
-def instants(run, system):
-    """(time, sides and pieces after it) where the regimes change, from the events of a run."""
-    names = run.event_regime.attrs["flag_meanings"].split()
-
-    def of(name, component):
-        regime, _, piece = name.removeprefix(f"{component}_").partition("_press_")
-        return SIDES[regime], int(piece or 1) - 1 if regime != "separated" else 0
-
-    components = list(run.component.values)
-    now = {
-        c: of(names[int(k)], c)
-        for c, k in zip(components, run.regime.values[0], strict=True)
-    }
-    found = [(0.0, tuple(now.values()))]
-    for time, number in zip(
-        run.event_time.values, run.event_regime.values, strict=True
-    ):
-        component = names[int(number)].partition("_")[0]
-        now[component] = of(names[int(number)], component)
-        if time - found[-1][0] < SAME and len(found) > 1:
-            found[-1] = (found[-1][0], tuple(now.values()))
-        else:
-            found.append((float(time), tuple(now.values())))
-    return found
-
-
-def sides(truth):
-    return tuple(
-        (side, 0 if side == OPEN else piece)
-        for side, piece in zip(truth.side, truth.piece, strict=True)
-    )
-
-
-def compare(seed):
-    """ok, or what is wrong."""
-    structure, q, v = random_structure(seed)
-    structure = with_tables(structure, seed)
-    truth = ManyContacts(structure, q, v)
-    expected = [(0.0, sides(truth))]
-    while len(expected) <= INSTANTS:
-        wait = truth.next_event(0.05, most=50.0)
-        if wait is None:
-            break
-        expected.append((expected[-1][0] + wait, sides(truth)))
-    end = expected[-1][0]
-    system = structure.system()
-    start = dict(zip(system.states, [*q, *v], strict=True))
-    run = system.simulate(end + SAME, start=start, times=np.array([0.0, end]))
-    if int(run.outcome):
-        return f"refused: outcome {int(run.outcome)}"
-    found = instants(run, system)[: len(expected)]
-    for place, (a, b) in enumerate(zip(expected, found, strict=False)):
-        if abs(a[0] - b[0]) > 1e-8 or a[1] != b[1]:
-            return f"wrong at {place}: {a} for {b}"
-    if len(found) < len(expected):
-        return f"wrong: {len(found)} instants for {len(expected)}"
-    final = np.array([float(run[name][-1]) for name in system.states])
-    error = abs(final - truth.state).max()
-    return "ok" if error < 1e-8 else f"wrong: state by {error:.1e}"
-
-
 @pytest.mark.parametrize(
     "seed",
     [1, 2, *(pytest.param(seed, marks=pytest.mark.release) for seed in range(3, 12))],
 )
 def test_tables_of_force_agree_with_an_integrator_apart(seed):
-    assert compare(seed) == "ok"
+    structure, q, v = random_structure(seed)
+    assert compare(with_tables(structure, seed), q, v) == "ok"
 
 
 BENT = "linear 0:0 0.4:0.2 0.9:1.1 2:4"
@@ -252,6 +192,26 @@ def test_a_cycle_over_a_table_closes_and_has_its_multipliers():
     found = np.sort(np.abs(np.linalg.eigvals(np.array(columns).T)))
     given = np.hypot(cycle.multiplier_real, cycle.multiplier_imag).values
     np.testing.assert_allclose(found, np.sort(given), atol=1e-6)
+
+
+@pytest.mark.release
+def test_a_curve_of_folds_over_a_table_meets_the_folds_of_branches():
+    system = one_point(BENT).system()
+
+    def branch(preload):
+        values = {"mu": 0.62, "preload": preload}
+        run = system.simulate(700.0, start={"q1": 0.3}, times=[700.0], **values)
+        start = {name: float(run[name][-1]) for name in system.states}
+        cycle = system.limit_cycle(start=start, **values)
+        return system.cycle_branch("mu", 0.5, start=cycle)
+
+    first, other = branch(1.0), branch(1.1)
+    to = {"preload": (0.9, 1.1)}
+    curve = system.cycle_curve("fold", ("mu", "preload"), start=first, to=to)
+    end = curve.preload.values.argmax()
+    assert float(curve.preload[end]) == pytest.approx(1.1, rel=1e-12)
+    (fold,) = other.mu.values[labels(other.label) == "fold"]
+    assert float(curve.mu[end]) == pytest.approx(fold, rel=1e-9)
 
 
 def test_points_that_are_merged_keep_their_force():

@@ -4,10 +4,7 @@ import numpy as np
 import pytest
 
 from squealpipe import Contact, Structure, labels, plot
-from tests.oracles.many_contacts import OPEN, SAME, ManyContacts
-
-INSTANTS = 30
-SIDES = {"slip_slower": 1, "slip_faster": -1, "stick": 0, "separated": OPEN}
+from tests.oracles.many_contacts import compare
 
 
 def random_structure(seed):
@@ -61,64 +58,12 @@ def random_structure(seed):
     return structure, np.tile(q, 1 + twice), np.tile(v, 1 + twice)
 
 
-def instants(run, system):
-    """(time, sides after it) where the regimes change, from the events of a run."""
-    names = run.event_regime.attrs["flag_meanings"].split()
-    first = [system.name_of(r) for r in range(len(system.regimes))]
-    assert len(first) == len(names)
-    components = list(run.component.values)
-    sides = {
-        c: SIDES[names[int(k)].removeprefix(f"{c}_")]
-        for c, k in zip(components, run.regime.values[0], strict=True)
-    }
-    found = [(0.0, tuple(sides.values()))]
-    for time, number in zip(
-        run.event_time.values, run.event_regime.values, strict=True
-    ):
-        component, _, regime = names[int(number)].partition("_")
-        sides[component] = SIDES[regime]
-        if time - found[-1][0] < SAME and len(found) > 1:
-            found[-1] = (found[-1][0], tuple(sides.values()))
-        else:
-            found.append((float(time), tuple(sides.values())))
-    return found
-
-
-def compare(seed):
-    """ok, refused (the run says why), or what is wrong."""
-    structure, q, v = random_structure(seed)
-    truth = ManyContacts(structure, q, v)
-    expected = [(0.0, tuple(truth.side))]
-    while len(expected) <= INSTANTS:
-        wait = truth.next_event(0.05, most=50.0)
-        if wait is None:
-            break
-        expected.append((expected[-1][0] + wait, tuple(truth.side)))
-    end = expected[-1][0]
-    system = structure.system()
-    start = {f"q{i + 1}": x for i, x in enumerate(q)} | {
-        f"v{i + 1}": x for i, x in enumerate(v)
-    }
-    run = system.simulate(end + SAME, start=start, times=np.array([0.0, end]))
-    if int(run.outcome):
-        return f"refused: outcome {int(run.outcome)}"
-    found = instants(run, system)[: len(expected)]
-    for place, (a, b) in enumerate(zip(expected, found, strict=False)):
-        if abs(a[0] - b[0]) > 1e-8 or a[1] != b[1]:
-            return f"wrong at {place}: {a} for {b}"
-    if len(found) < len(expected):
-        return f"wrong: {len(found)} instants for {len(expected)}"
-    final = np.array([float(run[name][-1]) for name in system.states])
-    error = abs(final - truth.state).max()
-    return "ok" if error < 1e-8 else f"wrong: state by {error:.1e}"
-
-
 @pytest.mark.parametrize(
     "seed",
     [1, 2, *(pytest.param(seed, marks=pytest.mark.release) for seed in range(3, 16))],
 )
 def test_contacts_that_are_coupled_agree_with_an_integrator_apart(seed):
-    assert compare(seed) == "ok"
+    assert compare(*random_structure(seed)) == "ok"
 
 
 def test_bands_of_regimes_are_those_of_their_contact():

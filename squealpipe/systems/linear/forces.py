@@ -200,6 +200,13 @@ def _add_listed(matrix: Any, places: Any, count: int, by: Any, total: Any) -> No
         store(to + place, even + odd)
 
 
+@inline
+def _copy(numbers: Any, to: Any) -> None:
+    """Write numbers into an array; places that are sums would be looked at for a sign each."""
+    for i in range(to.size):
+        to[i] = numbers[i]
+
+
 @part
 def _add_row(row: Any, factor: float, total: Any) -> None:
     for j in range(row.size):
@@ -536,7 +543,7 @@ def limit_left(limit: Any, friction: Any, hidden: Any) -> Any:
     return ((1.0 + 1e-13) * limit) ** 2 + hidden**2 - friction**2
 
 
-@part
+@inline
 def _sizes_of_contacts(
     k: Any, rows: Any, of_q: Any, of_v: Any, constant: float
 ) -> None:
@@ -584,7 +591,7 @@ def _sizes_of_products(matrix: Any, full: int, by: Any, total: Any) -> None:
             total[i] += abs(matrix[0, i]) * by[i]
 
 
-@part
+@inline
 def _sizes_of_rates(
     k: Any, rows: Any, of_q: Any, of_v: Any, constant: float, scale: Any
 ) -> None:
@@ -632,7 +639,7 @@ def _sizes_of_rates(
             stick[k.stuck[a]] += abs(k.held[a, b]) * pulls[b]
 
 
-@part
+@inline
 def _values(k: Any, rows: Any, z: Any, out: Any) -> None:
     """Write the value of each surface, and the size of its terms."""
     c, lags = k.c, k.by_contact[contact_row.lags]
@@ -670,7 +677,7 @@ def _values(k: Any, rows: Any, z: Any, out: Any) -> None:
                 out[at], out[at + 1] = pressing - knot, of_press + abs(knot)
 
 
-@part
+@inline
 def _output_values(k: Any, rows: Any, z: Any, sizes: Any, out: Any) -> None:
     """Write the value of each output, and the size of its terms."""
     n, c = k.n, k.c
@@ -691,7 +698,7 @@ def _output_values(k: Any, rows: Any, z: Any, sizes: Any, out: Any) -> None:
         out[6 * c + 3 * shape], out[6 * c + 3 * shape + 1] = value, size
 
 
-@part
+@inline
 def _sizes_of_springs(k: Any, rows: Any, sizes: Any, of_rates: bool) -> None:
     """Compute the sizes of friction by tangential springs in stick, or of its rates.
 
@@ -707,7 +714,7 @@ def _sizes_of_springs(k: Any, rows: Any, sizes: Any, of_rates: bool) -> None:
         k.by_contact[contact_row.spring, i] = size if is_stuck(k, rows, i) else 0.0
 
 
-@part
+@inline
 def gauge_state(k: Any, rows: Any, z: Any, sizes: Any, out: Any) -> None:
     """Write value, size of terms, and that of the rate's terms of each surface, then of outputs."""
     n, c, unit = k.n, k.c, _unit(k, rows)
@@ -799,7 +806,7 @@ def _change_slider(k: Any, rows: Any, which: int, z: Any, block: int) -> Any:
     return block + back, event_number.slips_away, -limit if back else limit
 
 
-@part
+@inline
 def change_state(k: Any, rows: Any, which: int, z: Any, out: Any) -> None:
     """Write the regime that a switch enters, the kind of the event, and the state after it."""
     what, i, target = k.switches[which, 0], k.switches[which, 1], k.switches[which, 2]
@@ -925,16 +932,15 @@ def _contacts_at_order(k: Any, rows: Any, mem: Any, order: int, q: Any, v: Any) 
     if k.n_tables:
         _tables_at_order(k, rows, order)
     at = k.n_states
-    for i in range(c):
-        row[at + i] = pressing[i]
-    for i in range(c):
-        row[at + c + i] = lags[i]
+    _copy(pressing, row[at : at + c])
+    _copy(lags, row[at + c : at + 2 * c])
+    margins, shown = row[at + 2 * c : at + 4 * c], row[first_output:]
     for i in range(2 * c):
-        row[at + 2 * c + i] = 0.0
-    _sliders_at_order(k, rows, mem, order, v)
+        margins[i] = 0.0
+    if k.n_sliders:
+        _sliders_at_order(k, rows, mem, order, v)
     for i in range(c):
-        at = first_output + 2 * i
-        row[at], row[at + 1] = closed[i] * pressing[i], slides[i]
+        shown[2 * i], shown[2 * i + 1] = closed[i] * pressing[i], slides[i]
     if k.curved:
         _curved_slip_at_order(k, rows, mem, order)
     if k.n_sorts > surface_number.before_end:
@@ -1109,10 +1115,8 @@ def series(k: Any, rows: Any, mem: Any) -> None:
                     place + mode_row.speed * width,
                     load(place + mode_row.base * width) * share,
                 )
-            for j in range(n):
-                later[j] = q[j]
-            for j in range(n):
-                later[n + j] = v[j]
+            _copy(q, later[:n])
+            _copy(v, later[n : 2 * n])
 
 
 @part

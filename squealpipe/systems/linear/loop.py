@@ -263,7 +263,9 @@ def _observe(t: Any, m: Any, c: Any, mem: Any, first_extreme: int) -> None:
         bend = step * step * (0.25 * abs(c[place, 2, LANE]) + step * bend)
         beyond = bend + 2e-4 * max(abs(start), abs(end))
         least, most = min(low, m.rows[r, LANE]), max(high, m.rows[r + 1, LANE])
-        if most < high + beyond or low - beyond < least:
+        # a slope that the second derivative cannot turn leaves no turning point
+        turns = abs(c[place, 1, LANE]) * step < 8.0 * beyond
+        if turns and (most < high + beyond or low - beyond < least):
             inner_low, inner_high = extremes_inside(c, place, LANE, 0.0, step)
             least, most = min(least, inner_low), max(most, inner_high)
         m.rows[r, LANE], m.rows[r + 1, LANE] = least, most

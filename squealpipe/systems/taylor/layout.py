@@ -1,4 +1,8 @@
-"""What the compiled loop works on: addresses, sizes, and the rows that each lane has."""
+"""Tables of the compiled loop.
+
+:data:`LOOP_TABLE` is the record that it is called with: addresses of arrays and of functions, and
+sizes. Each lane has rows of numbers and of integers, whose places are the fields of two records.
+"""
 
 from typing import Any, NamedTuple
 

@@ -353,7 +353,7 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
 
 
 def _advance(table: Any) -> int:
-    """Some rounds over all lanes; returns how many are busy. The table: :data:`TABLE`."""
+    """Some rounds over all lanes; returns how many are busy. The table: ``layout.LOOP_TABLE``."""
     t = _numba.carray(table, (1,), layout.LOOP_TABLE)[0]
     m = memory_of(t)
     c = view(t.series, (t.n_series, t.n_terms, LANES), np.float64)

@@ -3,8 +3,9 @@
 A compiled function loads a row of ``LANES`` contiguous doubles as one value, computes with it as
 with a float, and stores it; code of :mod:`squealpipe.systems.taylor.writing` may load its first
 ``FEW``. LLVM maps each operation onto what the processor has (a row onto two AVX-512 or four AVX2
-registers). All operations are exact to the last bit as IEEE 754 defines them and lanes never mix,
-so a result depends neither on the lane nor on the processor.
+registers). Sums, products, quotients, square roots and fused products are rounded as IEEE 754 says,
+and lanes never mix: such results depend neither on the lane nor on the processor. Exponentials,
+logarithms, powers and functions of angles are those of the C library, to its last digit.
 """
 
 import operator

@@ -12,8 +12,7 @@ from squealpipe.systems.linear.batch import numbers_of_runs
 from squealpipe.systems.linear.loop import functions
 from squealpipe.systems.linear.numbering import OF_CONTACT
 from squealpipe.systems.linear.plan import plan
-from tests.oracles.many_contacts import SAME, ManyContacts
-from tests.structures.test_many_contacts import instants
+from tests.oracles.many_contacts import compare
 
 
 def many_contacts(contacts, size, seed=0):
@@ -57,25 +56,7 @@ def named(system, q, v):
     ],
 )
 def test_many_contacts_agree_with_an_integrator_apart(contacts, size, most):
-    structure, q, v = many_contacts(contacts, size)
-    truth = ManyContacts(structure, q, v)
-    expected = [(0.0, tuple(truth.side))]
-    for _ in range(most):
-        wait = truth.next_event(0.05, most=20.0)
-        if wait is None:
-            break
-        expected.append((expected[-1][0] + wait, tuple(truth.side)))
-    end = expected[-1][0]
-    system = structure.system()
-    start = named(system, q, v)
-    run = system.simulate(end + SAME, start=start, times=np.array([0.0, end]))
-    assert not int(run.outcome)
-    found = instants(run, system)[: len(expected)]
-    assert [sides for _, sides in found] == [sides for _, sides in expected]
-    times = np.array([[a[0], b[0]] for a, b in zip(expected, found, strict=True)])
-    assert times[:, 1] == pytest.approx(times[:, 0], abs=1e-8)
-    final = np.array([float(run[name][-1]) for name in system.states])
-    assert final == pytest.approx(truth.state, abs=1e-8)
+    assert compare(*many_contacts(contacts, size), most) == "ok"
 
 
 def test_a_motion_without_events_is_a_matrix_exponential():
