@@ -177,8 +177,10 @@ class ElasticContacts:
         def height(time):
             return row @ at(time)
 
+        turns = row @ matrix
+
         def slope(time):
-            return row @ (matrix @ at(time))
+            return turns @ at(time)
 
         size, low = np.abs(row * x).sum(), 1e-4 * length if fresh else 0.0
         if not fresh and row @ x <= 0:
@@ -187,7 +189,7 @@ class ElasticContacts:
             if height(low) <= 0:
                 return 0.0
             return brentq(height, low, length, xtol=1e-15, rtol=1e-15)
-        if slope(0.0) < 0 < slope(length):
+        if turns @ x < 0 < turns @ end:
             lowest = brentq(slope, 0.0, length, xtol=1e-15)
             # a double zero at the start is no minimum
             if height(lowest) < (-1e-9 * size if fresh else 0.0):

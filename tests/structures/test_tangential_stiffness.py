@@ -140,8 +140,8 @@ def test_random_structures_agree_with_matrix_exponentials():
 
 @pytest.mark.release
 def test_many_random_structures_agree_with_matrix_exponentials():
-    found = [compared(seed, 3.0) for seed in range(5, 105)]
-    assert sum(number for _, number in found) > 1500
+    found = [compared(seed, 2.0) for seed in range(5, 105)]
+    assert sum(number for _, number in found) > 1000
     assert max(error for error, _ in found) < 1e-8
 
 
@@ -241,6 +241,7 @@ def test_complex_modes_stay():
     assert sprung.growth_rate.equals(pad.complex_modes().growth_rate)
 
 
+@pytest.mark.release
 def test_a_static_start_of_steady_sliding_slips_on():
     pad = elastic_pad(contacts=2, mu=0.2, modal_damping=0.05).reduce(n_modes=6)
     contacts = [replace(each, tangential_stiffness=1e8) for each in pad.contacts]
@@ -271,6 +272,39 @@ def test_derivatives_go_through_switches_of_sprung_contacts():
         assert found == pytest.approx(
             (apart[0] / (2 * step)).tolist(), rel=1e-5, abs=1e-6
         )
+
+
+@pytest.mark.release
+def test_multipliers_of_a_hammering_pad_are_those_of_its_runs():
+    pad = elastic_pad(contacts=4, modal_damping=0.01).reduce(n_modes=6)
+    contacts = [replace(each, tangential_stiffness=2e8) for each in pad.contacts]
+    system = pad.with_(contacts=contacts).system()
+    settled = system.simulate(0.02, start={"v3": 1.0}, times=[0.02])
+    guess = dict(zip(system.states, states(system, settled)[0], strict=True))
+    cycle = system.limit_cycle(guess=guess, t_settle=0.02)
+    assert cycle.multiplier_real.size == 16
+    period = float(cycle.period)
+    base = np.array([float(cycle[f"{name}_start"]) for name in system.states])
+    names = cycle.start_regime.attrs["flag_meanings"].split()
+    values = cycle.start_regime.attrs["flag_values"].tolist()
+    regime = {
+        each.name: names[values.index(int(code))].removeprefix(f"{each.name}_")
+        for each, code in zip(contacts, cycle.start_regime.values, strict=True)
+    }
+    sizes = np.array([system.typical_sizes[name] for name in system.states])
+    steps = 1e-6 * np.vstack([np.diag(sizes), -np.diag(sizes)])
+
+    def end(start):
+        named = dict(zip(system.states, start, strict=True))
+        named["regime"] = regime
+        return states(system, system.simulate(period, start=named, times=[period]))[0]
+
+    assert end(base) == pytest.approx(base, rel=1e-9, abs=1e-12)
+    ahead, back = np.split(np.array([end(base + step) for step in steps]), 2)
+    slopes = (ahead - back).T / (2e-6 * sizes)
+    apart = np.sort(np.abs(np.linalg.eigvals(slopes)))
+    found = np.abs(cycle.multiplier_real.values + 1j * cycle.multiplier_imag.values)
+    assert np.sort(found) == pytest.approx(apart, rel=1e-5, abs=1e-6)
 
 
 def test_a_face_shares_its_springs_and_a_table_keeps_them(tmp_path):
