@@ -22,7 +22,13 @@ from squealpipe.structures.squeal import plant
 from squealpipe.structures.squeal.attractors import grouped
 from squealpipe.structures.squeal.remedies import added_damping
 from squealpipe.structures.squeal.squealing_modes import _verdict
-from squealpipe.study.report.squealing import _of_contacts, headline, lines, outside
+from squealpipe.study.report.squealing import (
+    _of_contacts,
+    _peak_force,
+    headline,
+    lines,
+    outside,
+)
 from squealpipe.study.report.squealing import modes as lines_of_modes
 from squealpipe.systems.linear.matrices import Caps
 from tests.oracles.elastic_block import elastic_block
@@ -181,6 +187,21 @@ def tilt(size):
     load = np.zeros(size)
     load[7::8] = -np.linspace(150.0, 100.0, 11)
     return load
+
+
+def test_forces_stand_in_newtons_and_a_contact_open_at_rest_has_no_ratio():
+    pad = elastic_pad(elements=(4, 2), contacts=3, modal_damping=0.01)
+    pad = pad.with_(load=pad.load + 2.0 * pad.preloads[2] * pad.normals[:, 2])
+    answer = squealing_modes(pad, samples=1, workers=1)
+    forces = sliding_forces(pad)
+    assert (forces > 0).tolist() == [True, True, False]
+    assert answer.sliding_force.values == pytest.approx(forces, rel=1e-9)
+    assert answer.peak_normal_force[0].values == pytest.approx(forces, rel=1e-9)
+    ratios = np.where(forces > 0, forces / pad.preloads, np.nan)
+    assert answer.peak_force[0].values == pytest.approx(ratios, rel=1e-9, nan_ok=True)
+    assert _peak_force(answer.isel(attractor=0)) == (
+        "the peak force is 1.8 times the preload of its contact, and the largest force 479 N"
+    )
 
 
 def sliding_forces(structure):
