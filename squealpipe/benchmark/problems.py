@@ -3,6 +3,7 @@
 import json
 import math
 from collections.abc import Callable, Mapping
+from copy import deepcopy
 from functools import cache
 from importlib.resources import files
 from typing import Any, NamedTuple
@@ -149,10 +150,15 @@ class Problem:
         return [switch for switch in self.switches if regime in switch.leaves]
 
 
+@cache
+def _entries() -> Any:
+    text = (files("squealpipe.benchmark") / "problems.yaml").read_text("utf-8")
+    return yaml.safe_load(text)
+
+
 def all_data() -> list[dict[str, Any]]:
     """The entries of ``problems.yaml``, each with the equations of its system."""
-    text = (files("squealpipe.benchmark") / "problems.yaml").read_text("utf-8")
-    entries = yaml.safe_load(text)
+    entries = deepcopy(_entries())
     named = {entry["name"]: entry for entry in entries}
     # what makes a system; a problem may take them from an earlier one, its ``system``
     shared = {

@@ -3,6 +3,7 @@
 import json
 import math
 from collections.abc import Iterable, Sequence
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -121,6 +122,7 @@ def read_results(path: Path | str) -> xr.Dataset:
     return verdict.to_dataset(name="verdict").assign_attrs(benchmark_version=version)
 
 
+@cache
 def shipped() -> dict[str, Any]:
     """The results that come with the package, with package and processor of each solver."""
     text = (files("squealpipe.benchmark") / "results.json").read_text("utf-8")

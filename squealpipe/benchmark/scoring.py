@@ -329,7 +329,8 @@ def dataset_of(
     }
     groups = [data["class"] for data in chosen]
     role = [Role.ours if name == "squealpipe" else Role.public for name in solvers]
-    machine, packages = machine or processor(), versions(solvers)
+    machine = machine or processor()
+    packages = versions(name for name in solvers if name not in origins)
     elsewhere = [origins.get(name, {}) for name in solvers]
     columns |= {
         "group": groups,
