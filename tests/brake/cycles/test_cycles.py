@@ -106,6 +106,7 @@ def test_without_damping_cycles_come_in_families():
     assert cycle.residual < 1e-9
 
 
+@pytest.mark.release
 def test_a_settled_state_of_rest_is_no_cycle_and_without_damping_there_is_none():
     params = FORMER.with_(damping1=0.3, damping2=0.3)
     cycle = limit_cycle(params, 0.75 * math.pi, 0.75 * math.pi)

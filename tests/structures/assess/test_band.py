@@ -53,6 +53,7 @@ def test_modes_beyond_the_band_decay_and_those_within_are_the_same(pad):
     assert _own_growth(changed, 2.0 * np.pi * BAND)[1].real.max() < 0.0
 
 
+@pytest.mark.release
 def test_damping_beyond_the_band_is_told(pad):
     reduced = pad.reduce(frequency_max=BAND)
     period = 1.0 / Plant(reduced).slowest

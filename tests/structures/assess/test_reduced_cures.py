@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 import scipy.linalg as la
 
 from squealpipe.structures import elastic_pad
@@ -30,6 +31,7 @@ def growth(pad, count=60):
     return la.eigvals(first).real.max()
 
 
+@pytest.mark.release
 def test_boundaries_in_twelve_modes_are_those_of_the_whole_within_one_per_cent():
     pad = elastic_pad(elements=(12, 3), modal_damping=DAMPING)
     design = Design.of(pad.reduce(n_modes=12))

@@ -98,6 +98,7 @@ def check_boundaries(pad, one, other, seed):
             assert first == pytest.approx(second, rel=2e-3), (seed, cure)
 
 
+@pytest.mark.release
 def test_pads_as_parameters_and_as_matrices_have_one_level():
     for seed in (1, 2, 9):
         pad, angles = random_pad(seed)
