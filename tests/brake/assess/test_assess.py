@@ -536,3 +536,14 @@ def test_it_sweeps_and_survives_a_file(swept):
     assert swept.verdict.values.tolist() == [Verdict.quiet, Verdict.squeals]
     assert swept.change.sel(cure="mu").dims == ("belt_speed",)
     assert float(swept.quiet_from.sel(cure="mu")[1]) < PAD.mu
+
+
+def test_an_undamped_pad_is_pushed_along_its_slowest_mode():
+    """Modes that grow alike, not at all, are told apart by their frequency."""
+    plain = {"friction_law": "coulomb", "mu": 0.1, "mu_static": None}
+    undamped = PAD.with_(damping1=0.0, damping2=0.0, **plain)
+    sliding = Sliding.of(Design(undamped, *HAMMER))
+    assert not sliding.is_unstable
+    squares, shapes = np.linalg.eig(sliding.jacobian[2:, :2])  # −ω²
+    slowest = shapes[:, squares.real.argmax()]
+    assert abs(slowest @ sliding.push[:2]) == pytest.approx(1.0, rel=1e-9)
