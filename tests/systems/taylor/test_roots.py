@@ -52,3 +52,11 @@ def test_a_root_at_the_end_counts():
         found(np.polynomial.Polynomial([-0.5, 1.0]), np.nextafter(0.5, 0.0))
         == root_search.no_root
     )
+
+
+@pytest.mark.parametrize("root", [0.2, 0.35, 0.6])
+def test_a_root_that_round_off_hides_is_one_if_the_other_side_follows(root):
+    """(x − r)⁵ multiplied out is round-off next to r, where it changes its sign, (x − r)⁶ not."""
+    odd, even = (np.polynomial.Polynomial.fromroots([root] * count) for count in (5, 6))
+    assert found(odd) == pytest.approx(root, abs=2e-3)
+    assert found(even) == root_search.no_root
