@@ -9,7 +9,9 @@ from scipy.optimize import brentq
 
 from squealpipe import Contact, Structure, squeal_ladder, squealing_modes
 from squealpipe.structures import Face, elastic_pad
+from squealpipe.structures.meshes.face_entries import faces_in
 from squealpipe.structures.reduction import dependent_of
+from squealpipe.structures.units import scales_of
 from tests.oracles.elastic_contacts import ElasticContacts
 
 
@@ -274,6 +276,17 @@ def test_derivatives_go_through_switches_of_sprung_contacts():
         )
 
 
+def test_the_stretch_of_a_slipping_start_follows_from_friction():
+    system = block(30.0).system()
+    start = {"q1": 0.25, "p_stretch": 1.0 / 30.0}
+    told = system.simulate(
+        0.1, start=start, times=[0.1], sensitivity=["mu", "p_stretch0"]
+    )
+    assert told.sizes["event"] == 0
+    assert float(told.p_stretch_by_mu[0]) == pytest.approx(2.0 / 30.0, rel=1e-12)
+    assert float(told.p_stretch_by_p_stretch0[0]) == 0.0
+
+
 @pytest.mark.release
 def test_multipliers_of_a_hammering_pad_are_those_of_its_runs():
     pad = elastic_pad(contacts=4, modal_damping=0.01).reduce(n_modes=6)
@@ -316,6 +329,10 @@ def test_a_face_shares_its_springs_and_a_table_keeps_them(tmp_path):
         direction=[1, 0, 0],
         tangential_stiffness="1.2 kN/mm",
     )
+    entry = {"surface": "foot", "stiffness": "2 kN/mm", "pressure": 1.0}
+    entry |= {"direction": [1, 0, 0], "tangential_stiffness": 1200.0}
+    read = faces_in({"foot": entry}, tmp_path, scales_of("mm-t-s"))["foot"]
+    assert read.tangential_stiffness == pytest.approx(face.tangential_stiffness)
     arguments = {
         "mesh": (corners, {"foot": [[0, 3, 2, 1]]}),
         "contacts": {"foot": face},

@@ -123,6 +123,10 @@ def carried(
     stops.sort()
     legs: list[tuple[float, Vector, int]] = []
     clock, regime = t_start, int(motion.regimes[0])
+    # the stretch of a tangential spring in slip follows from the state, whatever the start has
+    begins_as = flow.crossing(values, -1, -1, (regime, regime), state, t_start)
+    total[:] = begins_as.after_by_state @ total
+    total[:, columns] += begins_as.after_by
     for time, sampled, i in stops:
         legs.append((clock, state, regime))
         clock = time
