@@ -240,10 +240,10 @@ def _early_apart(
         apart = _apart(plant, [*samples], times[:end], beside.extent)
         lost = KindRules.saturation / KindRules.first_distance
         is_soon = apart.grown ** (len(times) / end) >= lost
-        if apart.loses_neighbours or not is_soon or 2 * end > len(times) // 2:
+        if apart.loses_neighbours or not is_soon or end == len(times):
             plant.neighbours.append((settled, apart))
             return apart
-        begin, end = end, 2 * end
+        begin, end = end, min(2 * end, len(times))
 
 
 def _apart(
