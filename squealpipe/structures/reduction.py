@@ -73,13 +73,13 @@ def reduce(
 
     The modes are those of (M, K + Σ kᵢ nᵢnᵢᵀ) without friction. Static responses of normal contact
     forces, or of all, are kept beside them where this makes a run cheaper (attachment modes, which
-    are no natural modes; :mod:`squealpipe.structures.coordinates`). All together are Φ, with
-    ΦᵀMΦ = 1 and a diagonal stiffness at rest; modal damping is a ratio of each one's own frequency.
-    Their number is the smallest (beyond 64 at most an eighth above it), and no smaller than that of
-    contacts, for which the same modes grow as in the whole structure and every unstable one is
-    right within ``tol``, by frequency and by growth rate, with this and the next three numbers, at
-    the structure's ``mu`` and ``belt_speed``. Contacts whose sliding directions are independent
-    stay so.
+    are no natural modes; :mod:`squealpipe.structures.coordinates`). All together are Φ, with ΦᵀMΦ =
+    1 and a diagonal stiffness at rest; modal damping is a ratio of each one's own frequency. Their
+    number is the smallest (beyond 64 at most an eighth above it), and no smaller than that of
+    contacts without a tangential stiffness, for which the same modes grow as in the whole structure
+    and every unstable one is right within ``tol``, by frequency and by growth rate, with this and
+    the next three numbers, at the structure's ``mu`` and ``belt_speed``. Contacts whose sliding
+    directions are independent stay so; those with a tangential stiffness need not.
 
     Args:
         n_modes: keep so many instead: modes at rest alone, unless the same modes grow only with
@@ -105,8 +105,8 @@ def reduce(
         is_whole_number(n_modes) and fewest <= n_modes <= structure.size
     ):
         raise ValueError(
-            f"n_modes = {brief(n_modes)}: a whole number from {fewest} (one for each contact, two "
-            f"at least) to {structure.size} is needed"
+            f"n_modes = {brief(n_modes)}: a whole number from {fewest} (one for each contact "
+            f"without a tangential_stiffness, two at least) to {structure.size} is needed"
         )
     check_frequency(frequency_max)
     if structure.size > DENSE and frequency_max is None:
@@ -126,13 +126,12 @@ def reduce(
 
 
 def fewest_modes(structure: ContactStructure) -> int:
-    """Return the fewest modes: one for each contact, and two where there are any.
+    """Return the fewest modes: one for each contact that sticks rigidly, and two for any.
 
     A contact's two directions cannot differ in a single coordinate.
     """
-    return min(
-        max(len(structure.contacts), 2 if structure.contacts else 1), structure.size
-    )
+    rigid = sum(each.tangential_stiffness is None for each in structure.contacts)
+    return min(max(rigid, 2 if structure.contacts else 1), structure.size)
 
 
 class Search:

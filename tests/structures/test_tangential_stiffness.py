@@ -236,6 +236,30 @@ def test_contacts_on_one_tangent_stick_each_by_its_spring():
     assert lengthened[0] > 0.005
 
 
+def test_sprung_contacts_may_be_more_than_modes():
+    pad = elastic_pad(contacts=8)
+    with pytest.raises(ValueError, match="tangential_stiffness"):
+        pad.reduce(n_modes=5)
+    contacts = [replace(each, tangential_stiffness=1e8) for each in pad.contacts]
+    reduced = pad.with_(contacts=contacts).reduce(n_modes=5)
+    assert reduced.size == 5
+    system = reduced.system()
+    start = {"v1": 0.5, "v3": -0.5}
+    run = system.simulate(2e-4, start=start, tol=1e-13)
+    kinds, times = events(run)
+    regimes = ["stick"] * 8
+    known, path = ElasticContacts(reduced).run(
+        regimes,
+        np.array([start.get(name, 0.0) for name in system.states]),
+        np.array([0.0, 2e-4]),
+        5e-7,
+    )
+    assert kinds == [name for _, name in known]
+    assert len(kinds) > 8
+    assert times == pytest.approx([time for time, _ in known], abs=1e-13)
+    assert states(system, run)[-1] == pytest.approx(path[-1], rel=1e-8, abs=1e-12)
+
+
 def test_complex_modes_stay():
     pad = elastic_pad(contacts=2).reduce(n_modes=6)
     contacts = [replace(each, tangential_stiffness=1e7) for each in pad.contacts]
