@@ -65,11 +65,21 @@ def stiff_degrees(
 def _is_late(
     damping: np.ndarray, stiffness: np.ndarray, stiff: np.ndarray, below: float
 ) -> bool:
-    """Tell whether dampers of stiff rows matter at the kept rows' frequencies."""
+    """Tell whether dampers of stiff rows matter at the kept rows' frequencies.
+
+    A penalty has its share of modal damping, but next to nothing of it reaches the kept rows.
+    """
     largest = np.maximum(np.abs(damping).max(axis=0), np.abs(damping).max(axis=1))
     springs = np.abs(stiffness.diagonal())
+    forces = np.abs(stiffness) + np.sqrt(below) * np.abs(damping)
+    across, back = forces[np.ix_(~stiff, stiff)], forces[np.ix_(stiff, ~stiff)]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shares = (across * back.T) / np.outer(springs[~stiff], springs[stiff])
+    # of a kept row's spring; a row without one depends wholly on the stiff ones
+    share = np.fmin(np.nan_to_num(shares, nan=0.0), 1.0).max(axis=0, initial=0.0)
+    late = largest[stiff] * np.sqrt(below) * share
     # polishing needs eight digits; the springs of penalties exceed their dampers by far more
-    return bool((largest * np.sqrt(below) > 1e-8 * springs)[stiff].any())
+    return bool((late > 1e-8 * springs[stiff]).any())
 
 
 def beyond_gap(mass: np.ndarray, stiffness: np.ndarray) -> int:
