@@ -92,7 +92,7 @@ def headline(answer: xr.Dataset, prefix: str = "") -> str:
                 f"{said}: nothing damps the vibration after a push, but it stays small."
             )
         return f"{said}: the vibration dies out."
-    at = engineering(value("frequency"), "Hz")
+    at = engineering(value("frequency"), "Hz") + _wanders(answer, prefix)
     force = number(value("peak_contact_force_over_preload"))
     lost = percent(value("separated_fraction"))
     if verdict is Verdict.hammers:
@@ -120,6 +120,14 @@ def damping_advice(answer: xr.Dataset) -> str:
     if not bool(answer.get("is_undamped", False)):
         return ""
     return f" {GIVE_DAMPING[0].upper()}{GIVE_DAMPING[1:]}."
+
+
+def _wanders(answer: xr.Dataset, prefix: str = "") -> str:
+    """Say how far the strongest line scatters from one part of an irregular motion to another."""
+    frequency, error = f"{prefix}frequency", error_of(f"{prefix}frequency")
+    if error not in answer or not answer[error] > 0.05 * answer[frequency]:
+        return ""
+    return f" (its strongest line scatters by {engineering(float(answer[error]), 'Hz', 2)})"
 
 
 def cause(answer: xr.Dataset) -> str:
@@ -178,7 +186,8 @@ def shift(answer: xr.Dataset) -> str:
     if not (mode > 0.0 and float(answer.separated_fraction) > 0.0):
         return ""
     apart = noise / mode - 1.0
-    if not abs(apart) > 0.02:  # less is what a rounded frequency hides
+    # less is what a rounded frequency hides, and no shift of a line that wanders
+    if not abs(apart) > 0.02 or _wanders(answer):
         return ""
     side = "above" if apart > 0 else "below"
     return (

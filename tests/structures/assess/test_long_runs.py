@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from squealpipe import Contact, Structure, assess, squealing_modes
 from squealpipe.codes import Verdict
 from squealpipe.structures.assess.assess import LongRuns
 from squealpipe.structures.assess.designs import Design, Structures, pushed
+from squealpipe.study.report import answer as words
 from squealpipe.study.report.answer import cure_lines, cures
 from squealpipe.study.report.squealing import headline
 from squealpipe.study.report.structure import not_examined
@@ -95,3 +97,23 @@ def test_a_study_follows_squeal_down_in_friction_where_runs_are_short(
         "as friction falls in small steps" in one for one in not_examined(answer)
     )
     assert told == (work == 0)
+
+
+def test_a_strongest_line_that_wanders_is_told_and_no_shift_of_it():
+    """That of the disc brake is at 2.74 kHz in one part of its motion, at 8.2 in another."""
+    told = xr.Dataset(
+        {
+            "verdict": int(Verdict.hammers),
+            "frequency": 2740.0,
+            "frequency_error": 2700.0,
+            "leading_frequency": 2850.0,
+            "separated_fraction": 0.5,
+            "peak_contact_force_over_preload": 3.0,
+        }
+    )
+    wanders = "Hammers at 2.74 kHz (its strongest line scatters by 2.7 kHz): contact"
+    assert words.headline(told).startswith(wanders)
+    assert words.shift(told) == ""
+    steady = told.assign(frequency_error=1.0)
+    assert words.headline(steady).startswith("Hammers at 2.74 kHz: contact")
+    assert "3.9 % below the mode that grows fastest (2.85 kHz)" in words.shift(steady)
