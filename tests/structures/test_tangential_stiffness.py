@@ -12,6 +12,7 @@ from squealpipe.structures import Face, elastic_pad
 from squealpipe.structures.meshes.face_entries import faces_in
 from squealpipe.structures.reduction import dependent_of
 from squealpipe.structures.units import scales_of
+from squealpipe.study.report.structure import structure as report_of
 from tests.oracles.elastic_contacts import ElasticContacts
 
 
@@ -271,7 +272,10 @@ def test_complex_modes_stay():
 def test_a_static_start_of_steady_sliding_slips_on():
     pad = elastic_pad(contacts=2, mu=0.2, modal_damping=0.05).reduce(n_modes=6)
     contacts = [replace(each, tangential_stiffness=1e8) for each in pad.contacts]
-    answer = squealing_modes(pad.with_(contacts=contacts), samples=2)
+    sprung = pad.with_(contacts=contacts)
+    answer = squealing_modes(sprung, samples=2)
+    rows = report_of(sprung.complex_modes(mu=[0.1, 0.2]), answer)["contacts"]
+    assert rows[0]["stiffness"] == "400 kN/mm, 100 kN/mm along the belt"
     assert answer.share.values.sum() == 1.0
     assert answer.stretch.shape == (answer.sizes["attractor"], 2)
 

@@ -333,7 +333,8 @@ def structure(modes: xr.Dataset, answer: xr.Dataset) -> dict[str, Any]:
             {
                 "name": name,
                 "stiffness": engineering(each["stiffness"], "N m-1")
-                + " at the preload" * ("law" in each),
+                + " at the preload" * ("law" in each)
+                + _spring_words(each.get("tangential_stiffness")),
                 "preload": engineering(each["preload"], "N"),
                 "speed": engineering(each["speed"], "m")
                 if "rotation" in whole
@@ -353,6 +354,13 @@ def structure(modes: xr.Dataset, answer: xr.Dataset) -> dict[str, Any]:
             if "nodes" in each
         ],
     }
+
+
+def _spring_words(stiffness: float | None) -> str:
+    """Return the words of a spring in series with friction, where there is one."""
+    if stiffness is None:
+        return ""
+    return f", {engineering(stiffness, 'N m-1')} along the belt"
 
 
 def _frictions(numbers: dict[str, Any]) -> str:
