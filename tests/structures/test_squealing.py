@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy.linalg as la
 from PIL import Image
 from scipy.io import mmwrite
 
@@ -14,9 +15,11 @@ from squealpipe import Contact, Structure, load, plot, save, squealing_modes
 from squealpipe.cli import run
 from squealpipe.codes import Verdict
 from squealpipe.plotting import picture
+from squealpipe.schema import Outcome
 from squealpipe.structures import elastic_pad
 from squealpipe.structures.schema.squealing import Kind
 from squealpipe.structures.squeal.plant import Plant
+from squealpipe.structures.squeal.remedies import added_damping
 from squealpipe.study.report.squealing import headline, level, lines
 from squealpipe.study.structure_study import (
     modes_over_friction,
@@ -381,3 +384,24 @@ def test_between_both_onsets_the_lower_mode_of_the_pad_squeals():
     assert float(first.dominant_frequency) == pytest.approx(9.63e3, rel=2e-3)
     # one point hammers, the others are kept
     assert (first.separated_fraction.values > 0).tolist() == [False, True, False, False]
+
+
+def test_added_damping_is_that_of_the_whole_structure():
+    pad = elastic_pad(elements=(12, 3), modal_damping=0.01)
+    plant = Plant(pad)
+    assert plant.size < pad.size
+    ratio, outcome = added_damping(plant)
+    assert outcome == Outcome.converged
+
+    closed = pad.stiffness.toarray() + pad.normals * pad.stiffnesses @ pad.normals.T
+    square, shapes = la.eigh(closed, pad.mass.toarray())
+    friction = (pad.tangentials * pad.stiffnesses * pad.mu) @ pad.normals.T
+    restoring = shapes.T @ (closed + friction) @ shapes
+
+    def fastest(ratio):
+        damping = np.diag(2.0 * ratio * np.sqrt(square))
+        rest, unit = np.zeros_like(damping), np.eye(len(damping))
+        values = la.eigvals(np.block([[rest, unit], [-restoring, -damping]]))
+        return values.real.max()
+
+    assert fastest(0.01 + 1.0001 * ratio) < 0.0 < fastest(0.01 + 0.9999 * ratio)
