@@ -11,6 +11,7 @@ from squealpipe.structures.assess.assess import judge_structure
 from squealpipe.study.report.answer import level
 from squealpipe.study.report.squealing import level_in_more_modes, lines
 from squealpipe.vibration.settling import settling_of_verdicts
+from tests.structures.test_reduction import random_structure
 from tests.structures.test_runs_of_the_whole import settled
 
 
@@ -76,6 +77,19 @@ def test_the_level_in_all_modes_is_that_of_exponentials(pad, answer):
     # root of the sum over contacts there, of the mean here
     ours = np.sqrt(3) * float(answer.refined_velocity_rms[0])
     assert ours == pytest.approx(level, rel=0.03)
+
+
+@pytest.mark.release
+def test_in_twice_as_many_modes_a_random_structure_has_the_level_of_the_whole():
+    """Of 71 degrees of freedom and 4 contacts: 49 modes miss more than a quarter of its level."""
+    structure, _ = random_structure(90, 80)
+    reduced = structure.reduce()
+    answer = squealing_modes(reduced, samples=1, workers=1)
+    _, level, _ = settled(structure)
+    motion = answer.isel(attractor=int(answer.ends_in[0]))
+    assert reduced.size < int(answer.refined_n_modes) <= structure.size
+    assert np.linalg.norm(motion.contact_velocity_rms) < 0.8 * level
+    assert 2.0 * float(motion.refined_velocity_rms) == pytest.approx(level, rel=0.03)
 
 
 def told(first, refined, motion=Verdict.hammers, size=64, whole=350):
