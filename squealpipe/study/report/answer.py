@@ -521,6 +521,8 @@ def _value(name: str, value: float, unit: str) -> str:
         return f"{number(float(np.degrees(value)))}°"
     if name in ("damping", "modal_damping"):
         return percent(value, 3)
+    if unit == "kg" and 0.0 < value < 0.1:
+        return f"{number(1e3 * value)} g"
     return engineering(value if abs(value) > 1e-8 or unit != "1" else 0.0, unit)
 
 

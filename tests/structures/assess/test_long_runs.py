@@ -116,4 +116,6 @@ def test_a_strongest_line_that_wanders_is_told_and_no_shift_of_it():
     assert words.shift(told) == ""
     steady = told.assign(frequency_error=1.0)
     assert words.headline(steady).startswith("Hammers at 2.74 kHz: contact")
+    # a shim of the brake, in grams
+    assert words._value("shim", 0.00938, "kg") == "9.38 g"
     assert "3.9 % below the mode that grows fastest (2.85 kHz)" in words.shift(steady)
