@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 import scipy.linalg as la
 import xarray as xr
+from matplotlib.figure import Figure
 
 from squealpipe import Contact, Structure, assess, labels, plot, squealing_modes
 from squealpipe.cli.signatures import in_options
 from squealpipe.codes import Verdict
+from squealpipe.plotting.squealing import draw_poles
 from squealpipe.schema import Outcome
 from squealpipe.structures import disc_brake, elastic_pad
 from squealpipe.structures.agreement import Truth
@@ -138,6 +140,21 @@ def test_a_mirror_symmetric_structure_is_reduced_by_itself(links):
     assert reduced.record["agrees"]
     reduced.system()  # both contacts can stick
     assert np.linalg.matrix_rank(reduced.tangentials, tol=1e-6) == 2
+
+
+def test_a_block_that_rests_on_its_four_corners_is_reduced_and_run_by_default():
+    """Its sliding directions were refused as dependent, with the advice to merge the corners."""
+    block = elastic_block((1, 1, 2), 4, mu=0.6, modal_damping=0.001)
+    reduced = block.reduce()
+    assert reduced.record["agrees"]
+    assert np.linalg.matrix_rank(reduced.tangentials, tol=1e-6) == 4
+    system = reduced.system()
+    run = system.simulate(20.0 * system.time_scale)
+    assert int(run.outcome) == Outcome.converged
+    answer = squealing_modes(reduced, samples=1, t_end=1e-3, tol=1e-6)
+    (truth,) = growing(block, 0.001).real
+    error = float(answer.mode_growth_rate_error[0])
+    assert float(answer.growth_rate[0]) == pytest.approx(truth, abs=1.01 * error)
 
 
 def test_a_local_flutter_needs_fewer_coordinates_than_modes_at_rest():
@@ -302,6 +319,13 @@ def test_a_missing_mode_makes_the_verdict_undetermined_and_is_named():
         assert np.abs(np.abs(truth.real - growth) - error).min() < 1e-6 * growth
     assert "±" in said[1]
     assert plot(answer).has_data()
+    axes = Figure().add_subplot()
+    draw_poles(axes, answer)
+    (bars,) = axes.containers
+    upright = bars.lines[2][1].get_segments()
+    assert [np.ptp(bar[:, 1]) / 2.0 for bar in upright] == pytest.approx(
+        answer.pole_growth_rate_error.values[np.isfinite(answer.pole_growth_rate_error)]
+    )
 
 
 def test_where_no_number_of_modes_agrees_nothing_is_run_to_be_undetermined():
