@@ -37,7 +37,7 @@ TINY := -q all --cores 2 --configfile workflow/config/tiny.yaml
 HERE := $(if $(SQUEALPIPE_TINY),$(SQUEALPIPE_TINY)/study/squealpipe/results/tiny,results/tiny)
 AVX2 := tests/processors avx2
 
-cost: env  ## the paper's study, as far as it is not made here yet, and its CPU time beside an earlier commit
+cost: dev  ## the paper's study, as far as it is not made here yet, and its CPU time beside an earlier commit
 	$(BIN)/snakemake -q all
 	$(BIN)/python -m tests.cost .
 

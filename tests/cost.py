@@ -1,7 +1,7 @@
 """CPU time of the study or of the tests beside that of commit 5a1acd4c, on any machine.
 
-    python tests/cost.py FOLDER               of the jobs of the paper's study that ran in FOLDER
-    python -m pytest … -p tests.cost          of the tests, told before pytest's closing line
+    python -m tests.cost FOLDER         of the jobs of the paper's study that ran in FOLDER
+    python -m pytest … -p tests.cost    of the tests, told before pytest's closing line
 
 Times of machines differ, and so do those of one machine under load: each is divided by that of a
 fixed loop, run right before or after. What compiling took does not count. A study that costs more

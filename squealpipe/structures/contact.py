@@ -107,9 +107,9 @@ class Contact:
             slope of the last two points goes on. Where nᵀq = 0 the compression is that at which the
             force is the preload.
         tangential_stiffness: stiffness of a spring in series with friction (Jenkins' element), N/m,
-            or a text with a unit: in stick the contact gives way elastically, and slips where the
-            spring reaches the limit of friction. None: a rigid one. Its friction has one
-            coefficient at all speeds, and may have a ``mu_static``.
+            or a text with a unit: in stick the contact gives way elastically, and it slips once the
+            force of the spring reaches the limit of friction. None: it sticks rigidly. With a
+            spring, friction has one coefficient at all speeds, and may have a ``mu_static``.
 
     Raises:
         ValueError: names the contact and the argument.
@@ -380,8 +380,8 @@ def dependent_contacts(
 ) -> list[str]:
     """Name contacts whose sliding directions, (n, contacts), are linearly dependent.
 
-    If they all stick at once, their friction forces cannot be told apart. Those with a tangential
-    stiffness have friction by its stretch, and are not among them.
+    If they all stick at once, their friction forces cannot be told apart. Contacts with a
+    tangential stiffness are not among them: the stretch of the spring gives the friction of each.
     """
     rigid = [contact.tangential_stiffness is None for contact in contacts]
     names = [contact.name for contact in contacts if not contact.tangential_stiffness]

@@ -87,10 +87,10 @@ def fewer_points(structure: Any, *, frequency_max: float | None = None) -> xr.Da
             "`contacts:`, or use Structure.from_mesh"
         )
     most = max(of_faces.values())
-    # growth does not change steadily with the number of points: steps of a half and a third
+    # powers of two and the numbers halfway: growth does not change steadily with their number
     powers = [2**power for power in range((most - 1).bit_length())]
     between = [3 * power // 2 for power in powers if power > 1]
-    points = sorted({*powers, *between, most} - {*range(most + 1, 2 * most)})
+    points = sorted({most, *(point for point in powers + between if point < most)})
     rows = [_growing(structure.with_points(point), frequency_max) for point in points]
     return build(
         fewer_points_schema,

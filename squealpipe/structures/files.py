@@ -45,7 +45,7 @@ def read(path: str | PathLike[str], form: type[Form]) -> Form:
     [{matrix: DG.mtx, power: 1}], stiffness: [{matrix: KG.mtx, power: 2, factor: -1}]}``, matrices
     that are added times factor (1 without it) and a power of the speed; ``contacts``, a table (text
     or .xlsx) with the columns name, normal, tangential, stiffness, preload and optionally speed,
-    ``mu`` and ``mu_static`` (of that contact; an empty cell leaves it to the structure) and ``law``
+    ``mu`` and ``mu_static`` (of that contact; an empty cell leaves it to the structure), ``law``
     (in place of a stiffness: a file of a table, or ``0:0 0.01mm:90N``…) and
     ``tangential_stiffness`` (of a spring in series with friction), where a
     direction is ``12:1 40:-1``, degrees of freedom counted from 1, or ``31.2:1``, node and

@@ -171,9 +171,7 @@ def _check_tables(matrices: ContactMatrices) -> None:
 
 
 def _states(structure: ContactStructure, scale: "Scale") -> dict[str, Any]:
-    """Displacements, velocities, and stretches of tangential springs, with units and typical
-    sizes.
-    """
+    """Displacements, velocities and stretches, with units and typical sizes."""
     unit = "m" if structure.modes is None else "kg^0.5 m"
     places = range(1, structure.size + 1)
     states: dict[str, Any] = {f"q{i}": (unit, scale.displacement) for i in places}

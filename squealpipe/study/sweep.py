@@ -125,7 +125,7 @@ class Sweep(PointSweep):
             object.__setattr__(self, "fixed", fixed)
 
     def _with(self, values: Mapping[str, Any]) -> tuple[Parameters, dict[str, Any]]:
-        """The parameters with what is values of them, and the rest: angles and options."""
+        """Return the parameters with those among the values, and the rest: angles and options."""
         options = options_of(self.task)
         physical = {
             name for name in values if name in PARAMETER_NAMES and name not in options

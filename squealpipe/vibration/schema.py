@@ -138,11 +138,13 @@ _structure_variables = {
         optional=True,
     ),
     "refined_velocity_rms": _optional(
-        "rms speed of vibration of all contacts in these; NaN: not known",
+        "rms speed of vibration, all contacts, in refined_n_modes modes; NaN: not known",
         "m s-1",
         rtol=_LEVEL,
     ),
-    "refined_verdict": flag("what is heard in these", Verdict, optional=True),
+    "refined_verdict": flag(
+        "what is heard in refined_n_modes modes", Verdict, optional=True
+    ),
 }
 """Variables of structures alone."""
 

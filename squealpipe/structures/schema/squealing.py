@@ -222,7 +222,7 @@ squealing_schema = DatasetSchema(
             optional=True,
         ),
         "refined_velocity_rms": or_nan(
-            "rms speed of vibration, all contacts, in these; NaN: not known",
+            "rms speed of vibration, all contacts, in refined_n_modes modes; NaN: not known",
             "m s-1",
             ("attractor",),
             optional=True,
@@ -230,7 +230,10 @@ squealing_schema = DatasetSchema(
             atol=1e-3,
         ),
         "refined_motion": flag(
-            "what is heard in these", Verdict, "attractor", optional=True
+            "what is heard in refined_n_modes modes",
+            Verdict,
+            "attractor",
+            optional=True,
         ),
         "velocity_peak": _level("largest speed of vibration of a contact", "m s-1"),
         "kinetic_energy": _level("mean kinetic energy of vibration", "J", rtol=0.1),

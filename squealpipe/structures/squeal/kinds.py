@@ -47,9 +47,9 @@ class KindRules:
     most_samples: int = 2**16
     """Most samples of the run; a longer one is cut off there."""
     early: int = 8
-    """First part of the run for which three neighbours are followed; then for twice as long each
-    time, as long as they separate fast enough to be lost within the run. Twice as many: motions
-    whose neighbours are lost late are looked at once more."""
+    """Three neighbours are followed for the run's length over this at first. Then they are followed
+    twice as long each time, while they separate fast enough to be lost within the run. Twice as
+    large: motions whose neighbours are lost late are looked at once more."""
     exponential_growth: float = 1e3
     """Growth of the distance from which it is exponential and the motion irregular."""
     saturation: float = 1e-2

@@ -183,7 +183,7 @@ class Plant:
 
     @property
     def is_undamped(self) -> bool:
-        """True if nothing damps the structure itself, whatever its reduction was given."""
+        """Tell whether nothing damps the structure itself, whatever damping its reduction has."""
         origin = self.structure.reduced_from
         whole = self.structure if origin is None else origin.whole
         return not whole.damping.nnz and not whole.modal_damping.any()

@@ -2,7 +2,7 @@
 
 Idea: errors of eigenvalues do not bound a level, since impacts excite modes far beyond those that
 grow. So each motion that lasts is carried over into twice as many coordinates, 64 at least, and run
-on until it has settled there; by how much its level differs is told beside it. Invariant: where the
+on until it has settled there; its level there is told beside the first one. Invariant: where the
 structure has no more coordinates the refined reduction is the whole, and the level is its own.
 A small difference is no bound: motions of a hammering pad change again with many more modes. Cost:
 some hundred periods of each motion, at about eight times the cost of a period.
@@ -38,7 +38,7 @@ class Refinement:
 
 
 class RefinedLevels(NamedTuple):
-    """What motions become in the refined reduction.
+    """Levels and verdicts of motions in the refined reduction.
 
     Attributes:
         n_modes: its coordinates; 0: there is none.

@@ -85,6 +85,7 @@ def _located_in_band(plant: Plant, ratio: float, grows_now: bool) -> float | Non
     if not math.isfinite(ratio):
         return ratio if grows(SquealLimits.most_damping) else None
     before, growth = 0.0, _fastest(truth)
+    # growth is nearly linear in the ratio: secants end within a few steps, or not at all
     for _ in range(5):
         if not grows(1.01 * ratio) and grows(0.99 * ratio):
             return ratio
@@ -134,6 +135,7 @@ class _Damped:
             return math.nan if self.grows(SquealLimits.most_damping) else None
         values = reduced.values(ratio)
         ends = self._followed(complex(values[values.real.argmax()]), ratio)
+        # farther away it may be the ratio of another mode: then all ratios are searched
         if ends is None or not 0.8 * ratio < ends < 1.25 * ratio:
             return None
         return None if self.grows(ends * (1.0 + 1e-6)) else ends

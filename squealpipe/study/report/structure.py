@@ -412,8 +412,8 @@ def not_examined(answer: xr.Dataset) -> list[str]:
         rest.insert(0, f"Runs: {answer.attrs['not_run']}.")
     elif "onset_kind" not in answer and answer.sizes["mode"]:
         rest.append(
-            "What becomes of the squeal as friction falls in small steps; whether it lasts where a "
-            "push dies out is told by the friction among what changes it."
+            "What becomes of the squeal as friction falls in small steps. Whether it lasts where a "
+            "push dies out is told in the table of changes, at the friction."
         )
     if float(answer.share_undetermined) > 0:
         rest.append("The starts that had not settled at the end of their runs.")

@@ -177,14 +177,14 @@ class Forces:
 
     @cached_property
     def press_by(self) -> Vector:
-        """Derivative of ``press`` by the state, (c, 2 n)."""
+        """Derivative of ``press`` by the state, (c, size)."""
         m = self.matrices
         springs = self.springs.reshape(-1, 1)
         return self._by_states(-springs * m.normals.T, 0.0 * m.normals.T)
 
     @cached_property
     def speed_by(self) -> Vector:
-        """Derivative of ``speed``, (c, 2 n)."""
+        """Derivative of ``speed``, (c, size)."""
         m = self.matrices
         return self._by_states(0.0 * m.tangentials.T, -m.tangentials.T)
 
@@ -200,7 +200,7 @@ class Forces:
 
     @cached_property
     def slip_by(self) -> Vector:
-        """Derivative of ``slip`` by the state, (c, 2 n)."""
+        """Derivative of ``slip`` by the state, (c, size)."""
         by_press = self.slip_by_press[:, None] * self.press_by
         found = np.asarray(by_press + self.slip_by_speed[:, None] * self.speed_by)
         m = self.matrices
@@ -210,7 +210,7 @@ class Forces:
 
     @cached_property
     def base_by(self) -> Vector:
-        """Derivative of accelerations without those of stick, (n, 2 n)."""
+        """Derivative of accelerations without those of stick, (n, size)."""
         m = self.matrices
         opened = self._beyond_stiffness[:, None] * m.normals.T
         pull = m.pushes @ opened - full_matrix(m.stiffness)
@@ -219,14 +219,14 @@ class Forces:
 
     @cached_property
     def stick_by(self) -> Vector:
-        """Derivative of ``stick``, (c, 2 n)."""
+        """Derivative of ``stick``, (c, size)."""
         found = np.zeros_like(self.slip_by)
         found[self.stuck] = self.held @ self.base_by
         return found
 
     @cached_property
     def rates_by(self) -> Vector:
-        """Derivative of the rates, (2 n, 2 n)."""
+        """Derivative of the rates, (size, size)."""
         n = self.matrices.n_modes
         rows = self.base_by + self.matrices.drags @ self.stick_by
         lengthens = (self.side * self.spring_per_force)[:, None] * self.rate_of_press_by

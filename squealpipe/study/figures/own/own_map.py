@@ -78,9 +78,8 @@ def draw(verdicts: xr.Dataset, answers: Mapping[str, xr.Dataset]) -> Figure:
             arrow.arrow_patch.set_clip_path(panel.patch)  # it may lead out of the map
         panel.plot(*at, "x", color="white", markersize=8, markeredgewidth=3)
         panel.plot(*at, "x", color=Colour.blue, markersize=6, markeredgewidth=1.5)
-        is_right = 2.0 * at[0] > sum(
-            limits[0]
-        )  # the name of the scene stays in the map
+        # the name of the scene stays in the map
+        is_right = 2.0 * at[0] > sum(limits[0])
         panel.annotate(
             name.removeprefix("assess/"),
             at,
