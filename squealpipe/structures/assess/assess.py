@@ -58,7 +58,7 @@ class LongRuns:
     time, 17 s of CPU each of the disc brake with 20 contacts."""
     motions: int = 1
     """Motions of the present design that are tried at each value of these cures. Twice as many: a
-    second motion that outlasts the first is seen, at twice the cost."""
+    second motion that outlasts the first is seen, at up to twice the cost."""
 
     @classmethod
     def has(cls, structure: ContactStructure) -> bool:
