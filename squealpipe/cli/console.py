@@ -5,10 +5,9 @@ import re
 import signal
 import sys
 import threading
-import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, nullcontext
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -29,8 +28,6 @@ class ExitCodes:
 
 TRACEBACK = "SQUEALPIPE_TRACEBACK"
 """Environment variable that asks for tracebacks, as -v does."""
-LOG_EVERY = 30.0
-"""Time between two lines of progress in a log, s."""
 
 
 NOTHING_KEPT = "nothing was kept"
@@ -128,13 +125,12 @@ def working(what: str) -> Iterator[None]:
     from rich.console import Console
     from rich.progress import Progress, SpinnerColumn, TimeElapsedColumn
 
+    from squealpipe.study.progress.log import Log
     from squealpipe.systems.progress import shown
 
     console = Console(stderr=True)
     if not console.is_terminal:
-        log = _Log(what)
-        takers = (None,) if current_session.quiet else (log.tell, log.say, log.name)
-        with shown(*takers):
+        with nullcontext() if current_session.quiet else Log(what).printed():
             yield
         return
     columns: tuple[Any, ...] = (
@@ -195,53 +191,3 @@ def keeping_on_interrupt() -> Iterator[Callable[[], bool]]:
     finally:
         signal.signal(signal.SIGINT, before)
         ask_to_stop(stops=False)
-
-
-class _Log:
-    """Lines in a log: stages that last, progress with remaining time, and partial answers.
-
-    Args:
-        what: is computed, which begins each line.
-    """
-
-    def __init__(self, what: str) -> None:
-        self.what = what
-        self.begun = self.started = self.told = time.monotonic()
-        self.said = False
-        self.first: float | None = None
-        self.later: threading.Timer | None = None
-
-    def _print(self, line: str) -> None:
-        print(f"{self.what}: {line}", file=sys.stderr, flush=True)
-
-    def name(self, stage: str) -> None:
-        """Print the name of a stage that lasts for some seconds."""
-        if self.later is not None:
-            self.later.cancel()
-        self.later, self.first = None, None
-        if stage:
-            seconds = 5.0
-            self.later = threading.Timer(seconds, self._print, (f"{stage} …",))
-            self.later.daemon = True
-            self.later.start()
-
-    def tell(self, share: float) -> None:
-        """Print progress and remaining time, twice a minute."""
-        from squealpipe.text import duration
-
-        now = time.monotonic()
-        if self.first is None:  # what was there from before took no time
-            self.first, self.started = share, now
-        if now - self.told < LOG_EVERY or share <= self.first:
-            return
-        self.told = now
-        left = (now - self.started) * (1 - share) / (share - self.first)
-        self._print(f"{share:.0%} done, about {duration(left)} left")
-
-    def say(self, line: str) -> None:
-        """Print a partial answer: one soon, and others if nothing was printed for a while."""
-        now = time.monotonic()
-        soon = 3.0  # seconds, within which a quick command has ended
-        if now - self.told >= LOG_EVERY or (not self.said and now - self.begun >= soon):
-            self.told, self.said = now, True
-            self._print(line)

@@ -170,6 +170,7 @@ def run(
     """
     from squealpipe.study import progress
     from squealpipe.study.explain import snakemake_command
+    from squealpipe.study.progress.log import QUIET
     from squealpipe.study.supervised import (
         StoppedError,
         remove_stale_lock,
@@ -185,12 +186,13 @@ def run(
         say(removed)
     started = time.perf_counter()
     command += ["--cores", str(cores or "all")]
+    env = {**os.environ, **_caches(), **_found_by_snakemake(progress.__path__)}
     if current_session.quiet:
         command += ["--quiet", "all"]
+        env[QUIET] = "1"
     else:
         command += ["--logger", "squealpipe"]
         command += ["--logger-squealpipe-cores", str(cores or available_cores())]
-    env = {**os.environ, **_caches(), **_found_by_snakemake(progress.__path__)}
     try:
         failed = run_to_its_end(command, env)
     except StoppedError as stop:

@@ -2,8 +2,10 @@
 
 import atexit
 import gc
+import os
 import time
 from collections.abc import Callable, Iterable
+from contextlib import nullcontext
 from functools import cached_property
 from typing import Any
 
@@ -14,6 +16,7 @@ from squealpipe.reading import for_linear, reading_of
 from squealpipe.store import produce
 from squealpipe.store.rerun.key import state_key
 from squealpipe.study.durations import record_cost
+from squealpipe.study.progress.log import QUIET, Log
 from squealpipe.systems.one_thread import one_thread
 
 
@@ -27,14 +30,19 @@ class Job:
         key: of its rule.
     """
 
-    def __init__(self, snakemake: Any) -> None:
-        """Wrap the object ``snakemake`` of a script."""
+    def __init__(self, snakemake: Any, *, tells: bool = False) -> None:
+        """Wrap the object ``snakemake`` of a script.
+
+        Args:
+            tells: whether what is made prints its progress, as the same work does in a command.
+        """
         # as Python ends it would look for cyclic garbage among all that is loaded, for 0.5 s
         atexit.register(gc.freeze)
         self.settings, self.out = snakemake.params.get("settings", {}), snakemake.output
         self.key = snakemake.params.key
         self.item = snakemake.wildcards.get("scatteritem", "1-of-1")
         self.rule = snakemake.rule
+        self._log = Log(self.rule) if tells and QUIET not in os.environ else None
         self._since = time.perf_counter()
 
     @cached_property
@@ -73,7 +81,8 @@ class Job:
             further: what it is given beside the slice.
         """
         config, target = {**self.settings, **further}, output or self.out[0]
-        with one_thread():
+        progress = nullcontext() if self._log is None else self._log.printed()
+        with one_thread(), progress:
             produce(
                 task,
                 config=config,

@@ -33,7 +33,7 @@ def test_simulate_works_where_the_terminal_is_ascii():
 
 
 def test_a_log_has_the_time_that_is_left(capsys, monkeypatch):
-    monkeypatch.setattr("squealpipe.cli.console.LOG_EVERY", 0.0)
+    monkeypatch.setattr("squealpipe.study.progress.log.LOG_EVERY", 0.0)
     words = shlex.split("sweep stability_map --vary mu=0:1:5 --alpha1 1 --alpha2 2")
     assert run([*words, "--workers", "1", "-o", "s.nc"]) == 0
     told = capsys.readouterr().err.splitlines()
@@ -49,7 +49,7 @@ def test_what_was_there_from_before_does_not_shorten_the_time_that_is_left(
     clock = iter([0.0, 1.0, 61.0])
     monkeypatch.setattr(current_session, "quiet", False)
     ours = SimpleNamespace(monotonic=lambda: next(clock))
-    monkeypatch.setattr("squealpipe.cli.console.time", ours)
+    monkeypatch.setattr("squealpipe.study.progress.log.time", ours)
     with working("sweep"), alone() as show:
         show(0.5)  # a resumed sweep begins there
         show(0.6)  # a tenth in a minute
@@ -114,7 +114,7 @@ def test_a_stage_that_lasts_is_named_in_a_log(capsys, monkeypatch):
         def cancel(self):
             waits.append("ended")
 
-    monkeypatch.setattr("squealpipe.cli.console.threading.Timer", Timer)
+    monkeypatch.setattr("squealpipe.study.progress.log.threading.Timer", Timer)
     monkeypatch.setattr(current_session, "quiet", False)
     with working("squeal"), stage("the fewest modes that agree"):
         pass

@@ -5,11 +5,17 @@ import subprocess
 import sys
 from collections import Counter
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
+import xarray as xr
 
+from squealpipe.brake.linear.maps import stability_map
 from squealpipe.study import progress
+from squealpipe.study.job import Job
 from squealpipe.study.progress.remaining import Remaining
+from squealpipe.systems.progress import partial_answer
+from tests.former import FORMER
 
 WORKFLOW = """
 rule all:
@@ -41,6 +47,33 @@ def test_what_never_ran_lasts_as_long_as_what_did():
     remaining.start(1, "map", 0.0)
     remaining.finish(1, 5.0)
     assert remaining.left(5.0) == pytest.approx(15.0)
+
+
+@pytest.mark.parametrize("quiet", [True, False])
+def test_a_long_job_tells_what_it_knows_unless_the_run_is_quiet(
+    quiet, tmp_path, monkeypatch, capfd
+):
+    """A disc brake's study printed nothing between its second rule and its third, for minutes."""
+    monkeypatch.setattr("squealpipe.study.progress.log.LOG_EVERY", 0.0)
+    if quiet:
+        monkeypatch.setenv("SQUEALPIPE_QUIET", "1")
+    else:
+        monkeypatch.delenv("SQUEALPIPE_QUIET", raising=False)
+
+    def made() -> xr.Dataset:
+        partial_answer(lambda: "after a push: squeals")
+        return stability_map(FORMER, [1.0, 2.0], [1.0, 2.0])
+
+    given = SimpleNamespace(
+        params=SimpleNamespace(key="0" * 16, get=lambda *_: {}),
+        wildcards={},
+        rule="assess_structure",
+        output=[str(tmp_path / "a.nc")],
+    )
+    for tells in (True, False):
+        Job(given, tells=tells).make(made)
+    told = "" if quiet else "assess_structure: after a push: squeals\n"
+    assert capfd.readouterr().err == told
 
 
 @pytest.mark.release

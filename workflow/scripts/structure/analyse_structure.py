@@ -8,7 +8,7 @@ from squealpipe.study.structure_study import (
     squealing,
 )
 
-job = Job(snakemake)
+job = Job(snakemake, tells=True)
 section = job.settings["structure"]
 structure = read_structure(section)
 job.make(lambda: modes_over_friction(structure, section), job.out.modes)

@@ -4,7 +4,7 @@ from squealpipe.store import load
 from squealpipe.study.job import Job
 from squealpipe.study.structure_study import answered, read_structure, settled_motion
 
-job = Job(snakemake)
+job = Job(snakemake, tells=True)
 section, changes = job.settings["structure"], job.settings["modifications"]
 structure, squeal = read_structure(section), load(snakemake.input.squeal)
 job.make(
