@@ -468,8 +468,9 @@ def test_foreign_parts_are_not_joined():
         join([])
 
 
-def test_wall_times_of_a_job_cover_all_of_it(tmp_path):
+def test_wall_times_of_a_job_cover_all_of_it(tmp_path, monkeypatch):
     """A boundary that was made before its file was had a wall time of 0.04 s."""
+    monkeypatch.chdir(tmp_path)  # where it notes what it cost
     paths = [str(tmp_path / f"{name}.nc") for name in ("first", "second")]
     given = SimpleNamespace(
         params=SimpleNamespace(key="0" * 16, get=lambda *_: {}),

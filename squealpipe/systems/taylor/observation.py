@@ -54,7 +54,6 @@ def extremes_inside(c: Any, index: int, lane: int, begin: float, end: float) -> 
         _, after, _ = evaluate_twice(c, index, lane, right)
         if before * after < 0.0:
             a, b, time = left, right, left + width * before / (before - after)
-            last, value = time, 0.0
             for _ in range(most_iterations):
                 value, slope, bend = evaluate_twice(c, index, lane, time)
                 if slope * before > 0.0:
@@ -64,11 +63,9 @@ def extremes_inside(c: Any, index: int, lane: int, begin: float, end: float) -> 
                 last, time = time, time - slope / bend
                 if not a <= time <= b:
                     time = 0.5 * (a + b)
-                if abs(time - last) < 1e-5 * step:
+                if abs(time - last) < 1e-7 * step:  # the error enters squared
                     break
-            # its third order is below round-off after so short a last step
-            off = time - last
-            value += off * (slope + 0.5 * off * bend)
+            value, _, _ = evaluate_twice(c, index, lane, time)
             low, high = min(low, value), max(high, value)
         left, before = right, after
     return low, high
