@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -93,6 +93,19 @@ class Record:
     duration: float
     finished: bool
 
+    def for_spectrum(self) -> Record:
+        """Return the record without what a spectrum does not need, three quarters of it."""
+        nothing = np.empty(0)
+        return replace(
+            self,
+            states=nothing,
+            displacements=nothing,
+            regimes=nothing,
+            open_time=nothing,
+            stick_time=nothing,
+            landings=nothing,
+        )
+
     @property
     def signals(self) -> Any:
         """Velocities of all contacts along the belt, then across it, (2, contacts, samples)."""
@@ -124,12 +137,15 @@ def levels(
     spectrum = _spectrum([first])
     strongest = spectrum["harmonic_frequency"][0]
     periodic = not settled.quiet and _repeats(first, strongest)
-    blocks = [first]
+    blocks, rows, contacts = [first], [_scalars(first, loads)], [_of_contacts(first)]
     wanted = _blocks(settled, period, periodic)
     while len(blocks) < wanted and blocks[-1].finished:
-        blocks.append(record(blocks[-1].end))
-    by_contact = _by_contact(blocks)
-    scalars = _means([_scalars(block, loads) for block in blocks])
+        block = record(blocks[-1].end)
+        rows.append(_scalars(block, loads))
+        contacts.append(_of_contacts(block))
+        blocks.append(block.for_spectrum())
+    by_contact = _by_contact(contacts)
+    scalars = _means(rows)
     scalars |= {"frequency": np.nan, error_of("frequency"): 0.0}
     if len(blocks) > 1:
         lines = [float(_spectrum([block])["harmonic_frequency"][0]) for block in blocks]
@@ -239,27 +255,37 @@ def _rates(record: Record, known: np.ndarray, count: int) -> dict[str, np.ndarra
     }
 
 
-def _by_contact(blocks: Sequence[Record]) -> dict[str, np.ndarray]:
+def _of_contacts(record: Record) -> dict[str, np.ndarray]:
+    """Mean squares of velocities, shares and forces of each contact in one record."""
+    known = _known(record)
+    count = int(known.sum())
+    found = {"peak_force": record.peak_forces}
+    if not count:
+        return found
+    rates = _rates(record, known, count)
+    return found | {
+        "square": tapered(record.velocities[known] ** 2),
+        "opened": rates["separated_fraction"],
+        "stuck": rates["stick_fraction"],
+    }
+
+
+def _by_contact(blocks: Sequence[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
     """Return levels, shares and forces of each contact, means over the blocks."""
-    squares, opened, stuck = [], [], []
-    for record in blocks:
-        known = _known(record)
-        count = int(known.sum())
-        if not count:
-            continue
-        squares.append(tapered(record.velocities[known] ** 2))
-        rates = _rates(record, known, count)
-        opened.append(rates["separated_fraction"])
-        stuck.append(rates["stick_fraction"])
-    count = blocks[0].velocities.shape[1]
-    nothing = np.full(count, np.nan)
+    known = [block for block in blocks if "square" in block]
+    forces = np.max([block["peak_force"] for block in blocks], axis=0)
+    nothing = np.full(forces.size, np.nan)
+
+    def mean(name: str) -> Any:
+        return np.mean([block[name] for block in known], axis=0)
+
     return {
-        "contact_velocity_rms": np.sqrt(np.mean(squares, axis=0))
-        if squares
-        else np.full((count, 2), np.nan),
-        "contact_separated_fraction": np.mean(opened, axis=0) if opened else nothing,
-        "contact_stick_fraction": np.mean(stuck, axis=0) if stuck else nothing,
-        "contact_peak_force": np.max([block.peak_forces for block in blocks], axis=0),
+        "contact_velocity_rms": np.sqrt(mean("square"))
+        if known
+        else np.full((forces.size, 2), np.nan),
+        "contact_separated_fraction": mean("opened") if known else nothing,
+        "contact_stick_fraction": mean("stuck") if known else nothing,
+        "contact_peak_force": forces,
     }
 
 

@@ -437,6 +437,15 @@ def test_a_study_that_failed_says_how_to_go_on(capsys, monkeypatch):
     assert "lock of this folder (process 7 on another)" in capsys.readouterr().err
 
 
+def test_a_study_that_was_interrupted_says_that_it_goes_on(capsys, monkeypatch):
+    """It said "nothing was kept", with four of five rules done."""
+    stopped = Mock(side_effect=KeyboardInterrupt)
+    monkeypatch.setattr("squealpipe.study.supervised.run_to_its_end", stopped)
+    assert run(["run"]) == 130
+    told = "squealpipe: interrupted; the same command goes on with the rules that are not done\n"
+    assert capsys.readouterr().err.endswith(told)
+
+
 def test_a_picture_has_the_size_and_the_dots_of_a_journal(capsys):
     from PIL import Image
 
