@@ -259,11 +259,11 @@ def _of_contacts(record: Record) -> dict[str, np.ndarray]:
     """Mean squares of velocities, shares and forces of each contact in one record."""
     known = _known(record)
     count = int(known.sum())
-    found = {"peak_force": record.peak_forces}
+    forces = {"peak_force": record.peak_forces}
     if not count:
-        return found
+        return forces
     rates = _rates(record, known, count)
-    return found | {
+    return forces | {
         "square": tapered(record.velocities[known] ** 2),
         "opened": rates["separated_fraction"],
         "stuck": rates["stick_fraction"],

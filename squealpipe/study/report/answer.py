@@ -180,14 +180,18 @@ def _cause(answer: xr.Dataset) -> str:
     )
 
 
+def is_shifted(apart: float) -> bool:
+    """Tell whether a noise is farther from a mode, over its frequency, than rounding hides."""
+    return abs(apart) > 0.02
+
+
 def shift(answer: xr.Dataset) -> str:
     """Say how far contact loss shifts the noise of a structure from the mode that grows."""
     noise, mode = float(answer.frequency), float(answer.get("leading_frequency", 0.0))
     if not (mode > 0.0 and float(answer.separated_fraction) > 0.0):
         return ""
     apart = noise / mode - 1.0
-    # less is what a rounded frequency hides, and no shift of a line that wanders
-    if not abs(apart) > 0.02 or _wanders(answer):
+    if not is_shifted(apart) or _wanders(answer):  # a line that wanders has no shift
         return ""
     side = "above" if apart > 0 else "below"
     return (

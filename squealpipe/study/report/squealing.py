@@ -18,7 +18,7 @@ from squealpipe.structures.schema.squealing import (
     Kind,
     OnsetKind,
 )
-from squealpipe.study.report.answer import damping_advice, level_change
+from squealpipe.study.report.answer import damping_advice, is_shifted, level_change
 from squealpipe.text import number
 from squealpipe.units import engineering
 
@@ -378,7 +378,7 @@ def _fate(answer: xr.Dataset, mode: xr.Dataset, within: str) -> str:
     grows = f"grows{within} into the vibration at {_frequency_of(answer, motion)}"
     shift = frequency / float(mode.frequency) - 1.0
     told = f"squeals: it {grows}" if bool(mode.squeals) else grows
-    if abs(shift) > 0.02:  # less is what a rounded frequency hides
+    if is_shifted(shift):
         side = "above" if shift > 0 else "below"
         told += f", {_percent(abs(shift))} {side} its frequency in small motions"
         told += _reason_of_shift(motion)
