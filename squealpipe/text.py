@@ -9,6 +9,8 @@ from squealpipe.systems.inputs.words import (
     in_words,
     nearest,
     number,
+    off_by,
+    part_of_time,
     percent,
     suggestion,
 )
@@ -22,6 +24,8 @@ __all__ = [
     "in_words",
     "nearest",
     "number",
+    "off_by",
+    "part_of_time",
     "percent",
     "suggestion",
 ]

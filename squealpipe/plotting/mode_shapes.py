@@ -92,7 +92,7 @@ def draw_shape(
 
 
 def _draw_arrows(axes: Axes, moved: np.ndarray) -> None:
-    """Arrows at the degrees of freedom, named as Python counts them."""
+    """Arrows at the degrees of freedom, counted as files of structures count them."""
     # arrows of more degrees of freedom than this cover one another; those that move most have one
     most_arrows = 40
     chosen = np.sort(np.argsort(-np.abs(moved), kind="stable")[:most_arrows])
@@ -110,10 +110,11 @@ def _draw_arrows(axes: Axes, moved: np.ndarray) -> None:
         color=style.Colour.blue,
         width=0.006,
     )
-    axes.set_xticks(places, [str(each) for each in chosen], fontsize=6)
+    labelled = places[:: -(-len(places) // 10)]  # more labels would overprint
+    axes.set_xticks(labelled, [str(chosen[place] + 1) for place in labelled])
     axes.set(
-        xlabel="degree of freedom, counted from 0",
-        ylabel="displacement over the largest",
+        xlabel="degree of freedom, counted from 1",
+        ylabel="displacement / largest",
         ylim=(-1.1, 1.1),
     )
     axes.margins(x=0.08)
@@ -185,7 +186,10 @@ def figure_of_modes(modes: xr.Dataset) -> Figure:
     """Draw the shapes of the four modes that grow fastest, two in a row."""
     numbers = unstable_modes(modes, 4)
     rows = max(-(-len(numbers) // 2), 1)
-    made, axes = style.new_figure(style.PAGE, 0.2 + 1.9 * rows, nrows=rows, ncols=2)
+    columns = min(max(len(numbers), 1), 2)
+    made, axes = style.new_figure(
+        0.5 * columns * style.PAGE, 0.2 + 1.9 * rows, nrows=rows, ncols=columns
+    )
     for panel in axes.flat[max(len(numbers), 1) :]:
         panel.set_axis_off()
     if not numbers:

@@ -19,17 +19,20 @@ from squealpipe.text import number
 from squealpipe.units import engineering, shown_in
 
 CONTACT_LOOKS = {
-    regime: (words, style.REGIME_COLOURS[regime.name])
-    for regime, words in {
-        Regime.slip_slower: "slip",
-        Regime.slip_faster: "faster than the belt",
-        Regime.stick: "stick",
-        Regime.separated: "open",
-    }.items()
+    **{
+        regime: (words, style.REGIME_COLOURS[regime.name])
+        for regime, words in {
+            Regime.slip_slower: "slip",
+            Regime.slip_faster: "faster than the belt",
+            Regime.stick: "stick",
+        }.items()
+    },
+    # red beside the orange of stick looks alike where marks are small
+    Regime.separated: ("open", style.Colour.black),
 }
 """State of a contact in words, and its colour."""
 COLOURS_IN_WORDS = (
-    "Blue: the contact slips; green: it is faster than the belt; orange: it sticks; red: it is "
+    "Blue: the contact slips; green: it is faster than the belt; orange: it sticks; black: it is "
     "open."
 )
 

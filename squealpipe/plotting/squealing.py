@@ -26,7 +26,7 @@ def figure(answer: xr.Dataset) -> Figure:
     A panel below shows motions over falling friction, if the dataset has them.
     """
     # six attractors fit; they are sorted by the number of random starts that settle on them
-    shown = answer.isel(attractor=slice(6))
+    shown = with_most_contact_loss(answer.isel(attractor=slice(6)))
     count = max(shown.sizes["attractor"], 1)
     height = 2.6 + 0.12 * count * shown.sizes["contact"] * (count > 1)
     height, ratios = min(height, 6.0), [1.7, 1.0, 1.0, 1.2]
@@ -66,6 +66,15 @@ def figure(answer: xr.Dataset) -> Figure:
         draw_hysteresis(over, answer)
         style.panel_letter(over, "e", "as friction falls")
     return made
+
+
+def with_most_contact_loss(answer: xr.Dataset) -> xr.Dataset:
+    """Return the contacts whose names can be read beside their bars: those that open most."""
+    most = 6
+    if answer.sizes["contact"] <= most or not answer.sizes["attractor"]:
+        return answer
+    opened = answer.separated_fraction.max("attractor").values
+    return answer.isel(contact=np.sort(np.argsort(-opened, kind="stable")[:most]))
 
 
 def draw_poles(axes: Axes, answer: xr.Dataset) -> None:

@@ -140,7 +140,7 @@ class StructureMotion:
 
     def _name(self, row: int) -> str:
         if self.mesh is None:
-            return f"degree of freedom {row}, counted from 0"
+            return f"degree of freedom {row + 1}, counted from 1"
         node, direction = self.mesh.degree_of_freedom[row]
         return f"node {self.mesh.numbers[node]} {StructureMotion.direction_names[int(direction)]}"
 

@@ -54,6 +54,9 @@ class Measurement:
     """Events of a record by which it is called periodic."""
     blocks: int = 16
     """Records that measure an irregular motion; a torus gets no more."""
+    same_line: float = 0.05
+    """Largest relative distance of a record's strongest line from a multiple of the motion's own
+    at which it is that multiple. Twice as much: of lines near the fifth all would be."""
 
 
 @dataclass(frozen=True)
@@ -149,9 +152,9 @@ def levels(
     scalars |= {"frequency": np.nan, error_of("frequency"): 0.0}
     if len(blocks) > 1:
         lines = [float(_spectrum([block])["harmonic_frequency"][0]) for block in blocks]
-        scalars[error_of("frequency")] = float(np.std(lines, ddof=1))
         spectrum = _spectrum(blocks)
         strongest = spectrum["harmonic_frequency"][0]
+        scalars[error_of("frequency")] = _scatter(np.array(lines), strongest)
     if settled.verdict is Verdict.undetermined:
         scalars |= dict.fromkeys(map(error_of, WITH_ERROR), np.nan)
     if settled.quiet:
@@ -326,6 +329,18 @@ def error_of_mean(values: np.ndarray) -> float:
         size //= 2
         values = values[: 2 * size].reshape(size, 2).mean(axis=1)
     return error
+
+
+def _scatter(lines: np.ndarray, strongest: float) -> float:
+    """Return the standard deviation of the strongest lines of blocks, Hz.
+
+    Where impacts are hard, a multiple may be higher than the line itself in some blocks, although
+    the motion keeps its pace: such a line counts as the one that it is a multiple of.
+    """
+    multiple = np.clip(np.rint(lines / strongest), 1, Measurement.harmonics)
+    base = lines / multiple
+    same = np.abs(base / strongest - 1.0) <= Measurement.same_line
+    return float(np.std(np.where(same, base, lines), ddof=1))
 
 
 def _spectrum(blocks: Sequence[Record]) -> dict[str, Any]:

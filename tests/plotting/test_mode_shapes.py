@@ -81,7 +81,7 @@ def test_without_a_mesh_there_are_arrows_and_no_vtu(tmp_path):
     shape = shape_of(alone, 2)
     quiver = axes.collections[0]
     assert pytest.approx(shape.real) == quiver.V
-    assert [each.get_text() for each in axes.get_xticklabels()] == ["0", "1", "2", "3"]
+    assert [each.get_text() for each in axes.get_xticklabels()] == ["1", "2", "3", "4"]
     with pytest.raises(ValueError, match=r"no mesh.*--mode"):
         convert(alone, tmp_path / "modes.vtu")
 

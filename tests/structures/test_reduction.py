@@ -393,6 +393,7 @@ def test_a_motion_beyond_the_band_is_marked_and_modes_are_named_by_frequency():
         "time_to_squeal": ("mode", [0.1, 0.1]),
         "ends_in": ("mode", [0, 0]),
         "dominant_frequency": ("attractor", [8.5e3]),
+        "motion": ("attractor", [int(Verdict.squeals)]),
     }
     told = xr.Dataset(at, {"mode": [2, 17]})
     beyond = "beyond the band (modes up to 1 kHz were compared)"
@@ -407,7 +408,7 @@ def test_a_motion_beyond_the_band_is_marked_and_modes_are_named_by_frequency():
         ),
         (
             f"The mode at 8.9 kHz, growth rate 2 1/s, {beyond}, squeals: it grows within "
-            f"100 ms into the vibration at 8.5 kHz, {beyond}, 4 % below its frequency in small "
+            f"100 ms into the vibration at 8.5 kHz, {beyond}, 4.5 % below its frequency in small "
             "motions."
         ),
     ]

@@ -9,7 +9,7 @@ import xarray as xr
 
 from squealpipe.codes import Verdict
 from squealpipe.structures.schema.squealing import GIVE_DAMPING
-from squealpipe.text import number, percent
+from squealpipe.text import number, off_by, percent
 from squealpipe.units import engineering
 from squealpipe.vibration.schema import Mechanism, error_of
 
@@ -95,6 +95,15 @@ def headline(answer: xr.Dataset, prefix: str = "") -> str:
     at = engineering(value("frequency"), "Hz") + _wanders(answer, prefix)
     force = number(value("peak_contact_force_over_preload"))
     lost = percent(value("separated_fraction"))
+    if verdict is Verdict.hammers and answer.sizes.get("contact", 1) > 1:
+        which = "one contact"
+        if not prefix:  # which one it is from a sudden start is not stored
+            opened = answer.contact_separated_fraction
+            which = f"contact {opened.idxmax('contact').item()}"
+        return (
+            f"{said} at {at}: {which} is open {lost} of the time, the peak force is "
+            f"{force} times the preload of its contact."
+        )
     if verdict is Verdict.hammers:
         return (
             f"{said} at {at}: contact is lost {lost} of the time, the peak force is {force} "
@@ -123,11 +132,12 @@ def damping_advice(answer: xr.Dataset) -> str:
 
 
 def _wanders(answer: xr.Dataset, prefix: str = "") -> str:
-    """Say how far the strongest line scatters from one part of an irregular motion to another."""
+    """Say that the strongest line of an irregular motion is not the same in all parts of it."""
     frequency, error = f"{prefix}frequency", error_of(f"{prefix}frequency")
     if error not in answer or not answer[error] > 0.05 * answer[frequency]:
         return ""
-    return f" (its strongest line scatters by {engineering(float(answer[error]), 'Hz', 2)})"
+    scatter = engineering(float(answer[error]), "Hz", 2)
+    return f" (at times another line is strongest: standard deviation {scatter})"
 
 
 def cause(answer: xr.Dataset) -> str:
@@ -193,9 +203,8 @@ def shift(answer: xr.Dataset) -> str:
     apart = noise / mode - 1.0
     if not is_shifted(apart) or _wanders(answer):  # a line that wanders has no shift
         return ""
-    side = "above" if apart > 0 else "below"
     return (
-        f"The noise is {percent(abs(apart))} {side} the mode that grows fastest "
+        f"The noise is {off_by(apart)} the mode that grows fastest "
         f"({engineering(mode, 'Hz')}), since contact is lost in it."
     )
 
@@ -545,4 +554,7 @@ def _change(name: str, change: float, value: float) -> str:
 def _force(answer: xr.Dataset) -> str:
     newtons = engineering(float(answer.peak_contact_force), "N")
     times = number(float(answer.peak_contact_force_over_preload))
+    # the largest force and the largest ratio are often those of two contacts
+    if answer.sizes.get("contact", 1) > 1:
+        return f"{newtons}, and up to {times} times the preload of its contact"
     return f"{newtons}, {times} times the preload force"

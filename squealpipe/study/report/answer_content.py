@@ -7,7 +7,7 @@ import xarray as xr
 
 from squealpipe.codes import Verdict
 from squealpipe.study.report import answer
-from squealpipe.text import percent
+from squealpipe.text import part_of_time
 from squealpipe.units import engineering
 
 
@@ -68,5 +68,5 @@ def _written(value: float, unit: str) -> str:
     if not math.isfinite(value):
         return "–"
     if unit == "%":
-        return percent(value, 3)
+        return part_of_time(value)
     return engineering(value, unit)

@@ -8,7 +8,7 @@ import xarray as xr
 
 from squealpipe.codes import Verdict
 from squealpipe.structures.schema.operating_map import Match
-from squealpipe.text import number, percent
+from squealpipe.text import number, off_by, percent
 from squealpipe.units import engineering
 
 
@@ -82,8 +82,7 @@ def _lines_of_the_list(dataset: xr.Dataset) -> Iterator[str]:
         if np.isfinite(measured[noise]):
             heard = engineering(float(measured[noise]), "Hz")
             if said != "quiet":
-                side = "above" if off[noise] > 0 else "below"
-                apart = f" ({percent(abs(off[noise]))} {side})"
+                apart = f" ({off_by(off[noise])})"
         yield f"  Line {noise + 1} of the list: measured {heard}, predicted {said}{apart}."
     if len(wrong) > 8:
         yield f"  {len(wrong) - 8} more lines differ: variable match of the dataset."

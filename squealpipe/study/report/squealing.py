@@ -19,7 +19,7 @@ from squealpipe.structures.schema.squealing import (
     OnsetKind,
 )
 from squealpipe.study.report.answer import damping_advice, is_shifted, level_change
-from squealpipe.text import number
+from squealpipe.text import number, off_by, part_of_time, percent
 from squealpipe.units import engineering
 
 LISTED = 8
@@ -55,7 +55,7 @@ def headline(answer: xr.Dataset) -> str:
             lasting = answer.share.values[answer.motion.values != Verdict.quiet].sum()
             return (
                 f"{said} unless struck: small motions die out, but a vibration that lasts exists "
-                f"beside steady sliding; {_percent(lasting)} of random starts end in it."
+                f"beside steady sliding; {percent(lasting)} of random starts end in it."
                 f"{_within(answer)}"
             )
         if _lasts(answer):
@@ -89,7 +89,7 @@ def headline(answer: xr.Dataset) -> str:
     loses = first.isel(contact=worst)
     return (
         f"{said} at {at}: contact {loses.contact.item()} is open "
-        f"{_percent(float(loses.separated_fraction))} of the time, {_peak_force(first)}."
+        f"{part_of_time(float(loses.separated_fraction))} of the time, {_peak_force(first)}."
     )
 
 
@@ -377,10 +377,11 @@ def _fate(answer: xr.Dataset, mode: xr.Dataset, within: str) -> str:
     frequency = float(motion.dominant_frequency)
     grows = f"grows{within} into the vibration at {_frequency_of(answer, motion)}"
     shift = frequency / float(mode.frequency) - 1.0
-    told = f"squeals: it {grows}" if bool(mode.squeals) else grows
+    told = grows
+    if bool(mode.squeals):
+        told = f"{Verdict(int(motion.motion)).words}: it {grows}"
     if is_shifted(shift):
-        side = "above" if shift > 0 else "below"
-        told += f", {_percent(abs(shift))} {side} its frequency in small motions"
+        told += f", {off_by(shift)} its frequency in small motions"
         told += _reason_of_shift(motion)
     if not bool(mode.squeals):
         away = np.abs(answer.frequency.values - frequency)
@@ -408,8 +409,8 @@ def attractors(answer: xr.Dataset) -> Iterator[str]:
     for index in range(min(answer.sizes["attractor"], LISTED)):
         one = answer.isel(attractor=index)
         share = (
-            f"{int(one['count'])} of {size} random starts ({_percent(float(one.share_low))} to "
-            f"{_percent(float(one.share_high))} of all) end in"
+            f"{int(one['count'])} of {size} random starts ({percent(float(one.share_low))} to "
+            f"{percent(float(one.share_high))} of all) end in"
         )
         attractor_kind = Kind(int(one.kind))
         if attractor_kind is Kind.steady_sliding:
@@ -420,17 +421,18 @@ def attractors(answer: xr.Dataset) -> Iterator[str]:
             Kind.torus: "a quasi-periodic motion",
             Kind.irregular: "an irregular motion",
         }.get(attractor_kind, "a motion of undetermined kind")
-        shift = engineering(abs(float(one.frequency_shift)), "Hz")
-        side = "above" if float(one.frequency_shift) > 0 else "below"
+        mode = _nearest_mode(one)
+        shift = float(one.frequency_shift) / mode if mode > 0.0 else 0.0
+        near = off_by(shift) if is_shifted(shift) else "near"
         yield (
-            f"{share} {words} at {_frequency_of(answer, one)}, {shift} {side} the mode at "
-            f"{engineering(_nearest_mode(one), 'Hz')}: rms speed "
+            f"{share} {words} at {_frequency_of(answer, one)}, {near} the mode at "
+            f"{engineering(mode, 'Hz')}: rms speed "
             f"{engineering(float(one.velocity_rms), 'm s-1')}, peak "
             f"{engineering(float(one.velocity_peak), 'm s-1')}; open {_of_contacts(one)}."
         )
     if float(answer.share_undetermined) > 0:
         yield (
-            f"{_percent(float(answer.share_undetermined))} of random starts did not settle; "
+            f"{percent(float(answer.share_undetermined))} of random starts did not settle; "
             "give a longer t_end."
         )
 
@@ -517,11 +519,7 @@ def _of_contacts(one: xr.Dataset) -> str:
     few = pairs
     if len(pairs) > LISTED:
         few = sorted(pairs, key=lambda pair: -pair[1])[: LISTED // 2]
-    told = [f"{name} {_percent(float(value))}" for name, value in few]
+    told = [f"{name} {part_of_time(float(value))}" for name, value in few]
     if rest := len(pairs) - len(few):
-        told.append(f"{rest} others at most {_percent(float(few[-1][1]))}")
+        told.append(f"{rest} others at most {part_of_time(float(few[-1][1]))}")
     return ", ".join(told)
-
-
-def _percent(share: float) -> str:
-    return f"{100 * share:.0f} %"

@@ -1,7 +1,7 @@
 """Contents of the report of a structure, as plain data: the answer first."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -20,8 +20,8 @@ from squealpipe.study.report.media import media_of
 from squealpipe.study.report.operating import lines
 from squealpipe.study.report.parts import Made, pictures
 from squealpipe.study.report.sections import STRUCTURE
-from squealpipe.text import number, percent
-from squealpipe.units import engineering
+from squealpipe.text import number, part_of_time, percent
+from squealpipe.units import engineering, shown_in
 
 
 def gather_structure(
@@ -46,12 +46,13 @@ def gather_structure(
     )
     return {
         **told,
-        "title": "Which mode squeals? Report of a structure",
+        "title": "Which mode makes noise? Report of a structure",
         "words": {each.name: each.words for each in Verdict},
         "set": f"mu = {_frictions(numbers)}, {_speed_words(numbers)}",
         "headline": told["headline"] if is_known else squealing.headline(answer),
         "lines": [line for line in said if line],
         "run": was_run,
+        "periodic": bool(run["structure/assess"].periodic),
         "starts": starts_tried(run["structure/assess"]),
         "moves": bool(run["structure/run"].sizes["time"]),
         "fates": [*squealing.modes(answer), *squealing.missing(answer)],
@@ -271,20 +272,22 @@ def contacts(answer: xr.Dataset) -> list[dict[str, Any]]:
         one = answer.isel(attractor=index)
         if Verdict(int(one.motion)) is Verdict.quiet:
             continue
+        count = one.sizes["contact"]
+        forces = one.get("peak_normal_force", xr.DataArray(np.full(count, np.nan)))
+        newtons = column(forces.values, "N")
+        speeds = column(one.contact_velocity_rms.values, "m s-1")
         rows = [
             {
-                "name": str(contact),
-                "open": percent(float(at.separated_fraction)),
-                "stick": percent(float(at.stick_fraction)),
+                "name": str(at.contact.item()),
+                "open": part_of_time(float(at.separated_fraction)),
+                "stick": part_of_time(float(at.stick_fraction)),
                 "force": _number_or_dash(at.peak_force),
-                "newtons": engineering(float(at.peak_normal_force), "N")
-                if "peak_normal_force" in at
-                else "–",
+                "newtons": newtons[place],
                 "impacts": number(float(at.impacts_per_period)),
-                "speed": engineering(float(at.contact_velocity_rms), "m s-1"),
+                "speed": speeds[place],
             }
-            for contact in one.contact.values
-            for at in [one.sel(contact=contact)]
+            for place in range(count)
+            for at in [one.isel(contact=place)]
         ]
         tables.append(
             {
@@ -294,6 +297,17 @@ def contacts(answer: xr.Dataset) -> list[dict[str, Any]]:
             }
         )
     return tables
+
+
+def column(values: Iterable[float], units: str) -> list[str]:
+    """Write the values of a column in one unit, that of the largest; a dash for what is missing."""
+    every = [float(value) for value in values]
+    known = [abs(value) for value in every if np.isfinite(value)]
+    factor, name = shown_in(max(known, default=0.0), units)
+    return [
+        f"{number(factor * value)} {name}".rstrip() if np.isfinite(value) else "–"
+        for value in every
+    ]
 
 
 def _number_or_dash(value: xr.DataArray) -> str:
@@ -310,6 +324,17 @@ def _modes_words(answer: xr.Dataset) -> str:
 def structure(modes: xr.Dataset, answer: xr.Dataset) -> dict[str, Any]:
     """Return the size, friction and contacts of the structure that was run."""
     whole = json.loads(modes.attrs["parameters"])
+    contacts_of_file = whole["contacts"]
+    meshed = {name: each for name, each in contacts_of_file.items() if "nodes" in each}
+    stiffnesses, preloads, speeds = (
+        column((each[key] for each in contacts_of_file.values()), units)
+        for key, units in (
+            ("stiffness", "N m-1"),
+            ("preload", "N"),
+            ("speed", "m" if "rotation" in whole else "1"),
+        )
+    )
+    gaps = column((each["gap"] for each in meshed.values()), "m")
     static = whole["mu_static"]
     damping = np.atleast_1d(whole["modal_damping"])
     ratios = {float(ratio) for ratio in damping}
@@ -332,15 +357,15 @@ def structure(modes: xr.Dataset, answer: xr.Dataset) -> dict[str, Any]:
         "contacts": [
             {
                 "name": name,
-                "stiffness": engineering(each["stiffness"], "N m-1")
+                "stiffness": stiffness
                 + " at the preload" * ("law" in each)
                 + _spring_words(each.get("tangential_stiffness")),
-                "preload": engineering(each["preload"], "N"),
-                "speed": engineering(each["speed"], "m")
-                if "rotation" in whole
-                else number(each["speed"]),
+                "preload": preload,
+                "speed": speed,
             }
-            for name, each in whole["contacts"].items()
+            for (name, each), stiffness, preload, speed in zip(
+                contacts_of_file.items(), stiffnesses, preloads, speeds, strict=True
+            )
         ],
         "origins": [
             {
@@ -348,10 +373,9 @@ def structure(modes: xr.Dataset, answer: xr.Dataset) -> dict[str, Any]:
                 "nodes": _few(each["nodes"]),
                 "against": _few(each["against"]) or "belt",
                 "area": f"{number(1e6 * each['area'])} mm²",
-                "gap": engineering(each["gap"], "m"),
+                "gap": gap,
             }
-            for name, each in whole["contacts"].items()
-            if "nodes" in each
+            for (name, each), gap in zip(meshed.items(), gaps, strict=True)
         ],
     }
 

@@ -68,6 +68,16 @@ def percent(share: float, digits: int = 2) -> str:
     return f"{number(100.0 * share, digits)} %"
 
 
+def off_by(share: float, digits: int = 2) -> str:
+    """Tell how far a value is from another one: ``3 % above``, ``0.2 % below``."""
+    return f"{percent(abs(share), digits)} {'above' if share > 0 else 'below'}"
+
+
+def part_of_time(share: float) -> str:
+    """A share of the time in per cent, no finer than runs resolve it."""
+    return "< 0.1 %" if 0.0 < share < 1e-3 else percent(share)
+
+
 def as_people_write(text: str) -> str:
     """A text with its numbers as people write them: 4.42e+03 becomes 4420, and -2 −2."""
 

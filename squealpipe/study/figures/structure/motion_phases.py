@@ -5,16 +5,25 @@ from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
 from squealpipe.plotting.animation import phases
+from squealpipe.structures.meshes.datasets import mesh_of
 from squealpipe.study.figures.declared import report_figure
+
+
+def _caption(run: xr.Dataset) -> str:
+    """Describe the strip, and how contacts are drawn."""
+    told = (
+        "One period of the motion that a small push ends in, the vibration enlarged and without "
+        "the static deformation. Contacts are blue in slip, orange in stick, green where they are "
+        "faster than the belt, and hollow where they are open."
+    )
+    if mesh_of(run) is None:
+        told += " There is no mesh: the contacts stand side by side."
+    return told
 
 
 @report_figure(
     reads=("structure/run",),
-    caption=(
-        "One period of the motion that a small push ends in, the vibration enlarged and without "
-        "the static deformation. Contacts are blue in slip, orange in stick, and red and hollow "
-        "where they are open. Without a mesh the contacts stand side by side."
-    ),
+    caption=_caption,
     alt="Eight drawings of the vibrating structure with its contacts, an eighth of a period apart.",
 )
 def draw(run: xr.Dataset) -> Figure:
