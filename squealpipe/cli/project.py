@@ -193,6 +193,7 @@ def run(
     else:
         command += ["--logger", "squealpipe"]
         command += ["--logger-squealpipe-cores", str(cores or available_cores())]
+        command += ["--logger-squealpipe-results", study.results]
     current_session.remedy = "the same command goes on with the rules that are not done"
     try:
         failed = run_to_its_end(command, env)

@@ -76,7 +76,7 @@ outer,4:1,3:1,5e7,2000
 DISC_STUDY = """\
 # A disc brake from CalculiX: which of its unstable modes squeal, how loud, and why?
 # Put your deck and what CalculiX makes of it in place of those in {folder}, then
-#   squealpipe modes {matrices} --frequency-max 5kHz   complex eigenvalues, in seconds
+#   squealpipe modes {matrices} --frequency-max 4kHz   complex eigenvalues, in seconds
 #   squealpipe run --config {file}   the report, in minutes
 results: {results}
 paper: false

@@ -35,9 +35,9 @@ def figure(modes: xr.Dataset) -> Figure:
         made, axes = style.new_figure(style.COLUMN, 3.0)
         _draw_spectrum(axes[0, 0], modes)
         return made
-    made, axes = style.new_figure(style.COLUMN, 5.0, nrows=2)
+    made, axes = style.new_figure(style.PAGE, 2.6, ncols=2)
     one = _one_way(modes, dims)
-    for panel, name in zip(axes[:, 0], ("frequency", "growth_rate"), strict=True):
+    for panel, name in zip(axes[0], ("frequency", "growth_rate"), strict=True):
         _draw_along(panel, one, name, dims[0])
     if dims[1:]:
         chosen = ", ".join(

@@ -4,6 +4,7 @@ import fnmatch
 import re
 import typing
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
@@ -14,13 +15,27 @@ from squealpipe.text import in_words, nearest
 
 
 class ConfigError(ValueError):
-    """The configuration has mistakes; the message lists all of them."""
+    """The configuration has mistakes; the message lists all of them.
 
-    def __init__(self, mistakes: Sequence[str]) -> None:
+    Args:
+        files: of which the configuration was read.
+    """
+
+    def __init__(self, mistakes: Sequence[str], files: Sequence[object] = ()) -> None:
         self.mistakes = list(mistakes)
+        named = f" ({', '.join(map(_near, files))})" if files else ""
         super().__init__(
-            "the configuration has mistakes:\n" + "\n".join(f"  {m}" for m in mistakes)
+            f"the configuration{named} has mistakes:\n"
+            + "\n".join(f"  {m}" for m in mistakes)
         )
+
+
+def _near(file: object) -> str:
+    """Name a file as it is seen from the working directory."""
+    path = Path(str(file))
+    return str(
+        path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path
+    )
 
 
 def mistakes(error: ValidationError, model: type[BaseModel]) -> Iterator[str]:

@@ -1,5 +1,6 @@
 """Durations and CPU times of a study's jobs when they last ran, and of several together."""
 
+import base64
 import json
 import sys
 from collections.abc import Sequence
@@ -69,10 +70,16 @@ def job_costs(directory: Path) -> dict[str, JobCost]:
     return dict(sorted(costs.items(), key=lambda each: -each[1].cpu))
 
 
-def job_times(directory: Path) -> dict[str, float]:
-    """Rule → what it took when it last ran, s, from Snakemake's records."""
+def job_times(directory: Path, results: str = "") -> dict[str, float]:
+    """Rule → what it took when it last ran, s, from Snakemake's records.
+
+    Args:
+        results: folder of a study: studies side by side have rules of one name.
+    """
     spans: dict[str, list[float]] = {}
     for path in (directory / ".snakemake/metadata").glob("*"):
+        if not _made(path.name).startswith(results):
+            continue
         try:
             record = json.loads(path.read_text(encoding="utf-8"))
             start, end = float(record["starttime"]), float(record["endtime"])
@@ -80,6 +87,14 @@ def job_times(directory: Path) -> dict[str, float]:
             continue  # a record that cannot be read means: duration unknown
         spans.setdefault(str(record["rule"]), []).append(end - start)
     return {rule: max(seconds) for rule, seconds in sorted(spans.items())}
+
+
+def _made(name: str) -> str:
+    """Return the file that a record of Snakemake is about, by the record's name."""
+    try:
+        return base64.urlsafe_b64decode(name).decode()
+    except ValueError:
+        return ""
 
 
 def together(jobs: Sequence[float], cores: int) -> float:

@@ -273,6 +273,9 @@ def _become(job: dict[str, Any], server: int) -> None:
     sys.argv = [job["script"]]
     try:
         runpy.run_path(job["script"], run_name="__main__")
+    except KeyboardInterrupt:  # by whoever waits for the study: no fault to look for
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+        os.kill(os.getpid(), signal.SIGINT)
     except Exception as error:  # noqa: BLE001 (as Python tells it, without the frames of this module)
         trace = error.__traceback__
         while trace and not trace.tb_frame.f_code.co_filename.endswith(job["script"]):

@@ -1,5 +1,6 @@
 """Computations of a structure's study: complex modes over friction, and which of them squeal."""
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -38,17 +39,22 @@ def read_structure(section: Mapping[str, Any]) -> Structure:
         FileNotFoundError: a file is missing.
         ValueError: a file or a key that is wrong, or one that a large structure needs.
     """
-    # friction of a single face is varied as that of the structure
-    structure = Structure.read(section["file"]).with_common_mu()
+    file = section["file"]
+    try:
+        # friction of a single face is varied as that of the structure
+        structure = Structure.read(file).with_common_mu()
+    except (ValueError, FileNotFoundError) as error:
+        told = str(error)
+        if not told.startswith(file):  # some name the file, others only its key
+            told = f"{file}: {told}"
+        raise type(error)(told) from error
     if structure.size > DENSE and section["frequency_max"] is None:
         raise ValueError(
             f"structure: {structure.size} degrees of freedom: "
             f"{band_needed(structure, section['n_modes'])}"
         )
     if not structure.contacts:
-        raise ValueError(
-            f"structure.file: {section['file']} names no contacts: nothing rubs"
-        )
+        raise ValueError(f"structure.file: {file} names no contacts: nothing rubs")
     return structure
 
 
@@ -60,8 +66,20 @@ def modifications(structure: Structure, section: Mapping[str, Any]) -> dict[str,
     """
     named = counted_from_zero(section)
     for name, content in named.items():
-        read_modification(name, content, structure, 1.0)  # any frequency tells mistakes
+        try:
+            read_modification(name, content, structure, 1.0)  # any frequency will do
+        except ValueError as error:
+            raise ValueError(_as_in_files(str(error))) from error
     return named
+
+
+def _as_in_files(message: str) -> str:
+    """Return a message with the degrees of freedom of its key counted from 1, as files count."""
+
+    def counted(match: re.Match[str]) -> str:
+        return re.sub(r"\d+", lambda number: str(int(number[0]) + 1), match[0])
+
+    return re.sub(r"\[\(?\d+(, \d+\))?\]", counted, message)
 
 
 def operating_options(

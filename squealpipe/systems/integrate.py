@@ -431,7 +431,13 @@ class Batch:
             rows[layout.numbers.t_end],
             memory["queue"],
         )
-        lanes.drive(self.loop(), table, lambda: lanes.share_of(*at))
+
+        def share() -> float:
+            # lanes that have had no job have no end either
+            with np.errstate(invalid="ignore"):
+                return lanes.share_of(*at)
+
+        lanes.drive(self.loop(), table, share)
         if job.max() >= 0 or memory["queue"][0] < self.size:
             raise RuntimeError(
                 "an exception in compiled code, reported above, ended the integration before its "

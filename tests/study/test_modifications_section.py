@@ -101,7 +101,11 @@ def test_modifications_of_a_study_are_cures_up_to_own_eigenvalues(config):
     ("old", "new", "message"),
     [
         ("added_mass", "addedmass", "weight: .*did you mean 'added_mass'"),
-        ("{1: 300 g, ", "{3: 300 g, ", "degrees of freedom are 0 to 1"),
+        (
+            "{1: 300 g, ",
+            "{3: 300 g, ",
+            r"added_mass\[3\]: the structure has 2 degrees of freedom",
+        ),
         ("300 g", "300 m", "kg"),
     ],
 )

@@ -15,7 +15,8 @@ if workflow.is_main_process:  # jobs need not check again: the import takes a se
         if STUDY.operating is not None:
             operating_options(of_study, STRUCTURE["structure"], STUDY.slice("operating")["operating"])
     except (ValueError, FileNotFoundError) as fault:
-        raise ConfigError([str(fault)]) from fault
+        own = [file for file in workflow.configfiles if Path(file).parent != PAPER.parent]
+        raise ConfigError([str(fault)], own) from fault
 
 
 rule analyse_structure:

@@ -431,8 +431,8 @@ def freedoms_of(title: str, place: Any, structure: ContactStructure) -> list[int
     if is_whole_number(place):
         if not 0 <= place < structure.size:
             raise ValueError(
-                f"{title}[{place!r}]: degrees of freedom are 0 to {structure.size - 1}; in "
-                f"files and commands, which count from 1, it is {place + 1}"
+                f"{title}[{place!r}]: the structure has {structure.size} degrees of freedom, "
+                "counted from 0 in Python and from 1 in files and commands"
             )
         return [int(place)]
     node, _, direction = str(place).partition(".")

@@ -144,7 +144,8 @@ def read_study(*paths: str | Path, changes: Mapping[str, Any] | None = None) -> 
         faults.extend(place_files(path, content))
         faults.extend(_lay_over(merged, content))
     faults.extend(_lay_over(merged, changes or {}))
-    return parse_study(merged, faults)
+    own = [path for path in paths if Path(path).parent != PAPER.parent]
+    return parse_study(merged, faults, own)
 
 
 def _lay_over(base: dict[str, Any], top: Mapping[str, Any]) -> Iterator[str]:
@@ -240,11 +241,16 @@ def check_results_folder(results: str) -> None:
             )
 
 
-def parse_study(content: Mapping[str, Any], faults: Sequence[str] = ()) -> Study:
+def parse_study(
+    content: Mapping[str, Any],
+    faults: Sequence[str] = (),
+    files: Sequence[str | Path] = (),
+) -> Study:
     """Validate a configuration and return the study.
 
     Args:
         faults: messages about files, raised together with those of the validation.
+        files: that a message names as those to mend.
 
     Raises:
         ConfigError: every mistake found, with its key, value and what is allowed.
@@ -259,9 +265,9 @@ def parse_study(content: Mapping[str, Any], faults: Sequence[str] = ()) -> Study
         plain = _plain(filled)
         study = Study.model_validate(plain, context=_complete(plain))
     except ValidationError as error:
-        raise ConfigError([*faults, *mistakes(error, Study)]) from error
+        raise ConfigError([*faults, *mistakes(error, Study)], files) from error
     if faults:
-        raise ConfigError(faults)
+        raise ConfigError(faults, files)
     return study
 
 

@@ -22,7 +22,7 @@ class Remaining:
     seconds: Mapping[str, float]
     cores: int
     _running: dict[int, tuple[str, float]] = field(default_factory=dict)
-    _took: list[float] = field(default_factory=list)
+    _took: dict[str, float] = field(default_factory=dict)
 
     def start(self, job: int, rule: str, now: float) -> None:
         """A job runs from `now` on, s of any clock."""
@@ -34,26 +34,23 @@ class Remaining:
             return
         rule, started = self._running.pop(job)
         self.jobs[rule] -= 1
-        self._took.append(now - started)
+        self._took[rule] = now - started
 
     def left(self, now: float) -> float | None:
         """Time left, s, by :func:`together`.
 
-        A rule that never ran here is taken to last as long as those that have in this run, on
-        average. None: nothing is known yet.
+        None: a rule that is not finished never ran. Rules last from a second to half an hour, so
+        that nothing else tells what it takes.
         """
-        known = [self.seconds[rule] for rule in self.jobs if rule in self.seconds]
-        usual = self._took or known
-        if not usual:
+        each = {**self._took, **self.seconds}
+        if any(count and rule not in each for rule, count in self.jobs.items()):
             return None
-        average = sum(usual) / len(usual)
-        each = {rule: self.seconds.get(rule, average) for rule in self.jobs}
         running = [
             max(0.0, start + each[rule] - now) for rule, start in self._running.values()
         ]
         waiting = self.jobs - Counter(rule for rule, _ in self._running.values())
         return together(
-            [*running, *(each[rule] for rule in waiting.elements())], self.cores
+            [*running, *(each[rule] for rule in waiting.elements()), 0.0], self.cores
         )
 
     def words(self, now: float) -> str:

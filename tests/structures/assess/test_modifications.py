@@ -99,7 +99,7 @@ def test_what_stops_it_is_quiet_there_and_not_beside(tmp_path):
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ({"added_mass": {7: 0.1}}, "degrees of freedom are 0 to 1"),
+        ({"added_mass": {7: 0.1}}, "the structure has 2 degrees of freedom"),
         ({"added_mass": {1: -0.1}}, "greater than 0"),
         ({"added_mass": {(0, 1): 0.1}}, "a mass is at one degree of freedom"),
         ({"sprng": {1: 0.1}}, "did you mean 'spring'"),

@@ -10,7 +10,7 @@ from squealpipe.study.figures.declared import report_figure
 @report_figure(
     reads=("structure/modes",),
     caption=(
-        "Frequency (above) and growth rate (below) of the complex modes over friction, of the "
+        "Frequency (left) and growth rate (right) of the complex modes over friction, of the "
         "whole structure. Red: unstable; diamonds: where growth leaves zero."
     ),
     alt="Two panels over friction: frequencies that meet, and growth rates that leave zero there.",

@@ -28,6 +28,9 @@ class LogHandlerSettings(LogHandlerSettingsBase):
     cores: int | None = field(
         default=None, metadata={"help": "cores that the jobs share", "type": int}
     )
+    results: str = field(
+        default="", metadata={"help": "folder of the study's results", "type": str}
+    )
 
 
 class LogHandler(LogHandlerBase):
@@ -39,6 +42,7 @@ class LogHandler(LogHandlerBase):
         """Before Snakemake says which jobs there are."""
         self.remaining: Remaining | None = None
         self.begun: set[str] = set()
+        self.interrupted = False
 
     def emit(self, record: LogRecord) -> None:
         """Write the line of a record, if it has one."""
@@ -54,12 +58,27 @@ class LogHandler(LogHandlerBase):
         else:
             failed = event in {LogEvent.JOB_ERROR, LogEvent.GROUP_ERROR}
             line = self.format(record) if failed or record.levelno >= WARNING else ""
+            line = self._told(line)
         if line:
             print(line, file=sys.stderr, flush=True)
 
+    def _told(self, words: str) -> str:
+        """Return what a reader needs of an error: nothing of jobs that were interrupted."""
+        if "died with <Signals.SIGINT" in words:
+            self.interrupted = True
+        if self.interrupted:
+            return ""
+        if not words.startswith("ConfigError in file"):
+            return words
+        # where in the rules the configuration was read
+        lines = words.splitlines()[1:]
+        return "\n".join(line for line in lines if not line.startswith('  File "'))
+
     def _all_jobs(self, stats: dict[str, int]) -> str:
         jobs = Counter({rule: n for rule, n in stats.items() if rule not in NO_STEPS})
-        self.remaining = Remaining(jobs, job_times(Path()), self.settings.cores or 1)
+        self.remaining = Remaining(
+            jobs, job_times(Path(), self.settings.results), self.settings.cores or 1
+        )
         return f"{len(jobs)} steps{self.remaining.words(time.monotonic())}"
 
     def _started(self, job: int, rule: str) -> str:
