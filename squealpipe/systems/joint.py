@@ -91,6 +91,14 @@ class Joint:
             self._holds[number] = self._held(number)
         return self._holds[number]
 
+    def sticks(self, number: int) -> np.ndarray:
+        """(surface,) whether what it watches rests there: held itself, or behind a spring."""
+        return self.holds(number)
+
+    def begins_at_zero(self, before: int, after: int) -> np.ndarray:  # noqa: ARG002
+        """(surface,) whether it is zero wherever this change of the regimes happens."""
+        return np.zeros(len(self.traced.surfaces), bool)
+
     def _held(self, number: int) -> np.ndarray:
         t, rng = self.traced, np.random.default_rng(2)
         names = [TIME, *self._states, *t.parameters, *t.constants]

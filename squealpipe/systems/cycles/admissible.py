@@ -60,13 +60,15 @@ def margins(cycle: Cycle) -> dict[Margin, float]:
             )
             by_margin |= _conditions(cycle, leg)
             continue
-        held = joint.holds(entry.before)
+        known = joint.holds(entry.before) | joint.begins_at_zero(
+            entry.before, event.before
+        )
         for watched, sign in ((joint.falls, 1.0), (joint.rises, -1.0)):
             for s in np.flatnonzero(watched(event.before) >= 0):
                 if t.clocks[s]:
                     by_margin |= _next_tick(cycle, leg, int(s), sign)
                     continue
-                fresh = entry.surface == s or held[s]
+                fresh = entry.surface == s or known[s]
                 # a surface that a leg starts from is watched after the leg's first millionth
                 # alone
                 begin = 1e-6 * duration if fresh else 0.0

@@ -47,7 +47,7 @@ def label_of(cycle: Cycle, zero: dict[Margin, float]) -> Label:
     joint, label = system.joint, Label.regular
     for margin in zero:
         event = cycle.map.events[margin.leg]
-        held = bool(joint.holds(event.before).any())
+        held = bool(joint.sticks(event.before).any())
         watched = (
             joint.falls(event.before)[margin.which],
             joint.rises(event.before)[margin.which],
@@ -55,31 +55,34 @@ def label_of(cycle: Cycle, zero: dict[Margin, float]) -> Label:
         own = margin.kind in {MarginKind.condition, MarginKind.length}
         switch = event.switch if own else int(max(watched))
         crosses = margin.kind in {MarginKind.touch, MarginKind.speed}
-        if (held or crosses or margin.kind == MarginKind.condition) and _of_hold(
-            system, switch, event.before
-        ):
+        lands = margin.kind == MarginKind.condition
+        if (held or crosses or lands) and _of_hold(system, switch, event.before, lands):
             return Label.stick_onset
         if crosses:
             label = Label.grazing
     return label
 
 
-def _of_hold(system: System, switch: int, among: int) -> bool:
+def _of_hold(system: System, switch: int, among: int, lands: bool) -> bool:
     """Tell whether a switch begins or ends a hold, as stick is one.
 
     It does if it may lead to a regime in which its surface stays constant, or if all regimes that
     it can leave hold a surface.
+
+    Args:
+        lands: whether any surface of its component counts, as where a landing may stick.
     """
     t, joint = system.traced, system.joint
     if not 0 <= switch < len(t.switches):
         return False
     leaves, surfaces = np.nonzero((t.falls == switch) | (t.rises == switch))
+    own = t.owner == t.owner[surfaces[0]] if lands else surfaces
     targets = [
         joint.entered(among, regime) for regime, _, _ in t.switches[switch].targets
     ]
     left = [joint.entered(among, regime) for regime in leaves.tolist()]
-    return any(joint.holds(target)[surfaces].any() for target in targets) or all(
-        joint.holds(each).any() for each in left
+    return any(joint.sticks(target)[own].any() for target in targets) or all(
+        joint.sticks(each).any() for each in left
     )
 
 
@@ -108,18 +111,23 @@ class NewOrder:
         """Return the first point in a new order, with a tangent that leads away, or None."""
         for equations, guess in (*self._runs(), *self._without()):
             started = self._started(equations, guess)
-            if started is not None and not self._jumps(started[1]):
+            if started is not None and not self._jumps(equations, guess, started[1]):
                 return started
         return None
 
-    def _jumps(self, cycle: Cycle) -> bool:
+    def _jumps(self, equations: EventMap, guess: Vector, cycle: Cycle) -> bool:
         """Tell whether a solution is far from the change, as beyond a reset of the state."""
         change = self.there[1]
         moved = (cycle.extremes - change.extremes)[
             :, : len(change.map.scale)
         ] / change.map.scale
+        # what vanishes at the change is small next to it; where a release lets a spring jump,
+        # solutions of the new order are not
+        near, there = margins(Cycle.at(equations, guess)), margins(cycle)
+        least = min(near, key=lambda key: near[key], default=None)
+        apart = least in there and there[least] > 5e-3 + abs(near[least])
         # beyond 1 % of the extent a solution is not next to the change of the events
-        return bool(np.abs(moved).max() > 1e-2)
+        return bool(apart or np.abs(moved).max() > 1e-2)
 
     def _runs(self) -> Iterator[tuple[EventMap, Vector]]:
         """Yield equations and guess of each new order that runs from just beyond show."""

@@ -27,16 +27,37 @@ class ContactJoint(Joint):
         super().__init__(numbering, ())
         self.numbering: Numbering = numbering
 
+    def _stuck(self, number: int) -> np.ndarray:
+        """(contact,) whether it, or the slider of its tangential spring, sticks."""
+        own = list(self.regimes(number))
+        constants = self.numbering.constants_of_regimes[own, regime_constant.is_stuck]
+        return np.asarray(constants > 0.0)
+
+    def _of_surfaces(self, rows: Sequence[int], contacts: np.ndarray) -> np.ndarray:
+        """(surface,) those of some contacts."""
+        shape = self.numbering.surfaces_of_a_contact, len(contacts)
+        chosen = np.zeros(shape, dtype=bool)
+        chosen[list(rows)] = contacts
+        return chosen.ravel()
+
     def _held(self, number: int) -> np.ndarray:
         """(surface,) the sliding speeds of contacts that stick."""
-        own = list(self.regimes(number))
-        held = np.zeros((self.numbering.surfaces_of_a_contact, len(own)), dtype=bool)
-        held[surface_number.lag] = (
-            self.numbering.constants_of_regimes[own, regime_constant.is_stuck] > 0.0
-        )
+        stuck = self._stuck(number)
         # a tangential spring lets the contact move while its slider sticks
-        held[surface_number.lag, [*self.numbering.sliders]] = False
-        return held.ravel()
+        stuck[[*self.numbering.sliders]] = False
+        return self._of_surfaces([surface_number.lag], stuck)
+
+    def sticks(self, number: int) -> np.ndarray:
+        """(surface,) the sliding speeds of contacts and sliders that stick."""
+        return self._of_surfaces([surface_number.lag], self._stuck(number))
+
+    def begins_at_zero(self, before: int, after: int) -> np.ndarray:
+        """(surface,) limits of friction of a slider that sticks from a landing or from slip."""
+        begins = np.zeros(self.numbering.n_components, bool)
+        sliders = [*self.numbering.sliders]
+        begins[sliders] = (self._stuck(after) & ~self._stuck(before))[sliders]
+        margins = surface_number.margin, surface_number.margin_back
+        return self._of_surfaces(margins, begins)
 
 
 class LinearSystem(System):
