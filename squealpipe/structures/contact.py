@@ -249,10 +249,16 @@ class Contact:
         return float(energy)
 
     def scaled(self, *, stiffness: float = 1.0, preload: float = 1.0) -> Self:
-        """Return the contact with its stiffness, or the forces of its table, and its preload times
-        factors.
+        """Return the contact with stiffness and preload times factors.
+
+        Stiffness is that of a linear contact, or the forces of a table, and that of a tangential
+        spring: a lining of a softer material is softer in both directions.
         """
-        changes: dict[str, Any] = {"preload": preload * self.preload}
+        spring = self.tangential_stiffness
+        changes: dict[str, Any] = {
+            "preload": preload * self.preload,
+            "tangential_stiffness": spring and stiffness * spring,
+        }
         if self.law is None:
             changes["stiffness"] = stiffness * float(self.stiffness or 0.0)
         elif stiffness != 1.0:

@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 
 from squealpipe import Contact, Structure, squeal_ladder, squealing_modes
 from squealpipe.structures import Face, elastic_pad
+from squealpipe.structures.assess.propensity import known_inputs
 from squealpipe.structures.meshes.face_entries import faces_in
 from squealpipe.structures.reduction import dependent_of
 from squealpipe.structures.units import scales_of
@@ -259,6 +260,18 @@ def test_sprung_contacts_may_be_more_than_modes():
     assert len(kinds) > 8
     assert times == pytest.approx([time for time, _ in known], abs=1e-13)
     assert states(system, run)[-1] == pytest.approx(path[-1], rel=1e-8, abs=1e-12)
+
+
+def test_a_softer_lining_is_softer_in_both_directions():
+    pad = elastic_pad(contacts=2)
+    contacts = [replace(pad.contacts[0], tangential_stiffness=3e7), pad.contacts[1]]
+    pad = pad.with_(contacts=contacts)
+    for name, factors in (("contact_stiffness", [0.5, 0.5]), ("p1", [0.5, 1.0])):
+        key = name if name == "contact_stiffness" else f"contact_stiffness_{name}"
+        softer = known_inputs(pad)[key](pad, 0.5)
+        assert (softer.stiffnesses / pad.stiffnesses).tolist() == factors
+        assert softer.tangential_stiffnesses.tolist() == [1.5e7, 0.0]
+        assert softer.contacts[1].tangential_stiffness is None
 
 
 def test_complex_modes_stay():

@@ -338,12 +338,7 @@ class Chamfer:
         before, after = structure.preloads[of_face].sum(), preloads[of_face].sum()
         preloads[of_face] *= before / after if after else 1.0
         contacts = [
-            replace(
-                contact.scaled(stiffness=share),
-                preload=float(preload),
-                tangential_stiffness=contact.tangential_stiffness
-                and share * contact.tangential_stiffness,
-            )
+            replace(contact.scaled(stiffness=share), preload=float(preload))
             for contact, share, preload in zip(
                 structure.contacts, kept.tolist(), preloads, strict=True
             )
