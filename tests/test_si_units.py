@@ -70,6 +70,7 @@ def without_curves(*charts):
 COSTLY = {
     "assess": pytest.mark.long,
     "limit_cycle": pytest.mark.release,
+    "boundary_distance": pytest.mark.release,
     "contact_boundary": pytest.mark.release,
     "smallest_disturbance": pytest.mark.release,
 }

@@ -38,9 +38,10 @@ def test_version_and_help_without_numerics(capsys):
     subprocess.run([sys.executable, "-c", code], capture_output=True, check=True)
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
+def test_an_output_that_exists_is_refused_at_once(tmp_path):
+    """Before anything that takes long is loaded, which each command would tell."""
+    (tmp_path / "there.nc").touch()
+    commands = [
         ["simulate", "1", "2"],
         ["assess", "1", "2"],
         [*SWEPT, "--vary", "mu=0,1"],
@@ -49,19 +50,21 @@ def test_version_and_help_without_numerics(capsys):
         ["ladder", "pad.yaml"],
         ["benchmark"],
         ["map", "stability"],
-    ],
-)
-def test_an_output_that_exists_is_refused_at_once(words, tmp_path):
-    (tmp_path / "there.nc").touch()
+    ]
     code = (
-        f"import sys; from squealpipe.cli import run; run({[*words, '-o', 'there.nc']});"
-        f"print(*sorted(set({HEAVY}) & set(sys.modules)))"
+        f"import sys; from squealpipe.cli import run\nfor words in {commands}:\n"
+        "    run([*words, '-o', 'there.nc'])\n"
+        f"    print(words, *sorted(set({HEAVY}) & set(sys.modules)))"
     )
     done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, check=True, cwd=tmp_path
+        [sys.executable, "-c", code],
+        capture_output=True,
+        check=True,
+        cwd=tmp_path,
+        text=True,
     )
-    assert b"there.nc exists; add --force" in done.stderr
-    assert not done.stdout.strip()
+    assert done.stdout.splitlines() == [f"{words}" for words in commands]
+    assert done.stderr.count("there.nc exists; add --force") == len(commands)
 
 
 @pytest.mark.parametrize(

@@ -49,7 +49,11 @@ def mass_in(pixels):
 
 
 @pytest.mark.parametrize(
-    ("belt_speed", "degrees"), [(2.0, (22.0, 46.0)), (-3.0, (150.0, 135.0))]
+    ("belt_speed", "degrees"),
+    [
+        pytest.param(2.0, (22.0, 46.0), marks=pytest.mark.release),
+        (-3.0, (150.0, 135.0)),
+    ],
 )
 def test_the_drawn_mass_is_where_the_dataset_says(belt_speed, degrees, tmp_path):
     pad = simulate(PAD.with_(belt_speed=belt_speed), *np.radians(degrees), t_end=0.1)

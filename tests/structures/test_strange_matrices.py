@@ -26,8 +26,8 @@ def with_fixed(penalty, **further):
     return Structure(np.eye(3), stiffness, contacts=[CONTACT], mu=1.0, **further)
 
 
-@pytest.mark.parametrize("penalty", [1e12, 1e16, 1e18, 1e20, 1e22, 1e28, 1e36])
-@pytest.mark.parametrize("damping", [0.0, 1e-4, 3e-3])
+@pytest.mark.parametrize("penalty", [1e12, 1e16, 1e20, 1e36])
+@pytest.mark.parametrize("damping", [0.0, 3e-3])
 def test_a_penalty_fixes_a_degree_of_freedom_and_changes_nothing_else(penalty, damping):
     modes = with_fixed(penalty, modal_damping=damping).complex_modes()
     alone = Structure(

@@ -194,7 +194,16 @@ SCATTERED = {
 }
 
 
-@pytest.mark.parametrize("name", SCATTERED)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(
+            name,
+            marks=[pytest.mark.release] * (name in ("log range", "one number a run")),
+        )
+        for name in SCATTERED
+    ],
+)
 def test_parts_joined_are_the_whole_bit_for_bit(name, tmp_path):
     plan = Sweep(params=FORMER, **SCATTERED[name])
     whole = run_sweep(plan)

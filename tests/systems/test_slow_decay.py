@@ -27,9 +27,7 @@ def label(system, **options):
     return meanings(cycle.outcome)[int(cycle.outcome)]
 
 
-@pytest.mark.parametrize(
-    "d", [5e-12, 1e-11, 2e-11, -2e-11, 5e-11, 1e-10, -1e-10, 2e-10, 5e-10, -1e-7, 1e-3]
-)
+@pytest.mark.parametrize("d", [5e-12, -2e-11, 1e-10, -1e-7, 1e-3])
 def test_what_decays_or_grows_beyond_round_off_is_unsettled(d):
     assert label(pendulum, d=d) == "unsettled"
 

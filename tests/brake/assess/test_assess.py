@@ -121,7 +121,9 @@ def test_a_pad_that_squeals_in_stick_slip(squealing):
     assert float(squealing.impact_rate) == 0.0
 
 
-@pytest.mark.parametrize("cure", ["mu", "belt_speed"])
+@pytest.mark.parametrize(
+    "cure", ["mu", pytest.param("belt_speed", marks=pytest.mark.release)]
+)
 def test_the_boundary_of_a_cure_has_noise_on_one_side_and_none_on_the_other(
     squealing, cure
 ):

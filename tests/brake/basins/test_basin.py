@@ -19,7 +19,7 @@ SHARES = {1.25: 0.08019692, 1.4: 0.21226526, 1.55: 0.35659639, 1.7: 0.49411159}
     ("speed", "starts"),
     [
         (1.25, 1000),
-        (1.55, 1000),
+        pytest.param(1.55, 1000, marks=pytest.mark.release),
         *(pytest.param(v, 5_000, marks=pytest.mark.release) for v in (1.4, 1.7)),
     ],
 )

@@ -31,7 +31,9 @@ def followed(*squares):
     return found
 
 
-@pytest.mark.parametrize("speed", [100.0, -100.0, 0.8])
+@pytest.mark.parametrize(
+    "speed", [100.0, pytest.param(-100.0, marks=pytest.mark.release), 0.8]
+)
 def test_the_second_reading_has_the_boundary_that_it_has_alone(speed):
     """At 100 it is taken from the first one; over a slow belt masses stick, and it differs."""
     (_, runs), (second, more) = followed(

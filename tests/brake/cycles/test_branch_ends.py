@@ -105,6 +105,7 @@ def test_branch_ends_on_the_cycle_of_half_the_period():
     np.testing.assert_allclose(parameter[folds[:2]], [-1.879322, -1.879525], atol=1e-6)
 
 
+@pytest.mark.release
 def test_a_touch_of_stick_that_would_jump_ends_the_branch():
     """With a static coefficient of its own, a mass that touches belt speed stays there."""
     params = FORMER.with_(
@@ -169,6 +170,7 @@ def test_a_branch_ends_where_the_cycle_shrinks_to_rest():
     np.testing.assert_allclose(back.mu[-1], born.mu[0], rtol=1e-2)
 
 
+@pytest.mark.release
 def test_a_hammering_cycle_shrinks_to_rest_at_the_edge_of_contact():
     """It keeps both its events: the springs alone then balance just where contact begins."""
     params = FORMER.with_(

@@ -294,6 +294,7 @@ def test_round_off_of_a_start_does_not_decide_whether_a_grazing_curve_goes_on():
         np.testing.assert_allclose(curve.mu[[0, -1]], curves[0].mu[[0, -1]], rtol=1e-9)
 
 
+@pytest.mark.release
 def test_where_folds_are_onsets_of_stick_round_off_makes_no_special_points():
     """Beyond where a curve of folds meets the onset of stick, branches turn at that onset.
 

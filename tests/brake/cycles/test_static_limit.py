@@ -152,9 +152,8 @@ def test_cycles_change_with_each_parameter_as_their_equations_say(cycle, name):
     assert np.abs(equations(state.point[-1:])[1]).max() > 1e-4
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param("k1", marks=pytest.mark.release), "damping1"]
-)
+@pytest.mark.release
+@pytest.mark.parametrize("name", ["k1", "damping1"])
 def test_an_onset_of_stick_is_followed_in_stiffness_and_damping(pad, name):
     over_speed = cycle_branch(pad, *ANGLES, parameter="belt_speed", to=1.0)
     curve = cycle_curve(

@@ -116,7 +116,8 @@ def si_parameters(rng, *, damped):
 
 
 @pytest.mark.parametrize(
-    ("damped", "t_end", "least"), [(True, 500.0, 0), (False, 1000.0, 50)]
+    ("damped", "t_end", "least"),
+    [(True, 500.0, 0), pytest.param(False, 1000.0, 50, marks=pytest.mark.release)],
 )
 def test_a_motion_on_a_torus_is_one_at_twice_the_time(damped, t_end, least):
     """Damped motion never is; without friction and dashpots a quarter of the cells is."""

@@ -28,7 +28,14 @@ OTHERS = {
         pytest.param(241, 31, 200.0, 0.2, marks=pytest.mark.release),
     ],
 )
-@pytest.mark.parametrize("params", OTHERS.values(), ids=OTHERS)
+@pytest.mark.parametrize(
+    "params",
+    [
+        pytest.param(params, marks=[pytest.mark.release] * name.endswith("springs"))
+        for name, params in OTHERS.items()
+    ],
+    ids=OTHERS,
+)
 def test_inherited_cells_are_as_wrong_as_measured(params, points, coarse, t_end, most):
     angles = np.linspace(0.0, np.pi, points)
     refined = refine_validity_map(params, resolution=points, coarse=coarse, t_end=t_end)

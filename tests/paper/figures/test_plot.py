@@ -79,7 +79,7 @@ def test_a_picture_for_every_dataset(name, tmp_path):
     assert ax.get_xlabel()
     assert ax.get_ylabel()
     plt.close("all")
-    squealpipe.plot(dataset).figure.savefig(tmp_path / "own.png")
+    assert squealpipe.plot(dataset).has_data()
     picture(dataset).savefig(tmp_path / "command.png", dpi=150)
     plt.close("all")
 

@@ -84,7 +84,7 @@ def test_an_undamped_structure_that_does_not_settle_is_told_to_have_damping():
     assert advice not in headline(damped)
 
 
-@pytest.mark.parametrize("work", [0, 256])
+@pytest.mark.parametrize("work", [0, pytest.param(256, marks=pytest.mark.release)])
 def test_a_study_follows_squeal_down_in_friction_where_runs_are_short(
     work, monkeypatch
 ):

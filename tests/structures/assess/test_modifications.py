@@ -63,7 +63,13 @@ def crossings(argument, grid):
     ]
 
 
-@pytest.mark.parametrize("cure", list(OTHERS))
+@pytest.mark.parametrize(
+    "cure",
+    [
+        pytest.param(n, marks=[pytest.mark.release] * (row > 1))
+        for row, n in enumerate(OTHERS)
+    ],
+)
 def test_linear_boundaries_of_cures_are_those_of_own_eigenvalues(cure):
     assert growth() > 0.0
     design = Design.of(two_degrees())
