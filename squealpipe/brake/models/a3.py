@@ -127,16 +127,19 @@ def plane(p: Any, alpha1: Any, alpha2: Any) -> Any:
     return p.k1 * np.exp(2j * alpha1) + p.k2 * np.exp(-2j * alpha2)
 
 
-def angles_from_plane(z: Any, p: Any) -> tuple[np.ndarray, np.ndarray]:
+def angles_from_plane(
+    z: Any, p: Any, *, both: bool = True
+) -> tuple[np.ndarray, np.ndarray]:
     """Both pairs (α1, α2) in [0, π) with :func:`plane` = z, rad, as two arrays (2, *z.shape).
 
     Args:
         z: complex array, N/m, within the reach |k1 − k2| ≤ |z| ≤ k1 + k2 and not 0.
+        both: else the first pair alone, (1, *z.shape).
     """
     length = np.abs(z)
     cosine = (length * length + p.k1 * p.k1 - p.k2 * p.k2) / (2.0 * p.k1 * length)
     spread = np.arccos(np.clip(cosine, -1.0, 1.0))
-    doubled = np.angle(z) + np.stack([spread, -spread])
+    doubled = np.angle(z) + np.stack([spread, -spread] if both else [spread])
     rest = z - p.k1 * np.exp(1j * doubled)
     return np.mod(0.5 * doubled, np.pi), np.mod(-0.5 * np.angle(rest), np.pi)
 

@@ -4,10 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from squealpipe.brake.a1.ensemble import Ensemble
 from squealpipe.laws.springs import springs_are_equal
 from squealpipe.paper.inference.candidates import Candidates
 from squealpipe.paper.inference.unstable_cells import midpoints
 from squealpipe.parameters import HORIZON
+from squealpipe.reading import READINGS
 from squealpipe.schema import Outcome
 
 MAP_SIZES, CLEAR = (12, 24, 48), 0.6
@@ -30,7 +32,31 @@ def separating_share(
 
 
 def _share(candidates: Candidates, number: int) -> np.ndarray:
-    """Share of the midpoints, ``number`` an axis, at which contact is lost."""
+    """Share of the midpoints, ``number`` an axis, at which contact is lost.
+
+    Readings share it: on a belt along −x the mass moves at (α1, α2) as the mirror image of what it
+    does at (α2, α1) on one along +x, and by Eq. (4) as printed as on a belt along −x while it is
+    slower than the belt.
+    """
+    known = candidates.known_shares
+    if known is None:
+        return _run_map(candidates, number)[0]
+    sizes = np.stack([np.abs(values) for values in candidates.fields.values()], axis=-1)
+    sets = [(number, *row) for row in sizes.tolist()]
+    model = candidates.model
+    models = {reading.a1_model for reading in READINGS.values()}
+    left = np.array([(model, each) not in known for each in sets], bool)
+    if left.any():
+        rows = np.flatnonzero(left)
+        shares, slow = _run_map(candidates.subset(rows), number)
+        for row, share, is_slow in zip(rows, shares, slow, strict=True):
+            for name in models if is_slow else {model}:
+                known[name, sets[row]] = share
+    return np.array([known[model, each] for each in sets])
+
+
+def _run_map(candidates: Candidates, number: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return that share, and where the mass stayed slower than the belt if that was watched."""
     alpha1, alpha2 = midpoints(number)
     weight = np.ones(alpha1.size)
     if springs_are_equal(candidates.fields):
@@ -38,9 +64,15 @@ def _share(candidates: Candidates, number: int) -> np.ndarray:
         below = middle | (alpha1 + alpha2 < np.pi)
         weight = np.where(middle, 1.0, 2.0)[below]
         alpha1, alpha2 = alpha1[below], alpha2[below]
-    rows = np.arange(candidates.size)[:, None]
-    outcome = _outcome(candidates.subset(rows), alpha1, alpha2)
-    return np.asarray((outcome == Outcome.separated) @ weight / number**2)
+    printed = READINGS["as_printed"].a1_model
+    watched = candidates.known_shares is not None and candidates.model == printed
+    some = candidates.subset(np.arange(candidates.size)[:, None])
+    runs = _runs(some, alpha1, alpha2, ("vx",) if watched else ())
+    slow = np.zeros(candidates.size, bool)
+    if watched:
+        slow = runs.early_max_vx.max(axis=1) < np.abs(candidates.fields["belt_speed"])
+    lost = runs.outcome == Outcome.separated
+    return np.asarray(lost @ weight / number**2), slow
 
 
 def keeping_share(candidates: Candidates) -> np.ndarray:
@@ -64,24 +96,25 @@ def keeping_share(candidates: Candidates) -> np.ndarray:
         alpha1, alpha2 = (
             np.concatenate([*(cell[i] for cell in cells), []]) for i in (0, 1)
         )
-        kept = (
-            _outcome(candidates.subset(left[owner]), alpha1, alpha2)
-            == Outcome.converged
-        )
+        runs = _runs(candidates.subset(left[owner]), alpha1, alpha2)
+        kept = runs.outcome == Outcome.converged
         share[left] = np.bincount(owner[kept], minlength=left.size) / np.maximum(
             number, 1
         )
     return share
 
 
-def _outcome(
-    candidates: Candidates, alpha1: np.ndarray, alpha2: np.ndarray
-) -> np.ndarray:
-    """``separated`` where A1 loses contact from rest by ``HORIZON``, else how its run ended."""
-    shape = np.broadcast_shapes(candidates.fields["mu"].shape, alpha1.shape)
-    if 0 in shape:
-        return np.zeros(shape, np.int8)
-    t_end = HORIZON * candidates.time_unit
+def _runs(
+    candidates: Candidates,
+    alpha1: np.ndarray,
+    alpha2: np.ndarray,
+    tracked: tuple[str, ...] = (),
+) -> Ensemble:
+    """Runs from rest to ``HORIZON``, which end where contact is lost."""
     return candidates.ensemble(
-        alpha1, alpha2, t_end=t_end, stop_at_first_separation=True, tracked=()
-    ).outcome
+        alpha1,
+        alpha2,
+        t_end=HORIZON * candidates.time_unit,
+        stop_at_first_separation=True,
+        tracked=tracked,
+    )

@@ -41,6 +41,8 @@ class Candidates:
             end as soon as the sign is known.
         sampled: whether the starts are a random sample. What is chance then shows in the share of
             it that meets a statement, and none is judged from several starts.
+        known_shares: A1's model and a set, whose springs are equal and whose friction is the
+            paper's, → share of the angle map on which it separates, which readings share.
     """
 
     fields: Mapping[str, np.ndarray]
@@ -50,6 +52,7 @@ class Candidates:
     model: str = "A1"
     exact: bool = True
     sampled: bool = False
+    known_shares: dict[tuple[Any, ...], float] | None = None
 
     @classmethod
     def of(cls, *params: Parameters, tol: float, workers: int | None = 1) -> Self:
@@ -200,17 +203,17 @@ class Candidates:
             return np.array([params.drag for params in self.extended])
         return np.asarray(direction_of(self.fields["belt_speed"]) * self.fields["mu"])
 
-    @cached_property
-    def unstable(self) -> list[Unstable]:
-        """Angles at which A3 is unstable, of each set."""
-        return self.unstable_cells(INSIDE)
+    def unstable_cells(self, inside: float = INSIDE, every: int = 1) -> list[Unstable]:
+        """Return angles at which A3 is unstable, of each set.
 
-    def unstable_cells(self, inside: float) -> list[Unstable]:
-        """Return unstable cells at this distance, in radii, from the centre of the flutter disc."""
+        Args:
+            inside: their distance, in radii, from the centre of the disc of flutter.
+            every: one in so many of them is looked for, where they lie along edges.
+        """
         if self.extended:
             return [unstable_cells(params, inside=inside) for params in self.extended]
         fields = {**self.fields, "drag": self.drag}
-        return unstable_along_edges(fields, inside=inside)
+        return unstable_along_edges(fields, inside=inside, every=every)
 
 
 def sets_of(
@@ -229,4 +232,4 @@ def sets_of(
         "length2": groups["length_ratio"],
         "belt_speed": groups["speed_ratio"],
     }
-    return Candidates(fields, tol, workers)
+    return Candidates(fields, tol, workers, known_shares={})

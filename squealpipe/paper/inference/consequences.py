@@ -19,7 +19,7 @@ CONSEQUENCES: dict[str, str] = {
 
 def judge_consequences(candidates: Candidates) -> dict[str, np.ndarray]:
     """Return whether each consequence holds at each parameter set: key → booleans."""
-    pairs = zip(candidates.sets, candidates.unstable, strict=True)
+    pairs = zip(candidates.sets, candidates.unstable_cells(), strict=True)
     per_pair = [_linear(params, cells) for params, cells in pairs]
     return {
         key: np.array([verdict[key] for verdict in per_pair], bool)

@@ -14,11 +14,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squealpipe.brake.models import a2
-from squealpipe.brake.models.contact_system import contact_system
 from squealpipe.brake.models.damped import damped_system, is_undamped, stability
 from squealpipe.codes import LinearRegime
 from squealpipe.laws.dashpots import linear_damping
-from squealpipe.laws.springs import geometry
+from squealpipe.laws.springs import geometry, linear_stiffness
 from squealpipe.paper.inference.angle_maps import keeping_share, separating_share
 from squealpipe.paper.inference.candidates import Candidates, StatementMargin
 from squealpipe.paper.schema.growth import RULE, GrowthRule, growth_margin
@@ -326,20 +325,30 @@ def _jumps(candidates: Candidates) -> StatementMargin:
     "the unstable cells",
 )
 def _unstable_only_without_sliding(candidates: Candidates) -> StatementMargin:
-    unstable = candidates.unstable
+    share = np.zeros(candidates.size)
+    # unless margins are wanted, one cell in 16 comes first: one that fulfils it decides
+    for every in (1,) if candidates.exact else (16, 1):
+        left = np.flatnonzero(share == 0)
+        share[left] = _sliding_share(candidates.subset(left), every)
+    return _closed(np.where(share > 0, -share, 1.0))
+
+
+def _sliding_share(candidates: Candidates, every: int) -> np.ndarray:
+    """Share of the unstable cells that fulfil Eq. (11) as printed; 0 of none."""
+    unstable = candidates.unstable_cells(every=every)
     number = np.array([cells.alpha1.size for cells in unstable], int)
     owner = np.repeat(np.arange(candidates.size), number)
     alpha1, alpha2 = (
         np.concatenate([*(cells[i] for cells in unstable), []]) for i in (0, 1)
     )
     p = SimpleNamespace(
-        **{name: field[owner] for name, field in candidates.fields.items()},
-        drag=candidates.drag[owner],
+        **{name: field[owner] for name, field in candidates.fields.items()}
     )
-    springs = contact_system(p, alpha1, alpha2).stiffness
-    allowed = a2.possible_as_printed(springs, np.abs(p.drag))
+    allowed = a2.possible_as_printed(
+        linear_stiffness(p, geometry(alpha1, alpha2)), candidates.drag[owner]
+    )
     count = np.bincount(owner[allowed], minlength=candidates.size)
-    return _closed(np.where(count > 0, -count / np.maximum(number, 1), 1.0))
+    return np.asarray(count / np.maximum(number, 1))
 
 
 @constrains(

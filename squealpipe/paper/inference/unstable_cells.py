@@ -51,12 +51,13 @@ def unstable_cells(params: Parameters, *, inside: float = INSIDE) -> Unstable:
 
 
 def unstable_along_edges(
-    fields: Mapping[str, np.ndarray], *, inside: float
+    fields: Mapping[str, np.ndarray], *, inside: float, every: int = 1
 ) -> list[Unstable]:
     """Find unstable cells of many sets without dashpots, whose friction does not depend on speed.
 
     Args:
         fields: parameters by name, and ``drag``, (sets,).
+        every: one in so many points along each edge is looked at.
     """
     cells: list[Unstable] = []
     # sets whose cells are looked for at once: half a megabyte an array
@@ -68,7 +69,7 @@ def unstable_along_edges(
         )
         p.drag = np.asarray(fields["drag"])[rows, None]
         mirrored = springs_alike({n: v[rows] for n, v in fields.items()})
-        alpha1, alpha2, there = _along_edges(p, mirrored, inside)
+        alpha1, alpha2, there = _along_edges(p, mirrored, inside, every)
         regime = np.asarray(a3.regime(contact_system(p, alpha1, alpha2).invariants))
         cells += [
             _where(
@@ -110,7 +111,7 @@ def midpoints(number: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _along_edges(
-    p: Any, mirrored: np.ndarray, inside: float
+    p: Any, mirrored: np.ndarray, inside: float, every: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return angles, rad, among which some are unstable if any are, and which of them exist.
 
@@ -121,24 +122,27 @@ def _along_edges(
         p: parameters, each (sets, 1).
         mirrored: whether (α1, α2) and (π − α2, π − α1), which have the same Z, also have the same
             motion, (sets,).
+        every: one in so many of these points is taken.
     """
     farthest, nearest = p.k1 + p.k2, np.abs(p.k1 - p.k2)
     centre, radius = a3.flutter_circle(p, p.k3)
     # points around the disc of flutter
     points_on_the_rim = 192
-    turn = (np.arange(points_on_the_rim) + 0.5) * (2.0 * np.pi / points_on_the_rim)
+    number = np.arange(0, points_on_the_rim, every)
+    turn = (number + 0.5) * (2.0 * np.pi / points_on_the_rim)
     flutter = centre + inside * radius * np.exp(1j * turn)
     # points along each arc that bounds divergence
     arcs = a3.reached_arcs(p, *a3.divergence_circle(p, p.k3), 24)
-    edge = np.concatenate([arc[:, 1:-1] for arc in arcs], axis=1)
+    edge = np.concatenate([arc[:, 1:-1:every] for arc in arcs], axis=1)
     z = np.concatenate([flutter, edge * 0.5 * (1.0 + farthest / np.abs(edge))], axis=1)
     with np.errstate(invalid="ignore"):  # NaN where the circle is not reached
         there = (np.abs(z) < farthest) & (
             np.abs(z) > np.maximum(nearest, 1e-9 * farthest)
         )
-    alpha1, alpha2 = a3.angles_from_plane(np.where(there, z, farthest), p)
-    both = np.stack([there, there & ~mirrored[:, None]])
-    first, second, known = (
-        np.concatenate(list(each), axis=1) for each in (alpha1, alpha2, both)
+    both = not mirrored.all()
+    alpha1, alpha2 = a3.angles_from_plane(np.where(there, z, farthest), p, both=both)
+    known = np.stack([there, there & ~mirrored[:, None]][: len(alpha1)])
+    first, second, exists = (
+        np.concatenate(list(each), axis=1) for each in (alpha1, alpha2, known)
     )
-    return first, second, known
+    return first, second, exists

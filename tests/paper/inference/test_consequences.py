@@ -17,11 +17,11 @@ from squealpipe.laws.springs import springs_are_equal
 from squealpipe.paper.inference.angle_maps import (
     CLEAR,
     MAP_SIZES,
-    _outcome,
+    _runs,
     keeping_share,
     separating_share,
 )
-from squealpipe.paper.inference.candidates import Candidates
+from squealpipe.paper.inference.candidates import Candidates, sets_of
 from squealpipe.paper.inference.consequences import judge_consequences
 from squealpipe.paper.inference.constraints import (
     Stage,
@@ -29,6 +29,7 @@ from squealpipe.paper.inference.constraints import (
     measure,
 )
 from squealpipe.parameters import SCENES
+from squealpipe.reading import READINGS
 from squealpipe.schema import Outcome
 from tests.former import FORMER
 from tests.paper.inference.parameter_sets import random_sets
@@ -132,7 +133,7 @@ def test_the_black_region_is_where_a_map_shows_it(likely):
     for i, params in enumerate(candidates.sets):
         unstable = a3.regime(contact_system(params, *cells).invariants) > 0
         one = candidates.subset(np.full(unstable.sum(), i))
-        outcome = _outcome(one, cells[0][unstable], cells[1][unstable])
+        outcome = _runs(one, cells[0][unstable], cells[1][unstable]).outcome
         seen.append((outcome == Outcome.converged).mean())
     assert ((share > 0) != (np.array(seen) > 0)).sum() <= 2
     assert np.corrcoef(share, seen)[0, 1] > 0.9
@@ -157,6 +158,36 @@ def test_the_separating_share_has_converged(likely):
             for each in (few, unequal)
         )
     )
+
+
+def test_readings_share_what_the_mass_does_below_the_speed_of_the_belt(likely):
+    """Shares that were taken over from another reading, against runs in each; no slow belt's."""
+    groups = {
+        "kappa": likely["k3"][:8],
+        "mu": likely["mu"][:8],
+        "length_ratio": likely["length1"][:8],
+        "speed_ratio": np.geomspace(0.1, 300.0, 8),
+    }
+    sets = sets_of(groups, tol=1e-9, workers=1)
+    runs = []
+    for name in READINGS:
+        read = sets.read(name)
+        alone = separating_share(replace(read, known_shares=None), angles=(12,))
+        np.testing.assert_array_equal(separating_share(read, angles=(12,)), alone)
+        runs.append(alone)
+    assert (runs[0] != runs[1]).any()
+    assert len(sets.known_shares) == 16
+
+
+def test_few_of_the_unstable_cells_say_which_set_eq_11_refutes(likely):
+    """The verdict by cells of which one in 16 comes first, against that by all of them."""
+    exact = Candidates(likely, 1e-9)
+    margins = [
+        _unstable_only_without_sliding(each).margin
+        for each in (exact, replace(exact, exact=False))
+    ]
+    np.testing.assert_array_equal(*(margin > 0 for margin in margins))
+    assert 0 < (margins[0] > 0).sum() < exact.size
 
 
 @pytest.mark.release
