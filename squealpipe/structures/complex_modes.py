@@ -18,7 +18,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.inputs import FRICTION_KEYWORDS, UNITS, with_units
-from squealpipe.schema import Outcome, build, find
+from squealpipe.schema import Outcome, build
 from squealpipe.structures.confirming import ConfirmedWay
 from squealpipe.structures.critical_speeds import critical_speeds
 from squealpipe.structures.definition import ContactStructure
@@ -27,7 +27,7 @@ from squealpipe.structures.meshes.datasets import mesh_variables
 from squealpipe.structures.mode_shapes import shape_variables
 from squealpipe.structures.numbering import Way
 from squealpipe.structures.pencil import DENSE
-from squealpipe.structures.schema.structures import name_over
+from squealpipe.structures.schema.structures import modes_over
 from squealpipe.structures.sliding import NoSlidingError
 from squealpipe.structures.spectrum import Solver, Spectrum
 from squealpipe.systems.datasets.versions import versions
@@ -221,7 +221,7 @@ def _dataset(structure: ContactStructure, asked: Asked) -> xr.Dataset:
         ),
         **versions(),
     }
-    dataset = build(find(name_over(dims)), modes | shapes | of_mesh, coords, attrs)
+    dataset = build(modes_over(dims), modes | shapes | of_mesh, coords, attrs)
     if structure.rotation is not None:
         for name in {"belt_speed", "critical_speed"} & set(dataset.variables):
             dataset[name].attrs["units"] = structure.speed_unit

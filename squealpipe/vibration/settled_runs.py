@@ -191,30 +191,42 @@ def settle(
             if regimes is None:
                 regimes = np.zeros((count, ran.regimes.shape[1]), ran.regimes.dtype)
             elapsed[rows] += length[rows]
+            growing, whole = horizon.growth_windows, []
             for index, row in enumerate(rows):
                 now = ran.row(index)
+                windows[row].append(now)
                 if stop_is_asked() and now.length < (1.0 - 1e-9) * length[row]:
-                    windows[row].append(now)  # cut short: shown, not judged
+                    # cut short: shown, not judged
                     elapsed[row] += float(now.length) - length[row]
                     continue
-                windows[row].append(now)
-                late = bool(elapsed[row] >= (1.0 - 1e-9) * horizon.most[row])
-                growing = horizon.growth_windows
-                run = _judged(starts[row], windows[row], rules, growing)
-                run = run or _arrived(starts[row], windows[row], known, rules, merged)
-                if run is None and (late or not now.finished):
-                    run = _unsettled(starts[row], windows[row], growing)
-                if run is not None:
-                    settled[row] = replace(
-                        run, elapsed=float(elapsed[row]), windows=windows[row]
-                    )
                 states[row], regimes[row] = now.final, now.regimes
+                whole.append(row)
+                run = _judged(starts[row], windows[row], rules, growing)
+                _keep(settled, row, run, windows[row], elapsed[row])
+            if told is not None:
+                told(settled, elapsed)
+            # what has just become known may be the motion of others, which need no further window
+            late = elapsed >= (1.0 - 1e-9) * horizon.most
+            for row in [row for row in whole if row not in settled]:
+                run = _arrived(starts[row], windows[row], known, rules, merged)
+                run = run or _unsettled(starts[row], windows[row], growing, late[row])
+                _keep(settled, row, run, windows[row], elapsed[row])
             turn += 1
             length = _next_lengths(length, turn, windows, horizon, second)
             length = np.minimum(length, horizon.most - elapsed)
-            if told is not None:
-                told(settled, elapsed)
     return [settled[row] for row in range(count)]
+
+
+def _keep(
+    settled: dict[int, SettledRun],
+    row: int,
+    run: SettledRun | None,
+    windows: Sequence[Any],
+    elapsed: float,
+) -> None:
+    """Keep a run that has settled, with all its windows and the time that they took, s."""
+    if run is not None:
+        settled[row] = replace(run, elapsed=float(elapsed), windows=windows)
 
 
 def _next_lengths(
@@ -326,9 +338,17 @@ def _arrived(
     return None
 
 
-def _unsettled(start: Start, windows: list[Any], growth_windows: int) -> SettledRun:
-    """Return what a motion is that has not settled within its horizon."""
+def _unsettled(
+    start: Start, windows: list[Any], growth_windows: int, late: bool
+) -> SettledRun | None:
+    """Return what a motion is that has not settled when it ends; None if it goes on.
+
+    Args:
+        late: whether its horizon is reached.
+    """
     now, compared = windows[-1], len(windows) > growth_windows + 1
+    if now.finished and not late:
+        return None
     if now.finished and compared and _decays(start, windows[-2], now):
         return SettledRun(Verdict.quiet, now, 0.0)  # too slowly to become small
     return SettledRun(Verdict.undetermined, now, 0.0, change=np.inf)

@@ -61,17 +61,13 @@ class SpeedOnset(IntEnum):
     turns_stable = 4
 
 
-def name_over(dims: tuple[str, ...]) -> str:
-    """The schema's name for modes over these factors."""
-    return f"{NAME} over {', '.join(dims)}" if dims else NAME
-
-
-def _modes(dims: tuple[str, ...]) -> DatasetSchema:
+def modes_over(dims: tuple[str, ...]) -> DatasetSchema:
+    """Return the schema of modes over these factors."""
     mode, contact = (*dims, "mode"), (*dims, "contact")
     along = tuple(dim for dim in dims if dim != "mu")
     across = tuple(dim for dim in dims if dim != "belt_speed")
     return DatasetSchema(
-        name=name_over(dims),
+        name=f"{NAME} over {', '.join(dims)}" if dims else NAME,
         title="Complex modes of a structure about steady sliding",
         coordinates={
             "mode": count("mode, by ascending frequency at the first friction", "mode"),
@@ -188,7 +184,7 @@ def _modes(dims: tuple[str, ...]) -> DatasetSchema:
 
 
 complex_modes_schemas = tuple(
-    _modes(dims) for dims in ((), ("mu",), ("belt_speed",), ("mu", "belt_speed"))
+    modes_over(dims) for dims in ((), ("mu",), ("belt_speed",), ("mu", "belt_speed"))
 )
 
 
@@ -214,4 +210,4 @@ def derived(name: str) -> DatasetSchema | None:
             contact and what in OF_CONTACT
         ):
             return None
-    return _modes(dims)
+    return modes_over(dims)

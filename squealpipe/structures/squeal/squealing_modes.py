@@ -165,7 +165,7 @@ def squealing_of(
         settled, numbers, modes = _attractors(plant, settled, len(pushes), t_end, how)
     if plant.obstacle:
         numbers = np.full(len(starts), NO_ATTRACTOR)
-    members = _members(settled, numbers) if settled else []
+    members = _members(plant, settled, numbers) if settled else []
     of_mode = _of_modes(plant, settled[: len(pushes)], numbers, modes)
     of_attractor = _of_attractors(plant, members, modes)
     shares = _shares(numbers[len(pushes) :], len(members))
@@ -328,7 +328,7 @@ def _attractors(
     most_continuations = 4
     for turn in range(most_continuations + 1):
         numbers = grouped(settled, pushes)
-        members = _members(settled, numbers)
+        members = _members(plant, settled, numbers)
         modes = [of(runs[0]) for runs in members]
         done = turn == most_continuations or stop_is_asked()
         if done or not any(mode.leaves for mode in modes):
@@ -348,12 +348,18 @@ def _attractors(
     return settled, numbers, modes
 
 
-def _members(settled: list[SettledRun], numbers: np.ndarray) -> list[list[SettledRun]]:
-    """Runs of each attractor, the longest first."""
+def _members(
+    plant: Plant, settled: list[SettledRun], numbers: np.ndarray
+) -> list[list[SettledRun]]:
+    """Runs of each attractor, the longest first, which has the least of a transient.
+
+    Of an irregular motion, which has none, the run comes first whose neighbours are known.
+    """
+    lost = {id(run) for run, apart in plant.neighbours if apart.loses_neighbours}
     return [
         sorted(
             (run for run, at in zip(settled, numbers, strict=True) if at == number),
-            key=lambda run: -run.elapsed,
+            key=lambda run: (id(run) not in lost, -run.elapsed),
         )
         for number in range(numbers.max(initial=NO_ATTRACTOR) + 1)
     ]

@@ -11,7 +11,9 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
+from xarray.indexes import PandasIndex
 
 from squealpipe.systems.datasets.agreement import Listing, RoundOff
 from squealpipe.systems.datasets.outcomes import Outcome as Outcome
@@ -296,7 +298,15 @@ def build(
                 raise SchemaError(f"{schema.name}: {name}: {error}") from error
             arrays[name] = array
     of_coordinates = {name: variables.pop(name) for name in coords}
-    dataset = xr.Dataset(variables, of_coordinates)
+    # xarray would import pint, in 0.15 s, to make an index of an array
+    indexes = {
+        name: PandasIndex(pd.Index(arrays[name]), name, arrays[name].dtype)
+        for name, variable in of_coordinates.items()
+        if variable.dims == (name,)
+    }
+    for name, index in indexes.items():
+        of_coordinates |= index.create_variables({name: of_coordinates[name]})
+    dataset = xr.Dataset(variables, xr.Coordinates(of_coordinates, indexes))
     dataset.attrs = {
         "Conventions": "CF-1.11",
         "title": schema.title,
