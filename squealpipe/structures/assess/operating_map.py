@@ -33,14 +33,15 @@ def operating_map(
     measured: Any = None,
     frequency_band: Positive = 0.05,
     band_edges: Any = None,
-    tol: Tolerance = 1e-9,
+    tol: Tolerance = 1e-12,
     workers: Workers = None,
 ) -> xr.Dataset:
     """Find which operating points of a structure are noisy, at which frequency, and how loud.
 
     At each point steady sliding is pushed by 1 % of the static deformation along the mode that
-    grows fastest and run until its motion has settled, as :func:`squealpipe.assess` does. The level
-    is the velocity of the contacts, not a sound pressure.
+    grows fastest and run until its motion has settled, as :func:`squealpipe.assess` does with the
+    same tolerance: both give one answer. Other motions that may exist at a point are not sought;
+    ``assess`` tells of them. The level is the velocity of the contacts, not a sound pressure.
 
     Args:
         structure: a :class:`squealpipe.Structure`; one of more than 32 degrees of freedom is
@@ -68,11 +69,11 @@ def operating_map(
 
     Returns:
         Dataset ``operating_map``: over ``pressure``, ``speed`` and ``mu`` (or ``temperature``, then
-        ``operating_map over temperature``) the verdict, frequency, level, friction and share of
-        contact loss; over ``band`` the share of points that are noisy there, as in reports of
-        dynamometer tests. With ``measured``, over ``noise``, the measured and the predicted
-        frequency and ``match``, with counts of hits, misses and false alarms. Outcomes: converged,
-        unresolved (undetermined), no_sliding_state.
+        ``operating_map over temperature``) the verdict, frequency, level and their statistical
+        errors, friction and share of contact loss; over ``band`` the share of points that are noisy
+        there, as in reports of dynamometer tests. With ``measured``, over ``noise``, the measured
+        and the predicted frequency and ``match``, with counts of hits, misses and false alarms.
+        Outcomes: converged, unresolved (undetermined), no_sliding_state.
 
     Raises:
         FileNotFoundError: a list or table is missing.

@@ -13,6 +13,7 @@ from squealpipe.schema import (
     outcome,
     text,
 )
+from squealpipe.vibration.schema import error_of
 
 QUANTITIES = ("pressure", "speed", "mu", "temperature")
 """Quantities that an operating point may have."""
@@ -60,6 +61,18 @@ def _map_over(name: str, last: str, coordinate: Variable) -> DatasetSchema:
             "velocity_rms": or_nan(
                 "rms speed of vibration of all contacts", "m s-1", point, rtol=2e-2
             ),
+            **{
+                error_of(name): or_nan(
+                    f"statistical error ({error}) of {name}; 0 where the motion repeats",
+                    unit,
+                    point,
+                    volatile=True,
+                )
+                for name, error, unit in (
+                    ("frequency", "scatter", "Hz"),
+                    ("velocity_rms", "95 %", "m s-1"),
+                )
+            },
             "velocity_level": or_nan(
                 "velocity level in decibels re 5e-8 m/s, NaN where it is quiet",
                 "1",

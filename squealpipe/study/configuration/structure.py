@@ -47,7 +47,7 @@ class OperatingSection(Section):
     measured: str | None = None
     frequency_band: Annotated[Positive, In("1")] = 0.05
     band_edges: Axis | None = None
-    tol: Positive = 1e-9
+    tol: Positive = 1e-12
 
     @property
     def longest(self) -> int:

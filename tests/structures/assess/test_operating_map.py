@@ -9,6 +9,7 @@ import scipy.sparse
 
 from squealpipe import Contact, Structure, load, operating_map, plot, save
 from squealpipe.codes import Verdict
+from squealpipe.structures.assess.assess import judge_structure
 from squealpipe.structures.assess.measured import matched, read_noises
 from squealpipe.structures.assess.operating_units import OperatingUnits
 from squealpipe.structures.contact import PointOrigin
@@ -68,6 +69,57 @@ def test_twice_the_pressure_and_speed_is_twice_as_loud_at_one_frequency(points):
     )
     assert float(two.frequency) == pytest.approx(float(one.frequency), rel=1e-4)
     assert int(two.verdict) == int(one.verdict)
+
+
+@pytest.mark.parametrize("mu", [0.05, 0.6])
+def test_a_point_has_the_answer_of_assess(points, mu):
+    at = points.sel(pressure=2.0, speed=-2.0, mu=mu)
+    same_as_assess(at, structure().with_(mu=mu, belt_speed=-2.0), 2.0)
+
+
+@pytest.mark.release
+def test_a_point_with_two_motions_has_the_answer_of_assess():
+    """Another tolerance ends in another motion here: 17.1 and 16.1 m/s."""
+    draw = np.random.default_rng([77, 0])
+    a, b = draw.standard_normal((2, 6, 6)) / np.sqrt(6)
+    contacts = [
+        Contact(
+            name,
+            *draw.standard_normal((2, 6)),
+            float(draw.uniform(2, 8)),
+            float(draw.uniform(20, 40)),
+            speed=float(draw.choice([-1, 1]) * draw.uniform(0.7, 1.3)),
+        )
+        for name in ("c0", "c1")
+    ]
+    brake = Structure(
+        a @ a.T + 0.5 * np.eye(6),
+        10 * b @ b.T + np.eye(6),
+        modal_damping=0.012,
+        contacts=[contacts[0], replace(contacts[1], mu=0.3, mu_static=0.36)],
+        mu=0.2,
+        mu_static=0.9,
+        friction_law="exponential",
+        friction_speed=6.0,
+        belt_speed=8.0,
+    )
+    at = operating_map(brake, workers=1).squeeze()
+    assert float(at.velocity_rms) > 1.0
+    same_as_assess(at, brake, 1.0)
+
+
+def same_as_assess(at, pad, pressure):
+    contacts = [replace(each, preload=pressure * each.preload) for each in pad.contacts]
+    pressed = pad.with_(contacts=contacts)
+    judged = judge_structure(pressed, samples=0, seed=0, tol=1e-12, workers=1)
+    answer = judged.without_cures()
+    for name in ("verdict", "frequency", "frequency_error", "separated_fraction"):
+        assert np.array_equal(at[name], answer[name], equal_nan=True), name
+    directions = answer.velocity_rms_along, answer.velocity_rms_across
+    assert float(at.velocity_rms) == np.hypot(*directions)
+    assert float(at.velocity_rms_error) <= sum(
+        float(answer[f"velocity_rms_{name}_error"]) for name in ("along", "across")
+    )
 
 
 def test_occurrence_adds_up_to_the_share_of_noisy_points(points, tmp_path):
