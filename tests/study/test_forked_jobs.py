@@ -6,9 +6,11 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
+from squealpipe.store.rerun.key import STARTED
 from squealpipe.study import forked_jobs
 
 pytestmark = pytest.mark.release  # the libraries take 2 s to import
@@ -58,11 +60,21 @@ def test_job_is_told_what_a_process_of_its_own_is_told(job):
     assert alone[1] == "beside\n"
 
 
-def test_job_finds_libraries_imported_but_no_module_of_this_package(job):
+def test_job_finds_libraries_and_what_jobs_share_imported(job):
     told, _ = job("import sys; print(*sys.modules)").communicate()
-    modules = told.split()
-    assert {"matplotlib.pyplot", "numba", "scipy.stats", "xarray"} <= {*modules}
-    assert not [name for name in modules if name.startswith("squealpipe")]
+    modules = {*told.split()}
+    assert {"matplotlib.pyplot", "numba", "scipy.stats", "xarray"} <= modules
+    assert {"squealpipe.study.job", "squealpipe.plotting.style"} <= modules
+
+
+def test_job_publishes_nothing_after_an_edit_of_what_it_found_imported(job):
+    text = "from squealpipe.store.rerun.key import refuse_edited; refuse_edited('it')"
+    edited = Path(forked_jobs.__file__).with_name("job.py").stat().st_mtime
+    refused, kept = (
+        job(text, **{STARTED: str(since)}) for since in (edited - 1.0, time.time())
+    )
+    assert "it is not written" in refused.communicate()[1]
+    assert kept.wait() == 0
 
 
 @pytest.mark.parametrize(
