@@ -87,18 +87,15 @@ def _located_in_band(plant: Plant, ratio: float, grows_now: bool) -> float | Non
     before, growth = 0.0, _fastest(truth)
     # growth is nearly linear in the ratio: secants end within a few steps, or not at all
     for _ in range(5):
-        if not grows(1.01 * ratio) and grows(0.99 * ratio):
-            return ratio
         now = _fastest(damped(ratio))
         if now >= growth:  # more damping destabilizes
             return None
-        before, ratio, growth = (
-            ratio,
-            ratio - now * (ratio - before) / (now - growth),
-            now,
-        )
+        step = now * (ratio - before) / (now - growth)
+        before, ratio, growth = ratio, ratio - step, now
         if not 0.0 < ratio <= SquealLimits.most_damping:
             return None
+        if abs(step) < 0.01 * before and not grows(1.01 * ratio):
+            return ratio
     return None
 
 

@@ -56,6 +56,9 @@ class RunLengths:
     """Longest time that small motions get to grow, in periods of the slowest mode that grows."""
     most_periods: float = 8_000.0
     """Most periods in which a push may grow, and of a run, if no other end is given."""
+    most_periods_of_leaving: float = 100_000.0
+    """Most periods of a run that leaves what it seemed to have settled on. A fifth of that: motions
+    whose neighbours take 650 periods to be e times as far away are undetermined."""
     fewest_periods: float = 4.0
     """Fewest periods of a run: the first windows are a quarter of it."""
     long: float = 10.0
@@ -234,8 +237,7 @@ def settle_on(
     """
     _, _, most = horizon(plant, t_end)
     if t_end is None:
-        # a run that leaves what it seemed to have settled on goes on for so many periods
-        most *= 20_000.0 / RunLengths.most_periods
+        most *= RunLengths.most_periods_of_leaving / RunLengths.most_periods
     length = 2.0 * max(float(run.last.length) for run in settled)
     left = most - max(run.elapsed for run in settled)
     if left < RunLengths.fewest_periods * length:  # without statistics, and two windows
