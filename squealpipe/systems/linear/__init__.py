@@ -2,6 +2,7 @@
 
 The loop knows matrices only: nothing is traced or compiled for a structure. :mod:`.matrices` holds
 what it is given, :mod:`.numbering` how regimes, switches and surfaces are numbered, :mod:`.forces`
-the equations, :mod:`.loop` the steps, :mod:`.batch` the arrays of many runs and :mod:`.system` the
-verbs.
+the equations at a state, :mod:`.series` those along a step, :mod:`.sticking` what holds contacts on
+the belt, :mod:`.switches` what follows an event, :mod:`.loop` the steps, :mod:`.batch` the arrays
+of many runs and :mod:`.system` the verbs.
 """

@@ -6,7 +6,7 @@ the matrices that the loop runs with. Parameters enter by sums, products and exp
 derivative by one is the imaginary part at a parameter with a tiny imaginary part, exact to
 round-off (Squire and Trapp, SIAM Review 40, 1998).
 
-Invariant: what is computed here is what :mod:`squealpipe.systems.linear.forces` computes for runs.
+Invariant: what is computed here is what :mod:`squealpipe.systems.linear.series` computes for runs.
 
 Cost: a leg with Coulomb friction takes one matrix exponential, (2 modes)³.
 """
@@ -26,7 +26,6 @@ from squealpipe.systems.cycles.crossing import Crossing
 from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.legs import LegEnd, Path, Vector
 from squealpipe.systems.linear.batch import coefficients_of_contacts, numbers_of_runs
-from squealpipe.systems.linear.forces import DEPENDENT, limit_left
 from squealpipe.systems.linear.legs import RUN_SIZES, RUN_TABLE, run_legs
 from squealpipe.systems.linear.matrices import (
     FIRST_OF_PRESS,
@@ -37,6 +36,7 @@ from squealpipe.systems.linear.matrices import (
 )
 from squealpipe.systems.linear.numbering import Numbering, surface_number, switch_number
 from squealpipe.systems.linear.plan import plan
+from squealpipe.systems.linear.sticking import DEPENDENT, limit_left
 from squealpipe.systems.scales import Scales
 from squealpipe.systems.taylor.lanes import Workspace, taylor_terms
 

@@ -12,9 +12,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squealpipe.systems.compiled import inline
-from squealpipe.systems.linear.forces import series, settle_stick
 from squealpipe.systems.linear.loop import shorter_step, step_length
 from squealpipe.systems.linear.plan import n_parameters, plan_at
+from squealpipe.systems.linear.series import series
+from squealpipe.systems.linear.sticking import settle_stick
 from squealpipe.systems.taylor.lanes import compile_called, record_viewer, view
 
 RUN_ARRAYS = (

@@ -20,14 +20,8 @@ from typing import Any
 import numpy as np
 
 from squealpipe.systems.compiled import inline, part
-from squealpipe.systems.linear.forces import (
-    change_state,
-    contact_row,
-    exact_ends,
-    gauge_state,
-    series,
-    settle_stick,
-)
+from squealpipe.systems.linear.contact_numbers import contact_row
+from squealpipe.systems.linear.forces import exact_ends
 from squealpipe.systems.linear.matrices import friction_number
 from squealpipe.systems.linear.numbering import OF_CONTACT, surface_number
 from squealpipe.systems.linear.plan import (
@@ -37,7 +31,11 @@ from squealpipe.systems.linear.plan import (
     plan_at,
     plan_of,
 )
+from squealpipe.systems.linear.series import series
+from squealpipe.systems.linear.sizes import gauge_state
 from squealpipe.systems.linear.starts import find_starts
+from squealpipe.systems.linear.sticking import settle_stick
+from squealpipe.systems.linear.switches import change_state
 from squealpipe.systems.taylor import layout
 from squealpipe.systems.taylor.checking import (
     believe_or_halve,
@@ -402,7 +400,7 @@ def _take(table: int) -> None:
 
 
 def _series(parameters: int, orders: int, terms: int) -> None:
-    """Call :func:`.forces.series` by addresses."""
+    """Call :func:`.series.series` by addresses."""
     k = plan_of(parameters)
     # after those of the states, surfaces and outputs come
     width = k.n_states + k.n_sorts * k.c + 2 * k.c + k.n_shapes
@@ -411,7 +409,7 @@ def _series(parameters: int, orders: int, terms: int) -> None:
 
 
 def _gauge(z: int, sizes: int, parameters: int, out: int) -> None:
-    """Call :func:`.forces.gauge_state` by addresses."""
+    """Call :func:`.sizes.gauge_state` by addresses."""
     k = plan_of(parameters)
     count, n = 3 * (k.n_sorts * k.c + 2 * k.c + k.n_shapes), k.n_states
     state, of_state = view(z, (n,), np.float64), view(sizes, (n,), np.float64)
@@ -420,7 +418,7 @@ def _gauge(z: int, sizes: int, parameters: int, out: int) -> None:
 
 
 def _change(which: int, z: int, parameters: int, out: int) -> None:
-    """Call :func:`.forces.change_state` by addresses."""
+    """Call :func:`.switches.change_state` by addresses."""
     k = plan_of(parameters)
     n = k.n_states
     state, found = view(z, (n,), np.float64), view(out, (n + 2,), np.float64)
@@ -428,7 +426,7 @@ def _change(which: int, z: int, parameters: int, out: int) -> None:
 
 
 def _settle(parameters: int) -> None:
-    """Call :func:`.forces.settle_stick` by the address of a lane's parameters."""
+    """Call :func:`.sticking.settle_stick` by the address of a lane's parameters."""
     k = plan_of(parameters)
     settle_stick(k, numbers_of(k, parameters))
 

@@ -5,18 +5,16 @@ from typing import Any
 import numpy as np
 
 from squealpipe.systems.compiled import part
-from squealpipe.systems.linear.forces import (
+from squealpipe.systems.linear.contact_numbers import (
     contact_row,
-    holding,
-    holds,
     press_of_force,
     regimes_of_press,
-    slider_lag,
     slip_regime,
-    state_forces,
 )
+from squealpipe.systems.linear.forces import slider_lag, state_forces
 from squealpipe.systems.linear.numbering import OF_CONTACT
 from squealpipe.systems.linear.plan import mode_row, parameter_row, plan_at, record_at
+from squealpipe.systems.linear.sticking import holding, holds
 from squealpipe.systems.taylor.lanes import call, view
 from squealpipe.systems.taylor.simd import LANES
 
@@ -29,7 +27,7 @@ def _put(settle: Any, k: Any, rows: Any, i: int, regime: int) -> None:
     """Put a contact into a regime.
 
     Args:
-        settle: address of :func:`.forces.settle_stick` as a function, and of the parameters.
+        settle: address of :func:`.sticking.settle_stick` as a function, and of the parameters.
     """
     first = parameter_row.coefficients + OF_CONTACT * k.c + 1 + i * k.width
     for which in range(k.width):
