@@ -106,6 +106,26 @@ def pytest_collection_modifyitems(items):
     )
 
 
+@pytest.fixture
+def real_pictures():
+    """For tests that look at the picture which a command has written."""
+
+
+@pytest.fixture(autouse=True)
+def quick_pictures(request, monkeypatch):
+    """Commands draw their pictures, but lay out and write them only where a test looks at them.
+
+    That takes 0.2 s. Files of figures of every kind of dataset are written in tests/paper/figures.
+    """
+    if "real_pictures" not in request.fixturenames:
+        monkeypatch.setattr("squealpipe.plotting.style.save_figure", _touch)
+
+
+def _touch(_, paths, **__):
+    for path in paths:
+        Path(path).touch()
+
+
 @dataclass(frozen=True)
 class TinyStudy:
     """A finished tiny study; ``read`` has what each of its scripts read of the checkout."""

@@ -118,6 +118,7 @@ def test_wrong_input_is_one_message_with_its_remedy(
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.usefixtures("real_pictures")
 def test_propensity_writes_shares_and_a_picture(capsys):
     spread = [
         "--distribution",
@@ -165,6 +166,7 @@ def test_assess_answers_in_ten_lines_and_says_by_its_exit_code_whether_it_is_qui
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.nc", "a.png"]
 
 
+@pytest.mark.usefixtures("real_pictures")
 def test_simulate_writes_a_run_and_a_picture_and_sums_it_up(capsys, tmp_path):
     assert (
         run(["simulate", "5pi/6", "150deg", "--t-end", "30", "-o", "a/hammering.nc"])
@@ -260,6 +262,7 @@ STICKS = ["--friction-law", "exponential", "--mu-static", "0.6", "--belt-speed",
 STICKS += ["--damping1", "0.02", "--damping2", "0.02"]
 
 
+@pytest.mark.usefixtures("real_pictures")
 def test_cycle_and_branch_go_together(capsys):
     scene = ["0.1pi", "0.5pi", *STICKS]
     assert run(["cycle", *scene]) == 0

@@ -446,6 +446,7 @@ def test_a_study_that_was_interrupted_says_that_it_goes_on(capsys, monkeypatch):
     assert capsys.readouterr().err.endswith(told)
 
 
+@pytest.mark.usefixtures("real_pictures")
 def test_a_picture_has_the_size_and_the_dots_of_a_journal(capsys):
     from PIL import Image
 
@@ -536,6 +537,7 @@ def test_units_that_no_axis_takes_are_refused(capsys, units, message):
     assert message in capsys.readouterr().err
 
 
+@pytest.mark.usefixtures("real_pictures")
 def test_panels_that_nobody_could_read_are_refused_with_a_size_that_works(capsys):
     save(simulate(Parameters(), 2.0, 1.0, t_end=10.0), "run.nc")
     words = ["plot", "run.nc", "-o", "a.png", "--figure-size"]

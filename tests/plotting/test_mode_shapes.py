@@ -107,6 +107,7 @@ def test_a_mode_is_drawn_deformed_over_the_grey_mesh_at_rest(modes):
     assert panels[0].get_title().startswith(f"mode {number}: ")
 
 
+@pytest.mark.usefixtures("real_pictures")
 def test_the_commands_draw_and_convert_modes(modes, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     save(modes, "modes.nc")

@@ -521,6 +521,7 @@ def test_a_cut_off_file_of_one_triangle_never_becomes_half_a_matrix(tmp_path):
         structure_of(tmp_path, text)
 
 
+@pytest.mark.usefixtures("real_pictures")
 def test_the_command_writes_what_python_computes(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     structure = structure_of(tmp_path, as_matrix_market(tmp_path))
@@ -550,6 +551,7 @@ def test_the_terminal_shows_modes_up_to_20_khz_and_says_so(
     assert load("all.nc").sizes["mode"] == 3
 
 
+@pytest.mark.usefixtures("real_pictures")
 def test_modes_over_factors_are_a_command_and_a_task_of_sweeps(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     structure = structure_of(tmp_path, as_matrix_market(tmp_path))

@@ -257,6 +257,7 @@ def test_of_two_unstable_modes_of_the_pad_the_upper_one_squeals(seed):
     assert first.share_low <= 1.0 <= first.share_high
 
 
+@pytest.mark.usefixtures("real_pictures")
 def test_the_command_says_it_in_words_and_writes_a_picture(
     tmp_path, monkeypatch, capsys
 ):
