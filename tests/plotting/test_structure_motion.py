@@ -122,7 +122,9 @@ def test_a_strip_of_a_structure_has_eight_phases(swaying):
     assert figure.axes[4].get_title() == "1 ms"
 
 
-@pytest.mark.parametrize("made", [lambda: two_modes(1.0), two_pads])
+@pytest.mark.parametrize(
+    "made", [pytest.param(lambda: two_modes(1.0), marks=pytest.mark.release), two_pads]
+)
 def test_the_frequency_of_the_answer_is_heard(made):
     structure = made()
     answer = squealing_modes(structure, samples=1, workers=1)

@@ -60,9 +60,13 @@ def test_of_a_pad_of_350_dense_algebra_sees_the_friction_asked_for_alone(monkeyp
     ("changes", "expected"),
     [
         ({"elements": (24, 6), "mu": 0.5, "contacts": 8}, 4),
-        ({"contacts": 7, "mu": 0.46, "belt_speed": -2.0}, 4),
+        pytest.param(
+            {"contacts": 7, "mu": 0.46, "belt_speed": -2.0}, 4, marks=pytest.mark.long
+        ),
         ({"contacts": 3, "mu": 0.97, "modal_damping": 0.002}, 1),
-        ({"contacts": 5, "mu": 0.8, "elements": (60, 10)}, 2),
+        pytest.param(
+            {"contacts": 5, "mu": 0.8, "elements": (60, 10)}, 2, marks=pytest.mark.long
+        ),
     ],
 )
 def test_critical_frictions_are_those_of_the_whole_followed(changes, expected):
@@ -96,7 +100,13 @@ def test_the_whole_has_the_last_word(damping):
 
 @pytest.mark.release
 @pytest.mark.parametrize(
-    "changes", [{"mu": 0.3}, {"mu": 0.97, "contacts": 3, "modal_damping": 0.002}]
+    "changes",
+    [
+        {"mu": 0.3},
+        pytest.param(
+            {"mu": 0.97, "contacts": 3, "modal_damping": 0.002}, marks=pytest.mark.long
+        ),
+    ],
 )
 def test_a_friction_that_is_critical_to_round_off_gets_no_wrong_label(changes):
     """Where the whole and the subspace may differ by round-off a mode is not followed at worst."""

@@ -71,6 +71,18 @@ def test_a_table_of_one_slope_is_a_spring():
         assert float(runs[0][name][0]) == pytest.approx(float(runs[1][name][0]), 1e-12)
 
 
+@pytest.mark.parametrize(
+    ("preload", "slope"), [(50.0, 1e7), (90.0, 2e7), (91.0, 2e7), (400.0, 2e7)]
+)
+def test_at_a_point_of_the_table_a_preload_has_the_slope_of_larger_compressions(
+    preload, slope
+):
+    contact = Contact(
+        "c", {0: -1}, {1: 1}, None, preload, law="linear 0:0 9e-6:90 1e-5:110"
+    )
+    assert contact.stiffness_at_preload == pytest.approx(slope, rel=1e-12)
+
+
 def test_small_motions_feel_the_slope_at_steady_sliding():
     structure = one_point(BENT, mu=0.4)
     modes = structure.complex_modes()

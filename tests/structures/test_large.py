@@ -62,9 +62,8 @@ def test_modes_of_a_block_with_many_contacts_are_those_of_scipy():
     assert modes.unstable.any()
 
 
-@pytest.mark.parametrize(
-    "penalty", [pytest.param(1e20, marks=pytest.mark.release), 1e36]
-)
+@pytest.mark.release
+@pytest.mark.parametrize("penalty", [1e20, 1e36])
 def test_penalties_on_a_large_structure_are_the_rows_left_out(penalty):
     block = elastic_block((12, 5, 4), contacts=8, mu=0.6)
     touched = {k for each in block.contacts for k in (*each.normal, *each.tangential)}
@@ -125,6 +124,7 @@ def test_the_cost_of_a_large_structure_is_told_beforehand():
     assert cost_beforehand(SimpleNamespace(size=5000, damping=stiffness), 1, 40) is None
 
 
+@pytest.mark.release
 def test_modes_at_several_frictions_keep_their_numbers_without_those_between():
     block = elastic_block((12, 5, 4), contacts=8)
     frictions = [0.30, 0.31]

@@ -189,6 +189,7 @@ def test_all_intervals_of_many_structures(name):
             check(seed, name, damped=False)
 
 
+@pytest.mark.release
 def test_undamped_modes_that_merge_part_and_merge_again():
     """Circulatory forces couple two modes where their frequencies cross: a bubble of growth."""
 

@@ -558,6 +558,7 @@ def test_a_reduced_structure_can_be_reduced_again_and_has_modes():
     )
 
 
+@pytest.mark.release
 def test_a_number_of_modes_alone_is_refused_of_a_large_structure_with_a_band_that_works():
     """The refusal asked for a band, and left open which one these modes can answer for."""
     block = elastic_block((12, 5, 4), contacts=4, modal_damping=0.01)

@@ -45,6 +45,7 @@ def test_a_level_that_more_modes_change_is_not_told_as_if_it_was_known(answer):
     )
 
 
+@pytest.mark.release
 def test_the_level_in_all_modes_is_that_of_a_run_of_the_whole_from_its_own_push(
     pad, answer
 ):

@@ -72,7 +72,7 @@ def test_modes_at_any_speed_and_direction(seed):
 
 def test_critical_speeds_are_where_growth_passes_zero():
     located = 0
-    for seed in range(3):
+    for seed in range(2):
         rotor = Rotor(seed)
         modes = rotor.structure(belt_speed=2.0).complex_modes(
             belt_speed=np.linspace(0.4, 12.0, 6)

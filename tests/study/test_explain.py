@@ -64,6 +64,7 @@ def test_plan_names_figures_and_time():
     assert "no time estimate" in Explanation(jobs=[jobs[2]]).estimate()
 
 
+@pytest.mark.release
 def test_a_job_writes_down_its_cpu_time_and_that_of_its_children(tmp_path):
     """Half a second in the process and half a second in a child, beside a second of sleep."""
     (tmp_path / ".snakemake/metadata").mkdir(parents=True)

@@ -339,7 +339,7 @@ def test_a_touch_after_which_the_motion_jumps_ends_a_branch():
 
 
 @pytest.mark.release
-@pytest.mark.parametrize("seed", range(15))
+@pytest.mark.parametrize("seed", [*range(14), pytest.param(14, marks=pytest.mark.long)])
 def test_no_label_of_a_random_branch_is_lost_between_dense_samples(seed, monkeypatch):
     """Labels are those of steps a tenth as long, and each change between those has one."""
     system, rng = random_system(seed), np.random.default_rng(seed)

@@ -44,8 +44,8 @@ def small(one_checkout, undisturbed):
     return one_checkout
 
 
-def test_damaged_dataset_is_named_with_its_remedy(small, undisturbed):
-    completed(small)
+def test_damaged_dataset_is_named_with_its_remedy(one_checkout, undisturbed):
+    small = one_checkout
     path = small / DATASET
     whole = path.read_bytes()
     damaged = bytearray(whole)

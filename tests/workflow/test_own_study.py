@@ -56,12 +56,7 @@ SCALED = {
     "damping2": 0.02,
 }
 STUDIES = {
-    "Coulomb, belt at rest": {"belt_speed": 0.0},
-    "static limit, cubic contact table, the other way": {
-        **CUBIC_CONTACT,
-        "mu_static": 0.6,
-        "belt_speed": -2.0,
-    },
+    "Coulomb, static limit, belt at rest": {"mu_static": 0.6, "belt_speed": 0.0},
     "exponential, contact dashpot": {
         "friction_law": "exponential",
         **FALLING,
@@ -80,11 +75,15 @@ STUDIES = {
         **UNDAMPED,
         "belt_speed": -2.0,
     },
-    "Python, scaled units": {**PYTHON_LAW, **SCALED},
+    "Python, cubic contact table, the other way": {
+        **PYTHON_LAW,
+        **CUBIC_CONTACT,
+        "belt_speed": -2.0,
+    },
 }
 """Options in pairs, for a whole study takes half a minute."""
 LONG = {
-    "Coulomb, belt at rest",
+    "Coulomb, static limit, belt at rest",
     "exponential, contact dashpot",
     "hyperbolic, undamped, scaled units",
     "cubic table, contact dashpot, undamped, the other way",

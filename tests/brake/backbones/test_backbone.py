@@ -65,7 +65,7 @@ def test_a_period_doubling_just_above_grazing_is_found():
 
 @pytest.mark.parametrize(
     ("seed", "count"),
-    [(0, 5), *(pytest.param(n, 12, marks=pytest.mark.release) for n in range(4))],
+    [(0, 2), *(pytest.param(n, 12, marks=pytest.mark.release) for n in range(4))],
 )
 def test_special_points_of_random_branches_are_those_of_dense_samples(
     seed, count, monkeypatch

@@ -127,8 +127,8 @@ NEAR_SECOND_REST = FORMER.with_(k1=2.27, k2=1.717, k3=1.82, mu=0.49)
     ("params", "turn"),
     [
         (NEAR_FIRST_REST, (0.0866, 2.3672, 1)),
-        (NEAR_FIRST_REST, (1.1, 0.4, 1)),
-        (NEAR_FIRST_REST, (2.6786, 1.8628, 2)),
+        pytest.param(NEAR_FIRST_REST, (1.1, 0.4, 1), marks=pytest.mark.release),
+        pytest.param(NEAR_FIRST_REST, (2.6786, 1.8628, 2), marks=pytest.mark.release),
         pytest.param(
             NEAR_SECOND_REST, (1.5464, 1.8739, 1), id="before the second rest"
         ),

@@ -46,6 +46,7 @@ def test_the_second_reading_has_the_boundary_that_it_has_alone(speed):
     assert (more < 0.1 * runs) == (abs(speed) > 1.0)
 
 
+@pytest.mark.release
 def test_other_motions_are_followed_anew():
     fast = square(100.0, "A1-as-printed")
     for other in (

@@ -117,6 +117,7 @@ def test_the_mirrored_regions_have_one_area():
     assert found.region_area_error.max() < 2e-7
 
 
+@pytest.mark.release
 def test_two_parameters_under_their_own_names():
     """In a case with a closed form: K diagonal and equal, y_max = 2κ/(1 + κ), so κ = 1."""
     kappa, mu = np.linspace(0.6, 1.4, 9), np.linspace(0.1, 0.5, 7)

@@ -144,7 +144,10 @@ def test_boundaries_of_random_damped_brakes_part_their_runs(seed):
     "change",
     [
         {"damping1": 0.3},
-        {"friction_law": "exponential", "mu_static": 0.6, "belt_speed": 1.0},
+        pytest.param(
+            {"friction_law": "exponential", "mu_static": 0.6, "belt_speed": 1.0},
+            marks=pytest.mark.long,
+        ),
     ],
 )
 def test_a_chart_over_the_angles_has_the_regimes_of_the_map(change):

@@ -52,6 +52,7 @@ def located_crossings(branch, parameter):
     return found
 
 
+@pytest.mark.release
 def test_stick_of_no_length_is_an_onset_of_stick(sticking):
     down = cycle_branch(STICKING, *PENDULUM, parameter="mu", to=0.02, start=sticking)
     assert down.end == Outcome.converged

@@ -56,10 +56,8 @@ def test_the_derivative_by_mu_is_that_of_two_cycles(falling):
     assert float(near.period[-1]) == pytest.approx(float(further.period), rel=1e-11)
 
 
-@pytest.mark.parametrize(
-    ("label", "code"),
-    [("stick_onset", 5), pytest.param("fold", 1, marks=pytest.mark.release)],
-)
+@pytest.mark.release
+@pytest.mark.parametrize(("label", "code"), [("stick_onset", 5), ("fold", 1)])
 def test_a_curve_in_mu_is_where_branches_have_its_points(falling, label, code):
     over_speed = cycle_branch(
         falling, *ANGLES, parameter="belt_speed", to=1.5, n_points=60

@@ -39,14 +39,8 @@ def scene(name, params):
     return dynamics.simulate(params, chosen.alpha1, chosen.alpha2, t_end=chosen.t_end)
 
 
-@pytest.mark.parametrize(
-    "params",
-    [
-        pytest.param(params, marks=[pytest.mark.release] * (name != "never separates"))
-        for name, params in STUDIES.items()
-    ],
-    ids=STUDIES,
-)
+@pytest.mark.release
+@pytest.mark.parametrize("params", STUDIES.values(), ids=STUDIES)
 def test_all_are_drawn_for_any_study(params, tmp_path):
     validity = dynamics.validity_map(params, ANGLES, ANGLES, t_end=50.0)
     hammering = hammering_task.hammering_map(params, ANGLES, ANGLES, t_end=20.0)

@@ -74,7 +74,9 @@ def literally(params, sliding):
     return np.where(coupled, params.mu < k11 / np.where(coupled, k12, 1.0), k11 > 1e-12)
 
 
-@pytest.mark.parametrize("equal", [True, False])
+@pytest.mark.parametrize(
+    "equal", [True, pytest.param(False, marks=pytest.mark.release)]
+)
 def test_exact_conditions_agree_with_fine_maps(equal):
     """The plane of Z against maps over the angles, at random parameters."""
     generator = np.random.default_rng(5)
@@ -139,6 +141,7 @@ def test_the_black_region_is_where_a_map_shows_it(likely):
     assert np.corrcoef(share, seen)[0, 1] > 0.9
 
 
+@pytest.mark.release
 def test_the_separating_share_has_converged(likely):
     """Twice the resolution leaves the shares within a spacing's error, and F7a within one set."""
     coarse = separating_share(Candidates(likely, 1e-9))

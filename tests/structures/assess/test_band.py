@@ -64,6 +64,7 @@ def test_damping_beyond_the_band_is_told(pad):
     assert damped_beyond(answer.assign(damping_beyond_band=0.0)) is None
 
 
+@pytest.mark.release
 def test_cause_and_frequency_lie_in_the_band(pad):
     told = []
     with shown(None, told.append):
