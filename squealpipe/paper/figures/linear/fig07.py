@@ -1,5 +1,6 @@
 """Fig. 7: where the linear stability analysis (A3) is valid, and what it misses."""
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
@@ -39,7 +40,8 @@ def caption(found: Mapping[str, xr.Dataset]) -> str:
         "the boundary of kept contact as curves; the share of all angles that it encloses, and the "
         "distance of the cross from it:"
     )
-    blue = f" Blue: {blue_lines} {_listed(lines)}." if lines else ""
+    both = [f"{lines[0]} in both panels"] if len({*lines}) < len(lines) else lines
+    blue = f" Blue: {blue_lines} {_listed(both)}." if lines else ""
     return (
         f"Where the linear model A3 is valid{f': {several}' if len(maps) > 1 else ''}. White: A1, "
         "started at rest, loses contact although A3 is stable; orange: it does and A3 is unstable. "
@@ -60,7 +62,11 @@ def _inside(found: Mapping[str, xr.Dataset], kind: str) -> str:
     )
     share = 100.0 * float(boundary.kept_share)
     error = 100.0 * float(boundary.kept_share_error)
-    return f"{share:.2f} ± {error:.1g} % and {np.degrees(float(scene.distance)):.2g}°"
+    digits = max(0, -math.floor(math.log10(error))) if error > 0.0 else 2
+    return (
+        f"{share:.{digits}f} ± {error:.{digits}f} % and "
+        f"{np.degrees(float(scene.distance)):.2g}°"
+    )
 
 
 def kinds_of_cells(validity: xr.Dataset) -> np.ndarray:
