@@ -142,7 +142,7 @@ def _colour_bar(maps: list[Axes], dataset: xr.Dataset, scale: LogNorm) -> None:
     bar = maps[0].figure.colorbar(
         mpl.cm.ScalarMappable(scale, "viridis"), ax=maps, label=f"frequency ({unit})"
     )
-    ticks = np.geomspace(low * 1.05, high / 1.05, 4)
+    ticks = np.geomspace(low, high, 6)[1:-1]
     bar.ax.yaxis.set_major_locator(FixedLocator(ticks.tolist()))
     bar.ax.yaxis.set_minor_locator(NullLocator())
     bar.ax.yaxis.set_major_formatter(

@@ -49,6 +49,8 @@ def figure(answer: xr.Dataset) -> Figure:
     draw_shares(shares, shown)
     _bars(levels, shown.velocity_rms.values)
     levels.set(xlabel="rms speed (m/s)")
+    if not shown.velocity_rms.values.any():
+        levels.set(xlim=(0.0, 1.0))
     _losses(losses, shown)
     for axes_ in (levels, losses):
         axes_.set_yticks(np.arange(shown.sizes["attractor"]), [])

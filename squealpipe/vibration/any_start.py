@@ -158,7 +158,9 @@ def any_start(
             inside = np.abs(side.values - side.cure.value) < abs(
                 answer - side.cure.value
             )
-            side.values = side.values[inside]
+            # a boundary before the first value, too, is reached over one that is tried
+            half_way = np.array([0.5 * (side.cure.value + answer)])
+            side.values = side.values[inside] if inside.any() else half_way
         side.exact = answer if ahead else math.nan
         if side.values.size:
             sides.append(side)

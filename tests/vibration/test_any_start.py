@@ -30,3 +30,27 @@ def test_a_motion_that_lasts_far_beyond_is_followed_to_its_fold(fold):
         {"mu": cure}, [side], quiet_from, False, False, None, dies_out, dies_out
     )
     assert 0.989 * fold < found["mu"] <= fold
+
+
+@pytest.mark.parametrize("lasting", [1.0, 0.02])
+def test_a_boundary_before_the_first_value_is_reached_from_any_start(lasting):
+    """A brake that was quiet up to 5 % more stiffness was said to be so "unless struck"."""
+    cure = Cure(1.0, lambda value: value, np.zeros(0), np.array([1.12, 1.25]))
+
+    def dies_out(sides, values):
+        return [value < 1.0 + lasting for value in values]
+
+    quiet_from = {"contact_stiffness": 1.05}
+    sides = sides_of({"contact_stiffness": cure})
+    found = any_start(
+        {"contact_stiffness": cure},
+        sides,
+        quiet_from,
+        True,
+        True,
+        None,
+        dies_out,
+        dies_out,
+    )
+    expected = min(1.05, 1.0 + lasting)
+    assert found["contact_stiffness"] == pytest.approx(expected, rel=1e-2)

@@ -52,7 +52,7 @@ def gather_structure(
         "headline": told["headline"] if is_known else squealing.headline(answer),
         "lines": [line for line in said if line],
         "run": was_run,
-        "periodic": bool(run["structure/assess"].periodic),
+        "peaks_differ": not (told["quiet"] or bool(run["structure/assess"].periodic)),
         "starts": starts_tried(run["structure/assess"]),
         "moves": bool(run["structure/run"].sizes["time"]),
         "fates": [*squealing.modes(answer), *squealing.missing(answer)],
