@@ -157,7 +157,7 @@ def _commented(name: str, row: Row) -> str:
 def run(
     *, config: Configs = None, quick: Switch = False, cores: Whole | None = None
 ) -> int:
-    """Compute a study; print one line per rule, the time left, and the log of any failure.
+    """Compute a study; print one line per rule, the time left if known, and the log of a failure.
 
     If it is stopped, run the same command again: it resumes with the rules that are not done.
 

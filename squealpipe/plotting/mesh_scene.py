@@ -254,7 +254,7 @@ def structure_scene(
             for part in (slice(int(frames[0]), int(frames[-1]) + 1), frames)
         ),
         title=f"vibration drawn {body.told}",
-        force_label=f"force of {name} over preload",
+        force_label=f"{name}: force / preload",
         caption=(
             f"{length_in_words(motion.time[frames], slower)}; the "
             f"vibration is drawn {body.told}, without the static deformation. "
