@@ -72,6 +72,8 @@ COSTLY = {
     "limit_cycle": pytest.mark.release,
     "boundary_distance": pytest.mark.release,
     "contact_boundary": pytest.mark.release,
+    "infer_parameters": pytest.mark.release,
+    "regime_chart": pytest.mark.release,
     "smallest_disturbance": pytest.mark.release,
 }
 """Marks of what takes 20 s, and of what takes more than a second."""

@@ -12,7 +12,7 @@ from squealpipe import Parameters, Sweep, backbone, run_sweep, simulate
 from squealpipe.paper.schema.claims import claims_schema
 from squealpipe.schema import DatasetSchema, Variable, build, find
 from squealpipe.store import load, save
-from squealpipe.store.comparison.compare import compare, compare_datasets
+from squealpipe.store.comparison.compare import Comparison, compare, compare_datasets
 from squealpipe.store.comparison.differences import Agreement, difference
 from squealpipe.store.comparison.lines import lines
 from squealpipe.store.comparison.matching import align
@@ -179,6 +179,18 @@ def test_how_much_was_compared_is_said(tmp_path, write_run):
     )
     assert found.datasets[0].values > 181**2 > 1000 * 9 > found.datasets[0].compared / 2
     assert "alpha1: compared on 3 shared points of 3 and 181" in told
+
+
+def test_a_screenful_says_how_many_lines_it_leaves_out():
+    changed = {f"parameters.k{n}": (n, n + 1) for n in range(9)}
+    few, every = (
+        lines(Comparison(a="a", b="b", parameters=changed), every=every)
+        for every in (False, True)
+    )
+    shown = [line for line in few if "parameters.k" in line]
+    assert f"  and {9 - len(shown)} more; --all shows them" in few
+    assert 1 < len(shown) < 9
+    assert sum("parameters.k" in line for line in every) == 9
 
 
 def test_coarse_and_fine_grids_are_aligned(tmp_path, write_run):

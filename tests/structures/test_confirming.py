@@ -34,6 +34,7 @@ def test_modes_of_a_large_pad_merge_where_scipys_eigenvalues_do():
         assert (values.real > 1e-2).sum() == expected
 
 
+@pytest.mark.release
 def test_of_a_pad_of_350_dense_algebra_sees_the_friction_asked_for_alone(monkeypatch):
     """983 degrees of freedom took 505 s and 1.7 GB where it saw each friction on the way."""
     sizes = []

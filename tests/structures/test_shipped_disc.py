@@ -48,6 +48,7 @@ def test_the_deck_is_that_of_the_files():
         ]
 
 
+@pytest.mark.release
 def test_modes_at_rest_and_with_friction():
     """CalculiX has 3e-7 of the lowest frequencies, without contact."""
     for mu, growth, frequency in (

@@ -59,6 +59,7 @@ def test_labels_follow_from_the_events_of_a_single_run(mu):
         assert label == result.motion.values[row, column]
 
 
+@pytest.mark.release
 def test_labels_of_damped_motion_say_what_it_has_become():
     """Of hammering cells most had no event in the second half, and kept their label."""
     params = FORMER.with_(damping1=0.05, damping2=0.025)

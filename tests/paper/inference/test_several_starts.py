@@ -51,6 +51,7 @@ def test_growth_that_depends_on_the_last_digit_is_undecided():
     assert verdicts(found).tolist() == [Holds.undecided, Holds.yes]
 
 
+@pytest.mark.release
 def test_starts_that_differ_by_a_thousandth_of_that_leave_verdicts():
     """As another processor's last bits do: sets around the study's, motions of F3 and F4."""
     generator = np.random.default_rng(5)
