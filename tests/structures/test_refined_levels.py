@@ -38,9 +38,9 @@ def test_a_level_that_more_modes_change_is_not_told_as_if_it_was_known(answer):
         float(answer.refined_velocity_rms[0]),
     )
     assert first > 1.25 * refined
-    (told,) = [line for line in lines(answer) if line.startswith("Level")]
+    (told,) = [line for line in lines(answer) if line.startswith("The level")]
     assert told == (
-        f"Level not determined: {1e3 * first:.3g} mm/s (rms) in 9 modes, but "
+        f"The level is uncertain: {1e3 * first:.3g} mm/s (rms) in 9 modes, but "
         f"{1e3 * refined:.3g} mm/s in 36."
     )
 
@@ -66,7 +66,7 @@ def test_assess_tells_the_same_level_in_all_modes(pad, answer):
     assert float(told.refined_velocity_rms) == pytest.approx(
         float(answer.refined_velocity_rms[0]), rel=settling_of_verdicts.agreement
     )
-    assert "Level not determined: " in level(told)
+    assert "The level is uncertain: " in level(told)
     assert "(rms) in 9 modes, but " in level(told)
 
 
@@ -116,11 +116,11 @@ def test_words_on_a_level_name_what_would_tell_more():
         told(0.28, 0.3) == "Its level is 0.28 m/s (rms) in 12 modes, and 0.3 m/s in 64."
     )
     assert told(0.28, 0.52) == (
-        "Level not determined: 0.28 m/s (rms) in 12 modes, but 0.52 m/s in 64: see what more "
+        "The level is uncertain: 0.28 m/s (rms) in 12 modes, but 0.52 m/s in 64: see what more "
         "modes change (n_modes=64 and above)."
     )
     assert told(0.28, 0.28, Verdict.squeals, whole=64) == (
-        "Level not determined: 0.28 m/s (rms) in 12 modes, but 0.28 m/s in 64, where it squeals."
+        "The level is uncertain: 0.28 m/s (rms) in 12 modes, but 0.28 m/s in 64, where it squeals."
     )
     assert told(0.28, np.nan, Verdict.undetermined).endswith(
         "the motion did not settle."

@@ -280,7 +280,7 @@ def level_change(
         more = f": see what more modes change (n_modes={many} and above)"
     if not np.isfinite(refined):
         return (
-            f"Level not determined: run on in {many} modes the motion did not settle."
+            f"The level is uncertain: run on in {many} modes the motion did not settle."
         )
     told = f"{engineering(level, 'm s-1')} (rms) in {few} modes"
     becomes = f"{engineering(refined, 'm s-1')} in {many}"
@@ -294,7 +294,7 @@ def level_change(
     # what two windows of an irregular motion may differ by is no reason to doubt a level
     elif abs(refined - level) <= 0.1 * level:
         return f"Its level is {told}, and {becomes}."
-    return f"Level not determined: {told}, but {becomes}{more}."
+    return f"The level is uncertain: {told}, but {becomes}{more}."
 
 
 def _scatter(answer: xr.Dataset) -> str:

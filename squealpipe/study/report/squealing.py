@@ -461,8 +461,12 @@ def onset(answer: xr.Dataset, of_whole: float | None = None) -> Iterator[str]:
         )
     else:
         at = engineering(float(answer.onset_frequency), "Hz")
-        told = critical if of_whole is None or not of_whole > 0 else of_whole
-        begins = f"Steady sliding turns unstable at mu = {number(told, 4)} ({at})."
+        told, of_modes = number(critical, 4), ""
+        if of_whole is not None and of_whole > 0 and number(of_whole, 4) != told:
+            # frictions at which motions die are those of the modes kept, too
+            of_modes = f"in the {int(answer.n_modes)} modes that were run {told}; "
+            told = number(of_whole, 4)
+        begins = f"Steady sliding turns unstable at mu = {told} ({of_modes}{at})."
         yield f"{begins} {_kind(answer)}"
     for index in range(answer.sizes["track"]):
         one = answer.isel(track=index)
@@ -489,12 +493,12 @@ def _kind(answer: xr.Dataset) -> str:
     """Name the motion that begins at the onset."""
     match OnsetKind(int(answer.onset_kind)):
         case OnsetKind.supercritical:
-            return "What squeals just above dies there (supercritical)."
+            return "The noise just above dies there (supercritical)."
         case OnsetKind.subcritical:
             one = answer.isel(track=answer.track_attractor.values == JUST_ABOVE)
             end = _end_of(one.isel(track=0), float(answer.onset_mu))
-            return f"What squeals just above {end} (subcritical)."
-    return "Whether what squeals just above lasts below is undetermined."
+            return f"The noise just above {end} (subcritical)."
+    return "Whether the noise just above lasts below is undetermined."
 
 
 def _end_of(one: xr.Dataset, critical: float) -> str:

@@ -17,7 +17,7 @@ from squealpipe.study.figures.declared import report_figure
     caption=(
         "One period of the settled motion of each scene, from left to right. The mass is drawn on "
         "its springs above the belt, its displacements enlarged. Blue: the contact slips; orange: "
-        "it sticks; red: it is open."
+        "it sticks; black: it is open."
     ),
     alt="For each scene eight drawings of the mass on its springs, an eighth of a period apart.",
 )
@@ -35,5 +35,16 @@ def draw(answers: Mapping[str, xr.Dataset]) -> Figure:
             row[0].set_title(words, fontsize=8, loc="left")
             continue
         scale = draw_phases(list(row), answer)
-        row[0].set_title(f"{words}, {scale}", fontsize=7, loc="left")
+        # the scene stands one line above the instants, over all panels
+        for panel in row:
+            panel.set_title(f"\n{panel.get_title()}", fontsize=7)
+        scene = row[0].annotate(
+            f"{words}, {scale}",
+            (0.0, 1.0),
+            (0.0, 16.0),
+            "axes fraction",
+            "offset points",
+            fontsize=7,
+        )
+        scene.set_in_layout(False)  # or the first panel would be as wide as its words
     return figure
