@@ -222,6 +222,39 @@ def test_a_structure_leaves_a_cycle_that_a_second_mode_destabilizes():
     assert found.stick_fraction.values == pytest.approx(0.05689, rel=5e-3)
 
 
+@pytest.mark.release
+def test_a_motion_whose_neighbours_part_slowly_is_told_as_irregular():
+    """Against own event-driven power series; parting by e takes neighbours 650 periods."""
+    rng = np.random.default_rng(2027)
+    size, _ = int(rng.integers(3, 13)), rng.integers(1, 5)
+    frequencies, place = np.sort(rng.uniform(800, 12000, size)), rng.integers(1, size)
+    assert rng.random() < 0.7
+    frequencies[place] = frequencies[place - 1] * (1.0 + 0.03 * rng.random())
+    shapes, _ = la.qr(rng.standard_normal((size, size)))
+    stiffness = (shapes * (2.0 * np.pi * frequencies) ** 2) @ shapes.T
+    normal, along = rng.standard_normal((2, size))
+    contact = Contact(
+        "c",
+        normal / np.linalg.norm(normal),
+        along / np.linalg.norm(along),
+        stiffness=10.0 ** rng.uniform(7.5, 9.0),
+        preload=10.0 ** rng.uniform(1.5, 3.0),
+    )
+    rng.random()
+    structure = Structure(
+        np.eye(size),
+        0.5 * (stiffness + stiffness.T),
+        modal_damping=10.0 ** rng.uniform(-4.0, -1.7),
+        contacts=[contact],
+        mu=rng.uniform(0.4, 1.6),
+        belt_speed=-rng.uniform(1.0, 10.0),
+    )
+    found = squealing_modes(structure, samples=2, workers=1)
+    assert found.kind.values.tolist() == [Kind.irregular]
+    assert int(found.verdict) == Verdict.hammers
+    assert found.velocity_rms.values == pytest.approx(18.9, rel=0.01)
+
+
 def test_a_start_is_of_the_energy_that_is_stated():
     plant = Plant(two_modes(1.0))
     assert plant.energy == pytest.approx(2e3**2 / (2 * 4 / 3 * UNITS**2))

@@ -14,7 +14,6 @@ from squealpipe.structures.meshes.face_entries import faces_in
 from squealpipe.structures.reduction import dependent_of
 from squealpipe.structures.units import scales_of
 from squealpipe.study.report.structure import structure as report_of
-from tests.oracles.elastic_contacts import ElasticContacts
 
 
 def block(spring, *, mu_static=None, belt_speed=0.3):
@@ -68,85 +67,6 @@ def test_a_block_sticks_and_slips_as_in_closed_form():
     assert "p_stick" in kinds
     assert times[0] == pytest.approx(slips, rel=1e-12)
     assert times[1] == pytest.approx(sticks, rel=1e-12)
-
-
-def random_structure(seed):
-    """Up to 6 degrees of freedom and 4 contacts, some of them rigid, some on one tangent."""
-    rng = np.random.default_rng(seed)
-    size, count = int(rng.integers(2, 7)), int(rng.integers(1, 5))
-    root = rng.standard_normal((2, size, size))
-    mass = np.eye(size) + 0.2 * root[0] @ root[0].T / size
-    stiffness = np.diag(rng.uniform(1, 60, size)) + root[1] @ root[1].T
-    damping = (0.05 * stiffness + 0.02 * mass) * (rng.random() < 0.7)
-    contacts, rigid, first = [], 0, rng.standard_normal(size)
-    for i in range(count):
-        sprung = rng.random() < 0.7 or rigid >= min(2, size - 1)
-        rigid += not sprung
-        # two on one tangent are dependent
-        shared = sprung and rng.random() < 0.4
-        mu = float(rng.uniform(0.1, 0.8))
-        contacts.append(
-            Contact(
-                f"c{i}",
-                rng.standard_normal(size),
-                first * rng.choice([-1, 1]) if shared else rng.standard_normal(size),
-                float(rng.uniform(5, 80)),
-                float(rng.uniform(0.3, 3)),
-                float(rng.choice([1, -0.5, 1.7])),
-                mu=mu,
-                mu_static=float(rng.choice([1.0, 1.5])) * mu,
-                tangential_stiffness=float(10 ** rng.uniform(0.3, 2.5))
-                if sprung
-                else None,
-            )
-        )
-    belt = float(rng.uniform(0.1, 1.5) * rng.choice([-1, 1]))
-    structure = Structure(mass, stiffness, damping, contacts=contacts, belt_speed=belt)
-    amplitude = float(rng.choice([0.05, 0.3, 1.0]))
-    motion = amplitude * rng.standard_normal(2 * size) * np.repeat([0.3, 1.0], size)
-    return structure, motion, rng
-
-
-def compared(seed, duration):
-    """The largest difference from own code of event times and states of a random structure."""
-    structure, motion, rng = random_structure(seed)
-    apart = ElasticContacts(structure)
-    x = np.concatenate([motion, np.zeros(len(apart.place)), [1.0]])
-    regimes = []
-    for i in range(len(structure.contacts)):
-        force, speed = apart.normal(i) @ x, apart.speed(i) @ x
-        if force < 0:
-            regimes.append("separated")
-        elif i in apart.place:
-            share = rng.uniform(-0.9, 0.9) * apart.mu[i]
-            spring = structure.contacts[i].tangential_stiffness
-            x[apart.place[i]] = share * force / spring
-            regimes.append("stick")
-        else:
-            regimes.append("slip_slower" if speed > 0 else "slip_faster")
-    times = np.linspace(0.0, duration, 21)
-    known, path = apart.run(regimes, x[:-1], times, 0.02)
-    system = structure.system()
-    start = dict(zip(system.states, x, strict=False))
-    run = system.simulate(duration, start=start, times=times, tol=1e-13)
-    kinds, at = events(run)
-    assert kinds == [name for _, name in known], seed
-    late = np.abs(at - [time for time, _ in known]).max(initial=0.0)
-    size = max(1.0, np.abs(path).max())
-    return max(late, np.abs(states(system, run) - path).max() / size), len(kinds)
-
-
-def test_random_structures_agree_with_matrix_exponentials():
-    found = [compared(seed, 1.5) for seed in range(5)]
-    assert sum(number for _, number in found) > 20
-    assert max(error for error, _ in found) < 1e-10
-
-
-@pytest.mark.release
-def test_many_random_structures_agree_with_matrix_exponentials():
-    found = [compared(seed, 2.0) for seed in range(5, 105)]
-    assert sum(number for _, number in found) > 1000
-    assert max(error for error, _ in found) < 1e-8
 
 
 def test_a_stiff_spring_sticks_as_a_rigid_contact():
@@ -245,21 +165,6 @@ def test_sprung_contacts_may_be_more_than_modes():
     contacts = [replace(each, tangential_stiffness=1e8) for each in pad.contacts]
     reduced = pad.with_(contacts=contacts).reduce(n_modes=5)
     assert reduced.size == 5
-    system = reduced.system()
-    start = {"v1": 0.5, "v3": -0.5}
-    run = system.simulate(2e-4, start=start, tol=1e-13)
-    kinds, times = events(run)
-    regimes = ["stick"] * 8
-    known, path = ElasticContacts(reduced).run(
-        regimes,
-        np.array([start.get(name, 0.0) for name in system.states]),
-        np.array([0.0, 2e-4]),
-        5e-7,
-    )
-    assert kinds == [name for _, name in known]
-    assert len(kinds) > 8
-    assert times == pytest.approx([time for time, _ in known], abs=1e-13)
-    assert states(system, run)[-1] == pytest.approx(path[-1], rel=1e-8, abs=1e-12)
 
 
 def test_a_softer_lining_is_softer_in_both_directions():
