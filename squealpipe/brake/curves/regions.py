@@ -7,6 +7,7 @@ a point is inside if an odd number of loops surround it.
 """
 
 from collections.abc import Sequence
+from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -90,6 +91,7 @@ def gathered(loops: Sequence[Loop]) -> list[list[int]]:
     return list(regions.values())
 
 
+@lru_cache(maxsize=2)
 def loops_of(lines: ZeroLines, *, positive: bool, flat: float = 1e-6) -> list[Loop]:
     """Closed lines around the regions in which the function is positive, or around others."""
     chord, left, slopes = lines.slopes(lines.chords)

@@ -27,7 +27,8 @@ def separating_share(
     shares = np.full(candidates.size, 0.5)
     for number in angles:
         left = np.flatnonzero(np.abs(shares - 0.5) < CLEAR / number)
-        shares[left] = _share(candidates.subset(left), number)
+        if left.size:
+            shares[left] = _share(candidates.subset(left), number)
     return shares
 
 
@@ -87,14 +88,16 @@ def keeping_share(candidates: Candidates) -> np.ndarray:
     unstable = candidates.unstable_cells(visible_radius)
     share = np.zeros(candidates.size)
     # one in so many of the unstable cells is run first: one that keeps contact decides
-    for step in (8, 1) if candidates.exact else (64, 8, 1):
+    steps = (8, 1) if candidates.exact else (64, 8, 1)
+    for before, step in zip((0, *steps), steps, strict=False):
         left = np.flatnonzero(share == 0)
         some = [unstable[i] for i in left]
-        cells = [(where.alpha1[::step], where.alpha2[::step]) for where in some]
-        number = np.array([alpha1.size for alpha1, _ in cells], int)
-        owner = np.repeat(np.arange(left.size), number)
+        number = np.array([-(-where.alpha1.size // step) for where in some], int)
+        new = [_beside_those_of(before, step, where.alpha1.size) for where in some]
+        owner = np.repeat(np.arange(left.size), [each.size for each in new])
         alpha1, alpha2 = (
-            np.concatenate([*(cell[i] for cell in cells), []]) for i in (0, 1)
+            np.concatenate([*(w[i][k] for w, k in zip(some, new, strict=True)), []])
+            for i in (0, 1)
         )
         runs = _runs(candidates.subset(left[owner]), alpha1, alpha2)
         kept = runs.outcome == Outcome.converged
@@ -102,6 +105,12 @@ def keeping_share(candidates: Candidates) -> np.ndarray:
             number, 1
         )
     return share
+
+
+def _beside_those_of(before: int, step: int, number: int) -> np.ndarray:
+    """Every ``step``-th of so many, without every ``before``-th, if that is not 0."""
+    every = np.arange(0, number, step)
+    return every[every % before > 0] if before else every
 
 
 def _runs(

@@ -87,6 +87,16 @@ class Candidates:
         apart = preload * np.array([x, y, 0.0, 0.0])
         return replace(self, initial_state=np.asarray(self.initial_state) + apart)
 
+    def joined(self, *others: Self) -> Self:
+        """Return these sets and, behind them, others of the same kind."""
+        every = (self, *others)
+        fields = {
+            name: np.concatenate([each.fields[name] for each in every])
+            for name in self.fields
+        }
+        states = [np.broadcast_to(each.initial_state, (each.size, 4)) for each in every]
+        return replace(self, fields=fields, initial_state=np.concatenate(states))
+
     @property
     def size(self) -> int:
         """Number of sets."""
