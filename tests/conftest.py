@@ -86,16 +86,22 @@ def pytest_itemcollected(item):
 def pytest_collection_modifyitems(items):
     """The long files first, so that two processes end at about the same time."""
     long = (
-        "references",
-        "installation",
-        "readme",
-        "random_systems",
-        "cycles",
-        "entered_beyond",
-        "published_cycles",
-        "damped_chart",
-        "quality",
         "documentation",
+        "readme",
+        "installation",
+        "quality",
+        "references",
+        "own_runs",
+        "confirming",
+        "damped_chart",
+        "modified_disc",
+        "cycles",
+        "published_cycles",
+        "assess",
+        "commands",
+        "own",
+        "files",
+        "judge",
     )
     files = [f"test_{name}.py" for name in long]
     items.sort(
