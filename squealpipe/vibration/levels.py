@@ -25,7 +25,7 @@ from squealpipe.vibration.parabola import largest
 from squealpipe.vibration.schema import LINES, MEAN_SQUARES, MEANS, WITH_ERROR, error_of
 from squealpipe.vibration.settled_runs import SettledRun
 from squealpipe.vibration.settling import tapered
-from squealpipe.vibration.spectrum import amplitude_spectrum, highest_peaks
+from squealpipe.vibration.spectrum import amplitude_spectrum, loudest, loudest_line
 
 
 @dataclass(frozen=True)
@@ -144,6 +144,8 @@ def levels(
     wanted = _blocks(settled, period, periodic)
     while len(blocks) < wanted and blocks[-1].finished:
         block = record(blocks[-1].end)
+        if not block.finished:  # it has no spectrum
+            break
         rows.append(_scalars(block, loads))
         contacts.append(_of_contacts(block))
         blocks.append(block.for_spectrum())
@@ -151,7 +153,7 @@ def levels(
     scalars = _means(rows)
     scalars |= {"frequency": np.nan, error_of("frequency"): 0.0}
     if len(blocks) > 1:
-        lines = [float(_spectrum([block])["harmonic_frequency"][0]) for block in blocks]
+        lines = [loudest_line([block.signals], _step(block)) for block in blocks]
         spectrum = _spectrum(blocks)
         strongest = spectrum["harmonic_frequency"][0]
         scalars[error_of("frequency")] = _scatter(np.array(lines), strongest)
@@ -345,13 +347,11 @@ def _scatter(lines: np.ndarray, strongest: float) -> float:
 
 def _spectrum(blocks: Sequence[Record]) -> dict[str, Any]:
     """Return lines and harmonics of the contact that moves most, by its louder component."""
-    times = blocks[0].times
-    step = float(times[1] - times[0])
-    deviation = np.sqrt(
-        np.mean([block.signals.var(axis=-1) for block in blocks], axis=0)
-    )
-    finite = np.isfinite(deviation).all()
-    contact = int(np.argmax((deviation**2).sum(axis=0))) if finite else 0
+    step = _step(blocks[0])
+    variances = np.mean([block.signals.var(axis=-1) for block in blocks], axis=0)
+    if not np.isfinite(variances).all():
+        return _no_spectrum()
+    contact, louder = loudest(variances)
     signals = np.stack(
         [[*block.signals[:, contact], block.forces[:, contact]] for block in blocks],
         axis=1,
@@ -362,10 +362,8 @@ def _spectrum(blocks: Sequence[Record]) -> dict[str, Any]:
     frequency, amplitude = amplitude_spectrum(signals, step, padding=padding)
     amplitude = np.sqrt((amplitude**2).mean(axis=1))
     frequency = frequency / (2.0 * np.pi)
-    louder = int(deviation[1, contact] > deviation[0, contact])
-    peaks, _ = highest_peaks(frequency, amplitude[louder], 1)
-    strongest = float(peaks[0]) if peaks.size else np.nan
-    resolution = 1.0 / float(times[-1])
+    strongest = loudest_line([block.signals for block in blocks], step)
+    resolution = 1.0 / float(blocks[0].times[-1])
     multiples = strongest * np.arange(1, Measurement.harmonics + 1)
     near = np.abs(frequency[:, None] - multiples) <= resolution
     heights = np.where(near, amplitude[louder][:, None], 0.0).max(axis=0)
@@ -387,6 +385,11 @@ def _spectrum(blocks: Sequence[Record]) -> dict[str, Any]:
         "velocity_spectrum_across": lines[1],
         "force_spectrum": lines[2],
     }
+
+
+def _step(record: Record) -> float:
+    """Return the time between samples, s."""
+    return float(record.times[1] - record.times[0])
 
 
 def _no_spectrum() -> dict[str, Any]:

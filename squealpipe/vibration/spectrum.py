@@ -1,5 +1,7 @@
 """Amplitude spectrum of a uniformly sampled signal, and its highest peaks."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -99,3 +101,37 @@ def strongest_lines(
         if is_line and apart and len(kept) < count:
             kept.append(i)
     return lines[kept], heights[kept]
+
+
+def loudest(variances: NDArray[np.float64]) -> tuple[int, int]:
+    """Return the contact that moves most and its louder component, 0 along and 1 across the belt.
+
+    Args:
+        variances: of its velocities, (2, contacts).
+    """
+    contact = int(np.argmax(variances.sum(axis=0)))
+    return contact, int(variances[1, contact] > variances[0, contact])
+
+
+def loudest_line(blocks: Sequence[NDArray[np.float64]], step: float) -> float:
+    """Return the frequency by which a motion is named, Hz; NaN where nothing oscillates.
+
+    It is the strongest line of the contact that moves most, by its louder component.
+
+    Args:
+        blocks: velocities along, then across the belt in each block of a record, (2, contacts,
+            samples), m/s; the line is that of their mean spectrum.
+        step: between samples, s.
+    """
+    variances = np.mean([block.var(axis=-1) for block in blocks], axis=0)
+    if not np.isfinite(variances).all():
+        return np.nan
+    contact, component = loudest(variances)
+    signals = np.stack([block[component, contact] for block in blocks])
+    # lines of a spectrum for each that its samples resolve; 2: off by a hundredth of a line
+    padding = 4
+    omega, amplitude = amplitude_spectrum(signals, step, padding=padding)
+    mean = np.sqrt((amplitude**2).mean(axis=0))
+    resolution = 2.0 * np.pi / (step * signals.shape[-1])
+    lines, _ = strongest_lines(omega, mean, 1, resolution)
+    return float(lines[0] / (2.0 * np.pi)) if lines.size else np.nan

@@ -3,7 +3,11 @@
 import numpy as np
 import pytest
 
-from squealpipe.vibration.spectrum import amplitude_spectrum, highest_peaks
+from squealpipe.vibration.spectrum import (
+    amplitude_spectrum,
+    highest_peaks,
+    loudest_line,
+)
 
 
 def test_sinusoid_on_a_line_has_its_amplitude_there_and_a_constant_has_none():
@@ -28,3 +32,20 @@ def test_two_sinusoids_between_lines_are_found(offset):
     found, height = highest_peaks(*amplitude_spectrum(signal, step, padding=8), count=2)
     np.testing.assert_allclose(found, [low, high], atol=resolution / 200)
     np.testing.assert_allclose(height, [2.0, 0.5], rtol=2e-3)
+
+
+def test_a_motion_has_the_frequency_of_the_loudest_contact_by_its_louder_component():
+    """The loudest single line, of contact 0, and what both contacts share are others."""
+    step = 1e-4
+    time = step * np.arange(1, 4001)
+
+    def sine(amplitude, frequency):
+        return amplitude * np.sin(2 * np.pi * frequency * time)
+
+    along = [sine(2.0, 50.0), sine(1.6, 50.0)]
+    across = [sine(0.1, 400.0), sine(1.7, 123.4) + sine(0.4, 900.0)]
+    velocities = np.array([along, across])
+    assert loudest_line([velocities], step) == pytest.approx(123.4, abs=0.05)
+    halves = np.split(velocities, 2, axis=-1)
+    assert loudest_line(halves, step) == pytest.approx(123.4, abs=0.1)
+    assert np.isnan(loudest_line([0.0 * velocities], step))
