@@ -43,10 +43,11 @@ def _loop() -> float:
 
 
 def study_time(folder: Path, needed: list[str]) -> float:
-    """CPU time of all jobs that have run in a folder, s, without what compiling took.
+    """CPU time of jobs that have run in a folder, s, without what compiling took.
 
     Args:
-        needed: rules of which each has to have run there.
+        needed: rules whose jobs count, with what their jobs share. Each has to have run there; what
+            another study has left there does not count.
 
     Raises:
         SystemExit: one has not.
@@ -56,7 +57,8 @@ def study_time(folder: Path, needed: list[str]) -> float:
         raise SystemExit(
             f"{folder}: {', '.join(missing)} did not run here; run `snakemake` first"
         )
-    return sum(cost.cpu - cost.compiling for cost in costs.values())
+    shared = {"imports"} & costs.keys()  # none where jobs are not forked
+    return sum(costs[rule].cpu - costs[rule].compiling for rule in {*needed} | shared)
 
 
 def verdict(

@@ -31,6 +31,7 @@ from squealpipe.systems.continuation import (
     ContinuationSettings,
     ContinuationState,
     PseudoArclength,
+    length_of,
 )
 
 Vector = NDArray[np.float64]
@@ -167,7 +168,7 @@ class Across(PseudoArclength):
             np.empty(shooting_limits.segments),
             np.empty(4),
         )
-        unit = normal / np.linalg.norm(normal)
+        unit = normal / length_of(normal)
         count, iterations, residual = solve_constrained(
             problem.rows, point, unit, self.settings.tolerance, *work, tangent
         )

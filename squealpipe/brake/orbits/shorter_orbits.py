@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from squealpipe.brake.orbits.orbit_shape import sample
 from squealpipe.brake.orbits.orbits import Orbit
 from squealpipe.brake.orbits.piecewise_linear import PiecewiseLinearSystem
+from squealpipe.systems.continuation import length_of
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,7 @@ def is_primitive(
     ``near`` is the distance over 1 + |z| below which two states count as one.
     """
     apart = np.abs(_apart(system, orbit)).sum(axis=1)
-    return bool(apart.min() >= near * (1.0 + float(np.linalg.norm(orbit.point))))
+    return bool(apart.min() >= near * (1.0 + length_of(orbit.point)))
 
 
 def about_to_meet(system: PiecewiseLinearSystem, orbit: Orbit) -> bool:

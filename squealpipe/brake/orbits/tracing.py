@@ -26,7 +26,11 @@ from squealpipe.brake.orbits.piecewise_linear import PiecewiseLinearSystem
 from squealpipe.brake.orbits.shooting import shooting_limits
 from squealpipe.brake.orbits.shorter_orbits import about_to_meet, shorter_orbit_between
 from squealpipe.systems.branch_line import Line
-from squealpipe.systems.continuation import ContinuationSettings, ContinuationState
+from squealpipe.systems.continuation import (
+    ContinuationSettings,
+    ContinuationState,
+    length_of,
+)
 from squealpipe.systems.progress import report
 
 Vector = NDArray[np.float64]
@@ -144,7 +148,7 @@ class _Trace:
     ) -> Iterator[tuple[Line[Orbit], float]]:
         """Each step, and the share of it up to which it is gone."""
         settings, here = self.settings, self.equations.orbit(start)
-        unit = direction / np.linalg.norm(direction)
+        unit = direction / length_of(direction)
         state = ContinuationState(
             start, unit, np.zeros(3), settings.first_step, 0, here.residual
         )
@@ -191,10 +195,10 @@ class _Trace:
         if not self.settings.strict:
             return True
         moved, fastest = trial.point - here.point, self.equations.fastest
-        extent = np.linalg.norm(here.rest - here.point[:2])
+        extent = length_of(here.rest - here.point[:2])
         if (
             fastest * abs(moved[2]) > limits.largest_turn
-            or np.linalg.norm(moved[:2]) > limits.largest_change * extent > 0.0
+            or length_of(moved[:2]) > limits.largest_change * extent > 0.0
         ):
             return False
         orbit = self.equations.orbit(trial.point)
@@ -205,11 +209,9 @@ class _Trace:
         if not (turned or about_to_meet(self.system, orbit)):
             return True
         close = (
-            limits.close
-            * self.settings.longest_step
-            * (1.0 + np.linalg.norm(here.point))
+            limits.close * self.settings.longest_step * (1.0 + length_of(here.point))
         )
-        self.meets = bool(np.linalg.norm(moved) < close) and shorter_orbit_between(
+        self.meets = bool(length_of(moved) < close) and shorter_orbit_between(
             self.system, here, orbit
         )
         return self.meets
@@ -224,7 +226,7 @@ class _Trace:
         if described is orbit:
             return state, orbit
         tangent = self.equations.at_other_rest(state.point, state.tangent)
-        tangent /= np.linalg.norm(tangent)
+        tangent /= length_of(tangent)
         return replace(
             state, point=described.point, tangent=tangent, curvature=np.zeros(3)
         ), described
@@ -268,7 +270,7 @@ class _Trace:
         """Orbits of a step at even distances up to a share of it, and the one at the peak."""
         reached = self.end is TraceEnd.amplitude_reached
         if spacing:
-            unit = spacing * (1.0 + float(np.linalg.norm(line.known[0.0][0].point)))
+            unit = spacing * (1.0 + length_of(line.known[0.0][0].point))
             pieces = max(1, math.ceil(share * line.reach / unit))
             for piece in range(1, pieces + 1 - reached):
                 try:
@@ -283,7 +285,7 @@ class _Trace:
         there = line.at(share)[1].from_higher_rest()
         x0, _, half_period = there.point
         found = solve_orbit(self.system, np.array([x0, self.y_stop, half_period]))
-        size = 1.0 + float(np.linalg.norm(there.point))
+        size = 1.0 + length_of(there.point)
         if found and np.abs(found.point - there.point).sum() < limits.near * size:
             yield found
         else:
