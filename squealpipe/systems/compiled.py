@@ -3,8 +3,6 @@
 A function is compiled by who calls it:
 
 - :func:`compiled`: Python calls it;
-- :func:`compiled_entry`: its address is called: a whole loop (source text made at run time is
-  compiled in :mod:`squealpipe.systems.taylor.machine`);
 - ``part``: other compiled code calls it, so there are no wrappers to compile, and no counts of
   references to arrays (an eighth of the time), so it makes none and returns none;
 - ``views``: likewise where it makes views of memory that others keep, and returns them;
@@ -12,8 +10,11 @@ A function is compiled by who calls it:
   ``inline_views`` where it returns views of which few are used;
 - ``polynomial``: likewise with fused multiply-add, which halves the time of a Horner chain.
 
-Only the first two are stored, each with all that it calls, in the user's cache folder: one store
-for all checkouts. numba decides by a function's own file whether its stored code is current, but
+(Whole loops that are called by their addresses, and source text made at run time, are compiled in
+:mod:`squealpipe.systems.taylor.machine`.)
+
+Only the first is stored, with all that it calls, in the user's cache folder: one store for all
+checkouts. numba decides by a function's own file whether its stored code is current, but
 that code contains what it calls from other files. Each store is therefore keyed by a digest of
 every source and numba's version (numba adds the processor): an edit of any source compiles all
 again, and none is ever stale. (heyoka compiles expressions of its own, in
@@ -130,14 +131,13 @@ def store_folder(kind: str, content: bytes) -> str:
     return f"{root}/{kind}-{hashlib.sha256(content).hexdigest()[:16]}"
 
 
-def _kept(
-    compile_: Callable[..., Any], function: Callable[..., Any], folder: str
-) -> Any:
+def _kept(function: Callable[..., Any], folder: str) -> Any:
     """The function compiled and stored where the folder can be written; else without a store.
 
     numba stores under the path of a function's file, which differs from checkout to checkout: the
     function is given an empty file of the store in its place.
     """
+    compile_ = partial(_numba.njit, nogil=True, error_model="numpy")
     previous = _settings.CACHE_DIR
     _settings.CACHE_DIR = folder
     try:
@@ -157,15 +157,4 @@ def compiled(function: _Kernel) -> _Kernel:
 
     Where nothing can be written the kernel is compiled anew in each process.
     """
-    compile_ = partial(_numba.njit, nogil=True, error_model="numpy")
-    return cast("_Kernel", _kept(compile_, function, _store()))
-
-
-def compiled_entry(function: Callable[..., Any], signature: Any, content: bytes) -> Any:
-    """A C function, compiled now; stored under a digest of all ``content`` that it is made of.
-
-    Compiling takes seconds. Where nothing can be written it is done in each process.
-    """
-    compile_ = partial(_numba.cfunc, signature, error_model="numpy")
-    with timed_compilation():
-        return _kept(compile_, function, store_folder("lanes", content))
+    return cast("_Kernel", _kept(function, _store()))

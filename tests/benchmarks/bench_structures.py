@@ -15,10 +15,12 @@ from squealpipe import Structure
 from squealpipe.benchmark.machine import processor
 from squealpipe.structures import elastic_pad
 from squealpipe.structures.pencil import Pencil
+from squealpipe.systems.integrate import RunOptions, integrate
 from tests.oracles.elastic_block import elastic_block
 from tests.structures.test_large import by_scipy
 from tests.structures.test_motion import names, twelve_modes
 from tests.structures.test_truth import BRAKE, brake
+from tests.systems.linear.test_loop import many_contacts
 
 ROUNDS = 3
 """Of ours and scipy's in turn; the median of the ratios counts."""
@@ -52,6 +54,35 @@ def runs():
         f"  a run of an ensemble, 1e-12 {1e3 * each:8.1f} ms, {events:.0f} events, "
         f"{events / each:.0f} a second"
     )
+
+
+def steps():
+    """Print the cost of a step of random structures that hammer, as in docs/performance.md."""
+    print("\nA step of random structures with full matrices, one core")
+    print("| modes | contacts | µs per step | events per step | memory |")
+    sizes = (12, 4), (32, 16), (60, 40), (120, 100), (200, 200), (512, 512)
+    for modes, contacts in sizes:
+        structure, q, v = many_contacts(contacts, modes)
+        system = structure.system()
+        given = {name: np.array([value]) for name, value in system.parameters.items()}
+        states = zip(system.states, [*q, *v], strict=True)
+        given |= {name: np.array([value]) for name, value in states}
+        before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        raw, seconds = cpu_time(
+            lambda system=system, given=given, modes=modes: integrate(
+                system,
+                given,
+                np.array([1e4]),
+                RunOptions(most_steps=max(100, 400_000 // modes**2 * 10)),
+                tol=1e-12,
+            )
+        )
+        most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        count = int(raw["steps"][0])
+        print(
+            f"| {modes} | {contacts} | {1e6 * seconds / count:.1f} | "
+            f"{raw['n_events'][0] / count:.2f} | {(most - before) / 1e3:.0f} MB |"
+        )
 
 
 def modes():
@@ -124,6 +155,7 @@ def main():
     """Print all."""
     large()
     runs()
+    steps()
     modes()
 
 

@@ -19,6 +19,7 @@ from squealpipe import (
 )
 from squealpipe.systems.compiled import timed_compilation
 from squealpipe.systems.progress import alone, report, shown, stage, with_progress
+from squealpipe.systems.taylor.lanes import share_of
 
 STICK_SLIP = Parameters(
     friction_law="exponential",
@@ -69,6 +70,15 @@ def test_parts_share_the_whole_and_who_works_alone_shows_for_all():
             show(1.0)
     report(lambda: 0.2)
     assert shares == [0.0, 0.25, 0.5, 0.75, 1.0]
+
+
+def test_idle_lanes_have_no_share_of_the_work():
+    """Their run ends at 0, which the share of a time is not divided by."""
+    job, clock, ends = np.array([0, 1, -1]), np.array([0.5, 1.0, 0.0]), [2.0, 4.0, 0.0]
+    with np.errstate(all="raise"):
+        done = share_of(job, clock, np.array(ends), np.array([2, 4, 1]))
+    # of four jobs two have not begun, and three quarters of two others are left
+    assert done == 1.0 - (2.0 + 0.75 + 0.75) / 4.0
 
 
 def test_who_waits_for_the_compiler_is_told_and_then_where_the_work_stands():

@@ -66,7 +66,7 @@ class RunLengths:
     a time, so that the first answers are seen early, and an interrupt is heard within a window."""
     side_by_side: int = 16
     """Starts that settle side by side then."""
-    first_starts: int = 4
+    first_starts: int = 2
     """Starts that settle first. What comes to an irregular motion that another start has settled to
     needs no second window that agrees: it is compared with all windows of what has. Twice as many:
     more windows are run before one is known."""
@@ -200,7 +200,18 @@ def settle(
                     irregular.append(one)
         own = [run for run in runs if run.agrees and not run.arrived]
         known[:] = [
-            replace(one, last=merged([run.last for run in own if is_same(run, one)]))
+            # a motion has settled where two windows agree: both belong to it
+            replace(
+                one,
+                last=merged(
+                    [
+                        window
+                        for run in own
+                        if is_same(run, one)
+                        for window in run.windows[-2:]
+                    ]
+                ),
+            )
             for one in irregular
         ]
 

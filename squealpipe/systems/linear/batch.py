@@ -14,6 +14,7 @@ from squealpipe.systems.linear.matrices import ContactMatrices, friction_number
 from squealpipe.systems.linear.numbering import Numbering, surface_number
 from squealpipe.systems.linear.plan import plan
 from squealpipe.systems.record import single_run
+from squealpipe.systems.taylor.lanes import invoke
 
 
 def coefficients_of_contacts(
@@ -119,13 +120,8 @@ class LinearBatch(Batch):
     def _compile(self) -> None:
         system: Any = self.system
         numbering, matrices = system.integrated, system.matrices
-        called = functions()
-        self.code = {
-            name: called[name].address
-            for name in ("series", "gauge", "change", "settle")
-        }
-        # in the place of what limits the steps of traced systems
-        self.code["longest"] = called["take"].address
+        # the last in the place of what limits the steps of traced systems
+        self.code = {**functions(), "longest": functions()["take"]}
         c, n_states = matrices.n_contacts, numbering.size
         events = len(numbering.surfaces) + len(numbering.outputs)
         self.n_series = n_states + events
@@ -168,9 +164,9 @@ def first_regimes(
     unit = np.ones(len(states))
     given = numbers_of_runs(matrices, coefficients, values, unit, 0)
     starts = np.hstack([given, states])
-    settle = functions()["settle"].address
+    settle = functions()["settle"]
     table = plan(matrices, numbering, starts, numbers, settle)
     address = table.pointer.value or 0
     table.arrays["starts"][:, 0] = np.array([address], np.int64).view(float)[0]
-    functions()["starts"].ctypes(address)
+    invoke(functions()["starts"], address)
     return np.asarray(numbers + first)

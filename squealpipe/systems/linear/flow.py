@@ -38,7 +38,7 @@ from squealpipe.systems.linear.numbering import Numbering, surface_number, switc
 from squealpipe.systems.linear.plan import plan
 from squealpipe.systems.linear.sticking import DEPENDENT, limit_left
 from squealpipe.systems.scales import Scales
-from squealpipe.systems.taylor.lanes import Workspace, taylor_terms
+from squealpipe.systems.taylor.lanes import Workspace, invoke, taylor_terms
 
 TINY = 1e-40
 """Imaginary part by which derivatives are taken: its square is nothing beside any number."""
@@ -604,7 +604,7 @@ class LinearFlow(Flow):
             work = Workspace(
                 RUN_TABLE, arrays, dict(zip(RUN_SIZES, numbers, strict=True))
             )
-            run_legs().ctypes(work.pointer.value or 0)
+            invoke(run_legs(), work.pointer.value or 0)
             if counts.max() > self.most_steps:
                 # a leg without end: one of no duration has a step
                 path = self.run(values, states, regimes, starts, 0.0 * durations)

@@ -101,6 +101,6 @@ def _run(address: int) -> None:
 
 
 @cache
-def run_legs() -> Any:
-    """Return the compiled function, built once a process and kept on disk."""
+def run_legs() -> int:
+    """Return the address of the compiled function, built once a process and kept on disk."""
     return compile_called(_run, 1, Path(__file__).parent)

@@ -145,7 +145,8 @@ def shorter_step(m: Any, k: Any, rows: Any, mem: Any, step: float) -> Any:
 def _look_at_surfaces(t: Any, m: Any, mem: Any, step: float, work: Any) -> Any:
     """Mark the surfaces that may have a root in the step; tell whether there are any.
 
-    Both ends of the others are further from zero than they bend.
+    Both ends of the others are further from zero than they bend, or they are monotone from one side
+    of zero that round-off does not hide.
     """
     terms, first, count = mem.shape[0], t.n_variables, t.n_surfaces
     value, bend = work[0], work[1]
@@ -161,7 +162,11 @@ def _look_at_surfaces(t: Any, m: Any, mem: Any, step: float, work: Any) -> Any:
     for s in range(count):
         start = mem[0, first + s]
         end = value[s] * step + start
-        free = start * end > 0.0 and bend[s] * share < min(abs(start), abs(end))
+        slope, nearest = abs(mem[1, first + s]) * step, min(abs(start), abs(end))
+        bound = bend[s] * share
+        if 8.0 * bound < slope:  # which the second derivative cannot turn
+            bound = min(bound, 1e-9 * slope)
+        free = start * end > 0.0 and bound < nearest
         suspect = m.active[s] & 1 and (not free or m.beyond[s] & 1)
         m.suspects[s] = 1 if suspect else 0
         found = found or suspect
@@ -438,8 +443,8 @@ def loop() -> Any:
 
 
 @cache
-def functions() -> dict[str, Any]:
-    """Return what is called by its address, and the search for first regimes.
+def functions() -> dict[str, int]:
+    """Return the addresses of what compiled code calls, and of the search for first regimes.
 
     Each is compiled by itself: of one large function LLVM would optimize every part again in each
     that holds it, and keep nothing in registers.

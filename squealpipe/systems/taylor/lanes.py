@@ -13,6 +13,7 @@ import ctypes
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -24,9 +25,9 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from squealpipe.systems.compiled import compiled_entry
 from squealpipe.systems.progress import report
 from squealpipe.systems.taylor import simd
+from squealpipe.systems.taylor.machine import address_of_entry
 from squealpipe.systems.taylor.series import (
     HybridSystem,
     longest_source,
@@ -184,27 +185,28 @@ def compile_advance(advance: Callable[..., Any], folder: Path | None = None) -> 
     Args:
         folder: another one whose sources count.
     """
-    content = _sources(folder)
-    compiled = compiled_entry(advance, types.intp(types.voidptr), content)
-    function: Any = ctypes.CFUNCTYPE(ctypes.c_ssize_t, ctypes.c_void_p)(
-        compiled.address
-    )
-    # The wrapper does not own the machine code.
-    function.code = compiled
-    return function
+    address = address_of_entry(advance, types.intp(types.voidptr), _sources(folder))
+    return ctypes.CFUNCTYPE(ctypes.c_ssize_t, ctypes.c_void_p)(address)
 
 
-def compile_called(function: Callable[..., Any], words: int, folder: Path) -> Any:
-    """A C function of addresses and numbers, which compiled code calls by its address.
+def compile_called(function: Callable[..., Any], words: int, folder: Path) -> int:
+    """The address of a C function of addresses and numbers, which compiled code calls.
 
     Args:
         words: number of its arguments.
         folder: one whose sources count beside this one's.
     """
     signature = types.void(*[types.intp] * words)
-    return compiled_entry(function, signature, _sources(folder))
+    return address_of_entry(function, signature, _sources(folder))
 
 
+def invoke(address: int, *words: int) -> None:
+    """Call a C function of addresses and numbers by its address."""
+    kind = ctypes.CFUNCTYPE(None, *[ctypes.c_ssize_t] * len(words))
+    kind(address)(*words)
+
+
+@cache
 def _sources(folder: Path | None) -> bytes:
     folders = [Path(__file__).parent, *([] if folder is None else [folder])]
     paths = [path for each in folders for path in sorted(each.glob("*.py"))]
@@ -232,7 +234,8 @@ def share_of(
         left: next job of this process, number of all jobs, number of processes.
     """
     following, count, stride = left.tolist()
-    busy = float((1.0 - clock / t_end)[job >= 0].sum())
+    runs = job >= 0
+    busy = float((1.0 - clock[runs] / t_end[runs]).sum())
     return float(
         1.0 - (max(count - following, 0) / stride + busy) / max(count / stride, 1.0)
     )

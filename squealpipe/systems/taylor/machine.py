@@ -1,7 +1,9 @@
-"""Machine code of written functions: LLVM without what they do not need, kept on disk.
+"""Machine code of functions that are called by their addresses, kept on disk.
 
 Written code computes with rows of lanes already and says itself where it loops. What looks for
-more to vectorize or to unroll takes three quarters of the time in vain.
+more to vectorize or to unroll takes three quarters of the time in vain: LLVM compiles it without.
+Whole loops in Python are compiled by numba. Of both the object files are kept, and loaded by LLVM
+alone: numba would import what it infers types by first, which takes a process 0.4 s.
 """
 
 import hashlib
@@ -18,6 +20,7 @@ from llvmlite import __version__ as llvmlite_version
 from llvmlite import ir
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import cpu_target
+from numba.core.runtime.nrt import rtsys
 
 from squealpipe.systems.compiled import store_folder, timed_compilation
 
@@ -25,6 +28,8 @@ _llvm: Any = llvmlite.binding
 _config: Any = numba.config
 _only_one_thread: Any = global_compiler_lock
 _cpu_target: Any = cpu_target
+_runtime: Any = rtsys
+_numba: Any = numba
 LEVEL = 2
 """Of LLVM's optimization."""
 MOST = 2**28
@@ -55,6 +60,8 @@ def _machine() -> Any:
 @cache
 def _engine() -> Any:
     """What code is loaded into; it stays as long as the process."""
+    # code that numba compiles calls its runtime: LLVM ends a process that lacks such a name
+    _runtime.initialize(_cpu_target.target_context)
     return _llvm.create_mcjit_compiler(
         _llvm.parse_assembly(""),
         _machine(),
@@ -69,10 +76,28 @@ def address_of(write: Write, n_arguments: int, content: bytes) -> int:
         write: writes its body, for a builder and the arguments.
         content: all that decides what ``write`` writes.
     """
+    return _address(content, lambda name: _compiled(name, write, n_arguments))
+
+
+def address_of_entry(
+    function: Callable[..., Any], signature: Any, content: bytes
+) -> int:
+    """The address of a C function that numba compiles, now or before.
+
+    Args:
+        content: all sources that the function is made of.
+    """
+    name = f"{function.__module__}.{function.__qualname__}{signature}"
+    return _address(
+        name.encode() + content, lambda _: _compiled_by_numba(function, signature)
+    )
+
+
+def _address(content: bytes, compile_: Callable[[str], tuple[str, bytes]]) -> int:
+    """The address of a function that is made of some content."""
     versions = f"{llvmlite_version}{LEVEL}{_processor()}"
     content = versions.encode() + Path(__file__).read_bytes() + content
-    digest = hashlib.sha256(content).hexdigest()
-    address: int = _loaded(digest, write, n_arguments)
+    address: int = _loaded(hashlib.sha256(content).hexdigest(), compile_)
     return address
 
 
@@ -80,16 +105,18 @@ _addresses: dict[str, int] = {}
 
 
 @_only_one_thread  # type: ignore[untyped-decorator]
-def _loaded(digest: str, write: Write, n_arguments: int) -> int:
+def _loaded(digest: str, compile_: Callable[[str], tuple[str, bytes]]) -> int:
     """The address of a function, by a digest that names it."""
     if digest not in _addresses:
-        name = f"written_{digest}"
         path = Path(store_folder("written", b"")) / f"{digest}.o"
-        code = _kept(path)
-        if code is None:
+        stored = _kept(path)
+        if stored is None:
             with timed_compilation():
-                code = _compiled(name, write, n_arguments)
-            _keep(path, code)
+                name, code = compile_(f"written_{digest}")
+            _keep(path, name.encode() + b"\0" + code)
+        else:
+            encoded, _, code = stored.partition(b"\0")
+            name = encoded.decode()
         engine = _engine()
         engine.add_object_file(_llvm.ObjectFileRef.from_data(code))
         engine.finalize_object()
@@ -97,8 +124,18 @@ def _loaded(digest: str, write: Write, n_arguments: int) -> int:
     return _addresses[digest]
 
 
-def _compiled(name: str, write: Write, n_arguments: int) -> bytes:
-    """An object file with one function."""
+def _compiled_by_numba(
+    function: Callable[..., Any], signature: Any
+) -> tuple[str, bytes]:
+    """Name, by numba, and object file of a C function."""
+    compiled = _numba.cfunc(signature, error_model="numpy")(function)
+    library = compiled._library  # noqa: SLF001 (numba's own store reads it, too)
+    _, _, (code, _) = library.serialize_using_object_code()
+    return compiled.native_name, code
+
+
+def _compiled(name: str, write: Write, n_arguments: int) -> tuple[str, bytes]:
+    """Name and object file of one function."""
     machine = _machine()
     module = ir.Module(name)
     module.triple, module.data_layout = machine.triple, str(machine.target_data)
@@ -115,8 +152,7 @@ def _compiled(name: str, write: Write, n_arguments: int) -> bytes:
     tuning.loop_unrolling = tuning.loop_interleaving = False
     passes = _llvm.create_pass_builder(machine, tuning)
     passes.getModulePassManager().run(parsed, passes)
-    code: bytes = machine.emit_object(parsed)
-    return code
+    return name, machine.emit_object(parsed)
 
 
 def _kept(path: Path) -> bytes | None:

@@ -51,7 +51,8 @@ def extremes_inside(c: Any, index: int, lane: int, begin: float, end: float) -> 
     most_iterations = 60
     for _ in range(pieces):
         right = left + width
-        _, after, _ = evaluate_twice(c, index, lane, right)
+        if right != end:
+            _, after, _ = evaluate_twice(c, index, lane, right)
         if before * after < 0.0:
             a, b, time = left, right, left + width * before / (before - after)
             for _ in range(most_iterations):

@@ -92,6 +92,9 @@ def evaluate_all(
 def evaluate_twice(coefficients: Any, variable: int, lane: int, step: float) -> Any:
     """A polynomial and its first and second derivatives."""
     order = coefficients.shape[1] - 1
+    if step == 0.0 and order > 1:
+        value, slope = coefficients[variable, 0, lane], coefficients[variable, 1, lane]
+        return value, slope, 2.0 * coefficients[variable, 2, lane]
     value, slope, bend = coefficients[variable, order, lane], 0.0, 0.0
     for k in range(order - 1, -1, -1):
         bend = bend * step + slope
@@ -147,18 +150,20 @@ def first_root(
     step: float,
     start: float = 0.0,
     known: float = 0.0,
+    floor: float = 0.0,
 ) -> Any:
     """The first t in (start, step] where the polynomial changes its sign or touches zero.
 
     A root at the start itself is where the state comes from; it does not count. ``known`` is the
-    sign just after it where round-off hides it.
+    sign just after it where round-off hides it; ``floor`` is :func:`hidden_below`, if it is known.
 
     Returns:
         The root, ``no_root`` where there is none or ``undecided`` where nothing can be said, and
         the time up to which the search is complete: a step may end where its sign is hidden.
     """
     third = largest_third(coefficients, variable, lane, step)
-    floor = hidden_below(coefficients, variable, lane, step)
+    if floor == 0.0:
+        floor = hidden_below(coefficients, variable, lane, step)
     left, right, band, band_side = start, step, start, 0.0
     p0, s0, b0 = evaluate_twice(coefficients, variable, lane, left)
     most_intervals = 20_000
@@ -286,15 +291,18 @@ def first_crossing(
     """
     falls, rises, fresh, at_once, noise, drift = watch
     start, side = 0.0, coefficients[variable, 0, lane]
+    floor = hidden_below(coefficients, variable, lane, step)
     if not fresh:  # a step may start where round-off hides the side
-        noise, drift = hidden_below(coefficients, variable, lane, step), 0.0
+        noise, drift = floor, 0.0
     hidden = abs(side) <= noise
     if fresh or (hidden and is_hidden(coefficients, variable, lane, step, 0.0, noise)):
         start, side = _leaves_zero(coefficients, variable, lane, step, noise, drift)
         if at_once and ((side < 0.0 and falls) or (side > 0.0 and rises)):
             return 0.0, step
     while side != 0.0:
-        root, looked = first_root(coefficients, variable, lane, step, start, side)
+        root, looked = first_root(
+            coefficients, variable, lane, step, start, side, floor
+        )
         if root < 0.0 or (side > 0.0 and falls) or (side < 0.0 and rises):
             return root, looked
         start, side = root, -side

@@ -269,6 +269,19 @@ def take_step(t: Any, m: Any, parameters: int) -> Any:
 
 
 @part
+def _switch_at(
+    c: Any, index: int, lane: int, root: float, falls: int, rises: int
+) -> Any:
+    """The switch of a surface at its root: that of the side to which it goes, if it has both."""
+    if rises < 0:
+        return falls
+    if falls < 0:
+        return rises
+    _, slope, _ = evaluate_twice(c, index, lane, root)
+    return falls if slope < 0.0 else rises
+
+
+@part
 def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
     """When the first watched surface is crossed, whose switch goes into ``HIT``; or the step."""
     integers = m.integers
@@ -301,8 +314,7 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
             complete = min(complete, looked)
         if root < 0.0 or root > first + tie:
             continue
-        _, slope, _ = evaluate_twice(c, t.n_variables + surface, lane, root)
-        which = falls if rises < 0 or (falls >= 0 and slope < 0.0) else rises
+        which = _switch_at(c, t.n_variables + surface, lane, root, falls, rises)
         earlier = root < first - tie or integers[layout.integers.hit, lane] < 0
         # of switches at one instant the first by name goes first, whatever their order
         if earlier or which < integers[layout.integers.hit, lane]:
@@ -354,12 +366,12 @@ def _is_hidden(
 
 @part
 def _is_finite(t: Any, m: Any, c: Any, lane: int) -> bool:
-    """Whether a lane's step is, and the surfaces it watches; others are looked through for ever."""
+    """Whether a lane's step is, and the surfaces to be searched, which might be so for ever."""
     total = m.rows[layout.numbers.step, lane]
     for variable in range(t.n_variables):
         total += 0.0 * m.rows[layout.numbers.first_of_system + variable, lane]
     for surface in range(t.n_surfaces):
-        if m.active[surface] & (1 << lane):
+        if m.active[surface] & m.suspects[surface] & (1 << lane):
             third = largest_third(
                 c, t.n_variables + surface, lane, m.rows[layout.numbers.step, lane]
             )

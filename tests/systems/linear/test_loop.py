@@ -1,7 +1,5 @@
 """The loop of linear structures against matrix exponentials, and SciPy."""
 
-import ctypes
-
 import numpy as np
 import pytest
 import scipy.linalg as la
@@ -12,6 +10,7 @@ from squealpipe.systems.linear.batch import numbers_of_runs
 from squealpipe.systems.linear.loop import functions
 from squealpipe.systems.linear.numbering import OF_CONTACT
 from squealpipe.systems.linear.plan import plan
+from squealpipe.systems.taylor.lanes import invoke
 from tests.oracles.many_contacts import compare
 
 
@@ -139,7 +138,7 @@ def test_friction_in_stick_is_of_the_least_norm(dependent):
     )[0]
     stick = [system.numbering.regime(i, "stick") for i in range(6)]
     rows[first:, 0] = system.numbering.constants_of_regimes[stick].ravel()
-    functions()["settle"].ctypes(ctypes.c_ssize_t(rows.ctypes.data))
+    invoke(functions()["settle"], rows.ctypes.data)
     truth = np.linalg.pinv(system.matrices.mobility, rcond=1e-12, hermitian=True)
     assert table.arrays["counts"][1] == dependent
     assert table.arrays["held"] == pytest.approx(truth, rel=1e-9, abs=1e-9)
