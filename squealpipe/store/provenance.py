@@ -11,8 +11,9 @@ import xarray as xr
 
 from squealpipe.store.checkout import commit
 from squealpipe.store.identity import with_key
-from squealpipe.store.netcdf import load, made_now, save
+from squealpipe.store.netcdf import made_now, save
 from squealpipe.store.rerun.key import canonical, digest, file_key, refuse_edited
+from squealpipe.store.sealed import attributes
 from squealpipe.systems.datasets.versions import versions
 
 
@@ -54,7 +55,7 @@ def stamped(
     """Return the dataset of a task with its provenance and wall time, not yet saved."""
     started = time.perf_counter() if started is None else started
     # before the task reads them: what is there afterwards may be others
-    ids = {str(path): load(path).attrs["dataset_id"] for path in inputs}
+    ids = {str(path): attributes(path)["dataset_id"] for path in inputs}
     dataset = make()
     text = canonical(config)
     return dataset.assign_attrs(
