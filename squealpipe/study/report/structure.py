@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterable, Mapping
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -354,7 +355,7 @@ def structure(modes: xr.Dataset, answer: xr.Dataset) -> dict[str, Any]:
     return {
         "rows": [{"words": words, "value": value} for words, value in rows],
         "speed": "Radius" if "rotation" in whole else "Speed over the belt's",
-        "contacts": [
+        "contacts": _alike_in_one_row(
             {
                 "name": name,
                 "stiffness": stiffness
@@ -366,7 +367,7 @@ def structure(modes: xr.Dataset, answer: xr.Dataset) -> dict[str, Any]:
             for (name, each), stiffness, preload, speed in zip(
                 contacts_of_file.items(), stiffnesses, preloads, speeds, strict=True
             )
-        ],
+        ),
         "origins": [
             {
                 "name": name,
@@ -378,6 +379,18 @@ def structure(modes: xr.Dataset, answer: xr.Dataset) -> dict[str, Any]:
             for (name, each), gap in zip(meshed.items(), gaps, strict=True)
         ],
     }
+
+
+def _alike_in_one_row(rows: Iterable[dict[str, str]]) -> list[dict[str, str]]:
+    """Return the rows of a table, one for contacts in a row that differ in nothing but the name."""
+    merged: list[dict[str, str]] = []
+    for _, group in groupby(rows, lambda row: {**row, "name": ""}):
+        alike = list(group)
+        name = alike[0]["name"]
+        if len(alike) > 1:
+            name = f"{name} to {alike[-1]['name']}"
+        merged.append(alike[0] | {"name": name})
+    return merged
 
 
 def _spring_words(stiffness: float | None) -> str:
@@ -436,7 +449,7 @@ def not_examined(answer: xr.Dataset) -> list[str]:
         rest.insert(0, f"Runs: {answer.attrs['not_run']}.")
     elif "onset_kind" not in answer and answer.sizes["mode"]:
         rest.append(
-            "What becomes of the squeal as friction falls in small steps. Whether it lasts where a "
+            "What becomes of the noise as friction falls in small steps. Whether it lasts where a "
             "push dies out is told in the table of changes, at the friction."
         )
     if float(answer.share_undetermined) > 0:
