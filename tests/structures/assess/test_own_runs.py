@@ -7,6 +7,7 @@ import pytest
 
 from squealpipe import Contact, Structure, assess, labels
 from squealpipe.structures.assess.assess import judge_structure
+from squealpipe.structures.assess.cures import cures_of
 from squealpipe.structures.assess.designs import Design, Structures, pushed
 from squealpipe.structures.assess.records import levels
 from squealpipe.structures.squeal.kinds import described
@@ -250,3 +251,24 @@ def test_all_quiet_intervals_on_both_sides_at_one_per_cent(seed):
 def test_all_quiet_intervals_where_friction_falls(seed):
     """Stick–slip with losses of contact; a measured law; contacts with own laws and tables."""
     assert check_answer(*falling(seed), FallingMotion) >= 1
+
+
+@pytest.mark.release
+def test_the_last_motion_beside_sliding_ends_where_own_runs_do():
+    """Damping at which a push dies out leaves a motion, up to a fifth more damping."""
+    plain = falling(26)[1]
+    judged = judge_structure(plain, samples=4, seed=1, tol=1e-12, workers=1)
+    row = judged.with_cures().sel(cure="modal_damping")
+    push, end = float(row.quiet_from), float(row.quiet_from_any_start)
+    assert end > 1.1 * push
+    states, (cures, _) = judged.motions, cures_of(judged.design, {})
+    for value in np.linspace(cures["modal_damping"].value, 0.98 * end, 12):
+        design = cures["modal_damping"].apply(float(value))
+        runs = judged.family.settle(judged.family.starts(design, 0, states))
+        states = [run.last.final for run in runs if run.lasts]
+    for share, lasts in ((0.98, True), (1.02, False)):
+        own = FallingMotion(changed(plain, "modal_damping", share * end), states[0])
+        period = 2.0 * np.pi / own.omega.min()
+        own.run(400.0 * period)
+        late = own.run(20.0 * period, own.step)["samples"]
+        assert bool(np.ptp(late, axis=0).max() > 0.1) is lasts
