@@ -33,12 +33,12 @@ def extremes_inside(c: Any, index: int, lane: int, begin: float, end: float) -> 
     low, high = math.inf, -math.inf
     step = end - begin
     _, before, bend = evaluate_twice(c, index, lane, begin)
-    _, after, last_bend = evaluate_twice(c, index, lane, end)
-    if before * after > 0.0:
+    _, last_slope, last_bend = evaluate_twice(c, index, lane, end)
+    if before * last_slope > 0.0:
         # a rate that loses its sign in between crosses zero along its tangents
         plain = (
             before * (before + bend * step) > 0.0
-            and after * (after - last_bend * step) > 0.0
+            and last_slope * (last_slope - last_bend * step) > 0.0
         )
         if plain:
             return low, high
@@ -51,6 +51,7 @@ def extremes_inside(c: Any, index: int, lane: int, begin: float, end: float) -> 
     most_iterations = 60
     for _ in range(pieces):
         right = left + width
+        after = last_slope
         if right != end:
             _, after, _ = evaluate_twice(c, index, lane, right)
         if before * after < 0.0:
