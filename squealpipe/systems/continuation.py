@@ -23,8 +23,9 @@ Vector = NDArray[np.float64]
 
 
 def length_of(vector: Vector) -> float:
-    """Return what ``np.linalg.norm`` does, bit by bit, in a third of its time."""
-    return math.sqrt(vector.dot(vector))
+    """Return what ``np.linalg.norm`` does, bit by bit, in less than half of its time."""
+    whole = vector.ravel()  # BLAS adds up what has gaps in another order
+    return math.sqrt(whole.dot(whole))
 
 
 class PathEquations(Protocol):
