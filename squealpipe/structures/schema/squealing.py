@@ -177,9 +177,7 @@ squealing_schema = DatasetSchema(
             "attractor",
         ),
         "dominant_frequency": _level(
-            "strongest line of the velocity of the contact that moves most",
-            "Hz",
-            rtol=1e-2,
+            "strongest line of the kinetic energy", "Hz", rtol=1e-2
         ),
         "frequency_resolution": or_nan(
             "resolution of the spectrum", "Hz", ("attractor",), volatile=True

@@ -97,7 +97,9 @@ def exact_ends(
     times = step * np.arange(1, length + 1)
     how = Running(tol, workers=1)
     raw = run(plant, now.final, times, how, regime=now.regimes)
-    lines = [strongest_line(plant, each, step) for each in raw["samples"]]
+    lines = [
+        strongest_line(plant.modal_velocities(each), step) for each in raw["samples"]
+    ]
     ends = []
     for first in range(0, len(lines), count):
         mine = slice(first, first + count)
@@ -177,9 +179,7 @@ def smoothed_end(
     settled = quiet or _agree(before, now)
     return PushEnd(
         outcome=Outcome.converged if settled else Outcome.unresolved,
-        frequency=np.nan
-        if quiet
-        else strongest_line(plant, samples.states[late], step),
+        frequency=np.nan if quiet else strongest_line(modal[late], step),
         speed=0.0 if quiet else float(np.sqrt((speed**2).mean())),
         separated=now.separated,
         stuck=now.stuck,

@@ -68,7 +68,7 @@ class Described:
 
     Attributes:
         kind: of motion.
-        frequency: strongest line of the contact that moves most, Hz; NaN where nothing moves.
+        frequency: strongest line of the kinetic energy, Hz; NaN where nothing moves.
         resolution: of the spectrum, Hz.
         exponent: growth rate of the distance of neighbours, 1/s; NaN where it was not measured.
         cycle: closed by the exact map, where it is one.
@@ -126,7 +126,7 @@ def described(
     step = float(times[0])
     omega, amplitude = amplitude_spectrum(modal.T, step)
     power = np.sqrt((amplitude**2).sum(axis=0))
-    frequency = strongest_line(plant, raw["samples"][0], step)
+    frequency = strongest_line(modal, step)
     kind, cycle = Kind.undetermined, None
     rules, late = settling_of_numbers, apart.late_growth
     leaves = late > rules.still_grows and late > rules.proportional * before

@@ -16,7 +16,7 @@ from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
 from squealpipe.systems.integrate import LARGEST, RunOptions, integrate
 from squealpipe.systems.progress import stop_is_asked
 from squealpipe.vibration.settling import Settling, late_growth, tapered
-from squealpipe.vibration.spectrum import loudest_line
+from squealpipe.vibration.spectrum import amplitude_spectrum, strongest_lines
 from squealpipe.vibration.windows import Windows
 
 BLOCKS = 64
@@ -364,7 +364,11 @@ def _regimes(plant: Plant, word: str) -> list[list[int]]:
     ]
 
 
-def strongest_line(plant: Plant, samples: np.ndarray, step: float) -> float:
-    """Return the frequency of a motion, Hz, or NaN, from its states (instants, states)."""
-    velocities = plant.contact_motions(samples[:, plant.size : 2 * plant.size])
-    return loudest_line([velocities.transpose(2, 1, 0)], step)
+def strongest_line(modal: np.ndarray, step: float) -> float:
+    """The strongest line of the kinetic energy by modal velocities (instants, n), Hz, or NaN."""
+    # lines of a spectrum for each that its samples resolve
+    padding = 4
+    omega, amplitude = amplitude_spectrum(modal.T, step, padding=padding)
+    power = np.sqrt((amplitude**2).sum(axis=0))
+    places, _ = strongest_lines(omega, power, 1, 2.0 * np.pi / (step * len(modal)))
+    return float(places[0] / (2.0 * np.pi)) if places.size else np.nan

@@ -56,7 +56,7 @@ def swept(tmp_path_factory):
     sweep = Sweep(
         task="assess",
         params=PAD,
-        vary={"belt_speed": [2.0]},
+        vary={"belt_speed": [0.0, 2.0]},
         fixed={"alpha1": SQUEAL[0], "alpha2": SQUEAL[1]},
     )
     path = tmp_path_factory.mktemp("assess") / "swept.nc"

@@ -8,10 +8,6 @@ import pytest
 from squealpipe import Contact, Structure, assess, labels
 from squealpipe.structures.assess.assess import judge_structure
 from squealpipe.structures.assess.cures import cures_of
-from squealpipe.structures.assess.designs import Design, Structures, pushed
-from squealpipe.structures.assess.records import levels
-from squealpipe.structures.squeal.kinds import described
-from squealpipe.structures.squeal.windows import Running
 from tests.oracles.falling_friction import FallingMotion, table_of
 from tests.oracles.structure_answers import Motion
 
@@ -185,17 +181,6 @@ def test_level_and_frequency_of_a_structure_that_hammers():
     scaled, plain, (time, _, length) = drawn(15)
     answer = judge_structure(scaled, samples=0, seed=0, tol=1e-12, workers=1)
     check_motion(answer.without_cures(), Motion(plain).answer(), time, length)
-
-
-@pytest.mark.parametrize("seed", [19, 26])
-def test_squeal_and_assess_name_a_motion_alike(seed):
-    """A torus and an irregular motion whose kinetic energy has another strongest line."""
-    design = Design.of(drawn(seed)[1])
-    (run,) = Structures(1e-9, 0, 0, 1).settled([pushed(design)])
-    how = Running(1e-9, 0, 1)
-    scalars, _ = levels(design, run, how=how)
-    named = described(design.plant, run, how).frequency
-    assert named == pytest.approx(scalars["frequency"], rel=1e-3)
 
 
 def check_answer(scaled, plain, units, motion):
