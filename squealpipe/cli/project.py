@@ -201,7 +201,7 @@ def run(
         print(f"squealpipe: {stop}; run the same command again", file=sys.stderr)
         return 128 + stop.number
     if failed:
-        remedy = standing_lock() or "mend what is told above"
+        remedy = standing_lock() or "correct what is reported above"
         print(
             f"squealpipe: the study in {study.results} is not complete; {remedy}, "
             "then run the same command again: what is finished stays",

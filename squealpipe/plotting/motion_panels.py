@@ -19,15 +19,10 @@ from squealpipe.text import number
 from squealpipe.units import engineering, shown_in
 
 CONTACT_LOOKS = {
-    **{
-        regime: (words, style.REGIME_COLOURS[regime.name])
-        for regime, words in {
-            Regime.slip_slower: "slip",
-            Regime.slip_faster: "faster than the belt",
-            Regime.stick: "stick",
-        }.items()
-    },
-    # red beside the orange of stick looks alike where marks are small
+    Regime.slip_slower: ("slip", style.REGIME_COLOURS["slip_slower"]),
+    Regime.slip_faster: ("faster than the belt", style.REGIME_COLOURS["slip_faster"]),
+    Regime.stick: ("stick", style.REGIME_COLOURS["stick"]),
+    # not the red of other figures: small red marks look like the orange ones of stick
     Regime.separated: ("open", style.Colour.black),
 }
 """State of a contact in words, and its colour."""

@@ -18,20 +18,20 @@ class ConfigError(ValueError):
     """The configuration has mistakes; the message lists all of them.
 
     Args:
-        files: of which the configuration was read.
+        files: that the user may correct, named in the message.
     """
 
     def __init__(self, mistakes: Sequence[str], files: Sequence[object] = ()) -> None:
         self.mistakes = list(mistakes)
-        named = f" ({', '.join(map(_near, files))})" if files else ""
+        named = f" ({', '.join(map(_relative, files))})" if files else ""
         super().__init__(
             f"the configuration{named} has mistakes:\n"
             + "\n".join(f"  {m}" for m in mistakes)
         )
 
 
-def _near(file: object) -> str:
-    """Name a file as it is seen from the working directory."""
+def _relative(file: object) -> str:
+    """Return the path of a file from the working directory if it lies below."""
     path = Path(str(file))
     return str(
         path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path

@@ -74,11 +74,11 @@ def job_times(directory: Path, results: str = "") -> dict[str, float]:
     """Rule → what it took when it last ran, s, from Snakemake's records.
 
     Args:
-        results: folder of a study: studies side by side have rules of one name.
+        results: folder of a study; the same rules may have made files of other studies here.
     """
     spans: dict[str, list[float]] = {}
     for path in (directory / ".snakemake/metadata").glob("*"):
-        if not _made(path.name).startswith(results):
+        if not Path(_made(path.name)).is_relative_to(results):
             continue
         try:
             record = json.loads(path.read_text(encoding="utf-8"))
@@ -90,7 +90,7 @@ def job_times(directory: Path, results: str = "") -> dict[str, float]:
 
 
 def _made(name: str) -> str:
-    """Return the file that a record of Snakemake is about, by the record's name."""
+    """Return the output file that a record of Snakemake describes, encoded in the record's name."""
     try:
         return base64.urlsafe_b64decode(name).decode()
     except ValueError:

@@ -277,7 +277,7 @@ def _become(job: dict[str, Any], server: int) -> None:
     sys.argv = [job["script"]]
     try:
         runpy.run_path(job["script"], run_name="__main__")
-    except KeyboardInterrupt:  # by whoever waits for the study: no fault to look for
+    except KeyboardInterrupt:  # the user stopped the study: no traceback
         signal.signal(signal.SIGINT, signal.SIG_DFL)
         os.kill(os.getpid(), signal.SIGINT)
     except Exception as error:  # noqa: BLE001 (as Python tells it, without the frames of this module)

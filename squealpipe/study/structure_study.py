@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from squealpipe.store.mistakes import ConfigError
 from squealpipe.structures.assess.assess import LongRuns, small_motions_alone
 from squealpipe.structures.assess.modifications import (
     counted_from_zero,
@@ -43,11 +44,14 @@ def read_structure(section: Mapping[str, Any]) -> Structure:
     try:
         # friction of a single face is varied as that of the structure
         structure = Structure.read(file).with_common_mu()
+    except ConfigError as error:  # each of its mistakes names the file
+        raise ValueError("; ".join(error.mistakes)) from error
     except (ValueError, FileNotFoundError) as error:
         told = str(error)
         if not told.startswith(file):  # some name the file, others only its key
             told = f"{file}: {told}"
-        raise type(error)(told) from error
+        missing = isinstance(error, FileNotFoundError)
+        raise (FileNotFoundError if missing else ValueError)(told) from error
     if structure.size > DENSE and section["frequency_max"] is None:
         raise ValueError(
             f"structure: {structure.size} degrees of freedom: "

@@ -68,7 +68,7 @@ def _run(file: str) -> dict[str, Any]:
             lines = [frame.lineno for frame in frames if frame.filename == file]
         where = f"{file}, line {lines[-1]}," if lines else file
         raise ValueError(
-            f"{where} failed with {type(error).__name__}: {error}; mend it, then run "
+            f"{where} failed with {type(error).__name__}: {error}; correct it, then run "
             "the same command again"
         ) from error
 

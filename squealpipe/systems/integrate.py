@@ -433,7 +433,7 @@ class Batch:
         )
 
         def share() -> float:
-            # lanes that have had no job have no end either
+            # a lane that begins its first job has a number before it has an end
             with np.errstate(invalid="ignore"):
                 return lanes.share_of(*at)
 

@@ -92,11 +92,11 @@ class Joint:
         return self._holds[number]
 
     def sticks(self, number: int) -> np.ndarray:
-        """(surface,) whether what it watches rests there: held itself, or behind a spring."""
+        """(surface,) whether what it watches is held, by itself or behind a spring."""
         return self.holds(number)
 
     def begins_at_zero(self, before: int, after: int) -> np.ndarray:  # noqa: ARG002
-        """(surface,) whether it is zero wherever this change of the regimes happens."""
+        """(surface,) whether it is zero at every change between these regimes."""
         return np.zeros(len(self.traced.surfaces), bool)
 
     def _held(self, number: int) -> np.ndarray:

@@ -158,7 +158,7 @@ def any_start(
             inside = np.abs(side.values - side.cure.value) < abs(
                 answer - side.cure.value
             )
-            # a boundary before the first value, too, is reached over one that is tried
+            # a boundary nearer than the first value needs one on the way to it, too
             half_way = np.array([0.5 * (side.cure.value + answer)])
             side.values = side.values[inside] if inside.any() else half_way
         side.exact = answer if ahead else math.nan

@@ -55,8 +55,8 @@ class Measurement:
     blocks: int = 16
     """Records that measure an irregular motion; a torus gets no more."""
     same_line: float = 0.05
-    """Largest relative distance of a record's strongest line from a multiple of the motion's own
-    at which it is that multiple. Twice as much: of lines near the fifth all would be."""
+    """A record's strongest line counts as a multiple of the motion's strongest line if it is within
+    this relative distance of it. Twice as much: from the fifth multiple on all lines would."""
 
 
 @dataclass(frozen=True)
@@ -144,7 +144,7 @@ def levels(
     wanted = _blocks(settled, period, periodic)
     while len(blocks) < wanted and blocks[-1].finished:
         block = record(blocks[-1].end)
-        if not block.finished:  # it has no spectrum
+        if not block.finished:  # it ended early: it has no spectrum
             break
         rows.append(_scalars(block, loads))
         contacts.append(_of_contacts(block))

@@ -205,7 +205,7 @@ def settle(
                 _keep(settled, row, run, windows[row], elapsed[row])
             if told is not None:
                 told(settled, elapsed)
-            # what has just become known may be the motion of others, which need no further window
+            # another start may have come to a motion that has just settled: no window more for it
             late = elapsed >= (1.0 - 1e-9) * horizon.most
             for row in [row for row in whole if row not in settled]:
                 run = _arrived(starts[row], windows[row], known, rules, merged)
@@ -341,7 +341,7 @@ def _arrived(
 def _unsettled(
     start: Start, windows: list[Any], growth_windows: int, late: bool
 ) -> SettledRun | None:
-    """Return what a motion is that has not settled when it ends; None if it goes on.
+    """Return the run of a motion that ends without having settled; None if it goes on.
 
     Args:
         late: whether its horizon is reached.

@@ -128,7 +128,7 @@ def loudest_line(blocks: Sequence[NDArray[np.float64]], step: float) -> float:
         return np.nan
     contact, component = loudest(variances)
     signals = np.stack([block[component, contact] for block in blocks])
-    # lines of a spectrum for each that its samples resolve; 2: off by a hundredth of a line
+    # spectral lines per resolved line; with 2 the peak is off by a hundredth of a resolved line
     padding = 4
     omega, amplitude = amplitude_spectrum(signals, step, padding=padding)
     mean = np.sqrt((amplitude**2).mean(axis=0))

@@ -51,7 +51,7 @@ CASES = [name for name in DATA if name not in MINUTES]
 LONG = SLOW - {"dry friction", "stick–slip", "A1: grazing contact"}
 """Computed anew in the long tier: references are written once."""
 LONG_EXTRAPOLATIONS = LONG | {"dry friction", "A1: grazing contact"}
-"""Of these two the release tier has long double alone."""
+"""The release tier checks the last two by long double alone."""
 
 
 def tier(name, long=LONG):

@@ -422,7 +422,10 @@ def test_a_study_that_failed_says_how_to_go_on(capsys, monkeypatch):
     monkeypatch.setattr("squealpipe.study.supervised.run_to_its_end", lambda *_: 1)
     assert run(["run"]) == 2
     told = capsys.readouterr().err
-    assert "results is not complete; mend what is told above, then run the same" in told
+    assert (
+        "results is not complete; correct what is reported above, then run the same"
+        in told
+    )
     locks = Path(".snakemake/locks")
     locks.mkdir(parents=True)
     (locks / "0.output.lock").touch()

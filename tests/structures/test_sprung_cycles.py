@@ -39,7 +39,7 @@ def at(label):
 
 
 class Apart:
-    """Own code from the start of a cycle."""
+    """Runs by own code from the start of a cycle."""
 
     def __init__(self, point, mu):
         system, _ = branch_down()

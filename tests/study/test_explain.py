@@ -1,5 +1,6 @@
 """The plan in words: rules, keys and sources, figures, and the time that they took before."""
 
+import base64
 import json
 import os
 import subprocess
@@ -140,6 +141,18 @@ def test_times_come_from_snakemakes_records(tmp_path):
         (folder / name).write_text(json.dumps(record))
     (folder / "damaged").write_text("{")
     assert job_times(tmp_path) == {"map_linear": pytest.approx(2.0, abs=0.01)}
+
+
+def test_times_are_those_of_one_study(tmp_path):
+    """Its results stand beside those of a study whose folder begins with the same letters."""
+    folder = tmp_path / ".snakemake/metadata"
+    folder.mkdir(parents=True)
+    for file, end in (("results/disc/data/a.nc", 3.0), ("results/disc2/a.nc", 9.0)):
+        record = {"rule": "run", "starttime": 1.0, "endtime": end}
+        name = base64.urlsafe_b64encode(file.encode()).decode()
+        (folder / name).write_text(json.dumps(record))
+    assert job_times(tmp_path, "results/disc") == {"run": 2.0}
+    assert job_times(tmp_path) == {"run": 8.0}
 
 
 @pytest.mark.parametrize(

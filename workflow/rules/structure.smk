@@ -7,6 +7,7 @@ STRUCTURE = settings("structure")
 
 if workflow.is_main_process:  # jobs need not check again: the import takes a second
     from squealpipe.store.mistakes import ConfigError
+    from squealpipe.study.configuration.settings import files_of_user
     from squealpipe.study.structure_study import modifications, operating_options, read_structure
 
     try:
@@ -15,8 +16,7 @@ if workflow.is_main_process:  # jobs need not check again: the import takes a se
         if STUDY.operating is not None:
             operating_options(of_study, STRUCTURE["structure"], STUDY.slice("operating")["operating"])
     except (ValueError, FileNotFoundError) as fault:
-        own = [file for file in workflow.configfiles if Path(file).parent != PAPER.parent]
-        raise ConfigError([str(fault)], own) from fault
+        raise ConfigError([str(fault)], files_of_user(workflow.configfiles)) from fault
 
 
 rule analyse_structure:

@@ -130,11 +130,11 @@ def plane(p: Any, alpha1: Any, alpha2: Any) -> Any:
 def angles_from_plane(
     z: Any, p: Any, *, both: bool = True
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Both pairs (α1, α2) in [0, π) with :func:`plane` = z, rad, as two arrays (2, *z.shape).
+    """Return the pairs (α1, α2) in [0, π) with :func:`plane` = z, rad, as two arrays (2, *z.shape).
 
     Args:
         z: complex array, N/m, within the reach |k1 − k2| ≤ |z| ≤ k1 + k2 and not 0.
-        both: else the first pair alone, (1, *z.shape).
+        both: False: return the first pair alone, as arrays (1, *z.shape).
     """
     length = np.abs(z)
     cosine = (length * length + p.k1 * p.k1 - p.k2 * p.k2) / (2.0 * p.k1 * length)

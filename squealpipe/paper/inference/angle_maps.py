@@ -33,10 +33,10 @@ def separating_share(
 
 
 def _share(candidates: Candidates, number: int) -> np.ndarray:
-    """Share of the midpoints, ``number`` an axis, at which contact is lost.
+    """Return the share of the midpoints, ``number`` an axis, at which contact is lost.
 
-    Readings share it: on a belt along −x the mass moves at (α1, α2) as the mirror image of what it
-    does at (α2, α1) on one along +x, and by Eq. (4) as printed as on a belt along −x while it is
+    Readings have it in common. On a belt along −x the motion at (α1, α2) mirrors that at (α2, α1)
+    on a belt along +x. By Eq. (4) as printed the mass moves as on a belt along −x as long as it is
     slower than the belt.
     """
     known = candidates.known_shares
@@ -57,7 +57,7 @@ def _share(candidates: Candidates, number: int) -> np.ndarray:
 
 
 def _run_map(candidates: Candidates, number: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return that share, and where the mass stayed slower than the belt if that was watched."""
+    """Return that share by runs, and of which sets the mass is known to lag behind the belt."""
     alpha1, alpha2 = midpoints(number)
     weight = np.ones(alpha1.size)
     if springs_are_equal(candidates.fields):
@@ -93,7 +93,7 @@ def keeping_share(candidates: Candidates) -> np.ndarray:
         left = np.flatnonzero(share == 0)
         some = [unstable[i] for i in left]
         number = np.array([-(-where.alpha1.size // step) for where in some], int)
-        new = [_beside_those_of(before, step, where.alpha1.size) for where in some]
+        new = [_cells_to_run(before, step, where.alpha1.size) for where in some]
         owner = np.repeat(np.arange(left.size), [each.size for each in new])
         alpha1, alpha2 = (
             np.concatenate([*(w[i][k] for w, k in zip(some, new, strict=True)), []])
@@ -107,10 +107,13 @@ def keeping_share(candidates: Candidates) -> np.ndarray:
     return share
 
 
-def _beside_those_of(before: int, step: int, number: int) -> np.ndarray:
-    """Every ``step``-th of so many, without every ``before``-th, if that is not 0."""
-    every = np.arange(0, number, step)
-    return every[every % before > 0] if before else every
+def _cells_to_run(before: int, step: int, number: int) -> np.ndarray:
+    """Return every ``step``-th index below ``number`` but every ``before``-th, which has been run.
+
+    None has been run if ``before`` is 0.
+    """
+    cells = np.arange(0, number, step)
+    return cells[cells % before > 0] if before else cells
 
 
 def _runs(
@@ -119,7 +122,7 @@ def _runs(
     alpha2: np.ndarray,
     tracked: tuple[str, ...] = (),
 ) -> Ensemble:
-    """Runs from rest to ``HORIZON``, which end where contact is lost."""
+    """Run from rest to ``HORIZON``, or until contact is lost."""
     return candidates.ensemble(
         alpha1,
         alpha2,

@@ -41,8 +41,9 @@ class Candidates:
             end as soon as the sign is known.
         sampled: whether the starts are a random sample. What is chance then shows in the share of
             it that meets a statement, and none is judged from several starts.
-        known_shares: A1's model and a set, whose springs are equal and whose friction is the
-            paper's, → share of the angle map on which it separates, which readings share.
+        known_shares: A1's model and the values of a set → share of an angle map at which contact is
+            lost, filled by runs for all readings; of sets with equal springs and the paper's
+            friction only. None: each reading runs its own maps.
     """
 
     fields: Mapping[str, np.ndarray]
@@ -88,7 +89,7 @@ class Candidates:
         return replace(self, initial_state=np.asarray(self.initial_state) + apart)
 
     def joined(self, *others: Self) -> Self:
-        """Return these sets and, behind them, others of the same kind."""
+        """Return these sets followed by others of the same model."""
         every = (self, *others)
         fields = {
             name: np.concatenate([each.fields[name] for each in every])
@@ -218,7 +219,8 @@ class Candidates:
 
         Args:
             inside: their distance, in radii, from the centre of the disc of flutter.
-            every: one in so many of them is looked for, where they lie along edges.
+            every: look at one in so many points along each edge; of sets beyond the paper's model,
+                which are searched by maps, at all.
         """
         if self.extended:
             return [unstable_cells(params, inside=inside) for params in self.extended]

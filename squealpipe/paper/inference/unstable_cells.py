@@ -57,7 +57,7 @@ def unstable_along_edges(
 
     Args:
         fields: parameters by name, and ``drag``, (sets,).
-        every: one in so many points along each edge is looked at.
+        every: look at one in so many points along each edge.
     """
     cells: list[Unstable] = []
     # sets whose cells are looked for at once: half a megabyte an array
@@ -122,7 +122,7 @@ def _along_edges(
         p: parameters, each (sets, 1).
         mirrored: whether (α1, α2) and (π − α2, π − α1), which have the same Z, also have the same
             motion, (sets,).
-        every: one in so many of these points is taken.
+        every: take one in so many of these points.
     """
     farthest, nearest = p.k1 + p.k2, np.abs(p.k1 - p.k2)
     centre, radius = a3.flutter_circle(p, p.k3)

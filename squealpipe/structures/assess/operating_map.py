@@ -40,8 +40,9 @@ def operating_map(
 
     At each point steady sliding is pushed by 1 % of the static deformation along the mode that
     grows fastest and run until its motion has settled, as :func:`squealpipe.assess` does with the
-    same tolerance: both give one answer. Other motions that may exist at a point are not sought;
-    ``assess`` tells of them. The level is the velocity of the contacts, not a sound pressure.
+    same tolerance, so that both give the same answer. Other motions that may exist at a point are
+    not sought here; ``assess`` reports them. The level is the velocity of the contacts, not a sound
+    pressure.
 
     Args:
         structure: a :class:`squealpipe.Structure`; one of more than 32 degrees of freedom is

@@ -381,8 +381,9 @@ def _of_point(design: Design, family: Structures) -> dict[str, Any]:
 
 def _of_all_directions(scalars: Mapping[str, Any]) -> dict[str, float]:
     """Return the level of both directions together, with its error, m/s."""
-    names = MEAN_SQUARES
-    total = float(np.hypot(*(scalars[name] for name in names)))
-    # both follow from one motion, so that their errors may add up
-    error = sum(scalars[name] * scalars[error_of(name)] for name in names) / total
+    total = float(np.hypot(*(scalars[name] for name in MEAN_SQUARES)))
+    # errors of one motion are not independent: the bound is their sum
+    error = (
+        sum(scalars[name] * scalars[error_of(name)] for name in MEAN_SQUARES) / total
+    )
     return {"velocity_rms": total, error_of("velocity_rms"): float(error)}

@@ -57,8 +57,8 @@ class RunLengths:
     most_periods: float = 8_000.0
     """Most periods in which a push may grow, and of a run, if no other end is given."""
     most_periods_of_leaving: float = 100_000.0
-    """Most periods of a run that leaves what it seemed to have settled on. A fifth of that: motions
-    whose neighbours take 650 periods to be e times as far away are undetermined."""
+    """Most periods of a run that leaves what it seemed to have settled on. A fifth as many: motions
+    whose neighbours take 650 periods to part by a factor of e stay undetermined."""
     fewest_periods: float = 4.0
     """Fewest periods of a run: the first windows are a quarter of it."""
     long: float = 10.0

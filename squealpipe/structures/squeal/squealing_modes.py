@@ -351,15 +351,16 @@ def _attractors(
 def _members(
     plant: Plant, settled: list[SettledRun], numbers: np.ndarray
 ) -> list[list[SettledRun]]:
-    """Runs of each attractor, the longest first, which has the least of a transient.
+    """Return the runs of each attractor, the longest first: least of a transient is left in it.
 
-    Of an irregular motion, which has none, the run comes first whose neighbours are known.
+    Of an irregular motion the run whose neighbours were followed until they were lost comes first,
+    whatever its length: they need not be followed again.
     """
-    lost = {id(run) for run, apart in plant.neighbours if apart.loses_neighbours}
+    followed = {id(run) for run, apart in plant.neighbours if apart.loses_neighbours}
     return [
         sorted(
             (run for run, at in zip(settled, numbers, strict=True) if at == number),
-            key=lambda run: (id(run) not in lost, -run.elapsed),
+            key=lambda run: (id(run) not in followed, -run.elapsed),
         )
         for number in range(numbers.max(initial=NO_ATTRACTOR) + 1)
     ]

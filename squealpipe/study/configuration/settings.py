@@ -5,7 +5,7 @@ Snakemake; :func:`read_study` does the same for the command line.
 """
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import reduce
 from operator import getitem
 from pathlib import Path, PurePosixPath
@@ -144,8 +144,12 @@ def read_study(*paths: str | Path, changes: Mapping[str, Any] | None = None) -> 
         faults.extend(place_files(path, content))
         faults.extend(_lay_over(merged, content))
     faults.extend(_lay_over(merged, changes or {}))
-    own = [path for path in paths if Path(path).parent != PAPER.parent]
-    return parse_study(merged, faults, own)
+    return parse_study(merged, faults, files_of_user(paths))
+
+
+def files_of_user(paths: Iterable[str | Path]) -> list[str | Path]:
+    """Return the files of a configuration that do not come with the package."""
+    return [path for path in paths if Path(path).parent != PAPER.parent]
 
 
 def _lay_over(base: dict[str, Any], top: Mapping[str, Any]) -> Iterator[str]:
@@ -250,7 +254,7 @@ def parse_study(
 
     Args:
         faults: messages about files, raised together with those of the validation.
-        files: that a message names as those to mend.
+        files: of the user, named in the message.
 
     Raises:
         ConfigError: every mistake found, with its key, value and what is allowed.

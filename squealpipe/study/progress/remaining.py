@@ -39,8 +39,8 @@ class Remaining:
     def left(self, now: float) -> float | None:
         """Time left, s, by :func:`together`.
 
-        None: a rule that is not finished never ran. Rules last from a second to half an hour, so
-        that nothing else tells what it takes.
+        None if a rule that is left has never run: rules take from a second to half an hour, so
+        that those that have run say nothing about it.
         """
         each = {**self._took, **self.seconds}
         if any(count and rule not in each for rule, count in self.jobs.items()):

@@ -97,7 +97,7 @@ def headline(answer: xr.Dataset, prefix: str = "") -> str:
     lost = percent(value("separated_fraction"))
     if verdict is Verdict.hammers and answer.sizes.get("contact", 1) > 1:
         which = "one contact"
-        if not prefix:  # which one it is from a sudden start is not stored
+        if not prefix:  # of a sudden start it is not stored which contact opens most
             opened = answer.contact_separated_fraction
             which = f"contact {opened.idxmax('contact').item()}"
         return (

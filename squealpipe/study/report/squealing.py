@@ -463,8 +463,8 @@ def onset(answer: xr.Dataset, of_whole: float | None = None) -> Iterator[str]:
         at = engineering(float(answer.onset_frequency), "Hz")
         told, of_modes = number(critical, 4), ""
         if of_whole is not None and of_whole > 0 and number(of_whole, 4) != told:
-            # frictions at which motions die are those of the modes kept, too
-            of_modes = f"in the {int(answer.n_modes)} modes that were run {told}; "
+            # frictions at which motions die, told next, are those of the modes that were run
+            of_modes = f"in the {int(answer.n_modes)} modes that were run: {told}; "
             told = number(of_whole, 4)
         begins = f"Steady sliding turns unstable at mu = {told} ({of_modes}{at})."
         yield f"{begins} {_kind(answer)}"

@@ -301,7 +301,7 @@ def contacts(answer: xr.Dataset) -> list[dict[str, Any]]:
 
 
 def column(values: Iterable[float], units: str) -> list[str]:
-    """Write the values of a column in one unit, that of the largest; a dash for what is missing."""
+    """Return the values of a column as text in the unit of the largest; a dash for NaN."""
     every = [float(value) for value in values]
     known = [abs(value) for value in every if np.isfinite(value)]
     factor, name = shown_in(max(known, default=0.0), units)
@@ -382,7 +382,7 @@ def structure(modes: xr.Dataset, answer: xr.Dataset) -> dict[str, Any]:
 
 
 def _alike_in_one_row(rows: Iterable[dict[str, str]]) -> list[dict[str, str]]:
-    """Return the rows of a table, one for contacts in a row that differ in nothing but the name."""
+    """Merge consecutive rows of a table that differ in nothing but the name."""
     merged: list[dict[str, str]] = []
     for _, group in groupby(rows, lambda row: {**row, "name": ""}):
         alike = list(group)

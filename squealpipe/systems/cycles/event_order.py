@@ -70,7 +70,7 @@ def _of_hold(system: System, switch: int, among: int, lands: bool) -> bool:
     it can leave hold a surface.
 
     Args:
-        lands: whether any surface of its component counts, as where a landing may stick.
+        lands: whether a hold of any surface of its component counts: a landing may stick.
     """
     t, joint = system.traced, system.joint
     if not 0 <= switch < len(t.switches):
@@ -121,8 +121,8 @@ class NewOrder:
         moved = (cycle.extremes - change.extremes)[
             :, : len(change.map.scale)
         ] / change.map.scale
-        # what vanishes at the change is small next to it; where a release lets a spring jump,
-        # solutions of the new order are not
+        # the margin that is zero at the change is small just beyond it, unless a release there
+        # lets a spring jump
         near, there = margins(Cycle.at(equations, guess)), margins(cycle)
         least = min(near, key=lambda key: near[key], default=None)
         apart = least in there and there[least] > 5e-3 + abs(near[least])

@@ -69,12 +69,12 @@ def percent(share: float, digits: int = 2) -> str:
 
 
 def off_by(share: float, digits: int = 2) -> str:
-    """Tell how far a value is from another one: ``3 % above``, ``0.2 % below``."""
+    """Return a relative difference in words: ``3 % above``, ``0.2 % below``."""
     return f"{percent(abs(share), digits)} {'above' if share > 0 else 'below'}"
 
 
 def part_of_time(share: float) -> str:
-    """A share of the time in per cent, no finer than runs resolve it."""
+    """Return a share of the time in per cent; runs do not resolve less than 0.1 %."""
     return "< 0.1 %" if 0.0 < share < 1e-3 else percent(share)
 
 

@@ -286,6 +286,9 @@ def test_the_example_is_written_once_and_whole(tmp_path, capsys):
     file = str(tmp_path / "pads/structure.yaml")
     with pytest.raises(ValueError, match="names no contacts"):
         read_structure({"file": file, "frequency_max": None})
+    (tmp_path / "pads/structure.yaml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(ValueError, match=r"structure\.yaml: byte 1 is not"):
+        read_structure({"file": file, "frequency_max": None})
 
 
 def test_files_that_a_deck_includes_change_the_key(tmp_path):

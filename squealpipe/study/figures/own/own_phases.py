@@ -35,7 +35,7 @@ def draw(answers: Mapping[str, xr.Dataset]) -> Figure:
             row[0].set_title(words, fontsize=8, loc="left")
             continue
         scale = draw_phases(list(row), answer)
-        # the scene stands one line above the instants, over all panels
+        # write the scene one line above the instants: it is wider than a panel
         for panel in row:
             panel.set_title(f"\n{panel.get_title()}", fontsize=7)
         scene = row[0].annotate(
@@ -46,5 +46,5 @@ def draw(answers: Mapping[str, xr.Dataset]) -> Figure:
             "offset points",
             fontsize=7,
         )
-        scene.set_in_layout(False)  # or the first panel would be as wide as its words
+        scene.set_in_layout(False)  # else the first panel gets the width of the text
     return figure

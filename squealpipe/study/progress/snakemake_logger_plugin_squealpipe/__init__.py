@@ -63,14 +63,14 @@ class LogHandler(LogHandlerBase):
             print(line, file=sys.stderr, flush=True)
 
     def _told(self, words: str) -> str:
-        """Return what a reader needs of an error: nothing of jobs that were interrupted."""
+        """Return what a user needs of an error; nothing once a job was interrupted."""
         if "died with <Signals.SIGINT" in words:
             self.interrupted = True
         if self.interrupted:
             return ""
         if not words.startswith("ConfigError in file"):
             return words
-        # where in the rules the configuration was read
+        # leave out the lines of the workflow that read the configuration
         lines = words.splitlines()[1:]
         return "\n".join(line for line in lines if not line.startswith('  File "'))
 
