@@ -103,6 +103,22 @@ def strongest_lines(
     return lines[kept], heights[kept]
 
 
+def strongest_line(signals: NDArray[np.float64], step: float) -> float:
+    """Return the strongest line of several signals together, Hz; NaN where nothing oscillates.
+
+    Args:
+        signals: (signals, samples), of which squares of amplitudes are added up.
+        step: between samples, s.
+    """
+    # spectral lines per resolved line; with 2 the peak is off by a hundredth of a resolved line
+    padding = 4
+    omega, amplitude = amplitude_spectrum(signals, step, padding=padding)
+    total = np.sqrt((amplitude**2).sum(axis=0))
+    resolution = 2.0 * np.pi / (step * signals.shape[-1])
+    lines, _ = strongest_lines(omega, total, 1, resolution)
+    return float(lines[0] / (2.0 * np.pi)) if lines.size else np.nan
+
+
 def loudest(variances: NDArray[np.float64]) -> tuple[int, int]:
     """Return the contact that moves most and its louder component, 0 along and 1 across the belt.
 
@@ -120,7 +136,7 @@ def loudest_line(blocks: Sequence[NDArray[np.float64]], step: float) -> float:
 
     Args:
         blocks: velocities along, then across the belt in each block of a record, (2, contacts,
-            samples), m/s; the line is that of their mean spectrum.
+            samples), m/s; the line is that of all blocks together.
         step: between samples, s.
     """
     variances = np.mean([block.var(axis=-1) for block in blocks], axis=0)
@@ -128,10 +144,4 @@ def loudest_line(blocks: Sequence[NDArray[np.float64]], step: float) -> float:
         return np.nan
     contact, component = loudest(variances)
     signals = np.stack([block[component, contact] for block in blocks])
-    # spectral lines per resolved line; with 2 the peak is off by a hundredth of a resolved line
-    padding = 4
-    omega, amplitude = amplitude_spectrum(signals, step, padding=padding)
-    mean = np.sqrt((amplitude**2).mean(axis=0))
-    resolution = 2.0 * np.pi / (step * signals.shape[-1])
-    lines, _ = strongest_lines(omega, mean, 1, resolution)
-    return float(lines[0] / (2.0 * np.pi)) if lines.size else np.nan
+    return strongest_line(signals, step)

@@ -184,6 +184,7 @@ def test_command_draws_and_converts_a_system_of_ones_own(tmp_path, monkeypatch, 
     assert "x [m]" in (tmp_path / "own.csv").read_text()
 
 
+@pytest.mark.usefixtures("real_pictures")
 @pytest.mark.release
 def test_a_full_disk_ends_a_workbook_and_a_picture_in_one_message(
     motion, tmp_path, monkeypatch, capsys

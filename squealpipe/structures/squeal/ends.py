@@ -9,18 +9,14 @@ from squealpipe.schema import Outcome
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
 from squealpipe.structures.squeal.smoothed import Samples
-from squealpipe.structures.squeal.windows import (
-    Running,
-    StructureWindows,
-    run,
-    strongest_line,
-)
+from squealpipe.structures.squeal.windows import Running, StructureWindows, run
 from squealpipe.vibration.settling import (
     Agreement,
     WindowLevels,
     agreement,
     settling_of_verdicts,
 )
+from squealpipe.vibration.spectrum import strongest_line
 
 
 @dataclass(frozen=True)
@@ -98,7 +94,7 @@ def exact_ends(
     how = Running(tol, workers=1)
     raw = run(plant, now.final, times, how, regime=now.regimes)
     lines = [
-        strongest_line(plant.modal_velocities(each), step) for each in raw["samples"]
+        strongest_line(plant.modal_velocities(each).T, step) for each in raw["samples"]
     ]
     ends = []
     for first in range(0, len(lines), count):
@@ -179,7 +175,7 @@ def smoothed_end(
     settled = quiet or _agree(before, now)
     return PushEnd(
         outcome=Outcome.converged if settled else Outcome.unresolved,
-        frequency=np.nan if quiet else strongest_line(modal[late], step),
+        frequency=np.nan if quiet else strongest_line(modal[late].T, step),
         speed=0.0 if quiet else float(np.sqrt((speed**2).mean())),
         separated=now.separated,
         stuck=now.stuck,

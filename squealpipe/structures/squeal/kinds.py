@@ -20,7 +20,6 @@ from squealpipe.structures.squeal.windows import (
     StructureWindows,
     run,
     statistics_of,
-    strongest_line,
 )
 from squealpipe.systems.cycles.find import find_cycle
 from squealpipe.systems.cycles.solution import Cycle
@@ -28,7 +27,7 @@ from squealpipe.systems.progress import stop_is_asked
 from squealpipe.systems.recurrence import repeats_after
 from squealpipe.vibration.settled_runs import SettledRun
 from squealpipe.vibration.settling import late_growth, settling_of_numbers
-from squealpipe.vibration.spectrum import amplitude_spectrum
+from squealpipe.vibration.spectrum import amplitude_spectrum, strongest_line
 
 
 @dataclass(frozen=True)
@@ -126,7 +125,7 @@ def described(
     step = float(times[0])
     omega, amplitude = amplitude_spectrum(modal.T, step)
     power = np.sqrt((amplitude**2).sum(axis=0))
-    frequency = strongest_line(modal, step)
+    frequency = strongest_line(modal.T, step)
     kind, cycle = Kind.undetermined, None
     rules, late = settling_of_numbers, apart.late_growth
     leaves = late > rules.still_grows and late > rules.proportional * before

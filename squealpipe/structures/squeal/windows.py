@@ -16,7 +16,6 @@ from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
 from squealpipe.systems.integrate import LARGEST, RunOptions, integrate
 from squealpipe.systems.progress import stop_is_asked
 from squealpipe.vibration.settling import Settling, late_growth, tapered
-from squealpipe.vibration.spectrum import amplitude_spectrum, strongest_lines
 from squealpipe.vibration.windows import Windows
 
 BLOCKS = 64
@@ -362,13 +361,3 @@ def _regimes(plant: Plant, word: str) -> list[list[int]]:
         ]
         for index, contact in enumerate(plant.contacts)
     ]
-
-
-def strongest_line(modal: np.ndarray, step: float) -> float:
-    """The strongest line of the kinetic energy by modal velocities (instants, n), Hz, or NaN."""
-    # lines of a spectrum for each that its samples resolve
-    padding = 4
-    omega, amplitude = amplitude_spectrum(modal.T, step, padding=padding)
-    power = np.sqrt((amplitude**2).sum(axis=0))
-    places, _ = strongest_lines(omega, power, 1, 2.0 * np.pi / (step * len(modal)))
-    return float(places[0] / (2.0 * np.pi)) if places.size else np.nan
