@@ -217,7 +217,7 @@ def test_forces_stand_in_newtons_and_a_contact_open_at_rest_has_no_ratio():
     ratios = np.where(forces > 0, forces / pad.preloads, np.nan)
     assert answer.peak_force[0].values == pytest.approx(ratios, rel=1e-9, nan_ok=True)
     assert _peak_force(answer.isel(attractor=0)) == (
-        "the peak force is 1.8 times the preload of its contact, and the largest force 479 N"
+        "a contact is pressed with up to 1.8 times its preload, and the largest force is 479 N"
     )
 
 

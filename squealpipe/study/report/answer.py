@@ -101,8 +101,8 @@ def headline(answer: xr.Dataset, prefix: str = "") -> str:
             opened = answer.contact_separated_fraction
             which = f"contact {opened.idxmax('contact').item()}"
         return (
-            f"{said} at {at}: {which} is open {lost} of the time, the peak force is "
-            f"{force} times the preload of its contact."
+            f"{said} at {at}: {which} is open {lost} of the time, and a contact is pressed with "
+            f"up to {force} times its preload."
         )
     if verdict is Verdict.hammers:
         return (
@@ -556,5 +556,5 @@ def _force(answer: xr.Dataset) -> str:
     times = number(float(answer.peak_contact_force_over_preload))
     # the largest force and the largest ratio are often those of two contacts
     if answer.sizes.get("contact", 1) > 1:
-        return f"{newtons}, and up to {times} times the preload of its contact"
+        return f"{newtons}, and up to {times} times a contact's preload"
     return f"{newtons}, {times} times the preload force"

@@ -89,7 +89,7 @@ def headline(answer: xr.Dataset) -> str:
     loses = first.isel(contact=worst)
     return (
         f"{said} at {at}: contact {loses.contact.item()} is open "
-        f"{part_of_time(float(loses.separated_fraction))} of the time, {_peak_force(first)}."
+        f"{part_of_time(float(loses.separated_fraction))} of the time, and {_peak_force(first)}."
     )
 
 
@@ -122,8 +122,8 @@ def _peak_force(motion: xr.Dataset) -> str:
         return (
             f"the peak force is {newtons}" if newtons else "the peak force is not known"
         )
-    told = f"the peak force is {number(ratio, 2)} times the preload of its contact"
-    return f"{told}, and the largest force {newtons}" if newtons else told
+    told = f"a contact is pressed with up to {number(ratio, 2)} times its preload"
+    return f"{told}, and the largest force is {newtons}" if newtons else told
 
 
 def agrees(answer: xr.Dataset) -> bool:
