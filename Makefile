@@ -26,7 +26,8 @@ test: dev  ## the tests of each change, minutes; and what they cost beside an ea
 	$(TESTS) -p tests.cost
 
 test-release: dev  ## the rest: whole studies, cluster, faults, browser, recipes, large samples; the study's cost
-	$(TESTS) -m "release and not long" --timeout 3000
+	# a sixth of their time two workers wait for files and for Snakemake
+	$(TESTS) -n 3 -m "release and not long" --timeout 3000
 	$(MAKE) cost
 
 test-long: dev  ## samples that take minutes each, of which test-release has a part; outside .ci/run
