@@ -22,7 +22,7 @@ from squealpipe.structures.reduction import Search, fewest_modes
 from squealpipe.structures.schema.squealing import Kind
 from squealpipe.structures.squeal import plant
 from squealpipe.structures.squeal.attractors import grouped
-from squealpipe.structures.squeal.remedies import added_damping
+from squealpipe.structures.squeal.remedies import _located_in_band, added_damping
 from squealpipe.structures.squeal.squealing_modes import _verdict
 from squealpipe.study.report.squealing import (
     _of_contacts,
@@ -595,6 +595,9 @@ def test_damping_that_stops_growth_is_that_of_the_whole_where_the_reduced_one_mi
     reduced = pad.reduce(n_modes=n_modes, frequency_max=60e3)
     ratio, outcome = added_damping(plant.Plant(reduced))
     assert outcome == Outcome.converged
+    # the disc brake's modes need more than the whole
+    from_above = _located_in_band(plant.Plant(reduced), 1.1 * ratio, grows_now=True)
+    assert from_above == pytest.approx(ratio, rel=0.01)
 
     springs = pad.normals * pad.stiffnesses
     stiffness = pad.stiffness.toarray()

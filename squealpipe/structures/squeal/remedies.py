@@ -88,7 +88,7 @@ def _located_in_band(plant: Plant, ratio: float, grows_now: bool) -> float | Non
     # growth is nearly linear in the ratio: secants end within a few steps, or not at all
     for _ in range(5):
         now = _fastest(damped(ratio))
-        if now >= growth:  # more damping destabilizes
+        if (now - growth) * (ratio - before) >= 0.0:  # more damping destabilizes
             return None
         step = now * (ratio - before) / (now - growth)
         before, ratio, growth = ratio, ratio - step, now
