@@ -25,7 +25,12 @@ from squealpipe.vibration.parabola import largest
 from squealpipe.vibration.schema import LINES, MEAN_SQUARES, MEANS, WITH_ERROR, error_of
 from squealpipe.vibration.settled_runs import SettledRun
 from squealpipe.vibration.settling import tapered
-from squealpipe.vibration.spectrum import amplitude_spectrum, loudest, loudest_line
+from squealpipe.vibration.spectrum import (
+    amplitude_spectrum,
+    loudest,
+    loudest_line,
+    strongest_line,
+)
 
 
 @dataclass(frozen=True)
@@ -362,7 +367,7 @@ def _spectrum(blocks: Sequence[Record]) -> dict[str, Any]:
     frequency, amplitude = amplitude_spectrum(signals, step, padding=padding)
     amplitude = np.sqrt((amplitude**2).mean(axis=1))
     frequency = frequency / (2.0 * np.pi)
-    strongest = loudest_line([block.signals for block in blocks], step)
+    strongest = strongest_line(signals[louder], step)
     resolution = 1.0 / float(blocks[0].times[-1])
     multiples = strongest * np.arange(1, Measurement.harmonics + 1)
     near = np.abs(frequency[:, None] - multiples) <= resolution
