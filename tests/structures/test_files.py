@@ -265,6 +265,26 @@ def test_millimetres_tonnes_and_seconds_become_si(tmp_path):
     )
 
 
+def test_milliseconds_become_si(tmp_path):
+    """In m, t and ms forces are in GN: every factor has a power of a thousand of its own."""
+    per_force, per_speed = 1e9, 1e3
+    for name, matrix, unit in (
+        ("M", MASS, 1e3),
+        ("C", 1e-4 * STIFFNESS, per_force / per_speed),
+        ("K", STIFFNESS, per_force),
+    ):
+        scipy.io.mmwrite(tmp_path / f"{name}.mtx", matrix / unit, precision=17)
+    files = "mass: M.mtx\ndamping: C.mtx\nstiffness: K.mtx\ncontacts: contacts.csv\n"
+    speed = 2.0 / per_speed
+    whole = structure_of(tmp_path, files + f"belt_speed: {speed}\nunits: m-t-ms\n")
+    assert_read(whole)
+    assert whole.damping.toarray() == pytest.approx(1e-4 * STIFFNESS, rel=1e-14)
+    assert whole.belt_speed == pytest.approx(2.0)
+    plain = structure_of(tmp_path, as_matrix_market(tmp_path))
+    force = whole.contacts[0].preload / plain.contacts[0].preload
+    assert force == pytest.approx(per_force)
+
+
 def replaced(path, old, new):
     content = path.read_text()
     assert old in content

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, fsolve
 
 from squealpipe import Switch, System
-from squealpipe.functions import cos
+from squealpipe.functions import cos, sin
 from squealpipe.schema import Outcome, meanings
 from squealpipe.systems.branch_labels import Label
 from squealpipe.systems.cycles.cycle import limit_cycle as system_cycle
@@ -277,6 +277,36 @@ def symmetric_cycle(force):
 
     state = fsolve(lambda z: after(z, np.pi)[:2] + z, [0.6, 1.3], xtol=1e-12)
     return state, np.linalg.eigvals(after(state, 2.0 * np.pi)[2:].reshape(2, 2))
+
+
+@pytest.mark.parametrize(
+    ("bend", "label"), [(0.0, Label.pitchfork), (1.0, Label.transcritical)]
+)
+def test_branches_that_cross_do_so_by_a_symmetry_or_without(bend, label):
+    """x = sin t loses stability at a = 0 to sin t + d, with a = bend d + d²."""
+    system = System(
+        "crossing branches",
+        states={"x": "1"},
+        parameters={"a": -0.5, "bend": 0.0},
+        regimes={"one": {}},
+        field=lambda t, s, p, r: {
+            "x": cos(t)
+            + p.a * (s.x - sin(t))
+            - p.bend * (s.x - sin(t)) ** 2
+            - (s.x - sin(t)) ** 3
+        },
+        start={"x": 0.0},
+        period=lambda p: 2.0 * np.pi,
+    )
+    start = system.limit_cycle(bend=bend)
+    branch = system.cycle_branch("a", to=0.3, start=start)
+    (at,) = np.flatnonzero(
+        np.isin(branch.label, (Label.pitchfork, Label.transcritical))
+    )
+    assert branch.label[at] == label
+    assert float(branch.a[at]) == pytest.approx(0.0, abs=1e-9)
+    grown = np.exp(2.0 * np.pi * branch.a.values)
+    np.testing.assert_allclose(branch.multiplier_real[:, 0], grown, rtol=1e-9)
 
 
 def test_a_symmetric_cycle_loses_stability_at_a_pitchfork():

@@ -21,6 +21,7 @@ from squealpipe.systems.shipped.dry_friction import dry_friction_oscillator
 from squealpipe.systems.shipped.impact_oscillator import impact_oscillator
 from squealpipe.systems.shipped.relief_valve import relief_valve
 from tests.samples import some
+from tests.systems.smooth_systems import duffing_holmes
 from tests.systems.test_random_systems import random_system
 
 V_STAR = 1.83660097221
@@ -190,6 +191,22 @@ def test_a_system_without_switches_has_branches_with_tori():
     size = np.hypot(cycle.multiplier_real, cycle.multiplier_imag)
     np.testing.assert_allclose(size, 1.0, atol=1e-10)
     assert (cycle.multiplier_imag != 0.0).all()
+
+
+def test_real_multipliers_that_are_inverse_are_no_torus():
+    """A saddle of Duffing's oscillator, whose multipliers have the product exp(−d T)."""
+    omega = 3.0
+    start = duffing_holmes.limit_cycle(
+        guess={"x": 0.0, "v": 0.0}, omega=omega, damping=0.1
+    )
+    branch = duffing_holmes.cycle_branch("damping", to=-0.1, start=start)
+    assert branch.end == Outcome.converged
+    assert (branch.multiplier_imag == 0.0).all()
+    product = branch.multiplier_real.prod("multiplier")
+    expected = np.exp(-branch.damping * 2.0 * np.pi / omega)
+    np.testing.assert_allclose(product, expected, rtol=1e-12)
+    assert branch.damping[0] > 0.0 > branch.damping[-1]  # at 0 they are inverse
+    assert set(branch.label.values[:-1]) == {Label.regular}
 
 
 def test_a_settled_motion_of_more_periods_says_how_many():

@@ -50,6 +50,19 @@ def test_mirror_images(model, speed):
     assert_mirrored(first, run(other, np.pi - ALPHA1, np.pi - ALPHA2, model), mirrored)
 
 
+def test_one_dashpot_alone_damps_whichever_spring_has_it():
+    """Springs that are alike change their names by (α1, α2) → (π − α2, π − α1)."""
+    first, second = (
+        FORMER.with_(damping1=one, damping2=other)
+        for one, other in ((0.2, 0.0), (0.0, 0.2))
+    )
+    one = run(first, ALPHA1, ALPHA2)
+    other = run(second, np.pi - ALPHA2, np.pi - ALPHA1)
+    assert_mirrored(one, other, [1, 1, 1, 1])
+    undamped = run(FORMER, ALPHA1, ALPHA2)
+    assert np.nanmax(np.abs(one.samples - undamped.samples)) > 0.1
+
+
 def test_linear_maps_mirror_with_the_belt():
     # No special angles: there a unit of round-off decides.
     angles = np.sort(RNG.uniform(0.0, np.pi, 13))

@@ -1,6 +1,7 @@
 """Levels of an irregular motion against closed forms of its blocks, and what is held of them."""
 
 import weakref
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -95,3 +96,17 @@ def test_blocks_of_an_irregular_motion_are_averaged_and_not_held():
     )
     assert scalars["separated_fraction"] == pytest.approx(0.5)
     assert scalars["frequency"] == pytest.approx(1.0, abs=1e-3)
+
+
+def test_the_largest_displacement_is_that_from_the_mean():
+    """A contact moves on an ellipse about a point that is not where it has no force."""
+
+    def record(number):
+        made = block(number, lambda t: np.sin(2 * np.pi * t))
+        turn = 2 * np.pi * made.times
+        moved = made.displacements.copy()
+        moved[:, 1] = np.stack([0.3 + 4.0 * np.sin(turn), 3.0 * np.cos(turn) - 0.2], -1)
+        return replace(made, displacements=moved)
+
+    scalars, _ = measured(record)
+    assert scalars["displacement_peak"] == pytest.approx(4.0, rel=1e-3)

@@ -33,6 +33,8 @@ def levels(velocities, *, peak=1.0, growth=0.0, late=0.0, periods=800.0, separat
             {"growth": 6.7, "late": 0.34},
             Agreement.regular,
         ),
+        # growth doubles with the window, though a first swing hides that in all of it
+        ({"growth": 2.0, "late": 0.1}, {"growth": 0.4, "late": 0.2}, Agreement.none),
         # what decays has left the mean squares long before the largest force
         ({"peak": 1.02}, {"peak": 1.0}, Agreement.none),
         # round-off has become motion: the largest force is chance
