@@ -75,9 +75,17 @@ def _imports_inside(function):
 
 def test_no_import_hides_from_the_contracts():
     inside, by_name = set(), set()
+    # the formatter lets an import begin its line; where neither word stands nothing is parsed
+    either = re.compile(
+        r"^[ \t]+(from|import) [^\n]*\bsquealpipe|import_module|__import__",
+        re.MULTILINE,
+    )
     for path in sorted((ROOT / "squealpipe").rglob("*.py")):
-        place, tree = str(path.relative_to(ROOT)), ast.parse(path.read_bytes())
-        for node in ast.walk(tree):
+        text = path.read_text(encoding="utf-8")
+        if not either.search(text):
+            continue
+        place = str(path.relative_to(ROOT))
+        for node in ast.walk(ast.parse(text)):
             is_function = isinstance(node, ast.FunctionDef)
             if is_function and place not in inside and any(_imports_inside(node)):
                 inside.add(place)

@@ -2,7 +2,12 @@
 
 import platform
 from collections.abc import Iterable
-from importlib.metadata import PackageNotFoundError, packages_distributions, version
+from functools import cache
+from importlib.metadata import (
+    PackageNotFoundError,
+    distribution,
+    packages_distributions,
+)
 from pathlib import Path
 
 from squealpipe.benchmark.adapters import SOLVERS
@@ -21,13 +26,24 @@ def processor() -> str:
 
 def versions(solvers: Iterable[str]) -> dict[str, str]:
     """Solver → package and version, of those that are shipped and whose package has one."""
-    known, installed = {}, packages_distributions()  # looks through all packages, 0.2 s
+    known = {}
     for name in solvers:
         module, needs, _ = SOLVERS.get(name, ("", "", {}))
-        ours = ["squealpipe"] if module == "squealpipe" else []
-        for package in (ours or installed.get(needs, []))[:1]:
-            try:
-                known[name] = f"{package} {version(package)}"
-            except PackageNotFoundError:
-                continue
+        package = _package("squealpipe" if module == "squealpipe" else needs)
+        if package:
+            known[name] = package
     return known
+
+
+@cache
+def _package(module: str) -> str:
+    """Return package and version that a module comes from, empty where it is not installed."""
+    try:
+        package = distribution(module)
+    except (PackageNotFoundError, ValueError):  # has another name, or none
+        # looks through all packages, 0.2 s
+        names = packages_distributions().get(module, [])
+        if not names:
+            return ""
+        package = distribution(names[0])
+    return f"{package.name} {package.version}"

@@ -17,6 +17,7 @@ from squealpipe.codes import Verdict
 from squealpipe.plotting import picture
 from squealpipe.schema import Outcome
 from squealpipe.structures import elastic_pad
+from squealpipe.structures.assess.assess import JudgedStructure
 from squealpipe.structures.schema.squealing import Kind
 from squealpipe.structures.squeal.plant import Plant
 from squealpipe.structures.squeal.remedies import added_damping
@@ -343,6 +344,8 @@ def test_commands_and_studies_run_modes_up_to_20_khz_and_say_so(
         "modal_damping: 0.02\nmu: 0.3\nbelt_speed: -2.0\n"
     )
     one, told = ["--samples", "1"], "modes up to 20 kHz. Whether modes above grow"
+    # what stops it is another question, and eigenvalues over every cure take most of the time
+    monkeypatch.setattr(JudgedStructure, "with_cures", JudgedStructure.without_cures)
     for command in (
         ["squeal", "pad.yaml", *one, "-o", "squeal.nc"],
         ["assess", "pad.yaml", *one, "-o", "assess.nc"],
