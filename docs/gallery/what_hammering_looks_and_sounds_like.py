@@ -35,7 +35,7 @@ run = simulate(pad, *np.radians((22.0, 46.0)), t_end=0.3)
 
 # %% [markdown]
 # One period takes a second of film. The foot of the pad is blue while it slips, orange while it sticks, and
-# black while contact is open, 39 % of the time. At each return the force rises to nearly twice the preload.
+# red while contact is open, 39 % of the time. At each return the force rises to nearly twice the preload.
 
 # %%
 HTML(film_of(run, dpi=90).player())

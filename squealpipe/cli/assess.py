@@ -153,7 +153,7 @@ def _assess_structure(
     say_doubts(whole)
     named = modifications_of(modify or [])
     for name, content in named.items():  # a mistake is told before modes are computed
-        read_modification(name, content, whole, 1.0)
+        read_modification(name, content, whole, 1.0, first=1)
     stated = options | {"modify": modify or []} | modes
     with errors_in_options():
         structure = as_asked(whole, modes)

@@ -22,12 +22,11 @@ CONTACT_LOOKS = {
     Regime.slip_slower: ("slip", style.REGIME_COLOURS["slip_slower"]),
     Regime.slip_faster: ("faster than the belt", style.REGIME_COLOURS["slip_faster"]),
     Regime.stick: ("stick", style.REGIME_COLOURS["stick"]),
-    # not the red of other figures: small red marks look like the orange ones of stick
-    Regime.separated: ("open", style.Colour.black),
+    Regime.separated: ("open", style.REGIME_COLOURS["separated"]),
 }
 """State of a contact in words, and its colour."""
 COLOURS_IN_WORDS = (
-    "Blue: the contact slips; green: it is faster than the belt; orange: it sticks; black: it is "
+    "Blue: the contact slips; green: it is faster than the belt; orange: it sticks; red: it is "
     "open."
 )
 

@@ -87,14 +87,13 @@ def draw_poles(axes: Axes, answer: xr.Dataset) -> None:
 
 def _poles(axes: Axes, answer: xr.Dataset) -> None:
     # modes whose error is not known, beyond the band of a large structure, are left out
-    if "pole_growth_rate_error" in answer:
-        answer = answer.isel(pole=answer.pole_growth_rate_error.notnull().values)
+    answer = answer.isel(pole=answer.pole_growth_rate_error.notnull().values)
     frequencies = answer.pole_frequency.values
     factor, unit = frequency_unit(frequencies)
     frequency, growth = frequencies * factor, answer.pole_growth_rate
     unstable = np.isin(answer.pole.values, answer.mode.values)
     _errors(axes, answer, factor)
-    limit = float(answer.get("frequency_max", np.nan))
+    limit = float(answer.frequency_max)
     if frequencies.max(initial=0.0) > limit:
         axes.axvspan(
             limit * factor,
@@ -116,7 +115,7 @@ def _poles(axes: Axes, answer: xr.Dataset) -> None:
             )
     draw_stability(axes, frequency, growth.values, unstable)
     shown = growth.values
-    if answer.sizes.get("missing", 0):
+    if answer.sizes["missing"]:
         lost = answer.missing_growth_rate.values
         shown = np.concatenate([shown, lost])
         at = answer.missing_frequency.values * factor
@@ -137,7 +136,7 @@ def _poles(axes: Axes, answer: xr.Dataset) -> None:
 
 def _errors(axes: Axes, answer: xr.Dataset, factor: float) -> None:
     """Bars from each mode's place to that of the whole structure's, where both are apart."""
-    if not float(answer.get("growth_rate_error", 0.0)):
+    if not float(answer.growth_rate_error):
         return
     axes.errorbar(
         answer.pole_frequency.values * factor,

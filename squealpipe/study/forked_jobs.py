@@ -1,10 +1,9 @@
 """Start the jobs of a study from one process that has imported the libraries.
 
-Idea: NumPy, SciPy, xarray, numba and Matplotlib take 1.5 s of CPU time to import, and the modules
-of this package that most jobs share 0.2 s; a study has forty jobs. One process imports them once,
-and each job is a fork of it. Snakemake starts jobs as
-before, by a command; a prefix of the command hands it to that process, lends it the streams and the
-environment of the command, and ends as the job ends.
+Idea: NumPy, SciPy, xarray, numba, Matplotlib and the modules of this package that most jobs share
+take 2.5 s of CPU time to import; a study has forty jobs. One process imports them once, and each
+job is a fork of it. Snakemake starts jobs as before, by a command; a prefix of the command hands it
+to that process, lends it the streams and the environment of the command, and ends as the job ends.
 
 Source: the fork server of Python's ``multiprocessing``, which takes no commands of other processes.
 

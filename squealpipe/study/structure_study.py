@@ -1,6 +1,5 @@
 """Computations of a structure's study: complex modes over friction, and which of them squeal."""
 
-import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -70,20 +69,9 @@ def modifications(structure: Structure, section: Mapping[str, Any]) -> dict[str,
     """
     named = counted_from_zero(section)
     for name, content in named.items():
-        try:
-            read_modification(name, content, structure, 1.0)  # any frequency will do
-        except ValueError as error:
-            raise ValueError(_as_in_files(str(error))) from error
+        # any frequency will do
+        read_modification(name, content, structure, 1.0, first=1)
     return named
-
-
-def _as_in_files(message: str) -> str:
-    """Return a message with the degrees of freedom of its key counted from 1, as files count."""
-
-    def counted(match: re.Match[str]) -> str:
-        return re.sub(r"\d+", lambda number: str(int(number[0]) + 1), match[0])
-
-    return re.sub(r"\[\(?\d+(, \d+\))?\]", counted, message)
 
 
 def operating_options(

@@ -73,7 +73,6 @@ def _of_motion(prefix: str, start: str) -> dict[str, Variable]:
             "0 where the motion repeats",
             scalars[name].units,
             volatile=True,
-            optional=True,
         )
         for name in WITH_ERROR
     }
@@ -251,7 +250,6 @@ assess_schema = DatasetSchema(
                 "nearest first; the end of the range searched where quiet does not end there",
                 dims=("cure", "interval"),
                 rtol=2e-3,
-                optional=True,
             )
             for end in ("low", "high")
         },
@@ -270,7 +268,6 @@ assess_schema = DatasetSchema(
             "whether runs from other starts than a push tell where its verdict changes; where they "
             "would take long only those of the smallest changes do",
             "cure",
-            optional=True,
         ),
         "lowest_tried": or_nan(
             "lower end of the range that was searched", dims=("cure",)

@@ -120,7 +120,7 @@ def test_a_gif_repeats_and_has_the_frames_of_the_film(pad):
         assert picture.info["loop"] == 0
         # marks are small: those of stick and of open contacts once had one colour
         palette = np.array(picture.getpalette()).reshape(-1, 3).tolist()
-    for colour in (style.Colour.orange, style.Colour.black):
+    for colour in (style.Colour.orange, style.Colour.red):
         assert [round(255 * part) for part in to_rgb(colour)] in palette
 
 

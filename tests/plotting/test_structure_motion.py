@@ -7,9 +7,7 @@ from scipy.ndimage import center_of_mass, label
 from squealpipe import load, plot, squealing_modes
 from squealpipe.cli import run
 from squealpipe.codes import Regime
-from squealpipe.plotting import style
 from squealpipe.plotting.animation import film_of, phases
-from squealpipe.plotting.motion_panels import CONTACT_LOOKS
 from squealpipe.plotting.sound import SAMPLING_RATE, sound
 from squealpipe.schema import Outcome, build
 from squealpipe.store import save
@@ -71,9 +69,7 @@ def marks_in(pixels):
     return np.stack([middles[:, 1], pixels.shape[0] - 1 - middles[:, 0]], axis=1)
 
 
-def test_the_mesh_is_drawn_where_the_dataset_says(swaying, monkeypatch):
-    # black, their colour, is that of the belt's edge, too
-    monkeypatch.setitem(CONTACT_LOOKS, Regime.separated, ("open", style.Colour.red))
+def test_the_mesh_is_drawn_where_the_dataset_says(swaying):
     made = film_of(swaying, seconds=1.0, dpi=200)
     frames = list(made.frames())
     assert len(frames) == 25

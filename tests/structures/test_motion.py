@@ -1,6 +1,7 @@
 """Structures in motion against model A1, an integrator apart, and conserved quantities."""
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -211,6 +212,23 @@ def test_a_run_tells_force_and_speed_at_each_contact_and_displacements_by_name()
         assert np.abs(speed[sticks]).max(initial=0.0) < 1e-13
     with pytest.raises(ValueError, match="degrees of freedom are 0 to 3"):
         structure.system(displacements={"far": 4})
+
+
+@pytest.mark.parametrize(("law", "mu"), [("coulomb", 0.9), ("linear 0:0.5 1:0.3", 1.7)])
+def test_a_run_with_more_friction_than_its_limit_of_stick_is_refused(law, mu):
+    pad = elastic_pad(contacts=2, elements=(4, 2))
+    own = (
+        {"friction_law": law, "mu": 1.0, "mu_static": 0.8}
+        if " " in law
+        else {"mu_static": 0.8}
+    )
+    system = pad.with_(**own).reduce(n_modes=4).system()
+    with pytest.raises(
+        ValueError, match=rf"mu = {mu}: mu_static = 0\.8 is below"
+    ) as error:
+        system.ensemble(1e-5, mu=[0.1, mu])
+    needed = float(re.search(r"give mu_static = (\S+)", str(error.value))[1])
+    assert system.simulate(1e-5, mu=mu, mu_static=needed).outcome == 0
 
 
 def test_what_is_too_large_for_a_system_says_how_to_make_it_small():

@@ -55,7 +55,12 @@ class Modification(Protocol):
 
 
 def read_modification(
-    name: str, content: Any, structure: ContactStructure, frequency: float
+    name: str,
+    content: Any,
+    structure: ContactStructure,
+    frequency: float,
+    *,
+    first: int = 0,
 ) -> Modification:
     """Read a modification of a structure, like ``{"added_mass": {1: 0.1}}``.
 
@@ -67,6 +72,7 @@ def read_modification(
             two last or both; the amount is the mass where there is one. ``chamfer``: {"face": …,
             "share": …}.
         frequency: of the mode that grows fastest, Hz; a patch has its damping ratio there.
+        first: number of the first degree of freedom in messages; 1 as files and commands count.
 
     Raises:
         ValueError: names the modification, and what is wrong with it.
@@ -88,14 +94,14 @@ def read_modification(
     if kind == "chamfer":
         return Chamfer.read(title, entries, structure)
     matrix, unit = MATRICES[kind]
+    keys = {place: f"{title}[{_as_counted(place, first)!r}]" for place in entries}
     amounts = {
-        place: _positive(f"{title}[{place!r}]", amount, unit)
-        for place, amount in entries.items()
+        place: _positive(keys[place], amount, unit) for place, amount in entries.items()
     }
     most = next(iter(amounts.values()))
     change = sp.csr_array((structure.size, structure.size))
     for place, amount in amounts.items():
-        for column in _columns(title, kind, place, structure):
+        for column in _columns(keys[place], kind, place, structure):
             part = sp.csr_array(column[:, None])
             change = change + (amount / most) * (part @ part.T)
     return MatrixChange({matrix: sp.csr_array(change)}, most, unit)
@@ -126,6 +132,13 @@ def _place(text: str) -> Any:
         for end in map(str.strip, text.split(","))
     ]
     return ends[0] if len(ends) == 1 else tuple(ends)
+
+
+def _as_counted(place: Any, first: int) -> Any:
+    """Return a place whose degrees of freedom are counted from this number instead of 0."""
+    if isinstance(place, tuple):
+        return tuple(_as_counted(each, first) for each in place)
+    return place + first if is_whole_number(place) else place
 
 
 def _positive(title: str, value: Any, unit: str) -> float:
@@ -380,31 +393,24 @@ def _along_belt(
 
 
 def _columns(
-    title: str, kind: str, place: Any, structure: ContactStructure
+    key: str, kind: str, place: Any, structure: ContactStructure
 ) -> list[np.ndarray]:
     """Return vectors v of the change Σ v vᵀ: of a mass one each, of a spring one between two."""
     if isinstance(place, tuple):
-        if kind == "added_mass" or len(place) != 2:
-            raise ValueError(
-                f"{title}[{place!r}]: "
-                + (
-                    "a mass is at one degree of freedom"
-                    if kind == "added_mass"
-                    else "two degrees of freedom are needed, like (0, 5)"
-                )
-            )
-        first, second = (
-            freedoms_of(f"{title}[{place!r}]", each, structure) for each in place
-        )
+        if kind == "added_mass":
+            raise ValueError(f"{key}: a mass is at one degree of freedom")
+        if len(place) != 2:
+            raise ValueError(f"{key}: two degrees of freedom are needed, like (0, 5)")
+        first, second = (freedoms_of(key, each, structure) for each in place)
         if len(first) != len(second) or first == second:
             raise ValueError(
-                f"{title}[{place!r}]: two different degrees of freedom, or two nodes, are needed"
+                f"{key}: two different degrees of freedom, or two nodes, are needed"
             )
         return [
             _unit(one, structure.size) - _unit(other, structure.size)
             for one, other in zip(first, second, strict=True)
         ]
-    return [_unit(one, structure.size) for one in freedoms_of(title, place, structure)]
+    return [_unit(one, structure.size) for one in freedoms_of(key, place, structure)]
 
 
 def _unit(place: int, size: int) -> np.ndarray:
@@ -413,7 +419,7 @@ def _unit(place: int, size: int) -> np.ndarray:
     return vector
 
 
-def freedoms_of(title: str, place: Any, structure: ContactStructure) -> list[int]:
+def freedoms_of(key: str, place: Any, structure: ContactStructure) -> list[int]:
     """Return the degrees of freedom of a place: a number from 0, or a node of the mesh.
 
     Args:
@@ -426,7 +432,7 @@ def freedoms_of(title: str, place: Any, structure: ContactStructure) -> list[int
     if is_whole_number(place):
         if not 0 <= place < structure.size:
             raise ValueError(
-                f"{title}[{place!r}]: the structure has {structure.size} degrees of freedom, "
+                f"{key}: the structure has {structure.size} degrees of freedom, "
                 "counted from 0 in Python and from 1 in files and commands"
             )
         return [int(place)]
@@ -434,13 +440,12 @@ def freedoms_of(title: str, place: Any, structure: ContactStructure) -> list[int
     mesh = structure.mesh
     if not isinstance(place, str) or not node.isdigit():
         raise ValueError(
-            f"{title}[{place!r}]: a degree of freedom counted from 0, or a node like '5005' or "
-            "'5005.3' is needed"
+            f"{key}: a degree of freedom, or a node like '5005' or '5005.3' is needed"
         )
     if mesh is None:
         raise ValueError(
-            f"{title}[{place!r}]: the structure has no mesh, so nodes have no numbers; give the "
-            "degree of freedom, counted from 0, as a number"
+            f"{key}: the structure has no mesh, so nodes have no numbers; give the degree of "
+            "freedom as a number"
         )
     index, way = mesh.degree_of_freedom.T
     numbers = np.where(index >= 0, np.asarray(mesh.numbers)[index], -1)
@@ -448,7 +453,5 @@ def freedoms_of(title: str, place: Any, structure: ContactStructure) -> list[int
     if direction:
         chosen &= way == (int(direction) if direction.isdigit() else 0)
     if not chosen.any():
-        raise ValueError(
-            f"{title}[{place!r}]: the structure has no such node or direction"
-        )
+        raise ValueError(f"{key}: the structure has no such node or direction")
     return [int(each) for each in np.flatnonzero(chosen)]

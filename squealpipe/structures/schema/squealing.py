@@ -74,7 +74,7 @@ def _of_onset(long_name: str, units: str = "1", *dims: str, **other: Any) -> Var
 def _of_whole(long_name: str, units: str = "1", *dims: str, **other: Any) -> Variable:
     """One that says how the modes kept agree with the whole; a round-off of 0 where they are it."""
     other = {"volatile": True, **other} if "rtol" not in other else other
-    return or_nan(long_name, units, dims, optional=True, **other)
+    return or_nan(long_name, units, dims, **other)
 
 
 def _level(long_name: str, units: str = "1", *, rtol: float = 0.05) -> Variable:
@@ -120,7 +120,7 @@ squealing_schema = DatasetSchema(
             "difference of its growth rate from the whole structure's", "s-1", "mode"
         ),
         "mode_is_sure": whether(
-            "whether it grows by more than that difference", "mode", optional=True
+            "whether it grows by more than that difference", "mode"
         ),
         "missing_frequency": _of_whole(
             "frequency of an unstable mode of the whole structure that is missing in the "
@@ -133,24 +133,21 @@ squealing_schema = DatasetSchema(
             "its growth rate", "s-1", "missing", rtol=1e-6
         ),
         "same_modes_grow": whether(
-            "whether the modes that grow are those of the whole structure",
-            optional=True,
+            "whether the modes that grow are those of the whole structure"
         ),
         "whole_decays": whether(
-            "whether every small motion of the whole structure dies out", optional=True
+            "whether every small motion of the whole structure dies out"
         ),
         "modes_that_would_do": count(
             "modes kept that agree with the whole structure within 1 %, where these do not; "
-            "0: not needed, or not known",
-            optional=True,
+            "0: not needed, or not known"
         ),
         "static_responses": count(
             "of the modes in which it was run, how many are static responses of contact forces "
-            "(attachment modes)",
-            optional=True,
+            "(attachment modes)"
         ),
-        "degrees_of_freedom": count("of the whole structure", optional=True),
-        "is_undamped": whether("whether nothing damps the structure", optional=True),
+        "degrees_of_freedom": count("of the whole structure"),
+        "is_undamped": whether("whether nothing damps the structure"),
         **mesh_entries,
         "frequency_max": _of_whole("end of the band that was compared, NaN: all", "Hz"),
         "damping_beyond_band": _of_whole(
@@ -244,20 +241,12 @@ squealing_schema = DatasetSchema(
             "largest normal force over the preload (over that of steady sliding if it is 0), NaN "
             "where the contact is open then"
         ),
-        "peak_normal_force": or_nan(
-            "largest normal force",
-            "N",
-            ("attractor", "contact"),
-            rtol=0.05,
-            atol=0.01,
-            optional=True,
-        ),
+        "peak_normal_force": _of_contact("largest normal force", "N"),
         "sliding_force": or_nan(
             "normal force in steady sliding, 0 where the contact is open",
             "N",
             ("contact",),
             rtol=1e-6,
-            optional=True,
         ),
         "impacts_per_period": _of_contact(
             "returns to contact in a period of the dominant frequency"

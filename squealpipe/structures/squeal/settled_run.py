@@ -184,7 +184,7 @@ def _as_it_was_run(structure: Any, answer: xr.Dataset) -> Any:
     return reduced_again(
         structure,
         number,
-        int(answer.get("static_responses", 0)),
+        int(answer.static_responses),
         limit if math.isfinite(limit) else None,
     )
 

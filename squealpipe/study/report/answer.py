@@ -134,7 +134,7 @@ def damping_advice(answer: xr.Dataset) -> str:
 def _wanders(answer: xr.Dataset, prefix: str = "") -> str:
     """Say that the strongest line of an irregular motion is not the same in all parts of it."""
     frequency, error = f"{prefix}frequency", error_of(f"{prefix}frequency")
-    if error not in answer or not answer[error] > 0.05 * answer[frequency]:
+    if not answer[error] > 0.05 * answer[frequency]:
         return ""
     scatter = engineering(float(answer[error]), "Hz", 2)
     return f" (at times another line is strongest: standard deviation {scatter})"
@@ -300,8 +300,6 @@ def level_change(
 def _scatter(answer: xr.Dataset) -> str:
     """Return the statistical error of the levels in words, if their digits would show it."""
     ways = [f"velocity_rms_{way}" for way in ("along", "across")]
-    if error_of(ways[0]) not in answer:  # of a version that did not say
-        return ""
     values = [float(answer[way]) for way in ways]
     errors = [float(answer[error_of(way)]) for way in ways]
     loudest = int(np.argmax(values))
@@ -414,8 +412,6 @@ def _more_intervals(name: str, answer: xr.Dataset) -> str:
 
 def _intervals(cure: xr.Dataset) -> list[str]:
     """Return all quiet intervals of a cure in words, the nearest first."""
-    if "quiet_low" not in cure:
-        return []  # of a version that did not list them
     name, unit = str(cure.cure.item()), str(cure.unit.item())
     return [
         f"{_value(name, float(low), unit)} to {_value(name, float(high), unit)}"
@@ -469,7 +465,7 @@ def _snap_line(answer: xr.Dataset) -> Iterator[str]:
 def snap_throughs(answer: xr.Dataset) -> list[str]:
     """Tell where steady sliding of a quiet brake jumps to another equilibrium, quiet or not."""
     if "snaps_from" not in answer:
-        return []  # of version 1.0.0
+        return []
     told = []
     for name in map(str, answer.cure.values):
         cure = answer.sel(cure=name)
@@ -513,7 +509,7 @@ def _words(answer: xr.Dataset, name: str) -> CureWords:
         else _value(name, float(cure.quiet_from), unit),
         _change(name, float(cure.change), float(cure.value)),
         _value(name, float(cure.quiet_from_any_start), unit)
-        if bool(cure.get("cure_is_run", True))
+        if bool(cure.cure_is_run)
         else NOT_RUN,
         _change(name, float(cure.change_any_start), float(cure.value)),
         "; ".join(_intervals(cure)) or "none",

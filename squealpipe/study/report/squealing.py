@@ -69,7 +69,7 @@ def headline(answer: xr.Dataset) -> str:
         )
     if verdict is Verdict.undetermined:
         largest = float(answer.pole_growth_rate.max())
-        fades = bool(answer.get("whole_decays", True))
+        fades = bool(answer.whole_decays)
         if not answer.sizes["mode"] and (largest >= 0 or not fades):
             return (
                 f"{said}: small motions about steady sliding neither grow nor die out; give "
@@ -95,8 +95,8 @@ def headline(answer: xr.Dataset) -> str:
 
 def _ends_beyond(answer: xr.Dataset) -> str | None:
     """Say that a push ends beyond the band in a mode that the whole may not have, if it does."""
-    end, sure = _end(answer), answer.get("mode_is_sure")
-    if end == NO_ATTRACTOR or sure is None or sure.all():
+    end = _end(answer)
+    if end == NO_ATTRACTOR or answer.mode_is_sure.all():
         return None
     at = float(answer.dominant_frequency[end])
     away = np.abs(answer.frequency.values - at)
@@ -112,28 +112,26 @@ def _ends_beyond(answer: xr.Dataset) -> str | None:
 
 
 def _peak_force(motion: xr.Dataset) -> str:
-    """The largest normal force, over the preload and in newtons as far as both are known."""
+    """The largest normal force in newtons, and over the preload where it is known."""
     # NaN of contacts that are open at rest is left out
     ratio = float(motion.peak_force.max())
-    newtons = ""
-    if "peak_normal_force" in motion:
-        newtons = engineering(float(motion.peak_normal_force.max()), "N")
+    newtons = engineering(float(motion.peak_normal_force.max()), "N")
     if not np.isfinite(ratio):
-        return (
-            f"the peak force is {newtons}" if newtons else "the peak force is not known"
-        )
-    told = f"a contact is pressed with up to {number(ratio, 2)} times its preload"
-    return f"{told}, and the largest force is {newtons}" if newtons else told
+        return f"the peak force is {newtons}"
+    return (
+        f"a contact is pressed with up to {number(ratio, 2)} times its preload, and the largest "
+        f"force is {newtons}"
+    )
 
 
 def agrees(answer: xr.Dataset) -> bool:
     """Tell whether the modes that grow in what was run are those of the whole structure."""
-    return bool(answer.get("same_modes_grow", True))
+    return bool(answer.same_modes_grow)
 
 
 def frequency_max(answer: xr.Dataset) -> float:
     """The end of the band in which modes were compared with those of the whole, Hz."""
-    limit = float(answer.get("frequency_max", np.nan))
+    limit = float(answer.frequency_max)
     return limit if np.isfinite(limit) else np.inf
 
 
@@ -166,7 +164,7 @@ def outside(answer: xr.Dataset) -> str | None:
 
 def damped_beyond(answer: xr.Dataset) -> str | None:
     """Say that coordinates beyond the band were damped for the runs, if they were."""
-    ratio = float(answer.get("damping_beyond_band", 0.0))
+    ratio = float(answer.damping_beyond_band)
     if not ratio > 0.0:
         return None
     return (
@@ -186,16 +184,11 @@ def _mode_at(mode: xr.Dataset) -> str:
     return f"the mode at {engineering(float(mode.frequency), 'Hz', 4)}"
 
 
-def _nearest_mode(motion: xr.Dataset) -> float:
-    """Return the frequency of the mode that is nearest to a motion, Hz."""
-    return float(motion.dominant_frequency) - float(motion.frequency_shift)
-
-
 def _disagreement(answer: xr.Dataset) -> str:
     """Name the modes in which what was run and the whole structure disagree."""
     kept = f"the {int(answer.n_modes)} modes kept"
     parts = []
-    if count := answer.sizes.get("missing", 0):
+    if count := answer.sizes["missing"]:
         lost = answer.isel(missing=0)
         modes_ = "mode" if count == 1 else "modes"
         fastest = "" if count == 1 else ", the fastest"
@@ -220,7 +213,7 @@ def _named(mode: xr.Dataset, prefix: str = "") -> str:
         float(mode[f"{prefix}{name}"]) for name in ("frequency", "growth_rate")
     )
     off, apart = (
-        0.0 if prefix else float(mode.get(f"mode_{name}_error", 0.0))
+        0.0 if prefix else float(mode[f"mode_{name}_error"])
         for name in ("frequency", "growth_rate")
     )
     told = engineering(frequency, "Hz", 4), number(growth)
@@ -258,10 +251,10 @@ def _what_would_do(answer: xr.Dataset) -> str:
 
 def missing(answer: xr.Dataset) -> Iterator[str]:
     """Unstable modes of the whole structure that are not among the modes kept."""
-    for index in range(min(answer.sizes.get("missing", 0), LISTED)):
+    for index in range(min(answer.sizes["missing"], LISTED)):
         lost = answer.isel(missing=index)
         yield f"Not in the modes kept: {_named(lost, 'missing_')} (of the whole structure)."
-    if answer.sizes.get("missing", 0) > LISTED:
+    if answer.sizes["missing"] > LISTED:
         yield f"{answer.sizes['missing'] - LISTED} more of these grow more slowly."
 
 
@@ -346,7 +339,7 @@ def modes(answer: xr.Dataset) -> Iterator[str]:
     for index in range(min(answer.sizes["mode"], LISTED)):
         mode = answer.isel(mode=index)
         named = f"The mode at {_named(mode)}{_beyond(answer, float(mode.frequency))},"
-        if not bool(mode.get("mode_is_sure", True)):
+        if not bool(mode.mode_is_sure):
             named += " whose sign of growth is not known,"
         if answer.attrs.get("not_run"):
             yield f"{named} is unstable."
@@ -396,7 +389,7 @@ def _reason_of_shift(motion: xr.Dataset) -> str:
     done = [
         word
         for name, word in (("separated_fraction", "open"), ("stick_fraction", "stick"))
-        if name in motion and (motion[name] > 0.0).any()
+        if (motion[name] > 0.0).any()
     ]
     return f", since contacts then {' and '.join(done)}" if done else ""
 
@@ -421,7 +414,7 @@ def attractors(answer: xr.Dataset) -> Iterator[str]:
             Kind.torus: "a quasi-periodic motion",
             Kind.irregular: "an irregular motion",
         }.get(attractor_kind, "a motion of undetermined kind")
-        mode = _nearest_mode(one)
+        mode = float(one.dominant_frequency) - float(one.frequency_shift)
         shift = float(one.frequency_shift) / mode if mode > 0.0 else 0.0
         near = off_by(shift) if is_shifted(shift) else "near"
         yield (

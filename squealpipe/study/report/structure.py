@@ -70,8 +70,8 @@ def gather_structure(
 
 def starts_tried(answer: xr.Dataset) -> str:
     """Say which starts were tried at other values of what is changed."""
-    is_run = answer.get("cure_is_run")
-    if is_run is None or is_run.all():
+    is_run = answer.cure_is_run
+    if is_run.all():
         return (
             "the push, the structure pressed on suddenly, "
             f"{int(answer.random_starts)} random starts, and the vibrations that are there now, "
@@ -273,9 +273,7 @@ def contacts(answer: xr.Dataset) -> list[dict[str, Any]]:
         one = answer.isel(attractor=index)
         if Verdict(int(one.motion)) is Verdict.quiet:
             continue
-        count = one.sizes["contact"]
-        forces = one.get("peak_normal_force", xr.DataArray(np.full(count, np.nan)))
-        newtons = column(forces.values, "N")
+        newtons = column(one.peak_normal_force.values, "N")
         speeds = column(one.contact_velocity_rms.values, "m s-1")
         rows = [
             {
@@ -287,7 +285,7 @@ def contacts(answer: xr.Dataset) -> list[dict[str, Any]]:
                 "impacts": number(float(at.impacts_per_period)),
                 "speed": speeds[place],
             }
-            for place in range(count)
+            for place in range(one.sizes["contact"])
             for at in [one.isel(contact=place)]
         ]
         tables.append(
@@ -317,8 +315,7 @@ def _number_or_dash(value: xr.DataArray) -> str:
 
 def _modes_words(answer: xr.Dataset) -> str:
     """Return the number of modes, and how many of them are no natural modes."""
-    static = int(answer.get("static_responses", 0))
-    total = int(answer.n_modes)
+    static, total = int(answer.static_responses), int(answer.n_modes)
     return f"{total}, of which {static} static responses" if static else str(total)
 
 

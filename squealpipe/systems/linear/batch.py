@@ -28,17 +28,49 @@ def coefficients_of_contacts(
         coefficients: see :func:`numbers_of_runs`.
     """
     compressions = matrices.compressions(values["preload"])
-    for law, pieces, compression, (mu, static, speed) in zip(
-        matrices.laws, matrices.pieces, compressions, coefficients, strict=True
+    for at_rest, compression, (mu, static, speed) in zip(
+        _over_mu_at_rest(matrices), compressions, coefficients, strict=True
     ):
-        # of a table μ is a factor
-        at_rest = pieces[0, 2] if law == friction_number.table else 1.0
         yield (
             values[mu],
             values[mu] * at_rest if static is None else values[static],
             values[speed] if isinstance(speed, str) else speed,
             compression,
         )
+
+
+def _over_mu_at_rest(matrices: ContactMatrices) -> list[float]:
+    """Return the coefficient of each contact at speed 0 over its μ, which a table multiplies."""
+    return [
+        float(pieces[0, 2]) if law == friction_number.table else 1.0
+        for law, pieces in zip(matrices.laws, matrices.pieces, strict=True)
+    ]
+
+
+def refuse_weak_stick(
+    matrices: ContactMatrices,
+    coefficients: Sequence[tuple[str, str | None, Any]],
+    values: Mapping[str, np.ndarray],
+) -> None:
+    """Raise if a static limit is below the coefficient at speed 0: neither stick nor slip lasts.
+
+    Args:
+        coefficients: see :func:`numbers_of_runs`.
+        values: parameters by name, (runs,) each.
+    """
+    for at_rest, (mu, static, _) in zip(
+        _over_mu_at_rest(matrices), coefficients, strict=True
+    ):
+        if static is None:
+            continue
+        excess = np.asarray(values[mu]) * at_rest - values[static]
+        run = int(excess.argmax())
+        if excess[run] > 1e-12 * values[static][run]:
+            needed = values[mu][run] * at_rest
+            raise ValueError(
+                f"{mu} = {values[mu][run]:g}: {static} = {values[static][run]:g} is below the "
+                f"coefficient at speed 0; give {static} = {needed:g} or more, or a smaller {mu}"
+            )
 
 
 def numbers_of_runs(
@@ -111,6 +143,7 @@ class LinearBatch(Batch):
 
     def _parameters(self, values: Mapping[str, np.ndarray]) -> np.ndarray:
         system: Any = self.system
+        refuse_weak_stick(system.matrices, system.coefficients, values)
         self.plan = plan(system.matrices, system.integrated)
         address = self.plan.pointer.value or 0
         return numbers_of_runs(

@@ -1,5 +1,6 @@
 """What stops a structure, against eigenvalues of matrices that are written down here."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -127,6 +128,18 @@ def test_a_modification_that_cannot_be_is_refused_with_its_name(content, message
     with pytest.raises(ValueError, match="modifications: weight") as error:
         read_modification("weight", content, two_degrees(), 1000.0)
     assert message in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("content", "place"),
+    [({"added_mass": {7: 1.0}}, "8"), ({"spring": {(0, 6): 1.0}}, "(1, 7)")],
+)
+def test_a_message_for_files_counts_from_one(content, place):
+    message = re.escape(
+        f"weight: {next(iter(content))}[{place}]: the structure has 2 degrees"
+    )
+    with pytest.raises(ValueError, match=message):
+        read_modification("weight", content, two_degrees(), 1000.0, first=1)
 
 
 def test_a_structure_has_no_angles_and_a_pad_no_modifications():
