@@ -67,12 +67,14 @@ def draw_methods(
         colour, marker, dash = METHOD_MARKS[methods.index(method) % len(METHOD_MARKS)]
         right = mine & (worth == Reliability.right)
         look: dict[str, Any] = {"color": colour, "ms": 3.5, "lw": 0.8, "zorder": 2}
-        axes.plot(error[mine], values[mine], dash, **look)
-        rest = mine & ~right
-        look |= {"marker": marker, "ls": "none"}
-        axes.plot(error[rest], values[rest], **look, mfc=style.Colour.white)
-        axes.plot(error[right], values[right], **look)
-        axes.plot([], [], **look | {"ls": dash}, label=style.symbols(method))
+        look |= {"marker": marker}
+        # its marks are in the legend only: they are drawn apart, above the line
+        line: dict[str, Any] = {"ls": dash, "markevery": []}
+        line["label"] = style.symbols(method)
+        axes.plot(error[mine], values[mine], **look, **line)
+        for marked, fill in ((mine & ~right, style.Colour.white), (right, colour)):
+            if marked.any():
+                axes.plot(error[marked], values[marked], **look, ls="none", mfc=fill)
     wrong = fine & (worth == Reliability.silently_wrong)
     ours = fine & (rows.role.values == Role.our_setting)
     cross: dict[str, Any] = {

@@ -243,6 +243,7 @@ def serve(listening: str) -> None:
         _import_libraries()
     gc.collect()
     gc.freeze()  # a job need not look through all that is loaded
+    gc.set_threshold(200_000)  # nor often through what it makes
     parent = os.getpid()
     job = server.serve()
     if job is None:

@@ -79,7 +79,7 @@ def test_fig07_tones():
     kept = validity.separates.values == 0
     grown.values[kept] = np.where(np.arange(kept.sum()) % 2, 3.0, 1.0)
     figure = fig07.draw({"validity_map": validity.assign(response_growth=grown)})
-    tones = np.asarray(figure.axes[0].collections[0].get_array()).reshape(kept.shape).T
+    tones = np.asarray(figure.axes[0].images[0].get_array()).T
     np.testing.assert_array_equal(
         tones == 3, kept & (validity.regime_linear.values > 0)
     )
