@@ -41,9 +41,9 @@ class Candidates:
             end as soon as the sign is known.
         sampled: whether the starts are a random sample. What is chance then shows in the share of
             it that meets a statement, and none is judged from several starts.
-        known_shares: A1's model and the values of a set → share of an angle map at which contact is
-            lost, filled by runs for all readings; of sets with equal springs and the paper's
-            friction only. None: each reading runs its own maps.
+        known_maps: A1's model and the values of a set → where on an angle map contact is lost,
+            filled by runs for all readings; of sets with equal springs and the paper's friction
+            only. None: each reading runs its own maps.
     """
 
     fields: Mapping[str, np.ndarray]
@@ -53,7 +53,7 @@ class Candidates:
     model: str = "A1"
     exact: bool = True
     sampled: bool = False
-    known_shares: dict[tuple[Any, ...], float] | None = None
+    known_maps: dict[tuple[Any, ...], np.ndarray] | None = None
 
     @classmethod
     def of(cls, *params: Parameters, tol: float, workers: int | None = 1) -> Self:
@@ -244,4 +244,4 @@ def sets_of(
         "length2": groups["length_ratio"],
         "belt_speed": groups["speed_ratio"],
     }
-    return Candidates(fields, tol, workers, known_shares={})
+    return Candidates(fields, tol, workers, known_maps={})

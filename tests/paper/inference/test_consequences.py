@@ -135,7 +135,7 @@ def test_the_black_region_is_where_a_map_shows_it(likely):
     for i, params in enumerate(candidates.sets):
         unstable = a3.regime(contact_system(params, *cells).invariants) > 0
         one = candidates.subset(np.full(unstable.sum(), i))
-        outcome = _runs(one, cells[0][unstable], cells[1][unstable]).outcome
+        outcome, _ = _runs(one, cells[0][unstable], cells[1][unstable])
         seen.append((outcome == Outcome.converged).mean())
     assert ((share > 0) != (np.array(seen) > 0)).sum() <= 2
     assert np.corrcoef(share, seen)[0, 1] > 0.9
@@ -175,11 +175,11 @@ def test_readings_share_what_the_mass_does_below_the_speed_of_the_belt(likely):
     runs = []
     for name in READINGS:
         read = sets.read(name)
-        alone = separating_share(replace(read, known_shares=None), angles=(12,))
+        alone = separating_share(replace(read, known_maps=None), angles=(12,))
         np.testing.assert_array_equal(separating_share(read, angles=(12,)), alone)
         runs.append(alone)
     assert (runs[0] != runs[1]).any()
-    assert len(sets.known_shares) == 16
+    assert len(sets.known_maps) == 16
 
 
 def test_few_of_the_unstable_cells_say_which_set_eq_11_refutes(likely):
