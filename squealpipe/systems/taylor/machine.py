@@ -23,13 +23,13 @@ from numba.core.registry import cpu_target
 from numba.core.runtime.nrt import rtsys
 
 from squealpipe.systems.compiled import store_folder, timed_compilation
+from squealpipe.systems.taylor.one_module import compile_entry
 
 _llvm: Any = llvmlite.binding
 _config: Any = numba.config
 _only_one_thread: Any = global_compiler_lock
 _cpu_target: Any = cpu_target
 _runtime: Any = rtsys
-_numba: Any = numba
 LEVEL = 2
 """Of LLVM's optimization."""
 MOST = 2**28
@@ -89,7 +89,7 @@ def address_of_entry(
     """
     name = f"{function.__module__}.{function.__qualname__}{signature}"
     return _address(
-        name.encode() + content, lambda _: _compiled_by_numba(function, signature)
+        name.encode() + content, lambda _: compile_entry(function, signature)
     )
 
 
@@ -122,16 +122,6 @@ def _loaded(digest: str, compile_: Callable[[str], tuple[str, bytes]]) -> int:
         engine.finalize_object()
         _addresses[digest] = engine.get_function_address(name)
     return _addresses[digest]
-
-
-def _compiled_by_numba(
-    function: Callable[..., Any], signature: Any
-) -> tuple[str, bytes]:
-    """Name, by numba, and object file of a C function."""
-    compiled = _numba.cfunc(signature, error_model="numpy")(function)
-    library = compiled._library  # noqa: SLF001 (numba's own store reads it, too)
-    _, _, (code, _) = library.serialize_using_object_code()
-    return compiled.native_name, code
 
 
 def _compiled(name: str, write: Write, n_arguments: int) -> tuple[str, bytes]:

@@ -5,9 +5,12 @@ import errno
 import os
 from functools import cache
 
+import numba
 import numpy as np
 import pytest
+from numba.core import codegen
 
+from squealpipe.systems.compiled import part
 from squealpipe.systems.taylor import machine
 from squealpipe.systems.taylor.writing import compile_source
 
@@ -88,3 +91,23 @@ def test_what_cannot_be_kept_leaves_no_file_behind(compiled, tmp_path, monkeypat
 def test_without_a_place_to_write_it_is_compiled_in_memory(compiled, tmp_path):
     (tmp_path / "store").write_text("a file in the way")
     assert compiled() == 0.75
+
+
+def test_what_a_loop_calls_is_compiled_with_it_alone_and_serves_other_code(
+    tmp_path, monkeypatch
+):
+    @part
+    def square(x):
+        return x * x
+
+    @part
+    def cube(x):
+        return square(x) * x
+
+    monkeypatch.setattr(machine, "store_folder", lambda *_: str(tmp_path))
+    with monkeypatch.context() as within:
+        within.setattr(codegen.JITCodeLibrary, "_optimize_final_module", None)
+        number = numba.float64
+        address = machine.address_of_entry(lambda x: cube(x) + 1.0, number(number), b"")
+    assert ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double)(address)(3.0) == 28.0
+    assert numba.njit(lambda x: cube(x) - 1.0)(3.0) == 26.0
