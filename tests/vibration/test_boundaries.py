@@ -73,6 +73,17 @@ def test_of_a_quiet_value_the_margin_is_the_nearer_end_of_its_interval():
     assert nearest == pytest.approx(8.0, rel=1e-12)
 
 
+def test_a_value_at_the_end_of_its_range_has_the_margin_on_its_other_side():
+    """Friction 0, below which there is none."""
+    cure = cure_of(0.0)
+    linear = {"x": linear_intervals(cure, lambda value: value - 2.0)}
+    intervals = quiet_intervals(
+        {"x": cure}, linear, lambda _, values: [True] * len(values), quiet=True
+    )["x"]
+    nearest = nearest_boundary(intervals, 0.0, quiet=True)
+    assert nearest == pytest.approx(2.0, rel=1e-12)
+
+
 def test_growth_that_crosses_zero_twice_between_two_values_is_seen():
     cure = cure_of(2.0, count=21)
 

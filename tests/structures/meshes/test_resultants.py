@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from squealpipe import Face, Structure
+from squealpipe import Face, Rotation, Structure
 from squealpipe.structures.meshes.face_entries import read_pressures
 from squealpipe.structures.units import scales_of
 
@@ -102,6 +102,26 @@ def test_shares_and_moments_hold_against_another_surface():
     forces = (structure.tangentials @ structure.preloads).reshape(2, -1, 3)
     np.testing.assert_allclose(forces[0], -forces[1], atol=1e-12)
     np.testing.assert_allclose(forces[0].sum(axis=0), 2e3 * DIRECTION, atol=2e-9)
+
+
+@pytest.mark.parametrize("surface", ["pad", "disc"])
+def test_friction_turns_the_pad_with_the_disc_whichever_face_has_the_points(surface):
+    nodes, facets = plane_mesh("quad")
+    other = [[index + len(nodes) for index in facet[::-1]] for facet in facets]
+    against, through = {"pad": "disc", "disc": "pad"}[surface], np.array([0.1, -0.5, 0])
+    structure = Structure.from_mesh(
+        np.eye(6 * len(nodes)),
+        np.eye(6 * len(nodes)),
+        mesh=(np.concatenate([nodes, nodes]), {"pad": facets, "disc": other}),
+        contacts={"f": Face(surface, against=against, stiffness=1.0, force="2 kN")},
+        rotation=Rotation(through=through, speed=20.0, body="Disc"),
+    )
+    forces = (structure.tangentials @ structure.preloads).reshape(2, -1, 3)
+    disc_moves = np.cross([0.0, 0.0, 1.0], nodes - through)
+    power = np.einsum("bij,ij->b", forces, disc_moves)
+    # every contact's force times its own radius
+    total = float(structure.speeds @ structure.preloads)
+    assert power == pytest.approx([total, -total], rel=1e-9)
 
 
 def test_merged_points_keep_first_moments_of_their_forces():
