@@ -7,6 +7,7 @@ import os
 import sys
 import traceback
 from collections.abc import Callable, Sequence
+from functools import cache
 from importlib import metadata
 
 from cyclopts import App, CycloptsError
@@ -74,6 +75,7 @@ COMMANDS: dict[str, Callable[..., int]] = {
 }
 
 
+@cache
 def application() -> App:
     """The command-line application."""
     app = App(

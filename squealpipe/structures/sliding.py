@@ -494,17 +494,18 @@ def _held(structure: ContactStructure) -> _Held:
 
 
 def _solver(
-    structure: ContactStructure, line: _Line, drag: np.ndarray
+    structure: ContactStructure, line: _Line, drag: np.ndarray, matrix: Any
 ) -> Callable[[np.ndarray], np.ndarray]:
     """Solutions with the stiffness of these contacts.
+
+    Args:
+        matrix: that of the structure and its closed contacts.
 
     Raises:
         RuntimeError: it is singular.
     """
     if structure.size > DENSE and structure.contacts:
         return _held(structure).solver(line, drag)
-    acting = acting_directions(structure, line.closed, drag)
-    matrix = structure.stiffness + contact_stiffness(structure, line.springs, acting)
     return splu(sp.csc_array(matrix)).solve  # type: ignore[no-any-return]
 
 
@@ -527,7 +528,7 @@ def _balance(
     if not force.any():
         return np.zeros(structure.size), np.zeros(len(closed))
     try:
-        solve = _solver(structure, line, drag)
+        solve = _solver(structure, line, drag, matrix)
         solution = solve(force)
         # a structure that its contacts alone hold, and barely, loses digits, which residuals in
         # extended precision bring back

@@ -1,7 +1,10 @@
 """One run's datasets at the shipped baseline, on a coarse grid."""
 
+import pickle
+
 import numpy as np
 import pytest
+from filelock import FileLock
 
 from squealpipe.brake.backbones.backbone import backbone
 from squealpipe.brake.backbones.harmonic_forms import compare_harmonic_forms
@@ -124,6 +127,15 @@ def of_a4(params):
 
 
 @pytest.fixture(scope="session")
-def evidence(baseline):
-    """What the paper shows as printed, and the corrected physics beside it."""
-    return compute_evidence(baseline, "as_printed", beside=True)
+def evidence(baseline, tmp_path_factory, worker_id):
+    """What the paper shows as printed, and the corrected physics beside it.
+
+    It takes 4 s, and is computed once for all test processes.
+    """
+    folder = tmp_path_factory.getbasetemp()
+    kept = (folder if worker_id == "master" else folder.parent) / "evidence.pickle"
+    with FileLock(f"{kept}.lock"):
+        if not kept.exists():
+            found = compute_evidence(baseline, "as_printed", beside=True)
+            kept.write_bytes(pickle.dumps(found))
+    return pickle.loads(kept.read_bytes())  # noqa: S301 (written by these tests)
