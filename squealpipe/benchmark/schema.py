@@ -22,6 +22,8 @@ class Role(IntEnum):
     our_setting = 2
 
 
+_of_run = ("problem", "solver", "tol")
+
 work_precision_schema = DatasetSchema(
     name="work_precision",
     title="Error of a method against its cost, one run a row",
@@ -130,64 +132,44 @@ benchmark_schema = DatasetSchema(
             "right; flagged: wrong or without an answer, and said so; silently wrong: another list "
             "of events, or an error over growth above 100 tolerances",
             Reliability,
-            "problem",
-            "solver",
-            "tol",
+            *_of_run,
         ),
         "missed": count(
-            f"events missed{'; -1 where no events are reported or judged'}",
-            "problem",
-            "solver",
-            "tol",
+            "events missed; -1 where no events are reported or judged", *_of_run
         ),
         "spurious": count(
-            f"events too many{'; -1 where no events are reported or judged'}",
-            "problem",
-            "solver",
-            "tol",
+            "events too many; -1 where no events are reported or judged", *_of_run
         ),
         "out_of_order": count(
             "events found before one that they follow; -1 where no events are reported or judged",
-            "problem",
-            "solver",
-            "tol",
+            *_of_run,
         ),
         "time_error": Variable(
             "largest error of an event's time",
-            dims=("problem", "solver", "tol"),
+            dims=_of_run,
             nan_allowed=True,
             round_off=_adaptive_step_round_off,
         ),
         "error": Variable(
             "largest error of final state and event times over the growth of a perturbation",
-            dims=("problem", "solver", "tol"),
+            dims=_of_run,
             nan_allowed=True,
             round_off=_adaptive_step_round_off,
         ),
         "evaluations": count(
             "calls of the field, counted by the harness; a solver that makes its own functions "
             "tells them, a Taylor step of order p as p + 1",
-            "problem",
-            "solver",
-            "tol",
+            *_of_run,
             dtype="i8",
             rtol=0.5,
         ),
-        "cpu_time": Variable(
-            "CPU time",
-            "s",
-            ("problem", "solver", "tol"),
-            nan_allowed=True,
-            volatile=True,
-        ),
+        "cpu_time": Variable("CPU time", "s", _of_run, nan_allowed=True, volatile=True),
         "cpu_ratio": Variable(
             "CPU time over that of scipy's DOP853 at 1e-8 in the same process",
-            dims=("problem", "solver", "tol"),
+            dims=_of_run,
             nan_allowed=True,
             volatile=True,
         ),
-        "message": Variable(
-            "what the solver said", dims=("problem", "solver", "tol"), dtype="U64"
-        ),
+        "message": Variable("what the solver said", dims=_of_run, dtype="U64"),
     },
 )

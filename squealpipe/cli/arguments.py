@@ -123,6 +123,34 @@ Speeds = Annotated[
 Frequency = Annotated[
     float | None, _signed(partial(parse_number, units="Hz"), "FREQUENCY", negative="")
 ]
+StructureFile = Annotated[
+    Path,
+    Parameter(
+        help="structure, a YAML file that names its matrices and contacts (see the gallery)."
+    ),
+]
+ModesOfRuns = Annotated[
+    int | None,
+    Parameter(
+        converter=_whole,
+        metavar="INT",
+        n_tokens=1,
+        help="modes to reduce a structure to, at most 512; by default as many as errors below 1 % "
+        "need, and no reduction up to 32 degrees of freedom.",
+    ),
+]
+BandOfRuns = Annotated[
+    float | None,
+    _signed(
+        partial(parse_number, units="Hz"),
+        "FREQUENCY",
+        negative="",
+        help="end of the band whose unstable modes count, Hz: they are compared with those of the "
+        "whole structure and decide how many modes are run. Runs also have modes beyond; a motion "
+        "that ends there is marked. By default 20 kHz where modes lie beyond it, but needed beyond "
+        "1000 degrees of freedom.",
+    ),
+]
 
 
 def parse_state(text: str) -> list[float]:

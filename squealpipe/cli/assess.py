@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from squealpipe.cli.arguments import (
     Angle1OrFile,
+    BandOfRuns,
     Drawn,
-    Frequency,
+    ModesOfRuns,
     OptionalAngle2,
     OutputElsewhere,
     Texts,
@@ -37,8 +38,8 @@ def assess(
     modify: Texts = None,
     samples: Whole,
     seed: Whole,
-    n_modes: Whole | None = None,
-    frequency_max: Frequency = None,
+    n_modes: ModesOfRuns = None,
+    frequency_max: BandOfRuns = None,
     output: OutputElsewhere = None,
     brake: Drawn = drawn_output,
 ) -> int:
@@ -60,11 +61,6 @@ def assess(
             "edge=chamfer lining 0.2" removes up to a fifth of a face's points at its leading end.
         samples: number of random starts of a structure.
         seed: seed of the random starts.
-        n_modes: modes to reduce a structure to; by default as many as errors below 1 % need, and
-            no reduction up to 32 degrees of freedom.
-        frequency_max: end of the band whose unstable modes count, Hz: they are compared with those
-            of the whole structure and decide how many modes are run. Runs also have modes beyond.
-            By default 20 kHz where modes lie beyond it, but needed beyond 1000 degrees of freedom.
         output: also write the dataset (.nc or .csv), and a picture of the settled motion beside it.
     """
     if isinstance(alpha1_or_file, Path):

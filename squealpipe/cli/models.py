@@ -11,9 +11,10 @@ from squealpipe.cli.arguments import (
     Angle1,
     Angle1OrFile,
     Angle2,
+    BandOfRuns,
     Brake,
     Drawn,
-    Frequency,
+    ModesOfRuns,
     Numbers,
     OptionalAngle2,
     Output,
@@ -145,8 +146,8 @@ def propensity(
     spring_correlation: Share,
     seed: Whole | None,
     tol: Tolerance,
-    n_modes: Whole | None = None,
-    frequency_max: Frequency = None,
+    n_modes: ModesOfRuns = None,
+    frequency_max: BandOfRuns = None,
     workers: Workers = None,
     output: Output = Path("propensity.nc"),
     brake: Drawn = drawn_output,
@@ -169,11 +170,6 @@ def propensity(
         t_end: end of each run of a pad, s; 200 √(mass/k1) by default.
         spring_correlation: correlation of k1 and k2 of a pad; with it there are no Sobol indices.
         seed: seed of the random sample; 1 for a pad, 0 for a structure by default.
-        n_modes: modes to reduce a structure to; by default as many as errors below 1 % need,
-            and no reduction up to 32 degrees of freedom.
-        frequency_max: end of the band whose unstable modes count, Hz: they are compared with those
-            of the whole structure and decide how many modes are run. Runs also have modes beyond.
-            By default 20 kHz where modes lie beyond it, but needed beyond 1000 degrees of freedom.
     """
     of_structure = {
         "--relative-std": relative_std,

@@ -11,13 +11,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from squealpipe.cli.arguments import (
+    BandOfRuns,
     Files,
     Frequency,
     Frictions,
+    ModesOfRuns,
     Output,
     Ranges,
     Share,
     SpeedTexts,
+    StructureFile,
     Switch,
     Time,
     Tolerance,
@@ -53,7 +56,7 @@ if TYPE_CHECKING:
 
 
 def modes(
-    file: Path,
+    file: StructureFile,
     /,
     *,
     mu: Frictions = None,
@@ -70,7 +73,6 @@ def modes(
     Example: `squealpipe modes pad.yaml --mu 0:0.8:81 -o modes.nc`
 
     Args:
-        file: structure, a YAML file that names its matrices and contacts (see the gallery).
         mu: friction, a number or first:last:count; that of the file by default. It is that of the
             contacts that have none of their own; lining=0:0.6:13 is that of one contact or of a
             face, the contacts lining_1, lining_2, ….
@@ -113,7 +115,9 @@ def modes(
         if text := options.pop("belt_speed", None):
             read = partial(parse_number, units=structure.speed_unit)
             options["belt_speed"] = _one_or_more(parse_range(text, one=read))
-        values = [*options.values(), *_values_of(options.get("mu"))]
+        values = [*options.values()]
+        if isinstance(options.get("mu"), dict):  # of a contact or face
+            values += options["mu"].values()
         points = math.prod(len(value) for value in values if isinstance(value, list))
         told = library.cost_beforehand(structure, points, options.get("n_modes"))
         if told is not None:
@@ -212,11 +216,6 @@ def _friction(given: Any) -> Any:
     return _one_or_more(given)
 
 
-def _values_of(mu: Any) -> list[Any]:
-    """Return the values of a contact's or face's friction."""
-    return list(mu.values()) if isinstance(mu, dict) else []
-
-
 def _line(mode: Any) -> str:
     """Describe a mode where it grows fastest, with its critical friction and speed."""
     from squealpipe.plotting.origin import common_friction
@@ -266,15 +265,15 @@ def as_asked(structure: Any, options: dict[str, Any]) -> Any:
 
 @options_of("squealing_modes")
 def squeal(
-    file: Path,
+    file: StructureFile,
     /,
     *,
     samples: Whole,
     seed: Whole,
     t_end: Time | None,
     tol: Tolerance,
-    n_modes: Whole | None = None,
-    frequency_max: Frequency = None,
+    n_modes: ModesOfRuns = None,
+    frequency_max: BandOfRuns = None,
     onset: Switch,
     run: Annotated[Path | None, Parameter(negative="")] = None,
     output: Output = Path("squeal.nc"),
@@ -289,17 +288,10 @@ def squeal(
     Example: `squealpipe squeal pad.yaml -o squeal.nc`
 
     Args:
-        file: structure, a YAML file that names its matrices and contacts (see the gallery).
         samples: random starts, each with at most the energy that the preload stores.
         seed: seed of the random starts.
         t_end: longest time of a run, s; by default 8000 periods of the slowest unstable mode,
             after the time in which it grows.
-        n_modes: modes to reduce the structure to; by default as many as errors below 1 % need,
-            and no reduction up to 32 degrees of freedom. At most 512.
-        frequency_max: end of the band whose unstable modes count, Hz: they are compared with those
-            of the whole structure and decide how many modes are run. Runs also have modes beyond; a
-            motion that ends there is marked. By default 20 kHz where modes lie beyond it, but
-            needed beyond 1000 degrees of freedom.
         onset: also lower the friction until the squeal dies, to see whether it lasts below the
             critical friction, and how far; costs about as much as the rest.
         run: also write, over time, the motion that a small push ends in (.nc), for `squealpipe
@@ -357,7 +349,7 @@ def _write_run(structure: Any, told: xr.Dataset, path: Path, tol: float) -> None
 
 @options_of("squeal_ladder")
 def ladder(
-    file: Path,
+    file: StructureFile,
     /,
     *,
     pushes: Whole,
@@ -377,7 +369,6 @@ def ladder(
     Example: `squealpipe ladder pad.yaml -o ladder.nc`
 
     Args:
-        file: structure, a YAML file that names its matrices and contacts (see the gallery).
         pushes: number of unstable modes to push along, the fastest-growing first.
         t_end: time of each run, s; by default until the last of these has grown, and 200 periods of
             the unstable mode of lowest frequency.
@@ -404,7 +395,7 @@ def ladder(
 
 @options_of("operating_map")
 def operating(
-    file: Path,
+    file: StructureFile,
     /,
     *,
     pressure: SpeedTexts = None,
@@ -417,8 +408,8 @@ def operating(
     measured: Path | None = None,
     frequency_band: Share,
     band_edges: SpeedTexts = None,
-    n_modes: Whole | None = None,
-    frequency_max: Frequency = None,
+    n_modes: ModesOfRuns = None,
+    frequency_max: BandOfRuns = None,
     tol: Tolerance,
     workers: Workers,
     output: Output = Path("operating.nc"),
@@ -433,7 +424,6 @@ def operating(
     Example: `squealpipe operating pad.yaml --pressure 0.5:2:4 --speed 1:4:4 -o operating.nc`
 
     Args:
-        file: structure, a YAML file that names its matrices and contacts (see the gallery).
         pressure: factors of all preloads, a number, a list or first:last:count; with a unit, like
             "5 bar:20 bar:4", the mean pressure of the faces.
         speed: speeds likewise, m/s, or rad/s (also 200 rpm) where the file has a rotation; that of
@@ -451,12 +441,6 @@ def operating(
             predicted one, over the measured one.
         band_edges: edges of the bands of occurrence, like 1kHz,2kHz,4kHz; third octaves by
             default.
-        n_modes: modes to reduce the structure to; by default as many as errors below 1 % need,
-            and no reduction up to 32 degrees of freedom.
-        frequency_max: end of the band whose unstable modes count, Hz: they are compared with those
-            of the whole structure and decide how many modes are run. Runs also have modes beyond; a
-            motion that ends there is marked. By default 20 kHz where modes lie beyond it, but
-            needed beyond 1000 degrees of freedom.
     """
     refuse_existing(output, force=files.force)
     check_output(output, force=files.force)

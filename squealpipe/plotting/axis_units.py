@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.text import Text
@@ -52,7 +51,7 @@ def in_units(figure: Figure, wanted: Sequence[str], dataset: xr.Dataset) -> None
                     f"unit {one} and unit {other} measure the same; give one of them"
                 )
     left, seen = set(wanted), set()
-    for axis in (each for axes in figure.axes for each in _axes_of(axes)):
+    for axis in (each for axes in figure.axes for each in (axes.xaxis, axes.yaxis)):
         # an axis label ends with its unit in parentheses: "contact force (N)"
         match = re.match(r"^(.*?)\s*\(([^()]+)\)$", axis.get_label_text(), re.DOTALL)
         if match is None:
@@ -97,10 +96,6 @@ def _title_angles(
                 words = changed
             text.set_text(words)  # type: ignore[attr-defined]
     return used
-
-
-def _axes_of(axes: Axes) -> tuple[Axis, Axis]:
-    return axes.xaxis, axes.yaxis
 
 
 def _make_readable(axis: Axis, words: str, unit: str) -> None:

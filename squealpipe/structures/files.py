@@ -352,15 +352,11 @@ def read_matrices(
     }
     _refuse_orders(read_in)
     labels = next((each.labels for each in read_in.values() if each.labels), None)
-    return {
-        key: _in_order(key, each, labels) * getattr(scales, _part_of(key))
-        for key, each in read_in.items()
-    }, labels
-
-
-def _part_of(key: str) -> str:
-    """Return which matrix one is or is a part of."""
-    return next(name for name in MATRIX_KEYS if name in key)
+    in_si = {}
+    for key, each in read_in.items():
+        part_of = next(name for name in MATRIX_KEYS if name in key)
+        in_si[key] = _in_order(key, each, labels) * getattr(scales, part_of)
+    return in_si, labels
 
 
 def _matrix(key: str, entry: Any, folder: Path, triangle: str | None) -> Labelled:

@@ -50,7 +50,8 @@ class Chunks:
         """
         end, follows = 0, True
         for first, last, path in self._files():
-            follows = follows and first == end and _is_whole(path)
+            is_whole = path.stem.endswith(f"-{checksum(path)}")
+            follows = follows and first == end and is_whole
             if follows:
                 end = last
             else:
@@ -103,8 +104,3 @@ def _one_by_one(chunk: Mapping[str, np.ndarray], count: int) -> list[Run]:
         for run, part, shape in zip(runs, parts, shapes.tolist(), strict=True):
             run[name] = part.reshape(shape)
     return runs
-
-
-def _is_whole(path: Path) -> bool:
-    """Return whether a chunk still has the bytes that were written."""
-    return path.stem.endswith(f"-{checksum(path)}")

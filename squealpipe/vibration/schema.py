@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from enum import IntEnum
+from typing import Any
 
 from squealpipe.codes import Regime, Verdict
 from squealpipe.schema import (
@@ -83,6 +84,14 @@ def _path(long_name: str, units: str) -> Variable:
     return or_nan(
         f"{long_name} of the settled motion", units, ("sample",), volatile=True
     )
+
+
+def _spectrum(what: str, units: str) -> Variable:
+    return or_nan(f"amplitude of the {what}", units, ("line",), volatile=True)
+
+
+def _of_cure(long_name: str, units: str = "1", **further: Any) -> Variable:
+    return or_nan(long_name, units, ("cure",), **further)
 
 
 def _optional(
@@ -207,21 +216,9 @@ assess_schema = DatasetSchema(
             atol=1e-3,
         ),
         "line_frequency": or_nan("frequency of the spectrum", "Hz", ("line",)),
-        "velocity_spectrum_along": or_nan(
-            "amplitude of the velocity along the belt",
-            "m s-1",
-            ("line",),
-            volatile=True,
-        ),
-        "velocity_spectrum_across": or_nan(
-            "amplitude of the velocity across the belt",
-            "m s-1",
-            ("line",),
-            volatile=True,
-        ),
-        "force_spectrum": or_nan(
-            "amplitude of the contact force over preload", "1", ("line",), volatile=True
-        ),
+        "velocity_spectrum_along": _spectrum("velocity along the belt", "m s-1"),
+        "velocity_spectrum_across": _spectrum("velocity across the belt", "m s-1"),
+        "force_spectrum": _spectrum("contact force over preload", "1"),
         "path_time": _path("time", "s"),
         "path_x": _path("displacement along the belt", "m"),
         "path_y": _path("displacement across the belt", "m"),
@@ -229,19 +226,16 @@ assess_schema = DatasetSchema(
         "path_regime": flag(
             "regime of the settled motion", regime_meanings, "sample", volatile=True
         ),
-        "value": or_nan(
-            "present value (for mu the friction coefficient at belt speed)",
-            dims=("cure",),
+        "value": _of_cure(
+            "present value (for mu the friction coefficient at belt speed)"
         ),
         "unit": text("unit of the values", "cure"),
-        "quiet_from": or_nan(
+        "quiet_from": _of_cure(
             "nearest value at which the verdict changes between quiet and not",
-            dims=("cure",),
             rtol=2e-3,
         ),
-        "quiet_from_any_start": or_nan(
+        "quiet_from_any_start": _of_cure(
             "nearest value at which the verdict from any of the tried starts changes",
-            dims=("cure",),
             rtol=2e-2,
         ),
         **{
@@ -253,36 +247,28 @@ assess_schema = DatasetSchema(
             )
             for end in ("low", "high")
         },
-        "change": or_nan(
+        "change": _of_cure(
             "change from the present value to quiet_from, in per cent (angles: degrees; of "
             "what is 0 now: of the largest value tried)",
-            dims=("cure",),
             rtol=2e-2,
         ),
-        "change_any_start": or_nan(
-            "change from the present value to quiet_from_any_start",
-            dims=("cure",),
-            rtol=5e-2,
+        "change_any_start": _of_cure(
+            "change from the present value to quiet_from_any_start", rtol=5e-2
         ),
         "cure_is_run": whether(
             "whether runs from other starts than a push tell where its verdict changes; where they "
             "would take long only those of the smallest changes do",
             "cure",
         ),
-        "lowest_tried": or_nan(
-            "lower end of the range that was searched", dims=("cure",)
-        ),
-        "highest_tried": or_nan(
-            "upper end of the range that was searched", dims=("cure",)
-        ),
-        "snaps_from": or_nan(
+        "lowest_tried": _of_cure("lower end of the range that was searched"),
+        "highest_tried": _of_cure("upper end of the range that was searched"),
+        "snaps_from": _of_cure(
             "nearest value at which steady sliding of a quiet brake jumps to another equilibrium",
-            dims=("cure",),
             rtol=2e-3,
             optional=True,
         ),
-        "snap_distance": or_nan(
-            "distance between both equilibria", "m", ("cure",), rtol=2e-2, optional=True
+        "snap_distance": _of_cure(
+            "distance between both equilibria", "m", rtol=2e-2, optional=True
         ),
         **_pad_variables,
         **_structure_variables,

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -138,6 +138,18 @@ class Horizon:
     second: np.ndarray
     most: np.ndarray
     growth_windows: int = 0
+
+    @classmethod
+    def of(cls, starts: Sequence[Start], most_periods: float) -> Self:
+        """Return the lengths for starts whose small motions grow to e^½ in the first window."""
+        period = np.array([start.period for start in starts])
+        rates = [abs(start.rate) * start.period for start in starts]
+        shown = [Quietness.shown / rate if rate > 0 else 0.0 for rate in rates]
+        # in periods of the slowest mode that grows, or of any; twice as many take twice as long
+        # where the motion settles at once
+        fewest_periods = 50.0
+        first = np.clip(shown, fewest_periods, 0.25 * most_periods) * period
+        return cls(first, first, most_periods * period)
 
 
 Advance = Callable[[list[int], np.ndarray, "np.ndarray | None", np.ndarray, int], Any]

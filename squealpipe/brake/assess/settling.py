@@ -96,14 +96,4 @@ def settle(
         designs = [starts[row].subject for row in rows]
         return run_windows(designs, states, seconds, rules, tol=tol)
 
-    period = np.array([start.period for start in starts])
-    first = np.array([_first_window(start, most) for start in starts]) * period
-    return settle_runs(starts, advance, Horizon(first, first, most * period), rules)
-
-
-def _first_window(start: Start, most: float) -> float:
-    """Periods of the first window, in which small motions grow to e^½ or more."""
-    rate = abs(start.rate) * start.period
-    shown = Quietness.shown / rate if rate > 0 else 0.0
-    # periods: the first two windows
-    return float(np.clip(shown, 50.0, 0.25 * most))
+    return settle_runs(starts, advance, Horizon.of(starts, most), rules)

@@ -15,6 +15,7 @@ from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.sliding import NoSlidingError
 from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant, damped_beyond
 from squealpipe.structures.squeal.settling import so_far
+from squealpipe.structures.squeal.settling import start_at as start_of_plant
 from squealpipe.structures.squeal.windows import Running, followed_windows, run_windows
 from squealpipe.structures.subspace import projected, subspace, with_answers
 from squealpipe.systems.progress import partial_answer
@@ -228,24 +229,11 @@ def start_at(design: Design, state: np.ndarray) -> Start | None:
 
 
 def _start(design: Design, plant: Plant, state: np.ndarray) -> Start:
-    speed = PUSH_OF_A_MODE * float(np.sqrt(2.0 * plant.energy))
-
-    def measure(away: np.ndarray) -> float:
-        return float(np.sqrt(2.0) * plant.sizes(away))
-
-    if plant.spectrum.pencil.is_undamped:
-        own = measure(state - plant.sliding)
-        speed = max(speed, own / Quietness.stays_small * 2.0)
-    return Start(
-        subject=design,
-        state=state,
-        sliding=plant.sliding,
-        period=1.0 / plant.slowest,
-        speed=speed,
-        rate=plant.rate,
-        is_linear=plant.is_linear,
-        measure=measure,
-    )
+    start = replace(start_of_plant(plant, state), subject=design)
+    if not plant.spectrum.pencil.is_undamped:
+        return start
+    own = start.distance(state) / Quietness.stays_small * 2.0
+    return replace(start, speed=max(start.speed, own))
 
 
 def _projected(
@@ -337,10 +325,8 @@ class Structures:
         Args:
             is_told: whether a line after each window tells what has settled.
         """
-        period = np.array([start.period for start in starts])
-        first = np.array([_first_window(start) for start in starts]) * period
         advance = _Advance(starts, Running(self.tol, self.seed, self.workers), rules)
-        horizon = Horizon(first, first, MOST_PERIODS * period)
+        horizon = Horizon.of(starts, MOST_PERIODS)
 
         def told(settled: dict[int, SettledRun], elapsed: np.ndarray) -> None:
             plant, done = starts[0].subject.plant, [*settled.values()]
@@ -355,16 +341,6 @@ class Structures:
 
 def _of_whole(design: Design, last: Any) -> Any:
     return replace(last, final=design.to_whole(last.final))
-
-
-def _first_window(start: Start) -> float:
-    """Periods of the first window, in which small motions grow to e^½ or more."""
-    rate = abs(start.rate) * start.period
-    shown = Quietness.shown / rate if rate > 0 else 0.0
-    # in periods of the slowest mode that grows, or of any; twice as many take twice as long where
-    # the motion settles at once
-    first_window = 50.0
-    return float(np.clip(shown, first_window, 0.25 * MOST_PERIODS))
 
 
 @dataclass

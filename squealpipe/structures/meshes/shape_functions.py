@@ -26,7 +26,6 @@ def shape(nodes: int, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         values (…, nodes) and derivatives (…, nodes, 2).
     """
     xi, eta = points[..., 0], points[..., 1]
-    one, nothing = np.ones_like(xi), np.zeros_like(xi)
     if nodes in (3, 6):
         area = np.stack([1.0 - xi - eta, xi, eta], axis=-1)
         slope = np.array([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]])
@@ -49,33 +48,13 @@ def shape(nodes: int, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     if nodes == 4:
         return values, slopes
     # serendipity: the middles of the edges, which corners give up half of each
+    left, right, below, above = 1.0 - xi, 1.0 + xi, 1.0 - eta, 1.0 + eta
+    over_xi, over_eta = 0.5 * (1.0 - xi**2), 0.5 * (1.0 - eta**2)
     middles = np.stack(
-        [
-            0.5 * (1.0 - xi**2) * (1.0 - eta),
-            0.5 * (1.0 + xi) * (1.0 - eta**2),
-            0.5 * (1.0 - xi**2) * (1.0 + eta),
-            0.5 * (1.0 - xi) * (1.0 - eta**2),
-        ],
-        axis=-1,
+        [over_xi * below, right * over_eta, over_xi * above, left * over_eta], axis=-1
     )
-    by_xi = np.stack(
-        [
-            -xi * (1.0 - eta),
-            0.5 * (one - eta**2),
-            -xi * (1.0 + eta),
-            -0.5 * (one - eta**2),
-        ],
-        axis=-1,
-    )
-    by_eta = np.stack(
-        [
-            -0.5 * (one - xi**2),
-            -(1.0 + xi) * eta,
-            0.5 * (one - xi**2),
-            -(1.0 - xi) * eta + nothing,
-        ],
-        axis=-1,
-    )
+    by_xi = np.stack([-xi * below, over_eta, -xi * above, -over_eta], axis=-1)
+    by_eta = np.stack([-over_xi, -right * eta, over_xi, -left * eta], axis=-1)
     of_middles = np.stack([by_xi, by_eta], axis=-1)
     before = [3, 0, 1, 2]
     values = values - 0.5 * (middles + middles[..., before])

@@ -30,6 +30,11 @@ class PushAnswer(IntEnum):
     not_known = 6
 
 
+def _of_contact(long_name: str) -> Variable:
+    dims = ("run", "mode", "contact")
+    return or_nan(long_name, dims=dims, rtol=0.05, atol=0.01)
+
+
 def _error(long_name: str) -> Variable:
     words = "largest over the pushes; NaN: not answered"
     return or_nan(f"{long_name}, {words}", dims=("run",), rtol=0.2, atol=1e-3)
@@ -90,17 +95,9 @@ squeal_ladder_schema = DatasetSchema(
             rtol=0.05,
             atol=1e-3,
         ),
-        "separated_fraction": or_nan(
-            "share of the time without contact",
-            dims=("run", "mode", "contact"),
-            rtol=0.05,
-            atol=0.01,
-        ),
-        "stick_fraction": or_nan(
-            "share of the time in stick; of smoothed friction, slower than its width",
-            dims=("run", "mode", "contact"),
-            rtol=0.05,
-            atol=0.01,
+        "separated_fraction": _of_contact("share of the time without contact"),
+        "stick_fraction": _of_contact(
+            "share of the time in stick; of smoothed friction, slower than its width"
         ),
         "creep": or_nan(
             "mean speed of sliding in that time, over the belt's; NaN: no such time",
@@ -108,12 +105,7 @@ squeal_ladder_schema = DatasetSchema(
             rtol=0.1,
             atol=1e-3,
         ),
-        "peak_force": or_nan(
-            "largest normal force over the preload",
-            dims=("run", "mode", "contact"),
-            rtol=0.05,
-            atol=0.01,
-        ),
+        "peak_force": _of_contact("largest normal force over the preload"),
         "frequency_error": _error(
             "relative error of the frequency, 1 where none rings"
         ),

@@ -77,8 +77,16 @@ def _of_whole(long_name: str, units: str = "1", *dims: str, **other: Any) -> Var
     return or_nan(long_name, units, dims, **other)
 
 
-def _level(long_name: str, units: str = "1", *, rtol: float = 0.05) -> Variable:
-    return or_nan(long_name, units, ("attractor",), rtol=rtol, atol=1e-3)
+def _level(
+    long_name: str, units: str = "1", *, rtol: float = 0.05, optional: bool = False
+) -> Variable:
+    return or_nan(
+        long_name, units, ("attractor",), rtol=rtol, atol=1e-3, optional=optional
+    )
+
+
+def _of_share(long_name: str) -> Variable:
+    return Variable(long_name, dims=("attractor",), rtol=0.3, atol=0.1)
 
 
 def _of_contact(long_name: str, units: str = "1") -> Variable:
@@ -218,13 +226,10 @@ squealing_schema = DatasetSchema(
             "modes in which the motions were run on, to see how their level changes; 0: none",
             optional=True,
         ),
-        "refined_velocity_rms": or_nan(
+        "refined_velocity_rms": _level(
             "rms speed of vibration, all contacts, in refined_n_modes modes; NaN: not known",
             "m s-1",
-            ("attractor",),
             optional=True,
-            rtol=0.05,
-            atol=1e-3,
         ),
         "refined_motion": flag(
             "what is heard in refined_n_modes modes",
@@ -252,21 +257,9 @@ squealing_schema = DatasetSchema(
             "returns to contact in a period of the dominant frequency"
         ),
         "count": count("random starts that end here", "attractor", rtol=0.3),
-        "share": Variable(
-            "share of the random starts that end here",
-            dims=("attractor",),
-            rtol=0.3,
-            atol=0.1,
-        ),
-        **{
-            f"share_{end}": Variable(
-                f"{end} end of its 95 % Wilson interval",
-                dims=("attractor",),
-                rtol=0.3,
-                atol=0.1,
-            )
-            for end in ("low", "high")
-        },
+        "share": _of_share("share of the random starts that end here"),
+        "share_low": _of_share("low end of its 95 % Wilson interval"),
+        "share_high": _of_share("high end of its 95 % Wilson interval"),
         "share_undetermined": Variable(
             "share of random starts that did not settle within the horizon", atol=0.1
         ),

@@ -459,14 +459,9 @@ def _measures(unit: Any, units: str) -> bool:
     return unit.dimensionality != per_second or _turns_of(unit, target) is not None
 
 
-def _cf_unit(unit: Any, candidates: Any) -> str | None:
-    """The first of some CF units that measures the same as a unit."""
-    return next((units for units in candidates if _measures(unit, units)), None)
-
-
 def _wrong_kind(unit: Any, units: str, keys: Mapping[str, str] | None) -> str:
     """Explain what a unit measures, what is needed, and which inputs take what was written."""
-    kind = _cf_unit(unit, QUANTITIES)
+    kind = next((units for units in QUANTITIES if _measures(unit, units)), None)
     is_kind = f"that is {QUANTITIES[kind][0]}" if kind else f"{unit} does not fit"
     if kind is None and _is_rotation(unit):
         becomes = (

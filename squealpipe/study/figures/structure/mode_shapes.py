@@ -11,7 +11,8 @@ from squealpipe.study.figures.declared import report_figure
 
 def _caption(modes: xr.Dataset) -> str:
     """Describe the shapes that are drawn."""
-    which = "grow fastest" if _grows(modes) else "decay slowest, as none grows"
+    grows = modes.isel(mu=own_friction(modes)).unstable.any()
+    which = "grow fastest" if grows else "decay slowest, as none grows"
     look = "Grey: at rest; brighter places move farther."
     if mesh_of(modes) is None:
         look = "Arrows: displacement of the degrees of freedom that move most."
@@ -19,10 +20,6 @@ def _caption(modes: xr.Dataset) -> str:
         f"Shapes of the complex modes that {which} at the structure's own friction, at the instant "
         f"of their largest displacement. {look}"
     )
-
-
-def _grows(modes: xr.Dataset) -> bool:
-    return bool(modes.isel(mu=own_friction(modes)).unstable.any())
 
 
 @report_figure(
