@@ -42,6 +42,7 @@ def basin(
     state changes, at the same phase, by more than ``drift_tolerance`` of its range (1e3 ``tol``, at
     most 1e-6; an attribute of the dataset), or by so much less than over the quarter before that
     less than 1e-6 is still to come. All else is *unsettled*: a torus, chaos, slow decay or growth.
+    Starts whose rests still move, and are as near to one another as they move, have one attractor.
 
     Args:
         t_end: when they end.
@@ -114,16 +115,23 @@ def renumbered(system: Any, dataset: xr.Dataset) -> xr.Dataset:
 
 
 def _numbered(motion: np.ndarray, extremes: np.ndarray) -> np.ndarray:
-    """Equal numbers for rests, or cycles, whose extremes are equal, in the order of their runs."""
+    """Equal numbers for rests, or cycles, whose extremes are equal, in the order of their runs.
+
+    A rest that still decays is equal to another one as near as both move in the last quarter.
+    """
     numbers = np.full(motion.size, -1)
+    # twice: what is still to come is less than what was seen to go
+    moves = 2.0 * np.ptp(extremes, axis=2) * (motion == MotionKind.rest)[:, None]
     settled = np.flatnonzero(motion != MotionKind.unsettled)
     number = 0
     spans = np.ptp(extremes[settled], axis=(0, 2)) if settled.size else np.empty(0)
     while settled.size:
         ends = extremes[settled]
         # extremes of one attractor from two starts differ by less, over those of all attractors
-        off = np.abs(ends - ends[0]) <= 1e-3 * spans[:, None]
-        same = off.all(axis=(1, 2)) & (motion[settled] == motion[settled[0]])
+        off = np.abs(ends - ends[0]).max(axis=2)
+        round_off = 1e-12 * np.abs(ends).max(axis=(0, 2))
+        near = off <= 1e-3 * spans + round_off + moves[settled] + moves[settled[0]]
+        same = near.all(axis=1) & (motion[settled] == motion[settled[0]])
         numbers[settled[same]] = number
         settled, number = settled[~same], number + 1
     return numbers

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from squealpipe import limit_cycle
+from squealpipe import System, limit_cycle
 from squealpipe.functions import sin
 from squealpipe.parameters import Parameters
 from squealpipe.schema import meanings
@@ -134,3 +134,24 @@ def test_a_long_chain_of_legs_closes_by_the_rule_of_short_ones():
     found = limit_cycle(Parameters(k3=1e3), 1.2, 1.2, guess=(0.1, 1.01, 0.0, 0.0))
     assert meanings(found.outcome)[int(found.outcome)] == "family_member"
     assert float(found.residual) < 1e-12
+
+
+@pytest.mark.parametrize("t_end", [14.0, 30.0, 60.0])
+def test_rests_that_still_decay_are_one_attractor(t_end):
+    """Of x' = -x all starts come to one rest; of x' = x - x^3 those of each sign do."""
+    for rate, starts, numbers in (
+        (lambda x: -x, [0.5, 1.0, 2.0, 5.0, 100.0], [0, 0, 0, 0, 0]),
+        (lambda x: x - x**3, [-2.0, -0.5, 0.3, 3.0], [0, 0, 1, 1]),
+    ):
+        system = System(
+            "decay",
+            states={"x": "m"},
+            parameters={"rate": 1.0},
+            regimes={"free": {}},
+            field=lambda t, s, p, r, rate=rate: {"x": p.rate * rate(s.x)},
+            start={"x": 1.0},
+            time_scale=1.0,
+        )
+        found = system.basin(t_end, start={"x": starts})
+        assert (found.motion == 1).all()
+        assert found.attractor.values.tolist() == numbers
