@@ -23,79 +23,34 @@ class Level(IntEnum):
     that model in time; A3 is the sum of its modes.
 
     Attributes:
-        drops: what it drops from A1.
-        needs: what must hold for its answer to be trusted.
         model: the model that it integrates in time; "" where it does not.
         share: part of the horizon that it integrates.
     """
 
     label: str
-    drops: str
-    needs: str
     colour: str
     model: str
     share: float
 
-    a3 = (
-        0,
-        "A3 in contact",
-        "contact loss, geometry, reversal of friction",
-        "contact kept, belt not reached, small displacements",
-        "light",
-    )
-    a4 = (
-        1,
-        "A4",
-        "geometry, reversal of friction",
-        "belt not reached, small displacements",
-        "blue",
-        "A4",
-        1.0,
-    )
-    a1_linear_springs = (
-        2,
-        "A1, linear springs",
-        "geometry",
-        "small displacements",
-        "purple",
-        "A1-linear-springs",
-        1.0,
-    )
-    a1_no_stick = (
-        3,
-        "A1 without stick",
-        "stick",
-        "short spells of stick",
-        "green",
-        "A1-no-stick",
-        1.0,
-    )
-    a1_short = (
-        4,
-        "A1, part of the horizon",
-        "the rest of the horizon",
-        "nothing new after that part",
-        "grey",
-        "A1",
-        0.5,
-    )
-    a1 = (5, "A1", "nothing", "nothing", "black", "A1", 1.0)
+    a3 = 0, "A3 in contact", "light"
+    a4 = 1, "A4", "blue", "A4", 1.0
+    a1_linear_springs = 2, "A1, linear springs", "purple", "A1-linear-springs", 1.0
+    a1_no_stick = 3, "A1 without stick", "green", "A1-no-stick", 1.0
+    a1_short = 4, "A1, part of the horizon", "grey", "A1", 0.5
+    a1 = 5, "A1", "black", "A1", 1.0
 
     def __new__(
         cls,
         number: int,
         label: str = "",
-        drops: str = "",
-        needs: str = "",
         colour: str = "",
         model: str = "",
         share: float = 0.0,
     ) -> Self:
         """A level from its record."""
         level = int.__new__(cls, number)
-        level._value_ = number
-        level.label, level.drops, level.needs = label, drops, needs
-        level.colour, level.model, level.share = colour, model, share
+        level._value_, level.label, level.colour = number, label, colour
+        level.model, level.share = model, share
         return level
 
 

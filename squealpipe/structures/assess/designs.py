@@ -272,7 +272,7 @@ class Structures:
         """Return steady sliding, pushed; None where no contact would switch as that dies out."""
         plant = subject.plant
         assert plant is not None  # noqa: S101 (it is quiet linearly)
-        if plant.push_switches_nothing(_fastest(plant), PUSH_OF_A_MODE):
+        if plant.push_switches_nothing(_fastest(plant)):
             return None
         return pushed(subject)
 

@@ -332,7 +332,7 @@ class _Deck:
             for number in numbers:
                 kind, place = self._with_faces(number, where)
                 if ELEMENTS[kind].is_shell:
-                    side = _side(face[0], kind, where)
+                    side = _side(face[0], where)
                     shells.setdefault((kind, side), []).append(place)
                 else:
                     key = kind, _place_of_face(face[0], kind, number, where)
@@ -443,21 +443,12 @@ def _place_of_face(name: str, kind: str, number: int, where: str) -> int:
     return int(match[1]) - 1
 
 
-def _side(name: str, kind: str, where: str) -> int:
+def _side(name: str, where: str) -> int:
     # names of a shell's faces: 1 where its normal points, −1 on the other side
-    side = {
-        "SPOS": 1,
-        "SNEG": -1,
-        "POS": 1,
-        "NEG": -1,
-        "S2": 1,
-        "S1": -1,
-        "P": 1,
-        "N": -1,
-    }.get(name.upper())
-    if side is None:
-        raise ValueError(
-            f"{where}: {name} is no side of a shell; SPOS (where its normal points) or SNEG is "
-            "needed"
-        )
-    return side
+    if name.upper() in ("SPOS", "POS", "S2", "P"):
+        return 1
+    if name.upper() in ("SNEG", "NEG", "S1", "N"):
+        return -1
+    raise ValueError(
+        f"{where}: {name} is no side of a shell; SPOS (where its normal points) or SNEG is needed"
+    )

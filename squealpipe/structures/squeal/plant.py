@@ -472,8 +472,8 @@ class Plant:
         away = np.concatenate([shape.real, velocity.real])
         return self.with_stretches(self.sliding[: 2 * self.size] + away)
 
-    def push_switches_nothing(self, place: int, share: float) -> bool:
-        """Tell whether such a push surely dies out with every contact as it is in steady sliding.
+    def push_switches_nothing(self, place: int) -> bool:
+        """Tell whether a push of a mode surely dies out with every contact as in steady sliding.
 
         The motion is then the decaying mode itself, and its first amplitude bounds it. False where
         the mode does not decay or a law of contact or friction is not linear.
@@ -486,7 +486,7 @@ class Plant:
         error = float(self.spectrum.growth_errors[place])
         if not (is_plain and self.is_linear and pair.value.real < -error):
             return False
-        shape = self._push(place, share)
+        shape = self._push(place, PUSH_OF_A_MODE)
         nearing = self.sliding[: self.size] @ structure.normals
         presses = np.abs(structure.preloads - structure.stiffnesses * nearing)
         normal = structure.stiffnesses * np.abs(shape @ structure.normals)
