@@ -121,34 +121,24 @@ def keeping_share(candidates: Candidates) -> np.ndarray:
     # thinner than the rest shows on no map, and next to the edge nothing grows within the horizon
     visible_radius = 0.95
     unstable = candidates.unstable_cells(visible_radius)
+    cells = np.bincount(unstable.owner, minlength=candidates.size)
+    number = np.arange(unstable.owner.size) - (np.cumsum(cells) - cells)[unstable.owner]
     share = np.zeros(candidates.size)
     # one in so many of the unstable cells is run first: one that keeps contact decides
     steps = (8, 1) if candidates.exact else (64, 8, 1)
-    for before, step in zip((0, *steps), steps, strict=False):
-        left = np.flatnonzero(share == 0)
-        some = [unstable[i] for i in left]
-        number = np.array([-(-where.alpha1.size // step) for where in some], int)
-        new = [_cells_to_run(before, step, where.alpha1.size) for where in some]
-        owner = np.repeat(np.arange(left.size), [each.size for each in new])
-        alpha1, alpha2 = (
-            np.concatenate([*(w[i][k] for w, k in zip(some, new, strict=True)), []])
-            for i in (0, 1)
+    before = cells.max(initial=0) + 1
+    for step in steps:
+        left = share[unstable.owner] == 0
+        at = np.flatnonzero(left & (number % step == 0) & (number % before > 0))
+        before, owner = step, unstable.owner[at]
+        outcome, _ = _runs(
+            candidates.subset(owner), unstable.alpha1[at], unstable.alpha2[at]
         )
-        outcome, _ = _runs(candidates.subset(left[owner]), alpha1, alpha2)
-        kept = outcome == Outcome.converged
-        share[left] = np.bincount(owner[kept], minlength=left.size) / np.maximum(
-            number, 1
+        kept = np.bincount(
+            owner[outcome == Outcome.converged], minlength=candidates.size
         )
+        share += kept / np.maximum(-(-cells // step), 1)
     return share
-
-
-def _cells_to_run(before: int, step: int, number: int) -> np.ndarray:
-    """Return every ``step``-th index below ``number`` but every ``before``-th, which has been run.
-
-    None has been run if ``before`` is 0.
-    """
-    cells = np.arange(0, number, step)
-    return cells[cells % before > 0] if before else cells
 
 
 def _runs(

@@ -13,6 +13,7 @@ from squealpipe.brake.models.contact_system import ContactSystem, contact_system
 from squealpipe.paper.inference.unstable_cells import (
     INSIDE,
     Unstable,
+    joined,
     unstable_along_edges,
     unstable_cells,
 )
@@ -41,6 +42,7 @@ class Candidates:
             end as soon as the sign is known.
         sampled: whether the starts are a random sample. What is chance then shows in the share of
             it that meets a statement, and none is judged from several starts.
+        paired: whether the second half of the sets are the first half from starts beside theirs.
         known_maps: A1's model and the values of a set → where on an angle map contact is lost,
             filled by runs for all readings; of sets with equal springs and the paper's friction
             only. None: each reading runs its own maps.
@@ -53,6 +55,7 @@ class Candidates:
     model: str = "A1"
     exact: bool = True
     sampled: bool = False
+    paired: bool = False
     known_maps: dict[tuple[Any, ...], np.ndarray] | None = None
 
     @classmethod
@@ -146,8 +149,15 @@ class Candidates:
         outcome = np.full(self.size, int(Outcome.converged), np.int8)
         state = np.broadcast_to(np.array(self.initial_state, float), (self.size, 4))
         state = state.copy()
+        half = self.size // 2
+        alike = np.zeros(half, bool)
         for window in range(GrowthRule.n_windows):
             going = outcome == Outcome.converged
+            if self.paired and window >= GrowthRule.n_compared:
+                first, second = sizes[:half, :window], sizes[half:, :window]
+                close = np.abs(second - first) <= GrowthRule.alike * first
+                alike |= close.all(axis=1)
+                going[half:] &= ~alike
             left = np.flatnonzero(going if self.exact else going & ~growth_fails(sizes))
             if not left.size:
                 break
@@ -161,6 +171,8 @@ class Candidates:
             )
             sizes[left, window] = np.maximum(run.early_max_x, run.late_max_x)
             outcome[left], state[left] = run.outcome, run.final_state
+        rows = np.flatnonzero(alike)
+        sizes[half + rows], outcome[half + rows] = sizes[rows], outcome[rows]
         return sizes, outcome
 
     @cached_property
@@ -214,8 +226,8 @@ class Candidates:
             return np.array([params.drag for params in self.extended])
         return np.asarray(direction_of(self.fields["belt_speed"]) * self.fields["mu"])
 
-    def unstable_cells(self, inside: float = INSIDE, every: int = 1) -> list[Unstable]:
-        """Return angles at which A3 is unstable, of each set.
+    def unstable_cells(self, inside: float = INSIDE, every: int = 1) -> Unstable:
+        """Return angles at which A3 is unstable, set after set.
 
         Args:
             inside: their distance, in radii, from the centre of the disc of flutter.
@@ -223,7 +235,7 @@ class Candidates:
                 which are searched by maps, at all.
         """
         if self.extended:
-            return [unstable_cells(params, inside=inside) for params in self.extended]
+            return joined([unstable_cells(p, inside=inside) for p in self.extended])
         fields = {**self.fields, "drag": self.drag}
         return unstable_along_edges(fields, inside=inside, every=every)
 

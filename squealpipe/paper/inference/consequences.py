@@ -19,10 +19,16 @@ CONSEQUENCES: dict[str, str] = {
 
 def judge_consequences(candidates: Candidates) -> dict[str, np.ndarray]:
     """Return whether each consequence holds at each parameter set: key → booleans."""
-    pairs = zip(candidates.sets, candidates.unstable_cells(), strict=True)
-    per_pair = [_linear(params, cells) for params, cells in pairs]
+    cells = candidates.unstable_cells()
+    first = np.searchsorted(cells.owner, np.arange(candidates.size + 1))
+    verdicts = [
+        _linear(params, Unstable(*(column[begin:end] for column in cells)))
+        for params, begin, end in zip(
+            candidates.sets, first[:-1], first[1:], strict=True
+        )
+    ]
     return {
-        key: np.array([verdict[key] for verdict in per_pair], bool)
+        key: np.array([verdict[key] for verdict in verdicts], bool)
         for key in CONSEQUENCES
     }
 

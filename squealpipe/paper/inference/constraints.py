@@ -155,7 +155,8 @@ def from_several_starts(check: Check) -> Check:
     def judged(candidates: Candidates) -> StatementMargin:
         if candidates.sampled:
             return check(candidates)
-        both = check(candidates.joined(SeveralStarts().moved(candidates, 0)))
+        pairs = candidates.joined(SeveralStarts().moved(candidates, 0))
+        both = check(replace(pairs, paired=True))
         first, second = (
             StatementMargin(*each)
             for each in zip(
@@ -342,15 +343,9 @@ def _unstable_only_without_sliding(candidates: Candidates) -> StatementMargin:
 
 def _sliding_share(candidates: Candidates, every: int) -> np.ndarray:
     """Share of the unstable cells that fulfil Eq. (11) as printed; 0 of none."""
-    unstable = candidates.unstable_cells(every=every)
-    number = np.array([cells.alpha1.size for cells in unstable], int)
-    owner = np.repeat(np.arange(candidates.size), number)
-    alpha1, alpha2 = (
-        np.concatenate([*(cells[i] for cells in unstable), []]) for i in (0, 1)
-    )
-    p = SimpleNamespace(
-        **{name: field[owner] for name, field in candidates.fields.items()}
-    )
+    owner, alpha1, alpha2, _ = candidates.unstable_cells(every=every)
+    number = np.bincount(owner, minlength=candidates.size)
+    p = SimpleNamespace(**{k: candidates.fields[k][owner] for k in ("k1", "k2")})
     allowed = a2.possible_as_printed(
         linear_stiffness(p, geometry(alpha1, alpha2)), candidates.drag[owner]
     )

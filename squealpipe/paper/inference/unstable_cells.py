@@ -5,7 +5,7 @@ Whatever can be said of all angles is said in the plane of Z
 flutter fills one disc there, so a search along its rim finds unstable cells.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from types import SimpleNamespace
 from typing import Any, NamedTuple
@@ -26,8 +26,15 @@ LINEAR_PARAMETERS = ("mass", "k1", "k2", "k3")
 
 
 class Unstable(NamedTuple):
-    """Unstable cells: angles, rad, and whether it is by modes that couple."""
+    """Unstable cells of some parameter sets, set after set.
 
+    Attributes:
+        owner: number of the set that each is of.
+        alpha1, alpha2: rad.
+        couples: whether a cell is unstable by modes that couple.
+    """
+
+    owner: np.ndarray
     alpha1: np.ndarray
     alpha2: np.ndarray
     couples: np.ndarray
@@ -47,12 +54,20 @@ def unstable_cells(params: Parameters, *, inside: float = INSIDE) -> Unstable:
         name: np.array([getattr(params, name)])
         for name in (*LINEAR_PARAMETERS, *shared, "drag")
     }
-    return unstable_along_edges(fields, inside=inside)[0]
+    return unstable_along_edges(fields, inside=inside)
+
+
+def joined(cells: Sequence[Unstable]) -> Unstable:
+    """Return the cells of several sets, each given with those of one, as those of all."""
+    owner = np.repeat(np.arange(len(cells)), [each.owner.size for each in cells])
+    columns = zip(*cells, strict=True)
+    next(columns)
+    return Unstable(owner, *(np.concatenate(each) for each in columns))
 
 
 def unstable_along_edges(
     fields: Mapping[str, np.ndarray], *, inside: float, every: int = 1
-) -> list[Unstable]:
+) -> Unstable:
     """Find unstable cells of many sets without dashpots, whose friction does not depend on speed.
 
     Args:
@@ -62,7 +77,7 @@ def unstable_along_edges(
     cells: list[Unstable] = []
     # sets whose cells are looked for at once: half a megabyte an array
     at_once = 256
-    for first in range(0, len(fields["mass"]), at_once):
+    for first in range(0, max(1, len(fields["mass"])), at_once):
         rows = slice(first, first + at_once)
         p = SimpleNamespace(
             **{name: fields[name][rows, None] for name in LINEAR_PARAMETERS}
@@ -71,18 +86,10 @@ def unstable_along_edges(
         mirrored = springs_alike({n: v[rows] for n, v in fields.items()})
         alpha1, alpha2, there = _along_edges(p, mirrored, inside, every)
         regime = np.asarray(a3.regime(contact_system(p, alpha1, alpha2).invariants))
-        cells += [
-            _where(
-                kind[known],
-                first[known],
-                second[known],
-                kind[known] == LinearRegime.flutter,
-            )
-            for kind, first, second, known in zip(
-                regime, alpha1, alpha2, there, strict=True
-            )
-        ]
-    return cells
+        at = np.nonzero(there & (regime > LinearRegime.stable))
+        couples = regime[at] == LinearRegime.flutter
+        cells.append(Unstable(at[0] + first, alpha1[at], alpha2[at], couples))
+    return Unstable(*(np.concatenate(each) for each in zip(*cells, strict=True)))
 
 
 @lru_cache(maxsize=4)
@@ -90,17 +97,11 @@ def _on_grid(params: Parameters) -> Unstable:
     """Several statements ask for the cells of one set, which take a tenth of a second."""
     alpha1, alpha2 = midpoints(DAMPED_GRID)
     linear = stability(damped_system(params, alpha1, alpha2))
+    at = np.flatnonzero(linear.regime > LinearRegime.stable)
     couples = (linear.regime == LinearRegime.flutter) & (
         linear.shape_similarity >= WordsInNumbers.alike
     )
-    return _where(linear.regime, alpha1, alpha2, couples)
-
-
-def _where(
-    regime: np.ndarray, alpha1: np.ndarray, alpha2: np.ndarray, couples: np.ndarray
-) -> Unstable:
-    unstable = regime > LinearRegime.stable
-    return Unstable(alpha1[unstable], alpha2[unstable], couples[unstable])
+    return Unstable(np.zeros(at.size, int), alpha1[at], alpha2[at], couples[at])
 
 
 def midpoints(number: int) -> tuple[np.ndarray, np.ndarray]:

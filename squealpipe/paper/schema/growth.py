@@ -23,6 +23,13 @@ class GrowthRule:
     """The last windows, whose sizes decide."""
     least_ratio: float = 1.05
     """Least ratio of each of these sizes to the one before in growth without bound."""
+    n_compared: int = 3
+    """Windows after which a run is compared with that from a start beside its own. After two, some
+    that agree are chaotic later."""
+    alike: float = 1e-6
+    """Share by which their sizes may differ in every window where the motion is regular, and the
+    run beside it need not go on. Of sets whose starts come to disagree, the first differ by
+    2e-5."""
 
 
 GROWTH_HORIZON = GrowthRule.n_windows * GrowthRule.window
