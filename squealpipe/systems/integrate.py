@@ -299,6 +299,7 @@ class Batch:
         """Return how many items the loop goes through, and the addresses of code."""
         system, code, t = self.system, self.code, self.system.integrated
         n_constants, n_points = len(t.all_constants), self.points.shape[1]
+        n_events = len(t.surfaces) + len(t.outputs)
         n_rows = (
             layout.numbers.first_of_system
             + len(t.variables)
@@ -337,6 +338,7 @@ class Batch:
             "n_series": self.n_series,
             "n_rows": n_rows,
             "n_switches": len(t.switches),
+            "n_scratch": max(3 * n_events, len(t.variables), n_constants) + 2,
         }
 
     def _memory(self, counts: dict[str, int], queue: list[int]) -> dict[str, Any]:
@@ -347,7 +349,6 @@ class Batch:
         # outputs are watched in all lanes, surfaces as regimes ask
         active = np.zeros(n_events, np.int64)
         active[[w - len(t.variables) for w, _ in self.watched if w >= t.size]] = -1
-        width = max(3 * n_events, len(t.variables), len(t.all_constants)) + 2
         integers = np.full(
             (layout.integers.first_regime + t.n_components, LANES), -1, np.int64
         )
@@ -380,7 +381,7 @@ class Batch:
             "share": np.array([share, self.tol, self.bent.any()], float),
             "noise": np.zeros((len(t.surfaces), 2, LANES)),
             "suspects": np.full(len(t.surfaces), -1, np.int64),
-            "scratch": np.zeros((6, width)),
+            "scratch": np.zeros((6, counts["n_scratch"])),
             "between": np.zeros((len(self.watched), 2, LANES)),
             "logs": np.array([kind in logged for kind in t.kinds], np.int64),
             "initial": self.initial,

@@ -51,7 +51,7 @@ from squealpipe.systems.taylor.lanes import (
     view,
 )
 from squealpipe.systems.taylor.loop import finish, start
-from squealpipe.systems.taylor.memory import memory_of
+from squealpipe.systems.taylor.memory import memory_at
 from squealpipe.systems.taylor.observation import (
     begin_late,
     extremes_between,
@@ -385,7 +385,7 @@ def _advance(table: Any) -> int:
     """Some rounds; returns 0 where all runs are finished. The table: that of the engine."""
     address = address_of(table)
     t = _record_at(address)
-    m = memory_of(t)
+    m = memory_at(address)
     mem = view(t.series, (t.n_terms, t.n_series), np.float64)
     c = view(t.series, (1, t.n_terms, t.n_series), np.float64).T
     k = plan_at(t.inverses)
@@ -395,7 +395,7 @@ def _advance(table: Any) -> int:
 def _take(table: int) -> None:
     """Choose a step by the address of a table; the plan gets whether it is special."""
     t = _record_at(table)
-    m = memory_of(t)
+    m = memory_at(table)
     mem = view(t.series, (t.n_terms, t.n_series), np.float64)
     c = view(t.series, (1, t.n_terms, t.n_series), np.float64).T
     k = plan_at(t.inverses)

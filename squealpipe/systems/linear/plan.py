@@ -20,6 +20,7 @@ from squealpipe.systems.taylor.lanes import (
     record_viewer,
     view,
 )
+from squealpipe.systems.taylor.memory import table_viewer
 from squealpipe.systems.taylor.simd import LANES
 
 
@@ -64,148 +65,72 @@ mode_row = ModeRows()
 
 SPECIAL = 4
 """Place among the counts of whether something happens in the last step."""
-ARRAYS = (
-    "pull_back", "drag_back", "load", "normals", "tangentials", "push_rows", "drag_rows",
-    "tangent_rows", "mobility", "springs", "preloads", "speeds", "laws", "shapes", "table",
-    "first", "switches", "by_contact", "by_mode", "law_series", "held", "factor", "stuck", "counts",
-    "lists", "hidden", "starts", "numbers", "opened", "scratch", "press_counts", "with_tables",
-    "sliders", "with_sliders", "tangential_springs", "normal_rows",
-)  # fmt: skip
+# by array: type of its elements, and its shape by sizes; of the last four addresses are taken alone
+ARRAYS: dict[str, tuple[Any, ...]] = {
+    "pull_back": ("f8", "stiffness_rows", "modes"),
+    "drag_back": ("f8", "damping_rows", "modes"),
+    "load": ("f8", "n"),
+    "normals": ("f8", "n", "contacts"),
+    "tangentials": ("f8", "n", "contacts"),
+    "push_rows": ("f8", "c", "modes"),
+    "drag_rows": ("f8", "c", "modes"),
+    "tangent_rows": ("f8", "c", "n"),
+    "mobility": ("f8", "c", "c"),
+    "springs": ("f8", "contacts"),
+    "preloads": ("f8", "contacts"),
+    "speeds": ("f8", "contacts"),
+    "laws": ("i8", "c"),
+    "shapes": ("f8", "n_shapes", "n"),
+    "table": ("f8", "n_regimes", "width"),
+    "first": ("i8", 2, "c+1"),
+    "switches": ("i8", "n_switches", 3),
+    "by_contact": ("f8", WORK, "contacts"),
+    "by_mode": ("f8", 5, "modes"),
+    "law_series": ("f8", 4, MOST_TERMS, "c"),
+    "held": ("f8", "c", "c"),
+    "factor": ("f8", 3, "c", "c"),
+    "stuck": ("i8", "c"),
+    "counts": ("i8", 5),
+    "lists": ("i8", 2, "c"),
+    "hidden": ("f8", 1),
+    "press_counts": ("i8", "c"),
+    "with_tables": ("i8", "n_tables"),
+    "sliders": ("i8", "c"),
+    "with_sliders": ("i8", "n_sliders"),
+    "tangential_springs": ("f8", "c"),
+    "normal_rows": ("f8", "c", "n"),
+    "starts": (),
+    "numbers": (),
+    "opened": (),
+    "scratch": (),
+}
+"""Arrays of a plan; see :class:`.matrices.ContactMatrices`.
+
+- pull_back, drag_back: −M⁻¹(K + …)ᵀ and −M⁻¹Cᵀ, or their diagonals, in rows of ``modes``
+- table: (regimes, constants), contact after contact
+- first: the first regime of each contact, and its first kind of event
+- switches: what, contact, target
+- by_contact, by_mode: work
+- law_series: orders of the coefficient of friction and of what it is made of
+- held: (T_SᵀM⁻¹T_S)⁺ of the contacts S that stick, in its first rows and columns
+- stuck: these contacts
+- counts: how many they are; how many of their directions follow from the others; numbers of
+  contacts in the lists; whether something happens in the last step
+- lists: contacts that push by what the stiffness does not hold, and those that slip
+- press_counts: number of pieces of each contact's table of contact, or 1
+- with_tables, with_sliders: contacts whose force is a table, and that have a tangential spring
+- sliders: place of the stretch of each contact's tangential spring; −1 without one
+"""
 SIZES = (
-    "n", "c", "width", "n_sorts", "n_tables", "n_shapes", "n_regimes", "n_switches",
+    "n", "c", "width", "n_sorts", "n_tables", "n_shapes", "n_regimes", "n_switches", "n_states",
     "full_stiffness", "full_damping", "balanced", "curved", "n_jobs", "settle", "n_sliders",
+    "stiffness_rows", "damping_rows", "modes", "contacts",
 )  # fmt: skip
 PLAN_TABLE = np.dtype([(name, "i8") for name in (*ARRAYS, *SIZES)])
+"""Addresses and sizes: ``n_sorts`` surfaces a contact, ``n_states`` displacements, velocities and
+stretches, ``modes`` and ``contacts`` with what they are padded by."""
 record_at: Any = record_viewer(PLAN_TABLE)
-
-
-class Plan(NamedTuple):
-    """Arrays of a plan and its sizes; see :class:`.matrices.ContactMatrices`.
-
-    Attributes:
-        pull_back, drag_back: −M⁻¹(K + …)ᵀ and −M⁻¹Cᵀ, (n, n), or the diagonals (1, n).
-        push_rows, drag_rows, tangent_rows: (c, n).
-        n_sorts: number of surfaces of a contact.
-        n_tables: number of contacts whose force is a table.
-        table: (regimes, constants), contact after contact.
-        first: (2, c + 1) the first regime of each contact, and its first kind of event.
-        switches: (switches, 3) what, contact, target.
-        by_contact, by_mode: work, (WORK, c) and (5, n).
-        law_series: (4, terms, c) orders of the coefficient of friction and of what it is made of.
-        held: (c, c) (T_SᵀM⁻¹T_S)⁺ of the contacts S that stick, in its first rows and columns.
-        stuck: (c,) these contacts.
-        counts: how many they are; how many of their directions follow from the others; numbers of
-            contacts in the lists; whether something happens in the last step.
-        lists: (2, c) contacts that push by what the stiffness does not hold, and those that slip.
-        press_counts: (c,) number of pieces of each contact's table of contact, or 1.
-        with_tables: (n_tables,) contacts whose force is a table.
-        n_states: number of displacements, velocities and stretches.
-        sliders: (c,) place of the stretch of each contact's tangential spring; −1 without one.
-        with_sliders: (n_sliders,) contacts that have one.
-        normal_rows: (c, n).
-    """
-
-    n: Any
-    c: Any
-    width: Any
-    n_sorts: Any
-    n_tables: Any
-    n_sliders: Any
-    n_states: Any
-    n_shapes: Any
-    n_regimes: Any
-    full_stiffness: Any
-    full_damping: Any
-    balanced: Any
-    curved: Any
-    pull_back: Any
-    drag_back: Any
-    load: Any
-    normals: Any
-    tangentials: Any
-    push_rows: Any
-    drag_rows: Any
-    tangent_rows: Any
-    mobility: Any
-    springs: Any
-    preloads: Any
-    speeds: Any
-    laws: Any
-    shapes: Any
-    table: Any
-    first: Any
-    switches: Any
-    by_contact: Any
-    by_mode: Any
-    law_series: Any
-    held: Any
-    factor: Any
-    stuck: Any
-    counts: Any
-    lists: Any
-    hidden: Any
-    press_counts: Any
-    with_tables: Any
-    sliders: Any
-    with_sliders: Any
-    tangential_springs: Any
-    normal_rows: Any
-
-
-@inline_views
-def plan_at(address: int) -> Any:
-    """Return the plan at an address."""
-    t = record_at(address)
-    n, c = t.n, t.c
-    stiffness, damping = n if t.full_stiffness else 1, n if t.full_damping else 1
-    of_modes, of_contacts = -(-n // LANES) * LANES, -(-c // LANES) * LANES
-    return Plan(
-        n=n,
-        c=c,
-        width=t.width,
-        n_sorts=t.n_sorts,
-        n_tables=t.n_tables,
-        n_sliders=t.n_sliders,
-        n_states=2 * n + t.n_sliders,
-        n_shapes=t.n_shapes,
-        n_regimes=t.n_regimes,
-        full_stiffness=t.full_stiffness,
-        full_damping=t.full_damping,
-        balanced=t.balanced,
-        curved=t.curved,
-        pull_back=view(t.pull_back, (stiffness, of_modes), np.float64),
-        drag_back=view(t.drag_back, (damping, of_modes), np.float64),
-        load=view(t.load, (n,), np.float64),
-        normals=view(t.normals, (n, of_contacts), np.float64),
-        tangentials=view(t.tangentials, (n, of_contacts), np.float64),
-        push_rows=view(t.push_rows, (c, of_modes), np.float64),
-        drag_rows=view(t.drag_rows, (c, of_modes), np.float64),
-        tangent_rows=view(t.tangent_rows, (c, n), np.float64),
-        mobility=view(t.mobility, (c, c), np.float64),
-        springs=view(t.springs, (of_contacts,), np.float64),
-        preloads=view(t.preloads, (of_contacts,), np.float64),
-        speeds=view(t.speeds, (of_contacts,), np.float64),
-        laws=view(t.laws, (c,), np.int64),
-        shapes=view(t.shapes, (t.n_shapes, n), np.float64),
-        table=view(t.table, (t.n_regimes, t.width), np.float64),
-        first=view(t.first, (2, c + 1), np.int64),
-        switches=view(t.switches, (t.n_switches, 3), np.int64),
-        by_contact=view(t.by_contact, (WORK, of_contacts), np.float64),
-        by_mode=view(t.by_mode, (5, of_modes), np.float64),
-        law_series=view(t.law_series, (4, MOST_TERMS, c), np.float64),
-        held=view(t.held, (c, c), np.float64),
-        factor=view(t.factor, (3, c, c), np.float64),
-        stuck=view(t.stuck, (c,), np.int64),
-        counts=view(t.counts, (5,), np.int64),
-        lists=view(t.lists, (2, c), np.int64),
-        hidden=view(t.hidden, (1,), np.float64),
-        press_counts=view(t.press_counts, (c,), np.int64),
-        with_tables=view(t.with_tables, (t.n_tables,), np.int64),
-        sliders=view(t.sliders, (c,), np.int64),
-        with_sliders=view(t.with_sliders, (t.n_sliders,), np.int64),
-        tangential_springs=view(t.tangential_springs, (c,), np.float64),
-        normal_rows=view(t.normal_rows, (c, n), np.float64),
-    )
+plan_at: Any = table_viewer("plan", PLAN_TABLE, ARRAYS)
 
 
 @views
@@ -304,12 +229,17 @@ def plan(
         "n_shapes": len(matrices.shapes),
         "n_regimes": len(numbering.component_of),
         "n_switches": len(switches),
+        "n_states": 2 * n + len(matrices.sliders),
         "full_stiffness": int(matrices.stiffness.ndim == 2),
         "full_damping": int(matrices.damping.ndim == 2),
         "balanced": int(matrices.balanced),
         "curved": int(matrices.curved),
         "n_jobs": 0 if starts is None else len(starts),
         "settle": settle,
+        "stiffness_rows": len(arrays["pull_back"]),
+        "damping_rows": len(arrays["drag_back"]),
+        "modes": arrays["by_mode"].shape[1],
+        "contacts": arrays["by_contact"].shape[1],
     }
     # a view of nothing has no address
     arrays = {

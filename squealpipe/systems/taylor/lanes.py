@@ -25,6 +25,7 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
+from squealpipe.systems.compiled import views
 from squealpipe.systems.progress import report
 from squealpipe.systems.taylor import simd
 from squealpipe.systems.taylor.machine import address_of_entry
@@ -54,7 +55,7 @@ class CompiledSystem:
     n_series: int
 
     def address(self, name: str) -> int:
-        """Of a function; 0 of one that is left out."""
+        """Return the address of a function; 0 of one that is left out."""
         return self.code.get(name, 0)
 
 
@@ -89,7 +90,7 @@ def compile_system(
 
 
 def _to_pointer(typing_context: Any, value: Any) -> Any:
-    """An integer as a pointer."""
+    """Turn an integer into a pointer."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.inttoptr(arguments[0], cgutils.voidptr_t)
@@ -101,7 +102,7 @@ _address: Any = intrinsic(_to_pointer)
 
 
 def _to_number(typing_context: Any, value: Any) -> Any:
-    """A pointer as an integer."""
+    """Turn a pointer into an integer."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         word = context.get_value_type(types.intp)
@@ -129,20 +130,20 @@ def _call(typing_context: Any, function: Any, arguments: Any) -> Any:
 call: Any = intrinsic(_call)
 
 
-@_numba.njit
+@views
 def view(address: int, shape: Any, dtype: Any) -> Any:
-    """The array at an address."""
+    """Return the array at an address."""
     return _numba.carray(_address(address), shape, dtype)
 
 
 def record_viewer(record: np.dtype, *, of_pointer: bool = False) -> Any:
     """Return a compiled function that gives the record of a type at an address, or a pointer."""
 
-    @_numba.njit
+    @views
     def record_at(pointer: Any) -> Any:
         return _numba.carray(pointer, (1,), record)[0]
 
-    @_numba.njit
+    @views
     def record_at_address(address: int) -> Any:
         return record_at(_address(address))
 
@@ -166,12 +167,12 @@ class Workspace:
 
     @property
     def pointer(self) -> ctypes.c_void_p:
-        """Address of the table."""
+        """Return the address of the table."""
         return ctypes.c_void_p(self.table.ctypes.data)
 
 
 def _address_of(array: np.ndarray) -> int:
-    """``array.ctypes.data``, which takes a single run twice as long."""
+    """Return ``array.ctypes.data``, which itself takes a single run twice as long."""
     if array.dtype.names:
         return array.ctypes.data
     buffer: Any = array
@@ -180,7 +181,7 @@ def _address_of(array: np.ndarray) -> int:
 
 
 def compile_advance(advance: Callable[..., Any], folder: Path | None = None) -> Any:
-    """A C function from ``advance(table) -> busy lanes``, stored under a digest of this folder.
+    """Return a C function of ``advance(table) -> busy lanes``, stored by a digest of this folder.
 
     Args:
         folder: another one whose sources count.
@@ -190,7 +191,7 @@ def compile_advance(advance: Callable[..., Any], folder: Path | None = None) -> 
 
 
 def compile_called(function: Callable[..., Any], words: int, folder: Path) -> int:
-    """The address of a C function of addresses and numbers, which compiled code calls.
+    """Return the address of a C function of addresses and numbers, which compiled code calls.
 
     Args:
         words: number of its arguments.
@@ -227,7 +228,7 @@ def drive(
 def share_of(
     job: np.ndarray, clock: np.ndarray, t_end: np.ndarray, left: np.ndarray
 ) -> float:
-    """How much of their jobs the lanes of a process have done.
+    """Return the share of their jobs that the lanes of a process have done.
 
     Args:
         job, clock, t_end: of each lane; the job is negative in an idle one.
@@ -242,7 +243,7 @@ def share_of(
 
 
 def taylor_terms(tol: float) -> int:
-    """Number of Taylor coefficients for a tolerance.
+    """Return the number of Taylor coefficients for a tolerance.
 
     Two orders more than a step's own error asks for (Jorba and Zou 2005), since errors of a
     hundred steps add up and grow.
@@ -251,7 +252,7 @@ def taylor_terms(tol: float) -> int:
 
 
 def aligned(*shape: int) -> np.ndarray:
-    """Zeros whose rows of ``LANES`` start where ``simd`` wants them."""
+    """Return zeros whose rows of ``LANES`` start where ``simd`` wants them."""
     size = math.prod(shape)
     store = np.zeros(size + simd.ALIGNMENT // 8)
     first = -store.ctypes.data // 8 % (simd.ALIGNMENT // 8)

@@ -8,6 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from squealpipe.systems.taylor.simd import LANES
+
 LOST_ERROR = 1e-3
 """Error, in units of the states' sizes, from which a state says nothing about its run."""
 
@@ -87,60 +89,61 @@ class IntegerRows(NamedTuple):
 # compiled code takes fields of such records as the numbers that they are
 outcomes, numbers, integers = Outcomes(), NumberRows(), IntegerRows()
 
-LOOP_ARRAYS = (
-    "rows",
-    "integers",
-    "series",
-    "inverses",
-    "sizes",
-    "units",
-    "tracked",
-    "regimes",
-    "falls",
-    "rises",
-    "component_of",
-    "first_constant",
-    "owner",
-    "marks",
-    "clocks",
-    "ticked",
-    "active",
-    "fresh",
-    "beyond",
-    "exact",
-    "steep",
-    "bent",
-    "share",
-    "noise",
-    "scratch",
-    "initial",
-    "parameters",
-    "first_regime",
-    "limits",
-    "final",
-    "extremes",
-    "logs",
-    "counts",
-    "firsts",
-    "durations",
-    "ends",
-    "summary",
-    "sample_times",
-    "samples",
-    "sample_regimes",
-    "sample_sums",
-    "sample_extremes",
-    "between",
-    "event_times",
-    "event_kinds",
-    "event_regimes",
-    "event_states",
-    "peaks",
-    "points",
-    "half_turns",
-    "queue",
-    "suspects",
-)
+# by array: type of its elements, and its shape by sizes; of the first two addresses are taken alone
+LOOP_ARRAYS: dict[str, tuple[Any, ...]] = {
+    "series": (),
+    "inverses": (),
+    "rows": ("f8", "n_rows", LANES),
+    "integers": ("i8", f"n_components+{integers.first_regime}", LANES),
+    "sizes": ("f8", "n_jobs", "n_states"),
+    "units": ("f8", "n_states", LANES),
+    "tracked": ("i8", "n_tracked", 2),
+    "regimes": ("f8", "n_regimes", "n_table"),
+    "falls": ("i8", "n_regimes", "n_surfaces"),
+    "rises": ("i8", "n_regimes", "n_surfaces"),
+    "component_of": ("i8", "n_regimes"),
+    "first_constant": ("i8", "n_components+1"),
+    "owner": ("i8", "n_surfaces"),
+    "marks": ("i8", "n_regimes", "n_surfaces"),
+    "clocks": ("i8", "n_surfaces"),
+    "ticked": ("f8", "n_surfaces", LANES),
+    "active": ("i8", "n_surfaces+n_outputs"),
+    "fresh": ("i8", "n_surfaces"),
+    "beyond": ("i8", "n_surfaces"),
+    "exact": ("f8", "n_states+n_surfaces+n_outputs", LANES),
+    "steep": ("i8", "n_states"),
+    "bent": ("i8", "n_surfaces+n_outputs"),
+    "share": ("f8", 3),
+    "noise": ("f8", "n_surfaces", 2, LANES),
+    "scratch": ("f8", 6, "n_scratch"),
+    "initial": ("f8", "n_jobs", "n_states"),
+    "parameters": ("f8", "n_jobs", "n_parameters"),
+    "first_regime": ("i8", "n_jobs", "n_components"),
+    "limits": ("f8", "n_jobs", 7),
+    "final": ("f8", "n_jobs", "n_states"),
+    "extremes": ("f8", "n_jobs", "n_tracked", 2, 2),
+    "logs": ("i8", "n_kinds"),
+    "counts": ("i8", "n_jobs", "n_kinds"),
+    "firsts": ("f8", "n_jobs", "n_kinds"),
+    "durations": ("f8", "n_jobs", "n_regimes"),
+    "ends": ("i8", "n_jobs", 3),
+    "summary": ("f8", "n_jobs", 3),
+    "sample_times": ("f8", "n_jobs", "n_samples"),
+    "samples": ("f8", "n_jobs", "n_samples", "n_states"),
+    "sample_regimes": ("i8", "n_jobs", "n_samples", "n_components"),
+    "sample_sums": ("f8", "n_jobs", "n_samples", "n_sums"),
+    "sample_extremes": ("f8", "n_jobs", "n_between", "n_tracked", 2),
+    "between": ("f8", "n_tracked", 2, LANES),
+    "event_times": ("f8", "n_jobs", "n_logged"),
+    "event_kinds": ("i8", "n_jobs", "n_logged"),
+    "event_regimes": ("i8", "n_jobs", "n_logged"),
+    "event_states": ("f8", "n_jobs", "n_logged", "n_states"),
+    "peaks": ("f8", "n_jobs", "n_kinds", "n_states"),
+    "points": ("f8", "n_jobs", "n_points", 2),
+    "half_turns": ("f8", "n_jobs", "n_points"),
+    "queue": ("i8", 3),
+    "suspects": ("i8", "n_surfaces"),
+}
 LOOP_FUNCTIONS = (
     "perturb",
     "longest",
@@ -179,11 +182,6 @@ LOOP_SIZES = (
     "n_series",
     "n_rows",
     "n_switches",
+    "n_scratch",
 )
 LOOP_TABLE = np.dtype([(name, "i8") for name in (*LOOP_ARRAYS, *LOOP_SIZES)])
-
-_fields: Any = [
-    (name, Any) for name in LOOP_ARRAYS if name not in {"series", "inverses"}
-]
-_named_tuple: Any = NamedTuple
-Memory: Any = _named_tuple("Memory", _fields)

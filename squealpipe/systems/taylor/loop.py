@@ -15,8 +15,8 @@ import numpy as np
 from squealpipe.systems.compiled import inline, part
 from squealpipe.systems.taylor import layout
 from squealpipe.systems.taylor.checking import believe_or_halve, differing, end_stalled
-from squealpipe.systems.taylor.lanes import call, compile_advance, view
-from squealpipe.systems.taylor.memory import memory_of
+from squealpipe.systems.taylor.lanes import address_of, call, compile_advance, view
+from squealpipe.systems.taylor.memory import memory_at
 from squealpipe.systems.taylor.observation import (
     clear_extremes,
     count_turns,
@@ -355,7 +355,7 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
 def _advance(table: Any) -> int:
     """Some rounds over all lanes; returns how many are busy. The table: ``layout.LOOP_TABLE``."""
     t = _numba.carray(table, (1,), layout.LOOP_TABLE)[0]
-    m = memory_of(t)
+    m = memory_at(address_of(table))
     c = view(t.series, (t.n_series, t.n_terms, LANES), np.float64)
     return int(_rounds(t, m, c))
 

@@ -31,7 +31,7 @@ _only_one_thread: Any = global_compiler_lock
 _cpu_target: Any = cpu_target
 _runtime: Any = rtsys
 LEVEL = 2
-"""Of LLVM's optimization."""
+"""Level of LLVM's optimization."""
 MOST = 2**28
 """Bytes of code that the store keeps."""
 Write = Callable[[Any, Sequence[Any]], None]
@@ -39,7 +39,7 @@ Write = Callable[[Any, Sequence[Any]], None]
 
 @cache
 def _processor() -> tuple[str, str, str]:
-    """Target, name and features of the processor, as numba takes it."""
+    """Return target, name and features of the processor, as numba takes it."""
     found: tuple[str, str, str] = _cpu_target.target_context.codegen().magic_tuple()
     return found
 
@@ -59,7 +59,7 @@ def _machine() -> Any:
 
 @cache
 def _engine() -> Any:
-    """What code is loaded into; it stays as long as the process."""
+    """Return the engine that code is loaded into; it stays as long as the process."""
     # code that numba compiles calls its runtime: LLVM ends a process that lacks such a name
     _runtime.initialize(_cpu_target.target_context)
     return _llvm.create_mcjit_compiler(
@@ -70,7 +70,7 @@ def _engine() -> Any:
 
 
 def address_of(write: Write, n_arguments: int, content: bytes) -> int:
-    """The address of a function of addresses and sizes, compiled or taken from the store.
+    """Return the address of a function of addresses and sizes, compiled or taken from the store.
 
     Args:
         write: writes its body, for a builder and the arguments.
@@ -82,7 +82,7 @@ def address_of(write: Write, n_arguments: int, content: bytes) -> int:
 def address_of_entry(
     function: Callable[..., Any], signature: Any, content: bytes
 ) -> int:
-    """The address of a C function that numba compiles, now or before.
+    """Return the address of a C function that numba writes, compiled or taken from the store.
 
     Args:
         content: all sources that the function is made of.
@@ -94,7 +94,7 @@ def address_of_entry(
 
 
 def _address(content: bytes, compile_: Callable[[str], tuple[str, bytes]]) -> int:
-    """The address of a function that is made of some content."""
+    """Return the address of a function that is made of some content."""
     versions = f"{llvmlite_version}{LEVEL}{_processor()}"
     content = versions.encode() + Path(__file__).read_bytes() + content
     address: int = _loaded(hashlib.sha256(content).hexdigest(), compile_)
@@ -106,7 +106,7 @@ _addresses: dict[str, int] = {}
 
 @_only_one_thread  # type: ignore[untyped-decorator]
 def _loaded(digest: str, compile_: Callable[[str], tuple[str, bytes]]) -> int:
-    """The address of a function, by a digest that names it."""
+    """Return the address of a function, by a digest that names it."""
     if digest not in _addresses:
         path = Path(store_folder("written", b"")) / f"{digest}.o"
         stored = _kept(path)
@@ -125,7 +125,7 @@ def _loaded(digest: str, compile_: Callable[[str], tuple[str, bytes]]) -> int:
 
 
 def _compiled(name: str, write: Write, n_arguments: int) -> tuple[str, bytes]:
-    """Name and object file of one function."""
+    """Return name and object file of one function."""
     machine = _machine()
     module = ir.Module(name)
     module.triple, module.data_layout = machine.triple, str(machine.target_data)
@@ -146,7 +146,7 @@ def _compiled(name: str, write: Write, n_arguments: int) -> tuple[str, bytes]:
 
 
 def _kept(path: Path) -> bytes | None:
-    """Code from the store, if it is whole."""
+    """Return code from the store, if it is whole."""
     with suppress(OSError):
         stored = path.read_bytes()
         seal, code = stored[:32], stored[32:]
@@ -156,7 +156,7 @@ def _kept(path: Path) -> bytes | None:
 
 
 def _keep(path: Path, code: bytes) -> None:
-    """Code into the store, where it can be written; beyond its size what was written first goes."""
+    """Store code where it can be written; beyond the store's size what was written first goes."""
     part = path.with_suffix(f".{os.getpid()}")
     with suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -1,76 +1,114 @@
-"""Arrays that compiled loops work on, from the addresses of a table."""
+"""Arrays at the addresses of a table, as attributes of one value of compiled code.
 
+Idea: a function that is passed fifty arrays has four hundred arguments, which numba packs, and LLVM
+unpacks, at each call. Here it is passed the address of a table of addresses and sizes, and an array
+is made of these where it is used.
+Invariant: compiled code writes into no table, so that LLVM may keep what it has read from one.
+"""
+
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from llvmlite import ir
+from numba import types
+from numba.core.typing import templates
+from numba.extending import intrinsic, lower_getattr_generic, models, register_model
+from numba.np import arrayobj
 
-from squealpipe.systems.compiled import inline_views
 from squealpipe.systems.taylor import layout
-from squealpipe.systems.taylor.lanes import view
-from squealpipe.systems.taylor.simd import LANES
+
+_Type: Any = types.Type
+_PrimitiveModel: Any = models.PrimitiveModel
+_AttributeTemplate: Any = templates.AttributeTemplate
+_infer_getattr: Any = templates.infer_getattr
+_lower: Any = lower_getattr_generic
+_arrays: Any = arrayobj
+_word = ir.IntType(64)
 
 
-@inline_views
-def memory_of(t: Any) -> Any:
-    """Return the arrays of a table of addresses, but for those of the series."""
-    n_events = t.n_surfaces + t.n_outputs
-    width = max(3 * n_events, t.n_variables, t.n_constants) + 2
-    size = t.n_states
-    return layout.Memory(
-        rows=view(t.rows, (t.n_rows, LANES), np.float64),
-        integers=view(
-            t.integers, (layout.integers.first_regime + t.n_components, LANES), np.int64
-        ),
-        sizes=view(t.sizes, (t.n_jobs, size), np.float64),
-        units=view(t.units, (size, LANES), np.float64),
-        tracked=view(t.tracked, (t.n_tracked, 2), np.int64),
-        regimes=view(t.regimes, (t.n_regimes, t.n_table), np.float64),
-        falls=view(t.falls, (t.n_regimes, t.n_surfaces), np.int64),
-        rises=view(t.rises, (t.n_regimes, t.n_surfaces), np.int64),
-        component_of=view(t.component_of, (t.n_regimes,), np.int64),
-        first_constant=view(t.first_constant, (t.n_components + 1,), np.int64),
-        owner=view(t.owner, (t.n_surfaces,), np.int64),
-        marks=view(t.marks, (t.n_regimes, t.n_surfaces), np.int64),
-        clocks=view(t.clocks, (t.n_surfaces,), np.int64),
-        ticked=view(t.ticked, (t.n_surfaces, LANES), np.float64),
-        active=view(t.active, (n_events,), np.int64),
-        fresh=view(t.fresh, (t.n_surfaces,), np.int64),
-        beyond=view(t.beyond, (t.n_surfaces,), np.int64),
-        exact=view(t.exact, (size + n_events, LANES), np.float64),
-        steep=view(t.steep, (size,), np.int64),
-        bent=view(t.bent, (n_events,), np.int64),
-        share=view(t.share, (3,), np.float64),
-        noise=view(t.noise, (t.n_surfaces, 2, LANES), np.float64),
-        scratch=view(t.scratch, (6, width), np.float64),
-        initial=view(t.initial, (t.n_jobs, size), np.float64),
-        parameters=view(t.parameters, (t.n_jobs, t.n_parameters), np.float64),
-        first_regime=view(t.first_regime, (t.n_jobs, t.n_components), np.int64),
-        limits=view(t.limits, (t.n_jobs, 7), np.float64),
-        final=view(t.final, (t.n_jobs, size), np.float64),
-        extremes=view(t.extremes, (t.n_jobs, t.n_tracked, 2, 2), np.float64),
-        logs=view(t.logs, (t.n_kinds,), np.int64),
-        counts=view(t.counts, (t.n_jobs, t.n_kinds), np.int64),
-        firsts=view(t.firsts, (t.n_jobs, t.n_kinds), np.float64),
-        durations=view(t.durations, (t.n_jobs, t.n_regimes), np.float64),
-        ends=view(t.ends, (t.n_jobs, 3), np.int64),
-        summary=view(t.summary, (t.n_jobs, 3), np.float64),
-        sample_times=view(t.sample_times, (t.n_jobs, t.n_samples), np.float64),
-        samples=view(t.samples, (t.n_jobs, t.n_samples, size), np.float64),
-        sample_regimes=view(
-            t.sample_regimes, (t.n_jobs, t.n_samples, t.n_components), np.int64
-        ),
-        sample_sums=view(t.sample_sums, (t.n_jobs, t.n_samples, t.n_sums), np.float64),
-        sample_extremes=view(
-            t.sample_extremes, (t.n_jobs, t.n_between, t.n_tracked, 2), np.float64
-        ),
-        between=view(t.between, (t.n_tracked, 2, LANES), np.float64),
-        event_times=view(t.event_times, (t.n_jobs, t.n_logged), np.float64),
-        event_kinds=view(t.event_kinds, (t.n_jobs, t.n_logged), np.int64),
-        event_regimes=view(t.event_regimes, (t.n_jobs, t.n_logged), np.int64),
-        event_states=view(t.event_states, (t.n_jobs, t.n_logged, size), np.float64),
-        peaks=view(t.peaks, (t.n_jobs, t.n_kinds, size), np.float64),
-        points=view(t.points, (t.n_jobs, t.n_points, 2), np.float64),
-        half_turns=view(t.half_turns, (t.n_jobs, t.n_points), np.float64),
-        queue=view(t.queue, (3,), np.int64),
-        suspects=view(t.suspects, (t.n_surfaces,), np.int64),
-    )
+class _Table(_Type):  # type: ignore[misc]
+    """Type of the address of a table."""
+
+    def __init__(self, name: str, record: np.dtype, arrays: Mapping[str, Any]) -> None:
+        super().__init__(name=name)
+        self.fields, self.arrays = list(record.names or ()), arrays
+
+    def kind(self, name: str) -> Any:
+        """Return numba's type of a field: an array that has a shape, or an integer."""
+        if not self.arrays.get(name):
+            return types.int64
+        element, *shape = self.arrays[name]
+        scalar = {"f8": types.float64, "i8": types.int64}[element]
+        return types.Array(scalar, len(shape), "C")
+
+
+@register_model(_Table)
+class _Model(_PrimitiveModel):  # type: ignore[misc]
+    def __init__(self, manager: Any, kind: Any) -> None:
+        super().__init__(manager, kind, _word.as_pointer())
+
+
+@_infer_getattr
+class _Attributes(_AttributeTemplate):  # type: ignore[misc]
+    key = _Table
+
+    def generic_resolve(self, table: _Table, name: str) -> Any:
+        return table.kind(name) if name in table.fields else None
+
+
+def _attribute(
+    context: Any, builder: Any, table: _Table, address: Any, name: str
+) -> Any:
+    """Write the code that reads a field."""
+
+    def number(field: str) -> Any:
+        if field.isdigit():
+            return ir.Constant(_word, int(field))
+        place = ir.Constant(_word, table.fields.index(field))
+        loaded = builder.load(builder.gep(address, [place]))
+        loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
+        return loaded
+
+    def size(dimension: str | int) -> Any:
+        first, *others = map(number, str(dimension).split("+"))
+        for other in others:
+            first = builder.add(first, other)
+        return first
+
+    kind = table.kind(name)
+    if kind is types.int64:
+        return number(name)
+    shape = [size(dimension) for dimension in table.arrays[name][1:]]
+    strides = [ir.Constant(_word, 8)]
+    for dimension in shape[:0:-1]:
+        strides.insert(0, builder.mul(dimension, strides[0]))
+    array: Any = _arrays.make_array(kind)(context, builder)
+    data = builder.inttoptr(number(name), array.data.type)
+    _arrays.populate_array(array, data, shape, strides, itemsize=8, meminfo=None)
+    return array._getvalue()  # noqa: SLF001 (numba's own code reads it so)
+
+
+_lower(_Table)(_attribute)
+
+
+def table_viewer(name: str, record: np.dtype, arrays: Mapping[str, Any]) -> Any:
+    """Return a compiled function that makes a table of an address.
+
+    Args:
+        record: 8-byte fields of the table.
+        arrays: type of elements (f8 or i8) and shape by field; nothing of one that is read as an
+            address. A dimension is a number, a field, or a sum of these as text.
+    """
+    table = _Table(name, record, arrays)
+
+    def at(typing_context: Any, address: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            return builder.inttoptr(values[0], _word.as_pointer())
+
+        return table(types.intp), generate
+
+    return intrinsic(at)
+
+
+memory_at: Any = table_viewer("memory", layout.LOOP_TABLE, layout.LOOP_ARRAYS)
