@@ -53,6 +53,10 @@ class ZeroLineSettings:
     points, and the stored error says what is left."""
     closed: float = 1e-12
     """A zero is enclosed to this share of the line that it is searched on: round-off."""
+    ends_checked: int = 5
+    """After so many secants and halvings the end of a line that these make for is looked at: one
+    without a zero is given up, not halved forty times. Fewer may miss two zeros next to that end.
+    """
     difference: float = 1e-8
     """Step of the difference that gives a tangent: the root of round-off."""
     secant: tuple[float, float] = (1e-9, 1e-5)
@@ -524,4 +528,18 @@ class ZeroLines(Chords):
             good = zero & (step > settings.secant[0]) & (step < settings.secant[1])
             slope[left[good]] = secant[good]
             left = left[~zero & ~closed]
+            if iteration == settings.ends_checked and not between:
+                ends = (each[left] for each in (start, way, low, high))
+                left = left[self._encloses(*ends)]
         return roots, last, slope
+
+    def _encloses(
+        self, start: Vector, way: Vector, low: Vector, high: Vector
+    ) -> NDArray[np.bool_]:
+        """Return whether signs differ at both ends of lines of which one end was not looked at."""
+        at_end = high == 1.0
+        unseen = at_end | (low == 0.0)
+        enclosed = np.ones(len(start), bool)
+        places = (start + at_end[:, None] * way)[unseen]
+        enclosed[unseen] = (self.value(places) > 0.0) != at_end[unseen]
+        return enclosed
