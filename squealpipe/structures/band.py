@@ -196,9 +196,8 @@ def _matched(
     at_right = np.array([each.value for each in right])
     at_left = np.array([each.value for each in left])
     distance = np.abs(at_right[:, None] - at_left[None, :])
-    pairs, places = [], linear_sum_assignment(distance) if distance.size else ((), ())
-    single = [*right, *left]
-    for i, j in zip(*places, strict=True):
+    pairs, single = [], [*right, *left]
+    for i, j in zip(*linear_sum_assignment(distance), strict=True):
         if distance[i, j] <= SAME * abs(at_right[i]):
             partner = right[i]
             assert partner.factors is not None  # noqa: S101 (of right eigenvectors)
