@@ -25,8 +25,10 @@ from squealpipe import (
     propensity,
     simulate,
 )
+from squealpipe.brake.linear.maps import stability_map
 from squealpipe.structures import elastic_pad
 from squealpipe.structures.units import scales_of
+from squealpipe.systems.inputs.gate import reals
 from squealpipe.systems.shipped import impact_oscillator as shipped
 from squealpipe.units import UnitError, in_si, number_of
 
@@ -373,3 +375,11 @@ def test_degrees_are_one_angle_however_they_are_written():
             for angle in (f"{number} deg", QUANTITY(number, "deg"), np.radians(number))
         ]
         assert len({*runs}) == 1
+
+
+def test_a_result_stays_when_the_callers_array_is_used_again():
+    angles, expected = np.linspace(0.1, 3.0, 5), np.linspace(0.1, 3.0, 5)
+    made = stability_map(Parameters(), angles, angles)
+    angles[:] = 0.0
+    assert made.alpha1.values.tolist() == expected.tolist()
+    assert not np.shares_memory(reals(angles), angles)

@@ -65,6 +65,8 @@ def test_attributes_tell_what_made_it_and_survive_the_file(name, tmp_path):
     bare = made.drop_attrs(deep=False).assign_attrs(schema=made.attrs["schema"])
     assert not set(told) & set(bare.attrs)
     assert dataset_id(bare) == back.attrs["dataset_id"]
+    configured = {dataset_id(made.assign_attrs(config=text)) for text in ("{}", "[]")}
+    assert len(configured | {dataset_id(bare)}) == 3
 
 
 def test_every_public_function_that_returns_a_dataset_is_covered():

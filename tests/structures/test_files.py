@@ -615,6 +615,25 @@ def test_a_sweep_of_a_structure_is_checked_when_planned_and_follows_all_its_file
         planned(config("none.yaml:complex_modes"))
 
 
+@pytest.mark.parametrize(
+    ("matrix", "labels"),
+    [
+        *[(ending, ".dof") for ending in (".sti", ".mas", ".sti.gz")],
+        *[(ending, ".mapping") for ending in (".matrix", ".hb", ".rsa", ".rua")],
+    ],
+)
+def test_labels_beside_a_matrix_are_part_of_the_key(
+    tmp_path, monkeypatch, matrix, labels
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "pad.yaml").write_text(f"stiffness: K{matrix}\n")
+    (tmp_path / f"K{matrix}").write_text("1 1 2.0\n")
+    (tmp_path / f"K{labels}").write_text("7.1\n")
+    before = rule_key({"file": "pad.yaml"}, [])
+    (tmp_path / f"K{labels}").write_text("7.2\n")
+    assert rule_key({"file": "pad.yaml"}, []) != before
+
+
 def test_contacts_that_are_open_are_named():
     pad = elastic_pad(elements=(6, 2), contacts=3)
     _, *others = pad.contacts

@@ -192,8 +192,9 @@ def _beside(file: Path, within: tuple[Path, ...] = ()) -> Iterator[str]:
     """
     packed = file.suffix.lower() == ".gz"
     plain = file.with_suffix("") if packed else file
-    endings = {".sti": (".dof",), ".mas": (".dof",), ".matrix": (".mapping",)}
-    for ending in endings.get(plain.suffix.lower(), ()):
+    endings = dict.fromkeys((".sti", ".mas"), ".dof")
+    endings |= dict.fromkeys((".hb", ".rsa", ".rua", ".matrix"), ".mapping")
+    if ending := endings.get(plain.suffix.lower()):
         for each in (plain.with_suffix(ending), plain.with_suffix(f"{ending}.gz")):
             if each.is_file():
                 yield each.as_posix()

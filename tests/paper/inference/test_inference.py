@@ -79,6 +79,37 @@ def test_linear_stability_of_the_scene_of_fig_3(mu):
     np.testing.assert_allclose(margins, [1 - slope, 1 + slope], atol=1e-12)
 
 
+def test_linear_stability_of_random_sets_is_that_of_eigenvalues():
+    """Either belt and unequal springs: flutter refutes a set as divergence does.
+
+    At the angles of Fig. 3 there is none below μ = 3.08, where k3 = k1 + k2.
+    """
+    sets = [
+        params.with_(mu=8.0 * params.mu)
+        for params in random_sets(np.random.default_rng(11), 300, equal=False)
+    ]
+    margin = measure(Candidates(fields_of(sets), 1e-9), [Stage.linear])["F6d"].margin
+    angles = SCENES["F3"].alpha1, math.pi - SCENES["F3"].alpha2
+    kinds = []
+    for params in sets:
+        stiffness = np.zeros((2, 2))
+        for k, angle in zip((params.k1, params.k2), angles, strict=True):
+            spring = np.array([math.cos(angle), math.sin(angle)])
+            stiffness += k * np.outer(spring, spring)
+        # the belt drags with μN, and N falls by k3 y
+        drag = params.mu * math.copysign(1.0, params.belt_speed)
+        stiffness += params.k3 * np.array([[0.0, drag], [0.0, 1.0]])
+        squares = np.linalg.eigvals(stiffness)
+        flutter = bool((squares.imag != 0.0).any())
+        kinds.append(
+            "flutter" if flutter else "stable" if min(squares) > 0 else "divergence"
+        )
+    kinds = np.array(kinds)
+    assert min(np.unique(kinds, return_counts=True)[1]) > 5
+    assert len(set(kinds)) == 3
+    np.testing.assert_array_equal(margin > 0.0, kinds == "stable")
+
+
 @pytest.mark.parametrize("kappa", [0.4, 1.2])
 def test_the_modes_are_switched_while_the_contact_is_softer(kappa):
     """(5π/6, 5π/6): K11 = 1.5 against K22 + k3 = 0.5 + κ."""

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from squealpipe.paper.claims.evidence import passes
 from squealpipe.paper.inference.candidates import sets_of
 from squealpipe.paper.inference.constraints import (
     SeveralStarts,
@@ -19,6 +20,7 @@ from squealpipe.paper.inference.inference import FULLY_JUDGED, _sample
 from squealpipe.paper.schema.growth import growth_margin
 from squealpipe.paper.schema.inference import Holds, parameter_inference_schema
 from squealpipe.parameters import SCENES
+from squealpipe.schema import Outcome
 from squealpipe.store.comparison.differences import Agreement, judge
 
 RANGES = {
@@ -49,6 +51,17 @@ def test_growth_that_depends_on_the_last_digit_is_undecided():
     assert len({*(growth_margin(sizes) > 0.0)}) == 2
     found = CHECKS["F3"](candidates(CHAOTIC, STUDY))
     assert verdicts(found).tolist() == [Holds.undecided, Holds.yes]
+
+
+def test_a_margin_of_zero_holds_no_more_than_a_force_of_zero_is_above_zero():
+    margins = np.array([1e-300, 0.0, -1e-300, np.nan])
+    found = StatementMargin(margins, np.full(4, int(Outcome.converged)))
+    expected = [Holds.yes, Holds.no, Holds.no, Holds.undecided]
+    assert verdicts(found).tolist() == expected
+    for margin, verdict in zip(margins[:3], expected[:3], strict=True):
+        assert passes(margin, ">", 0.0) is (verdict == Holds.yes)
+    ended = StatementMargin(np.ones(1), np.array([int(Outcome.step_limit)]))
+    assert verdicts(ended).tolist() == [Holds.undecided]
 
 
 @pytest.mark.release

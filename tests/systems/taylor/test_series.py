@@ -6,13 +6,15 @@ from math import factorial
 import mpmath
 import numpy as np
 import pytest
+from numba import njit
 
 from squealpipe.functions import exp
+from squealpipe.systems.compiled import part
 from squealpipe.systems.taylor import series
 from squealpipe.systems.taylor.lanes import INVERSES, aligned, compile_system
 from squealpipe.systems.taylor.scalar import python_function
 from squealpipe.systems.taylor.series import HybridSystem, series_source
-from squealpipe.systems.taylor.simd import LANES
+from squealpipe.systems.taylor.simd import LANES, ROW, fma, load, store
 from squealpipe.systems.taylor.symbols import (
     FUNCTIONS,
     derivative,
@@ -42,6 +44,30 @@ def coefficients(rates, start, events=(ONE, ONE, ONE), parameters=()):
     Words(compiled.address("series"))(*addresses, INVERSES.ctypes.data, TERMS)
     assert (rows == rows[:, :, :1]).all()
     return compiled, rows, values
+
+
+def test_a_product_that_is_added_is_rounded_once_on_every_processor():
+    """(1 + 2e)(1 + 2e) − (1 + 4e) is 4e², which a product that is rounded loses.
+
+    LLVM's fmuladd would be rounded once or twice, by what the processor has.
+    """
+
+    @part
+    def added(a, b, c, result):
+        store(result, fma(load(a), load(b), load(c)))
+
+    @njit
+    def run(rows):
+        first = rows.ctypes.data
+        added(first, first, first + ROW, first + 2 * ROW)
+
+    rows, e = aligned(3, LANES), 2.0**-29
+    rows[0], rows[1] = 1.0 + 2.0 * e, -(1.0 + 4.0 * e)
+    run(rows)
+    assert (rows[2] == 4.0 * e * e).all()
+    (code,) = run.inspect_llvm().values()
+    assert "llvm.fma.v" in code
+    assert "fmuladd" not in code
 
 
 def test_power_series_in_closed_form():
