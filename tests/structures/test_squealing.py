@@ -364,6 +364,11 @@ def test_commands_and_studies_run_modes_up_to_20_khz_and_say_so(
     # a band that holds the mode at 503 kHz is another question
     more = ["--frequency-max", "1MHz", "--n-modes", "2", "-o", "all.nc"]
     assert run(["squeal", "pad.yaml", *one, *more]) == 1
+    # what is heard makes the command's answer no, written or not
+    noisy = Path("pad.yaml").read_text().replace("mu: 0.3", "mu: 0.9")
+    Path("noisy.yaml").write_text(noisy)
+    for written in ([], ["-o", "noisy.nc"]):
+        assert run(["assess", "noisy.yaml", *one, *written]) == 1
 
 
 def two_pads():

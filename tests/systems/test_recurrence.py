@@ -28,6 +28,8 @@ def test_what_has_no_period_within_the_tolerance_does_not_repeat():
     """Other kinds, a late offset, two tones, fewer than three periods, nothing."""
     steady, index = np.arange(24.0), np.arange(300)
     assert repeats_after(steady, np.tile([0, 1], 12), 1e-6) == 2
+    # at even intervals kinds alone decide, though the second is that of the first
+    assert repeats_after(steady, np.tile([0, 0, 1], 8), 1e-6) == 3
     assert repeats_after(steady, np.random.default_rng(1).permutation(24), 1e-6) == 0
     times, kinds = sequence([1.0, 2.0], [0, 1], 10)
     times[7:] += 1e-4

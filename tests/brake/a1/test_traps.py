@@ -187,3 +187,30 @@ def test_releases_are_where_long_double_has_them():
         )
         judged += count
     assert judged >= 20
+
+
+def test_a_mass_that_falls_straight_onto_a_belt_at_rest_sticks_at_once():
+    """No event of its own, for it lands at the belt's speed."""
+    params = FORMER.with_(belt_speed=0.0, mu=0.3)
+    run = run_ensemble(
+        params,
+        1.0,
+        1.0,
+        t_end=20.0,
+        model="A1-linear-springs",
+        initial_state=(0.0, -1.5, 0.0, 0.0),
+    )
+    assert run.contacts > 3
+    assert run.sticks == run.slips == run.reversals == 0
+    assert run.stick_time + run.separated_time == pytest.approx(20.0, rel=1e-14)
+
+
+@pytest.mark.parametrize("model", ["A1", "A1-no-stick"])
+def test_a_mass_that_starts_at_belt_speed_goes_where_the_springs_pull(model):
+    """Friction of μ = 0.05 cannot hold it: it slips to that side without an event."""
+    x = np.array([1.5, -1.5])
+    starts = np.stack([x, 0 * x, 0 * x + 0.5, 0 * x], axis=-1)
+    params = FORMER.with_(belt_speed=0.5, mu=0.05)
+    run = run_ensemble(params, 1.0, 1.2, t_end=0.01, model=model, initial_state=starts)
+    assert not (run.reversals + run.sticks + run.slips).any()
+    assert (np.sign(run.final_state[:, 2] - 0.5) == -np.sign(x)).all()
