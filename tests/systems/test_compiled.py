@@ -1,5 +1,6 @@
 """The store of compiled kernels: current, shared, and done without where nothing can be written."""
 
+import gc
 import os
 import shutil
 import subprocess
@@ -55,6 +56,22 @@ def test_every_kernel_file_is_part_of_the_digest():
     using = {path.name for path in files if "\n@compiled\n" in path.read_text("utf-8")}
     assert len(using) > 2
     assert using <= {path.name for path in compiled.kernel_sources()}
+
+
+def test_collection_of_garbage_waits_for_the_compiler_and_stays_off_where_it_was():
+    assert gc.isenabled()
+    with compiled.timed_compilation():
+        with compiled.timed_compilation():
+            assert not gc.isenabled()
+        assert not gc.isenabled()
+    assert gc.isenabled()
+    gc.disable()
+    try:
+        with compiled.timed_compilation():
+            pass
+        assert not gc.isenabled()
+    finally:
+        gc.enable()
 
 
 @pytest.mark.release

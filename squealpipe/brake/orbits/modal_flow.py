@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.systems.compiled import compiled
+from squealpipe.systems.compiled import compiled, part
 
 state_row_type = np.dtype(
     [
@@ -32,13 +32,13 @@ GIVEN_UP = -2.0
 """What :func:`next_crossing` returns after too many look-aheads."""
 
 
-@compiled
+@part
 def _over(sine: Any, frequency: Any, limit: Any) -> Any:
     """A sine over its frequency ω, at ω = 0 the limit."""
     return frequency + limit if frequency == 0.0 else sine / frequency
 
 
-@compiled
+@part
 def _cosine_of_double(sine: Any, cosine: Any) -> Any:
     """cos 2φ from sin φ and cos φ, by the smaller of them: their own round-off does not enter."""
     if abs(cosine) < abs(sine):
@@ -46,7 +46,7 @@ def _cosine_of_double(sine: Any, cosine: Any) -> Any:
     return 1.0 - 2.0 * sine * sine
 
 
-@compiled
+@part
 def modal_coefficients(omega1: Any, omega2: Any, time: Any) -> Any:
     """(α, β) of C = cos(√A t), S = sin(√A t)/√A and G = (1 − C)/A; real or complex ω.
 
@@ -85,7 +85,7 @@ def modal_coefficients(omega1: Any, omega2: Any, time: Any) -> Any:
     )
 
 
-@compiled
+@part
 def coefficients_at(row: Any, time: float) -> Any:
     """(α, β) of C, S, −A S and G of a state row over a time: eight numbers."""
     if row.omega1_imaginary == 0.0 and row.omega2_imaginary == 0.0:
@@ -117,7 +117,7 @@ def propagator(row: Any, time: float, out: Any) -> None:
     )
 
 
-@compiled
+@part
 def moved_tangent(
     row: Any, coefficients: Any, x: float, y: float, vx: float, vy: float
 ) -> Any:
@@ -140,7 +140,7 @@ def moved_tangent(
     )
 
 
-@compiled
+@part
 def moved_state(
     row: Any, coefficients: Any, x: float, y: float, vx: float, vy: float
 ) -> Any:
@@ -160,7 +160,7 @@ def moved_state(
     )
 
 
-@compiled
+@part
 def apply(row: Any, coefficients: Any, state: Any) -> None:
     """Advance a tangent vector (δx, δy, δvx, δvy) in place."""
     state[0], state[1], state[2], state[3] = moved_tangent(
@@ -176,14 +176,14 @@ def advance(row: Any, coefficients: Any, state: Any) -> None:
     )
 
 
-@compiled
+@part
 def copy_state(source: Any, target: Any) -> None:
     """Copy (x, y, vx, vy)."""
     for index in range(4):
         target[index] = source[index]
 
 
-@compiled
+@part
 def acceleration(row: Any, x: float, y: float) -> tuple[float, float]:
     """−A u + b."""
     return (
@@ -192,7 +192,7 @@ def acceleration(row: Any, x: float, y: float) -> tuple[float, float]:
     )
 
 
-@compiled
+@part
 def _jerk_bound(
     row: Any, ax: float, ay: float, vx: float, vy: float, step: float
 ) -> float:
@@ -209,7 +209,7 @@ def _jerk_bound(
     return float(growth * (np.sqrt(jx * jx + jy * jy) + later))
 
 
-@compiled
+@part
 def _stays(
     distance: float, slope: float, curvature: float, jerk: float, step: float
 ) -> bool:
@@ -221,7 +221,7 @@ def _stays(
     return least > 0.0 or distance + step * min(least, 0.0) > 0.0
 
 
-@compiled
+@part
 def _refine_crossing(
     row: Any, origin: Any, start: float, end: float, guess: float, sign: float
 ) -> float:
@@ -300,7 +300,7 @@ def next_crossing(row: Any, origin: Any, sign: float, horizon: float) -> float:
         if falls and sign * (y - row.threshold) <= 0.0:
             root = np.sqrt(slope * slope - 2.0 * curvature * distance)  # NaN: no guess
             guess = time + 2.0 * distance / (root - slope)
-            return _refine_crossing(row, origin, time, ahead, guess, sign)
+            return float(_refine_crossing(row, origin, time, ahead, guess, sign))
         time = ahead
         if horizon - time <= 1e-15 * horizon:
             return -1.0

@@ -18,7 +18,7 @@ from squealpipe.brake.orbits.modal_flow import (
     propagator,
 )
 from squealpipe.brake.orbits.shooting import shoot, shooting_limits
-from squealpipe.systems.compiled import compiled
+from squealpipe.systems.compiled import compiled, part
 
 
 @compiled
@@ -45,7 +45,7 @@ def waveform(rows: Any, point: Any, phases: Any, out: Any) -> None:
         advance(row, scratch, out[index])
 
 
-@compiled
+@part
 def _rates(row: Any, state: Any, kind: int) -> tuple[float, float, float]:
     """A quantity with its first two derivatives: x (0), y (1) or vx (2)."""
     ax, ay = acceleration(row, state[0], state[1])

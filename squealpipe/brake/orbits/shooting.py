@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squealpipe.brake.orbits import modal_flow
-from squealpipe.systems.compiled import compiled
+from squealpipe.systems.compiled import compiled, part
 
 
 class ShootingLimits(NamedTuple):
@@ -31,7 +31,7 @@ shooting_limits = ShootingLimits()
 _side_column = 8
 
 
-@compiled
+@part
 def norm(vector: Any) -> float:
     """Euclidean norm of three components."""
     return float(
@@ -39,7 +39,7 @@ def norm(vector: Any) -> float:
     )
 
 
-@compiled
+@part
 def dot(left: Any, right: Any) -> float:
     """Inner product of three components."""
     return float(left[0] * right[0] + left[1] * right[1] + left[2] * right[2])

@@ -10,7 +10,6 @@ results are the same to the last bit.
 Cost: two thirds of what is left is numba's inference of types.
 """
 
-import gc
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -93,17 +92,12 @@ def _parts() -> _Parts:
 def _only_written() -> Iterator[None]:
     """Let numba compile nothing of what it writes meanwhile."""
     context = _target.target_context
-    usual, collects = context.codegen(), gc.isenabled()
+    usual = context.codegen()
     context._internal_codegen = _parts()  # noqa: SLF001 (has no public setter)
-    # numba makes millions of objects that it keeps: to look for garbage among them takes a seventh
-    # of the time
-    gc.disable()
     try:
         yield
     finally:
         context._internal_codegen = usual  # noqa: SLF001
-        if collects:
-            gc.enable()
 
 
 def compile_entry(function: Callable[..., Any], signature: Any) -> tuple[str, bytes]:
