@@ -19,6 +19,8 @@ from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 from matplotlib.text import Text
 from matplotlib.ticker import ScalarFormatter
+from PIL import Image
+from PIL.PngImagePlugin import PngInfo
 
 from squealpipe.parameters import TABLE
 from squealpipe.store.whole_files import whole_file
@@ -328,15 +330,28 @@ def save_figure(
     if size is not None:
         _resize(figure, size)
     figure.set_dpi(dots)
-    FigureCanvasAgg(figure)  # the layout and a PNG share what they measure of texts
+    canvas: Any = FigureCanvasAgg(
+        figure
+    )  # layout and PNG share what it measures of texts
     if (engine := figure.get_layout_engine()) is not None:
         engine.execute(figure)
         figure.set_layout_engine(None)
     for path in map(Path, paths):
-        metadata = (
-            {"Date": None} if path.suffix == ".svg" else {"Software": "squealpipe"}
-        )
         content = io.BytesIO()  # on a full disk a PDF is closed with an error of zlib
-        figure.savefig(content, format=path.suffix[1:], metadata=metadata, dpi=dots)
+        if path.suffix == ".png":
+            _draw_png(canvas, content)
+        else:
+            metadata = {"Date": None} if path.suffix == ".svg" else {}
+            figure.savefig(content, format=path.suffix[1:], metadata=metadata, dpi=dots)
         with whole_file(path) as temporary:
             temporary.write_bytes(content.getvalue())
+
+
+def _draw_png(canvas: Any, content: io.BytesIO) -> None:
+    """Draw a figure as a PNG without transparency, which a PDF would have to take apart."""
+    canvas.draw()
+    tags = PngInfo()
+    tags.add_text("Software", "squealpipe")
+    dots = canvas.figure.dpi
+    opaque = np.asarray(canvas.buffer_rgba())[..., :3]
+    Image.fromarray(opaque).save(content, "png", dpi=(dots, dots), pnginfo=tags)
