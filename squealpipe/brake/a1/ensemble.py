@@ -20,7 +20,7 @@ from squealpipe.systems.integrate import integrate as integrate_system
 from squealpipe.systems.system import System
 from squealpipe.systems.taylor.layout import outcomes
 from squealpipe.systems.trace import TIME
-from squealpipe.validation import Seed, Workers, checked
+from squealpipe.validation import Positive, Seed, Workers, checked
 
 NEAR_PIVOT = 1e-3
 """Distance from a pivot, in free lengths, from which an overflow is its doing."""
@@ -257,6 +257,7 @@ def run_ensemble(
     extremes_between: bool = False,
     tangent: bool = False,
     log_events: Seed = 0,
+    size: Positive = 1.0,
     workers: Workers = None,
     **options: Any,
 ) -> Ensemble:
@@ -270,6 +271,8 @@ def run_ensemble(
         extremes_between: keep the extremes of what is tracked between these instants, for
             :meth:`Ensemble.between_samples`.
         log_events: number of events a run to keep; knots of a law's table are none of A1.
+        size: of the motion, over l_pre; ``tol`` is relative to it. Steps grow by its 14th root at a
+            tolerance of 1e-9, by its 10th root at 1e-6.
         workers: processes; None takes all cores. The results are the same bit for bit.
     """
     jobs = jobs_of(parameters, alpha1, alpha2, **options)
@@ -280,6 +283,7 @@ def run_ensemble(
         extremes_between=extremes_between,
         tangent=tangent,
         log_events=log_events,
+        size=size,
         workers=workers,
     )
 
@@ -309,10 +313,16 @@ def _run(
     rows: Any,
     tracked: Sequence[str],
     workers: int | None = None,
+    size: float = 1.0,
     **options: Any,
 ) -> dict[str, np.ndarray]:
     """Raw results of the runs of one system, one row each."""
     values = {name: value[rows] for name, value in jobs.values.items()}
+    sizes = None
+    if size != 1.0:
+        lengths = size * values["preload"]
+        speeds = lengths * np.sqrt(values["k1"] / values["mass"])
+        sizes = np.stack([lengths, lengths, speeds, speeds], axis=-1)
     t_end, t_late = jobs.t_end[rows], jobs.t_late[rows]
     is_apart = np.array([name in {"separated", "released"} for name in system.regimes])
     first = None
@@ -342,6 +352,7 @@ def _run(
             logged=Event.__members__,
             most_steps=most_steps[rows],
             most_events=most_events[rows],
+            unit_sizes=sizes,
             **options,
         ),
         tol=jobs.tol,

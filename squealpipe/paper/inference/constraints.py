@@ -254,7 +254,7 @@ def _growth_and_size(
     candidates: Candidates, scene: Scene
 ) -> tuple[Any, Any, np.ndarray]:
     """ln of late over early |x| and of |x| over 2L, and how the runs ended."""
-    run = candidates.run(scene)
+    run = candidates.run(scene, tracked="x")
     bound = WordsInNumbers.bounded_within * np.maximum(
         candidates.fields["length1"], candidates.fields["length2"]
     )

@@ -185,3 +185,17 @@ def test_threads_do_not_disturb_each_other(reference):
     with ThreadPoolExecutor(2) as pool:
         for run in pool.map(lambda _: _run(workers=1), range(4)):
             assert_identical(run, reference)
+
+
+def test_a_motion_said_to_be_large_takes_longer_steps():
+    """Two motions that keep contact, against runs with a tolerance of 1e-12."""
+    precise, coarse, large = (
+        run_ensemble(
+            FORMER, [1.2, np.pi / 2], [2.8, np.pi], t_end=50.0, tol=tol, size=size
+        )
+        for tol, size in ((1e-12, 1.0), (1e-6, 1.0), (1e-6, 30.0))
+    )
+    assert (large.separations == 0).all()
+    assert (large.steps < 0.8 * coarse.steps).all()
+    for run, error in ((coarse, 1e-8), (large, 1e-6)):
+        assert np.abs(run.final_state - precise.final_state).max() < error

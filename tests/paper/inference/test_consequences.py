@@ -141,6 +141,26 @@ def test_the_black_region_is_where_a_map_shows_it(likely):
     assert np.corrcoef(share, seen)[0, 1] > 0.9
 
 
+def test_every_unstable_cell_is_run_once_where_none_keeps_contact(likely, monkeypatch):
+    """Cells are run in three turns; where all of them separate, in each turn all that are left."""
+    candidates = replace(Candidates(likely, 1e-9), exact=False)
+    run = []
+
+    def separate(some, alpha1, alpha2):
+        run.append(np.stack([some.fields["k3"], alpha1, alpha2]))
+        return np.full(alpha1.size, int(Outcome.separated)), None
+
+    monkeypatch.setattr("squealpipe.paper.inference.angle_maps._runs", separate)
+    assert (keeping_share(candidates) == 0).all()
+    cells = candidates.unstable_cells(0.95)
+    every = np.stack([likely["k3"][cells.owner], cells.alpha1, cells.alpha2])
+    assert [turn.shape[1] for turn in run] == sorted(turn.shape[1] for turn in run)
+    order = [np.lexsort(each) for each in (np.concatenate(run, axis=1), every)]
+    np.testing.assert_array_equal(
+        np.concatenate(run, axis=1)[:, order[0]], every[:, order[1]]
+    )
+
+
 @pytest.mark.release
 def test_the_separating_share_has_converged(likely):
     """Twice the resolution leaves the shares within a spacing's error, and F7a within one set."""
