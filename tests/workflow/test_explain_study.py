@@ -14,12 +14,19 @@ def reasons(checkout, *configs):
     return {job.rule: job.reasons for job in plan.jobs}
 
 
-def test_changed_key_is_named_with_what_follows(finished, tmp_path):
-    assert reasons(finished) == {}
+def test_changed_key_and_missing_dataset_are_named_with_what_follows(
+    finished, tmp_path
+):
     mine = tmp_path / "mine.yaml"
     mine.write_text("linear: {points: 71}\n")
-    plan = explain([finished / TINY, mine], directory=finished)
+    missing = finished / "results/tiny/data/whirl.nc"
+    missing.rename(finished / "aside.nc")
+    try:
+        plan = explain([finished / TINY, mine], directory=finished)
+    finally:
+        (finished / "aside.nc").rename(missing)
     jobs = {job.rule: job for job in plan.jobs}
+    assert jobs["follow_whirl"].reasons == ["missing: results/tiny/data/whirl.nc"]
     assert [reason.partition(":")[0] for reason in jobs["map_linear"].reasons] == [
         "linear.points"
     ]
@@ -82,14 +89,3 @@ def test_replaced_and_damaged_results_are_named(finished, snakemake):
         for path, (content, date) in zip(paths, whole, strict=True):
             path.write_bytes(content)
             os.utime(path, (date, date))
-
-
-def test_missing_dataset_is_not_up_to_date(finished):
-    path = finished / "results/tiny/data/whirl.nc"
-    path.rename(finished / "aside.nc")
-    try:
-        assert reasons(finished)["follow_whirl"] == [
-            "missing: results/tiny/data/whirl.nc"
-        ]
-    finally:
-        (finished / "aside.nc").rename(path)
