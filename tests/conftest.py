@@ -84,30 +84,51 @@ def pytest_itemcollected(item):
 
 
 def pytest_collection_modifyitems(items):
-    """The long files first, so that two processes end at about the same time."""
-    long = (
-        "documentation",
+    """The longest files first, so that all processes end at about the same time."""
+    longest = (
         "readme",
         "installation",
+        "documentation",
         "quality",
-        "references",
         "own_runs",
-        "confirming",
-        "damped_chart",
-        "modified_disc",
-        "cycles",
-        "published_cycles",
+        "compiled",
+        "random_systems",
+        "references",
+        "cycle_labels",
+        "squealing",
+        "other_parameters",
+        "reduction",
+        "truth",
+        "hidden_jumps",
+        "contact",
         "assess",
+        "inference",
+        "settled_disc",
+        "captions",
+        "branch_ends",
+        "damped_chart",
+        "special_points",
+        "explorer",
+        "energy",
+        "runs_of_the_whole",
+        "backbone",
+        "published_cycles",
+        "dynamics",
+        "modified_disc",
+        "confirming",
+        "cycles",
         "commands",
-        "own",
         "files",
         "judge",
+        "structure",
+        "sweep",
+        "own",
     )
-    files = [f"test_{name}.py" for name in long]
+    places = {f"test_{name}.py": place for place, name in enumerate(longest)}
     items.sort(
         key=lambda item: (
             "workflow" not in item.path.parts,
-            item.path.name not in files,
+            places.get(item.path.name, len(places)),
         )
     )
 

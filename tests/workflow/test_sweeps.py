@@ -56,9 +56,11 @@ def test_parts_equal_the_whole_and_the_command_line(checkout, snakemake, monkeyp
 
 
 EDITS = {
-    "sweeps: {friction: {vary: {mu: [0, 0.3, 0.6]}}}": set(),
     "sweeps: {friction: {fixed: {alpha1: 1.1}}}": {"run_sweep_friction"},
-    "sweeps: {stiffness: {vary: {mu: [0.1, 0.2]}}}": {"run_sweep_stiffness"},
+    # the values of friction are those of before, in other words
+    "sweeps: {friction: {vary: {mu: [0, 0.3, 0.6]}}, stiffness: {vary: {mu: [0.1, 0.2]}}}": {
+        "run_sweep_stiffness"
+    },
     "parameters: {mu: 0.35}": {"run_sweep_stiffness"},
 }
 """Overlay → sweeps that it makes stale; of other rules none but for the last."""

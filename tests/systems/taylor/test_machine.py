@@ -75,6 +75,10 @@ def test_the_store_is_readable_as_others_are_and_forgets_what_it_kept_first(
     os.utime(old, (0, 0))
     path.unlink()
     monkeypatch.setattr(machine, "MOST", len(whole))
+    monkeypatch.setattr(machine, "_stored_files", iter([1, 100]))
+    assert compiled() == 0.75
+    assert files(tmp_path) == {path: whole, old: whole}  # it looks now and then
+    path.unlink()
     assert compiled() == 0.75
     assert files(tmp_path) == {path: whole}
 
