@@ -365,6 +365,7 @@ def test_a_push_that_ends_beyond_the_band_names_the_band_that_includes_it():
         {
             "verdict": int(Verdict.undetermined),
             "same_modes_grow": True,
+            "whole_decays": True,
             "frequency_max": 12e3,
             "frequency": ("mode", [10.61e3, 63.23e3]),
             "mode_is_sure": ("mode", [True, False]),
@@ -388,6 +389,8 @@ def test_a_motion_beyond_the_band_is_marked_and_modes_are_named_by_frequency():
         "whole_decays": False,
         "frequency_max": 1e3,
         "frequency": ("mode", [810.0, 8.9e3]),
+        "mode_frequency_error": ("mode", [0.0, 0.0]),
+        "mode_growth_rate_error": ("mode", [0.0, 0.0]),
         "growth_rate": ("mode", [3.0, 2.0]),
         "mode_is_sure": ("mode", [True, True]),
         "squeals": ("mode", [False, True]),
@@ -395,6 +398,8 @@ def test_a_motion_beyond_the_band_is_marked_and_modes_are_named_by_frequency():
         "ends_in": ("mode", [0, 0]),
         "dominant_frequency": ("attractor", [8.5e3]),
         "motion": ("attractor", [int(Verdict.squeals)]),
+        "separated_fraction": ("attractor", [0.0]),
+        "stick_fraction": ("attractor", [0.0]),
     }
     told = xr.Dataset(at, {"mode": [2, 17]})
     beyond = "beyond the band (modes up to 1 kHz were compared)"
