@@ -121,7 +121,8 @@ def _numbered(motion: np.ndarray, extremes: np.ndarray) -> np.ndarray:
     """
     numbers = np.full(motion.size, -1)
     # twice: what is still to come is less than what was seen to go
-    moves = 2.0 * np.ptp(extremes, axis=2) * (motion == MotionKind.rest)[:, None]
+    rests = motion == MotionKind.rest
+    moves = np.where(rests[:, None], 2.0 * np.ptp(extremes, axis=2), 0.0)
     settled = np.flatnonzero(motion != MotionKind.unsettled)
     number = 0
     spans = np.ptp(extremes[settled], axis=(0, 2)) if settled.size else np.empty(0)
