@@ -7,7 +7,7 @@ import numpy as np
 
 from squealpipe.laws.springs import springs_are_equal
 from squealpipe.paper.inference.candidates import Candidates
-from squealpipe.paper.inference.unstable_cells import midpoints
+from squealpipe.paper.inference.unstable_cells import midpoints, mirror_images
 from squealpipe.parameters import HORIZON
 from squealpipe.reading import READINGS
 from squealpipe.schema import Outcome
@@ -77,11 +77,7 @@ def _run_map(
     coarser ones that all keep it come last, and only while the others are not enough.
     """
     alpha1, alpha2 = midpoints(number)
-    cells = twins = np.arange(number**2)
-    if springs_are_equal(candidates.fields):
-        first, second = np.divmod(cells, number)
-        twins = cells[::-1].reshape(number, number).T.ravel()
-        cells = cells[first + second < number]
+    cells, twins = mirror_images(number, springs_are_equal(candidates.fields))
     early = np.ones((candidates.size, cells.size), bool)
     if coarser is not None and not candidates.exact:
         early = ~_amidst_kept(coarser).reshape(candidates.size, -1)[:, cells]

@@ -96,12 +96,17 @@ def unstable_along_edges(
 def _on_grid(params: Parameters) -> Unstable:
     """Several statements ask for the cells of one set, which take a tenth of a second."""
     alpha1, alpha2 = midpoints(DAMPED_GRID)
-    linear = stability(damped_system(params, alpha1, alpha2))
-    at = np.flatnonzero(linear.regime > LinearRegime.stable)
+    cells, twins = mirror_images(DAMPED_GRID, bool(springs_alike(params.as_dict())))
+    linear = stability(damped_system(params, alpha1[cells], alpha2[cells]))
     couples = (linear.regime == LinearRegime.flutter) & (
         linear.shape_similarity >= WordsInNumbers.alike
     )
-    return Unstable(np.zeros(at.size, int), alpha1[at], alpha2[at], couples[at])
+    kind = np.zeros((alpha1.size, 2), np.int8)
+    kind[cells] = kind[twins[cells]] = np.stack([linear.regime, couples], axis=-1)
+    at = np.flatnonzero(kind[:, 0] > LinearRegime.stable)
+    return Unstable(
+        np.zeros(at.size, int), alpha1[at], alpha2[at], kind[at, 1].astype(bool)
+    )
 
 
 def midpoints(number: int) -> tuple[np.ndarray, np.ndarray]:
@@ -109,6 +114,19 @@ def midpoints(number: int) -> tuple[np.ndarray, np.ndarray]:
     axis = (np.arange(number) + 0.5) * (np.pi / number)
     alpha1, alpha2 = np.meshgrid(axis, axis, indexing="ij")
     return alpha1.ravel(), alpha2.ravel()
+
+
+def mirror_images(number: int, mirrored: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Return one of each two midpoints that have the same motion, and the twin of each midpoint.
+
+    Args:
+        mirrored: whether (α1, α2) and (π − α2, π − α1) have; else none but itself has.
+    """
+    cells = np.arange(number**2)
+    if not mirrored:
+        return cells, cells
+    first, second = np.divmod(cells, number)
+    return cells[first + second < number], cells[::-1].reshape(number, -1).T.ravel()
 
 
 def _along_edges(
