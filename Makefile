@@ -81,7 +81,7 @@ $(STUDY): requirements.lock pyproject.toml
 	$(BIN)/python -m compileall -q squealpipe
 	touch $@
 
-# These compile the event loop (15 s), the shots of orbits (6 s) and the loop of structures (26 s) into the
+# These compile the event loop (13 s), the shots of orbits (8 s) and the loop of structures (26 s) into the
 # user's cache, which several first jobs or tests would otherwise do at once; and byte code of what jobs import,
 # for those who may not write it.
 LOOP = $(BIN)/python -c "from squealpipe.systems.taylor.loop import loop; loop()"

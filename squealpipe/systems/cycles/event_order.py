@@ -121,8 +121,8 @@ class NewOrder:
         moved = (cycle.extremes - change.extremes)[
             :, : len(change.map.scale)
         ] / change.map.scale
-        # the margin that is zero at the change is small just beyond it, unless a release there
-        # lets a spring jump
+        # the margin that is zero at the change is small just beyond it, half of what a solution may
+        # move, unless a release there lets a spring jump
         near, there = margins(Cycle.at(equations, guess)), margins(cycle)
         least = min(near, key=lambda key: near[key], default=None)
         apart = least in there and there[least] > 5e-3 + abs(near[least])
