@@ -71,15 +71,10 @@ class _Parts(_Codegen):  # type: ignore[misc]
 
     def compiled(self, library: _Part, name: str) -> bytes:
         """Return the object file of a function with all that it calls."""
-        module = library._get_module_for_linking()  # noqa: SLF001
-        module.get_function(name).linkage = "external"
-        cheap = self._module_pass_manager(
-            loop_vectorize=False, slp_vectorize=False, opt=0, cost="cheap"
-        )
-        for manager, builder in (cheap, self._module_pass_manager()):
-            manager.run(module, builder)
-        module.verify()
-        code: bytes = self._tm.emit_object(module)
+        library._final_module = library._get_module_for_linking()  # noqa: SLF001
+        library.get_function(name).linkage = "external"
+        library._optimize_final_module()  # noqa: SLF001
+        code: bytes = self._tm.emit_object(library._final_module)  # noqa: SLF001
         return code
 
 

@@ -109,9 +109,16 @@ def test_what_a_loop_calls_is_compiled_with_it_alone_and_serves_other_code(
         return square(x) * x
 
     monkeypatch.setattr(machine, "store_folder", lambda *_: str(tmp_path))
+    optimize, optimized = codegen.JITCodeLibrary._optimize_final_module, []
+
+    def counted(library):
+        optimized.append(library.name)
+        optimize(library)
+
     with monkeypatch.context() as within:
-        within.setattr(codegen.JITCodeLibrary, "_optimize_final_module", None)
+        within.setattr(codegen.JITCodeLibrary, "_optimize_final_module", counted)
         number = numba.float64
         address = machine.address_of_entry(lambda x: cube(x) + 1.0, number(number), b"")
+    assert len(optimized) == 1
     assert ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double)(address)(3.0) == 28.0
     assert numba.njit(lambda x: cube(x) - 1.0)(3.0) == 26.0
