@@ -108,6 +108,13 @@ def test_a_falling_friction_stops_feeding_a_mode_at_a_speed():
     assert float(modes.critical_speed.where(turns).max()) == pytest.approx(
         expected, rel=1e-9
     )
+    # backwards the speed rises towards 0, and the mode turns unstable on the way
+    modes = structure.complex_modes(belt_speed=[-12.0, -9.0, -4.0, -1.0, -0.1])
+    turns = modes.speed_onset == SpeedOnset.turns_unstable
+    assert turns.sum() == 1
+    assert float(modes.critical_speed.where(turns).max()) == pytest.approx(
+        -expected, rel=1e-9
+    )
 
 
 def test_a_reduced_structure_turns_at_any_speed():

@@ -10,7 +10,9 @@ import pytest
 
 from squealpipe import Contact, Structure, operating_map
 from squealpipe.codes import Verdict
+from squealpipe.structures import elastic_pad
 from squealpipe.structures.assess.measured import matched, read_noises
+from squealpipe.structures.assess.operating_points import OperatingPoints
 from squealpipe.structures.assess.operating_units import OperatingUnits
 from squealpipe.structures.schema.operating_map import Match
 from tests.oracles.structure_answers import Motion
@@ -132,3 +134,14 @@ def test_sixty_points_are_confirmed_and_a_list_from_own_runs_is_matched(tmp_path
     assert again["hits"] == expected.count(Match.hit) > 0
     assert again["misses"] == expected.count(Match.miss) > 0
     assert again["false_alarms"] == expected.count(Match.false_alarm) > 0
+
+
+def test_a_map_is_run_in_the_modes_that_its_largest_friction_needs():
+    """Two modes suffice where friction is small."""
+    pad = elastic_pad(elements=(6, 2), contacts=2)
+    small, large, both = (
+        OperatingPoints.of(pad, mu=mu).reduced().structure
+        for mu in ([0.02], [0.7], [0.02, 0.7])
+    )
+    assert both.size == large.size > small.size
+    assert (both.stiffness != large.stiffness).nnz == 0
