@@ -28,7 +28,7 @@ LINES = {
         "squealpipe/parameters.py",
         "\n    def __post_init__(self) -> None:\n        for name",
     ),
-    RECORD: ("squealpipe/brake/schema/ladder.py", "    a1_short = ("),
+    RECORD: ("squealpipe/brake/schema/ladder.py", "    a1_short = "),
     READER: ("squealpipe/structures/readers.py", '        ".npy": lambda'),
     LAW_NAME: ("squealpipe/laws/friction_laws/__init__.py", None),
     FIGURE_NAME: ("squealpipe/paper/report/sections.py", None),
@@ -100,7 +100,7 @@ def test_the_steps_are_as_few_as_promised(extended):
     _, changed = extended
     assert changed == {
         "squealpipe/parameters.py": (8, 0),
-        "squealpipe/brake/schema/ladder.py": (9, 0),
+        "squealpipe/brake/schema/ladder.py": (1, 0),
         "squealpipe/laws/friction_laws/__init__.py": (1, 1),
         "squealpipe/paper/report/sections.py": (3, 1),
         "squealpipe/structures/readers.py": (1, 0),
