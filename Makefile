@@ -84,7 +84,7 @@ $(STUDY): requirements.lock pyproject.toml
 # These compile the event loop (13 s), the shots of orbits (8 s) and the loop of structures (26 s) into the
 # user's cache, which several first jobs or tests would otherwise do at once; and byte code of what jobs import,
 # for those who may not write it.
-LOOP = $(BIN)/python -c "from squealpipe.systems.taylor.loop import loop; loop()"
+LOOP = $(BIN)/python -c "from squealpipe.systems.taylor import collocation, legs, loop; loop.loop(); legs.run_legs(); collocation.transfer_steps()"
 ORBITS = $(BIN)/python -c "import matplotlib.pyplot, netCDF4, snakemake.cli, squealpipe.cli, squealpipe as s; s.periodic_orbit(s.Parameters(), 0.9, 2.8, mode=1, y_peak=2)"
 STRUCTURES = $(BIN)/python -c "from squealpipe.systems.linear.loop import functions, loop; loop(); functions()"
 $(KERNELS): $(STUDY)

@@ -15,7 +15,7 @@ import numpy as np
 from squealpipe.systems.cycles.affine import derivatives as affine_derivatives
 from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.legs import Path, Vector
-from squealpipe.systems.taylor.legs import transfer
+from squealpipe.systems.taylor.collocation import transfer
 from squealpipe.systems.taylor.series import gauss
 
 _NODES, _WEIGHTS, _UP_TO = gauss(6)
@@ -57,7 +57,8 @@ def leg_derivatives(flow: Flow, values: Mapping[str, float], path: Path) -> Vect
             if pieces > 1:
                 slopes, lengths = _slopes_along(flow, values, path, part, pieces)
             legs = np.repeat(path.leg[part], pieces)
-            transfer(slopes, lengths, legs, _UP_TO, _WEIGHTS, matrices)
+            largest = min(needed / pieces, 1.0) if math.isfinite(needed) else 1.0
+            transfer(slopes, lengths, legs, _UP_TO, _WEIGHTS, matrices, largest)
         first = block.stop
     return matrices[:, : flow.size]
 

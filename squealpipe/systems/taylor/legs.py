@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numba
 import numpy as np
 
-from squealpipe.systems.compiled import compiled, part
+from squealpipe.systems.compiled import part
 from squealpipe.systems.taylor.lanes import call, compile_advance, view
 from squealpipe.systems.taylor.roots import evaluate
 from squealpipe.systems.taylor.simd import FEW, LANES, ROW, smaller, splat, store
@@ -169,79 +169,3 @@ def _advance(table: Any) -> int:
 def run_legs() -> Any:
     """The compiled loop, built once a process."""
     return compile_advance(_advance)
-
-
-@part
-def _integrate(rates: Any, up_to: Any, states: Any) -> None:
-    """States at the nodes from their rates there; identities at the start of the step."""
-    nodes, n, columns, steps = rates.shape
-    for node in range(nodes):
-        for i in range(n):
-            for c in range(columns):
-                state = states[node, i, c]
-                state[:] = 1.0 if i == c else 0.0
-                for other in range(nodes):
-                    share, rate = up_to[node, other], rates[other, i, c]
-                    for s in range(steps):
-                        state[s] += share * rate[s]
-
-
-@part
-def _multiply(slopes: Any, lengths: Any, first: int, states: Any, rates: Any) -> None:
-    """Rates at the nodes from the states there, over some of the steps."""
-    nodes, n, columns, steps = rates.shape
-    last = first + steps
-    for node in range(nodes):
-        for i in range(n):
-            for c in range(columns):
-                rate = rates[node, i, c]
-                for s in range(steps):
-                    rate[s] = slopes[i, c, node, first + s] if c >= n else 0.0
-                for j in range(n):
-                    slope, state = slopes[i, j, node, first:last], states[node, j, c]
-                    if slope.any():
-                        for s in range(steps):
-                            rate[s] += slope[s] * state[s]
-                for s in range(steps):
-                    rate[s] *= lengths[first + s]
-
-
-@compiled
-def transfer(
-    slopes: Any, lengths: Any, leg: Any, up_to: Any, weights: Any, found: Any
-) -> None:
-    """Derivatives along legs from their slopes at the nodes of each step, by collocation.
-
-    Args:
-        slopes: (states, columns, nodes, steps) of the rates by states and parameters.
-        lengths, leg: (steps,) length of each step, at most 1 over the rate, and its leg.
-        up_to: (nodes, nodes) integrals of Lagrange's polynomials up to each node.
-        weights: (nodes,) of the quadrature.
-        found: (legs, columns, columns), identities at first; the last rows keep parameters.
-    """
-    n, columns, nodes, steps = slopes.shape
-    # 4096 entries at one node are iterated together: six nodes of rates and states fill 400 kB,
-    # a processor's second cache; of twice as many, rates wait for the memory
-    together = max(8, 4096 // (n * columns))
-    rates = np.empty((nodes, n, columns, together))
-    states = np.empty((nodes, n, columns, together))
-    growth = np.empty((n, columns))
-    # Picard's iterations for a step whose length times the rate is 1: 1/19! is round-off
-    sweeps = 19
-    for first in range(0, steps, together):
-        size = min(together, steps - first)
-        if size < together:
-            rates = np.empty((nodes, n, columns, size))
-            states = np.empty((nodes, n, columns, size))
-        rates[:] = 0.0
-        for _ in range(sweeps):
-            _integrate(rates, up_to, states)
-            _multiply(slopes, lengths, first, states, rates)
-        for s in range(size):
-            growth[:] = 0.0
-            for node in range(nodes):
-                for i in range(n):
-                    for c in range(columns):
-                        growth[i, c] += weights[node] * rates[node, i, c, s]
-            total = found[leg[first + s]]
-            total[:n] += growth @ total
