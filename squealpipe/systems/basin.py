@@ -16,9 +16,8 @@ from squealpipe.systems.inputs.gate import (
     checked,
 )
 from squealpipe.systems.integrate import MOST_STEPS
-from squealpipe.systems.labels import attributes_of, flag, labels, outcome
+from squealpipe.systems.labels import build, flag, outcome
 from squealpipe.systems.motion import MotionKind, RepeatableRuns, drift_tolerance
-from squealpipe.systems.schema import build
 
 
 @checked
@@ -69,35 +68,33 @@ def basin(
     )
     whole = ensemble.run(slice(None), late=0.75)
     motion, period = ensemble.judged(whole)
-    last_low, last_high = np.moveaxis(whole["late_extremes"], -1, 0)
-    over, shape = tuple(grid.coordinates), grid.shape
-    numbers = _numbered(motion, whole["late_extremes"])
-    variables: dict[str, Any] = {
-        "motion": flag(
-            "what the motion has become",
-            over,
-            motion.reshape(shape),
-            flag_table(MotionKind),
-        ),
-        "attractor": (
-            over,
-            numbers.reshape(shape),
-            labels("number of the attractor", "1"),
-        ),
-        "period": (over, period.reshape(shape), labels("period of the cycle", "s")),
-        "outcome": outcome(system, over, whole["outcome"].reshape(shape)),
-    }
-    for i, (name, unit) in enumerate(system.units.items()):
-        for which, word, values in (
-            ("min", "smallest", last_low),
-            ("max", "largest", last_high),
-        ):
-            column = np.where(np.isfinite(values[:, i]), values[:, i], np.nan)
-            label = labels(f"{word} {name} in the last quarter", unit)
-            variables[f"{name}_{which}"] = (over, column.reshape(shape), label)
-    attributes = attributes_of(system, "basin", grid.fixed, tol)
-    attributes["drift_tolerance"] = drift_tolerance(tol)
-    return build("basin", variables, grid.coordinates, attributes)
+    late = whole["late_extremes"]
+    return build(
+        system,
+        "basin",
+        {
+            "motion": flag(motion, flag_table(MotionKind)),
+            "attractor": _numbered(motion, late),
+            "period": period,
+            "outcome": outcome(system, whole["outcome"]),
+            **{
+                f"<state>_{end}": dict(
+                    zip(
+                        system.states,
+                        np.where(np.isfinite(each), each, np.nan).T,
+                        strict=True,
+                    )
+                )
+                for end, each in zip(
+                    ("min", "max"), np.moveaxis(late, -1, 0), strict=True
+                )
+            },
+        },
+        grid.coordinates,
+        grid.fixed,
+        tol,
+        drift_tolerance=drift_tolerance(tol),
+    )
 
 
 def renumbered(system: Any, dataset: xr.Dataset) -> xr.Dataset:

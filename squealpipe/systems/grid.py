@@ -10,7 +10,6 @@ import numpy as np
 from squealpipe.systems.definition import in_unit_of_state
 from squealpipe.systems.inputs.gate import real_array
 from squealpipe.systems.inputs.words import suggestion
-from squealpipe.systems.labels import labels
 from squealpipe.systems.tracing import TracedSystem as System
 
 
@@ -56,10 +55,10 @@ def outer_product(
     coordinates = {}
     for name in swept:
         at_start = name in system.units
-        label = labels(
-            f"{name} at the start" if at_start else f"parameter {name}",
-            system.units.get(name, "1"),
-        )
+        label = {
+            "long_name": f"{name} at the start" if at_start else f"parameter {name}",
+            "units": system.units.get(name, "1"),
+        }
         dim = system.start_names[name] if at_start else name
         coordinates[dim] = (dim, given[name], label)
     return Grid(shape, values, coordinates, fixed, (start or {}).get("regime"))

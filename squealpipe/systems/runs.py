@@ -21,16 +21,8 @@ from squealpipe.systems.inputs.gate import (
 )
 from squealpipe.systems.inputs.values import brief
 from squealpipe.systems.integrate import MOST_STEPS, RunOptions, integrate
-from squealpipe.systems.labels import (
-    attributes_of,
-    components_of,
-    labels,
-    named,
-    outcome,
-    regime_flag,
-)
+from squealpipe.systems.labels import build, named, outcome, regime_flag
 from squealpipe.systems.record import FIRST_LOG, RunRecord, single_run
-from squealpipe.systems.schema import build
 
 
 @checked
@@ -88,27 +80,19 @@ def simulate(
     # not one round-off before the end
     reached = t_end if run.reached == duration else run.reached + t_start
     run = replace(run, times=run.times + t_start, reached=reached)
-    kinds = dict(enumerate(system.traced.kinds))
-    names = dict(enumerate(system.regimes))
-    variables: dict[str, Any] = {
-        name: ("time", run.path[:, i], labels(f"state {name}", system.units[name]))
-        for i, name in enumerate(system.states)
+    content: dict[str, Any] = {
+        "<name>": dict(zip(system.states, run.path.T, strict=True))
+        | _outputs_along(system, values, times, run),
+        "regime": regime_flag(system, run.path_regimes),
+        "event_time": run.times,
+        "event_kind": named(run.kinds, dict(enumerate(system.traced.kinds))),
+        "event_regime": named(run.entered, dict(enumerate(system.regimes))),
+        "outcome": outcome(system, run.outcome),
+        "end_time": run.reached,
     }
-    variables |= _outputs_along(system, values, times, run)
-    variables["regime"] = regime_flag(system, "regime", ("time",), run.path_regimes)
-    variables["event_time"] = ("event", run.times, labels("time of the event", "s"))
-    variables["event_kind"] = named("kind of the event", "event", run.kinds, kinds)
-    variables["event_regime"] = named("regime entered", "event", run.entered, names)
-    variables["outcome"] = outcome(system, (), run.outcome)
-    variables["end_time"] = ((), run.reached, labels("time reached", "s"))
     if sensitivity:
-        variables |= sensitivities(system, sensitivity, values, run, times, t_start)
-    coordinates = {
-        "time": ("time", times, labels("time", "s")),
-        **components_of(system),
-    }
-    attributes = attributes_of(system, "simulate", values, tol)
-    return build("simulate", variables, coordinates, attributes)
+        content |= sensitivities(system, sensitivity, values, run, times, t_start)
+    return build(system, "simulate", content, {"time": times}, values, tol)
 
 
 def _outputs_along(
@@ -118,8 +102,7 @@ def _outputs_along(
     along = system.outputs_along(values, times, run.path, run.path_regimes)
     reached = np.where(run.path_regimes[:, 0] >= 0, 0.0, np.nan)
     return {
-        name: ("time", value + reached, labels(f"output {name}", unit))
-        for (name, (unit, _)), value in zip(system.outputs.items(), along, strict=True)
+        name: value + reached for name, value in zip(system.outputs, along, strict=True)
     }
 
 
@@ -158,7 +141,7 @@ def ensemble(
         ``count_<event>``, ``first_<event>`` (NaN: never), ``time_in_<regime>``, ``outcome``.
     """
     grid = outer_product(system, start, parameters)
-    shape, size = grid.shape, math.prod(grid.shape)
+    size = math.prod(grid.shape)
     duration = duration_of(t_start, t_end)
     late = 0.8 * duration if t_late is None else t_late - t_start
     if not 0.0 <= late <= duration:
@@ -179,50 +162,29 @@ def ensemble(
         tol=tol,
         workers=workers,
     )
-    over = tuple(grid.coordinates)
-
-    def field(long_name: str, units: str, array: np.ndarray) -> Any:
-        return over, array.reshape(shape), labels(long_name, units)
-
-    variables: dict[str, Any] = {}
-    units = {
-        **system.units,
-        **{name: unit for name, (unit, _) in system.outputs.items()},
+    names = [*system.states, *system.outputs]
+    # infinite where there was none: not reached, or an output that never was a number
+    extremes = {
+        f"{late}<name>_{end}": dict(
+            zip(names, np.where(np.isfinite(each), each, np.nan).T, strict=True)
+        )
+        for late in ("", "late_")
+        for end, each in zip(
+            ("min", "max"), np.moveaxis(raw[f"{late}extremes"], -1, 0), strict=True
+        )
     }
-    for i, name in enumerate(system.states):
-        variables[name] = field(f"{name} at the end", units[name], raw["final"][:, i])
-    for i, name in enumerate(units):
-        for j, which in enumerate(("_min", "_max")):
-            label = f"{('smallest', 'largest')[j]} {name}"
-            # infinite where there was none: not reached, or an output that never was a number
-            whole, late_one = (
-                np.where(np.isfinite(extreme), extreme, np.nan)
-                for extreme in (raw["extremes"][:, i, j], raw["late_extremes"][:, i, j])
-            )
-            variables[name + which] = field(label, units[name], whole)
-            variables[f"late_{name}{which}"] = field(
-                f"{label} from t_late on", units[name], late_one
-            )
-    for i, name in enumerate(system.traced.kinds):
-        variables[f"count_{name}"] = field(
-            f"number of events {name}", "1", raw["counts"][:, i]
-        )
-        variables[f"first_{name}"] = field(
-            f"time of the first {name}", "s", raw["firsts"][:, i] + t_start
-        )
-    for i, name in enumerate(system.regimes):
-        variables[f"time_in_{name}"] = field(
-            f"time in regime {name}", "s", raw["durations"][:, i]
-        )
+    kinds, regimes = system.traced.kinds, system.regimes
+    content: dict[str, Any] = {
+        "<state>": dict(zip(system.states, raw["final"].T, strict=True)),
+        **extremes,
+        "count_<event>": dict(zip(kinds, raw["counts"].T, strict=False)),
+        "first_<event>": dict(zip(kinds, raw["firsts"].T + t_start, strict=False)),
+        "time_in_<regime>": dict(zip(regimes, raw["durations"].T, strict=False)),
+        "outcome": outcome(system, raw["outcome"]),
+    }
     if horizon:
         with np.errstate(all="ignore"):  # NaN of a run that ended where it began
             rate = np.where(raw["reached"], raw["log_growth"] / raw["reached"], np.nan)
-        variables["lyapunov_exponent"] = field(
-            "growth rate of a perturbation", "s-1", rate
-        )
-        variables["predictability_horizon"] = field(
-            "time at which an error of tol is lost", "s", raw["horizon"] + t_start
-        )
-    variables["outcome"] = outcome(system, over, raw["outcome"].reshape(shape))
-    attributes = attributes_of(system, "ensemble", grid.fixed, tol)
-    return build("ensemble", variables, grid.coordinates, attributes)
+        content["lyapunov_exponent"] = rate
+        content["predictability_horizon"] = raw["horizon"] + t_start
+    return build(system, "ensemble", content, grid.coordinates, grid.fixed, tol)

@@ -1,8 +1,9 @@
 """Schemas for datasets of systems, whose variables are named after what each system has.
 
-A name in angle brackets stands for one of the system's own: ``late_<name>_min`` for the late
-minimum of each state and output. The dimension ``<grid>`` stands for those of the starts and
-parameters that a call gives as arrays, the unit ``<unit>`` for that which the system states.
+A name in angle brackets stands for one of the system's own, in the name of a variable and in the
+words that describe it: ``late_<name>_min`` is the late minimum of each state and output. The
+dimension ``<grid>`` stands for those of the starts and parameters that a call gives as arrays, the
+unit ``<unit>`` for that which the system states.
 """
 
 import re
@@ -59,12 +60,20 @@ simulate_schema = DatasetSchema(
         "end_time": Variable("time reached", "s"),
         "outcome": _flag("how the run ended"),
         "event_time_by_<name>": or_nan(
-            "derivative of the event's time", UNIT, ("event",), optional=True, rtol=1e-6
+            "derivative of the event's time by <name>",
+            "s / <name>",
+            ("event",),
+            optional=True,
+            rtol=1e-6,
         ),
         "<state>_by_<name>": or_nan(
-            "derivative of the state", UNIT, ("time",), optional=True, rtol=1e-6
+            "derivative of <state> by <name>",
+            f"{UNIT} / <name>",
+            ("time",),
+            optional=True,
+            rtol=1e-6,
         ),
-        "<name>": or_nan("state or output", UNIT, ("time",), rtol=1e-7),
+        "<name>": or_nan("<name> along the run", UNIT, ("time",), rtol=1e-7),
     },
 )
 
@@ -87,24 +96,26 @@ ensemble_schema = DatasetSchema(
             optional=True,
             rtol=1e-5,
         ),
-        "count_<event>": _count("number of events", GRID),
-        "first_<event>": or_nan("time of the first event (NaN: never)", "s", (GRID,)),
-        "time_in_<regime>": Variable("time in the regime", "s", (GRID,), rtol=1e-7),
+        "count_<event>": _count("number of events <event>", GRID),
+        "first_<event>": or_nan("time of the first <event> (NaN: never)", "s", (GRID,)),
+        "time_in_<regime>": Variable(
+            "time in regime <regime>", "s", (GRID,), rtol=1e-7
+        ),
         "late_<name>_min": or_nan(
-            "smallest value from t_late on (NaN: it was not reached)",
+            "smallest <name> from t_late on (NaN: it was not reached)",
             UNIT,
             (GRID,),
             rtol=1e-7,
         ),
         "late_<name>_max": or_nan(
-            "largest value from t_late on (NaN: it was not reached)",
+            "largest <name> from t_late on (NaN: it was not reached)",
             UNIT,
             (GRID,),
             rtol=1e-7,
         ),
-        "<name>_min": or_nan("smallest value", UNIT, (GRID,), rtol=1e-7),
-        "<name>_max": or_nan("largest value", UNIT, (GRID,), rtol=1e-7),
-        "<state>": or_nan("state at the end", UNIT, (GRID,), rtol=1e-7),
+        "<name>_min": or_nan("smallest <name>", UNIT, (GRID,), rtol=1e-7),
+        "<name>_max": or_nan("largest <name>", UNIT, (GRID,), rtol=1e-7),
+        "<state>": or_nan("<state> at the end", UNIT, (GRID,), rtol=1e-7),
     },
 )
 
@@ -120,10 +131,10 @@ basin_schema = DatasetSchema(
         ),
         "outcome": _flag("how the run ended", GRID),
         "<state>_min": or_nan(
-            "smallest value in the last quarter", UNIT, (GRID,), **CYCLE
+            "smallest <state> in the last quarter", UNIT, (GRID,), **CYCLE
         ),
         "<state>_max": or_nan(
-            "largest value in the last quarter", UNIT, (GRID,), **CYCLE
+            "largest <state> in the last quarter", UNIT, (GRID,), **CYCLE
         ),
     },
 )
@@ -153,10 +164,10 @@ def _of_cycles(*dims: str) -> dict[str, Variable]:
 
 def _extremes(*dims: str) -> dict[str, Variable]:
     return {
-        "<name>_min": or_nan("smallest value over the period", UNIT, dims, **CYCLE),
-        "<name>_max": or_nan("largest value over the period", UNIT, dims, **CYCLE),
+        "<name>_min": or_nan("smallest <name> over the period", UNIT, dims, **CYCLE),
+        "<name>_max": or_nan("largest <name> over the period", UNIT, dims, **CYCLE),
         "<state>_start": or_nan(
-            "state at t = 0 of the cycle",
+            "<state> at t = 0 of the cycle",
             UNIT,
             dims,
             round_off=RoundOff(
@@ -179,8 +190,8 @@ limit_cycle_schema = DatasetSchema(
         "event_kind": _flag("kind of the event", "event"),
         "event_regime": _flag("regime entered", "event"),
         "time": Variable("time", "s", ("sample",), **CYCLE),
-        "event_<state>": Variable("state after the event", UNIT, ("event",), **CYCLE),
-        "<state>_path": Variable("state along the cycle", UNIT, ("sample",), **CYCLE),
+        "event_<state>": Variable("<state> after the event", UNIT, ("event",), **CYCLE),
+        "<state>_path": Variable("<state> along the cycle", UNIT, ("sample",), **CYCLE),
         **_extremes(),
     },
 )
@@ -195,7 +206,9 @@ cycle_branch_schema = DatasetSchema(
         "events": _count("events of the cycle", "point"),
         "end": _flag("why the branch ended"),
         **_extremes("point"),
-        "<parameter>": Variable("the followed parameter", UNIT, ("point",), **CYCLE),
+        "<parameter>": Variable(
+            "<parameter> along the branch", UNIT, ("point",), **CYCLE
+        ),
     },
 )
 
@@ -208,7 +221,9 @@ cycle_curve_schema = DatasetSchema(
         "residual": replace(_residual, dims=("point",)),
         "label": _flag("what else happens at the point", "point"),
         "outcome": _flag("why the curve ended", "side"),
-        "<parameter>": Variable("a followed parameter", UNIT, ("point",), **CYCLE),
+        "<parameter>": Variable(
+            "<parameter> along the curve", UNIT, ("point",), **CYCLE
+        ),
     },
 )
 
@@ -225,55 +240,22 @@ system_schemas = {
 }
 
 
-def build(
-    what: str,
-    variables: Mapping[str, Any],
-    coordinates: Mapping[str, Any],
-    attributes: Mapping[str, Any],
-) -> xr.Dataset:
-    """Return a dataset of one of the kinds above, made and checked.
-
-    Args:
-        what: its kind, as "simulate".
-
-    Raises:
-        SchemaError: as of :func:`check`, or ``attributes`` are those of another kind.
-    """
-    dataset = xr.Dataset(variables, coordinates, attributes)
-    check(dataset)
-    if dataset.attrs["schema"] != SYSTEM + what:
-        raise SchemaError(f"schema is {dataset.attrs['schema']!r}, not {what!r}")
-    return dataset
-
-
 def check(dataset: xr.Dataset) -> xr.Dataset:
-    """Return the dataset itself if each variable is in the table of its kind and as stated there.
+    """Return the dataset itself if it holds what the table of its kind says.
 
     Raises:
-        SchemaError: with all faults: a variable that has no place, is missing, or has other
-            dimensions or units than its table says; NaN or flags that have no meaning.
+        SchemaError: with all faults: a variable that is missing; NaN or flags that have no meaning.
     """
     table = system_schemas[dataset.attrs["schema"]]
-    coordinates = set(dataset.coords)
-    grid = tuple(str(dim) for dim in dataset.coords if dim != "component")
-    faults = []
-    held = dataset.variables
-    for name, variable in held.items():
-        entry = entry_of(table.name, str(name))
-        if entry is None:
-            faults.append(f"{name} is not part of the schema")
-            continue
-        dims = tuple(dim for dim in variable.dims if dim != "component")
-        expected = grid if entry.dims == (GRID,) else entry.dims
-        if dims != expected and name not in coordinates:
-            faults.append(f"{name} has dims {dims}, {expected} expected")
-        unit = variable.attrs.get("units", "1")
-        if entry.units not in {UNIT, unit}:
-            faults.append(f"{name} has units {unit!r}, {entry.units!r} expected")
-        described = _described(table.name, str(name), variable)
-        faults += faults_of_values(str(name), variable, described)
+    faults = [
+        fault
+        for name, variable in dataset.variables.items()
+        for fault in faults_of_values(
+            str(name), variable, _described(table.name, str(name), variable)
+        )
+    ]
     for name, entry in table.variables.items():
-        if "<" not in name and not entry.optional and name not in held:
+        if "<" not in name and not entry.optional and name not in dataset.variables:
             faults.append(f"{name} is missing")
     if faults:
         raise SchemaError(f"{table.name}: " + "; ".join(faults))

@@ -9,7 +9,6 @@ from squealpipe.systems.basin import basin
 from squealpipe.systems.components import Switch
 from squealpipe.systems.definition import Definition
 from squealpipe.systems.runs import ensemble, simulate
-from squealpipe.systems.schema import check
 from squealpipe.systems.tracing import TracedSystem
 
 __all__ = ["Switch", "System"]
@@ -59,14 +58,13 @@ class System(TracedSystem):  # noqa: D101 (that of the definition)
         from squealpipe.systems.cycles.cycle import limit_cycle
 
         options |= {"start": start, "guess": guess}
-        solution = limit_cycle(self, periods=periods, t_settle=t_settle, **options)
-        return check(solution)
+        return limit_cycle(self, periods=periods, t_settle=t_settle, **options)
 
     def cycle_branch(self, parameter: str, to: float, **options: Any) -> xr.Dataset:
         """A branch of cycles; see :func:`squealpipe.systems.cycles.branch.cycle_branch`."""
         from squealpipe.systems.cycles.branch import cycle_branch
 
-        return check(cycle_branch(self, parameter, to, **options))
+        return cycle_branch(self, parameter, to, **options)
 
     def cycle_curve(
         self, label: str, parameters: Sequence[str], **options: Any
@@ -74,4 +72,4 @@ class System(TracedSystem):  # noqa: D101 (that of the definition)
         """A curve in two parameters; see :func:`squealpipe.systems.cycles.curve.cycle_curve`."""
         from squealpipe.systems.cycles.curve import cycle_curve
 
-        return check(cycle_curve(self, label, parameters, **options))
+        return cycle_curve(self, label, parameters, **options)

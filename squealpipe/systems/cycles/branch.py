@@ -14,7 +14,7 @@ import xarray as xr
 
 from squealpipe.systems.branch_labels import Label
 from squealpipe.systems.continuation import ContinuationState
-from squealpipe.systems.cycles.described import columns, describe_columns, outcome_of
+from squealpipe.systems.cycles.described import by_table, columns, outcome_of
 from squealpipe.systems.cycles.find import find_cycle
 from squealpipe.systems.cycles.following import Follower
 from squealpipe.systems.cycles.line import at_special_points, branch_steps
@@ -22,13 +22,7 @@ from squealpipe.systems.cycles.solution import Cycle
 from squealpipe.systems.cycles.trail import BranchPoint
 from squealpipe.systems.datasets import Outcome, flag_table
 from squealpipe.systems.inputs.gate import Number, Several, checked
-from squealpipe.systems.labels import (
-    attributes_of,
-    components_of,
-    flag,
-    labels,
-    regime_flag,
-)
+from squealpipe.systems.labels import build, flag, regime_flag
 
 if TYPE_CHECKING:
     from squealpipe.systems.tracing import TracedSystem as System
@@ -139,41 +133,29 @@ def dataset(
 ) -> xr.Dataset:
     """A branch as a dataset."""
     rows = in_rows(points, lambda cycle: columns(cycle, system))
-    variables: dict[str, Any] = describe_columns(system, rows, "point")
-    values = points[0].cycle.parameters if points else {}
-    followed = [p.parameter * p.cycle.scale_of(parameter) for p in points]
-    variables[parameter] = (
-        "point",
-        followed,
-        labels(f"{parameter} along the branch", "1"),
-    )
-    special = [point.label for point in points]
-    variables["label"] = flag(
-        "what is special about the point", "point", special, flag_table(Label)
-    )
-    variables["events"] = (
-        "point",
-        [len(p.cycle.events) for p in points],
-        labels("events of the cycle", "1"),
-    )
     starts = [point.cycle.start() for point in points]
-    for i, name in enumerate(system.states):
-        unit = points[0].cycle.scale_of(name) if points else 1.0
-        first = np.array([state[i] * unit for state, _ in starts])
-        label = labels(f"{name} at t = 0 of the cycle", system.units[name])
-        variables[f"{name}_start"] = ("point", first, label)
+    units = points[0].cycle.map.flow.scale_of(*system.states) if points else 1.0
+    states = np.array([state for state, _ in starts]).reshape(-1, system.traced.size)
     regimes = np.array([system.joint.regimes(regime) for _, regime in starts], int)
-    variables["start_regime"] = regime_flag(
+    followed = [p.parameter * p.cycle.scale_of(parameter) for p in points]
+    return build(
         system,
-        "regime at t = 0 of the cycle",
-        ("point",),
-        regimes.reshape(len(starts), system.traced.n_components),
-    )
-    periods = points[0].cycle.map.periods or 1 if points else 1
-    variables["periods"] = ((), periods, labels("forcing periods", "1"))
-    variables["outcome"] = outcome_of(system, "point", np.zeros(len(points), int))
-    variables["end"] = outcome_of(system, (), int(end))
-    attributes = attributes_of(system, "cycle branch", values, 1e-14)
-    return xr.Dataset(
-        variables, components_of(system), attributes | {"parameter": parameter}
+        "cycle branch",
+        {
+            **by_table(system, rows, many=True),
+            "<parameter>": {parameter: followed},
+            "label": flag([point.label for point in points], flag_table(Label)),
+            "events": [len(point.cycle.events) for point in points],
+            "<state>_start": dict(zip(system.states, (states * units).T, strict=True)),
+            "start_regime": regime_flag(
+                system, regimes.reshape(len(starts), system.traced.n_components)
+            ),
+            "periods": points[0].cycle.map.periods or 1 if points else 1,
+            "outcome": outcome_of(system, np.zeros(len(points), int)),
+            "end": outcome_of(system, int(end)),
+        },
+        {},
+        points[0].cycle.parameters if points else {},
+        1e-14,
+        parameter=parameter,
     )

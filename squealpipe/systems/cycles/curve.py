@@ -18,7 +18,7 @@ from squealpipe.systems.cycles.curve_following import ENDS, CurvePoint, follow_c
 from squealpipe.systems.datasets import flag_table
 from squealpipe.systems.inputs.gate import Number, Several, checked
 from squealpipe.systems.inputs.words import suggestion
-from squealpipe.systems.labels import attributes_of, flag, labels
+from squealpipe.systems.labels import build, flag
 
 if TYPE_CHECKING:
     from squealpipe.systems.tracing import TracedSystem as System
@@ -105,31 +105,25 @@ def _dataset(
     parameters: Sequence[str],
     ends: list[str],
 ) -> xr.Dataset:
-    variables: dict[str, Any] = {}
     cycles = [point.cycle for point in points]
-    for name in parameters:
-        values = [cycle.parameters[name] for cycle in cycles]
-        variables[name] = ("point", values, labels(f"{name} along the curve", "1"))
-    periods = [cycle.period * cycle.second for cycle in cycles]
-    events = [len(cycle.events) for cycle in cycles]
-    variables["period"] = ("point", periods, labels("period", "s"))
-    variables["events"] = ("point", events, labels("events of the cycle", "1"))
-    text = "largest residual of the equations, without units"
-    residuals = [point.residual for point in points]
-    variables["residual"] = ("point", residuals, labels(text, "1"))
-    text = "what else happens at the point"
-    meetings = [point.label for point in points]
-    variables["label"] = flag(text, "point", meetings, flag_table(Meeting))
     names = [*ENDS, *sorted(set(ends) - set(ENDS))]
-    variables["outcome"] = flag(
-        "why the curve ended",
-        "side",
-        [names.index(end) for end in ends],
-        dict(enumerate(names)),
-    )
-    attributes = attributes_of(system, "cycle curve", cycles[0].parameters, 1e-14)
-    return xr.Dataset(
-        variables,
-        attrs=attributes
-        | {"curve": label, "parameters_followed": " ".join(parameters)},
+    return build(
+        system,
+        "cycle curve",
+        {
+            "<parameter>": {
+                name: [cycle.parameters[name] for cycle in cycles]
+                for name in parameters
+            },
+            "period": [cycle.period * cycle.second for cycle in cycles],
+            "events": [len(cycle.events) for cycle in cycles],
+            "residual": [point.residual for point in points],
+            "label": flag([point.label for point in points], flag_table(Meeting)),
+            "outcome": flag([names.index(end) for end in ends], dict(enumerate(names))),
+        },
+        {},
+        cycles[0].parameters,
+        1e-14,
+        curve=label,
+        parameters_followed=" ".join(parameters),
     )

@@ -11,15 +11,7 @@ import xarray as xr
 from squealpipe.systems.cycles.event_map import FREE
 from squealpipe.systems.cycles.solution import Cycle, CycleAccuracy
 from squealpipe.systems.datasets import Outcome, flag_table
-from squealpipe.systems.labels import (
-    attributes_of,
-    components_of,
-    explained,
-    flag,
-    labels,
-    named,
-    regime_flag,
-)
+from squealpipe.systems.labels import Flags, build, explained, flag, named, regime_flag
 
 if TYPE_CHECKING:
     from squealpipe.systems.tracing import TracedSystem as System
@@ -53,61 +45,32 @@ def columns(cycle: Cycle | None, system: System) -> dict[str, Any]:
     }
 
 
-def described(name: str, system: System) -> dict[str, str]:
-    """long_name and units of a number of a cycle."""
-    units = {**system.units, **{n: unit for n, (unit, _) in system.outputs.items()}}
-    for end, word in (("_min", "smallest"), ("_max", "largest")):
-        if name.endswith(end) and name.removesuffix(end) in units:
-            short = name.removesuffix(end)
-            return {
-                "long_name": f"{word} {short} over the period",
-                "units": units[short],
-            }
-    return {
-        "period": {"long_name": "period", "units": "s"},
-        "residual": {
-            "long_name": "largest residual of the equations, without units",
-            "units": "1",
-        },
-        "multiplier_real": {
-            "long_name": "real part of the Floquet multipliers",
-            "units": "1",
-        },
-        "multiplier_imag": {
-            "long_name": "imaginary part of the Floquet multipliers",
-            "units": "1",
-        },
-    }[name]
-
-
-def outcome_of(system: System, dims: Any, values: Any) -> Any:
+def outcome_of(system: System, values: Any) -> Flags:
     """Return the outcome of a search for a cycle, with the system's own stops and motions of more
     periods.
     """
     table = flag_table(Outcome)
     more = np.unique(np.asarray(values)[np.asarray(values) > SETTLED_ON])
     table |= {int(k): f"settled_on_{int(k) - SETTLED_ON}_periods" for k in more}
-    return explained(system, "how the cycle was found", dims, values, table)
+    return explained(system, values, table)
 
 
-def describe_columns(
-    system: System, rows: Sequence[Mapping[str, Any]], dim: str | None = None
+def by_table(
+    system: System, rows: Sequence[Mapping[str, Any]], *, many: bool
 ) -> dict[str, Any]:
-    """Numbers of some cycles as variables, over a dimension if there is one."""
-    variables: dict[str, Any] = {}
-    over = (dim,) if dim else ()
-    for name, bare in (rows[0] if rows else columns(None, system)).items():
-        stacked = np.array([row[name] for row in rows]).reshape(-1, *np.shape(bare))
-        values = stacked if dim else stacked[0]
-        if name == "stable":
-            table = {0: "no", 1: "yes"}
-            variables[name] = flag(
-                "whether small disturbances decay", over, values, table
-            )
-        else:
-            dims = (*over, "multiplier") if np.ndim(bare) else over
-            variables[name] = dims, values, described(name, system)
-    return variables
+    """Return the numbers of some cycles by the names of the table, or those of one cycle."""
+    stacked = {
+        name: np.array([row[name] for row in rows]).reshape(-1, *np.shape(bare))
+        for name, bare in (rows[0] if rows else columns(None, system)).items()
+    }
+    values = stacked if many else {name: each[0] for name, each in stacked.items()}
+    names = (*system.states, *system.outputs)
+    content: dict[str, Any] = {
+        f"<name>{end}": {name: values.pop(f"{name}{end}") for name in names}
+        for end in ("_min", "_max")
+    }
+    content["stable"] = flag(values.pop("stable"), {0: "no", 1: "yes"})
+    return content | values
 
 
 def dataset(
@@ -118,10 +81,6 @@ def dataset(
     periods: int,
 ) -> xr.Dataset:
     """A cycle, or the reason why there is none, as a dataset."""
-    variables = describe_columns(system, [columns(cycle, system)])
-    number = outcome - SETTLED_ON if outcome > SETTLED_ON else periods
-    label = labels("forcing periods, or returns to the section", "1")
-    variables["periods"] = ((), number, label)
     times, order = np.empty(0), []
     instants, path, regime = np.empty(0), np.empty((0, len(system.states))), 0
     units = np.ones(len(system.states))
@@ -141,44 +100,28 @@ def dataset(
     chosen = [cycle.map.events[i] for i in order] if cycle else []
     states = np.array([cycle.parts.crossings[i].after for i in order] if cycle else [])
     states = states.reshape(-1, len(system.states)) * units
+    first = path[0] if len(path) else np.full(len(system.states), np.nan)
     kinds, names = dict(enumerate(system.traced.kinds)), dict(enumerate(system.regimes))
     joint = system.joint
-    variables["event_time"] = ("event", times, labels("time of the event", "s"))
-    variables["event_kind"] = named(
-        "kind of the event", "event", [e.kind for e in chosen], kinds
-    )
-    variables["event_regime"] = named(
-        "regime entered",
-        "event",
-        [joint.entered_by(e.after, e.switch) for e in chosen],
-        names,
-    )
-    for i, name in enumerate(system.states):
-        unit = system.units[name]
-        variables[f"event_{name}"] = (
-            "event",
-            states[:, i],
-            labels(f"{name} after it", unit),
-        )
-        variables[f"{name}_path"] = (
-            "sample",
-            path[:, i],
-            labels(f"{name} along the cycle", unit),
-        )
-        first = path[0, i] if len(path) else np.nan
-        variables[f"{name}_start"] = (
-            (),
-            first,
-            labels(f"{name} at t = 0 of the cycle", unit),
-        )
-    variables["start_regime"] = regime_flag(
-        system, "regime at t = 0 of the cycle", (), np.array(joint.regimes(regime))
-    )
-    variables["time"] = ("sample", instants, labels("time", "s"))
-    variables["outcome"] = outcome_of(system, (), outcome)
-    return xr.Dataset(
-        variables,
-        components_of(system),
-        attributes_of(system, "limit cycle", values, 1e-14)
-        | {"closing_tolerance": CycleAccuracy.closing},
+    entered = [joint.entered_by(each.after, each.switch) for each in chosen]
+    return build(
+        system,
+        "limit cycle",
+        {
+            **by_table(system, [columns(cycle, system)], many=False),
+            "periods": outcome - SETTLED_ON if outcome > SETTLED_ON else periods,
+            "event_time": times,
+            "event_kind": named([each.kind for each in chosen], kinds),
+            "event_regime": named(entered, names),
+            "event_<state>": dict(zip(system.states, states.T, strict=True)),
+            "<state>_path": dict(zip(system.states, path.T, strict=True)),
+            "<state>_start": dict(zip(system.states, first, strict=True)),
+            "start_regime": regime_flag(system, np.array(joint.regimes(regime))),
+            "time": instants,
+            "outcome": outcome_of(system, outcome),
+        },
+        {},
+        values,
+        1e-14,
+        closing_tolerance=CycleAccuracy.closing,
     )

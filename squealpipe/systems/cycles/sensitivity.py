@@ -12,7 +12,6 @@ from squealpipe.systems.cycles.guess import events_of
 from squealpipe.systems.cycles.legs import Vector
 from squealpipe.systems.cycles.variational import leg_derivatives
 from squealpipe.systems.inputs.words import suggestion
-from squealpipe.systems.labels import labels
 from squealpipe.systems.record import RunRecord
 from squealpipe.systems.taylor.layout import LOST_ERROR
 
@@ -28,7 +27,7 @@ def sensitivities(
     times: Vector,
     t_start: float = 0.0,
 ) -> dict[str, Any]:
-    """``<state>_by_<name>`` over ``time`` and ``event_time_by_<name>`` over ``event``.
+    """``<state>_by_<name>`` over time and ``event_time_by_<name>`` over events, by these names.
 
     The derivative of a state is at a fixed instant; an event's that of its time.
 
@@ -57,16 +56,14 @@ def sensitivities(
             delays[i] = late
         else:
             by_time[i] = total
-    variables: dict[str, Any] = {}
-    for j, name in enumerate(names):
-        for k, state in enumerate(system.states):
-            label = labels(
-                f"derivative of {state} by {name}", f"{system.units[state]} / {name}"
-            )
-            variables[f"{state}_by_{name}"] = ("time", by_time[:, k, j], label)
-        label = labels(f"derivative of the time of the event by {name}", f"s / {name}")
-        variables[f"event_time_by_{name}"] = ("event", delays[:, j], label)
-    return variables
+    return {
+        "<state>_by_<name>": {
+            (state, name): by_time[:, k, j]
+            for j, name in enumerate(names)
+            for k, state in enumerate(system.states)
+        },
+        "event_time_by_<name>": dict(zip(names, delays.T, strict=True)),
+    }
 
 
 def growth(
