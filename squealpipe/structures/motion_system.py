@@ -12,6 +12,7 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
+from squealpipe.codes import Regime
 from squealpipe.laws import friction_laws
 from squealpipe.laws.tables import is_table, pieces_of
 from squealpipe.structures.definition import ContactStructure
@@ -329,3 +330,19 @@ class Scale(NamedTuple):
             displacement * mean,
             force or stiffest * displacement,
         )
+
+
+def regime_codes(system: System, contacts: Sequence[str]) -> np.ndarray:
+    """Return the code of ``Regime`` of each regime of a structure's system.
+
+    Args:
+        contacts: names, in the order of the components.
+    """
+    # of contacts c and c_2, regime c_2_stick is one of the latter; pieces of tables have numbers
+    names = [
+        name.removeprefix(f"{contacts[owner]}_")
+        for name, owner in zip(system.regimes, system.traced.component_of, strict=True)
+    ]
+    return np.array(
+        [next(code for code in Regime if name.startswith(code.name)) for name in names]
+    )

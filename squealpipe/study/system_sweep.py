@@ -156,25 +156,17 @@ class SystemSweep(SweepPlan):
 
     def _joined(self, part: xr.Dataset, along: str, kept: Chunks) -> xr.Dataset:
         """The whole of a part and of what is on disk."""
-        rows = len(self.vary[along])
-        arrays = {
-            name: np.empty(
-                [
-                    rows if dim == along else size
-                    for dim, size in variable.sizes.items()
-                ],
-                variable.dtype,
+        rows = list(kept.runs())
+        whole = {
+            name: (
+                variable.dims,
+                np.stack([row[str(name)] for row in rows], variable.dims.index(along))
+                if along in variable.dims
+                else variable.values,
+                variable.attrs,
             )
             for name, variable in part.variables.items()
-            if along in variable.dims
         }
-        axes = {name: part[name].dims.index(along) for name in arrays}
-        for number, row in enumerate(kept.runs()):
-            for name, array in arrays.items():
-                np.moveaxis(array, axes[name], 0)[number] = row[str(name)]
-        whole: dict[Any, Any] = dict(part.variables)
-        for name, array in arrays.items():
-            whole[name] = (part[name].dims, array, part[name].attrs)
         joined = xr.Dataset(whole, attrs=part.attrs).set_coords([*part.coords])
         if "attractor" in joined:
             return basin.renumbered(self.system, joined)

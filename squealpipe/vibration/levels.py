@@ -199,18 +199,6 @@ def still() -> dict[str, Any]:
     }
 
 
-def unknown() -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the same variables of a motion that was not run, all NaN."""
-    names = [*still(), "peak_contact_force", "peak_contact_force_over_preload"]
-    scalars: dict[str, Any] = dict.fromkeys([*names, "settled_by"], np.nan)
-    scalars |= {"verdict": Verdict.undetermined, "periodic": False}
-    path = [f"path_{name}" for name in ("time", "x", "y", "force")]
-    nothing = dict.fromkeys(path, np.full(Measurement.shown_instants, np.nan))
-    return scalars, _no_spectrum() | nothing | {
-        "path_regime": np.full(Measurement.shown_instants, -1)
-    }
-
-
 def _blocks(settled: SettledRun, period: float, periodic: bool) -> int:
     """Return how many records measure a motion.
 

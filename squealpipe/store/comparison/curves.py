@@ -8,6 +8,7 @@ three of them. Labels and counts have no values in between and have to be those 
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import scipy
@@ -207,26 +208,16 @@ def _interpolated(
     inside = segment - first
     place = knots[inside] + (at - segment) * (knots[inside + 1] - knots[inside])
     shares = np.array([1 - (at - segment), at - segment])
-    curved = values[:, used] @ _weights(knots, place)
+    interpolated = partial(scipy.interpolate.krogh_interpolate, x=place, axis=1)
+    curved = interpolated(knots, values[:, used])
     simpler = [around @ shares]
     if knots.size == 4:
         parts = (slice(0, 3), slice(1, 4))
         simpler = [
-            values[:, used][:, part] @ _weights(knots[part], place) for part in parts
+            interpolated(knots[part], values[:, used][:, part]) for part in parts
         ]
     error = np.max([np.abs(curved - each) for each in simpler], axis=0)
     return curved, error, around
-
-
-def _weights(knots: np.ndarray, place: float) -> np.ndarray:
-    """Lagrange's weights."""
-    others = [np.delete(knots, number) for number in range(len(knots))]
-    return np.array(
-        [
-            np.prod((place - o) / (knot - o))
-            for knot, o in zip(knots, others, strict=True)
-        ]
-    )
 
 
 def _with_gap(

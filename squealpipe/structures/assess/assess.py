@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.codes import Verdict
-from squealpipe.schema import Outcome, build
+from squealpipe.schema import Outcome, blank, build
 from squealpipe.schema.origin import recorded
 from squealpipe.structures.assess.cures import cures_of
 from squealpipe.structures.assess.designs import Design, Structures, pushed, start_at
@@ -40,8 +40,8 @@ from squealpipe.vibration.cures import (
     of_any_start,
     of_pushes,
 )
-from squealpipe.vibration.levels import unknown
-from squealpipe.vibration.schema import assess_schema
+from squealpipe.vibration.levels import Measurement
+from squealpipe.vibration.schema import LINES, assess_schema
 from squealpipe.vibration.settled_runs import SettledRun
 from squealpipe.vibration.settling import settling_of_numbers
 
@@ -302,13 +302,13 @@ def small_motions_alone(structure: Any) -> xr.Dataset:
     design = Design.of(structure)
     plant = design.plant
     assert plant is not None  # noqa: S101 (Design.of has raised)
-    scalars, pictured = unknown()
+    instants = Measurement.shown_instants
+    sizes = {"sample": instants, "harmonic": Measurement.harmonics, "line": LINES}
     facts = {
-        **scalars,
-        **{f"sudden_{name}": value for name, value in scalars.items()},
-        **pictured,
+        **blank(assess_schema, **sizes),
         **_of_small_motions(design, plant),
-        "quiet_unless_struck": False,
+        **dict.fromkeys(("verdict", "sudden_verdict"), Verdict.undetermined),
+        "path_regime": np.full(instants, -1),
         "random_starts": 0,
         "random_starts_noisy": 0,
         "outcome": Outcome.unresolved,

@@ -10,6 +10,7 @@ import numpy as np
 from squealpipe.codes import Regime
 from squealpipe.schema import Outcome
 from squealpipe.structures.assess.designs import Design
+from squealpipe.structures.motion_system import regime_codes
 from squealpipe.structures.squeal.plant import Plant
 from squealpipe.structures.squeal.windows import Running, run
 from squealpipe.vibration import levels as measured
@@ -46,14 +47,13 @@ def _record(
         begin: state, and regime of each component.
     """
     traced = plant.system.traced
-    regimes = list(plant.system.regimes)
     # of the fastest mode: fewer would miss its peaks
     samples_per_period = 6.0
     fine = max(
         Measurement.fine,
         int(np.ceil(samples_per_period * plant.fastest / plant.slowest)),
     )
-    held = len(plant.sliding) + len(regimes) + len(traced.kinds)
+    held = len(plant.sliding) + len(plant.system.regimes) + len(traced.kinds)
     most_samples = 2**16
     # doubles, 270 MB
     most_numbers = 2**25
@@ -76,7 +76,7 @@ def _record(
     kinds = list(traced.kinds)
     samples = row["samples"]
     forces = plant.normal_forces(samples)
-    codes = np.array([_code(name) for name in regimes])
+    codes = regime_codes(plant.system, plant.contacts)
     now = codes[np.maximum(row["sample_regimes"], 0)]
     logged = int(min(row["n_events"], Measurement.most_events))
 
@@ -110,14 +110,6 @@ def _record(
         duration=float(row["reached"]),
         finished=row["outcome"] == Outcome.converged,
     )
-
-
-def _code(name: str) -> int:
-    """Code of a regime of a contact, whatever the contact's name and the piece of its table."""
-    for regime in Regime:
-        if f"_{regime.name}" in f"_{name}":
-            return int(regime)
-    raise ValueError(f"{name!r} is no regime of a contact")
 
 
 def _impact_speed(

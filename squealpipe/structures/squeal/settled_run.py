@@ -3,16 +3,15 @@
 from __future__ import annotations  # help shows Natural, not its checks
 
 import math
-import re
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from squealpipe.codes import Regime
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
 from squealpipe.structures.meshes.datasets import mesh_variables
+from squealpipe.structures.motion_system import regime_codes
 from squealpipe.structures.reduction import reduced_again
 from squealpipe.structures.schema.squealing import NO_ATTRACTOR, Kind
 from squealpipe.structures.schema.structure_run import structure_run_schema
@@ -87,7 +86,8 @@ def squealing_run(
         reduced,
         (q, v),
         np.stack(forces, axis=1),
-        _regimes(run, contacts),
+        # a single component has no dimension of its own
+        regime_codes(system, contacts)[run.regime.values].reshape(-1, len(contacts)),
         times,
         attractor=chosen,
         dominant_frequency=frequency,
@@ -187,23 +187,3 @@ def _as_it_was_run(structure: Any, answer: xr.Dataset) -> Any:
         int(answer.static_responses),
         limit if math.isfinite(limit) else None,
     )
-
-
-def _regimes(run: xr.Dataset, contacts: list[str]) -> np.ndarray:
-    """Regime of each contact by the codes of a pad's, (time, contacts)."""
-    flags = dict(
-        zip(
-            run.regime.attrs["flag_values"].tolist(),
-            run.regime.attrs["flag_meanings"].split(),
-            strict=True,
-        )
-    )
-    codes = np.zeros(max(flags) + 1, int)
-    for value, name in flags.items():
-        # of contacts c and c_2, regime c_2_stick is one of the latter
-        owners = [contact for contact in contacts if name.startswith(f"{contact}_")]
-        regime = name.removeprefix(f"{max(owners, key=len)}_")
-        # pieces of tables of friction and of contact have numbers
-        codes[value] = Regime[re.sub(r"(_\d+)?(_press_\d+)?$", "", regime)]
-    # a single component has no dimension of its own
-    return np.asarray(codes[run.regime.values].reshape(-1, len(contacts)))

@@ -11,7 +11,9 @@ from typing import Any, Self
 
 import numpy as np
 
+from squealpipe.codes import Regime
 from squealpipe.schema import Outcome
+from squealpipe.structures.motion_system import regime_codes
 from squealpipe.structures.squeal.plant import PUSH_OF_A_MODE, Plant
 from squealpipe.systems.integrate import LARGEST, RunOptions, integrate
 from squealpipe.systems.progress import stop_is_asked
@@ -278,8 +280,10 @@ def followed_windows(
     steps = np.diff(ran["sample_durations"], axis=1, prepend=0.0)
     shares = steps * (rules.samples / lengths[:, None, None])
     separated, stuck = (
-        np.stack([shares[..., places].sum(-1) for places in _regimes(plant, word)], -1)
-        for word in ("separated", "stick")
+        np.stack(
+            [shares[..., places].sum(-1) for places in _regimes(plant, regime)], -1
+        )
+        for regime in (Regime.separated, Regime.stick)
     )
     ended = np.array_split(growth, 16, axis=1)[-1].mean(axis=1)
     measured = replace(
@@ -308,8 +312,8 @@ def statistics_of(
     square = (modal**2).sum(-1)
     shares = raw["durations"] / lengths[:, None]
     separated, stuck = (
-        np.stack([shares[:, places].sum(1) for places in _regimes(plant, word)], 1)
-        for word in ("separated", "stick")
+        np.stack([shares[:, places].sum(1) for places in _regimes(plant, regime)], 1)
+        for regime in (Regime.separated, Regime.stick)
     )
     kinds = plant.system.traced.kinds
     landings, separations = (
@@ -348,16 +352,11 @@ def statistics_of(
         )
 
 
-def _regimes(plant: Plant, word: str) -> list[list[int]]:
+def _regimes(plant: Plant, regime: Regime) -> list[np.ndarray]:
     """Return, for each contact, the numbers of its regimes of a kind."""
-    # by owner: of contacts p and p_stick, the second one's regimes begin like the first one's
-    owners = plant.system.traced.component_of.tolist()
-    numbered = list(enumerate(zip(plant.system.regimes, owners, strict=True)))
+    codes = regime_codes(plant.system, plant.contacts)
+    owners = np.asarray(plant.system.traced.component_of)
     return [
-        [
-            i
-            for i, (name, owner) in numbered
-            if owner == index and name.startswith(f"{contact}_{word}")
-        ]
-        for index, contact in enumerate(plant.contacts)
+        np.flatnonzero((codes == regime) & (owners == index))
+        for index in range(len(plant.contacts))
     ]
