@@ -6,6 +6,8 @@ assembles the same matrices from the deck that :func:`deck` writes.
 
 from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import scipy.sparse as sp
@@ -43,15 +45,6 @@ BODIES = (
 )
 SPRINGS = (30000.0, 30000.0, 2000.0)
 """Stiffness along x, y and z of the springs at each corner of the back plate, N/mm."""
-SIDES = (
-    (0, 3, 2, 1),
-    (4, 5, 6, 7),
-    (0, 1, 5, 4),
-    (1, 2, 6, 5),
-    (2, 3, 7, 6),
-    (3, 0, 4, 7),
-)
-"""Corners of the faces S1 to S6 of a hexahedron, counterclockwise as seen from outside."""
 
 
 @dataclass(frozen=True)
@@ -72,33 +65,10 @@ class BrakeMesh:
     corners: list[int]
     fixed: list[int]
 
-    def facets(self, name: str) -> list[list[int]]:
-        """Return the nodes of the facets of a surface."""
-        rows = {
-            n: row for element in self.elements.values() for n, row in element.items()
-        }
-        return [[rows[n][i] for i in SIDES[side]] for n, side in self.faces[name]]
-
     def back(self) -> list[int]:
         """Return the nodes of the plate's back, where a shim lies."""
         top = max(z for *_, z in self.nodes.values())
         return [n for n, (*_, z) in self.nodes.items() if z == top]
-
-    def skin(self) -> list[list[int]]:
-        """Return the facets of single elements that no surface has."""
-        named = {tuple(sorted(f)) for name in self.faces for f in self.facets(name)}
-        facets: dict[tuple[int, ...], list[int]] = {}
-        inner = set()
-        for row in (
-            row for element in self.elements.values() for row in element.values()
-        ):
-            for side in SIDES:
-                facet = [row[i] for i in side]
-                key = tuple(sorted(facet))
-                if key in facets:
-                    inner.add(key)
-                facets[key] = facet
-        return [f for key, f in facets.items() if key not in inner and key not in named]
 
 
 def brake_mesh() -> BrakeMesh:
@@ -177,30 +147,27 @@ def disc_brake(
     """
     mesh = brake_mesh()
     mass, springs, names = brake_matrices(mesh)
-    to_metres = {n: tuple(1e-3 * x for x in node) for n, node in mesh.nodes.items()}
-    back, skin = set(mesh.back()), mesh.skin()
-    faces = {name: mesh.facets(name) for name in mesh.faces} | {
-        "BACK": [facet for facet in skin if back.issuperset(facet)],
-        "SKIN": [facet for facet in skin if not back.issuperset(facet)],
-    }
-    return Structure.from_mesh(
-        mass * 1e3,  # t
-        springs * 1e3,  # N/mm
-        mesh=(to_metres, faces),
-        contacts={
-            "lining": Face(
-                "PAD_FACE",
-                "DISC_FACE",
-                stiffness=stiffness,
-                pressure=pressure,
-                mu=mu,
-                points=points,
-            )
-        },
-        rotation=Rotation((0, 0, 1), (0, 0, 0), speed, "DISC_FACE"),
-        degrees_of_freedom=names,
-        modal_damping=modal_damping,
+    face = Face(
+        "PAD_FACE",
+        "DISC_FACE",
+        stiffness=stiffness,
+        pressure=pressure,
+        mu=mu,
+        points=points,
     )
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "brake.inp"
+        path.write_text(deck(mesh), encoding="utf-8")
+        return Structure.from_mesh(
+            mass,
+            springs,
+            mesh=path,
+            contacts={"lining": face},
+            rotation=Rotation((0, 0, 1), (0, 0, 0), speed, "DISC_FACE"),
+            degrees_of_freedom=names,
+            units="mm-t-s",
+            modal_damping=modal_damping,
+        )
 
 
 def brake_matrices(mesh: BrakeMesh) -> tuple[sp.csr_array, sp.csr_array, list[str]]:
