@@ -23,7 +23,7 @@ from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.dense import all_modes
 from squealpipe.structures.linearized import pencil_about
 from squealpipe.structures.modes import modes_at_rest
-from squealpipe.structures.pencil import DENSE
+from squealpipe.structures.pencil import DENSE, Pencil
 from squealpipe.structures.sliding import static_answers, steady_sliding
 from squealpipe.structures.subspace import added, in_coordinates
 
@@ -168,8 +168,9 @@ class Coordinates:
     def _projected(self, matrix: np.ndarray) -> np.ndarray:
         return np.asarray(self.turn.T @ (matrix @ self.turn))
 
+    @cached_property
     def reduced(self) -> ContactStructure:
-        """Return the structure in these coordinates."""
+        """Structure in these coordinates."""
         space = self.space
         whole = space.whole
         stiffness = self._projected(space.stiffness)
@@ -188,9 +189,7 @@ class Coordinates:
 
     def values(self) -> np.ndarray:
         """Return the eigenvalues of the reduced structure about its own steady sliding, 1/s."""
-        reduced = self.reduced()
-        state = steady_sliding(reduced, reduced.mu, reduced.belt_speed)
-        pairs = all_modes(pencil_about(reduced, state, None))
+        pairs = all_modes(self._pencil())
         return np.array([pair.value for pair in pairs])
 
     def small_motions(self) -> tuple[np.ndarray, np.ndarray]:
@@ -199,7 +198,9 @@ class Coordinates:
         Raises:
             NoSlidingError: there is no steady sliding in these coordinates.
         """
-        reduced = self.reduced()
-        state = steady_sliding(reduced, reduced.mu, reduced.belt_speed)
-        _, damping, stiffness = pencil_about(reduced, state, None).dense
+        _, damping, stiffness = self._pencil().dense
         return stiffness, damping
+
+    def _pencil(self) -> Pencil:
+        state = steady_sliding(self.reduced, self.reduced.mu, self.reduced.belt_speed)
+        return pencil_about(self.reduced, state, None)

@@ -285,7 +285,7 @@ class Search:
             if directions is None
             else self._coordinates(number, directions)
         )
-        reduced = coordinates.reduced()
+        reduced = coordinates.reduced
         reduced.modes = coordinates.modes
         # modes of a reduced structure lead to its amplitudes, which no mesh shows
         reduced.mesh = self.whole.mesh if self.whole.modes is None else None

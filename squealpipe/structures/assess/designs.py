@@ -110,7 +110,7 @@ class Design:
             return self.whole
         space = StaticSpace(self.whole, self.n_modes)
         kept = Coordinates(space, self.n_modes, self.directions)
-        reduced = damped_beyond(kept.reduced(), self.band, self.damping_beyond)
+        reduced = damped_beyond(kept.reduced, self.band, self.damping_beyond)
         reduced.modes = kept.modes
         return reduced
 

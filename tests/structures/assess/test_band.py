@@ -5,7 +5,8 @@ import pytest
 
 from squealpipe import squealing_modes
 from squealpipe.structures import elastic_pad
-from squealpipe.structures.assess.assess import judge_structure
+from squealpipe.structures.assess import assess
+from squealpipe.structures.assess.cures import cures_of
 from squealpipe.structures.assess.designs import Design
 from squealpipe.structures.squeal.plant import Plant
 from squealpipe.study.report.squealing import damped_beyond, lines
@@ -53,6 +54,25 @@ def test_modes_beyond_the_band_decay_and_those_within_are_the_same(pad):
     assert _own_growth(changed, 2.0 * np.pi * BAND)[1].real.max() < 0.0
 
 
+def test_what_changes_the_verdict_is_searched_in_the_band_alone(monkeypatch):
+    """Above this friction 41.7 kHz grows first, then 9.7 kHz, up to which modes count."""
+    pad = elastic_pad(modal_damping=0.009, mu=0.3)
+    reduced = pad.reduce(frequency_max=BAND, n_modes=11)
+
+    def friction_alone(design, modifications):
+        cures, units = cures_of(design, modifications)
+        return {"mu": cures["mu"]}, units
+
+    monkeypatch.setattr(assess, "cures_of", friction_alone)
+    judged = assess.judge_structure(reduced, samples=1, seed=0, tol=1e-6)
+    (critical,) = judged.with_cures().quiet_from.values
+    for friction, grows in ((0.999 * critical, False), (1.001 * critical, True)):
+        changed = reduced.with_(mu=friction)
+        within, beyond = _own_growth(changed, 2.0 * np.pi * BAND)
+        assert (within.real.max() > 0.0) == grows
+        assert beyond.real.max() > 0.0
+
+
 @pytest.mark.release
 def test_damping_beyond_the_band_is_told(pad):
     reduced = pad.reduce(frequency_max=BAND)
@@ -68,7 +88,7 @@ def test_damping_beyond_the_band_is_told(pad):
 def test_cause_and_frequency_lie_in_the_band(pad):
     told = []
     with shown(None, told.append):
-        judged = judge_structure(
+        judged = assess.judge_structure(
             pad.reduce(frequency_max=BAND), samples=1, seed=0, tol=1e-9, workers=1
         )
     # before the random starts, which take longest
