@@ -5,6 +5,7 @@ BIN := $(VENV)/bin
 STUDY := $(VENV)/.made-from-lock
 DEV := $(VENV)/.made-from-dev-lock
 KERNELS := $(VENV)/.kernels-compiled
+INSTALL := $(BIN)/python -m pip install -q --no-compile --disable-pip-version-check
 TESTS := $(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
 
 # Where the surroundings forbid byte code (many containers do), each of hundreds of processes would compile
@@ -46,7 +47,7 @@ cost: dev  ## the paper's study, as far as it is not made here yet, and its CPU 
 # orbits, series, linear maps and at least one test of every other folder.
 test-processors: dev  ## numerics, and the tiny study, as on other processors
 	# what the tests with AVX2 need is compiled beside the others
-	{ { $(AVX2) $(LOOP) && $(AVX2) $(ORBITS); } & $(AVX2) $(STRUCTURES) && wait $$!; } & \
+	$(AVX2) $(COMPILE_LOOPS) & \
 	  tests/processors generic $(TESTS) @tests/generic.txt && wait $$!
 	$(AVX2) $(TESTS) @tests/avx2.txt
 	$(if $(SQUEALPIPE_TINY),,$(BIN)/snakemake $(TINY))
@@ -58,7 +59,7 @@ test-processors: dev  ## numerics, and the tiny study, as on other processors
 bench: export OPENBLAS_NUM_THREADS := 1
 bench: export OMP_NUM_THREADS := 1
 bench: dev  ## speed beside other tools, as ratios; integrators with events beside one another
-	$(BIN)/python -m pip install -q --require-hashes -r requirements-peers.lock
+	$(INSTALL) --require-hashes -r requirements-peers.lock
 	for script in tests/benchmarks/bench_*.py; do PYTHONPATH=. $(BIN)/python $$script || exit 1; done
 	-$(BIN)/squealpipe benchmark --force -o build/benchmark.nc
 
@@ -73,35 +74,37 @@ env: $(KERNELS)  ## what a study needs
 
 dev: $(DEV) $(KERNELS)  ## and what tests, checks and docs need; make -j2 does both at once
 
-$(STUDY): requirements.lock pyproject.toml
+$(STUDY): requirements.lock requirements-pip.lock pyproject.toml
 	@case "$(CURDIR)" in *[[:space:]]*) echo "make env: the path '$(CURDIR)' has a space, which the first lines of installed scripts cannot hold; move the checkout" >&2; exit 1;; esac
-	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install -q --no-compile --disable-pip-version-check --require-hashes -r requirements.lock
-	$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps --no-build-isolation -e .
+	test -x $(BIN)/python || $(PYTHON) -m venv --without-pip $(VENV)
+	# the pip of Python 3.11 looks through an index three times as slowly; where no other can be had, that one
+	$(PYTHON) -m pip --python $(BIN)/python install -q --no-compile --disable-pip-version-check --require-hashes -r requirements-pip.lock \
+	  || $(BIN)/python -m ensurepip
+	$(INSTALL) --require-hashes -r requirements.lock
+	$(INSTALL) -q --no-deps --no-build-isolation -e .
 	$(BIN)/python -m compileall -q squealpipe
 	touch $@
 
-# These compile the event loop (13 s), the shots of orbits (8 s) and the loop of structures (26 s) into the
-# user's cache, which several first jobs or tests would otherwise do at once; and byte code of what jobs import,
-# for those who may not write it.
-LOOP = $(BIN)/python -c "from squealpipe.systems.taylor import collocation, legs, loop; loop.loop(); legs.run_legs(); collocation.transfer_steps()"
-ORBITS = $(BIN)/python -c "import matplotlib.pyplot, netCDF4, snakemake.cli, squealpipe.cli, squealpipe as s; s.periodic_orbit(s.Parameters(), 0.9, 2.8, mode=1, y_peak=2)"
-STRUCTURES = $(BIN)/python -c "from squealpipe.systems.linear.loop import functions, loop; loop(); functions()"
+# 50 s of CPU time, which several first jobs or tests would otherwise spend at once; and byte code of what jobs
+# import, for those who may not write it
+COMPILE_LOOPS := $(BIN)/python -c "import matplotlib.pyplot, netCDF4, snakemake.cli, squealpipe.cli; \
+  from squealpipe.study.compiled_loops import compile_loops; compile_loops()"
 $(KERNELS): $(STUDY)
-	{ $(LOOP) && $(ORBITS); } & $(STRUCTURES) && wait $$!
+	$(COMPILE_LOOPS)
 	touch $@
 
 $(DEV): requirements-dev.lock $(STUDY)
-	$(BIN)/python -m pip install -q --no-compile --disable-pip-version-check --require-hashes -r requirements-dev.lock
+	$(INSTALL) --require-hashes -r requirements-dev.lock
 	touch $@
 
-COMPILE = $(BIN)/uv pip compile pyproject.toml --universal --python-version 3.11 --generate-hashes \
+COMPILE = $(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes \
   --no-emit-index-url --custom-compile-command "make lock" -q
 
 lock: dev
-	$(COMPILE) --extra study -o requirements.lock
-	$(COMPILE) --extra study --extra dev --extra export --extra fe --extra references --extra notebook --extra slurm -c requirements.lock -o requirements-dev.lock
-	$(COMPILE) --extra peers -c requirements-dev.lock -o requirements-peers.lock
+	echo "pip>=25" | $(COMPILE) - -o requirements-pip.lock
+	$(COMPILE) pyproject.toml --extra study -o requirements.lock
+	$(COMPILE) pyproject.toml --extra study --extra dev --extra export --extra fe --extra references --extra notebook --extra slurm -c requirements.lock -o requirements-dev.lock
+	$(COMPILE) pyproject.toml --extra peers -c requirements-dev.lock -o requirements-peers.lock
 
 dictionary: dev  ## docs/datasets.md from the schemas
 	$(BIN)/python docs/build_dictionary.py

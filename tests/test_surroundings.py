@@ -21,7 +21,8 @@ def run(command, **kwargs):
 def test_a_checkout_path_with_a_space_is_refused_with_the_reason(tmp_path):
     place = tmp_path / "my checkout"
     place.mkdir()
-    for name in ("Makefile", "requirements.lock", "pyproject.toml"):
+    locks = ("requirements.lock", "requirements-pip.lock")
+    for name in ("Makefile", "pyproject.toml", *locks):
         shutil.copy(ROOT / name, place / name)
     done = run(["make", "env"], cwd=place)
     assert done.returncode != 0
