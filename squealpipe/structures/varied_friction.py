@@ -1,7 +1,7 @@
 """Coefficients of friction that one number stands for: the structure's, a face's, or a factor."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Self
 
 import numpy as np
@@ -58,6 +58,32 @@ class VariedFriction:
         """Return the coefficient of each contact, (contacts,)."""
         own = structure.mu_of_contacts
         return number * own if self.is_factor else np.where(self.contacts, number, own)
+
+    def changed(
+        self, structure: ContactStructure, number: float, limit: float = 1.0
+    ) -> ContactStructure:
+        """Return the structure with a coefficient of these contacts' own, or a factor of each.
+
+        Args:
+            limit: factor of their limits of stick, which stay also where they are the structure's.
+        """
+        contacts = [
+            replace(
+                contact,
+                mu=float(mu),
+                mu_static=friction.mu_static and limit * friction.mu_static,
+            )
+            if chosen
+            else contact
+            for contact, friction, mu, chosen in zip(
+                structure.contacts,
+                structure.frictions,
+                self.of_contacts(structure, number),
+                self.contacts,
+                strict=True,
+            )
+        ]
+        return structure.with_(contacts=contacts)
 
     def now(self, structure: ContactStructure) -> float:
         """Return the number that the structure has.

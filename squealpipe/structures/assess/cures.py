@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
@@ -13,6 +13,7 @@ from squealpipe.structures.assess.designs import Design
 from squealpipe.structures.assess.modifications import Modification, read_modification
 from squealpipe.structures.contact import face_of
 from squealpipe.structures.definition import ContactStructure
+from squealpipe.structures.factors import with_factors
 from squealpipe.structures.varied_friction import VariedFriction
 from squealpipe.vibration.boundaries import Cure
 
@@ -58,7 +59,9 @@ def cures_of(
     units |= dict.fromkeys(cures, "1")
     if whole.rotation is not None:
         units["belt_speed"] = "rad s-1"
-    cures["contact_stiffness"] = _factor(design, _with_stiffness)
+    cures["contact_stiffness"] = _factor(
+        design, lambda each, factor: with_factors(each, {"contact_stiffness": factor})
+    )
     cures["preload"] = _factor(design, with_preload)
     cures["modal_damping"] = _damping(design)
     speed, factors = whole.belt_speed, _factors(Ranges.factor)
@@ -134,11 +137,6 @@ def _factor(design: Design, change: Change) -> Cure:
     return Cure(1.0, _whole(design, change), 1.0 / factors, factors)
 
 
-def _with_stiffness(structure: ContactStructure, factor: float) -> ContactStructure:
-    contacts = [contact.scaled(stiffness=factor) for contact in structure.contacts]
-    return structure.with_(contacts=contacts)
-
-
 def with_preload(structure: ContactStructure, factor: float) -> ContactStructure:
     """Everything that presses, times a factor: preloads, and a load that is given."""
     contacts = [contact.scaled(preload=factor) for contact in structure.contacts]
@@ -189,31 +187,13 @@ def _frictions(design: Design) -> dict[str, Cure]:
         values = np.unique(whole.mu_of_contacts[varied.contacts])
         if len(values) > 1:
             continue  # contacts of one face with different coefficients are changed together
-
-        def change(
-            structure: ContactStructure, value: float, varied: VariedFriction = varied
-        ) -> ContactStructure:
-            contacts = [
-                # its limit of stick stays, also where it is the structure's
-                replace(contact, mu=value, mu_static=friction.mu_static)
-                if chosen
-                else contact
-                for contact, friction, chosen in zip(
-                    structure.contacts,
-                    structure.frictions,
-                    varied.contacts,
-                    strict=True,
-                )
-            ]
-            return structure.with_(contacts=contacts)
-
         limits = [
             friction.largest_mu
             for friction, chosen in zip(whole.frictions, varied.contacts, strict=True)
             if chosen
         ]
         cures[f"mu_{name}"] = _friction(
-            float(values[0]), _whole(design, change), min(limits)
+            float(values[0]), _whole(design, varied.changed), min(limits)
         )
     return cures
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -26,6 +25,7 @@ from squealpipe.structures.assess.designs import Design, Structures, pushed
 from squealpipe.structures.contact import face_of
 from squealpipe.structures.definition import ContactStructure
 from squealpipe.structures.schema.propensity import structure_propensity_schema
+from squealpipe.structures.varied_friction import VariedFriction
 from squealpipe.systems.inputs.values import brief
 from squealpipe.systems.processes import available_cores, run_shared
 from squealpipe.systems.progress import with_progress
@@ -172,7 +172,7 @@ def known_inputs(structure: ContactStructure) -> dict[str, Change]:
     """Return everything that can scatter: name → change of a structure by a factor."""
     own = structure.has_own_mu
     known: dict[str, Change] = {
-        "contact_stiffness": partial(_with_contacts, "stiffness", None),
+        "contact_stiffness": partial(_with_contacts, "stiffness", np.ones_like(own)),
         "preload": with_preload,
         "belt_speed": lambda each, factor: each.with_(
             belt_speed=factor * each.belt_speed
@@ -183,61 +183,33 @@ def known_inputs(structure: ContactStructure) -> dict[str, Change]:
             modal_damping=(factor * np.asarray(each.modal_damping)).tolist()
         )
     if not own.all():
-        known["mu"] = _with_friction
+        known["mu"] = partial(_with_friction, ~own)
     names = [face_of(contact.name) or contact.name for contact in structure.contacts]
     for group in dict.fromkeys(names):
-        chosen = [name == group for name in names]
+        chosen = np.array(names) == group
         known[f"contact_stiffness_{group}"] = partial(
             _with_contacts, "stiffness", chosen
         )
         known[f"preload_{group}"] = partial(_with_contacts, "preload", chosen)
         if own[chosen].all():
-            known[f"mu_{group}"] = partial(_with_friction, chosen=chosen)
+            known[f"mu_{group}"] = partial(_with_friction, chosen)
     return known
 
 
 def _with_friction(
-    structure: ContactStructure, factor: float, chosen: list[bool] | None = None
+    chosen: np.ndarray, structure: ContactStructure, factor: float
 ) -> ContactStructure:
-    """Multiply the friction of some contacts by a factor, or that which the structure has itself.
-
-    A limit of stick, which friction must not exceed, is multiplied with it.
-    """
-
-    def scaled(value: float | None) -> float | None:
-        return None if value is None else factor * value
-
-    if chosen is None:
-        changes = {
-            "mu": factor * structure.mu,
-            "mu_static": scaled(structure.mu_static),
-        }
-        scattered = ~structure.has_own_mu
-    else:
-        changes, scattered = {}, np.array(chosen)
-    contacts = [
-        (
-            replace(
-                contact,
-                mu=None if chosen is None else factor * friction.mu,
-                mu_static=scaled(contact.mu_static),
-            )
-            if scatters
-            else contact
-        )
-        for contact, friction, scatters in zip(
-            structure.contacts, structure.frictions, scattered, strict=True
-        )
-    ]
-    return structure.with_(contacts=contacts, **changes)
+    """Multiply the friction of some contacts by a factor, and limits of stick with it."""
+    varied = VariedFriction(chosen, is_factor=True)
+    return varied.changed(structure, factor, limit=factor)
 
 
 def _with_contacts(
-    key: str, chosen: list[bool] | None, structure: ContactStructure, factor: float
+    key: str, chosen: np.ndarray, structure: ContactStructure, factor: float
 ) -> ContactStructure:
-    """Multiply a number of all contacts, or of some of them."""
+    """Multiply a number of some contacts."""
     contacts = [
-        contact.scaled(**{key: factor}) if chosen is None or chosen[index] else contact
-        for index, contact in enumerate(structure.contacts)
+        contact.scaled(**{key: factor}) if is_chosen else contact
+        for contact, is_chosen in zip(structure.contacts, chosen, strict=True)
     ]
     return structure.with_(contacts=contacts)

@@ -67,7 +67,7 @@ def test_each_parameter_changes_what_its_name_says():
     assert "modal_damping" not in known_inputs(structure())
     pad = structure(modal_damping=0.01)
     truths = {
-        "mu": lambda s: s.mu / MU,
+        "mu": lambda s: s.mu_of_contacts[0] / MU,
         "belt_speed": lambda s: s.belt_speed / 2.0,
         "preload": lambda s: s.preloads[0] / 3000.0,
         "preload_pad": lambda s: s.preloads[0] / 3000.0,
