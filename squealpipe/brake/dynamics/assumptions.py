@@ -149,9 +149,10 @@ def linear_pull_map(
     for state in _linear_response(params, stiffness, step, steps):
         force = 1.0 - state[..., 1] / params.preload
         # the lowest force lies between samples, at the vertex of the parabola through three
-        turned = (last < before) & (last <= force)
-        _, vertex = parabola.vertex(before, last, force)
-        lowest = np.minimum(lowest, np.where(turned, vertex, force))
+        turned = np.nonzero((last < before) & (last <= force))
+        _, vertex = parabola.vertex(before[turned], last[turned], force[turned])
+        np.minimum(lowest, force, out=lowest)
+        lowest[turned] = np.minimum(lowest[turned], vertex)
         pulling += force < 0
         before, last = last, force
     return build(

@@ -20,15 +20,20 @@ def response_from_rest(
     """
     cosine, half_push = _series(matrix * (step * step), step)
     push = 2.0 * np.einsum("...ij,...j->...i", half_push, load)
+    # components first: long loops over the systems, not over two components
+    push = np.moveaxis(push, -1, 0).copy()
+    twice = np.moveaxis(2.0 * cosine, (-2, -1), (0, 1)).copy()
     earlier = np.zeros(push.shape)
     now = 0.5 * push
-    yield earlier
+    yield np.moveaxis(earlier, 0, -1)
     for _ in range(steps):
-        yield now
-        earlier, now = (
-            now,
-            2.0 * np.einsum("...ij,...j->...i", cosine, now) - earlier + push,
-        )
+        yield np.moveaxis(now, 0, -1)
+        moved = twice[:, 0] * now[0]
+        for component in range(1, len(now)):
+            moved += twice[:, component] * now[component]
+        moved -= earlier
+        moved += push
+        earlier, now = now, moved
 
 
 def _series(scaled: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
