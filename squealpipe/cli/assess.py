@@ -22,7 +22,7 @@ from squealpipe.cli.arguments import (
 from squealpipe.cli.console import ExitCodes, answer, working
 from squealpipe.cli.output import check_output, check_picture, compute, finish, write
 from squealpipe.cli.signatures import errors_in_options, options_of
-from squealpipe.parameters import Parameters
+from squealpipe.cli.structures import as_asked, refuse_angles_and_parameters, say_doubts
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -64,15 +64,7 @@ def assess(
         output: also write the dataset (.nc or .csv), and a picture of the settled motion beside it.
     """
     if isinstance(alpha1_or_file, Path):
-        if alpha2 is not None:
-            raise ValueError(
-                f"{alpha1_or_file} is the file of a structure, which has no angles; leave "
-                f"{alpha2!r} out"
-            )
-        if brake.params != Parameters():
-            raise ValueError(
-                "a structure has its numbers in its file; leave --config and parameters out"
-            )
+        refuse_angles_and_parameters(alpha1_or_file, alpha2, brake.params)
         return _assess_structure(
             alpha1_or_file,
             output,
@@ -141,7 +133,6 @@ def _assess_structure(
         raise ValueError("--picture is drawn beside a dataset; name that by --output")
 
     import squealpipe
-    from squealpipe.cli.structures import as_asked, say_doubts
     from squealpipe.structures.assess.assess import judge_structure
     from squealpipe.structures.assess.modifications import read_modification
 

@@ -31,11 +31,16 @@ from squealpipe.cli.arguments import (
     written_output,
 )
 from squealpipe.cli.console import ExitCodes, answer, current_session, working
-from squealpipe.cli.output import check_output, check_picture, compute, finish, write
-from squealpipe.cli.signatures import errors_in_options, options_of
+from squealpipe.cli.output import compute
+from squealpipe.cli.signatures import options_of
+from squealpipe.cli.structures import (
+    as_asked,
+    compute_of_structure,
+    refuse_angles_and_parameters,
+)
 from squealpipe.codes import flag_words
 from squealpipe.inputs import parse_number, reader
-from squealpipe.parameters import HORIZON, Parameters
+from squealpipe.parameters import HORIZON
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -188,24 +193,26 @@ def propensity(
             raise ValueError(f"{name}: only {whose} take this; leave it out")
     common = {"seed": seed, "tol": tol, "workers": workers}
     if isinstance(alpha1_or_file, Path):
-        if alpha2 is not None:
-            raise ValueError(
-                f"{alpha1_or_file} is the file of a structure, which has no angles; leave "
-                f"{alpha2!r} out"
-            )
+        refuse_angles_and_parameters(alpha1_or_file, alpha2, brake.params)
         if relative_std is None:
             raise ValueError("--relative-std is missing; write for instance mu=0.1")
         spread = {
             name: parse_share(value)
             for name, value in pairs_of("--relative-std", relative_std).items()
         }
-        return _of_structure(
-            alpha1_or_file,
-            {"n_modes": n_modes, "frequency_max": frequency_max},
-            {"relative_std": spread, "samples": samples, **common},
-            output,
-            brake,
+        modes = {"n_modes": n_modes, "frequency_max": frequency_max}
+        options = {**modes, "relative_std": spread, "samples": samples, **common}
+
+        def propensity(structure: Any, **options: Any) -> xr.Dataset:
+            import squealpipe
+
+            return squealpipe.propensity(as_asked(structure, options), **options)
+
+        shares = compute_of_structure(
+            propensity, alpha1_or_file, options, output, brake
         )
+        _say_shares(shares, "verdict")
+        return ExitCodes.done
     if alpha2 is None or distribution is None:
         raise ValueError(
             "a pad needs both angles and --distribution, like `squealpipe propensity 0.07pi "
@@ -230,42 +237,6 @@ def propensity(
         **common,
     )
     _say_shares(shares, "quantity")
-    return ExitCodes.done
-
-
-def _of_structure(
-    file: Path,
-    modes: dict[str, Any],
-    options: dict[str, Any],
-    output: Path,
-    brake: Drawn,
-) -> int:
-    """Write the shares of the structure in a file, and say them."""
-    if brake.params != Parameters():
-        raise ValueError(
-            "a structure has its numbers in its file; leave --config and parameters out"
-        )
-    check_output(output, force=brake.force)
-    drawn = check_picture(brake.picture, output, force=brake.force)
-
-    import squealpipe
-    from squealpipe.cli.structures import as_asked, say_doubts
-
-    whole = squealpipe.Structure.read(file)
-    say_doubts(whole)
-    asked = {name: value for name, value in options.items() if value is not None}
-    stated = asked | {key: mode for key, mode in modes.items() if mode is not None}
-    stated.pop("workers", None)
-    with errors_in_options():
-        structure = as_asked(whole, modes)
-        with working("propensity"):
-            shares = write(
-                lambda: squealpipe.propensity(structure, **asked),
-                output,
-                config={"parameters": whole.as_dict(), **stated},
-            )
-    finish(shares, output, drawn, brake)
-    _say_shares(shares, "verdict")
     return ExitCodes.done
 
 

@@ -12,6 +12,7 @@ from cyclopts import Parameter
 
 from squealpipe.cli.arguments import (
     BandOfRuns,
+    Drawn,
     Files,
     Frequency,
     Frictions,
@@ -47,6 +48,7 @@ from squealpipe.cli.output import (
 from squealpipe.cli.signatures import errors_in_options, in_options, options_of
 from squealpipe.codes import Verdict
 from squealpipe.inputs import parse_number
+from squealpipe.parameters import Parameters
 from squealpipe.ranges import parse_range
 
 if TYPE_CHECKING:
@@ -130,7 +132,7 @@ def modes(
                 shown = f"modes up to {audible / 1e3:g} kHz"
         return library.complex_modes(structure, **options)
 
-    dataset = _compute(complex_modes, file, asked, output, files)
+    dataset = compute_of_structure(complex_modes, file, asked, output, files)
     _tell_modes(dataset, shown, contacts)
     return ExitCodes.done
 
@@ -163,8 +165,22 @@ def _tell_modes(dataset: xr.Dataset, shown: str, contacts: Sequence[Any]) -> Non
         )
 
 
-def _compute(
-    task: Any, file: Path, options: dict[str, Any], output: Path, files: Files
+def refuse_angles_and_parameters(
+    file: Path, alpha2: Any, parameters: Parameters
+) -> None:
+    """Raise if a structure is asked about with what only a pad has."""
+    if alpha2 is not None:
+        raise ValueError(
+            f"{file} is the file of a structure, which has no angles; leave {alpha2!r} out"
+        )
+    if parameters != Parameters():
+        raise ValueError(
+            "a structure has its numbers in its file; leave --config and parameters out"
+        )
+
+
+def compute_of_structure(
+    task: Any, file: Path, options: dict[str, Any], output: Path, files: Files | Drawn
 ) -> xr.Dataset:
     """Run a task on the structure in a file; write its dataset and its picture.
 
@@ -183,6 +199,7 @@ def _compute(
             structure = Structure.read(file)
         say_doubts(structure)
         config = {"parameters": structure.as_dict(), **given}
+        config.pop("workers", None)
         dataset = write(lambda: task(structure, **given), output, config=config)
     finish(dataset, output, drawn, files)
     return dataset
@@ -313,7 +330,7 @@ def squeal(
     asked = {"n_modes": n_modes, "frequency_max": frequency_max}
     asked |= {"samples": samples, "seed": seed, "tol": tol, "t_end": t_end}
     with keeping_on_interrupt() as interrupted:
-        dataset = _compute(
+        dataset = compute_of_structure(
             squeal, file, asked | {"onset": onset or None}, output, files
         )
         stopped = interrupted()
@@ -384,7 +401,7 @@ def ladder(
 
     asked = {"pushes": pushes, "t_end": t_end, "frequency_max": frequency_max}
     asked |= {"tol": tol, "repeats": repeats}
-    dataset = _compute(squeal_ladder, file, asked, output, files)
+    dataset = compute_of_structure(squeal_ladder, file, asked, output, files)
     answer(*lines(dataset))
     return (
         ExitCodes.done
