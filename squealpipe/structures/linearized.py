@@ -11,7 +11,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from squealpipe.structures.definition import ContactStructure
-from squealpipe.structures.pencil import LowRank, Pencil, Uncertain
+from squealpipe.structures.pencil import DENSE, LowRank, Pencil, Uncertain
 from squealpipe.structures.sliding import (
     SlidingBalance,
     SteadySliding,
@@ -57,9 +57,12 @@ def _uncertain(structure: ContactStructure, state: SteadySliding) -> Uncertain |
     force = state.force_error + rounding * state.force
     damping = (force * np.abs(state.slope))[closed]
     stiffness = (rounding * state.stiffness * np.abs(state.drag))[closed]
+    left, right = np.hstack([along, along]), np.hstack([along, across])
+    if structure.size > DENSE:
+        left, right = sp.csc_array(left), sp.csc_array(right)
     return Uncertain(
-        sp.csc_array(np.hstack([along, along])),
-        sp.csc_array(np.hstack([along, across])),
+        left,
+        right,
         np.concatenate([damping, 0.0 * stiffness]),
         np.concatenate([0.0 * damping, stiffness]),
     )

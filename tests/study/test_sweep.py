@@ -1,5 +1,6 @@
 """Sweeps against the task run point by point; ragged runs; sweeps and maps joined from parts."""
 
+import contextlib
 import os
 import re
 import runpy
@@ -284,30 +285,39 @@ def test_a_sweep_that_was_stopped_goes_on_where_it_was(tmp_path, monkeypatch, fi
 
 
 def test_an_interrupted_sweep_keeps_what_its_processes_finished(tmp_path, monkeypatch):
-    """Slow runs are handed out one by one: a batch of 32 would be lost as a whole."""
-    run = Sweep.run
+    """The first runs are handed out one by one: a batch of 32 would be lost as a whole."""
+    run, singles = Sweep.run, 9  # four for each of two processes, and one
 
-    def slow(self, point, workers=None):
-        time.sleep(0.1)
+    def stuck_at_last(self, point, workers=None):
+        if self.points.index(point) >= singles:
+            time.sleep(600.0)
         return run(self, point, workers)
+
+    def interrupt_at_last(share):
+        if share >= singles / 600:  # soon: while it waits for the next run
+            signal.setitimer(signal.ITIMER_REAL, 0.1)
 
     def interrupt(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(Sweep, "run", slow)
+    monkeypatch.setattr(Sweep, "run", stuck_at_last)
+    monkeypatch.setattr(
+        "squealpipe.study.point_sweep.alone",
+        lambda: contextlib.nullcontext(interrupt_at_last),
+    )
     plan = linear_sweep(
         vary={"mu": np.linspace(0.0, 1.0, 600).tolist(), "alpha1": [1.0]}
     )
     kept = Chunks(tmp_path / ".runs", "0" * 16)
     before = signal.signal(signal.SIGALRM, interrupt)
-    signal.setitimer(signal.ITIMER_REAL, 1.5)
+    signal.setitimer(signal.ITIMER_REAL, 120.0)  # of a sweep that waits for all
     try:
         with pytest.raises(KeyboardInterrupt):
             run_sweep(plan, workers=2, kept=kept)
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)
-    assert 2 <= kept.finished() < 600
+    assert kept.finished() == singles
 
 
 def test_a_damaged_chunk_is_made_again(tmp_path):
