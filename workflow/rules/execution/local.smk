@@ -18,6 +18,9 @@ onstart:
     before_commands = start_server()
     if before_commands:
         shell.prefix(before_commands.replace("{", "{{").replace("}", "}}"))
+    if workflow.local_exec:
+        # to keep 100 jobs a second Snakemake looks for jobs once a second for each that has ended
+        workflow.scheduler.job_rate_limiter = None
     for known in workflow.rules:
         known.message = known.name
         if known.output:
