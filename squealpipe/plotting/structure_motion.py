@@ -11,7 +11,7 @@ import xarray as xr
 
 from squealpipe.codes import Regime
 from squealpipe.structures.meshes.datasets import mesh_of
-from squealpipe.structures.meshes.structure_mesh import NO_NODE, StructureMesh
+from squealpipe.structures.meshes.structure_mesh import StructureMesh
 
 SCHEMA = "structure_run"
 
@@ -123,20 +123,13 @@ class StructureMotion:
                     f"at = {at!r}: the run has no mesh; name a contact: {', '.join(self.contacts)}"
                 )
             return np.arange(len(self.shapes))
-        node, direction = self.mesh.degree_of_freedom.T
-        moves = (node != NO_NODE) & (direction <= len(StructureMotion.direction_names))
-        if at is not None:
-            number, _, way = at.partition(".")
-            numbers = np.where(node == NO_NODE, -1, self.mesh.numbers[node]).astype(str)
-            moves &= numbers == number
-            if way:
-                moves &= direction.astype(str) == way
-        if not moves.any():
+        rows = self.mesh.rows_at(at)
+        if not rows.size:
             raise ValueError(
                 f"at = {at!r}: no node that moves, and no contact: {', '.join(self.contacts)}; "
                 "write 12 for node 12, or 12.2 for its displacement along y"
             )
-        return np.flatnonzero(moves)
+        return rows
 
     def _name(self, row: int) -> str:
         if self.mesh is None:

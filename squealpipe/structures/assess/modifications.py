@@ -257,9 +257,8 @@ def _rows_of_patch(title: str, nodes: Any, structure: ContactStructure) -> np.nd
         numbers = np.asarray(listed, int)
         if missing := set(numbers.tolist()) - set(np.asarray(mesh.numbers).tolist()):
             raise ValueError(f"{title}: the mesh has no node {min(missing)}")
-    index, direction = mesh.degree_of_freedom.T
-    of_rows = np.where(index >= 0, np.asarray(mesh.numbers)[index], -1)
-    rows = np.flatnonzero(np.isin(of_rows, numbers) & (index >= 0) & (direction <= 3))
+    rows = mesh.rows_at()
+    rows = rows[np.isin(mesh.numbers[mesh.degree_of_freedom[rows, 0]], numbers)]
     if not rows.size:
         raise ValueError(f"{title}: none of these nodes can move")
     return rows
@@ -436,9 +435,8 @@ def freedoms_of(key: str, place: Any, structure: ContactStructure) -> list[int]:
                 "counted from 0 in Python and from 1 in files and commands"
             )
         return [int(place)]
-    node, _, direction = str(place).partition(".")
     mesh = structure.mesh
-    if not isinstance(place, str) or not node.isdigit():
+    if not isinstance(place, str) or not place.partition(".")[0].isdigit():
         raise ValueError(
             f"{key}: a degree of freedom, or a node like '5005' or '5005.3' is needed"
         )
@@ -447,11 +445,6 @@ def freedoms_of(key: str, place: Any, structure: ContactStructure) -> list[int]:
             f"{key}: the structure has no mesh, so nodes have no numbers; give the degree of "
             "freedom as a number"
         )
-    index, way = mesh.degree_of_freedom.T
-    numbers = np.where(index >= 0, np.asarray(mesh.numbers)[index], -1)
-    chosen = (numbers == int(node)) & (way <= 3)
-    if direction:
-        chosen &= way == (int(direction) if direction.isdigit() else 0)
-    if not chosen.any():
+    if not (rows := mesh.rows_at(place)).size:
         raise ValueError(f"{key}: the structure has no such node or direction")
-    return [int(each) for each in np.flatnonzero(chosen)]
+    return [int(row) for row in rows]

@@ -90,6 +90,17 @@ class StructureMesh:
             for row, (node, direction) in enumerate(self.degree_of_freedom.tolist(), 1)
         ]
 
+    def rows_at(self, place: str | None = None) -> np.ndarray:
+        """Return the rows that are displacements, of all nodes or of one: ``"12"``, ``"12.3"``."""
+        node, direction = self.degree_of_freedom.T
+        moves = (node != NO_NODE) & (direction <= len(AXES))
+        if place is not None:
+            number, _, way = place.partition(".")
+            moves &= self.numbers[node] == (int(number) if number.isdigit() else -1)
+            if way:
+                moves &= direction == (int(way) if way.isdigit() else 0)
+        return np.flatnonzero(moves)
+
     def displacements(self, values: Any) -> np.ndarray:
         """Return displacements of the nodes, (nodes, 3, …), from values of all degrees of freedom.
 
@@ -99,10 +110,10 @@ class StructureMesh:
             values: (n, …), real or complex.
         """
         values = np.asarray(values)
-        node, direction = self.degree_of_freedom.T
-        moves = (node != NO_NODE) & (direction <= len(AXES))
+        rows = self.rows_at()
+        node, direction = self.degree_of_freedom[rows].T
         moved = np.zeros((len(self.nodes), len(AXES), *values.shape[1:]), values.dtype)
-        moved[node[moves], direction[moves] - 1] = values[moves]
+        moved[node, direction - 1] = values[rows]
         return moved
 
     def center(self, direction: np.ndarray) -> np.ndarray:
