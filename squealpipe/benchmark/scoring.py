@@ -283,7 +283,8 @@ def benchmark(
         unit = np.nan
         if workers:
             # DOP853 at 10⁻⁸: its CPU time is the unit of ``cpu_ratio``
-            unit = measure(data, reference_solver, 1e-8).cpu_time
+            # (NaN where the clock shows none: no ratio to it is known)
+            unit = measure(data, reference_solver, 1e-8).cpu_time or np.nan
         cells.append([])
         for name, worker in workers.items():
             _ask(worker, data, tolerances[0])  # compiles before any stopwatch runs

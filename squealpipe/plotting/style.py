@@ -330,9 +330,8 @@ def save_figure(
     if size is not None:
         _resize(figure, size)
     figure.set_dpi(dots)
-    canvas: Any = FigureCanvasAgg(
-        figure
-    )  # layout and PNG share what it measures of texts
+    # layout and PNG share what it measures of texts
+    canvas: Any = FigureCanvasAgg(figure)
     if (engine := figure.get_layout_engine()) is not None:
         engine.execute(figure)
         figure.set_layout_engine(None)

@@ -48,7 +48,9 @@ def judge(
     runs = [sudden, *others] if pushed is None else [pushed, sudden, *others]
     lasting = [run for run in runs if not run.quiet]
     outcome = Outcome.converged
-    if verdict is Verdict.undetermined:
+    if deciding.unbounded:
+        outcome = Outcome.not_finite
+    elif verdict is Verdict.undetermined:
         outcome = Outcome.unresolved
     elif pushed is None:
         outcome = Outcome.no_sliding_state

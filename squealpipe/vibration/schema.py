@@ -273,7 +273,12 @@ assess_schema = DatasetSchema(
         **_pad_variables,
         **_structure_variables,
         "outcome": outcome(
-            among=(Outcome.converged, Outcome.unresolved, Outcome.no_sliding_state)
+            among=(
+                Outcome.converged,
+                Outcome.not_finite,
+                Outcome.unresolved,
+                Outcome.no_sliding_state,
+            )
         ),
     },
 )

@@ -333,3 +333,13 @@ def test_dataset_has_its_schema():
     assert found.attrs["benchmark_version"] == BENCHMARK_VERSION
     with pytest.raises(ValueError, match="unknown"):
         benchmark({}, names=["no such problem"])
+
+
+def test_a_clock_that_shows_no_time_leaves_the_ratio_unknown(monkeypatch):
+    """The command divided by zero where the reference took less than the clock resolves."""
+    monkeypatch.setattr("squealpipe.benchmark.scoring.time.process_time", lambda: 1.0)
+    found = benchmark(
+        {"DOP853": solver("DOP853")}, names=["two gates"], tolerances=[1e-6]
+    )
+    assert found.verdict.item() == Reliability.right
+    assert np.isnan(found.cpu_ratio.item())

@@ -17,10 +17,11 @@ from squealpipe.codes import Verdict
 from squealpipe.plotting import picture
 from squealpipe.schema import Outcome
 from squealpipe.structures import elastic_pad
-from squealpipe.structures.assess.assess import JudgedStructure
+from squealpipe.structures.assess.assess import JudgedStructure, judge_structure
 from squealpipe.structures.schema.squealing import Kind
-from squealpipe.structures.squeal.plant import Plant
+from squealpipe.structures.squeal.plant import Plant, in_modes
 from squealpipe.structures.squeal.remedies import added_damping
+from squealpipe.study.report.answer import first_lines
 from squealpipe.study.report.squealing import headline, level, lines
 from squealpipe.study.structure_study import (
     modes_over_friction,
@@ -369,6 +370,44 @@ def test_commands_and_studies_run_modes_up_to_20_khz_and_say_so(
     Path("noisy.yaml").write_text(noisy)
     for written in ([], ["-o", "noisy.nc"]):
         assert run(["assess", "noisy.yaml", *one, *written]) == 1
+
+
+@pytest.mark.parametrize("size", [8, 12])
+def test_a_mode_that_no_contact_limits_grows_without_bound_and_both_remedies_work(size):
+    """It ended in "array must not contain infs or NaNs", an overflow, or a longer t_end."""
+    heard = two_modes(0.3)
+    stiffness = 1e13 * np.eye(size)
+    stiffness[:2, :2] = heard.stiffness.toarray()
+    stiffness[2, 3], stiffness[3, 2] = 1e12, -1e12
+    structure = Structure(
+        np.eye(size),
+        stiffness,
+        contacts=heard.contacts,
+        modal_damping=0.02,
+        mu=0.3,
+        belt_speed=-2.0,
+    )
+    answer = squealing_modes(structure, samples=1, workers=1)
+    said = headline(answer)
+    assert said.startswith(
+        "Undetermined: a small push grows without bound, since no contact limits the mode at "
+        "503.8 kHz; modal_damping larger by 0.0303 stops it, frequency_max="
+    )
+    # s² + 2 ζ ω s + ω² ± i c = 0 is neutral at ζ = c/(2 ω²), of which 0.02 are there
+    assert float(answer.added_damping) == pytest.approx(0.03, rel=1e-6)
+    band = float(said.split("frequency_max=")[1].split()[0])
+    for remedied in (
+        structure.with_(modal_damping=0.02 + 0.0303),
+        in_modes(structure, None, band),
+    ):
+        quiet = squealing_modes(remedied, samples=1, workers=1)
+        assert Verdict(int(quiet.verdict)) is Verdict.quiet
+    judged = judge_structure(structure, samples=1, seed=0, tol=1e-9).without_cures()
+    assert Outcome(int(judged.outcome)) is Outcome.not_finite
+    told = list(first_lines(judged))
+    assert "grows without bound, since nothing limits it at 504 kHz" in told[0]
+    assert told[2:4] == ["Level: not known.", "Motion: not known."]
+    assert "nan" not in " ".join(told)
 
 
 def two_pads():

@@ -150,8 +150,9 @@ def brake(  # noqa: C901 (one short function for each force and surface)
         )
         return {"x": s.vx, "y": s.vy, "vx": ax, "vy": ay}
 
-    # Relative to k1 l_pre: round-off of the force balance at rest. Without it a mass that is held
-    # exactly at the limit of friction would slide.
+    # Relative to k1 l_pre: round-off of the force balance at rest. Without it a mass at rest that
+    # nothing pulls and no friction holds, as where N = 0 or μ = 0, would slide. Squared, it is no
+    # slack beside a limit that is not nearly 0: exactly there round-off decides.
     stick_tolerance = 1e-14
 
     def holds(t: Any, s: Any, p: Any, r: Any) -> Any:

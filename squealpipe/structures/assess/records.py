@@ -18,6 +18,7 @@ from squealpipe.vibration.levels import Measurement, Record
 from squealpipe.vibration.settled_runs import SettledRun
 
 
+@np.errstate(over="ignore", invalid="ignore")  # what grows without bound overflows
 def levels(
     design: Design, settled: SettledRun, *, how: Running
 ) -> tuple[dict[str, Any], dict[str, Any]]:

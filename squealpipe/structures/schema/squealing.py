@@ -169,6 +169,11 @@ squealing_schema = DatasetSchema(
             "whether, of the unstable modes, this one is nearest in frequency to that motion",
             "mode",
         ),
+        "grows_without_bound": whether(
+            "whether a start of 1 % along this mode grows beyond all that contacts limit",
+            "mode",
+            optional=True,
+        ),
         "time_to_squeal": or_nan(
             "time from there until the kinetic energy first reaches half its settled value",
             "s",

@@ -48,7 +48,9 @@ def carried(
     if not structure.contacts:
         raise ValueError("the structure has no contacts: nothing rubs")
     if structure.size <= SquealLimits.most_modes:
-        return structure
+        if frequency_max is None:
+            return structure
+        return reduce(structure, n_modes=structure.size, frequency_max=frequency_max)
     if structure.reduced_from is not None and structure.size <= Caps().modes:
         return structure  # reduced by hand
     origin = structure.reduced_from or ReducedFrom(structure, frequency_max)
@@ -74,9 +76,9 @@ def band_of(structure: ContactStructure, frequency_max: float | None) -> float |
     Returns:
         None for a structure that is run whole.
     """
-    if structure.size <= SquealLimits.most_modes:
-        return None
-    return audible_band(structure) if frequency_max is None else frequency_max
+    if frequency_max is not None or structure.size <= SquealLimits.most_modes:
+        return frequency_max
+    return audible_band(structure)
 
 
 @one_thread()

@@ -385,6 +385,8 @@ def _of_modes(
         if number != NO_ATTRACTOR and np.isfinite(found[number].frequency):
             away = np.abs(found[number].frequency - frequency)
             squeals[index] = away.argmin() == index
+    unbounded = np.zeros(count, bool)
+    unbounded[:pushed] = [run.unbounded for run in settled[:pushed]]
     times = np.full(count, np.nan)
     for index, run in enumerate(settled[:pushed]):
         if run.agrees and not run.quiet:
@@ -395,6 +397,7 @@ def _of_modes(
         "critical_mu": plant.critical_mu[plant.unstable],
         "ends_in": ends,
         "squeals": squeals,
+        **({"grows_without_bound": unbounded} if unbounded.any() else {}),
         "time_to_squeal": times,
     }
 

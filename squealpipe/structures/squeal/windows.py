@@ -225,6 +225,7 @@ def merged(parts: Sequence[StructureWindows]) -> StructureWindows:
     )
 
 
+@np.errstate(over="ignore", invalid="ignore", divide="ignore")
 def followed_windows(
     plant: Plant,
     states: np.ndarray,
@@ -297,6 +298,7 @@ def followed_windows(
     return measured, away[:, -1]
 
 
+@np.errstate(over="ignore", invalid="ignore")  # what grows without bound overflows
 def statistics_of(
     plant: Plant,
     raw: dict[str, np.ndarray],
@@ -324,32 +326,31 @@ def statistics_of(
     )
     events, regimes = raw["counts"].sum(1), raw["sample_regimes"][:, -1].copy()
     moved = (regimes != plant.regimes_at_rest).any(axis=1)
-    with np.errstate(invalid="ignore"):
-        return StructureWindows(
-            final=raw["final"],
-            regimes=regimes,
-            velocities=np.sqrt((modal**2).mean(1)),
-            largest_velocity=np.sqrt(square.max(axis=1)),
-            speed=np.sqrt((speed**2).mean(1)),
-            peak_speed=speed.max(axis=(1, 2)),
-            separated=separated,
-            stuck=stuck,
-            separations=separations,
-            landings=landings,
-            forces=raw["extremes"][..., 1],
-            switched=(events > 0) | moved,
-            events=events,
-            steps=raw["steps"],
-            kinetic=np.stack(
-                [0.5 * part.mean(1) for part in np.array_split(square, blocks, axis=1)],
-                axis=1,
-            ),
-            block_ends=lengths[:, None] * np.arange(1, blocks + 1) / blocks,
-            finished=raw["outcome"] == Outcome.converged,
-            length=lengths,
-            growth=np.full(size, np.nan),
-            late_growth=np.full(size, np.nan),
-        )
+    return StructureWindows(
+        final=raw["final"],
+        regimes=regimes,
+        velocities=np.sqrt((modal**2).mean(1)),
+        largest_velocity=np.sqrt(square.max(axis=1)),
+        speed=np.sqrt((speed**2).mean(1)),
+        peak_speed=speed.max(axis=(1, 2)),
+        separated=separated,
+        stuck=stuck,
+        separations=separations,
+        landings=landings,
+        forces=raw["extremes"][..., 1],
+        switched=(events > 0) | moved,
+        events=events,
+        steps=raw["steps"],
+        kinetic=np.stack(
+            [0.5 * part.mean(1) for part in np.array_split(square, blocks, axis=1)],
+            axis=1,
+        ),
+        block_ends=lengths[:, None] * np.arange(1, blocks + 1) / blocks,
+        finished=raw["outcome"] == Outcome.converged,
+        length=lengths,
+        growth=np.full(size, np.nan),
+        late_growth=np.full(size, np.nan),
+    )
 
 
 def _regimes(plant: Plant, regime: Regime) -> list[np.ndarray]:

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.codes import Verdict
+from squealpipe.schema import Outcome
 from squealpipe.structures.schema.squealing import GIVE_DAMPING
 from squealpipe.text import number, off_by, percent
 from squealpipe.units import engineering
@@ -117,11 +118,31 @@ def headline(answer: xr.Dataset, prefix: str = "") -> str:
             else "without sticking"
         )
         return f"{said} at {at} {how}; contact is kept."
-    return (
-        f"{said}: after {engineering(value('settled_by'), 's')} the motion had not settled; "
-        f"at the end its strongest line was at {at}, contact lost {lost} of the time."
-        f"{damping_advice(answer)}"
-    )
+    return said + _not_settled(answer, prefix)
+
+
+def _not_settled(answer: xr.Dataset, prefix: str) -> str:
+    """Say how far a motion came that has not settled, and what to do about it."""
+
+    def value(name: str) -> float:
+        return float(answer[f"{prefix}{name}"])
+
+    if not prefix and _grows_without_bound(answer):
+        return (
+            ": after a small push the vibration grows without bound, since nothing limits it at "
+            f"{engineering(float(answer.leading_frequency), 'Hz')}; give it more modal_damping, "
+            "or a frequency_max below."
+        )
+    told = f": after {engineering(value('settled_by'), 's')} the motion had not settled"
+    if not np.isnan(value("frequency")):
+        at = engineering(value("frequency"), "Hz") + _wanders(answer, prefix)
+        lost = percent(value("separated_fraction"))
+        told += f"; at the end its strongest line was at {at}, contact lost {lost} of the time"
+    return f"{told}.{damping_advice(answer)}"
+
+
+def _grows_without_bound(answer: xr.Dataset) -> bool:
+    return int(answer.get("outcome", Outcome.converged)) == Outcome.not_finite
 
 
 def damping_advice(answer: xr.Dataset) -> str:
@@ -233,6 +254,8 @@ def level(answer: xr.Dataset) -> str:
     verdict = verdict_of(answer)
     if verdict is Verdict.quiet:
         return f"Level: none; the contact force is {_force(answer)}."
+    if _grows_without_bound(answer) or np.isnan(float(answer.velocity_rms_along)):
+        return "Level: not known."
     when = " at the end" * (verdict is Verdict.undetermined)
     along, across = (
         engineering(float(answer[f"velocity_rms_{way}"]), "m s-1")
@@ -311,6 +334,8 @@ def impacts(answer: xr.Dataset) -> str:
     """Losses of contact, stick and harmonics, in one line."""
     if verdict_of(answer) is Verdict.quiet:
         return "Contact is kept."
+    if _grows_without_bound(answer) or np.isnan(float(answer.stick_fraction)):
+        return "Motion: not known."
     parts = []
     if float(answer.impact_rate) > 0:
         parts.append(

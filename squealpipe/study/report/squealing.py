@@ -68,19 +68,7 @@ def headline(answer: xr.Dataset) -> str:
             f"{_within(answer)}"
         )
     if verdict is Verdict.undetermined:
-        largest = float(answer.pole_growth_rate.max())
-        fades = bool(answer.whole_decays)
-        if not answer.sizes["mode"] and (largest >= 0 or not fades):
-            return (
-                f"{said}: small motions about steady sliding neither grow nor die out; give "
-                "the structure damping."
-            )
-        if beyond := _ends_beyond(answer):
-            return beyond
-        return (
-            f"{said}: the motion after a small push did not settle, or its kind is "
-            f"not clear.{damping_advice(answer)}"
-        )
+        return _undetermined(answer)
     first = answer.isel(attractor=_end(answer))
     at = _frequency_of(answer, first) + _near(answer, first)
     if verdict is Verdict.squeals:
@@ -91,6 +79,45 @@ def headline(answer: xr.Dataset) -> str:
         f"{said} at {at}: contact {loses.contact.item()} is open "
         f"{part_of_time(float(loses.separated_fraction))} of the time, and {_peak_force(first)}."
     )
+
+
+def _undetermined(answer: xr.Dataset) -> str:
+    """Say why the verdict is not known, and what to do about it."""
+    said = Verdict.undetermined.opening
+    largest = float(answer.pole_growth_rate.max())
+    fades = bool(answer.whole_decays)
+    if not answer.sizes["mode"] and (largest >= 0 or not fades):
+        return (
+            f"{said}: small motions about steady sliding neither grow nor die out; give "
+            "the structure damping."
+        )
+    if beyond := _ends_beyond(answer):
+        return beyond
+    if _grows_without_bound(answer, 0):
+        return f"{said}: {_nothing_limits(answer)}"
+    return (
+        f"{said}: the motion after a small push did not settle, or its kind is "
+        f"not clear.{damping_advice(answer)}"
+    )
+
+
+def _grows_without_bound(answer: xr.Dataset, index: int) -> bool:
+    """Tell whether a push along an unstable mode grew beyond all that contacts limit."""
+    # answers of earlier versions do not say it
+    return "grows_without_bound" in answer and bool(answer.grows_without_bound[index])
+
+
+def _nothing_limits(answer: xr.Dataset) -> str:
+    """Say that a small push grows without bound, and what changes that."""
+    mode = answer.isel(mode=0)
+    band = math.floor(0.9 * float(mode.frequency))
+    told = (
+        f"a small push grows without bound, since no contact limits {_mode_at(mode)}; "
+    )
+    damping = float(answer.added_damping)
+    if 0.0 < damping < np.inf:
+        told += f"modal_damping larger by {number(1.01 * damping)} stops it, "
+    return f"{told}frequency_max={band} leaves it out."
 
 
 def _ends_beyond(answer: xr.Dataset) -> str | None:
@@ -349,6 +376,8 @@ def modes(answer: xr.Dataset) -> Iterator[str]:
             # only the fastest of them is pushed, and only where no mode within the band grows
             if index and float(mode.frequency) > frequency_max(answer):
                 yield f"{named} is unstable; it was not pushed."
+            elif _grows_without_bound(answer, index):
+                yield f"{named} grows without bound: no contact limits it."
             else:
                 yield f"{named} ends in a motion that is undetermined."
             continue
@@ -424,10 +453,9 @@ def attractors(answer: xr.Dataset) -> Iterator[str]:
             f"{engineering(float(one.velocity_peak), 'm s-1')}; open {_of_contacts(one)}."
         )
     if float(answer.share_undetermined) > 0:
-        yield (
-            f"{percent(float(answer.share_undetermined))} of random starts did not settle; "
-            "give a longer t_end."
-        )
+        remedy = "" if "grows_without_bound" in answer else "; give a longer t_end"
+        share = percent(float(answer.share_undetermined))
+        yield f"{share} of random starts did not settle{remedy}."
 
 
 def onset(answer: xr.Dataset, of_whole: float | None = None) -> Iterator[str]:
