@@ -46,3 +46,11 @@ def test_what_was_there_stays_whole_while_another_is_written(tmp_path):
         draft.write_text(str(1 / 0))
     assert path.read_text() == "after"
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_others_may_read_what_is_written_as_any_file_of_its_user(tmp_path):
+    """A temporary file is its owner's alone, and takes the place of the dataset."""
+    with whole_file(tmp_path / "a.txt") as draft:
+        draft.write_text("content")
+    (tmp_path / "b.txt").touch()
+    assert (tmp_path / "a.txt").stat().st_mode == (tmp_path / "b.txt").stat().st_mode

@@ -14,20 +14,21 @@ from unittest.mock import Mock
 
 import numpy as np
 import pytest
+import xarray as xr
 import yaml
 
 from squealpipe.brake.dynamics.runs import simulate, validity_map
 from squealpipe.brake.linear.maps import stability_map
 from squealpipe.cli import run as command
 from squealpipe.ranges import longest, parse_range
-from squealpipe.schema import find
+from squealpipe.schema import Outcome, Variable, find
 from squealpipe.store import load, save
 from squealpipe.store.identity import dataset_id
 from squealpipe.study.chunks import Chunks
 from squealpipe.study.configuration.settings import parse_study
 from squealpipe.study.job import Job
 from squealpipe.study.scatter import join, scattered_rows
-from squealpipe.study.sweep import Sweep, planned, run_sweep
+from squealpipe.study.sweep import Sweep, _in_order, outcome_lines, planned, run_sweep
 from tests.former import FORMER
 
 SCRIPTS = Path(__file__).parents[2] / "workflow/scripts"
@@ -508,3 +509,32 @@ def test_wall_times_of_a_job_cover_all_of_it(tmp_path, monkeypatch):
     assert took[0] >= 0.05
     assert took[1] >= 0.1
     assert sum(took) <= time.perf_counter() - started
+
+
+def test_values_go_with_their_words_where_runs_name_them_in_another_order():
+    """Of two words an order is its own inverse: three tell it from that."""
+    first = {"cure": np.array(["mu", "preload", "speed"])}
+    run = {"cure": np.array(["speed", "mu", "preload"]), "change": np.array([3, 1, 2])}
+    entries = {"change": Variable("change", dims=("cure",))}
+    assert _in_order(run, first, entries)["change"].tolist() == [1, 2, 3]
+
+
+def test_outcomes_of_a_sweep_are_told_by_their_number():
+    codes = [
+        Outcome.step_limit,
+        *[Outcome.event_limit] * 3,
+        *[Outcome.singular_geometry] * 2,
+    ]
+    flags = {
+        "flag_values": np.array([3, 4, 5]),
+        "flag_meanings": "step_limit event_limit singular_geometry",
+    }
+    told = outcome_lines(
+        xr.Dataset({"outcome": ("mass", np.array(codes, "i4"), flags)}), ["mass"]
+    )
+    assert told[0] == (
+        "outcome of 6 runs: event_limit 3, singular_geometry 2, step_limit 1"
+    )
+    assert [line.split(":")[0] for line in told[1:]] == (
+        ["event_limit", "singular_geometry", "step_limit"]
+    )
