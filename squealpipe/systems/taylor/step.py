@@ -186,8 +186,24 @@ def at_end(series: int, terms: int, step: Any) -> Any:
 
 
 @inline
-def _free(series: int, terms: int, step: Any) -> Any:
-    """Lanes in which a surface has no root: both ends are further from zero than it bends."""
+def _free(series: int, terms: int, step: Any, lanes: int) -> Any:
+    """Those of some lanes in which a surface has no root in the step.
+
+    Where all its terms together are below its start it has none, which is looked at first; how far
+    it bends is computed only if that does not tell of all lanes.
+    """
+    change = magnitude(load(series + (terms - 1) * ROW))
+    for k in range(terms - 2, 0, -1):
+        change = fma(change, step, magnitude(load(series + k * ROW)))
+    free = bits_below(change * step, magnitude(load(series)))
+    if lanes & ~free:
+        free |= _bends_little(series, terms, step)
+    return free
+
+
+@inline
+def _bends_little(series: int, terms: int, step: Any) -> Any:
+    """Lanes in which both ends of a surface are further from zero than it bends."""
     value, bend = load(series + (terms - 1) * ROW), splat(0.0)
     for k in range(terms - 1, 1, -1):
         row = load(series + k * ROW)
@@ -261,7 +277,8 @@ def take_step(t: Any, m: Any, parameters: int) -> Any:
     for surface in range(t.n_surfaces):
         if m.active[surface]:
             series = base + (t.n_variables + surface) * terms * ROW
-            plain &= _free(series, terms, step) | ~m.active[surface]
+            watching = m.active[surface]
+            plain &= _free(series, terms, step, watching) | ~watching
             plain &= ~m.beyond[surface]
     return (
         ~plain | reaches(at, layout.numbers.t_end) | reaches(at, layout.numbers.t_late)
