@@ -486,3 +486,10 @@ def test_added_damping_is_that_of_the_whole_structure():
         return values.real.max()
 
     assert fastest(0.01 + 1.0001 * ratio) < 0.0 < fastest(0.01 + 0.9999 * ratio)
+
+
+@pytest.mark.parametrize("speed", [2.0, -2.0])
+def test_motions_along_the_belt_have_its_direction(speed):
+    structure = two_modes(0.3).with_(belt_speed=speed)
+    motion = Plant(structure).contact_motions(np.array([3.0, 5.0]))
+    assert motion.tolist() == [[np.sign(speed) * 3.0, -5.0]]

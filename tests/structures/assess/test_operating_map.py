@@ -11,6 +11,7 @@ from squealpipe import Contact, Structure, load, operating_map, plot, save
 from squealpipe.codes import Verdict
 from squealpipe.structures.assess.assess import judge_structure
 from squealpipe.structures.assess.measured import matched, read_noises
+from squealpipe.structures.assess.operating_points import _share
 from squealpipe.structures.assess.operating_units import OperatingUnits
 from squealpipe.structures.contact import PointOrigin
 from squealpipe.structures.schema.operating_map import Match
@@ -300,3 +301,8 @@ def test_a_sweep_in_parts_or_after_an_interruption_is_the_map_of_python(tmp_path
     ]
     assert [part.sizes["mu"] for part in parts] == [1, 1, 1]
     assert joined(config, parts, "mu").equals(whole)
+
+
+def test_a_frequency_on_the_edge_of_two_bands_is_in_the_upper_one():
+    bands = {"band_low": np.array([1e3, 2e3]), "band_high": np.array([2e3, 3e3])}
+    assert _share(np.array([2e3, np.nan]), bands).tolist() == [0.0, 0.5]
