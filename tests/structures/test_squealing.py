@@ -405,6 +405,8 @@ def test_a_mode_that_no_contact_limits_grows_without_bound_and_both_remedies_wor
     judged = judge_structure(structure, samples=1, seed=0, tol=1e-9).without_cures()
     assert Outcome(int(judged.outcome)) is Outcome.not_finite
     told = list(first_lines(judged))
+    doubles = np.log(2.0) / float(judged.sliding_growth_rate)
+    assert f"doubles every {1e3 * doubles:.3g} ms at first" in told[1]
     assert "grows without bound, since nothing limits it at 504 kHz" in told[0]
     assert told[2:4] == ["Level: not known.", "Motion: not known."]
     assert "nan" not in " ".join(told)
