@@ -201,9 +201,17 @@ def shape_similarity(s: DampedSystem, first: Any, second: Any) -> Any:
 
 
 def regime(s: DampedSystem) -> np.ndarray:
-    """:class:`LinearRegime` of each cell, that of :func:`stability`; NaN counts as stable.
+    """:class:`LinearRegime` of each cell, that of :func:`stability`; NaN counts as stable."""
+    unclear, linear = unclear_stability(s)
+    regimes = np.full(unclear.shape, LinearRegime.stable)
+    regimes[unclear] = linear.regime
+    return regimes
 
-    Eigenvalues are found where Routh–Hurwitz does not clearly decide.
+
+def unclear_stability(s: DampedSystem) -> tuple[np.ndarray, LinearStability]:
+    """Return which cells Routh–Hurwitz does not clearly call stable, and how motions grow there.
+
+    Eigenvalues, which take most of the time of :func:`stability`, are found of these cells only.
     """
     _, p = polynomial(s)
     # Routh–Hurwitz numbers above it have a sign that is not that of round-off
@@ -211,10 +219,7 @@ def regime(s: DampedSystem) -> np.ndarray:
     decided = hurwitz(p) > clear
     for coefficient in p:
         decided &= coefficient > clear
-    left = DampedSystem._make(entry[~decided] for entry in s)
-    regimes = np.full(decided.shape, LinearRegime.stable)
-    regimes[~decided] = stability(left).regime
-    return regimes
+    return ~decided, stability(DampedSystem._make(entry[~decided] for entry in s))
 
 
 def critical_friction(

@@ -14,7 +14,7 @@ import numpy as np
 
 from squealpipe.brake.models import a3
 from squealpipe.brake.models.contact_system import contact_system
-from squealpipe.brake.models.damped import damped_system, is_undamped, stability
+from squealpipe.brake.models.damped import damped_system, is_undamped, unclear_stability
 from squealpipe.codes import LinearRegime
 from squealpipe.laws.springs import springs_alike
 from squealpipe.paper.schema.inference import DAMPED_GRID, WordsInNumbers
@@ -97,11 +97,14 @@ def _on_grid(params: Parameters) -> Unstable:
     """Several statements ask for the cells of one set, which take a tenth of a second."""
     alpha1, alpha2 = midpoints(DAMPED_GRID)
     cells, twins = mirror_images(DAMPED_GRID, bool(springs_alike(params.as_dict())))
-    linear = stability(damped_system(params, alpha1[cells], alpha2[cells]))
+    unclear, linear = unclear_stability(
+        damped_system(params, alpha1[cells], alpha2[cells])
+    )
     couples = (linear.regime == LinearRegime.flutter) & (
         linear.shape_similarity >= WordsInNumbers.alike
     )
     kind = np.zeros((alpha1.size, 2), np.int8)
+    cells = cells[unclear]
     kind[cells] = kind[twins[cells]] = np.stack([linear.regime, couples], axis=-1)
     at = np.flatnonzero(kind[:, 0] > LinearRegime.stable)
     return Unstable(

@@ -80,9 +80,9 @@ def _page(content: Mapping[str, Any], made: str, media: Mapping[str, str]) -> st
         (TEMPLATES / "page.html.j2").read_text(encoding="utf-8")
     )
     # dots over a symbol: as combining characters they land beside it where no mathematics font is
-    body = _between(made, "<body>", "</body>").translate(
-        {0x0307: "\u02d9", 0x0308: "\u00a8"}
-    )
+    body = _between(made, "<body>", "</body>")
+    for combining, beside in (("\u0307", "\u02d9"), ("\u0308", "\u00a8")):
+        body = body.replace(combining, beside)
     for name, elements in media.items():
         place = re.search(rf'<div[^>]*id="media-{re.escape(name)}"[^>]*></div>', body)
         if place is not None:
