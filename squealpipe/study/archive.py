@@ -8,6 +8,7 @@ import platform
 import shutil
 import tempfile
 from collections.abc import Iterable, Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -138,6 +139,13 @@ def _sums(draft: Path) -> dict[str, dict[str, Any]]:
     }
 
 
+@cache
+def _installed() -> dict[str, str]:
+    """Names and versions of the installed packages, each of whose files is read once."""
+    abouts = [item.metadata for item in importlib.metadata.distributions()]
+    return {about["Name"]: about["Version"] for about in abouts}
+
+
 def _copy_setting(
     configs: list[Path], study: Study, base: Path, draft: Path
 ) -> dict[str, Any]:
@@ -172,10 +180,7 @@ def _copy_setting(
         "platform": platform.platform(),
         "machine": platform.machine(),
         "commit": commit(),
-        "packages": {
-            item.metadata["Name"]: item.version
-            for item in importlib.metadata.distributions()
-        },
+        "packages": _installed(),
     }
     text = json.dumps(environment, indent=1, sort_keys=True)
     (draft / "environment.json").write_text(text + "\n", encoding="utf-8")

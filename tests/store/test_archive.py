@@ -1,9 +1,11 @@
 """An archive is whole, sealed, and every changed, missing or extra byte is found."""
 
+import json
 import os
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 import xarray as xr
 from rocrate.rocrate import ROCrate
@@ -60,6 +62,8 @@ def test_archive_holds_result_and_what_made_it(run, frozen, keys_of):
         load(folder / "data/stability_map.nc") for folder in (frozen, run / "results")
     )
     xr.testing.assert_identical(*both)
+    packages = json.loads((frozen / "environment.json").read_text())["packages"]
+    assert packages["numpy"] == np.__version__
     assert verify("first", root=run).intact
     assert not list((run / "results/archive").glob(".*.tmp"))
 
