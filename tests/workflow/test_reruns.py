@@ -148,12 +148,14 @@ def missing_inputs(logs, allowed):
     """Script → what it read and none of its rules has as an input."""
     missing, beside = {}, tables_and_watchers()
     for log, script in logs.items():
+        opened = log.read_text().splitlines()
+        # modules that jobs share are imported before the fork: a script may need no other
+        assert opened, script
         read = {
             path
-            for line in log.read_text().splitlines()
+            for line in opened
             if (path := _source_of(line)) and not path.startswith(NO_INPUTS)
         }
-        assert read, script
         read -= beside
         unlisted = min((read - files for files in allowed[script]), key=len)
         if unlisted:

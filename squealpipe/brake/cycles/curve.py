@@ -62,7 +62,7 @@ def cycle_curve(
     limits = dict(to or {})
     # a cycle is also looked for next to the value: at the very onset of stick, round-off decides
     # how a run goes on
-    parameter_steps = (0.0, -1e-9, 1e-9)
+    parameter_steps = (0.0, -1e-12, 1e-12, -1e-9, 1e-9)
     for parameter_step in parameter_steps:
         at = {followed: float(point[followed]) * (1.0 + parameter_step)}
         if followed in own:

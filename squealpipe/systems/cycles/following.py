@@ -175,6 +175,8 @@ class Follower:
         gone = 1e-5
         if self.trail.has_shrunk(cycle, gone):
             return Outcome.equilibrium
+        if self.trail.stands_still and self.trail.is_unbounded:
+            return Outcome.period_unbounded
         return self.trail.meets()
 
     def _clear_labels(self, share: float) -> None:

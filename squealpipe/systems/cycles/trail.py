@@ -110,6 +110,16 @@ class Trail:
         )
 
     @property
+    def stands_still(self) -> bool:
+        """Tell whether none of the last ten steps moved the parameter by 1e-9 of it.
+
+        Closer to a homoclinic orbit round-off decides how a branch goes on, and whether it ends.
+        """
+        values = np.array(self.shapes[-11:])[:, 0]
+        moved = np.abs(np.diff(values))
+        return moved.size == 10 and bool((moved <= 1e-9 * abs(values[-1])).all())
+
+    @property
     def is_unbounded(self) -> bool:
         """Tell whether the period has grown by half while the parameter all but stood still.
 
