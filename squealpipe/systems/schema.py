@@ -241,21 +241,33 @@ system_schemas = {
 
 
 def check(dataset: xr.Dataset) -> xr.Dataset:
-    """Return the dataset itself if it holds what the table of its kind says.
+    """Return the dataset itself if each variable is in the table of its kind and as stated there.
 
     Raises:
-        SchemaError: with all faults: a variable that is missing; NaN or flags that have no meaning.
+        SchemaError: with all faults: a variable that has no place, is missing, or has other
+            dimensions or units than its table says; NaN or flags that have no meaning.
     """
     table = system_schemas[dataset.attrs["schema"]]
-    faults = [
-        fault
-        for name, variable in dataset.variables.items()
-        for fault in faults_of_values(
-            str(name), variable, _described(table.name, str(name), variable)
-        )
-    ]
+    coordinates = set(dataset.coords)
+    grid = tuple(str(dim) for dim in dataset.coords if dim != "component")
+    faults = []
+    held = dataset.variables
+    for name, variable in held.items():
+        entry = entry_of(table.name, str(name))
+        if entry is None:
+            faults.append(f"{name} is not part of the schema")
+            continue
+        dims = tuple(dim for dim in variable.dims if dim != "component")
+        expected = grid if entry.dims == (GRID,) else entry.dims
+        if dims != expected and name not in coordinates:
+            faults.append(f"{name} has dims {dims}, {expected} expected")
+        unit = variable.attrs.get("units", "1")
+        if "<" not in entry.units and entry.units != unit:
+            faults.append(f"{name} has units {unit!r}, {entry.units!r} expected")
+        described = _described(table.name, str(name), variable)
+        faults += faults_of_values(str(name), variable, described)
     for name, entry in table.variables.items():
-        if "<" not in name and not entry.optional and name not in dataset.variables:
+        if "<" not in name and not entry.optional and name not in held:
             faults.append(f"{name} is missing")
     if faults:
         raise SchemaError(f"{table.name}: " + "; ".join(faults))

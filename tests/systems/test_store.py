@@ -48,8 +48,13 @@ def test_runs_of_a_system_are_compared_variable_by_variable():
     ("change", "message"),
     [
         (lambda d: d.drop_vars("outcome"), "outcome is missing"),
+        (lambda d: d.assign(count_impact=d.count_impact.isel(x0=0)), "has dims"),
         (lambda d: d.assign(outcome=d.outcome + 77), "flags .* that have no meaning"),
         (lambda d: d.assign(time_in_free=d.time_in_free * np.nan), "holds NaN"),
+        (
+            lambda d: d.assign(count_impact=d.count_impact.assign_attrs(units="m")),
+            "units",
+        ),
     ],
 )
 def test_a_dataset_of_a_system_that_does_not_fit_its_table_is_refused(change, message):
@@ -63,5 +68,9 @@ def test_cycles_of_systems_fit_their_tables():
     cycle = impact_oscillator.limit_cycle(omega=2.6)
     assert systems.of_dataset(cycle).lookup("period").rtol == systems.CYCLE["rtol"]
     assert "event" in systems.of_dataset(cycle).lists
+    with pytest.raises(SchemaError, match="speed is not part of the schema"):
+        systems.check(cycle.assign(speed=1.0))
+    with pytest.raises(SchemaError, match="x_path has dims"):
+        systems.check(cycle.assign(x_path=cycle.x_path.isel(sample=0)))
     assert cycle.x_path.attrs["long_name"] == "x along the cycle"
     assert cycle.v_max.attrs["units"] == impact_oscillator.units["v"]
