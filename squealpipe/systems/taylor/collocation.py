@@ -17,15 +17,6 @@ _numba: Any = numba
 
 
 @part
-def _any(slope: Any) -> bool:
-    """Whether an entry is not zero."""
-    for value in slope:  # noqa: SIM110 (numba compiles no generator)
-        if value != 0.0:
-            return True
-    return False
-
-
-@part
 def _integrate(rates: Any, up_to: Any, states: Any) -> None:
     """States at the nodes from their rates there; identities at the start of the step."""
     nodes, n, columns, steps = rates.shape
@@ -53,7 +44,7 @@ def _multiply(slopes: Any, lengths: Any, first: int, states: Any, rates: Any) ->
                     rate[s] = slopes[i, c, node, first + s] if c >= n else 0.0
                 for j in range(n):
                     slope, state = slopes[i, j, node, first:last], states[node, j, c]
-                    if _any(slope):
+                    if slope.any():
                         for s in range(steps):
                             rate[s] += slope[s] * state[s]
                 for s in range(steps):
