@@ -15,7 +15,9 @@ _known: dict[str, Any] = {}
 
 def solve(problem: Problem, tol: float) -> Any:
     """Times, kinds, state, evaluations, flag, derivative; a Taylor step of order p counts p + 1."""
-    system = _known.setdefault(problem.name, system_of(problem))
+    if problem.name not in _known:
+        _known[problem.name] = system_of(problem)
+    system = _known[problem.name]
     given = {**system.parameters, **problem.data["start"]}
     # room for the events of a run; more than any problem of the benchmark has
     max_events = 1000
