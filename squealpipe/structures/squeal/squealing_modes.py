@@ -142,7 +142,8 @@ def squealing_of(
     Tracing its system and writing its code takes seconds with eight contacts.
 
     Args:
-        refines: whether motions are run on in more coordinates, for how far their level is right.
+        refines: whether motions are run on in more coordinates, for how far their level is right,
+            and the damping that stops what grows is sought.
     """
     growth = plant.spectrum.values.real
     places = plant.asked
@@ -185,8 +186,10 @@ def squealing_of(
     verdict = _verdict(plant, int(numbers[0]), modes, of_attractor["motion"])
     loud = [index for index, mode in enumerate(modes) if not members[index][0].quiet]
     drawn_in = set(numbers[len(pushes) :].tolist())
-    with stage("the damping that stops it"):
-        damping, damping_outcome = added_damping(plant)
+    damping, damping_outcome = np.nan, Outcome.not_computed
+    if refines:
+        with stage("the damping that stops it"):
+            damping, damping_outcome = added_damping(plant)
     with stage("the number of modes that would do"):
         of_whole = _of_whole(plant)
     of_mesh, mesh_coordinates = mesh_variables(plant.structure)
