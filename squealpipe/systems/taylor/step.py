@@ -278,8 +278,10 @@ def take_step(t: Any, m: Any, parameters: int) -> Any:
         if m.active[surface]:
             series = base + (t.n_variables + surface) * terms * ROW
             watching = m.active[surface]
-            plain &= _free(series, terms, step, watching) | ~watching
-            plain &= ~m.beyond[surface]
+            free = _free(series, terms, step, watching) & ~m.beyond[surface]
+            # the others are not searched, whatever else ends the step
+            m.suspects[surface] = ~free
+            plain &= free | ~watching
     return (
         ~plain | reaches(at, layout.numbers.t_end) | reaches(at, layout.numbers.t_late)
     )
